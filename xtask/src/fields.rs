@@ -1,4 +1,5 @@
-//! `docs/guide/src/fields.md`: every field of a scene, from the types that scenes are read into, with their defaults and ranges.
+//! `docs/guide/src/fields.md`: every field of a scene, from the types that scenes are read into, with their
+//! defaults and ranges.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -63,7 +64,8 @@ fn page(root: &Path) -> Result<String> {
         }
     }
     let mut text = String::from(
-        "# Every field of a scene\n\nWritten by `cargo xtask fields` from the types that scenes are read into. What a scene does not \
+        "# Every field of a scene\n\nWritten by `cargo xtask fields` from the types that scenes are read \
+         into. What a scene does not \
          say has its default; a number outside its range is refused with its line.\n",
     );
     section(&types, &FieldReference::new(), "", "Scene", &mut text)?;
@@ -239,7 +241,8 @@ mod tests {
     fn invariant_every_number_of_a_scene_is_on_the_page_with_its_range() {
         let text = page(&workspace::root()).expect("the sources are there");
         for line in [
-            "| `length_mm` | `10.0` | more than 0, at most 20000 mm | Circumferential length [mm], measured on the raceway. |",
+            "| `length_mm` | `10.0` | more than 0, at most 20000 mm | Circumferential length [mm], measured \
+             on the raceway. |",
             "| `stiffness_n_um` | `1000.0` | more than 0, at most 1000000 N/µm |",
             "- `collocated`:",
             "### `housing: springs(…)`",

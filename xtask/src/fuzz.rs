@@ -1,5 +1,5 @@
-//! `cargo xtask fuzz`: generated bad input by the hundred thousand. Every one must get an answer: no panic, no hang, no
-//! memory out of proportion.
+//! `cargo xtask fuzz`: generated bad input by the hundred thousand. Every one must get an answer: no panic,
+//! no hang, no memory out of proportion.
 
 mod damage;
 mod inputs;
@@ -16,7 +16,8 @@ pub(crate) use stribeck_scene::dice::Dice;
 
 use stribeck::{host, place::shown};
 
-/// An input that takes longer than this hangs: the largest mesh that is tried takes a tenth of that on a busy machine.
+/// An input that takes longer than this hangs: the largest mesh that is tried takes a tenth of that on a busy
+/// machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Memory that a small input may take beyond what the program has [MiB].

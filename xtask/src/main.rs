@@ -1,5 +1,5 @@
-//! What develops Stribeck: `cargo xtask ci`, `study`, `compare` and `fuzz`, and the program's own `simulate`, `report` and
-//! `plan`.
+//! What develops Stribeck: `cargo xtask ci`, `study`, `compare` and `fuzz`, and the program's own `simulate`,
+//! `report` and `plan`.
 //!
 //! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
 
@@ -15,7 +15,8 @@ use std::process::ExitCode;
 use clap::{Parser, Subcommand};
 use stribeck::Place;
 
-/// Stribeck: explicit dynamics of rolling element bearings. The commands of `stribeck`, and those that develop it.
+/// Stribeck: explicit dynamics of rolling element bearings. The commands of `stribeck`, and those that
+/// develop it.
 #[derive(Debug, Parser)]
 #[command(name = "cargo xtask", bin_name = "cargo xtask", version, about, max_term_width = 100)]
 struct Cli {

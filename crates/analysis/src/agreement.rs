@@ -74,7 +74,8 @@ impl Agreement {
     /// Of pairs of runs, full and reduced, of the same starts of `scene`.
     ///
     /// # Errors
-    /// [`Error::NoSignal`] without a pair or when records are too short, [`Error::Signal`] when one cannot be processed.
+    /// [`Error::NoSignal`] without a pair or when records are too short, [`Error::Signal`] when one cannot be
+    /// processed.
     pub fn of(scene: &Scene, pairs: &[[Run; 2]]) -> Result<Self, Error> {
         let Some([_, first]) = pairs.first() else {
             return Err(Error::NoSignal("no pair of runs".to_owned()));
@@ -156,7 +157,8 @@ impl Agreement {
 fn fold_down_note(sampled_s: f64) -> Option<String> {
     (sampled_s > 1.01 * FINE_S).then(|| {
         format!(
-            "samples of the full model every {:.3} µs fold down what nodes ring with above {:.0} kHz, at the seat above all: its third \
+            "samples of the full model every {:.3} µs fold down what nodes ring with above {:.0} kHz, at the \
+             seat above all: its third \
              octaves are higher than they should be. A shorter record is sampled every {:.0} µs",
             1e6 * sampled_s,
             5e-4 / sampled_s,

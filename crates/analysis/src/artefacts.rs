@@ -120,7 +120,8 @@ fn beats(prediction: &Prediction, motion: &KinematicsFinding, density: &Spectrum
                 "no motion, no beat".to_owned()
             } else if apart < resolution.width_6db_hz {
                 format!(
-                    "slower than this spectrum can show: the lines lie {apart:.0} Hz apart, it splits {:.0} Hz; one beat lasts {:.0} ms",
+                    "slower than this spectrum can show: the lines lie {apart:.0} Hz apart, it splits {:.0} \
+                     Hz; one beat lasts {:.0} ms",
                     resolution.width_6db_hz,
                     1e3 / apart.max(1e-3)
                 )
@@ -227,7 +228,8 @@ fn mode(n: u32, hz: f64, motion: &KinematicsFinding, seen: &Seen<'_>, comb: Opti
                     format!("the highest peak near it, {at:.0} Hz, is {name} ×{multiple}")
                 }
                 (None, None) => format!(
-                    "a peak stands {:+.0} % from it, at {at:.0} Hz; its place alone does not make it this mode",
+                    "a peak stands {:+.0} % from it, at {at:.0} Hz; its place alone does not make it this \
+                     mode",
                     100.0 * (at / hz - 1.0)
                 )
                 .replace('-', "−"),

@@ -50,7 +50,8 @@ pub fn pick(time_s: &[f64], force_n: &[f64], passage: &Passage) -> Picked {
     let before = span(time_s, passage.entry_s - 0.5 * traverse, passage.entry_s - 0.05 * traverse);
     if before.is_empty() || time_s[before.end - 1] - time_s[before.start] < passage.smoothing_s {
         picked.notes.push(format!(
-            "the record holds less than the smoothing ({:.3} ms) before the expected entry at {:.3} ms, so there is \
+            "the record holds less than the smoothing ({:.3} ms) before the expected entry at {:.3} ms, so \
+             there is \
              no level to compare with",
             1e3 * passage.smoothing_s,
             1e3 * passage.entry_s
@@ -92,7 +93,8 @@ pub fn pick(time_s: &[f64], force_n: &[f64], passage: &Passage) -> Picked {
             let until =
                 if last < passage.exit_s + 0.45 * traverse { "the record ends" } else { "the search ends" };
             picked.notes.push(format!(
-                "the roller carries less than half its load until {until} at {:.3} ms; its exit is expected at {:.3} ms",
+                "the roller carries less than half its load until {until} at {:.3} ms; its exit is expected \
+                 at {:.3} ms",
                 1e3 * last,
                 1e3 * passage.exit_s
             ));

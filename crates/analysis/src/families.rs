@@ -170,8 +170,8 @@ pub(crate) fn too_early(samples: usize, interval_s: f64, bpfo_hz: f64) -> Option
     samples.checked_sub(most).filter(|from| *from > 0)
 }
 
-/// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers, over the last
-/// [`MOST_PERIODS`] of the record.
+/// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers,
+/// over the last [`MOST_PERIODS`] of the record.
 ///
 /// # Errors
 /// [`Error::Signal`] when the spectrum of a finite channel is refused.
@@ -338,7 +338,8 @@ fn finding(
             let beside =
                 if found.is_empty() { String::new() } else { format!(" beside {}", found.join(" and ")) };
             format!(
-                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller forces{beside}, no more than a comb \
+                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller forces{beside}, \
+                 no more than a comb \
                  of any other place",
                 100.0 * trial.explained,
                 100.0 * trial.explained_forces

@@ -131,7 +131,8 @@ impl Findings {
     /// Analyses a record. An interrupted or diverged run yields what its samples hold.
     ///
     /// # Errors
-    /// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite recorded signal is refused all the same.
+    /// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite recorded signal is
+    /// refused all the same.
     pub fn of(record: &Record<'_>) -> Result<Self, Error> {
         let case = Case::of(record);
         let mut notes = case.caveats();

@@ -1,7 +1,8 @@
 //! What a bearing's vibration shows: kinematics, events, loads, tones, levels and defect families.
 //!
-//! [`findings::Findings::of`] analyses a run directory; [`measured::Analysis::of`] a measured record. The steps on the way
-//! are public and take plain slices. Nothing here meshes, simulates or draws: the crate `stribeck-report` makes pages of it.
+//! [`findings::Findings::of`] analyses a run directory; [`measured::Analysis::of`] a measured record. The
+//! steps on the way are public and take plain slices. Nothing here meshes, simulates or draws: the crate
+//! `stribeck-report` makes pages of it.
 //!
 //! ```no_run
 //! use stribeck_analysis::{findings::Findings, record::Record};

@@ -1,7 +1,7 @@
 //! A measured signal: is it sound, which defect families does it hold, and what may be concluded?
 //!
-//! [`Analysis::of`] goes once through the samples, block by block, so that a record of hours takes no more memory than one of
-//! seconds. Source: THEORY §7.9.
+//! [`Analysis::of`] goes once through the samples, block by block, so that a record of hours takes no more
+//! memory than one of seconds. Source: THEORY §7.9.
 //!
 //! ```
 //! use stribeck_analysis::measured::{Analysis, Defect, Machine};
@@ -177,8 +177,8 @@ impl Analysis {
     /// Analyses a channel sampled `rate_hz` times a second.
     ///
     /// # Errors
-    /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or constant,
-    /// [`Error::Signal`] when it cannot be processed.
+    /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or
+    /// constant, [`Error::Signal`] when it cannot be processed.
     pub fn of(channel: &Channel, rate_hz: f64, machine: &Machine) -> Result<Self, Error> {
         if !rate_hz.is_finite() || rate_hz <= 0.0 {
             return Err(Error::NoSignal(format!("a sample rate of {rate_hz} Hz; give one above 0")));

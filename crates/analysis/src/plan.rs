@@ -73,8 +73,9 @@ const RAYLEIGH: f64 = 0.9274;
 /// A Hann window separates lines that are this many resolutions apart.
 const HANN_WIDTHS: f64 = 2.0;
 
-/// An onset over this many steps of the gap from point to point, to either side, leaves a quarter of their line: 8 µm are
-/// 1.95 steps in the cured scene, 3 µm are 0.73 (docs/results/noise.md, `smooth` and `smooth-narrow`).
+/// An onset over this many steps of the gap from point to point, to either side, leaves a quarter of their
+/// line: 8 µm are 1.95 steps in the cured scene, 3 µm are 0.73 (docs/results/noise.md, `smooth` and
+/// `smooth-narrow`).
 const ONSET_STEPS: f64 = 1.9;
 
 impl Plan {
@@ -164,17 +165,26 @@ impl Plan {
         let c = &scene.written.contact;
         let mut advice = Vec::new();
         if c.surface == ContactSurface::Facet {
-            advice.push("`contact.surface=arc` takes the sag of the facets away: the largest single step of the study".into());
+            advice.push(
+                "`contact.surface=arc` takes the sag of the facets away: the largest single step of \
+                the study"
+                    .into(),
+            );
         }
         if c.interpolation == ContactInterpolation::Linear && c.penalty_scale > 0.2 {
             advice.push(format!(
-                "`contact.interpolation=spline`: with a contact as stiff as elements (penalty_scale {}) a load between \
+                "`contact.interpolation=spline`: with a contact as stiff as elements (penalty_scale {}) a \
+                 load between \
                  two nodes sinks in less than one at a node, and arcs alone leave a third of the tone",
                 c.penalty_scale
             ));
         }
         if c.method == ContactMethod::Collocated {
-            advice.push("`contact.method=integrated`: at nodes alone the pressure is lumped, and every node that enters or leaves is a step".into());
+            advice.push(
+                "`contact.method=integrated`: at nodes alone the pressure is lumped, and every node \
+                that enters or leaves is a step"
+                    .into(),
+            );
         }
         let onset_m = ONSET_STEPS * self.point_step_m(scene, c.points_per_facet);
         let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
@@ -183,7 +193,8 @@ impl Plan {
         let in_points = scene.written.model == ModelScene::Full && c.method == ContactMethod::Integrated;
         if in_points && c.surface != ContactSurface::Facet && audible && scene.contact_onset < onset_m {
             advice.push(format!(
-                "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz unless their pressure \
+                "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz \
+                 unless their pressure \
                  sets in over several of them",
                 1e6 * onset_m,
                 1e-3 * points_hz
@@ -199,10 +210,18 @@ impl Plan {
         if scene.written.solver.mass_damping_per_s > 0.0
             && scene.written.solver.damping_frame == DampingFrame::Rolling
         {
-            advice.push("`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across the raceways stands for the oil that `film` computes".into());
+            advice.push(
+                "`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across \
+                the raceways stands for the oil that `film` computes"
+                    .into(),
+            );
         }
         if films.iter().any(|film| film.lambda < 1.0) {
-            advice.push("oil films under load are thinner than `film.roughness_um`: the tips carry, and the films are taken to be as thick as they are high".into());
+            advice.push(
+                "oil films under load are thinner than `film.roughness_um`: the tips carry, and the \
+                films are taken to be as thick as they are high"
+                    .into(),
+            );
         }
         advice
     }
@@ -213,16 +232,22 @@ impl Plan {
         let mut advice = Vec::new();
         if facets.is_multiple_of(2) {
             advice.push(format!(
-                "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels the fundamental",
+                "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels \
+                 the fundamental",
                 facets + 1
             ));
         }
         if scene.written.mesh.roller_copies == RollerCopies::Rotated || facets.is_multiple_of(scene.rollers) {
-            advice.push("rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a count that is no multiple of the rollers is quieter".into());
+            advice.push(
+                "rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a \
+                count that is no multiple of the rollers is quieter"
+                    .into(),
+            );
         }
         if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.roller_radius {
             advice.push(format!(
-                "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several times shorter, refinement does not lower the tone",
+                "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several \
+                 times shorter, refinement does not lower the tone",
                 1e3 * self.facet_m,
                 2e3 * self.half_width_m
             ));
@@ -235,7 +260,8 @@ impl Plan {
         let mut advice = Vec::new();
         if self.elements_per_wavelength < 8.0 {
             advice.push(format!(
-                "{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not read the top of the spectrum",
+                "{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not \
+                 read the top of the spectrum",
                 self.elements_per_wavelength
             ));
         }

@@ -33,8 +33,8 @@ pub struct Summary {
     pub energy: EnergyFinding,
     /// Measured motion.
     pub kinematics: KinematicsFinding,
-    /// Speed and load where they change, with the families in orders of the shaft; `None` where neither does. Frequencies of
-    /// [`kinematics`](Self::kinematics) are then those at the mean speed.
+    /// Speed and load where they change, with the families in orders of the shaft; `None` where neither does.
+    /// Frequencies of [`kinematics`](Self::kinematics) are then those at the mean speed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub duty: Option<DutyFinding>,
     /// Passages over the defect.

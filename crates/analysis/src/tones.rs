@@ -34,8 +34,8 @@ pub struct Tone {
     pub predicted_hz: f64,
     /// The same from the recorded motion of cage and rollers [Hz].
     pub from_motion_hz: Option<f64>,
-    /// Frequency of the highest line within reach of the prediction [Hz]; `None` when no peak there stands at least
-    /// [`LEAST_PROMINENCE_DB`] above its surroundings.
+    /// Frequency of the highest line within reach of the prediction [Hz]; `None` when no peak there stands at
+    /// least [`LEAST_PROMINENCE_DB`] above its surroundings.
     pub measured_hz: Option<f64>,
     /// Peak amplitude of the measured line [g].
     pub level_g: Option<f64>,
@@ -94,7 +94,8 @@ pub fn unresolved(lines: &[PredictedLine], resolution: &Resolution) -> Vec<Vec<u
 /// order.
 ///
 /// # Errors
-/// None for a line that is not there: that tone says `None`. [`Error::Signal`] when the spectrum cannot be searched.
+/// None for a line that is not there: that tone says `None`. [`Error::Signal`] when the spectrum cannot be
+/// searched.
 pub fn measure(sensor: &str, lines: &[PredictedLine], spectrum: &Spectrum) -> Result<Vec<Tone>, Error> {
     let resolution = spectrum.resolution();
     let mut tones: Vec<Tone> = lines.iter().map(|line| Tone::unmeasured(sensor, line)).collect();

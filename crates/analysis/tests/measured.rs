@@ -35,8 +35,8 @@ fn coloured(seed: u64, samples: usize) -> Vec<f64> {
         .collect()
 }
 
-/// Knocks `hz` times a second that ring at 3 kHz, as strong as `strength` says at their time, each late or early by up to
-/// 1 % of a period.
+/// Knocks `hz` times a second that ring at 3 kHz, as strong as `strength` says at their time, each late or
+/// early by up to 1 % of a period.
 fn knocks(hz: f64, samples: usize, strength: impl Fn(f64) -> f64) -> Vec<f64> {
     let mut noise = Noise::new(99);
     let mut signal = vec![0.0; samples];
@@ -126,8 +126,8 @@ fn example_a_second_defect_is_told_from_the_sidebands_of_the_first() {
 
 #[test]
 fn issue_sidebands_near_the_places_of_other_families_are_no_defects() {
-    // In a 6203 the lower sidebands of BPFI, 1 and 2 turns of the shaft away, lie near twice BSF and BPFO, and in 0.8 s within a line or two:
-    // an inner raceway's record was said to show all three.
+    // In a 6203 the lower sidebands of BPFI, 1 and 2 turns of the shaft away, lie near twice BSF and BPFO,
+    // and in 0.8 s within a line or two: an inner raceway's record was said to show all three.
     let (shaft_hz, samples) = (25.0, 10_240);
     let inner = knocks(4.968 * shaft_hz, samples, under_the_load(shaft_hz));
     let signal = inner.iter().zip(coloured(7, samples)).map(|(a, b)| 4.0 * a + b).collect();
@@ -137,8 +137,8 @@ fn issue_sidebands_near_the_places_of_other_families_are_no_defects() {
     assert_eq!(claimed(&findings), ["BPFI"], "{findings:#?}");
 }
 
-/// Knocks about the middle of each turn of a cage, at times [s] from it that `spread` draws from a number from −1 to 1 for each of
-/// them, five in a turn.
+/// Knocks about the middle of each turn of a cage, at times [s] from it that `spread` draws from a number
+/// from −1 to 1 for each of them, five in a turn.
 fn passages(cage_hz: f64, spread: impl Fn(usize, [f64; 2]) -> f64) -> Vec<f64> {
     let mut noise = Noise::new(17);
     let mut signal = coloured(6, SAMPLES);
@@ -172,7 +172,8 @@ fn example_an_element_that_loses_its_spin_beyond_the_load_is_told_from_the_cage(
     assert_eq!(claimed(&analysed(cage, 60.0 * shaft_hz)), ["FTF"]);
 }
 
-/// Load and sensor stand in space: beside a shaft at rest the cage of a bearing whose outer ring turns goes by what the ring is ahead.
+/// Load and sensor stand in space: beside a shaft at rest the cage of a bearing whose outer ring turns goes
+/// by what the ring is ahead.
 #[test]
 fn issue_a_cage_is_expected_by_its_turns_in_space() {
     let noise = coloured(3, SAMPLES);
@@ -200,8 +201,8 @@ fn issue_a_cage_is_expected_by_its_turns_in_space() {
     assert_eq!(Machine::outer_speed_rpm(&scene("speed_rpm: 1500, outer_speed_rpm: -900")), -900.0);
 }
 
-/// Short bursts over a wide band, as an element makes them that passes an edge: `hz` times a second, each followed by a second
-/// one `apart_s` later, if that is not 0, both dying away with `decay_s`; at 51.2 kHz.
+/// Short bursts over a wide band, as an element makes them that passes an edge: `hz` times a second, each
+/// followed by a second one `apart_s` later, if that is not 0, both dying away with `decay_s`; at 51.2 kHz.
 fn edges(hz: f64, apart_s: f64, decay_s: f64) -> Vec<f64> {
     const FAST_HZ: f64 = 4.0 * RATE_HZ;
     let mut noise = Noise::new(3);
@@ -254,7 +255,8 @@ fn issue_one_knock_an_element_is_no_bound_on_the_length() {
 
 #[test]
 fn example_a_shallow_modulation_is_seen_and_not_called_a_defect() {
-    // What elements passing under the load do in a sound bearing: the noise swells by a fifth, not quite evenly.
+    // What elements passing under the load do in a sound bearing: the noise swells by a fifth, not quite
+    // evenly.
     let swell = |t: f64| 1.0 + 0.2 * (0..4).map(|h| (TAU * 71.7 * f64::from(h + 1) * t).cos()).sum::<f64>();
     let signal = coloured(8, 4 * SAMPLES)
         .iter()
@@ -323,7 +325,8 @@ fn measured(folder: &str) -> Option<PathBuf> {
         .filter(|f| f.is_dir());
     if found.is_none() {
         eprintln!(
-            "measured records `{folder}` are not there: set STRIBECK_MEASURED to their folder to hold the verdict against them"
+            "measured records `{folder}` are not there: set STRIBECK_MEASURED to their folder to hold the \
+             verdict against them"
         );
     }
     found
@@ -356,7 +359,8 @@ fn of_file(file: &std::path::Path, part: &str, rate_hz: f64, rpm: f64) -> Measur
 
 #[test]
 fn peer_verdicts_on_the_records_of_hit_sm() {
-    // HIT-SM (2020), a self-built rig of Harbin Institute of Technology: bearing 6205, defects over 2, 5 and 8° of arc.
+    // HIT-SM (2020), a self-built rig of Harbin Institute of Technology: bearing 6205, defects over 2, 5 and
+    // 8° of arc.
     let Some(folder) = measured("hit-sm") else { return };
     let mut hits = [0, 0];
     let (mut errors, mut covered, mut unordered) = (Vec::new(), 0, Vec::new());
@@ -405,7 +409,8 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
 
 #[test]
 fn peer_verdicts_on_sums_of_two_records_of_hit_sm() {
-    // HIT-SM (2020), as above; a record of each raceway, the inner one at half, equal and double the root mean square of the outer one.
+    // HIT-SM (2020), as above; a record of each raceway, the inner one at half, equal and double the root
+    // mean square of the outer one.
     let Some(folder) = measured("hit-sm") else { return };
     let samples = |name: &str| {
         let recording = Recording::open(folder.join(format!("{name}.mat"))).unwrap();

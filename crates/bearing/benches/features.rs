@@ -1,7 +1,9 @@
-//! What each feature of a scene costs a step: the scene, the scene without it, and features that are there but zero.
+//! What each feature of a scene costs a step: the scene, the scene without it, and features that are there
+//! but zero.
 //!
-//! Prints a table in Markdown. `cargo bench -p stribeck-bearing --bench features -- fixtures/scenes/lean.ron` measures
-//! another scene than the paper's. One thread; rounds of all variants alternate, and the median round counts.
+//! Prints a table in Markdown. `cargo bench -p stribeck-bearing --bench features -- fixtures/scenes/lean.ron`
+//! measures another scene than the paper's. One thread; rounds of all variants alternate, and the median
+//! round counts.
 
 mod motion;
 
@@ -138,7 +140,8 @@ impl Moving {
 
 /// Time that this thread has had on a processor [ns]; where the system does not tell, time on the wall.
 fn now_ns() -> f64 {
-    // The system brings this number up to date when a thread offers its processor, and else every few milliseconds.
+    // The system brings this number up to date when a thread offers its processor, and else every few
+    // milliseconds.
     std::thread::yield_now();
     thread_local!(static BEGAN: Instant = Instant::now());
     let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
@@ -158,7 +161,8 @@ fn main() {
     let whole = all[0].median();
     println!("# What each feature costs: {}\n", scene.name);
     println!(
-        "Written by `cargo bench -p stribeck-bearing --bench features`: one thread, processor time, medians of"
+        "Written by `cargo bench -p stribeck-bearing --bench features`: one thread, processor time, medians \
+         of"
     );
     println!("{ROUNDS} rounds in turn, quartiles in brackets.\n");
     println!("| step | elements | ns per element-step | of everything |\n|---|---|---|---|");

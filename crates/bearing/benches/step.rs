@@ -1,8 +1,8 @@
-//! One step of the paper's bearing (105 000 elements, 24 rollers), and of its graded version where there is one, on one
-//! and two threads: everything, without contact, contact alone.
+//! One step of the paper's bearing (105 000 elements, 24 rollers), and of its graded version where there is
+//! one, on one and two threads: everything, without contact, contact alone.
 //!
-//! The run's own preload takes a minute; here the load pushes the adapter and the outer ring through the clearance
-//! while the rollers already turn, so that about as many contacts carry.
+//! The run's own preload takes a minute; here the load pushes the adapter and the outer ring through the
+//! clearance while the rollers already turn, so that about as many contacts carry.
 
 mod motion;
 

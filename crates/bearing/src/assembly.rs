@@ -34,7 +34,8 @@ use stribeck_scene::{
 /// A cage moves as one piece: its elements carry mass only and may be coarse [mm].
 pub const CAGE_ELEMENT_MM: f64 = 2.0;
 
-/// Integration points on a facet of the outer ring's seat: two conforming surfaces need fewer than a line contact.
+/// Integration points on a facet of the outer ring's seat: two conforming surfaces need fewer than a line
+/// contact.
 const SEAT_POINTS: usize = 2;
 
 /// Names of the contact surfaces that every scene has.
@@ -51,8 +52,8 @@ pub(crate) const LOADED: &str = "loaded surface";
 /// Name of the part of a load that turns with the shaft which acts across the other.
 pub(crate) const ACROSS: &str = "load across";
 
-/// Rings and a roller as they are meshed, which takes time: grooves are in them, deviations from round are not yet, and the roller
-/// lies in the centre, not turned.
+/// Rings and a roller as they are meshed, which takes time: grooves are in them, deviations from round are
+/// not yet, and the roller lies in the centre, not turned.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshedParts {
     outer: Part,
@@ -97,8 +98,8 @@ pub struct Machine {
     pub outer: usize,
     /// The inner ring.
     pub inner: usize,
-    /// The body that holds the outer ring, if there is one: the adapter or another housing. A ring that does not deform needs
-    /// none.
+    /// The body that holds the outer ring, if there is one: the adapter or another housing. A ring that does
+    /// not deform needs none.
     pub housing: Option<usize>,
     /// Each roller that is not missing.
     pub rollers: Vec<Roller>,
@@ -161,7 +162,8 @@ impl Pairs {
 }
 
 impl Machine {
-    /// The nodes on the outer surface of the outer ring that are nearest to these angles [rad]: where sensors sit.
+    /// The nodes on the outer surface of the outer ring that are nearest to these angles [rad]: where sensors
+    /// sit.
     pub fn nodes_on_back(&self, angles: &[f64]) -> Vec<u32> {
         let off = |node: u32, wanted: f64| {
             let [x, y] = self.system.position(node);
@@ -257,7 +259,8 @@ impl Assembly {
         });
 
         let disc = &parts.disc;
-        // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle ones.
+        // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle
+        // ones.
         let path = scene.outer_race_radius - scene.roller_radius;
         let rollers: Result<Vec<(usize, Placed)>, Error> = scene
             .written
@@ -338,7 +341,8 @@ impl Assembly {
         Ok(Self { model, kinematics, facets, outer, inner, housing, rollers, cage })
     }
 
-    /// Nodes of the housing that take the load and are guided up and down; none where the load may come from anywhere.
+    /// Nodes of the housing that take the load and are guided up and down; none where the load may come from
+    /// anywhere.
     pub fn guided(&self) -> Vec<u32> {
         self.that_move(|motion| *motion == Motion::HeldX)
     }
@@ -387,8 +391,8 @@ impl Assembly {
         &self.model.materials[self.inner.body]
     }
 
-    /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if every body had
-    /// them: an estimate before anything is laid out.
+    /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if
+    /// every body had them: an estimate before anything is laid out.
     pub fn element_time_step_s(&self, scene: &ResolvedScene) -> f64 {
         let mesh = &self.model.mesh;
         let nu = scene.written.material.poissons_ratio;
@@ -416,7 +420,8 @@ impl Assembly {
         let mut plan = Plan::from(self.model.clone());
         plan.stiffness_damping = scene.stiffness_damping;
         plan.structural_damping = self.structural_damping(scene)?;
-        // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its corners.
+        // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its
+        // corners.
         let spline = scene.written.contact.interpolation == ContactInterpolation::Spline;
         plan.surface(OUTER_RACEWAY, surface(&self.outer, "inner").clone())?;
         plan.smooth(
@@ -520,7 +525,8 @@ impl Assembly {
         if let Some(housing) = self.housing.as_ref().filter(|_| seats > 0) {
             plan.contact(Pair {
                 name: format!("the {} and the outer ring", housing.name),
-                // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always integrated.
+                // Node-to-segment contact on nearly conforming surfaces chatters: the seat is always
+                // integrated.
                 method: Method::Integrated { points: SEAT_POINTS },
                 ..Pair::new(BACK, SEAT, seat)
             })?;
@@ -634,8 +640,8 @@ fn grooves_in(scene: &ResolvedScene, ring: DefectRing) -> Vec<Groove> {
     scene.grooves_of(ring).map(cut).collect()
 }
 
-/// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the rollers: piece i
-/// lies between roller i and the next one counter-clockwise.
+/// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the
+/// rollers: piece i lies between roller i and the next one counter-clockwise.
 fn cage_part(
     scene: &ResolvedScene,
     cage: &CageGeometry,

@@ -31,15 +31,17 @@ pub(crate) fn roller_core_mm(mesh: &MeshScene, facet_mm: f64) -> f64 {
     }
 }
 
-/// Polar layers of a graded roller: as many as a raceway has rows of full fineness, the last of which begins its
-/// transition. With one fewer the pattern of the core can be felt at the rim: the tone is off by up to 9 % instead of 5 %.
+/// Polar layers of a graded roller: as many as a raceway has rows of full fineness, the last of which begins
+/// its transition. With one fewer the pattern of the core can be felt at the rim: the tone is off by up to 9
+/// % instead of 5 %.
 pub(crate) fn roller_layers(grading: &GradingScene) -> usize {
     grading.fine_layers + 1
 }
 
-/// Nodes [m] of the adapter's seat from left to right: those of the ring that sits in it, so that the two surfaces fit
-/// facet to facet, however long their facets are. At its two ends the seat continues the facets of the ring. No column
-/// becomes narrower than `narrowest` [m]; a node of the ring that would need it gets none.
+/// Nodes [m] of the adapter's seat from left to right: those of the ring that sits in it, so that the two
+/// surfaces fit facet to facet, however long their facets are. At its two ends the seat continues the facets
+/// of the ring. No column becomes narrower than `narrowest` [m]; a node of the ring that would need it gets
+/// none.
 pub(crate) fn seat(back: &[[f64; 2]], half_width: f64, narrowest: f64) -> Vec<[f64; 2]> {
     let mut above: Vec<[f64; 2]> = back.iter().copied().filter(|p| p[1] > 0.0).collect();
     above.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -63,8 +65,8 @@ fn half_seat(ring: &[[f64; 2]], half_width: f64, narrowest: f64) -> Vec<[f64; 2]
             seat.push(*node);
         }
     }
-    // A vertex of the ring inside the last facet would press on it: the facet runs through that vertex instead, a few
-    // micrometres above the circle at its end.
+    // A vertex of the ring inside the last facet would press on it: the facet runs through that vertex
+    // instead, a few micrometres above the circle at its end.
     let next = seat.last().and_then(|last| ring.iter().find(|node| node[0] > last[0]));
     let end = match (seat.last(), next) {
         (Some(last), Some(next)) => {

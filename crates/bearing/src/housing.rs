@@ -1,4 +1,5 @@
-//! What holds the outer ring, from the scene: the paper's adapter, a pedestal, a mesh from a file, a frame on springs.
+//! What holds the outer ring, from the scene: the paper's adapter, a pedestal, a mesh from a file, a frame on
+//! springs.
 
 use std::f64::consts::TAU;
 
@@ -10,11 +11,12 @@ use stribeck_scene::{
 
 use crate::{error::Error, grading, own_mesh};
 
-/// Height of the flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is narrower
-/// would set the time step.
+/// Height of the flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is
+/// narrower would set the time step.
 const FLATTEST: f64 = 0.91;
 
-/// A frame on springs stands so far off the ring, and is so thick, in radii of its bore: it is drawn, and has a mass, no more.
+/// A frame on springs stands so far off the ring, and is so thick, in radii of its bore: it is drawn, and has
+/// a mass, no more.
 const FRAME_GAP: f64 = 0.02;
 const FRAME_THICKNESS: f64 = 0.04;
 
@@ -31,8 +33,8 @@ pub(crate) struct Housing {
     pub(crate) density: f64,
 }
 
-/// The housing of a scene; none where the outer ring does not deform, because it moves as one with it. `back` is the outer
-/// ring's outer surface in `mesh`.
+/// The housing of a scene; none where the outer ring does not deform, because it moves as one with it. `back`
+/// is the outer ring's outer surface in `mesh`.
 ///
 /// # Errors
 /// When it cannot be meshed, or its file says something else.
@@ -66,8 +68,8 @@ pub(crate) fn housing(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Res
     Ok(Some(made))
 }
 
-/// What the outer ring sits in: its own polygon, so that both fit facet to facet; around a ring from a file, which may have notches there,
-/// as many facets about its circle.
+/// What the outer ring sits in: its own polygon, so that both fit facet to facet; around a ring from a file,
+/// which may have notches there, as many facets about its circle.
 fn polygon(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Vec<[f64; 2]> {
     if scene.written.outer_ring_mesh.is_none() {
         return back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
@@ -97,7 +99,8 @@ fn adapter(scene: &ResolvedScene, back: &[[f64; 2]]) -> Result<Part, Error> {
     Ok(adapter.part_on(&seat)?)
 }
 
-/// Rows of the adapter: as many as leave no cell much flatter than the wanted size. Columns are shortest at the crown.
+/// Rows of the adapter: as many as leave no cell much flatter than the wanted size. Columns are shortest at
+/// the crown.
 fn adapter_rows(scene: &ResolvedScene, size: f64) -> usize {
     ((scene.adapter_height / (FLATTEST * size)) as usize).max(2)
 }

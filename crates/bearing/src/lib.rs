@@ -1,4 +1,5 @@
-//! Rolling element bearings of finite elements: from a scene to bodies in equilibrium under load, set rolling.
+//! Rolling element bearings of finite elements: from a scene to bodies in equilibrium under load, set
+//! rolling.
 
 pub mod assembly;
 pub mod error;

@@ -19,7 +19,8 @@ use crate::error::Error;
 /// Nodes along a fit lie within this part of its radius around or within what they fit.
 const LOOSE: f64 = 0.01;
 
-/// Half of the nodes of a raceway, and all that rollers may meet, lie within this part of its radius on its circle.
+/// Half of the nodes of a raceway, and all that rollers may meet, lie within this part of its radius on its
+/// circle.
 const ROUND: f64 = 1e-3;
 
 /// Bodies that a message names.
@@ -128,7 +129,8 @@ impl<'a> OwnMesh<'a> {
         let further = if more > 0 { format!(" and {more} more") } else { String::new() };
         loose.truncate(MOST_NAMED);
         self.refuse(format!(
-            "{}{further} hang on nothing: all their elements, or some of them, share no nodes with the body of its {what}. Leave them out of the \
+            "{}{further} hang on nothing: all their elements, or some of them, share no nodes with the body \
+             of its {what}. Leave them out of the \
              file, or join their nodes",
             loose.join(", ")
         ))
@@ -148,7 +150,8 @@ impl<'a> OwnMesh<'a> {
 
     fn misses<T>(&self, what: &str, fits: &str, [is, wanted]: [f64; 2]) -> Result<T, Error> {
         self.refuse(format!(
-            "its {what} does not fit {fits}: a node lies {:.4} mm from the centre, and the radius there is {:.4} mm. Look at \
+            "its {what} does not fit {fits}: a node lies {:.4} mm from the centre, and the radius there is \
+             {:.4} mm. Look at \
              `{}.unit_mm`; the bearing's centre is the origin of the mesh",
             1e3 * is,
             1e3 * wanted,
@@ -221,7 +224,8 @@ pub(crate) fn ring(ring: &RingMeshScene, of: DefectRing, scene: &ResolvedScene) 
     };
     let mut own = OwnMesh::read(group, &ring.file, &ring.text, ring.unit_mm)?;
     let raceway = own.closed("raceway", &ring.raceway, "raceway")?;
-    // How much deeper in the material than its circle, as a part of its radius: half of the nodes, and those nearest to the rollers.
+    // How much deeper in the material than its circle, as a part of its radius: half of the nodes, and those
+    // nearest to the rollers.
     let [half, nearest] = own.median_and_least(&raceway, outwards);
     let deeper = |radius: f64| outwards * (radius / race - 1.0);
     if let Some(off) = [half, nearest].into_iter().find(|radius| deeper(*radius) < -ROUND) {

@@ -9,7 +9,8 @@ use stribeck_scene::{kinematics::Kinematics, resolved::ResolvedScene, scene::Dam
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;
 
-/// Accelerations [m/s²] of every node in rolling without slip: the inner ring turns, the rollers run and spin.
+/// Accelerations [m/s²] of every node in rolling without slip: the inner ring turns, the rollers run and
+/// spin.
 fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
     let system = &machine.system;
     let mut acceleration = vec![[0.0; 2]; system.node_count()];
@@ -33,7 +34,8 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
     acceleration
 }
 
-/// Brings the machine to equilibrium under load, gravity and the inertia of rolling; a warning when it came only near.
+/// Brings the machine to equilibrium under load, gravity and the inertia of rolling; a warning when it came
+/// only near.
 ///
 /// # Errors
 /// When there is no equilibrium to be found.
@@ -57,14 +59,15 @@ pub fn preload(
         acceleration: rolling_acceleration(machine, k),
         ..Preload::default()
     };
-    // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between them. Rollers in
-    // a wide clearance feel its sides from farther away.
+    // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between
+    // them. Rollers in a wide clearance feel its sides from farther away.
     let wide = (scene.clearance / CLEARANCE).max(1.0);
     preload.softness.iter_mut().for_each(|softness| *softness *= wide);
     let settled = machine.system.settle(&preload)?;
     Ok(settled.unbalanced.map(|force| {
         format!(
-            "the preload left a force of {force:.2e} N unbalanced, {:.1e} of the load: the start rings a little. A softer \
+            "the preload left a force of {force:.2e} N unbalanced, {:.1e} of the load: the start rings a \
+             little. A softer \
              `contact.penalty_scale` converges better",
             force / scene.duty.load_n(0.0)
         )

@@ -11,7 +11,8 @@ use stribeck_system::Plan;
 
 use crate::error::Error;
 
-/// Ties every node of the ring's back to the frame, of which `held` is a node: each by its share of the circumference.
+/// Ties every node of the ring's back to the frame, of which `held` is a node: each by its share of the
+/// circumference.
 ///
 /// # Errors
 /// When a node is not in the mesh of the plan.

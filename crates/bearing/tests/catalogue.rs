@@ -71,11 +71,14 @@ fn example_cylindrical_roller_bearings_of_two_series_are_meshed_and_say_what_is_
     }
 }
 
-/// How far the forces on rollers are from theory at most, in parts of the largest, and that largest force [N].
+/// How far the forces on rollers are from theory at most, in parts of the largest, and that largest force
+/// [N].
 fn off_from_rigid_rings(bearing: &str, defects: &str) -> (f64, f64) {
-    // Penalty by ten times the stiffness of an element leaves the approach to the bodies; elements in proportion to the rollers.
+    // Penalty by ten times the stiffness of an element leaves the approach to the bodies; elements in
+    // proportion to the rollers.
     let text = format!(
-        "(bearing: \"{bearing}\", film: None, defect: None, housing: rigid(), operation: (speed_rpm: 0, gravity_m_s2: 0),
+        "(bearing: \"{bearing}\", film: None, defect: None, housing: rigid(), operation: (speed_rpm: 0, \
+         gravity_m_s2: 0),
           defects: [{defects}],
           mesh: (roller_facets: 160, grading: ()), contact: (surface: arc, penalty_scale: 10))"
     );
@@ -96,9 +99,10 @@ fn off_from_rigid_rings(bearing: &str, defects: &str) -> (f64, f64) {
     (off.fold(0.0, f64::max), largest)
 }
 
-/// Every bearing of the catalogue that a plane model has, one of those that differ by their flanges alone, and one that lacks the
-/// roller under the load.
-/// Source: Stribeck and Sjövall's distribution between rigid rings with Johnson's approach of line contacts, THEORY §6.2.
+/// Every bearing of the catalogue that a plane model has, one of those that differ by their flanges alone,
+/// and one that lacks the roller under the load.
+/// Source: Stribeck and Sjövall's distribution between rigid rings with Johnson's approach of line contacts,
+/// THEORY §6.2.
 #[test]
 fn analytic_rollers_between_rigid_rings() {
     const SHARE: f64 = 0.02;

@@ -1,8 +1,9 @@
-//! Contact of 24 discs between two rings, 0.5 mm facets, one thread: friction and damping included. On splines, with
-//! points one by one as well.
+//! Contact of 24 discs between two rings, 0.5 mm facets, one thread: friction and damping included. On
+//! splines, with points one by one as well.
 //!
 //! `forces` one evaluation, the searches that fall due included; `search` one evaluation with a search.
-//! Positions rest while the step number advances, so that candidates become inactive and active as they do in motion.
+//! Positions rest while the step number advances, so that candidates become inactive and active as they do in
+//! motion.
 
 use std::f64::consts::TAU;
 use std::time::Duration;

@@ -1,6 +1,6 @@
-//! A block hits an equal one at rest: they part after the time in which a wave runs to the far end and back, 2L/c, and the
-//! momentum goes over whole (Johnson, *Contact Mechanics*, 1985, §11.1). Printed for both ways of placing contact, on finer
-//! and finer meshes.
+//! A block hits an equal one at rest: they part after the time in which a wave runs to the far end and back,
+//! 2L/c, and the momentum goes over whole (Johnson, *Contact Mechanics*, 1985, §11.1). Printed for both ways
+//! of placing contact, on finer and finer meshes.
 //!
 //! `cargo run --release -p stribeck-contact --example two_blocks`
 
@@ -38,7 +38,8 @@ struct Outcome {
     contact_time: f64,
     /// Mean speeds of the blocks [m/s].
     speeds: [f64; 2],
-    /// Share of the energy that does not come back as motion of the blocks as a whole: it is left in vibration.
+    /// Share of the energy that does not come back as motion of the blocks as a whole: it is left in
+    /// vibration.
     energy_lost: f64,
 }
 

@@ -108,8 +108,8 @@ struct Pair {
     result: PairResult,
 }
 
-/// What a pair came to in the last step. It lies together, and an idle pair leaves it alone: one thread reads that of all
-/// pairs, and lines that another has written are slow to come.
+/// What a pair came to in the last step. It lies together, and an idle pair leaves it alone: one thread reads
+/// that of all pairs, and lines that another has written are slow to come.
 #[derive(Debug, Default)]
 struct PairResult {
     /// Nothing acts before this step.
@@ -122,7 +122,8 @@ struct PairResult {
     push: Vec<Push>,
 }
 
-/// Points of all surfaces. Surfaces of one shape share theirs, so that they stay in cache from one pass to the next.
+/// Points of all surfaces. Surfaces of one shape share theirs, so that they stay in cache from one pass to
+/// the next.
 #[derive(Default)]
 struct Patterns(Vec<(usize, Method, Arc<Points>)>);
 
@@ -141,23 +142,23 @@ impl Patterns {
     }
 }
 
-/// Points that are spaced by three quarters of the nodes' distance, one of them on a node, give it this much more than
-/// the mean; no other spacing gives more.
+/// Points that are spaced by three quarters of the nodes' distance, one of them on a node, give it this much
+/// more than the mean; no other spacing gives more.
 const CLUSTERING: f64 = 1.125;
 
-/// The square of the gap's gradient exceeds one by at most this times the square of a curve's slope: once for the normal,
-/// half for the turn of the curve that the foot lies on, as much for that of the point.
+/// The square of the gap's gradient exceeds one by at most this times the square of a curve's slope: once for
+/// the normal, half for the turn of the curve that the foot lies on, as much for that of the point.
 const STEEPER: f64 = 2.0;
 
 impl Contacts {
     /// Contacts between `surfaces`, in positions `x`, `y` [m] by slot. `thickness` [m] is out of plane.
     ///
-    /// Two threads take pairs from either end of the list. The pair with by far the most work had better stand first, where
-    /// forces are added at once, and those of one body together.
+    /// Two threads take pairs from either end of the list. The pair with by far the most work had better
+    /// stand first, where forces are added at once, and those of one body together.
     ///
     /// # Errors
-    /// When a pair names a surface that is not there or one twice, a surface a slot that is not there, a method no points
-    /// or too many, or the thickness is not positive.
+    /// When a pair names a surface that is not there or one twice, a surface a slot that is not there, a
+    /// method no points or too many, or the thickness is not positive.
     pub fn new(
         surfaces: Vec<Surface>,
         pairs: &[PairSpec],
@@ -213,15 +214,15 @@ impl Contacts {
         self.parallel = parallel;
     }
 
-    /// Evaluates points one by one from now on, the plain way that whole vectors of points are checked against. Sums
-    /// differ by rounding.
+    /// Evaluates points one by one from now on, the plain way that whole vectors of points are checked
+    /// against. Sums differ by rounding.
     pub fn set_together(&mut self, together: bool) {
         self.together = together;
     }
 
-    /// For a static preload: leaves damping and friction out and rounds the corner of the penalty law over a gap
-    /// of `softness` [m] (zero for the sharp law), so that Newton's method sees bodies before they touch. `None`
-    /// takes everything in again.
+    /// For a static preload: leaves damping and friction out and rounds the corner of the penalty law over a
+    /// gap of `softness` [m] (zero for the sharp law), so that Newton's method sees bodies before they touch.
+    /// `None` takes everything in again.
     pub fn set_preload(&mut self, softness: Option<f64>) {
         self.preload = softness;
         (self.search.next, self.search.afresh) = (0, true);
@@ -253,7 +254,8 @@ impl Contacts {
         }
     }
 
-    /// Resumes from what contact remembered; false when it belongs to other contacts, and nothing is changed then.
+    /// Resumes from what contact remembered; false when it belongs to other contacts, and nothing is changed
+    /// then.
     pub fn restore(&mut self, state: ContactState) -> bool {
         let fits = |(pass, memory): (&Pass, &Memory)| pass.can_remember(memory, &self.surfaces);
         if self.passes().count() != state.passes.len() || !self.passes().zip(&state.passes).all(fits) {
@@ -420,7 +422,8 @@ impl Force for Contacts {
         let threads = self.threads();
         let Self { surfaces, pairs, thickness, search, preload, together, push, met, .. } = self;
         let weights = |spec: &PairSpec| weights(spec, *thickness, search.fastest, *preload, *together);
-        // Pushes are added in the order of the pairs. Those of the first ones can be added at once, while they are in cache.
+        // Pushes are added in the order of the pairs. Those of the first ones can be added at once, while
+        // they are in cache.
         let mut at_once = |pair: &mut Pair| {
             pair.evaluate(surfaces, &at, &weights, push);
             hand_over(push, force);
@@ -442,8 +445,8 @@ impl Force for Contacts {
     }
 
     fn stiffness_bound(&self, dt: f64, bound: &mut [f64]) {
-        // A contact spring pulls on the difference of two displacements, (a − b)² ≤ 2a² + 2b², in each of two passes of
-        // half the stiffness. A surface touches one other at a time, so pairs do not add up.
+        // A contact spring pulls on the difference of two displacements, (a − b)² ≤ 2a² + 2b², in each of two
+        // passes of half the stiffness. A surface touches one other at a time, so pairs do not add up.
         let mut own = vec![0.0_f64; bound.len()];
         for pair in &self.pairs {
             let law = &pair.spec.law;

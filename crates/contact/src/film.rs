@@ -1,8 +1,9 @@
-//! Oil between round bodies and what they roll on: squeeze and rolling entrainment, without suction (THEORY §4.6).
+//! Oil between round bodies and what they roll on: squeeze and rolling entrainment, without suction (THEORY
+//! §4.6).
 //!
-//! A film is one more force on nodes. It lies in series with the springs of contact: the gap that the nodes leave is the
-//! film's thickness less what the surfaces give under its pressure. So its force hangs on positions alone, never pulls, and
-//! is no stiffer than contact.
+//! A film is one more force on nodes. It lies in series with the springs of contact: the gap that the nodes
+//! leave is the film's thickness less what the surfaces give under its pressure. So its force hangs on
+//! positions alone, never pulls, and is no stiffer than contact.
 
 mod divided;
 
@@ -17,13 +18,15 @@ use stribeck_solver::{
 
 use stribeck_surface::{Error, Smoothing, Surface};
 
-/// Steps from one look for the nearest places to the next; in between the film stays at the nodes where it was.
+/// Steps from one look for the nearest places to the next; in between the film stays at the nodes where it
+/// was.
 const LOOK_EVERY: u64 = 16;
 
 /// Steps between two looks at a film that is too thick to push.
 const REST: u64 = 128;
 
-/// Looks over which the speed of rolling is taken, and the shortest time [s]: nodes that shake move the nearest places to and fro.
+/// Looks over which the speed of rolling is taken, and the shortest time [s]: nodes that shake move the
+/// nearest places to and fro.
 const SPEED_EVERY: u64 = 4;
 const SPEED_OVER: f64 = 4e-6;
 
@@ -40,7 +43,8 @@ pub struct FilmSpec {
     pub oil: Oil,
     /// Penalty stiffness of the contact of the two [Pa/m].
     pub stiffness: f64,
-    /// Entrainment speed [m/s] before any motion was seen: half the sum of the speeds of both surfaces against the contact.
+    /// Entrainment speed [m/s] before any motion was seen: half the sum of the speeds of both surfaces
+    /// against the contact.
     pub speed: f64,
 }
 
@@ -99,7 +103,8 @@ struct Memory {
     layer: Option<Layer>,
     /// Entrainment speed [m/s].
     speed: f64,
-    /// Places of the film on the track and on the round body, and what they were when the speed was last taken.
+    /// Places of the film on the track and on the round body, and what they were when the speed was last
+    /// taken.
     places: [Place; 2],
     /// Where a unit of force goes, node by node: two of the track, two of the round body.
     shares: [[f64; 2]; 4],
@@ -117,7 +122,8 @@ struct Memory {
 }
 
 impl Films {
-    /// Films between `surfaces`, in reference positions `x`, `y` [m] by slot; `thickness` [m] is out of plane.
+    /// Films between `surfaces`, in reference positions `x`, `y` [m] by slot; `thickness` [m] is out of
+    /// plane.
     ///
     /// # Errors
     /// When a number is out of range or a surface cannot hold a film.
@@ -275,13 +281,13 @@ impl Film {
         }
         let round = self.lands[1].nearest(both[1], at.x, at.y, track.at, m.places[1]);
         m.places = [track.place, round.place];
-        // The point of the round body is the one nearest to that of the track: its normal is the line between them, so that
-        // forces along it turn nothing, on average between two looks.
+        // The point of the round body is the one nearest to that of the track: its normal is the line between
+        // them, so that forces along it turn nothing, on average between two looks.
         let normal = round.normal.map(|n| -n);
         let gap = normal[0] * (round.at[0] - track.at[0]) + normal[1] * (round.at[1] - track.at[1]);
-        // The film stays at these points until the next look, so they lie where it is half-way till then. Points that fall
-        // behind turn what rolls, with a gap that opens while bodies roll away from it and closes at the next look: energy
-        // from nowhere.
+        // The film stays at these points until the next look, so they lie where it is half-way till then.
+        // Points that fall behind turn what rolls, with a gap that opens while bodies roll away from it and
+        // closes at the next look: energy from nowhere.
         let half = 0.5 * LOOK_EVERY as f64 * at.dt;
         let [on_track, on_round] = [0, 1].map(|i| m.places[i].ahead(both[i], at.x, at.y, half * m.swept[i]));
         let ([a, b], [c, d]) = (on_track.shares(round.normal), on_round.shares(normal));
@@ -364,7 +370,8 @@ impl Force for Films {
     }
 
     fn stiffness_bound(&self, _dt: f64, bound: &mut [f64]) {
-        // As in contact, (a − b)² ≤ 2a² + 2b², and a surface holds one film at a place. All of it may hang on one node.
+        // As in contact, (a − b)² ≤ 2a² + 2b², and a surface holds one film at a place. All of it may hang on
+        // one node.
         let mut own = vec![0.0_f64; bound.len()];
         for film in &self.films {
             for surface in [film.track, film.round] {

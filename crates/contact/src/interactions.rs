@@ -1,12 +1,12 @@
 //! Interactions of surfaces, shared out over ranks that run one model together.
 //!
-//! Each is computed by every rank that moves a node which it may push, as elements on a seam are: forces need not be sent.
-//! One of these ranks, its *leader*, tells all others what it came to.
+//! Each is computed by every rank that moves a node which it may push, as elements on a seam are: forces need
+//! not be sent. One of these ranks, its *leader*, tells all others what it came to.
 
 use stribeck_solver::{ranks::Shared, state::Moment};
 
-/// Facets by which a foot may move along a surface between two searches, however fast it slides: it would have to do so at a
-/// tenth of the speed of sound.
+/// Facets by which a foot may move along a surface between two searches, however fast it slides: it would
+/// have to do so at a tenth of the speed of sound.
 pub(crate) const REACH: usize = 16;
 
 /// Pairs of surfaces, or films of oil.

@@ -1,31 +1,32 @@
-//! Contact between oriented surfaces in the plane: search, closest points, penalty, damping and Coulomb friction, for explicit
-//! dynamics.
+//! Contact between oriented surfaces in the plane: search, closest points, penalty, damping and Coulomb
+//! friction, for explicit dynamics.
 //!
-//! To the solver, contact is one more force on nodes: [`Contacts`] implements [`Force`](stribeck_solver::Force). Three things
-//! make it up, in this order:
+//! To the solver, contact is one more force on nodes: [`Contacts`] implements
+//! [`Force`](stribeck_solver::Force). Three things make it up, in this order:
 //!
 //! 1. a [`Surface`] for each boundary that may touch: a polyline of nodes, which may stand for a smooth curve
 //!    ([`Surface::smoothed`]) and move as a spline of its nodes ([`Surface::splined`]);
-//! 2. a [`PairSpec`] for each two surfaces that may touch, with a [`Law`] and a [`Method`], which says where the law acts: at
-//!    nodes, or at points on every facet;
+//! 2. a [`PairSpec`] for each two surfaces that may touch, with a [`Law`] and a [`Method`], which says where
+//!    the law acts: at nodes, or at points on every facet;
 //! 3. [`Contacts::new`] with all of them; the result goes into the list of forces of every step.
 //!
-//! Each pair is evaluated in two passes of half the stiffness, the points of either surface against the facets of the other.
-//! A pass searches now and then (broad phase: bounding-volume trees of [parry2d](https://parry.rs)), follows the closest points
-//! of what may touch from step to step (narrow phase), and leaves points inactive that cannot touch yet. [`project`] answers
-//! for a single point: its gap to a surface, and where.
+//! Each pair is evaluated in two passes of half the stiffness, the points of either surface against the
+//! facets of the other. A pass searches now and then (broad phase: bounding-volume trees of
+//! [parry2d](https://parry.rs)), follows the closest points of what may touch from step to step (narrow
+//! phase), and leaves points inactive that cannot touch yet. [`project`] answers for a single point: its gap
+//! to a surface, and where.
 //!
 //! # Conventions
 //!
-//! SI units. Along a surface the solid lies on the left and the outward normal points to the right. A gap [m] is a
-//! signed distance: positive apart, negative in penetration. Stiffness and damping are per area: pressure a metre of
-//! penetration [Pa/m], and a metre a second of approach [Pa s/m]. The resultant of a pair is the force on its *first*
-//! surface's body.
+//! SI units. Along a surface the solid lies on the left and the outward normal points to the right. A gap [m]
+//! is a signed distance: positive apart, negative in penetration. Stiffness and damping are per area:
+//! pressure a metre of penetration [Pa/m], and a metre a second of approach [Pa s/m]. The resultant of a pair
+//! is the force on its *first* surface's body.
 //!
 //! # Example: two blocks collide
 //!
-//! A block at 2 m/s hits an equal one at rest. The compression wave runs to the far end of each and back, so they part
-//! after 2L/c; the momentum goes over whole.
+//! A block at 2 m/s hits an equal one at rest. The compression wave runs to the far end of each and back, so
+//! they part after 2L/c; the momentum goes over whole.
 //!
 //! ```
 //! use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
@@ -108,8 +109,8 @@
 //! | What about points near ends and corners? | `single_points.rs` |
 //! | From which facet does a point set out after a search? | `nearest_chord.rs` |
 //!
-//! The mathematics stands once, over a [`Number`](stribeck_simd::lanes::Number): `f64` for single points, a vector for rows and
-//! bands of them.
+//! The mathematics stands once, over a [`Number`](stribeck_simd::lanes::Number): `f64` for single points, a
+//! vector for rows and bands of them.
 
 // Units stand in brackets, as in "gap [m]", and are no links.
 #![allow(rustdoc::broken_intra_doc_links)]

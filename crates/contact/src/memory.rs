@@ -7,15 +7,16 @@ use stribeck_simd::{field::Field, lanes::LANES};
 
 use crate::points::Pattern;
 
-/// What a pass remembers from step to step: of the points of its candidates alone, as its [`Arrangement`] says, so that what is
-/// read in every step lies close together. Facets of many points have whole vectors of room, each in a line of cache; behind
-/// the last point there is room for a vector that reads on.
+/// What a pass remembers from step to step: of the points of its candidates alone, as its [`Arrangement`]
+/// says, so that what is read in every step lies close together. Facets of many points have whole vectors of
+/// room, each in a line of cache; behind the last point there is room for a vector that reads on.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Memory {
     pub(crate) candidates: Vec<Candidate>,
     /// Facet of the primary surface on which each point was last found.
     pub(crate) nearest: Vec<u32>,
-    /// Steps after the search before which each point cannot touch; it is looked at again in the step that holds the last of them.
+    /// Steps after the search before which each point cannot touch; it is looked at again in the step that
+    /// holds the last of them.
     pub(crate) inactive_until: Field,
     /// What points in contact remember; `None` without damping and friction.
     pub(crate) history: Option<Histories>,
@@ -53,8 +54,8 @@ impl Candidate {
 pub(crate) enum Arrangement {
     /// Facet by facet.
     Rows,
-    /// [`LANES`] facets side by side, whatever the instruction set: the first point of each, then the second of each, and so
-    /// on.
+    /// [`LANES`] facets side by side, whatever the instruction set: the first point of each, then the second
+    /// of each, and so on.
     Bands {
         /// Points that a facet has room for.
         points: usize,
@@ -71,7 +72,8 @@ impl Arrangement {
         }
     }
 
-    /// First point of the facet after `before` others that take `taken` places, and places that are taken with it.
+    /// First point of the facet after `before` others that take `taken` places, and places that are taken
+    /// with it.
     pub(crate) fn next(self, before: usize, taken: usize, pattern: Pattern) -> (usize, usize) {
         match self {
             Self::Rows => (taken, taken + pattern.room() as usize),

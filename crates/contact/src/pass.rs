@@ -112,9 +112,10 @@ impl Pass {
         self.memory = memory;
     }
 
-    /// Takes new candidates from pairs (secondary facet, primary facet), ascending. Points of facets that were candidates
-    /// before go on from what they remember, but where another part of the primary surface has come nearer; they stay inactive for
-    /// as much less time as the fastest approach was `slower` in the search before.
+    /// Takes new candidates from pairs (secondary facet, primary facet), ascending. Points of facets that
+    /// were candidates before go on from what they remember, but where another part of the primary surface
+    /// has come nearer; they stay inactive for as much less time as the fastest approach was `slower` in the
+    /// search before.
     pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>, slower: f64) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let Self { points, arrangement, memory, room, .. } = self;
@@ -192,8 +193,8 @@ impl Pass {
         self.memory.candidates.iter().map(|c| MOST_NODES * (1 + c.pattern.points as usize)).sum()
     }
 
-    /// Fetches what an evaluation of rows begins with, of all active facets: between two steps the elements push it out
-    /// of the near caches, and so it is on its way while the first facets are evaluated.
+    /// Fetches what an evaluation of rows begins with, of all active facets: between two steps the elements
+    /// push it out of the near caches, and so it is on its way while the first facets are evaluated.
     pub(crate) fn fetch(&self, surfaces: &[Surface], at: &Moment<'_>) {
         let Memory { nearest, inactive_until, history, candidates, idle_until, .. } = &self.memory;
         // Facets with few points follow one another in memory as they are read.
@@ -247,8 +248,8 @@ impl Pass {
         .dispatch()
     }
 
-    /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient; what the
-    /// gradient itself changes by is left out.
+    /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient;
+    /// what the gradient itself changes by is left out.
     pub(crate) fn tangent(
         &self,
         surfaces: &[Surface],

@@ -1,5 +1,5 @@
-//! The law of a pair as one pass applies it: its share of the stiffness, the static preload's rounded corner, and the speeds
-//! that inactive points count on (THEORY §3.2, §4.1).
+//! The law of a pair as one pass applies it: its share of the stiffness, the static preload's rounded corner,
+//! and the speeds that inactive points count on (THEORY §3.2, §4.1).
 
 use stribeck_surface::{Law, law::Onset};
 
@@ -9,7 +9,8 @@ pub(crate) const SPEED_MARGIN: f64 = 2.0;
 /// Least speed allowed for until then [m/s]: what an impact may give to a surface at rest.
 pub(crate) const LEAST_SPEED: f64 = 2.0;
 
-/// A point allows for this part of the fastest approach too: bodies turn by less than a tenth while it is inactive.
+/// A point allows for this part of the fastest approach too: bodies turn by less than a tenth while it is
+/// inactive.
 const FASTEST_OVER: f64 = 16.0;
 
 /// What is left of a pass's pace from one evaluation to the next.

@@ -1,4 +1,5 @@
-//! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands for.
+//! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands
+//! for.
 
 use std::ops::Range;
 
@@ -27,8 +28,8 @@ impl Method {
 /// Facets with more points than this fill vectors of their own; others share vectors with their neighbours.
 pub(crate) const FEW_POINTS: usize = 4;
 
-/// Contact points. Facets whose points lie and weigh alike share a pattern, so that what all rows of points read stays in
-/// cache. Behind the last one each field has room for a vector that reads on.
+/// Contact points. Facets whose points lie and weigh alike share a pattern, so that what all rows of points
+/// read stays in cache. Behind the last one each field has room for a vector that reads on.
 #[derive(Debug)]
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.
@@ -130,7 +131,8 @@ impl Points {
             && agree(&self.weight, &other.weight)
     }
 
-    /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs need.
+    /// Length of surface that the points deal out to each node [m], with the margin that shares of both signs
+    /// need.
     pub(crate) fn on_nodes(&self, surface: &Surface) -> Vec<f64> {
         let mut dealt = vec![0.0; surface.slots.len()];
         for (f, pattern) in self.of_facet.iter().enumerate() {

@@ -12,8 +12,8 @@ const BETWEEN_SEARCHES: usize = 400;
 
 #[test]
 fn invariant_steps_between_searches_allocate_nothing() {
-    // A disc rolls over a block at 0.2 m/s, pressed in by 2 µm, with damping and friction: on chords in two passes, on
-    // splines in one.
+    // A disc rolls over a block at 0.2 m/s, pressed in by 2 µm, with damping and friction: on chords in two
+    // passes, on splines in one.
     for splines in [false, true] {
         let (radius, size) = (5e-3, 0.5e-3);
         let mut scene = Scene::default();

@@ -1,4 +1,5 @@
-//! Oil films between a roller and a raceway with a groove, without the bodies behind them: where they push, and how much.
+//! Oil films between a roller and a raceway with a groove, without the bodies behind them: where they push,
+//! and how much.
 
 use std::f64::consts::TAU;
 
@@ -42,7 +43,8 @@ impl Model {
             y.push(r * angle.sin());
             x.len() as u32 - 1
         };
-        // The solid lies outside: clockwise, from the end of the groove all round to its beginning, then along its floor.
+        // The solid lies outside: clockwise, from the end of the groove all round to its beginning, then
+        // along its floor.
         let (half, top) = (HALF_GROOVE / RACEWAY, 0.25 * TAU);
         let (land, floor) = (1200, 20);
         let mut ring: Vec<u32> = (0..=land)
@@ -60,7 +62,8 @@ impl Model {
         Self { x, y, ring, rim, rim_at: first..centre, centre, turned: 0.0 }
     }
 
-    /// Turns the roller about its centre to an angle and puts that at `r`, `along` the raceway from the middle of the groove [m].
+    /// Turns the roller about its centre to an angle and puts that at `r`, `along` the raceway from the
+    /// middle of the groove [m].
     fn place(&mut self, r: f64, along: f64, turned: f64) {
         let (cx, cy) = (self.x[self.centre], self.y[self.centre]);
         let angle = 0.25 * TAU - along / RACEWAY;
@@ -112,8 +115,8 @@ impl Model {
     }
 }
 
-/// Away from the groove W = 4.895 ηuRL/h (H. M. Martin, Engineering 102 (1916) 119) with the relative radius of a roller in a
-/// raceway, wherever nodes lie; over the middle of the groove the same with its floor.
+/// Away from the groove W = 4.895 ηuRL/h (H. M. Martin, Engineering 102 (1916) 119) with the relative radius
+/// of a roller in a raceway, wherever nodes lie; over the middle of the groove the same with its floor.
 #[test]
 fn analytic_films_on_the_raceway_and_on_the_floor() {
     /// Shares of the land's ends, and what springs give: 0.2 µm of 20.
@@ -145,8 +148,8 @@ fn analytic_films_on_the_raceway_and_on_the_floor() {
     }
 }
 
-/// Nodes of fine meshes shake by nanometres, which moves the nearest places by micrometres within a few steps of nanoseconds. Taken for
-/// a speed of rolling that made physical.ron run away within 15 µs.
+/// Nodes of fine meshes shake by nanometres, which moves the nearest places by micrometres within a few steps
+/// of nanoseconds. Taken for a speed of rolling that made physical.ron run away within 15 µs.
 #[test]
 fn issue_a_raceway_that_tilts_to_and_fro_draws_in_no_oil() {
     /// What springs give.
@@ -177,14 +180,16 @@ fn issue_a_raceway_that_tilts_to_and_fro_draws_in_no_oil() {
     }
 }
 
-/// A roller that is led over the groove feels its film fade and come again, without a jump. In the middle of the groove only the
-/// floor carries, with the share that a squeeze film between two open ends has: ∫ X²/(1 + X²)³ dX between them over π/8, by
-/// quadrature (A. Cameron, The Principles of Lubrication, Longmans 1966, chapter 7).
+/// A roller that is led over the groove feels its film fade and come again, without a jump. In the middle of
+/// the groove only the floor carries, with the share that a squeeze film between two open ends has: ∫ X²/(1 +
+/// X²)³ dX between them over π/8, by quadrature (A. Cameron, The Principles of Lubrication, Longmans 1966,
+/// chapter 7).
 #[test]
 fn analytic_a_groove_fades_the_film_in_and_out() {
     /// From place to place, 5 µm apart, of the force on the sound raceway; the film is a millimetre wide.
     const STEP: f64 = 0.02;
-    /// Shares of both ends are multiplied, which is right to 0.2 %, and lengths are those of the nearest facet.
+    /// Shares of both ends are multiplied, which is right to 0.2 %, and lengths are those of the nearest
+    /// facet.
     const TOLERANCE: f64 = 0.02;
     let gap = 10e-6;
     let mut model = Model::new();

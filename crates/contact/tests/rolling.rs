@@ -1,8 +1,8 @@
 //! A roller pressed on a flat and into a raceway: does the force see where facets and nodes are?
 //!
-//! The middle of a disc is held at a fixed approach while the disc takes the positions of rolling over one facet, each in
-//! static equilibrium. Nothing yields to a change of force, as it would under a dead load: the ripple is the largest
-//! that any rolling could show.
+//! The middle of a disc is held at a fixed approach while the disc takes the positions of rolling over one
+//! facet, each in static equilibrium. Nothing yields to a change of force, as it would under a dead load: the
+//! ripple is the largest that any rolling could show.
 
 mod common;
 
@@ -61,7 +61,8 @@ fn ground(kind: Ground, shift: f64) -> (Part, &'static str, [f64; 2]) {
     }
 }
 
-/// Force on the roller [N/m] when it has rolled on by `turn` facets and the ground's nodes have moved by `shift`.
+/// Force on the roller [N/m] when it has rolled on by `turn` facets and the ground's nodes have moved by
+/// `shift`.
 fn force(kind: Ground, recipe: Recipe, turn: f64, shift: f64) -> f64 {
     let mut scene = Scene::default();
     let (part, surface, centre) = ground(kind, shift);

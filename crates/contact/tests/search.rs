@@ -1,4 +1,5 @@
-//! What contact finds and does, against sums over everything: search, forces in pairs, bounds, bits, checkpoints.
+//! What contact finds and does, against sums over everything: search, forces in pairs, bounds, bits,
+//! checkpoints.
 
 mod common;
 
@@ -80,8 +81,8 @@ impl Shapes {
         force
     }
 
-    /// Force on polygon 0 by definition: every corner of each against every side of the other, half the stiffness
-    /// each way; and the sum of the amounts.
+    /// Force on polygon 0 by definition: every corner of each against every side of the other, half the
+    /// stiffness each way; and the sum of the amounts.
     fn slowly(&self) -> ([f64; 2], f64) {
         let (mut force, mut amount) = ([0.0; 2], 0.0);
         for (own, other, sign) in [(0, 1, 1.0), (1, 0, -1.0)] {
@@ -101,7 +102,8 @@ impl Shapes {
         (force, amount)
     }
 
-    /// Largest signed distance from the lines of a convex polygon, and that line's normal: inside, the distance to it.
+    /// Largest signed distance from the lines of a convex polygon, and that line's normal: inside, the
+    /// distance to it.
     fn gap(&self, p: [f64; 2], polygon: usize) -> (f64, [f64; 2]) {
         let nodes = self.nodes(polygon);
         let side = |k: usize| {
@@ -220,8 +222,8 @@ proptest! {
 
 #[test]
 fn invariant_search_keeps_up_with_motion() {
-    // A small polygon races past a large one, in and out of contact at 40 m/s while it spins; at every step the force
-    // is that of a search over everything.
+    // A small polygon races past a large one, in and out of contact at 40 m/s while it spins; at every step
+    // the force is that of a search over everything.
     let centre = |t: f64| [-1.5 + 40.0 * t, 1.27 + 3.0 * t * t];
     let place = |t: f64| Shapes::new([60, 24], [1.0, 0.3], [[0.0; 2], centre(t)], [0.1, -120.0 * t]);
     let law = Law::penalty(STIFFNESS).expect("a law");
@@ -248,7 +250,8 @@ fn invariant_search_keeps_up_with_motion() {
 
 #[test]
 fn example_a_sharp_corner_is_felt() {
-    // A square on its corner is pushed by 0.002 into the flat side of an octagon: no node of that side is near.
+    // A square on its corner is pushed by 0.002 into the flat side of an octagon: no node of that side is
+    // near.
     let apothem = (TAU / 16.0).cos();
     let centre = [0.05, apothem + 0.1 - 0.002];
     let shapes = Shapes::new([4, 8], [0.1, 1.0], [centre, [0.0; 2]], [TAU / 4.0, TAU / 16.0]);

@@ -53,8 +53,8 @@ fn worst_gap(facets: usize, smoothing: Smoothing) -> f64 {
 /// Source: THEORY §4.4.
 #[test]
 fn analytic_gap_of_a_polygonised_circle() {
-    // Chords of a 112-gon leave its circle by R (1 − cos(π/112)) = 3.54 µm, Nagata patches by 0.7 nm (the height is
-    // measured along the chord's normal, which adds 5 µm · ½ (π/112)² = 2 nm).
+    // Chords of a 112-gon leave its circle by R (1 − cos(π/112)) = 3.54 µm, Nagata patches by 0.7 nm (the
+    // height is measured along the chord's normal, which adds 5 µm · ½ (π/112)² = 2 nm).
     let sag = 9e-3 * (1.0 - (TAU / 224.0).cos());
     let chord = worst_gap(112, Smoothing::Facet);
     assert!((chord / sag - 1.0).abs() < 1e-3, "chords: {chord:e}, sag {sag:e}");
@@ -67,8 +67,8 @@ fn analytic_gap_of_a_polygonised_circle() {
 /// Source: Nagata 2005; THEORY §4.4.
 #[test]
 fn converges_nagata_to_an_ellipse_with_order_three() {
-    // Chords have order two. A vertex direction from three points has order two, times the facet's length order three;
-    // on a circle it is exact.
+    // Chords have order two. A vertex direction from three points has order two, times the facet's length
+    // order three; on a circle it is exact.
     let worst = |n: usize, smoothing: Smoothing| {
         let point = |k: f64| {
             let (s, c) = (TAU * k / n as f64).sin_cos();
@@ -128,7 +128,8 @@ fn refuses_too_coarse_a_polygon() {
     }
 }
 
-/// A disc in a ring: polygons as nodes without bodies, dented a little, which is what deformed bodies are to contact.
+/// A disc in a ring: polygons as nodes without bodies, dented a little, which is what deformed bodies are to
+/// contact.
 #[derive(Debug)]
 struct DiscInRing {
     x: Vec<f64>,

@@ -1,5 +1,5 @@
-//! A machine that knocks under a loud tone: the spectrum finds the tone, a notch takes it out, and the envelope spectrum
-//! finds how often it knocks.
+//! A machine that knocks under a loud tone: the spectrum finds the tone, a notch takes it out, and the
+//! envelope spectrum finds how often it knocks.
 //!
 //! `cargo run -p stribeck-dsp --example knocks`
 

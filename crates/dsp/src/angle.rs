@@ -12,13 +12,13 @@ pub struct OverAngle {
     pub values: Vec<f64>,
 }
 
-/// Samples `signal`, taken at a constant rate, at equal angles between the `pulses` of a tachometer: times of one pulse a
-/// turn, in samples, ascending. Within a turn the speed is taken as constant; between samples the signal follows the cubic
-/// through its four neighbours (Catmull and Rom 1974).
+/// Samples `signal`, taken at a constant rate, at equal angles between the `pulses` of a tachometer: times of
+/// one pulse a turn, in samples, ascending. Within a turn the speed is taken as constant; between samples the
+/// signal follows the cubic through its four neighbours (Catmull and Rom 1974).
 ///
 /// # Errors
-/// [`Error::TooShort`] for fewer than two pulses, no samples a turn or fewer than four samples, [`Error::NotFinite`],
-/// [`Error::Undefined`] for pulses that do not ascend or leave the record.
+/// [`Error::TooShort`] for fewer than two pulses, no samples a turn or fewer than four samples,
+/// [`Error::NotFinite`], [`Error::Undefined`] for pulses that do not ascend or leave the record.
 pub fn order_track(signal: &[f64], pulses: &[f64], samples_per_turn: usize) -> Result<OverAngle> {
     check_signal(signal, 4, "order tracking")?;
     let short = |field, len, least| Error::TooShort { field, len, least, purpose: "order tracking" };
@@ -42,14 +42,15 @@ pub fn order_track(signal: &[f64], pulses: &[f64], samples_per_turn: usize) -> R
     Ok(OverAngle { samples_per_turn, values })
 }
 
-/// Means of `signal`, taken at a constant rate, over equal steps of a shaft's angle: `steps_per_turn` of them, as many as the
-/// record holds. `turns` is the angle at each sample, in turns, never falling; between samples signal and angle follow
-/// straight lines. Nothing between the steps is left out however slowly the shaft turns, so that an envelope is safe from aliases
-/// from rest on; what is heard while it stands counts for nothing. A line of `n` waves a turn loses the factor sin x/x with x = π n/`steps_per_turn`.
+/// Means of `signal`, taken at a constant rate, over equal steps of a shaft's angle: `steps_per_turn` of
+/// them, as many as the record holds. `turns` is the angle at each sample, in turns, never falling; between
+/// samples signal and angle follow straight lines. Nothing between the steps is left out however slowly the
+/// shaft turns, so that an envelope is safe from aliases from rest on; what is heard while it stands counts
+/// for nothing. A line of `n` waves a turn loses the factor sin x/x with x = π n/`steps_per_turn`.
 ///
 /// # Errors
-/// [`Error::TooShort`] for a record without a whole step, [`Error::WrongLength`], [`Error::NotFinite`], [`Error::Undefined`] for
-/// an angle that falls.
+/// [`Error::TooShort`] for a record without a whole step, [`Error::WrongLength`], [`Error::NotFinite`],
+/// [`Error::Undefined`] for an angle that falls.
 pub fn means_over_angle(signal: &[f64], turns: &[f64], steps_per_turn: usize) -> Result<Vec<f64>> {
     check_signal(signal, 2, "order tracking")?;
     check_signal(turns, 2, "order tracking")?;
@@ -97,7 +98,8 @@ impl OverAngle {
         self.values.len() / self.samples_per_turn
     }
 
-    /// Time-synchronous average: the mean turn. What is not locked to the shaft falls as one over the root of the turns.
+    /// Time-synchronous average: the mean turn. What is not locked to the shaft falls as one over the root of
+    /// the turns.
     pub fn average(&self) -> Vec<f64> {
         let mut mean = vec![0.0; self.samples_per_turn];
         for turn in self.values.chunks_exact(self.samples_per_turn) {
@@ -142,7 +144,8 @@ mod tests {
         }
         let tracked = order_track(&signal, &pulses, 64).unwrap();
         assert_eq!(tracked.turns(), 40);
-        // The cubic is off by (2π·3/60)³/16 of the amplitude at the fastest turn, more next to a change of speed.
+        // The cubic is off by (2π·3/60)³/16 of the amplitude at the fastest turn, more next to a change of
+        // speed.
         for (n, x) in tracked.average().iter().enumerate() {
             assert!((x - (3.0 * TAU * n as f64 / 64.0).sin()).abs() < 5e-3, "{n}: {x}");
         }
@@ -157,7 +160,8 @@ mod tests {
         let means = means_over_angle(&signal, &turns, 64).unwrap();
         assert_eq!(means.len(), 20 * 64);
         for (n, mean) in means.iter().enumerate() {
-            // The mean of a sine over a step, and the lines between samples at the fastest turn: (2π·3/250)²/8.
+            // The mean of a sine over a step, and the lines between samples at the fastest turn:
+            // (2π·3/250)²/8.
             let x = std::f64::consts::PI * 3.0 / 64.0;
             let wave = (3.0 * TAU * (n as f64 + 0.5) / 64.0).sin() * x.sin() / x;
             assert!((mean - 2.0 - wave).abs() < 1e-3, "{n}: {mean} {wave}");

@@ -1,10 +1,10 @@
 //! Squared envelope spectra of many bands at once, averaged over the segments of a record of any length.
 //!
-//! Each segment is transformed once; the lines of a band, moved down to zero, give its envelope at twice the rate that the
-//! band is wide, which holds all of the squared envelope.
+//! Each segment is transformed once; the lines of a band, moved down to zero, give its envelope at twice the
+//! rate that the band is wide, which holds all of the squared envelope.
 //!
-//! Source: R. B. Randall and J. Antoni, Mech. Syst. Signal Process. 25 (2011) 485–520; bands as in the dyadic tree of
-//! J. Antoni, Mech. Syst. Signal Process. 21 (2007) 108–124.
+//! Source: R. B. Randall and J. Antoni, Mech. Syst. Signal Process. 25 (2011) 485–520; bands as in the dyadic
+//! tree of J. Antoni, Mech. Syst. Signal Process. 21 (2007) 108–124.
 
 use std::sync::Arc;
 
@@ -65,20 +65,21 @@ pub struct BandEnvelope {
     pub kurtosis: f64,
     /// Distance of the lines of the spectrum [Hz]; the first is at zero.
     pub grid_hz: f64,
-    /// Squared envelope spectrum with a Hann window, one-sided, over the square of the mean: a modulation of the power by
-    /// `1 + d cos` has lines that add up to `1.5 d²/4 · 2`. See [`BandEnvelope::depth`].
+    /// Squared envelope spectrum with a Hann window, one-sided, over the square of the mean: a modulation of
+    /// the power by `1 + d cos` has lines that add up to `1.5 d²/4 · 2`. See [`BandEnvelope::depth`].
     pub values: Vec<f64>,
     /// Segments averaged.
     pub segments: usize,
 }
 
 impl BandEnvelopes {
-    /// Plans for segments of `segment` samples and `bands_hz` (low and high end), whose spectra are kept up to
-    /// `highest_hz`.
+    /// Plans for segments of `segment` samples and `bands_hz` (low and high end), whose spectra are kept up
+    /// to `highest_hz`.
     ///
     /// # Errors
-    /// [`Error::NotPositive`] for the rate, [`Error::TooShort`] for a segment below 16 samples, [`Error::Band`] for a band
-    /// that leaves 0 to half the sample rate, [`Error::BandTooNarrow`] for one with fewer than four lines.
+    /// [`Error::NotPositive`] for the rate, [`Error::TooShort`] for a segment below 16 samples,
+    /// [`Error::Band`] for a band that leaves 0 to half the sample rate, [`Error::BandTooNarrow`] for one
+    /// with fewer than four lines.
     pub fn new(
         sample_rate_hz: f64,
         segment: usize,
@@ -145,9 +146,10 @@ impl BandEnvelopes {
         })
     }
 
-    /// The same with the power of each band in each segment over its own mean course in a period of `frequency_hz`, so that what repeats
-    /// with it is gone. What its power goes up and down with is left at its own frequency, and not beside the lines that are gone. A band
-    /// in which a period holds fewer than four samples is left out.
+    /// The same with the power of each band in each segment over its own mean course in a period of
+    /// `frequency_hz`, so that what repeats with it is gone. What its power goes up and down with is left at
+    /// its own frequency, and not beside the lines that are gone. A band in which a period holds fewer than
+    /// four samples is left out.
     ///
     /// # Errors
     /// [`Error::NotPositive`].
@@ -200,8 +202,8 @@ impl BandEnvelopes {
         Ok(())
     }
 
-    /// What the bands show, in the order of the plan; nothing before a segment was added. A band without signal is left
-    /// out.
+    /// What the bands show, in the order of the plan; nothing before a segment was added. A band without
+    /// signal is left out.
     pub fn bands(&self) -> Vec<BandEnvelope> {
         let grid_hz = self.sample_rate_hz / self.segment as f64;
         self.bands.iter().filter_map(|band| band.finish(grid_hz, self.segments)).collect()
@@ -264,8 +266,8 @@ impl Band {
 }
 
 impl BandEnvelope {
-    /// How deep the power of the band is modulated at `frequency_hz`, `d` of `1 + d cos`: 0 for none, 1 when it falls to
-    /// zero in between, 2 for short bursts. What stands within two lines counts.
+    /// How deep the power of the band is modulated at `frequency_hz`, `d` of `1 + d cos`: 0 for none, 1 when
+    /// it falls to zero in between, 2 for short bursts. What stands within two lines counts.
     pub fn depth(&self, frequency_hz: f64) -> f64 {
         const REACH: usize = 2;
         /// Equivalent noise bandwidth of the Hann window [lines].
@@ -287,12 +289,13 @@ pub struct Autocorrelation {
 }
 
 impl BandEnvelope {
-    /// How like itself the power of the band is after a time, less its mean: the transform of the spectrum, which knows events that
-    /// keep their distance for a while and no longer. Values lie half a period of the spectrum's end apart; a lag must be short
-    /// beside a segment.
+    /// How like itself the power of the band is after a time, less its mean: the transform of the spectrum,
+    /// which knows events that keep their distance for a while and no longer. Values lie half a period of the
+    /// spectrum's end apart; a lag must be short beside a segment.
     ///
     /// # Errors
-    /// [`Error::TooShort`] for a spectrum of fewer than four lines, [`Error::Undefined`] for power that does not change.
+    /// [`Error::TooShort`] for a spectrum of fewer than four lines, [`Error::Undefined`] for power that does
+    /// not change.
     pub fn autocorrelation(&self) -> Result<Autocorrelation> {
         /// Lines of a Hann window about zero, which are those of the mean.
         const MEAN: usize = 2;

@@ -1,12 +1,13 @@
-//! Cepstral pre-whitening: all lines and resonances of a record become equally strong, and what is left are its impulses.
+//! Cepstral pre-whitening: all lines and resonances of a record become equally strong, and what is left are
+//! its impulses.
 
 use rustfft::num_complex::Complex;
 
 use crate::Result;
 use crate::error::check_signal;
 
-/// `signal` with every line of its transform divided by its magnitude: `irfft(X/|X|)`, whose cepstrum is zero but at
-/// quefrency zero. Lines of zero stay zero.
+/// `signal` with every line of its transform divided by its magnitude: `irfft(X/|X|)`, whose cepstrum is zero
+/// but at quefrency zero. Lines of zero stay zero.
 ///
 /// Source: N. Sawalhi and R. B. Randall, Proc. COMADEM (2011).
 ///

@@ -1,10 +1,11 @@
 //! Does a spectrum hold a family of harmonics? A test whose false-alarm rate is known.
 //!
-//! The spectrum is divided by its own smoothed background, so that noise of any colour gives values with one known
-//! distribution: the mean of `n` unit exponential variables for `n` averaged segments. A family stands as high as the
-//! weakest of its strongest harmonics, `needed` of `harmonics`: one strong line is no evidence. The frequency is searched,
-//! so the probability that noise reaches a height is multiplied by the number of candidates (Bonferroni); neighbours are
-//! not independent, so the rate of false alarms stays below it.
+//! The spectrum is divided by its own smoothed background, so that noise of any colour gives values with one
+//! known distribution: the mean of `n` unit exponential variables for `n` averaged segments. A family stands
+//! as high as the weakest of its strongest harmonics, `needed` of `harmonics`: one strong line is no
+//! evidence. The frequency is searched, so the probability that noise reaches a height is multiplied by the
+//! number of candidates (Bonferroni); neighbours are not independent, so the rate of false alarms stays below
+//! it.
 
 use crate::error::{check_positive, check_signal};
 use crate::{Error, Result};
@@ -47,12 +48,12 @@ const HOP: usize = 25;
 const SKIPPED: usize = 3;
 
 impl Whitened {
-    /// Divides `values`, a power spectrum of `segments` averaged segments on a grid from zero, by the median of the lines
-    /// around each, which noise exceeds as often as not.
+    /// Divides `values`, a power spectrum of `segments` averaged segments on a grid from zero, by the median
+    /// of the lines around each, which noise exceeds as often as not.
     ///
     /// # Errors
-    /// [`Error::TooShort`] for fewer than 101 lines, [`Error::NotFinite`], [`Error::NotPositive`] for the grid,
-    /// [`Error::Undefined`] for a spectrum that is zero over a whole block.
+    /// [`Error::TooShort`] for fewer than 101 lines, [`Error::NotFinite`], [`Error::NotPositive`] for the
+    /// grid, [`Error::Undefined`] for a spectrum that is zero over a whole block.
     pub fn new(values: &[f64], grid_hz: f64, segments: usize) -> Result<Self> {
         check_positive("grid_hz", grid_hz)?;
         check_signal(values, BLOCK + SKIPPED, "a background of 101 lines")?;
@@ -108,8 +109,8 @@ impl Whitened {
 
     /// Probability that noise makes one line as high as `ratio`.
     pub fn line_p_value(&self, ratio: f64) -> f64 {
-        // Upper incomplete gamma function of whole order, Σ e^{−x} x^k/k! over k below the segments, term by term in
-        // logarithms: e^{−x} alone would vanish.
+        // Upper incomplete gamma function of whole order, Σ e^{−x} x^k/k! over k below the segments, term by
+        // term in logarithms: e^{−x} alone would vanish.
         let x = self.segments as f64 * ratio;
         if x.is_nan() || x <= 0.0 {
             return 1.0;
@@ -131,7 +132,8 @@ impl CombTest {
     /// The highest family whose fundamental lies between two frequencies [Hz].
     ///
     /// # Errors
-    /// [`Error::Band`] when the frequencies are not ordered or so high that fewer than `needed` harmonics are held.
+    /// [`Error::Band`] when the frequencies are not ordered or so high that fewer than `needed` harmonics are
+    /// held.
     pub fn search(&self, spectrum: &Whitened, low_hz: f64, high_hz: f64) -> Result<Comb> {
         let limit_hz = (spectrum.ratios.len().saturating_sub(2)) as f64 * spectrum.grid_hz;
         let ordered = low_hz > 0.0 && low_hz <= high_hz;
@@ -171,7 +173,8 @@ impl CombTest {
             .sum()
     }
 
-    /// Fundamental from the centres of its harmonics; those that stand higher and those of higher order count more.
+    /// Fundamental from the centres of its harmonics; those that stand higher and those of higher order count
+    /// more.
     fn refined(&self, spectrum: &Whitened, hz: f64) -> f64 {
         let (mut sum, mut weights) = (0.0, 0.0);
         for h in 1..=self.harmonics {

@@ -1,10 +1,12 @@
-//! Power over its own mean course in a period: what repeats with the period is gone, what comes and goes beside it is left.
+//! Power over its own mean course in a period: what repeats with the period is gone, what comes and goes
+//! beside it is left.
 //!
-//! Where the power is `a(t) (1 + m(t)) + b(t)` with a course `a` that repeats and is the larger part, what is left is `1 + m + b/a`: the
-//! modulator of the course at its own frequency and not about the lines of the course, and everything else, loudest where the course is
-//! silent.
+//! Where the power is `a(t) (1 + m(t)) + b(t)` with a course `a` that repeats and is the larger part, what is
+//! left is `1 + m + b/a`: the modulator of the course at its own frequency and not about the lines of the
+//! course, and everything else, loudest where the course is silent.
 //!
-//! Source: means over a period, P. D. McFadden, Mech. Syst. Signal Process. 1 (1987) 83–95; to divide by them is our own.
+//! Source: means over a period, P. D. McFadden, Mech. Syst. Signal Process. 1 (1987) 83–95; to divide by them
+//! is our own.
 
 use crate::Result;
 use crate::error::check_positive;
@@ -27,8 +29,8 @@ impl Cycle {
         Ok(Self { frequency_hz, parts: vec![(0.0, 0); samples] })
     }
 
-    /// Divides the power of a segment of `duration_s` by its mean over the periods, in as many parts of a period as it holds samples;
-    /// makes it zero where a period holds fewer than four.
+    /// Divides the power of a segment of `duration_s` by its mean over the periods, in as many parts of a
+    /// period as it holds samples; makes it zero where a period holds fewer than four.
     pub(crate) fn divide(&mut self, power: &mut [f64], duration_s: f64) {
         let turns = self.frequency_hz * duration_s;
         let count = (power.len() as f64 / turns) as usize;
@@ -39,7 +41,8 @@ impl Cycle {
         let parts = &mut self.parts[..count];
         parts.fill((0.0, 0));
         let step = turns / power.len() as f64;
-        // In the middle of a sample: where a period is a whole number of them, its ends would fall on the ends of parts.
+        // In the middle of a sample: where a period is a whole number of them, its ends would fall on the
+        // ends of parts.
         let part = |n: usize| ((((n as f64 + 0.5) * step).fract() * count as f64) as usize).min(count - 1);
         for (n, value) in power.iter().enumerate() {
             let (sum, times) = &mut parts[part(n)];

@@ -14,15 +14,16 @@ use crate::{Error, Result, Window};
 pub enum Cyclic {
     /// Nothing: the spectral correlation [unit²/Hz].
     Correlation,
-    /// The power at both frequencies: the spectral coherence, 0 for stationary noise but for its scatter, 1 for full
-    /// modulation.
+    /// The power at both frequencies: the spectral coherence, 0 for stationary noise but for its scatter, 1
+    /// for full modulation.
     Coherence,
 }
 
 /// Spectral correlation or coherence over cyclic and carrier frequency.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectralCorrelation {
-    /// Distance of neighbouring cyclic frequencies [Hz], the first of which is 0: one over the length of the record.
+    /// Distance of neighbouring cyclic frequencies [Hz], the first of which is 0: one over the length of the
+    /// record.
     pub cyclic_grid_hz: f64,
     /// Number of cyclic frequencies.
     pub cyclic: usize,
@@ -35,20 +36,22 @@ pub struct SpectralCorrelation {
 /// Fast spectral correlation of `signal` up to the cyclic frequency `highest_hz`, with carrier frequencies
 /// `sample_rate_hz / window` apart (periodic Hann window).
 ///
-/// With `X(i, f)` the transform of the segment about sample `iR + window/2`, R at most half a period of `highest_hz`,
+/// With `X(i, f)` the transform of the segment about sample `iR + window/2`, R at most half a period of
+/// `highest_hz`,
 ///
-/// `S(α, f) = R_w(0)/Σ_p R_w(α − pΔf) · Σ_i X(i, f) Σ_p X*(i, f − pΔf) e^{−2πjα(iR + window/2)/fs} / (K ‖w‖² fs)`,
+/// `S(α, f) = R_w(0)/Σ_p R_w(α − pΔf) · Σ_i X(i, f) Σ_p X*(i, f − pΔf) e^{−2πjα(iR + window/2)/fs} / (K ‖w‖²
+/// fs)`,
 ///
-/// p from 0 to `highest_hz/Δf`, rounded up, and `R_w` the transform of the squared window. It is the correlation of what
-/// stands at f with what stands at f − α. For the coherence every X is divided by the root of its mean power first.
-/// Memory: 16 bytes × cyclic × (window/2 + 1).
+/// p from 0 to `highest_hz/Δf`, rounded up, and `R_w` the transform of the squared window. It is the
+/// correlation of what stands at f with what stands at f − α. For the coherence every X is divided by the
+/// root of its mean power first. Memory: 16 bytes × cyclic × (window/2 + 1).
 ///
 /// Source: J. Antoni, G. Xin and N. Hamzaoui, Mech. Syst. Signal Process. 92 (2017) 248–277.
 ///
 /// # Errors
-/// [`Error::NotPositive`], [`Error::TooShort`] for a window below sixteen samples or a record below four windows,
-/// [`Error::Band`] for cyclic frequencies that need more than half the rate or steps of less than a sample,
-/// [`Error::NotFinite`].
+/// [`Error::NotPositive`], [`Error::TooShort`] for a window below sixteen samples or a record below four
+/// windows, [`Error::Band`] for cyclic frequencies that need more than half the rate or steps of less than a
+/// sample, [`Error::NotFinite`].
 pub fn spectral_correlation(
     signal: &[f64],
     sample_rate_hz: f64,
@@ -100,7 +103,8 @@ pub fn spectral_correlation(
     for line in 0..lines {
         products.fill(Complex::<f64>::default());
         for shift in 0..=shifts {
-            // f − pΔf below zero is the conjugate of its mirror image, and what the Nyquist line mirrors comes again.
+            // f − pΔf below zero is the conjugate of its mirror image, and what the Nyquist line mirrors
+            // comes again.
             let below = line as isize - shift as isize;
             let place = below.rem_euclid(window as isize) as usize;
             let (place, mirrored) = if place < lines { (place, false) } else { (window - place, true) };
@@ -167,8 +171,9 @@ impl SpectralCorrelation {
         &self.values[line * self.cyclic..][..self.cyclic]
     }
 
-    /// Mean magnitude over a band of carrier frequencies [Hz], both ends included, for each cyclic frequency. Of the
-    /// coherence this is the enhanced envelope spectrum over the whole range, the improved one over a chosen band.
+    /// Mean magnitude over a band of carrier frequencies [Hz], both ends included, for each cyclic frequency.
+    /// Of the coherence this is the enhanced envelope spectrum over the whole range, the improved one over a
+    /// chosen band.
     ///
     /// # Errors
     /// [`Error::BandTooNarrow`] for a band without a line of the grid.
@@ -211,8 +216,8 @@ mod tests {
     #[test]
     fn analytic_modulated_noise_has_lines_at_its_modulation_and_at_twice_that_only() {
         // Antoni (2017), section 2: of noise of variance s² times 1 + d cos the power goes as
-        // (1 + d²/2) + 2d cos + (d²/2) cos 2, so the coherence is d/(1 + d²/2) at the modulation and (d²/4)/(1 + d²/2) at
-        // twice that, for all f.
+        // (1 + d²/2) + 2d cos + (d²/2) cos 2, so the coherence is d/(1 + d²/2) at the modulation and
+        // (d²/4)/(1 + d²/2) at twice that, for all f.
         let (depth, hz) = (0.6, 87.5);
         let signal = modulated(depth, hz, 200_000);
         let found = spectral_correlation(&signal, RATE_HZ, 128, 400.0, Cyclic::Coherence).unwrap();
@@ -240,7 +245,8 @@ mod tests {
 
     #[test]
     fn analytic_the_correlation_at_zero_is_the_density() {
-        // Antoni (2017), equation 8: S(0, f) is the power spectral density; two-sided 1/fs for white noise of variance 1.
+        // Antoni (2017), equation 8: S(0, f) is the power spectral density; two-sided 1/fs for white noise of
+        // variance 1.
         let found =
             spectral_correlation(&modulated(0.0, 1.0, 100_000), RATE_HZ, 64, 100.0, Cyclic::Correlation)
                 .unwrap();

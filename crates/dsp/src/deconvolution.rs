@@ -8,8 +8,8 @@ use crate::{Error, Result};
 pub struct Deconvolved {
     /// Period [samples].
     pub period: f64,
-    /// Multipoint kurtosis: 1 when all of the output stands at the pulses, in equal heights; near `period` over its length
-    /// for noise.
+    /// Multipoint kurtosis: 1 when all of the output stands at the pulses, in equal heights; near `period`
+    /// over its length for noise.
     pub kurtosis: f64,
     /// Taps, of unit norm.
     pub filter: Vec<f64>,
@@ -17,18 +17,20 @@ pub struct Deconvolved {
     pub output: Vec<f64>,
 }
 
-/// Multipoint optimal minimum entropy deconvolution: for each of `periods` [samples], the `filter` taps whose output is
-/// closest in direction to unit pulses at 0, T, 2T … of the output, `f = (X₀X₀ᵀ)⁻¹X₀t`. The mean is removed first.
+/// Multipoint optimal minimum entropy deconvolution: for each of `periods` [samples], the `filter` taps whose
+/// output is closest in direction to unit pulses at 0, T, 2T … of the output, `f = (X₀X₀ᵀ)⁻¹X₀t`. The mean is
+/// removed first.
 ///
-/// Where in a period the pulses stand is fixed, and the filter shifts the record to meet them, so it should be longer than
-/// a period, or the kurtosis depends on where the record begins.
+/// Where in a period the pulses stand is fixed, and the filter shifts the record to meet them, so it should
+/// be longer than a period, or the kurtosis depends on where the record begins.
 ///
-/// Source: G. L. McDonald and Q. Zhao, Mech. Syst. Signal Process. 82 (2017) 461–477; the kurtosis, their equation of
-/// MKurt.
+/// Source: G. L. McDonald and Q. Zhao, Mech. Syst. Signal Process. 82 (2017) 461–477; the kurtosis, their
+/// equation of MKurt.
 ///
 /// # Errors
-/// [`Error::TooShort`] for a filter below two taps or a record that does not hold two of them, [`Error::NotPositive`] for a
-/// period, [`Error::NotFinite`], [`Error::Undefined`] for a record whose samples follow from each other, such as a sine.
+/// [`Error::TooShort`] for a filter below two taps or a record that does not hold two of them,
+/// [`Error::NotPositive`] for a period, [`Error::NotFinite`], [`Error::Undefined`] for a record whose samples
+/// follow from each other, such as a sine.
 pub fn momeda(signal: &[f64], filter: usize, periods: &[f64]) -> Result<Vec<Deconvolved>> {
     if filter < 2 {
         return Err(Error::TooShort { field: "filter", len: filter, least: 2, purpose: "deconvolution" });

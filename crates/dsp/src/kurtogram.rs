@@ -1,7 +1,8 @@
 //! The fast kurtogram: in which band does a signal knock most?
 //!
-//! A tree of analytic filters halves bands and cuts them in three; the kurtosis of the complex envelope says how impulsive
-//! each is. Filters, delays and trimming are those of the author's program, so that the bands and values agree with it.
+//! A tree of analytic filters halves bands and cuts them in three; the kurtosis of the complex envelope says
+//! how impulsive each is. Filters, delays and trimming are those of the author's program, so that the bands
+//! and values agree with it.
 //!
 //! Source: J. Antoni, Mech. Syst. Signal Process. 21 (2007) 108–124.
 
@@ -37,12 +38,12 @@ struct Filters {
     thirds: [Vec<Complex<f64>>; 3],
 }
 
-/// All bands of `signal`, widest first, then by frequency: `2ᵏ` bands for k from 0 to `levels`, and `3·2ᵏ` between.
-/// The mean is removed first.
+/// All bands of `signal`, widest first, then by frequency: `2ᵏ` bands for k from 0 to `levels`, and `3·2ᵏ`
+/// between. The mean is removed first.
 ///
 /// # Errors
-/// [`Error::NotPositive`] for the sample rate, [`Error::TooShort`] for a signal of fewer than `2^(levels + 7)` samples,
-/// [`Error::NotFinite`].
+/// [`Error::NotPositive`] for the sample rate, [`Error::TooShort`] for a signal of fewer than `2^(levels +
+/// 7)` samples, [`Error::NotFinite`].
 pub fn fast_kurtogram(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Result<Vec<KurtogramBand>> {
     check_levels(signal, sample_rate_hz, levels)?;
     let mut bands = Vec::new();
@@ -124,7 +125,8 @@ impl Filters {
     }
 }
 
-/// Low-pass of `order + 1` taps with a Hamming window, one at zero frequency; the cut-off counts from half the rate.
+/// Low-pass of `order + 1` taps with a Hamming window, one at zero frequency; the cut-off counts from half
+/// the rate.
 fn low_pass(order: usize, cutoff: f64) -> Vec<f64> {
     let middle = 0.5 * order as f64;
     let tap = |n: usize| {

@@ -1,7 +1,7 @@
 //! Thomson's multitaper spectrum with discrete prolate spheroidal sequences.
 //!
-//! Source: D. J. Thomson, Proc. IEEE 70 (1982) 1055–1096; tapers by D. Slepian, Bell Syst. Tech. J. 57 (1978) 1371–1430,
-//! signs and norm as `scipy.signal.windows.dpss(…, norm=2)`.
+//! Source: D. J. Thomson, Proc. IEEE 70 (1982) 1055–1096; tapers by D. Slepian, Bell Syst. Tech. J. 57 (1978)
+//! 1371–1430, signs and norm as `scipy.signal.windows.dpss(…, norm=2)`.
 
 use std::f64::consts::TAU;
 
@@ -11,8 +11,8 @@ use crate::{Error, Result};
 /// The first `count` tapers of `len` samples for the time-half-bandwidth product `nw`, each of unit energy.
 ///
 /// # Errors
-/// [`Error::TooShort`] for fewer than two samples or no taper, [`Error::NotPositive`] for `nw`, [`Error::Undefined`] when
-/// `nw` is not below half of the samples or there are more tapers than samples.
+/// [`Error::TooShort`] for fewer than two samples or no taper, [`Error::NotPositive`] for `nw`,
+/// [`Error::Undefined`] when `nw` is not below half of the samples or there are more tapers than samples.
 pub fn dpss(len: usize, nw: f64, count: usize) -> Result<Vec<Vec<f64>>> {
     check_positive("nw", nw)?;
     if len < 2 || count == 0 {
@@ -43,8 +43,8 @@ pub fn dpss(len: usize, nw: f64, count: usize) -> Result<Vec<Vec<f64>>> {
     Ok(tapers.collect())
 }
 
-/// One-sided power spectral density [unit²/Hz] of the whole signal: the mean over `count` tapers. Frequencies are those of
-/// `rfft`. The mean is removed first; the resolution is `2 nw` over the length.
+/// One-sided power spectral density [unit²/Hz] of the whole signal: the mean over `count` tapers. Frequencies
+/// are those of `rfft`. The mean is removed first; the resolution is `2 nw` over the length.
 ///
 /// # Errors
 /// Those of [`dpss`], [`Error::NotPositive`] for the sample rate, [`Error::NotFinite`].

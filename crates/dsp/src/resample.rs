@@ -12,13 +12,14 @@ const BETA: f64 = 5.0;
 /// Sums that a product of two rows is added up in, so that they do not wait for each other.
 const LANES: usize = 8;
 
-/// `signal` at `up/down` times its rate: `scipy.signal.resample_poly(x, up, down)` with its default filter, a Kaiser window of
-/// β = 5 over ten zeros of the sinc on either side, without delay. Half of the amplitude is left at half of the slower
-/// rate, so what lies right above it folds over; beyond its ends the signal counts as zero.
+/// `signal` at `up/down` times its rate: `scipy.signal.resample_poly(x, up, down)` with its default filter, a
+/// Kaiser window of β = 5 over ten zeros of the sinc on either side, without delay. Half of the amplitude is
+/// left at half of the slower rate, so what lies right above it folds over; beyond its ends the signal counts
+/// as zero.
 ///
 /// # Errors
-/// [`Error::TooShort`] for an empty signal, [`Error::NotFinite`], [`Error::Undefined`] for a ratio of or with zero, or of
-/// numbers above 20 000.
+/// [`Error::TooShort`] for an empty signal, [`Error::NotFinite`], [`Error::Undefined`] for a ratio of or with
+/// zero, or of numbers above 20 000.
 pub fn resample_poly(signal: &[f64], up: usize, down: usize) -> Result<Vec<f64>> {
     const MOST: usize = 20_000;
     check_signal(signal, 1, "another rate")?;
@@ -39,7 +40,8 @@ pub fn resample_poly(signal: &[f64], up: usize, down: usize) -> Result<Vec<f64>>
     let count = (signal.len() * up).div_ceil(down);
     Ok((0..count)
         .map(|m| {
-            // Sample m stands at m·down of the finer grid, sample k of the signal at k·up: taps half + m·down − k·up.
+            // Sample m stands at m·down of the finer grid, sample k of the signal at k·up: taps half + m·down
+            // − k·up.
             let at = half + m * down;
             let (newest, taps) = (at / up, &phases[at % up]);
             let first = (newest + 1).saturating_sub(taps.len());
@@ -65,7 +67,8 @@ fn filter(half: usize, up: usize, slower: usize) -> Vec<f64> {
     taps
 }
 
-/// Every `up`-th tap from each of the first ones on, the last one first, as they meet samples in ascending order.
+/// Every `up`-th tap from each of the first ones on, the last one first, as they meet samples in ascending
+/// order.
 fn phases(taps: &[f64], up: usize) -> Vec<Vec<f64>> {
     (0..up)
         .map(|phase| {

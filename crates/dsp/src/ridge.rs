@@ -16,14 +16,14 @@ pub struct Ridge {
 
 /// The line of most power, among all whose frequency changes by at most `steepest_hz_s` [Hz/s], either way.
 ///
-/// The sum of the power's logarithm along the line is the largest that there is (dynamic programming over all lines at once,
-/// so that no bad start is followed to the end); between lines of the grid the parabola through the logarithms of three
-/// neighbours says where the top is. `spectrogram` should hold only the frequencies to be searched: see
-/// [`Spectrogram::between`].
+/// The sum of the power's logarithm along the line is the largest that there is (dynamic programming over all
+/// lines at once, so that no bad start is followed to the end); between lines of the grid the parabola
+/// through the logarithms of three neighbours says where the top is. `spectrogram` should hold only the
+/// frequencies to be searched: see [`Spectrogram::between`].
 ///
-/// Source: the penalised ridges of R. A. Carmona, W. L. Hwang and B. Torrésani, IEEE Trans. Signal Process. 45 (1997)
-/// 2586–2590, with a bound instead of a penalty; for shafts J. Urbanek, T. Barszcz and J. Antoni, Mech. Syst. Signal
-/// Process. 38 (2013) 13–29.
+/// Source: the penalised ridges of R. A. Carmona, W. L. Hwang and B. Torrésani, IEEE Trans. Signal Process.
+/// 45 (1997) 2586–2590, with a bound instead of a penalty; for shafts J. Urbanek, T. Barszcz and J. Antoni,
+/// Mech. Syst. Signal Process. 38 (2013) 13–29.
 ///
 /// # Errors
 /// [`Error::TooShort`] for fewer than two times or three frequencies, [`Error::NotPositive`] for the slope,
@@ -102,9 +102,9 @@ impl Ridge {
         (high - low) / self.mean_hz()
     }
 
-    /// Times of whole turns of the shaft, in samples, for [`order_track`](crate::order_track): the line is the shaft's
-    /// `order`-th. Between the middles of segments the frequency is straight, and before the first and after the last it is
-    /// constant. Where within a turn the first stands is not known.
+    /// Times of whole turns of the shaft, in samples, for [`order_track`](crate::order_track): the line is
+    /// the shaft's `order`-th. Between the middles of segments the frequency is straight, and before the
+    /// first and after the last it is constant. Where within a turn the first stands is not known.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for rate or order, [`Error::TooShort`] for a record without two whole turns.
@@ -188,7 +188,8 @@ mod tests {
             assert!((hz - (20.0 + 0.5 * t)).abs() < 0.15, "{t} s: {hz} Hz");
         }
         let turns = found.turns(RATE_HZ, signal.len(), 1.0).unwrap();
-        // 500 turns in all. The ends are carried on at constant speed: half a segment at 0.5 Hz/s is 1/16 of a turn.
+        // 500 turns in all. The ends are carried on at constant speed: half a segment at 0.5 Hz/s is 1/16 of
+        // a turn.
         assert!((498..=501).contains(&turns.len()), "{}", turns.len());
         let drift: Vec<f64> =
             turns.iter().enumerate().map(|(n, at)| turned(at / RATE_HZ) - n as f64).collect();

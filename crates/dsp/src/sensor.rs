@@ -1,4 +1,5 @@
-//! What a sensor and its recorder make of a signal: mounting resonance, anti-alias filter, rate, noise, range, steps.
+//! What a sensor and its recorder make of a signal: mounting resonance, anti-alias filter, rate, noise,
+//! range, steps.
 
 use std::f64::consts::{PI, TAU};
 
@@ -32,12 +33,13 @@ impl Sensor {
         Self { rate_hz, resonance: None, noise_density: 0.0, range: f64::INFINITY, bits: None, seed: 0 }
     }
 
-    /// What is recorded of `signal`, sampled `sample_rate_hz` times a second; the first sample is at the same time.
+    /// What is recorded of `signal`, sampled `sample_rate_hz` times a second; the first sample is at the same
+    /// time.
     ///
     /// # Errors
-    /// [`Error::NotPositive`], [`Error::TooShort`] for fewer than 16 samples, [`Error::NotFinite`], [`Error::Undefined`] for a
-    /// rate above that of the signal, or one that is in no ratio of whole numbers below 20 000 to it, or steps
-    /// without a range.
+    /// [`Error::NotPositive`], [`Error::TooShort`] for fewer than 16 samples, [`Error::NotFinite`],
+    /// [`Error::Undefined`] for a rate above that of the signal, or one that is in no ratio of whole numbers
+    /// below 20 000 to it, or steps without a range.
     pub fn record(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Vec<f64>> {
         check_positive("sample_rate_hz", sample_rate_hz)?;
         check_positive("rate_hz", self.rate_hz)?;
@@ -73,9 +75,9 @@ impl Sensor {
         Ok(recorded)
     }
 
-    /// Resonance and anti-alias filter by the transform of the record, continued by its mirror image on either side so that
-    /// its ends do not ring: turned about its last sample instead, it would keep that as it is, with all that the filter takes
-    /// elsewhere. Then fewer lines make a slower rate.
+    /// Resonance and anti-alias filter by the transform of the record, continued by its mirror image on
+    /// either side so that its ends do not ring: turned about its last sample instead, it would keep that as
+    /// it is, with all that the filter takes elsewhere. Then fewer lines make a slower rate.
     fn filtered(&self, signal: &[f64], sample_rate_hz: f64, up: usize, down: usize) -> Vec<f64> {
         // A whole number of `down` samples becomes a whole number of `up` of them.
         let side = (signal.len() - 1).min(4096).max(down) / down * down;
@@ -184,7 +186,8 @@ mod tests {
         assert!(rms(&stopped[middle]) < 1e-3);
     }
 
-    /// Records of accelerations began and ended with spikes of hundreds of g, which their anti-alias filter should have taken.
+    /// Records of accelerations began and ended with spikes of hundreds of g, which their anti-alias filter
+    /// should have taken.
     #[test]
     fn issue_ends_of_a_record_are_filtered_like_its_middle() {
         let heights = [0, 10_000, 20_000].map(|at| {

@@ -15,21 +15,21 @@ pub struct Separated {
     pub random: Vec<f64>,
 }
 
-/// Parts `signal` by what can be foretold of it: an earlier stretch of the signal, through the filter of `filter` taps that
-/// foretells best, is its discrete part.
+/// Parts `signal` by what can be foretold of it: an earlier stretch of the signal, through the filter of
+/// `filter` taps that foretells best, is its discrete part.
 ///
-/// The filter's response is `⟨X_d* X⟩/⟨|X_d|²⟩` over half-overlapping Hann segments of `filter` samples, X_d being those that
-/// end `delay` samples before the others begin: two segments that share samples would foretell noise, too. A line of power
-/// P in noise whose power within a line of the segment is N keeps P/(P + N) of its amplitude, so a longer filter spares
-/// weaker lines; half-way between two lines of the filter's grid it keeps 0.85 to 1.27 of that. The delay must exceed the memory of
-/// the noise: the ringing of its resonances. The first `delay + 3/2 filter` samples and the last `filter/2` have only a
-/// part of the filter.
+/// The filter's response is `⟨X_d* X⟩/⟨|X_d|²⟩` over half-overlapping Hann segments of `filter` samples, X_d
+/// being those that end `delay` samples before the others begin: two segments that share samples would
+/// foretell noise, too. A line of power P in noise whose power within a line of the segment is N keeps P/(P +
+/// N) of its amplitude, so a longer filter spares weaker lines; half-way between two lines of the filter's
+/// grid it keeps 0.85 to 1.27 of that. The delay must exceed the memory of the noise: the ringing of its
+/// resonances. The first `delay + 3/2 filter` samples and the last `filter/2` have only a part of the filter.
 ///
 /// Source: J. Antoni and R. B. Randall, Mech. Syst. Signal Process. 18 (2004) 103–117.
 ///
 /// # Errors
-/// [`Error::TooShort`] for a filter below eight taps, no delay, or a record without eight segments behind the delay,
-/// [`Error::NotFinite`], [`Error::Undefined`] for a signal of zeros.
+/// [`Error::TooShort`] for a filter below eight taps, no delay, or a record without eight segments behind the
+/// delay, [`Error::NotFinite`], [`Error::Undefined`] for a signal of zeros.
 pub fn separate(signal: &[f64], filter: usize, delay: usize) -> Result<Separated> {
     const SEGMENTS: usize = 8;
     let short = |field, len, least| Error::TooShort { field, len, least, purpose: "separation" };
@@ -140,8 +140,8 @@ mod tests {
 
     #[test]
     fn analytic_a_line_keeps_the_share_that_its_height_allows() {
-        // Antoni and Randall (2004), section 3: P/(P + N), N being the noise within the equivalent bandwidth of a segment's
-        // line: 1.5/512 of the two-sided variance 1/12, against P = A²/4.
+        // Antoni and Randall (2004), section 3: P/(P + N), N being the noise within the equivalent bandwidth
+        // of a segment's line: 1.5/512 of the two-sided variance 1/12, against P = A²/4.
         let (filter, delay, count) = (512, 100, 1 << 17);
         let cycles = [40.0 / 512.0, 100.5 / 512.0];
         for height in [1.0, 0.1, 0.05] {
@@ -156,8 +156,8 @@ mod tests {
             let kept = cycles.map(|c| amplitude(&parted.discrete[inside.clone()], c) / height);
             // Hann's neighbours of the line share it and keep more of its noise than it does.
             assert!((kept[0] - expected).abs() < 0.06, "{height}: kept {kept:?}, expected {expected}");
-            // Half-way the response is interpolated from its neighbours: two of them alone make 4/π of their height, four
-            // that are equal 8/3π.
+            // Half-way the response is interpolated from its neighbours: two of them alone make 4/π of their
+            // height, four that are equal 8/3π.
             let (least, most) = (8.0 / 3.0 / PI, 4.0 / PI);
             assert!(
                 kept[1] > least * expected && kept[1] < most * expected,

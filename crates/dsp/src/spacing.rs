@@ -1,11 +1,13 @@
-//! Two events that follow each other at a fixed distance, as when something enters and leaves a gap: how far apart?
+//! Two events that follow each other at a fixed distance, as when something enters and leaves a gap: how far
+//! apart?
 //!
-//! Pre-whitening makes both broad-banded and equally sharp; the squared envelope of what is left is correlated with itself.
-//! A distance is taken for one only if two bands agree on it: ringing has another lag in every band. Where there is none, the
-//! correlation says from which distance on a second event would have shown.
+//! Pre-whitening makes both broad-banded and equally sharp; the squared envelope of what is left is
+//! correlated with itself. A distance is taken for one only if two bands agree on it: ringing has another lag
+//! in every band. Where there is none, the correlation says from which distance on a second event would have
+//! shown.
 //!
-//! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, who look for it in the cepstrum of
-//! the enhanced signal; the comparison of bands is ours.
+//! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, who look for it in
+//! the cepstrum of the enhanced signal; the comparison of bands is ours.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -27,7 +29,8 @@ pub struct Spacing {
 pub enum EventSpacing {
     /// Events come in pairs.
     Pairs(Spacing),
-    /// Events come alone: at this distance [s] and above, a second one would show if it had a fifth of the first one's energy.
+    /// Events come alone: at this distance [s] and above, a second one would show if it had a fifth of the
+    /// first one's energy.
     Alone {
         /// Where ringing has died away.
         clear_from_s: f64,
@@ -54,7 +57,8 @@ const SAME: f64 = 0.1;
 const AGREED: f64 = 0.05;
 /// The weakest second event that is missed, over the energy of the first.
 const WEAKEST: f64 = 0.2;
-/// Samples beyond the smoothing at which single events must still be correlated with themselves, and how much.
+/// Samples beyond the smoothing at which single events must still be correlated with themselves, and how
+/// much.
 const BEYOND: usize = 3;
 /// The least such correlation: events stand above the noise.
 const RINGS: f64 = 0.1;
@@ -99,8 +103,8 @@ pub fn event_spacing(
     })
 }
 
-/// The lag from which on a second event would have shown, where there is none; `None` where one might have been missed. Two
-/// events of energies 1 and a correlate with a/(1 + a²) of what each does with itself.
+/// The lag from which on a second event would have shown, where there is none; `None` where one might have
+/// been missed. Two events of energies 1 and a correlate with a/(1 + a²) of what each does with itself.
 fn clear_from(values: &[f64], lags: &std::ops::Range<usize>, sample_rate_hz: f64) -> Option<usize> {
     // Noise is correlated with itself within the smoothing, and only there.
     let beyond = values.get(smoothing(sample_rate_hz) + BEYOND)?;
@@ -117,7 +121,8 @@ fn smoothing(sample_rate_hz: f64) -> usize {
     ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1)
 }
 
-/// Correlation of the squared envelope of the pre-whitened signal above a frequency, smoothed, for lags up to `longest`.
+/// Correlation of the squared envelope of the pre-whitened signal above a frequency, smoothed, for lags up to
+/// `longest`.
 fn correlation(signal: &[f64], from: f64, sample_rate_hz: f64, longest: usize) -> Vec<f64> {
     let count = signal.len();
     let mut planner = FftPlanner::new();
@@ -182,7 +187,8 @@ mod tests {
         }
     }
 
-    /// Pairs of bursts `apart_s` from one another that die away with `decay_s`, 60 times a second and never quite on time, in noise.
+    /// Pairs of bursts `apart_s` from one another that die away with `decay_s`, 60 times a second and never
+    /// quite on time, in noise.
     fn pairs(apart_s: f64, decay_s: f64) -> Vec<f64> {
         let mut uniform = uniform(11);
         let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();

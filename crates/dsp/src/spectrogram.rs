@@ -10,11 +10,13 @@ pub struct Spectrogram {
     pub times_s: Vec<f64>,
     /// Frequencies [Hz], ascending.
     pub frequencies_hz: Vec<f64>,
-    /// Values, one row a time, one column a frequency. Density [unit²/Hz] or power [unit²], as the options say.
+    /// Values, one row a time, one column a frequency. Density [unit²/Hz] or power [unit²], as the options
+    /// say.
     pub values: Vec<f64>,
 }
 
-/// A planned spectrogram of a record that comes in pieces: each segment's spectrum is handed over and not kept.
+/// A planned spectrogram of a record that comes in pieces: each segment's spectrum is handed over and not
+/// kept.
 pub struct Spectrograph {
     welch: Welch,
     spectrum: Spectrum,
@@ -57,10 +59,12 @@ impl Spectrograph {
         self.waiting.clear();
     }
 
-    /// Adds samples and gives every segment that they complete to `take`: the time of its middle [s] and its spectrum.
+    /// Adds samples and gives every segment that they complete to `take`: the time of its middle [s] and its
+    /// spectrum.
     ///
     /// # Errors
-    /// [`NotFinite`](crate::Error::NotFinite) for a bad sample, counted within its segment: [`skip`](Self::skip) what holds it.
+    /// [`NotFinite`](crate::Error::NotFinite) for a bad sample, counted within its segment:
+    /// [`skip`](Self::skip) what holds it.
     pub fn add(&mut self, mut samples: &[f64], mut take: impl FnMut(f64, &[f64])) -> Result<()> {
         while !samples.is_empty() {
             let (now, later) = samples.split_at((self.segment - self.waiting.len()).min(samples.len()));
@@ -78,8 +82,8 @@ impl Spectrograph {
     }
 }
 
-/// `scipy.signal.spectrogram` in its mode `psd`, with window, overlap, detrending and scaling of `options`, whose averaging
-/// is not used. (scipy's own defaults are a Tukey window and an overlap of one eighth.)
+/// `scipy.signal.spectrogram` in its mode `psd`, with window, overlap, detrending and scaling of `options`,
+/// whose averaging is not used. (scipy's own defaults are a Tukey window and an overlap of one eighth.)
 ///
 /// # Errors
 /// [`SegmentTooLong`](crate::Error::SegmentTooLong) and those of [`Spectrograph::new`],
@@ -100,8 +104,9 @@ pub fn spectrogram(signal: &[f64], sample_rate_hz: f64, options: &WelchOptions) 
     Ok(all)
 }
 
-/// `scipy.signal.spectrogram` in its mode `magnitude`: the magnitude of the short-time transform [unit/√Hz for a density,
-/// unit for a power spectrum], which counts one side only, so that the square is half of [`spectrogram`]'s one-sided values.
+/// `scipy.signal.spectrogram` in its mode `magnitude`: the magnitude of the short-time transform [unit/√Hz
+/// for a density, unit for a power spectrum], which counts one side only, so that the square is half of
+/// [`spectrogram`]'s one-sided values.
 ///
 /// # Errors
 /// Those of [`spectrogram`].

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 use crate::{Error, Result, Scaling, Spectrum};
 
 impl Spectrum {
-    /// Root mean square [unit·s] of the integral over time between two frequencies [Hz], both included: of an acceleration
-    /// in m/s² the velocity in m/s. Machines are judged by it from 10 to 1000 Hz (ISO 20816).
+    /// Root mean square [unit·s] of the integral over time between two frequencies [Hz], both included: of an
+    /// acceleration in m/s² the velocity in m/s. Machines are judged by it from 10 to 1000 Hz (ISO 20816).
     ///
     /// # Errors
     /// [`Error::Undefined`] for a band that begins at zero or a spectrum that is no density, and those of

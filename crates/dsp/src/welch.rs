@@ -106,7 +106,8 @@ impl Welch {
     /// # Errors
     /// [`WrongLength`](crate::Error::WrongLength) for a signal of another length than planned,
     /// [`NotFinite`](crate::Error::NotFinite) for a bad sample,
-    /// [`ForeignOutput`](crate::Error::ForeignOutput) for a spectrum of another plan. `out` is then unchanged.
+    /// [`ForeignOutput`](crate::Error::ForeignOutput) for a spectrum of another plan. `out` is then
+    /// unchanged.
     pub fn process(&mut self, signal: &[f64], out: &mut Spectrum) -> Result<()> {
         check_len("signal", signal.len(), self.record)?;
         check_signal(signal, 1, "a spectrum")?;

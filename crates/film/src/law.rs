@@ -1,5 +1,6 @@
-//! What one film does: how thick it gets, what it carries and how much heat it makes, from the gap that the surfaces leave
-//! and the speed at which they draw in oil (THEORY §4.6). Where the gap comes from it does not know.
+//! What one film does: how thick it gets, what it carries and how much heat it makes, from the gap that the
+//! surfaces leave and the speed at which they draw in oil (THEORY §4.6). Where the gap comes from it does not
+//! know.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,8 +12,8 @@ use crate::{
 /// Wider gaps hold no film [m].
 pub const WIDEST: f64 = 1e-3;
 
-/// Bodies that roll more slowly than this count as rolling at it [m/s]: enough to divide by, and a ten-thousandth of what
-/// a bearing does.
+/// Bodies that roll more slowly than this count as rolling at it [m/s]: enough to divide by, and a
+/// ten-thousandth of what a bearing does.
 const SLOWEST: f64 = 1e-3;
 
 /// Where a film ends that neither opens nor closes.
@@ -35,7 +36,8 @@ const MOST_CORRECTIONS: usize = 30;
 pub struct Oil {
     /// Dynamic viscosity η [Pa s].
     pub viscosity: f64,
-    /// Least film thickness [m]: that of a loaded contact, where the oil is as good as solid and contact alone acts.
+    /// Least film thickness [m]: that of a loaded contact, where the oil is as good as solid and contact
+    /// alone acts.
     pub least: f64,
 }
 
@@ -96,8 +98,8 @@ impl<S: Spring> FilmLaw<S> {
         layer.above + self.least
     }
 
-    /// Share of the force that is left where the land ends so far off on both sides [m]; `tilt` is the sine of the angle
-    /// between the film's normal and that of the land.
+    /// Share of the force that is left where the land ends so far off on both sides [m]; `tilt` is the sine
+    /// of the angle between the film's normal and that of the land.
     pub fn share(&self, ends: [f64; 2], tilt: f64, layer: &Layer) -> f64 {
         let per_metre = self.slope / self.thickness(layer).sqrt();
         ends.map(|end| {
@@ -110,7 +112,8 @@ impl<S: Spring> FilmLaw<S> {
         .product()
     }
 
-    /// The film of steady rolling at a gap [m] and an entrainment speed [m/s], where the land leaves a share of the force.
+    /// The film of steady rolling at a gap [m] and an entrainment speed [m/s], where the land leaves a share
+    /// of the force.
     pub fn settled(&self, gap: f64, speed: f64, share: f64) -> (Layer, Pushed) {
         let steady = Pressed::until(STEADY);
         let carried = self.wedge * speed.abs().max(SLOWEST) * share * steady.force;
@@ -135,8 +138,8 @@ impl<S: Spring> FilmLaw<S> {
         (layer, Pushed { force, pressed: [depth, dry], ..Pushed::default() })
     }
 
-    /// Lets a time step `dt` [s] pass at a gap [m] and an entrainment speed [m/s], where the land leaves a share of the
-    /// force.
+    /// Lets a time step `dt` [s] pass at a gap [m] and an entrainment speed [m/s], where the land leaves a
+    /// share of the force.
     pub fn flow(&self, layer: &mut Layer, gap: f64, speed: f64, share: f64, dt: f64) -> Pushed {
         let above = layer.above;
         let dry = (-gap).max(0.0);
@@ -178,8 +181,8 @@ impl<S: Spring> FilmLaw<S> {
     }
 }
 
-/// Where the film ends that presses springs in by what is left of `room` [m] after it has opened for a time: at the force
-/// `lift` · G and the rate `opened` · q [m]. `None` when it cannot follow.
+/// Where the film ends that presses springs in by what is left of `room` [m] after it has opened for a time:
+/// at the force `lift` · G and the rate `opened` · q [m]. `None` when it cannot follow.
 fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, Pressed)> {
     let need = |c: f64| {
         let film = Pressed::until(c);

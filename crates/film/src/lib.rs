@@ -1,21 +1,21 @@
 //! Oil films between rolling surfaces in the plane: squeeze and entrainment, without suction.
 //!
-//! Between two rounded surfaces that roll, oil is drawn into the narrowing gap and carries load. Reynolds' equation has a
-//! closed form there (THEORY §4.6). The film lies in series with a [`Spring`]: the gap between the undeformed surfaces is
-//! the film's thickness less what the surfaces give under its pressure. So the force depends on positions, is never tensile
-//! and is no stiffer than the spring.
+//! Between two rounded surfaces that roll, oil is drawn into the narrowing gap and carries load. Reynolds'
+//! equation has a closed form there (THEORY §4.6). The film lies in series with a [`Spring`]: the gap between
+//! the undeformed surfaces is the film's thickness less what the surfaces give under its pressure. So the
+//! force depends on positions, is never tensile and is no stiffer than the spring.
 //!
 //! The crate knows neither nodes in motion nor a time loop: who steps a model asks
 //!
-//! 1. a [`Land`], the part of a surface between two corners, for the [`Point`] nearest to a body, and how far off the land
-//!    ends;
-//! 2. a [`FilmLaw`] for what the film does in a time step ([`FilmLaw::flow`]) or in steady rolling ([`FilmLaw::settled`]),
-//!    with the [`Layer`] that it remembers.
+//! 1. a [`Land`], the part of a surface between two corners, for the [`Point`] nearest to a body, and how far
+//!    off the land ends;
+//! 2. a [`FilmLaw`] for what the film does in a time step ([`FilmLaw::flow`]) or in steady rolling
+//!    ([`FilmLaw::settled`]), with the [`Layer`] that it remembers.
 //!
 //! # Conventions
 //!
-//! SI units. A gap [m] is positive when the surfaces are apart; forces [N] drive them apart. The entrainment speed [m/s] is
-//! half the sum of the speeds at which both surfaces move through the contact.
+//! SI units. A gap [m] is positive when the surfaces are apart; forces [N] drive them apart. The entrainment
+//! speed [m/s] is half the sum of the speeds at which both surfaces move through the contact.
 //!
 //! # Example: how thick is the oil under a load?
 //!

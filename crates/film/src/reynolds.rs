@@ -1,13 +1,13 @@
 //! Pressure between a cylinder and a plane that roll, close or part, in closed form (THEORY §4.6).
 //!
-//! Gaps are h + x²/2R, places X = x/√(2Rh). The film begins far in front, where both surfaces draw oil in, and ends where
-//! pressure and its slope vanish together (Reynolds' condition). Where that is, c = X there, says all the rest: the rate at
-//! which the film opens and its force are functions of c alone.
+//! Gaps are h + x²/2R, places X = x/√(2Rh). The film begins far in front, where both surfaces draw oil in,
+//! and ends where pressure and its slope vanish together (Reynolds' condition). Where that is, c = X there,
+//! says all the rest: the rate at which the film opens and its force are functions of c alone.
 
 use std::f64::consts::FRAC_PI_2;
 
-/// A film that opens so fast that it ends before this place carries less than a two-hundredth of what it does at rest: the
-/// oil no longer fills the gap.
+/// A film that opens so fast that it ends before this place carries less than a two-hundredth of what it does
+/// at rest: the oil no longer fills the gap.
 pub(crate) const EMPTY: f64 = -5.0;
 
 /// The film that ends at a place c.
@@ -37,7 +37,8 @@ fn moments(c: f64) -> ([f64; 4], f64) {
 impl Pressed {
     /// The film that ends at `c`, from [`EMPTY`] on.
     ///
-    /// The slope of the pressure is (X − c)(X + c + q)/(1 + X²)³ with the opening q. It must integrate to nothing.
+    /// The slope of the pressure is (X − c)(X + c + q)/(1 + X²)³ with the opening q. It must integrate to
+    /// nothing.
     #[inline]
     pub(crate) fn until(c: f64) -> Self {
         let ([i0, i1, i2, i3], _) = moments(c);
@@ -52,9 +53,9 @@ impl Pressed {
     }
 }
 
-/// What is left of a film's force where the land ends, at a place of the film thickness and radius `2Rh` of its square: with
-/// the closest approach on the land, `edge` = X of the end beyond it; with the closest approach at the end itself, minus the
-/// slope of the land there over √(2h/R).
+/// What is left of a film's force where the land ends, at a place of the film thickness and radius `2Rh` of
+/// its square: with the closest approach on the land, `edge` = X of the end beyond it; with the closest
+/// approach at the end itself, minus the slope of the land there over √(2h/R).
 ///
 /// Pure squeeze with no pressure at the end. Beyond the end a fit of the quadrature, good to 4 %.
 #[inline]
@@ -75,12 +76,13 @@ pub(crate) fn left_of_land(edge: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// What lies in front of the first place adds 3/|X| to the resistance, 3e-5, and next to nothing to the force.
+    /// What lies in front of the first place adds 3/|X| to the resistance, 3e-5, and next to nothing to the
+    /// force.
     const QUADRATURE: f64 = 1e-4;
     const FIRST: f64 = -1e5;
 
-    /// Pressure, force and resistance of the film with the opening q by marching through Reynolds' equation from far in front,
-    /// with the end sought by bisection: no closed form.
+    /// Pressure, force and resistance of the film with the opening q by marching through Reynolds' equation
+    /// from far in front, with the end sought by bisection: no closed form.
     fn marched(q: f64) -> [f64; 3] {
         let steps = 20_000;
         let slope = |x: f64, c: f64| (x - c) * (x + c + q) / (1.0 + x * x).powi(3);
@@ -119,8 +121,9 @@ mod tests {
             - c * (c + opening) * (half + 0.5 * c * inverse))
     }
 
-    /// Reynolds' equation for a parabolic gap: A. Cameron, The Principles of Lubrication, Longmans 1966, chapter 7; with
-    /// normal motion D. Dowson, P. H. Markho, D. A. Jones, J. Lubr. Technol. 98 (1976) 509–516.
+    /// Reynolds' equation for a parabolic gap: A. Cameron, The Principles of Lubrication, Longmans 1966,
+    /// chapter 7; with normal motion D. Dowson, P. H. Markho, D. A. Jones, J. Lubr. Technol. 98 (1976)
+    /// 509–516.
     #[test]
     fn analytic_films_agree_with_reynolds_equation() {
         for q in [-60.0, -20.0, -4.0, -1.0, 0.0, 1.0, 4.0] {
@@ -135,8 +138,8 @@ mod tests {
         }
     }
 
-    /// H. M. Martin, Engineering 102 (1916) 119: W/L = 4.9 ηuR/h with the film's end at X = 0.475; pure squeeze
-    /// 12π η V (R/2h)^{3/2}: Cameron 1966, chapter 7.
+    /// H. M. Martin, Engineering 102 (1916) 119: W/L = 4.9 ηuR/h with the film's end at X = 0.475; pure
+    /// squeeze 12π η V (R/2h)^{3/2}: Cameron 1966, chapter 7.
     #[test]
     fn analytic_rolling_alone_and_squeeze_alone() {
         let rest = Pressed::until(0.475_130);
@@ -156,7 +159,8 @@ mod tests {
             let film = Pressed::until(c);
             assert!(film.force > 0.0 && film.force < last.force, "{c}: {film:?}");
             assert!(film.opening > last.opening && resistance(c) > 0.0, "{c}: {film:?}");
-            // What the surfaces put in is at least what they get back: u ∫h dp − W ḣ, here over 4√2 ηu²L √(R/h).
+            // What the surfaces put in is at least what they get back: u ∫h dp − W ḣ, here over 4√2 ηu²L
+            // √(R/h).
             let heat = resistance(c) - 0.5 * film.force * film.opening;
             assert!(heat > 0.0, "{c}: {heat}");
             let h = 1e-6 * (1.0 + c.abs());

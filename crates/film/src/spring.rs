@@ -1,7 +1,7 @@
 //! What the surfaces give under a film.
 
-/// Deepest indentation at which the force follows the growing contact; beyond it the force rises straight, so that the
-/// time step knows a stiffest [m]. A film that presses so hard is gone within microseconds.
+/// Deepest indentation at which the force follows the growing contact; beyond it the force rises straight, so
+/// that the time step knows a stiffest [m]. A film that presses so hard is gone within microseconds.
 const DEEPEST: f64 = 2e-6;
 
 /// What two surfaces give under a film between them.
@@ -37,8 +37,8 @@ pub struct Bed {
 }
 
 impl Bed {
-    /// Springs of `stiffness` a length [N/m²] under a cylinder of the relative radius `radius` [m]: a strip of the half-width
-    /// √(2Rd) is pressed in, ∫ k (d − x²/2R) dx = 4/3 k √(2R) d^{3/2}.
+    /// Springs of `stiffness` a length [N/m²] under a cylinder of the relative radius `radius` [m]: a strip
+    /// of the half-width √(2Rd) is pressed in, ∫ k (d − x²/2R) dx = 4/3 k √(2R) d^{3/2}.
     pub fn new(stiffness: f64, radius: f64) -> Self {
         let hardness = 4.0 / 3.0 * stiffness * (2.0 * radius).sqrt();
         let root = DEEPEST.sqrt();

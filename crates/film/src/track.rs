@@ -1,4 +1,5 @@
-//! Where a film lies: the parts of a surface between its corners, and the place that is nearest to a round body.
+//! Where a film lies: the parts of a surface between its corners, and the place that is nearest to a round
+//! body.
 
 use serde::{Deserialize, Serialize};
 

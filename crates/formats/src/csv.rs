@@ -1,9 +1,10 @@
 //! Text tables: one row a sample, one column a channel.
 //!
-//! Columns are split by semicolons, tabs, bars, commas or spaces, whichever the first rows of numbers agree with; beside all
-//! but commas a comma is a decimal point. Lines before the first row of numbers are a preamble; the last of them that has as
-//! many columns gives the names, or the units when it looks like them and there are names above. Time stamps become seconds
-//! since the first. A field that is no number costs its sample, a column of texts is left out.
+//! Columns are split by semicolons, tabs, bars, commas or spaces, whichever the first rows of numbers agree
+//! with; beside all but commas a comma is a decimal point. Lines before the first row of numbers are a
+//! preamble; the last of them that has as many columns gives the names, or the units when it looks like them
+//! and there are names above. Time stamps become seconds since the first. A field that is no number costs its
+//! sample, a column of texts is left out.
 
 mod dialect;
 mod head;
@@ -114,7 +115,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
 }
 
-/// Whether the first row counts the columns from 0, as pandas heads a table without names, and the next holds fractions.
+/// Whether the first row counts the columns from 0, as pandas heads a table without names, and the next holds
+/// fractions.
 fn counts_columns(rows: &[String], dialect: Dialect) -> bool {
     let [first, second, ..] = rows else { return false };
     let fields = dialect.split(first);
@@ -193,8 +195,8 @@ impl Census {
     }
 }
 
-/// Writes channels of one length as columns, after a comment line for each of `notes` and a time column when the first
-/// channel has a rate. Numbers have all their digits.
+/// Writes channels of one length as columns, after a comment line for each of `notes` and a time column when
+/// the first channel has a rate. Numbers have all their digits.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] for channels of different lengths, [`Error::Io`].
@@ -228,6 +230,11 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
 }
 
 impl Column {
+    /// Its place in the table, from 1.
+    pub(crate) fn number(&self) -> usize {
+        self.at + 1
+    }
+
     pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let mut lines = Lines::open(&self.path, self.coding)?;
         let mut block = Vec::with_capacity(BLOCK);

@@ -21,7 +21,8 @@ impl Curve {
         Self::Polynomial(vec![offset, slope])
     }
 
-    /// A table, its pairs in the order of their abscissae; `None` where two abscissae are one or are no numbers.
+    /// A table, its pairs in the order of their abscissae; `None` where two abscissae are one or are no
+    /// numbers.
     pub(crate) fn table(x: &[f64], y: &[f64], between: bool) -> Option<Self> {
         let mut pairs: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -21,7 +21,8 @@ pub enum Error {
     },
     /// The file is none of the known formats.
     #[error(
-        "`{}` is no signal that can be read: {seen}. Known are CSV, .npy, .npz, .mat (versions 4, 5 and 7.3), .uff/.unv (dataset 58), \
+        "`{}` is no signal that can be read: {seen}. Known are CSV, .npy, .npz, .mat (versions 4, 5 and \
+         7.3), .uff/.unv (dataset 58), \
          .tdms, .mf4, .parquet, .wav and .flac; export it as one of these", .path.display()
     )]
     Unknown {
@@ -31,7 +32,8 @@ pub enum Error {
         seen: String,
     },
     /// The file contradicts its format.
-    #[error("`{}` is damaged or cut off ({format}): {what}. Copy it again, or export it once more", .path.display())]
+    #[error("`{}` is damaged or cut off ({format}): {what}. Copy it again, or export it once \
+        more", .path.display())]
     Damaged {
         /// The file.
         path: PathBuf,

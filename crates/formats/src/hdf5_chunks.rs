@@ -1,7 +1,8 @@
 //! Numbers that HDF5 keeps in chunks, one chunk at a time: plain, deflated, shuffled, with checksums.
 //!
-//! hdf5-pure says where the chunks are; its own windows run along the first extent, and the samples of a MATLAB vector lie
-//! along the last. Source: HDF5 File Format Specification 3.0, §IV.A.2.l (filters); the checksum is that of `H5checksum.c`.
+//! hdf5-pure says where the chunks are; its own windows run along the first extent, and the samples of a
+//! MATLAB vector lie along the last. Source: HDF5 File Format Specification 3.0, §IV.A.2.l (filters); the
+//! checksum is that of `H5checksum.c`.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -30,7 +31,8 @@ struct Set {
     path: PathBuf,
     format: &'static str,
     number: Number,
-    /// What was done to each chunk, in the order of writing: a filter's number and the size of what it shuffled.
+    /// What was done to each chunk, in the order of writing: a filter's number and the size of what it
+    /// shuffled.
     filters: Vec<(u16, usize)>,
     /// Bytes of a whole chunk.
     bytes: usize,
@@ -58,8 +60,8 @@ pub(crate) struct Column {
     stride: usize,
 }
 
-/// Channels along the extent `along`, one for each place on the extent `across`; `None` for chunks that are packed in
-/// other ways, are larger than what is held, or of which some were never written.
+/// Channels along the extent `along`, one for each place on the extent `across`; `None` for chunks that are
+/// packed in other ways, are larger than what is held, or of which some were never written.
 pub(crate) fn columns(
     path: &Path,
     format: &'static str,

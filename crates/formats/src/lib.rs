@@ -1,8 +1,8 @@
 //! Sampled signals in and out of files.
 //!
-//! [`Recording::open`] looks at the first bytes of a file and lists its channels. Samples stay in the file and are read in
-//! blocks, packed ones of HDF5, MDF, FLAC and Parquet unpacked on the way; those of universal files and of deflated MATLAB 5
-//! and `.npz` files are held in memory.
+//! [`Recording::open`] looks at the first bytes of a file and lists its channels. Samples stay in the file
+//! and are read in blocks, packed ones of HDF5, MDF, FLAC and Parquet unpacked on the way; those of universal
+//! files and of deflated MATLAB 5 and `.npz` files are held in memory.
 //! Each format has a module.
 //!
 //! | format | read | written |
@@ -20,21 +20,19 @@
 //! | FLAC | [`flac`] | no: it holds no floats |
 //! | WAV and RF64: 8 to 32 bits, floats | [`wav`] | as 64-bit floats |
 //!
-//! Times are told from signals by how they rise, and the sample rate follows from them where the file does not say it.
-//! Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
+//! Times are told from signals by how they rise, and the sample rate follows from them where the file does
+//! not say it. Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
 
 mod curve;
 mod error;
 mod hdf5_chunks;
 mod hdf5_links;
 mod literal;
-mod mdf4_channel;
 mod mdf4_records;
 mod number;
 mod open;
 mod recording;
 mod shape;
-mod tdms_scale;
 mod time;
 mod units;
 

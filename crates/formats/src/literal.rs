@@ -1,4 +1,5 @@
-//! Literals of Python as NumPy writes them into its headers: texts, whole numbers, words, tuples, lists and dictionaries.
+//! Literals of Python as NumPy writes them into its headers: texts, whole numbers, words, tuples, lists and
+//! dictionaries.
 
 /// A literal.
 #[derive(Debug, Clone, PartialEq)]
@@ -110,7 +111,8 @@ mod tests {
 
     #[test]
     fn example_names_with_brackets_quotes_and_escapes() {
-        let text = "{'descr': [('t (s)', '<f8'), (\"it's\", '|V6'), ('a\\'b\\xb2', '<f4', (2, 3))], 'shape': (9,), }";
+        let text = "{'descr': [('t (s)', '<f8'), (\"it's\", '|V6'), ('a\\'b\\xb2', '<f4', (2, 3))], 'shape': \
+            (9,), }";
         let header = parse(text).unwrap();
         let fields = header.get("descr").unwrap().items();
         let names: Vec<_> = fields.iter().map(|f| f.items()[0].text().unwrap()).collect();

@@ -1,5 +1,5 @@
-//! MATLAB files of version 5 (what `save -v6` and `save -v7` write): vectors, tables, structs and cells of real numbers,
-//! in either byte order, deflated or not, with elements of any length packed into their tags.
+//! MATLAB files of version 5 (what `save -v6` and `save -v7` write): vectors, tables, structs and cells of
+//! real numbers, in either byte order, deflated or not, with elements of any length packed into their tags.
 //!
 //! Source: *MAT-File Format*, The MathWorks.
 
@@ -38,8 +38,8 @@ pub(crate) fn recognise(start: &[u8]) -> bool {
     matches!(start.get(124..128), Some([0, 1, b'I', b'M'] | [1, 0, b'M', b'I']))
 }
 
-/// Opens a file. Real vectors that are not deflated stay in the file. Members of structs are called `name.member`,
-/// cells `name{1}`; texts and what else is no real number are left out.
+/// Opens a file. Real vectors that are not deflated stay in the file. Members of structs are called
+/// `name.member`, cells `name{1}`; texts and what else is no real number are left out.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].
@@ -101,8 +101,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels: found.channels, notes: found.notes })
 }
 
-/// Writes each channel as a column of doubles, uncompressed, its name made valid; `rate_hz` beside them when the first
-/// has a rate, and the text `notes`.
+/// Writes each channel as a column of doubles, uncompressed, its name made valid; `rate_hz` beside them when
+/// the first has a rate, and the text `notes`.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] for a channel beyond 4 GiB, [`Error::Io`].
@@ -231,7 +231,8 @@ impl Found {
             return Err(format!("an element begins in its last {} bytes", bytes.len()));
         }
         let first = self.word(bytes, 0);
-        // A small element carries its length in the upper half of its type, and its data where the length would be.
+        // A small element carries its length in the upper half of its type, and its data where the length
+        // would be.
         let (kind, length, start): (u32, usize, usize) = match first >> 16 {
             0 => (first, self.word(bytes, 4) as usize, 8),
             small => (first & 0xffff, small as usize, 4),
@@ -277,8 +278,8 @@ impl Found {
         Some(Number { kind, big_endian: self.big_endian })
     }
 
-    /// A variable whose numbers can stay in the file; `None` for others. `start` is the beginning of its bytes, of
-    /// which there are `length`.
+    /// A variable whose numbers can stay in the file; `None` for others. `start` is the beginning of its
+    /// bytes, of which there are `length`.
     fn plain(&self, start: &[u8], length: u64) -> Parsed<Option<Plain>> {
         // Its head may be longer than what was read: then it is parsed whole.
         let Ok(head) = self.head(start) else { return Ok(None) };

@@ -1,8 +1,8 @@
 //! MATLAB `.mat`, version 7.3: HDF5 behind 512 bytes of text. Plain HDF5 files are read in the same way.
 //!
-//! Arrays of numbers and of logicals are channels, members of structs are called `struct.member`; a matrix of MATLAB gives a
-//! channel a column, one of other programs a channel along its longer side. Cells, texts and objects are left out. Samples
-//! stay in the file, in one piece or in chunks; those in chunks packed otherwise than MATLAB does are held in memory.
+//! Arrays of numbers and of logicals are channels, members of structs are called `struct.member`; a matrix
+//! gives channels along its longer side. Cells, texts and objects are left out. Samples stay in the file, in
+//! one piece or in chunks; those in chunks packed otherwise than MATLAB does are held in memory.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -56,7 +56,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     if !found.too_long.is_empty() {
         notes.push(format!(
-            "left out, as chunks that are packed otherwise than by gzip are read as a whole, of at most {MOST} numbers a file: {}. \
+            "left out, as chunks that are packed otherwise than by gzip are read as a whole, of at most \
+             {MOST} numbers a file: {}. \
              Pack them anew with `h5repack -f GZIP=1`",
             found.too_long.join(", ")
         ));
@@ -91,7 +92,8 @@ impl Found {
         let names = match (group.datasets(), group.groups()) {
             (Ok(sets), Ok(groups)) => (sets, groups),
             (Err(why), _) | (_, Err(why)) => {
-                // A link to another object spoils the library's list of an old group; each name by itself can be opened.
+                // A link to another object spoils the library's list of an old group; each name by itself can
+                // be opened.
                 let Some(links) = links else {
                     self.notes.push(left_out(&format!("{prefix}*"), &why.to_string()));
                     return;
@@ -314,15 +316,16 @@ struct Axes {
 }
 
 impl Axes {
-    /// MATLAB's columns run fastest, so the last extent of the file is the length of a column. Other programs have no such
-    /// rule: the longer side is the time. `None` for arrays of more extents, or of too many channels.
+    /// The longer side is the time. Of two equal ones it is MATLAB's column, the last extent of its files,
+    /// and the first extent in those of other programs. `None` for arrays of more extents, or of too many
+    /// channels.
     fn of(shape: &[u64], matlab: bool) -> Option<Self> {
         let wide: Vec<usize> = (0..shape.len()).filter(|axis| shape[*axis] > 1).collect();
         match wide[..] {
             [] => Some(Self { along: shape.len().saturating_sub(1), across: None }),
             [along] => Some(Self { along, across: None }),
             [first, last] => {
-                let turned = if matlab { shape[first] > COLUMNS } else { shape[first] >= shape[last] };
+                let turned = shape[first] > shape[last] || !matlab && shape[first] == shape[last];
                 let (along, across) = if turned { (first, last) } else { (last, first) };
                 (shape[across] <= COLUMNS).then_some(Self { along, across: Some(across) })
             }
@@ -362,6 +365,14 @@ fn plain(of: &Datatype) -> Option<Number> {
                 _ => return None,
             };
             (kind, byte_order)
+        }
+        // IEEE 754-2008, binary16: the library has no name for it.
+        Datatype::FloatingPoint { size: 2, byte_order, layout }
+            if (layout.bit_offset, layout.bit_precision) == (0, 16)
+                && (layout.exponent_location, layout.exponent_size) == (10, 5)
+                && (layout.mantissa_location, layout.mantissa_size, layout.exponent_bias) == (0, 10, 15) =>
+        {
+            (Kind::F16, byte_order)
         }
         Datatype::FloatingPoint { size: 4, byte_order, layout }
             if *layout == FloatingPointLayout::IEEE754_BINARY32 =>

@@ -1,14 +1,18 @@
 //! MDF 4 (ASAM): channels of whole bytes in sorted groups, in plain, listed or deflated blocks. Read only.
 //!
-//! Each channel is called by its name; the rate is that of its group's master, stored or virtual. A sample whose invalidation
-//! bit is set is no number. Channels of bits, of texts and with conversions to texts are left out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
+//! Each channel is called by its name; the rate is that of its group's master, stored or virtual. A sample
+//! whose invalidation bit is set is no number. Channels of bits, of texts and with conversions to texts are
+//! left out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
+
+mod channel;
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use crate::mdf4_channel::{Described, describe};
+use channel::{Described, describe};
+
 use crate::mdf4_records::{Packing, Stretch};
 use crate::recording::left_out;
 use crate::{Channel, Error, Recording, Result};
@@ -220,6 +224,10 @@ impl Found {
         if cycles == 0 {
             return Ok(());
         }
+        if width == 0 {
+            self.notes.push("a group whose records hold no bytes is left out".to_owned());
+            return Ok(());
+        }
         let mut described: Vec<Described> = Vec::new();
         let (mut at, mut seen) = (of.link(1), 0);
         while at != 0 {
@@ -239,8 +247,7 @@ impl Found {
         }
         let data = Arc::new(source.data(group.link(2))?);
         let bytes = data.iter().fold(0_u64, |sum, s| sum.saturating_add(s.full));
-        // Records of virtual channels alone take no bytes.
-        let there = bytes.checked_div(width as u64).map_or(cycles, |records| records.min(cycles));
+        let there = (bytes / width as u64).min(cycles);
         if there < cycles {
             self.notes.push(format!("a group promises {cycles} samples, and {there} are there"));
         }

@@ -1,4 +1,5 @@
-//! Samples of an MDF group whose records are deflated, or begin in one block and end in the next: one block at a time.
+//! Samples of an MDF group whose records are deflated, or begin in one block and end in the next: one block
+//! at a time.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -114,7 +115,8 @@ impl Field {
     }
 }
 
-/// Rows of `columns` bytes, whose columns were stored one after the other; what fills no row stays at the end.
+/// Rows of `columns` bytes, whose columns were stored one after the other; what fills no row stays at the
+/// end.
 fn transposed(bytes: &[u8], columns: usize) -> Vec<u8> {
     let rows = bytes.len().checked_div(columns).unwrap_or(0);
     let mut out = Vec::with_capacity(bytes.len());
@@ -133,7 +135,8 @@ mod tests {
 
     #[test]
     fn example_records_go_on_in_the_next_block() {
-        // Records of six bytes with a number of 16 bits at byte 4; a plain block of 20 bytes, and two packed ones.
+        // Records of six bytes with a number of 16 bits at byte 4; a plain block of 20 bytes, and two packed
+        // ones.
         let records: Vec<u8> =
             (0..40_u16).flat_map(|n| [if n == 7 { 8 } else { 4 }, 9, 9, 9, (3 * n) as u8, 0]).collect();
         let deflated = |bytes: &[u8]| {

@@ -70,13 +70,14 @@ impl std::fmt::Display for Refusal {
 }
 
 /// What to save instead of what is not read.
-const ADVICE: &str = "vectors, tables and records of real numbers are read: bool, int8 to uint64, float32 and float64; save it as one of them";
+const ADVICE: &str = "vectors, tables and records of real numbers are read: bool, int8 to uint64, float32 \
+    and float64; save it as one of them";
 
 /// Opens an array; a vector takes the name of the file.
 ///
 /// # Errors
-/// [`Error::Damaged`] for a header that cannot be understood or data that end early, [`Error::Unsupported`] for what is no table of real
-/// numbers, [`Error::Io`].
+/// [`Error::Damaged`] for a header that cannot be understood or data that end early, [`Error::Unsupported`]
+/// for what is no table of real numbers, [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let mut file = File::open(path).map_err(|e| Error::read(path, e))?;
     let mut head = Vec::new();
@@ -327,7 +328,8 @@ mod tests {
     fn example_records_in_their_short_form() {
         let header = |formats: &str| {
             format!(
-                "{{'descr': ('V24', {{'names':['time_s','a','b c'],'formats':'{formats}'}}), 'fortran_order': False, 'shape': (2,), }}"
+                "{{'descr': ('V24', {{'names':['time_s','a','b c'],'formats':'{formats}'}}), \
+                 'fortran_order': False, 'shape': (2,), }}"
             )
         };
         let layout = Layout::of(&file(&header("ddd"))).expect("a layout");

@@ -14,8 +14,8 @@ const FORMAT: &str = "NumPy .npz";
 /// Longest array that is unpacked [bytes].
 const MAX_UNPACKED: u64 = 1 << 32;
 
-/// Opens an archive. Arrays that are stored without compression stay in the file; texts and what else is no real number
-/// are left out with a note.
+/// Opens an archive. Arrays that are stored without compression stay in the file; texts and what else is no
+/// real number are left out with a note.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].
@@ -61,8 +61,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// Writes each channel as an array under its name, stored without compression so that it can be mapped; `rate_hz` when
-/// the first has a rate; `notes` as one text.
+/// Writes each channel as an array under its name, stored without compression so that it can be mapped;
+/// `rate_hz` when the first has a rate; `notes` as one text.
 ///
 /// # Errors
 /// [`Error::Io`].

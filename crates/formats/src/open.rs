@@ -9,8 +9,8 @@ use crate::{
 };
 
 impl Recording {
-    /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file. Times are told from
-    /// signals, and give them the sample rate that the file does not say otherwise.
+    /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file.
+    /// Times are told from signals, and give them the sample rate that the file does not say otherwise.
     ///
     /// # Errors
     /// [`Error::Unknown`] for a file of another kind, [`Error::Damaged`] for one that contradicts its format,

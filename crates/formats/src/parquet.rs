@@ -2,6 +2,7 @@
 
 use std::borrow::Borrow;
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -76,7 +77,8 @@ impl Column {
     }
 }
 
-/// A table that is written group of rows by group of rows, so that it need not fit into memory. Equal tables are equal bytes.
+/// A table that is written group of rows by group of rows, so that it need not fit into memory. Equal tables
+/// are equal bytes.
 pub struct Writer {
     path: std::path::PathBuf,
     schema: Vec<Column>,
@@ -84,8 +86,8 @@ pub struct Writer {
 }
 
 impl Writer {
-    /// Begins a file with columns of these names and kinds; their values do not matter. `notes` are written beside it, each
-    /// under its name.
+    /// Begins a file with columns of these names and kinds; their values do not matter. `notes` are written
+    /// beside it, each under its name.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::DoesNotFit`].
@@ -118,8 +120,8 @@ impl Writer {
         Ok(Self { path: path.to_owned(), schema: columns.iter().map(blank).collect(), file })
     }
 
-    /// Adds a group of rows: the columns of the file, equally long. Each is asked for when the one before is written, so that they
-    /// need not be in memory together.
+    /// Adds a group of rows: the columns of the file, equally long. Each is asked for when the one before is
+    /// written, so that they need not be in memory together.
     ///
     /// # Errors
     /// [`Error::DoesNotFit`] for other columns, [`Error::Io`]. The file is then of no use.
@@ -185,15 +187,15 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     write_table(path, &columns?, &texts)
 }
 
-/// Opens a table: its columns of numbers are channels, others are left out with a note. A number that is missing is not a
-/// number. Values stay in the file.
+/// Opens a table: its columns of numbers are channels, others are left out with a note. A number that is
+/// missing is not a number. Values stay in the file.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let file = File::open(path).map_err(|e| Error::read(path, e))?;
     let damaged = |e: ParquetError| Error::damaged(path, FORMAT, e.to_string());
-    let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    let reader = guarded(|| SerializedFileReader::new(file)).map_err(damaged)?;
     let columns = reader.metadata().file_metadata().schema_descr().columns().to_vec();
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
     let given = reader.metadata().file_metadata().key_value_metadata();
@@ -315,7 +317,7 @@ impl Stored {
     pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let file = File::open(&self.path).map_err(|e| Error::read(&self.path, e))?;
         let damaged = |e: ParquetError| Error::damaged(&self.path, FORMAT, e.to_string());
-        let reader = SerializedFileReader::new(file).map_err(damaged)?;
+        let reader = guarded(|| SerializedFileReader::new(file)).map_err(damaged)?;
         let mut left = len;
         let mut give = |block: &[f64]| {
             let count = left.min(block.len() as u64);
@@ -324,7 +326,14 @@ impl Stored {
         };
         for group in 0..reader.num_row_groups() {
             let group = reader.get_row_group(group).map_err(damaged)?;
-            let going = match group.get_column_reader(self.number).map_err(damaged)? {
+            let places = group.metadata().columns().get(self.number).map(|of| {
+                [of.data_page_offset(), of.dictionary_page_offset().unwrap_or(0), of.compressed_size()]
+            });
+            if places.is_none_or(|all| all.iter().any(|place| *place < 0)) {
+                return Err(Error::damaged(&self.path, FORMAT, "a column begins or ends before the file"));
+            }
+            let column = guarded(|| group.get_column_reader(self.number)).map_err(damaged)?;
+            let going = match column {
                 ColumnReader::DoubleColumnReader(mut r) => each(&mut r, self.defined, |v| v, &mut give),
                 ColumnReader::FloatColumnReader(mut r) => each(&mut r, self.defined, f64::from, &mut give),
                 ColumnReader::Int64ColumnReader(mut r) => {
@@ -353,6 +362,14 @@ impl Stored {
     }
 }
 
+/// What the library reads. A damaged file must not take the program along, whatever the library thinks of it.
+fn guarded<T>(
+    read: impl FnOnce() -> std::result::Result<T, ParquetError>,
+) -> std::result::Result<T, ParquetError> {
+    catch_unwind(AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err(ParquetError::General("its structure contradicts itself".to_owned())))
+}
+
 /// Gives all values of a column of one group of rows; false when no more are wanted.
 fn each<T: parquet::data_type::DataType>(
     reader: &mut parquet::column::reader::ColumnReaderImpl<T>,
@@ -363,7 +380,7 @@ fn each<T: parquet::data_type::DataType>(
     loop {
         let (mut batch, mut levels) = (Vec::new(), Vec::new());
         let with_levels = (defined > 0).then_some(&mut levels);
-        let (rows, _, _) = reader.read_records(BATCH, with_levels, None, &mut batch)?;
+        let (rows, _, _) = guarded(|| reader.read_records(BATCH, with_levels, None, &mut batch))?;
         if rows == 0 {
             return Ok(true);
         }

@@ -16,8 +16,8 @@ pub struct Recording {
     pub path: PathBuf,
     /// Its format, in words.
     pub format: &'static str,
-    /// Its channels, in the order of the file. Numbers that stand alone (a speed, a sensitivity) are channels of one
-    /// sample.
+    /// Its channels, in the order of the file. Numbers that stand alone (a speed, a sensitivity) are channels
+    /// of one sample.
     pub channels: Vec<Channel>,
     /// What was odd about the file.
     pub notes: Vec<String>,
@@ -78,12 +78,19 @@ pub(crate) struct Strided {
 const PIECE: usize = 1 << 18;
 
 impl Recording {
-    /// The channel called `name`, or the only one whose name contains it.
+    /// The channel called `name`, that of the n-th column of a text for `column n`, or the only one whose
+    /// name contains it.
     ///
     /// # Errors
     /// [`Error::NoChannel`] with the names that there are.
     pub fn channel(&self, name: &str) -> Result<&Channel> {
         if let Some(channel) = self.channels.iter().find(|c| c.name == name) {
+            return Ok(channel);
+        }
+        // A table may be headed by counts from 0, or by names that nobody types.
+        let number = name.strip_prefix("column ").and_then(|n| n.trim().parse::<usize>().ok());
+        let is_column = |c: &&Channel| matches!(&c.source, Source::Text(of) if Some(of.number()) == number);
+        if let Some(channel) = self.channels.iter().find(is_column) {
             return Ok(channel);
         }
         let mut like = self.channels.iter().filter(|c| c.name.contains(name));

@@ -1,5 +1,5 @@
-//! Arrays as channels, by one rule for all formats: extents of one do not count, the longer of two others is the time, and an
-//! array of more extents is no signal, because nothing says which of them is the time.
+//! Arrays as channels, by one rule for all formats: extents of one do not count, the longer of two others is
+//! the time, and an array of more extents is no signal, because nothing says which of them is the time.
 
 /// Most channels of one array.
 pub(crate) const MOST_CHANNELS: u64 = 100_000;
@@ -17,7 +17,8 @@ pub(crate) fn table(shape: &[u64]) -> Result<(u64, u64), String> {
         _ => {
             let sizes: Vec<String> = shape.iter().map(u64::to_string).collect();
             Err(format!(
-                "it has {} dimensions, {}, and nothing says which is the time: save each record as a vector or a table",
+                "it has {} dimensions, {}, and nothing says which is the time: save each record as a vector \
+                 or a table",
                 shape.len(),
                 sizes.join(" × ")
             ))

@@ -2,6 +2,8 @@
 //!
 //! Source: *TDMS File Format Internal Structure*, National Instruments.
 
+mod scale;
+
 use std::collections::{BTreeMap, HashMap};
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -9,7 +11,6 @@ use std::path::Path;
 
 use crate::number::{Kind, Number};
 use crate::recording::{Strided, left_out};
-use crate::tdms_scale;
 use crate::{Channel, Error, Recording, Result};
 
 const FORMAT: &str = "TDMS";
@@ -120,8 +121,8 @@ pub fn open(path: &Path) -> Result<Recording> {
         let group = path_in_file.rsplit_once("/'").map_or("", |(group, _)| group);
         let none = BTreeMap::new();
         let of_group = groups.get(group).unwrap_or(&none);
-        let scales = [&object.scales, of_group, &of_file].into_iter().find(|s| tdms_scale::count(s) > 0);
-        let curve = match tdms_scale::curve(scales.unwrap_or(&none)) {
+        let scales = [&object.scales, of_group, &of_file].into_iter().find(|s| scale::count(s) > 0);
+        let curve = match scale::curve(scales.unwrap_or(&none)) {
             Ok(curve) => curve,
             Err(why) => {
                 notes.push(left_out(&name, &why));
@@ -135,7 +136,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value by value.
+/// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value
+/// by value.
 fn place(
     path: &Path,
     (start, held): (u64, u64),

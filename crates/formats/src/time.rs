@@ -1,8 +1,8 @@
 //! Which channels are times, and the sample rate that they say.
 //!
-//! Times rise evenly from sample to sample, to their last digit, and so do counts, and the angle of a shaft that turns
-//! steadily: none of them is a signal. All samples are looked at, a stretch at a time, because a record that was interrupted,
-//! or put together, shows it nowhere else.
+//! Times rise evenly from sample to sample, to their last digit, and so do counts, and the angle of a shaft
+//! that turns steadily: none of them is a signal. All samples are looked at, a stretch at a time, because a
+//! record that was interrupted, or put together, shows it nowhere else.
 
 use crate::units::{self, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result};
@@ -48,8 +48,8 @@ struct Stretch {
     gaps: Vec<Gap>,
 }
 
-/// Marks the channels that are no signals, and gives the others the rate that the file says: as a number beside them, or by
-/// the times.
+/// Marks the channels that are no signals, and gives the others the rate that the file says: as a number
+/// beside them, or by the times.
 ///
 /// # Errors
 /// As [`Channel::for_each_block`], for times.
@@ -98,7 +98,8 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
                 (None, _) => channel.rate_hz = rate_hz,
                 (Some(said), Some(hz)) if (said / hz - 1.0).abs() > SAME_RATE && !channel.is_time => {
                     recording.notes.push(format!(
-                        "`{}` has a rate of {said} Hz in the file, and its times say {hz} Hz: the former is taken",
+                        "`{}` has a rate of {said} Hz in the file, and its times say {hz} Hz: the former is \
+                         taken",
                         channel.name
                     ));
                 }
@@ -110,8 +111,8 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     Ok(recording)
 }
 
-/// The rates [Hz] that stand as numbers of their own, each with the struct that it is in; those that contradict each other are
-/// noted, and say nothing.
+/// The rates [Hz] that stand as numbers of their own, each with the struct that it is in; those that
+/// contradict each other are noted, and say nothing.
 fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Vec<(String, f64)> {
     let mut said: Vec<(String, f64, &str)> = Vec::new();
     for channel in channels.iter().filter(|c| c.len == 1) {
@@ -236,10 +237,13 @@ impl Course {
         };
         if let Some(from) = self.change {
             let what = if from.0 == self.first.0 {
-                "from the beginning on: give the rate by hand if only the times are uneven, or cut that part off".to_owned()
+                "from the beginning on: give the rate by hand if only the times are uneven, or cut that part \
+                 off"
+                .to_owned()
             } else {
                 format!(
-                    "from about {} on: cut the file there and take the longer part, or give the rate by hand if it does not change",
+                    "from about {} on: cut the file there and take the longer part, or give the rate by hand \
+                     if it does not change",
                     at(from)
                 )
             };
@@ -257,7 +261,8 @@ impl Course {
             };
             let more = if more > 0 { format!(", and so at {more} more places") } else { String::new() };
             notes.push(format!(
-                "the times of `{name}` have a gap after {}: {what}{more}. Knocks before and after it do not line up: cut the file there \
+                "the times of `{name}` have a gap after {}: {what}{more}. Knocks before and after it do not \
+                 line up: cut the file there \
                  and take the longer part",
                 at(gap.after)
             ));
@@ -286,7 +291,8 @@ impl Course {
                 format!("{hz} Hz if these are seconds")
             };
             notes.push(format!(
-                "`{name}` rises by {step:.6} from sample to sample, and does not say its unit: {means}. Call it `t [ms]` or the like if \
+                "`{name}` rises by {step:.6} from sample to sample, and does not say its unit: {means}. Call \
+                 it `t [ms]` or the like if \
                  it is the time in another one"
             ));
             return (!slow).then_some(hz);
@@ -296,8 +302,8 @@ impl Course {
 }
 
 impl Stretch {
-    /// `None` for values that do not rise evenly: apart from gaps, each must lie within a step of the line, or within the last
-    /// digit, where that is coarser than a step.
+    /// `None` for values that do not rise evenly: apart from gaps, each must lie within a step of the line,
+    /// or within the last digit, where that is coarser than a step.
     fn of(values: &[(f64, f64)]) -> Option<Self> {
         let (first, last) = (values.first()?, values.last()?);
         // The rise over a quarter of the values, in the middle: few gaps do not move it.

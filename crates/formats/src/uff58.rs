@@ -64,7 +64,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// Writes each channel as an ASCII dataset of doubles, thirteen digits each; `notes` takes the first lines of text.
+/// Writes each channel as an ASCII dataset of doubles, thirteen digits each; `notes` takes the first lines of
+/// text.
 ///
 /// # Errors
 /// [`Error::DoesNotFit`] for a channel without a rate, [`Error::Io`].
@@ -80,7 +81,8 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
             text.chars().map(|c| if c.is_ascii() { c } else { '?' }).take(width).collect::<String>()
         };
         let unit = channel.unit.as_deref().unwrap_or("NONE");
-        // Specific data types of the format: 12 acceleration, 9 force, 8 displacement, 11 velocity, 0 unknown.
+        // Specific data types of the format: 12 acceleration, 9 force, 8 displacement, 11 velocity, 0
+        // unknown.
         let sort = match unit {
             "m/s^2" | "g" => 12,
             "N" => 9,

@@ -22,7 +22,8 @@ const TIMES: [(&str, f64, &[&str]); 7] = [
             "millis",
         ],
     ),
-    // The second is the micro sign, the third the Greek letter, the fourth what is left of one in another encoding.
+    // The second is the micro sign, the third the Greek letter, the fourth what is left of one in another
+    // encoding.
     (
         "us",
         1e-6,
@@ -145,7 +146,8 @@ pub(crate) fn is_unit(field: &str) -> bool {
 }
 
 impl Unit {
-    /// What the unit of a channel says, or its name where there is none: `t [ms]`, `t (ms)`, `t/ms`, `time_ms`, `Time, ms`.
+    /// What the unit of a channel says, or its name where there is none: `t [ms]`, `t (ms)`, `t/ms`,
+    /// `time_ms`, `Time, ms`.
     pub(crate) fn of(name: &str, unit: Option<&str>) -> Self {
         let time = |unit: &str| seconds(unit).map(|(name, s)| Self::Time(name, s));
         if let Some(unit) = unit.filter(|unit| !bare(unit).is_empty()) {
@@ -160,8 +162,8 @@ impl Unit {
     }
 }
 
-/// The sample rate [Hz] that a number under a name says, where the name is that of a rate or of a time step; its unit may
-/// stand in the name or beside it.
+/// The sample rate [Hz] that a number under a name says, where the name is that of a rate or of a time step;
+/// its unit may stand in the name or beside it.
 pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64> {
     /// Units of frequency [Hz].
     const FREQUENCIES: [(&str, f64); 4] = [("khz", 1e3), ("mhz", 1e6), ("ksps", 1e3), ("hz", 1.0)];
@@ -190,8 +192,8 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
 }
 
-/// A step from which on numbers without a unit are no seconds: nobody listens to a bearing less than a thousand times a
-/// second, and times in milliseconds look the same.
+/// A step from which on numbers without a unit are no seconds: nobody listens to a bearing less than a
+/// thousand times a second, and times in milliseconds look the same.
 pub(crate) const SLOWEST_S: f64 = 1e-3;
 
 /// A rate is a round number more often than the digits of a step are exact.

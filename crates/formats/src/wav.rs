@@ -1,9 +1,11 @@
-//! WAV and RF64: whole numbers of 8 to 32 bits, which are scaled to ±1, and floats, which are taken as they are.
+//! WAV and RF64: whole numbers of 8 to 32 bits, which are scaled to ±1, and floats, which are taken as they
+//! are.
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
+use crate::curve::Curve;
 use crate::number::{Kind, Number};
 use crate::recording::{Strided, equal_lengths};
 use crate::{Channel, Error, Recording, Result};
@@ -71,7 +73,8 @@ pub fn open(path: &Path) -> Result<Recording> {
                 if channels == 0 || rate == 0 {
                     return Err(damaged("it has no channels or no sample rate"));
                 }
-                // A recorder that streams, or was cut off, leaves 0 or the largest number where the size would be.
+                // A recorder that streams, or was cut off, leaves 0 or the largest number where the size
+                // would be.
                 let there = size - at - 8;
                 let unsaid = length == 0 || length == u64::from(u32::MAX) && long_data.is_none_or(|n| n == 0);
                 let promised = match long_data {
@@ -82,15 +85,17 @@ pub fn open(path: &Path) -> Result<Recording> {
                 let held = promised.min(there);
                 let mut notes = Vec::new();
                 if unsaid && there > 0 {
-                    notes.push(format!("its header does not say how many samples there are: all {there} bytes to its end are taken"));
+                    notes.push(format!(
+                        "its header does not say how many samples there are: all {there} \
+                        bytes to its end are taken"
+                    ));
                 } else if held < promised {
                     notes.push(format!(
                         "its header promises {promised} bytes of samples, and {held} are there"
                     ));
                 }
-                if kind == Kind::U8 {
-                    notes.push("samples of 8 bits count from 0: their mean is not zero".to_owned());
-                }
+                // Eight bits have no sign: 128 is silence.
+                let curve = (kind == Kind::U8).then(|| Curve::linear(-1.0, 1.0));
                 let stride = usize::from(channels) * kind.bytes();
                 let all = (0..usize::from(channels)).map(|n| {
                     let start = at + 8 + (n * kind.bytes()) as u64;
@@ -103,6 +108,7 @@ pub fn open(path: &Path) -> Result<Recording> {
                     };
                     Channel::strided((n + 1).to_string(), held / stride as u64, strided)
                         .at_rate(Some(f64::from(rate)))
+                        .along(curve.clone())
                 });
                 return Ok(Recording {
                     path: path.to_owned(),
@@ -131,8 +137,8 @@ pub fn open(path: &Path) -> Result<Recording> {
 /// Writes channels of one length and rate as 64-bit floats, in their own unit; `notes` goes into the comment.
 ///
 /// # Errors
-/// [`Error::DoesNotFit`] for channels of different lengths, a rate that is no whole number of hertz, or more than 4 GiB;
-/// [`Error::Io`].
+/// [`Error::DoesNotFit`] for channels of different lengths, a rate that is no whole number of hertz, or more
+/// than 4 GiB; [`Error::Io`].
 pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> {
     let rows = equal_lengths(path, FORMAT, channels)?;
     let misfit = |what: String| Error::DoesNotFit { path: path.to_owned(), format: FORMAT, what };

@@ -67,11 +67,15 @@ fn issue_one_column_stamps_and_headers_of_counts() {
     let counted: String = (0..300).map(|n| format!("{0:.4},{0:.4},{0:.4}\n", signal(n))).collect();
     let found = opened(&desk, "c.csv", format!("0,1,2\n{counted}").as_bytes());
     assert_eq!((found.channels.len(), found.channels[2].len), (3, 300));
+    // Whether the third column is called by its header or by its place.
+    for asked in ["2", "column 3"] {
+        assert_eq!(found.channel(asked).unwrap().name, "2");
+    }
     let stamps: String =
         (0..300).map(|n| format!("2024-05-01 08:00:00.{:09},{:.4}\n", 78_125 * n, signal(n))).collect();
     let found = opened(&desk, "d.csv", format!("timestamp,acc\n{stamps}").as_bytes());
     assert!((found.channels[1].rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-4, "{:?}", found.notes);
-    let gap = table("t [ms],acc\n", ',', false, "").replace("0.07812,", "0.07812,oops") + "23.5";
+    let gap = table("t [ms],acc\n", ',', false, "").replace("\n0.07812,", "\n0.07812,oops") + "23.5";
     let found = opened(&desk, "e.csv", gap.as_bytes());
     assert_eq!(found.channels[1].len, 300);
     assert!(

@@ -67,7 +67,8 @@ fn survives_files_damaged_at_any_byte() {
     }
 }
 
-/// An answer, whatever it is, for every file that is damaged at some bytes or cut off; a message when it is an error.
+/// An answer, whatever it is, for every file that is damaged at some bytes or cut off; a message when it is
+/// an error.
 fn survives_damage(path: &Path) {
     const EACH: u64 = 700;
     let whole = std::fs::read(path).unwrap();
@@ -96,7 +97,8 @@ fn survives_damage(path: &Path) {
 
 #[test]
 fn peer_other_programs_read_what_is_written() {
-    // numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8, pyarrow 26.0.1 and soundfile 0.14.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
+    // numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8, pyarrow 26.0.1 and soundfile 0.14.0, where the interpreter
+    // in STRIBECK_PYTHON (or python3) has them.
     let folder = Scratch::create("formats-foreign");
     let expected = folder.path().join("expected.csv");
     csv::write(&expected, &channels(), &[]).unwrap();
@@ -121,7 +123,8 @@ fn peer_other_programs_read_what_is_written() {
 
 #[test]
 fn peer_files_of_other_programs_are_read() {
-    // npTDMS 1.10.0, scipy.io 1.17.1, soundfile 0.14.0, asammdf 8.8.28 and h5py 3.16.0 write what the formats allow and we do not: other types, byte orders, structs, segments, chunks.
+    // npTDMS 1.10.0, scipy.io 1.17.1, soundfile 0.14.0, asammdf 8.8.28 and h5py 3.16.0 write what the formats
+    // allow and we do not: other types, byte orders, structs, segments, chunks.
     let folder = Scratch::create("formats-theirs");
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/write_signals.py");
     for (name, module) in [
@@ -141,7 +144,8 @@ fn peer_files_of_other_programs_are_read() {
         let path = folder.path().join(name);
         let run = Command::new(&python).args([script, path.to_str().unwrap()]).output().unwrap();
         assert!(run.status.success(), "{kind}: {}", String::from_utf8_lossy(&run.stderr));
-        // One line a channel: its name, its tolerance, and what its samples are a multiple of, sample n being k·(n mod 50).
+        // One line a channel: its name, its tolerance, and what its samples are a multiple of, sample n being
+        // k·(n mod 50).
         let said = String::from_utf8_lossy(&run.stdout).into_owned();
         assert!(said.lines().count() >= 2, "{kind}: {said}");
         let recording = Recording::open(&path).unwrap();

@@ -9,9 +9,10 @@ use crate::{Error, Part};
 
 /// An annulus about the origin, made of quadrilaterals in circumferential rows.
 ///
-/// Row 0 of the nodes is the inner surface, the last row the outer one, or the other way round where grooves are cut into the
-/// outer one; each row runs counter-clockwise and node = row × `facets` + column. Surfaces, both closed: `inner` (walked clockwise) and `outer`
-/// (counter-clockwise, its first node at `start_angle`, or two facets or so beside it where there are grooves).
+/// Row 0 of the nodes is the inner surface, the last row the outer one, or the other way round where grooves
+/// are cut into the outer one; each row runs counter-clockwise and node = row × `facets` + column. Surfaces,
+/// both closed: `inner` (walked clockwise) and `outer` (counter-clockwise, its first node at `start_angle`,
+/// or two facets or so beside it where there are grooves).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Annulus {
     /// Radius of the inner circle [m].

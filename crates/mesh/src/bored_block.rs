@@ -5,12 +5,13 @@ use crate::rows::{self, NextRow};
 use crate::smoothing::sound;
 use crate::{Error, Part};
 
-/// A rectangular block about a bore around the origin, whose polygon is given: that of the ring that sits in it, so that the
-/// two surfaces fit facet to facet.
+/// A rectangular block about a bore around the origin, whose polygon is given: that of the ring that sits in
+/// it, so that the two surfaces fit facet to facet.
 ///
-/// The block lies between x = ±`width`/2 and y from −`base` to `top`. Rays through the nodes of the bore are divided equally
-/// between bore and outline; the ray nearest to each corner ends in it. Nodes are numbered in circumferential rows from the
-/// bore outwards, each row counter-clockwise. Surfaces: `bore`, closed; `base`, open, from left to right.
+/// The block lies between x = ±`width`/2 and y from −`base` to `top`. Rays through the nodes of the bore are
+/// divided equally between bore and outline; the ray nearest to each corner ends in it. Nodes are numbered in
+/// circumferential rows from the bore outwards, each row counter-clockwise. Surfaces: `bore`, closed; `base`,
+/// open, from left to right.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoredBlock<'a> {
     /// Nodes of the bore [m], counter-clockwise.
@@ -34,8 +35,8 @@ impl BoredBlock<'_> {
     /// Makes the mesh.
     ///
     /// # Errors
-    /// A dimension that is not positive, fewer than 16 nodes along the bore, no rows, and an outline that comes nearer to the
-    /// bore than 2 % of its radius.
+    /// A dimension that is not positive, fewer than 16 nodes along the bore, no rows, and an outline that
+    /// comes nearer to the bore than 2 % of its radius.
     pub fn part(&self) -> Result<Part, Error> {
         positive(SHAPE, "width", self.width)?;
         positive(SHAPE, "base", self.base)?;

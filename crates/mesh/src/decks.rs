@@ -1,9 +1,10 @@
 //! Meshes in the formats of other programs: LS-DYNA keyword files, Abaqus input files and Gmsh files.
 //!
-//! Written are nodes [m], elements, and for each body a part or element set of its name and a set of its nodes. The reader
-//! takes the same from any such file: plane quadrilaterals and triangles of first order, with their sets. What is not mesh
-//! (materials, steps, loads) and elements along lines or at points are passed over and named with their lines; what would
-//! change the mesh if it were passed over is refused by its name.
+//! Written are nodes [m], elements, and for each body a part or element set of its name and a set of its
+//! nodes. The reader takes the same from any such file: plane quadrilaterals and triangles of first order,
+//! with their sets. What is not mesh (materials, steps, loads) and elements along lines or at points are
+//! passed over and named with their lines; what would change the mesh if it were passed over is refused by
+//! its name.
 //!
 //! | format | nodes | elements | sets |
 //! |---|---|---|---|
@@ -11,14 +12,16 @@
 //! | Abaqus `.inp` | `*NODE`, `*PART` and `*INSTANCE` | `*ELEMENT` of CPE4, CPE4R, CPS4, S4 …, CPE3 … | `ELSET=`, `*ELSET`, `NSET=`, `*NSET` |
 //! | Gmsh `.msh` 2.2, 4.0, 4.1, text or binary | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
 //!
-//! A set of line elements is a set of their nodes. An `*INCLUDE` is for whoever reads the files to follow ([`included`]).
+//! A set of line elements is a set of their nodes. An `*INCLUDE` is for whoever reads the files to follow
+//! ([`included`]).
 //!
 //! [`Deck::write_model`] adds what makes the mesh a model ([`Model`]): `*MAT_ELASTIC`, `*SECTION_SHELL` and
-//! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT PAIR`; and a step of explicit
-//! dynamics ([`Step`]): gravity, loads on nodes, guided and turning nodes, and the velocities of all at the start.
+//! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT
+//! PAIR`; and a step of explicit dynamics ([`Step`]): gravity, loads on nodes, guided and turning nodes, and
+//! the velocities of all at the start.
 //!
-//! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh Reference Manual*,
-//! MSH file formats 2.2, 4.0 and 4.1.
+//! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh
+//! Reference Manual*, MSH file formats 2.2, 4.0 and 4.1.
 
 mod abaqus;
 mod gathered;
@@ -70,8 +73,9 @@ impl Deck {
         }
     }
 
-    /// The mesh with material, sections, the surfaces of all bodies, their contacts and a step, if there is one; Gmsh's files have no place
-    /// for more than the mesh. Not in contact are surfaces that no [`ContactPair`] names.
+    /// The mesh with material, sections, the surfaces of all bodies, their contacts and a step, if there is
+    /// one; Gmsh's files have no place for more than the mesh. Not in contact are surfaces that no
+    /// [`ContactPair`] names.
     pub fn write_model(self, model: &Model<'_>, title: &str) -> String {
         let title = title.replace(['\n', '\r'], " ");
         match self {
@@ -84,12 +88,14 @@ impl Deck {
     /// Reads a file of this format.
     ///
     /// # Errors
-    /// [`DeckError`] with the line, for what contradicts the format, elements of other kinds, and nodes that are not there.
+    /// [`DeckError`] with the line, for what contradicts the format, elements of other kinds, and nodes that
+    /// are not there.
     pub fn read(self, text: &str) -> Result<ReadDeck, DeckError> {
         self.read_bytes(text.as_bytes())
     }
 
-    /// Reads a file of this format, which is binary or of any encoding: what is not UTF-8 is taken for Latin-1.
+    /// Reads a file of this format, which is binary or of any encoding: what is not UTF-8 is taken for
+    /// Latin-1.
     ///
     /// # Errors
     /// As [`Deck::read`].
@@ -111,7 +117,8 @@ impl Deck {
 /// What a file held.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadDeck {
-    /// Bodies are the parts or element sets; elements in none are in a body `rest`. Nodes that no element uses are left out.
+    /// Bodies are the parts or element sets; elements in none are in a body `rest`. Nodes that no element
+    /// uses are left out.
     pub mesh: Mesh,
     /// Node sets by name, in numbers of the mesh.
     pub node_sets: BTreeMap<String, Vec<u32>>,

@@ -12,8 +12,8 @@ use crate::{Error, Part};
 /// A disc about the origin with a regular polygon as its boundary.
 ///
 /// Up to two polar layers of quadrilaterals follow the rim, a grid of squares fills the core, and triangles
-/// close the gap between them. The squares have sides of nearly `size`, never more than 0.4 of the radius of the
-/// gap; the layers are as thick as the facets are long, and are left out where that would fill the disc.
+/// close the gap between them. The squares have sides of nearly `size`, never more than 0.4 of the radius of
+/// the gap; the layers are as thick as the facets are long, and are left out where that would fill the disc.
 /// Nodes are numbered ring by ring from the rim inwards, then row by row in the core.
 ///
 /// Surface `rim`: closed, counter-clockwise, its first node at the angle `rotation`, all nodes on the circle.
@@ -69,8 +69,8 @@ impl Disc {
 
     /// Makes a mesh with a given number of polar layers, for a fine rim around a core of larger squares.
     ///
-    /// All layers but the last are as thick as the facets are long; [`Disc::part`] lets them grow where that makes the
-    /// smallest cells larger.
+    /// All layers but the last are as thick as the facets are long; [`Disc::part`] lets them grow where that
+    /// makes the smallest cells larger.
     ///
     /// # Errors
     /// Those of [`Disc::part`], and more layers than [`Disc::most_layers`].
@@ -102,7 +102,8 @@ impl Disc {
         2.0 * self.radius * (0.5 * TAU / self.facets as f64).sin()
     }
 
-    /// Rim, core and the triangles between them; the first `fixed` rows of nodes, at least one, stay where they are.
+    /// Rim, core and the triangles between them; the first `fixed` rows of nodes, at least one, stay where
+    /// they are.
     fn filled(&self, layers: usize, fixed: usize) -> Result<Part, Error> {
         let mut part = self.rim(layers);
         let ring = part.x.len() - self.facets;

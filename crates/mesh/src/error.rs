@@ -8,7 +8,8 @@
 pub enum Error {
     /// A dimension is zero, negative, infinite or not a number.
     #[error(
-        "{shape}: `{field}` is {value}, but it must be a finite number above zero; check its sign and its unit (metres)"
+        "{shape}: `{field}` is {value}, but it must be a finite number above zero; check its sign and its \
+         unit (metres)"
     )]
     NotPositive {
         /// The shape that was asked for.

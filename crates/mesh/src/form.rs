@@ -1,4 +1,5 @@
-//! Circles that are not quite round: the nodes of a meshed body moved so that one of its surfaces deviates from its circle.
+//! Circles that are not quite round: the nodes of a meshed body moved so that one of its surfaces deviates
+//! from its circle.
 
 use std::f64::consts::{PI, TAU};
 
@@ -16,17 +17,20 @@ const WALL: f64 = 0.1;
 /// Facets about a wall within which nodes move for the time step, beside as many as the wall is high.
 const BELOW: f64 = 9.0;
 
-/// What their cells are to reach, in facets: a little more than a disc has elsewhere, because not all is reached.
+/// What their cells are to reach, in facets: a little more than a disc has elsewhere, because not all is
+/// reached.
 const SIDE: f64 = 1.06;
 
 /// A surface about the origin that deviates from its circle.
 ///
-/// No element is removed and none becomes a sliver: nodes of the surface move along their radius by the depth there, after
-/// those nearest to corners of the profile have moved onto them along the surface; below the surface displacements fall off
-/// in proportion to the distance from the other side of the body, in a disc from its centre.
+/// No element is removed and none becomes a sliver: nodes of the surface move along their radius by the depth
+/// there, after those nearest to corners of the profile have moved onto them along the surface; below the
+/// surface displacements fall off in proportion to the distance from the other side of the body, in a disc
+/// from its centre.
 ///
-/// Two corners next to each other that are nearer than a tenth of a facet are the ends of a wall, which is one facet. Nodes below such walls
-/// move for the critical time step of the assembled cells instead (THEORY §2.4); walls need facets as long as cells of the body are thick.
+/// Two corners next to each other that are nearer than a tenth of a facet are the ends of a wall, which is
+/// one facet. Nodes below such walls move for the critical time step of the assembled cells instead (THEORY
+/// §2.4); walls need facets as long as cells of the body are thick.
 pub struct FormDeviation<'a> {
     /// How far below its circle the surface lies at an angle [rad], into the body [m].
     pub depth: &'a dyn Fn(f64) -> f64,
@@ -88,7 +92,8 @@ impl FormDeviation<'_> {
         }
     }
 
-    /// Moves nodes below `walls`, which stand at these angles on the circle of the radius `near`, for the time step.
+    /// Moves nodes below `walls`, which stand at these angles on the circle of the radius `near`, for the
+    /// time step.
     fn shape(&self, near: f64, walls: &[f64], facets: usize, plain: &Part, part: &mut Part) {
         let facet = TAU * near / facets as f64;
         let beside = |wall: f64| [wall - WALL * facet / near, wall + WALL * facet / near].map(self.depth);

@@ -22,12 +22,12 @@ use crate::{Error, Part};
 /// b ─ b ────── b ─ b     three facets before it
 /// ```
 ///
-/// Where three do not divide the facets, one or two such groups have two facets, and a triangle instead of the
-/// upper cell; these are the only triangles. The nodes t, i, i, t, i, i, … are numbered one after the other: the
-/// cells below that zigzag are a strip, and only those above it and the first coarse row are not.
+/// Where three do not divide the facets, one or two such groups have two facets, and a triangle instead of
+/// the upper cell; these are the only triangles. The nodes t, i, i, t, i, i, … are numbered one after the
+/// other: the cells below that zigzag are a strip, and only those above it and the first coarse row are not.
 ///
-/// In a transition away from a groove no quadrilateral has a smaller characteristic length than a fine square, so the critical time
-/// step is that of the fine mesh.
+/// In a transition away from a groove no quadrilateral has a smaller characteristic length than a fine
+/// square, so the critical time step is that of the fine mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grading {
     /// The circle that stays fine.
@@ -103,13 +103,13 @@ impl Grading {
 impl Annulus {
     /// Makes a graded mesh.
     ///
-    /// `layers` is what the annulus would have if all cells were fine; it sets the thickness of the fine layers.
-    /// Nodes are numbered in rows from the fine circle to the coarse one. Surfaces are those of
+    /// `layers` is what the annulus would have if all cells were fine; it sets the thickness of the fine
+    /// layers. Nodes are numbered in rows from the fine circle to the coarse one. Surfaces are those of
     /// [`Annulus::part`]; the coarse one has a third of the facets after each transition, rounded up.
     ///
     /// # Errors
-    /// Those of [`Annulus::part`]; fewer than 8 coarse facets, fewer layers than [`Grading::layers_needed`], and a
-    /// groove in the coarse circle.
+    /// Those of [`Annulus::part`]; fewer than 8 coarse facets, fewer layers than [`Grading::layers_needed`],
+    /// and a groove in the coarse circle.
     pub fn graded_part(&self, grading: &Grading) -> Result<Part, Error> {
         self.check()?;
         grading.check(self)?;

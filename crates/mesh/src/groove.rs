@@ -10,22 +10,22 @@ use crate::{Error, Part};
 
 /// A groove: a floor between two walls, cut into the inner or the outer surface of an annulus.
 ///
-/// No element is removed, so the rows stay strips: of two neighbouring nodes of the surface one stands on its circle and one
-/// on the floor, at the same angle where walls are radial, and the facet between them is the wall. The
-/// `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the floor,
-/// and equally long on the rest of the surface. Columns at some distance from the groove are radial and equally
-/// wide, so that the cells of a row are alike there, and the facets of the other surface are some per cent shorter behind the
-/// groove than elsewhere; in rings that have no room for that the other surface stays as it is. The rows below follow smoothly, so that the assembled
-/// elements keep nine tenths of the critical time step of squares, short grooves four fifths and deep ones two thirds
-/// (THEORY §2.4).
+/// No element is removed, so the rows stay strips: of two neighbouring nodes of the surface one stands on its
+/// circle and one on the floor, at the same angle where walls are radial, and the facet between them is the
+/// wall. The `facets` of the annulus count the walls too. Away from the walls, facets are equally long on the
+/// floor, and equally long on the rest of the surface. Columns at some distance from the groove are radial
+/// and equally wide, so that the cells of a row are alike there, and the facets of the other surface are some
+/// per cent shorter behind the groove than elsewhere; in rings that have no room for that the other surface
+/// stays as it is. The rows below follow smoothly, so that the assembled elements keep nine tenths of the
+/// critical time step of squares, short grooves four fifths and deep ones two thirds (THEORY §2.4).
 ///
-/// Several grooves of a surface lie [`Groove::APART`] facets apart, and those of an annulus all in one surface. Between two of them
-/// facets are equally long.
+/// Several grooves of a surface lie [`Groove::APART`] facets apart, and those of an annulus all in one
+/// surface. Between two of them facets are equally long.
 ///
 /// Errors: a length or depth that is not positive, a depth of more than 60 % of the thickness, a length that
-/// leaves less than a quarter of the surface or more floor than facets, walls that leave no floor or are wider than
-/// [`Groove::WIDEST_WALL`] facets, grooves too near to each other or in both surfaces, and a groove so deep or a layer so thick that
-/// some element stays inside out.
+/// leaves less than a quarter of the surface or more floor than facets, walls that leave no floor or are
+/// wider than [`Groove::WIDEST_WALL`] facets, grooves too near to each other or in both surfaces, and a
+/// groove so deep or a layer so thick that some element stays inside out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Groove {
     /// Angle of the middle of the groove [rad].
@@ -64,8 +64,8 @@ const SHAPE: &str = "groove";
 /// Passes of Gauss–Seidel that spread the displacement of the inner row.
 const SPREAD: usize = 100;
 
-/// Columns beside the groove that are not radial, in thicknesses of the annulus: what the groove displaces has faded by a
-/// factor of 500 there.
+/// Columns beside the groove that are not radial, in thicknesses of the annulus: what the groove displaces
+/// has faded by a factor of 500 there.
 const FADES: usize = 2;
 
 /// Fewer radial columns are not worth moving the outer surface for.
@@ -85,8 +85,8 @@ pub(crate) fn circle_of(grooves: &[Groove]) -> Result<Option<Circle>, Error> {
 }
 
 /// Cuts grooves into an annulus by moving its nodes. The first of them are those of the grooves' surface,
-/// `places` has one entry per node, and where cells are put into order one by one, those of the length `enough` [m] need not
-/// become larger.
+/// `places` has one entry per node, and where cells are put into order one by one, those of the length
+/// `enough` [m] need not become larger.
 pub(crate) fn cut(
     grid: &PolarGrid,
     grooves: &[Groove],
@@ -151,7 +151,8 @@ struct Cut {
     groove: Groove,
     /// Angle between the walls [rad].
     sector: f64,
-    /// Columns before the upper node of the first (clockwise) wall from the start of the grid, which may lie before it.
+    /// Columns before the upper node of the first (clockwise) wall from the start of the grid, which may lie
+    /// before it.
     from: f64,
     /// The same column within the grid.
     first: usize,
@@ -310,8 +311,8 @@ fn between_rows(field: &[f64], n: usize, place: Place) -> f64 {
     if part == 0.0 { field[here] } else { (1.0 - part) * field[here] + part * field[here + n] }
 }
 
-/// Displacement of all nodes (angle [rad], radius [m]): given on the inner and the outer row, the same along radial columns,
-/// and harmonic where they are bent, which keeps it smooth and between its extremes.
+/// Displacement of all nodes (angle [rad], radius [m]): given on the inner and the outer row, the same along
+/// radial columns, and harmonic where they are bent, which keeps it smooth and between its extremes.
 fn spread(plan: &Plan, n: usize, layers: usize) -> (Vec<f64>, Vec<f64>) {
     let start = |inner: &[f64], outer: &[f64]| -> Vec<f64> {
         let between = |i: usize| {

@@ -5,9 +5,9 @@
 //! [`ArcBlock`]) describes one shape and makes a [`Part`]; parts are moved, turned and added to a [`Mesh`],
 //! which numbers the nodes of all bodies in one pair of coordinate arrays.
 //!
-//! Three conventions hold everywhere. Lengths are metres and angles radians, counter-clockwise from the x axis.
-//! Elements are counter-clockwise. Along a [`Surface`] the solid lies on the left and the outward normal
-//! points to the right.
+//! Three conventions hold everywhere. Lengths are metres and angles radians, counter-clockwise from the x
+//! axis. Elements are counter-clockwise. Along a [`Surface`] the solid lies on the left and the outward
+//! normal points to the right.
 //!
 //! Nodes are numbered in rows, so that the quadrilaterals of a row form a [`Strip`]: all four corners advance
 //! by one from each to the next, and a kernel may load consecutive values instead of gathering them.
@@ -62,8 +62,8 @@
 //! | see it in ParaView | [`vtu::write`] |
 //! | load nodes as they lie in memory | [`find_strips`] |
 //!
-//! Bodies from another mesher need no generator: the fields of [`Part`] are public. `examples/ring_and_disc.rs` prints
-//! the quality of two bodies and writes them to a file.
+//! Bodies from another mesher need no generator: the fields of [`Part`] are public.
+//! `examples/ring_and_disc.rs` prints the quality of two bodies and writes them to a file.
 //!
 //! # Where to look
 //!

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use crate::{Part, Surface};
 
 impl Part {
-    /// The pieces of boundary whose facets have both ends among `nodes`, each as long as it goes: oriented, the solid on the
-    /// left. In the order of the lowest numbers of their first nodes.
+    /// The pieces of boundary whose facets have both ends among `nodes`, each as long as it goes: oriented,
+    /// the solid on the left. In the order of the lowest numbers of their first nodes.
     pub fn boundary_along(&self, nodes: &[u32]) -> Vec<Surface> {
         let wanted: BTreeSet<u32> = nodes.iter().copied().collect();
         // A facet of the boundary belongs to one element, which walks along it in its own sense.

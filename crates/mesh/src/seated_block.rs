@@ -42,14 +42,16 @@ impl SeatedBlock {
         sound(SHAPE, self.over(&seat))
     }
 
-    /// Makes a mesh whose seat is a given polyline, for example through the nodes of the body that sits in it.
+    /// Makes a mesh whose seat is a given polyline, for example through the nodes of the body that sits in
+    /// it.
     ///
-    /// `seat` are its nodes [m] from left to right, one more than `columns`, from x = −`width`/2 to `width`/2. Columns
-    /// stand on them, as wide as they are apart; `seat_radius` gives the height of the top edge only.
+    /// `seat` are its nodes [m] from left to right, one more than `columns`, from x = −`width`/2 to
+    /// `width`/2. Columns stand on them, as wide as they are apart; `seat_radius` gives the height of the top
+    /// edge only.
     ///
     /// # Errors
-    /// Those of [`SeatedBlock::part`]; a number of nodes that does not fit the columns, nodes that do not go from
-    /// side to side, and nodes above the top edge.
+    /// Those of [`SeatedBlock::part`]; a number of nodes that does not fit the columns, nodes that do not go
+    /// from side to side, and nodes above the top edge.
     pub fn part_on(&self, seat: &[[f64; 2]]) -> Result<Part, Error> {
         self.check()?;
         if seat.len() != self.columns + 1 {

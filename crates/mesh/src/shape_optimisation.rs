@@ -1,4 +1,5 @@
-//! Shape optimisation: interior nodes move, smoothly, until the critical time step of the assembled elements is long enough.
+//! Shape optimisation: interior nodes move, smoothly, until the critical time step of the assembled elements
+//! is long enough.
 
 use std::collections::BTreeSet;
 
@@ -12,8 +13,8 @@ const GRID_WAVE: f64 = 4.0;
 /// Weight of smoothness against frequencies that are too high.
 const SMOOTHNESS: f64 = 1e-2;
 
-/// Sine of the sharpest or flattest corner of a quadrilateral that costs nothing, and the weights of less: the next one
-/// where corners stay turned over with the one before.
+/// Sine of the sharpest or flattest corner of a quadrilateral that costs nothing, and the weights of less:
+/// the next one where corners stay turned over with the one before.
 const SINE: f64 = 0.03;
 pub(crate) const SHARPNESS: [f64; 3] = [3.0, 30.0, 300.0];
 
@@ -32,15 +33,17 @@ const MEMORY: usize = 10;
 /// Share of the decrease promised by the gradient that a step must bring.
 const ARMIJO: f64 = 1e-4;
 
-/// Moves nodes so that all natural frequencies of the assembled elements come below that of endless squares with sides of
-/// `length` [m], and their displacements from `plain`, the same mesh with straight rows, vary smoothly (THEORY §2.4).
+/// Moves nodes so that all natural frequencies of the assembled elements come below that of endless squares
+/// with sides of `length` [m], and their displacements from `plain`, the same mesh with straight rows, vary
+/// smoothly (THEORY §2.4).
 ///
-/// The cost is Σ (ω²/ω₀² − 1)² over the modes with ω > ω₀, plus small multiples of Σ |Δd|² and of what corners are too
-/// sharp or too flat; d is the displacement of a node over `length` and Δd what its neighbours' mean differs from it: a
-/// plate that is bent as little as the frequencies allow. An element alone says little about the time step: one that is
-/// too small among large ones vibrates no faster than squares, because its nodes carry their mass. Quasi-Newton steps
-/// (L-BFGS). Goes on with the next weight of `sharpness` while some element stays inside out; returns the cost reached, by the
-/// first of [`SHARPNESS`], and `None` when some stay so: areas stay positive, but a corner may turn over.
+/// The cost is Σ (ω²/ω₀² − 1)² over the modes with ω > ω₀, plus small multiples of Σ |Δd|² and of what
+/// corners are too sharp or too flat; d is the displacement of a node over `length` and Δd what its
+/// neighbours' mean differs from it: a plate that is bent as little as the frequencies allow. An element
+/// alone says little about the time step: one that is too small among large ones vibrates no faster than
+/// squares, because its nodes carry their mass. Quasi-Newton steps (L-BFGS). Goes on with the next weight of
+/// `sharpness` while some element stays inside out; returns the cost reached, by the first of [`SHARPNESS`],
+/// and `None` when some stay so: areas stay positive, but a corner may turn over.
 ///
 /// Source: J. Nocedal and S. J. Wright, *Numerical Optimization*, 2nd ed., 2006, algorithms 3.1 and 7.4.
 pub(crate) fn raise_assembled_step(
@@ -223,7 +226,8 @@ impl Objective {
     }
 }
 
-/// Minus the slope times the inverse of the curvature that the pairs of steps and changes of slope approximate.
+/// Minus the slope times the inverse of the curvature that the pairs of steps and changes of slope
+/// approximate.
 fn search_direction(slope: &[f64], pairs: &[(Vec<f64>, Vec<f64>, f64)]) -> Vec<f64> {
     let mut along: Vec<f64> = slope.iter().map(|g| -g).collect();
     let mut parts = Vec::new();
@@ -265,7 +269,8 @@ mod tests {
         2.0 / submesh.modes_above(0.0, &at)[0].square.sqrt()
     }
 
-    /// Of several grooves each is shaped by itself: beside others one costs what it costs alone, around a ring and as near as two may be.
+    /// Of several grooves each is shaped by itself: beside others one costs what it costs alone, around a
+    /// ring and as near as two may be.
     #[test]
     fn example_several_grooves_keep_the_time_step_of_one() {
         let at = |angle, depth| Groove::rectangular(angle, 0.01, depth);
@@ -290,8 +295,9 @@ mod tests {
         }
     }
 
-    /// A wall of 0.2 mm among cells of 0.5 mm costs a tenth of the time step of squares, among cells of 1 mm an eighth, where columns that follow it
-    /// straight would cost four tenths; short grooves cost up to a fifth, deep ones a third.
+    /// A wall of 0.2 mm among cells of 0.5 mm costs a tenth of the time step of squares, among cells of 1 mm
+    /// an eighth, where columns that follow it straight would cost four tenths; short grooves cost up to a
+    /// fifth, deep ones a third.
     #[test]
     fn example_grooves_keep_the_time_step() {
         let graded = Grading { fine: Circle::Inner, fine_layers: 2, transitions: 1 };

@@ -26,11 +26,12 @@ const LAST_STEP: f64 = 1.0 / 512.0;
 const DIRECTIONS: [[f64; 2]; 8] =
     [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0], [0.7, 0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, -0.7]];
 
-/// Score at which cells of a graded mesh need not grow, relative to a fine square: a little more than one, so that
-/// the worst cell, which falls short of it, is no smaller than in a mesh of fine cells only.
+/// Score at which cells of a graded mesh need not grow, relative to a fine square: a little more than one, so
+/// that the worst cell, which falls short of it, is no smaller than in a mesh of fine cells only.
 const ENOUGH: f64 = 1.1;
 
-/// Poisson's ratio for which that square is measured; only the ratio of lengths matters, and hardly depends on it.
+/// Poisson's ratio for which that square is measured; only the ratio of lengths matters, and hardly depends
+/// on it.
 const POISSON: f64 = 0.3;
 
 /// Score [m] that cells need not exceed in a mesh whose finest cells are squares of this side [m].
@@ -42,8 +43,8 @@ pub(crate) fn enough(side: f64) -> f64 {
 ///
 /// Each movable node in turn tries eight directions and keeps the first move that lowers Σ (1/s)^p over its
 /// elements, where s is the characteristic length, reduced when the sine of a corner angle is below 0.4. A
-/// node that finds nothing halves its step; a node that moves lengthens it and that of its neighbours. Elements
-/// that are inside out are turned back where that is possible. The power p is 6, then 12, then 20.
+/// node that finds nothing halves its step; a node that moves lengthens it and that of its neighbours.
+/// Elements that are inside out are turned back where that is possible. The power p is 6, then 12, then 20.
 ///
 /// `movable` has one entry per node; nodes beyond its end stay. The order is fixed, so equal input gives
 /// equal output. Each power gets at most `sweeps` passes and ends when no step is left. `poisson` as in
@@ -242,8 +243,8 @@ pub(crate) fn inside_out(part: &Part) -> Option<(usize, f64)> {
     quads.chain(triangles).enumerate().find(|(_, area)| !(area.is_finite() && *area > 0.0))
 }
 
-/// The part, when every element has a positive area: dimensions may each be possible and together be none, or so small or
-/// so large that their squares underflow or overflow.
+/// The part, when every element has a positive area: dimensions may each be possible and together be none, or
+/// so small or so large that their squares underflow or overflow.
 pub(crate) fn sound(shape: &'static str, part: Part) -> Result<Part, Error> {
     match inside_out(&part) {
         None => Ok(part),

@@ -11,12 +11,13 @@ const KRYLOV: usize = 32;
 /// Step of the central differences that give the derivative of an element's energy, in units of length.
 const STEP: f64 = 1e-6;
 
-/// The elements at some movable nodes, those around them, and the mass that their nodes have in the whole part.
+/// The elements at some movable nodes, those around them, and the mass that their nodes have in the whole
+/// part.
 ///
-/// Units: a length, the density and the speed of pressure waves c_p. A frequency ω is then 2/L, where L / c_p is the
-/// critical time step and L = 1 that of endless squares with sides of the unit of length. Elements are those of
-/// [`characteristic_length`](crate::characteristic_length), and here their hourglass stiffness counts: that which gives
-/// squares their exact stiffness in bending.
+/// Units: a length, the density and the speed of pressure waves c_p. A frequency ω is then 2/L, where L / c_p
+/// is the critical time step and L = 1 that of endless squares with sides of the unit of length. Elements are
+/// those of [`characteristic_length`](crate::characteristic_length), and here their hourglass stiffness
+/// counts: that which gives squares their exact stiffness in bending.
 pub(crate) struct Submesh {
     /// Nodes of the part; the movable ones come first.
     pub(crate) nodes: Vec<u32>,
@@ -114,7 +115,8 @@ impl Submesh {
         })
     }
 
-    /// Vibrations with ω² above a bound, nodes at `at`, the highest first. Those near the bound are estimates.
+    /// Vibrations with ω² above a bound, nodes at `at`, the highest first. Those near the bound are
+    /// estimates.
     pub(crate) fn modes_above(&self, bound: f64, at: &[[f64; 2]]) -> Vec<Mode> {
         let shapes: Vec<Shape> = self.elements.iter().map(|c| Shape::new(&c.map(|n| at[n]))).collect();
         let mut root = self.outside.clone();
@@ -163,7 +165,8 @@ impl Submesh {
         modes
     }
 
-    /// Derivative of Σ `weight` · ω² of some modes with respect to the positions of movable nodes, at `at`; the others' is zero.
+    /// Derivative of Σ `weight` · ω² of some modes with respect to the positions of movable nodes, at `at`;
+    /// the others' is zero.
     pub(crate) fn derivative(&self, modes: &[(f64, Mode)], at: &[[f64; 2]]) -> Vec<[f64; 2]> {
         let mut derivative = vec![[0.0; 2]; self.nodes.len()];
         for corners in &self.elements[..self.moving] {
@@ -205,7 +208,8 @@ impl Moduli {
 }
 
 impl Shape {
-    /// A triangle with its last corner twice comes out as it should: nothing is left for the hourglass vector to see.
+    /// A triangle with its last corner twice comes out as it should: nothing is left for the hourglass vector
+    /// to see.
     fn new(c: &[[f64; 2]; 4]) -> Self {
         let area = signed_area(c);
         let scale = 0.5 / area;
@@ -301,7 +305,8 @@ mod tests {
         part
     }
 
-    /// One element alone vibrates as the formula for its length says; in these shapes hourglass stiffness has no part in it.
+    /// One element alone vibrates as the formula for its length says; in these shapes hourglass stiffness has
+    /// no part in it.
     #[test]
     fn example_single_elements_have_their_characteristic_length() {
         let shapes: [&[[f64; 2]]; 3] = [
@@ -317,8 +322,8 @@ mod tests {
         }
     }
 
-    /// A plane wave that alternates from column to column has ω² = 4 in endless squares, free corners make a hundredth
-    /// more of it, and one by one squares have 5.7.
+    /// A plane wave that alternates from column to column has ω² = 4 in endless squares, free corners make a
+    /// hundredth more of it, and one by one squares have 5.7.
     /// Source: THEORY §2.4.
     #[test]
     fn analytic_squares_vibrate_as_the_grid_wave() {

@@ -5,11 +5,11 @@
 /// Most sweeps for one eigenvalue; two or three are usual.
 const SWEEPS: usize = 60;
 
-/// Eigenvalues, the largest first, each with its eigenvector of length 1, of the matrix with this diagonal and these
-/// numbers `beside` it (one fewer). A NaN gives no pairs.
+/// Eigenvalues, the largest first, each with its eigenvector of length 1, of the matrix with this diagonal
+/// and these numbers `beside` it (one fewer). A NaN gives no pairs.
 ///
-/// Implicit QL with Wilkinson's shift. Source: G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th ed., 2013,
-/// §8.3, there as QR.
+/// Implicit QL with Wilkinson's shift. Source: G. H. Golub and C. F. Van Loan, *Matrix Computations*, 4th
+/// ed., 2013, §8.3, there as QR.
 pub(crate) fn eigenpairs(mut diagonal: Vec<f64>, mut beside: Vec<f64>) -> Vec<(f64, Vec<f64>)> {
     let n = diagonal.len();
     beside.push(0.0);

@@ -3,8 +3,9 @@
 //! An XML header names the arrays and gives their offsets; the values follow in one appended section, raw and
 //! little-endian, each array preceded by its length in bytes (64 bits). Coordinates and exact fields keep all
 //! their digits (64-bit floats); other fields are written as 32-bit floats. The body of each cell is always
-//! written, as the cell array `body`, and so are the names of the bodies: each is that of a field array of two numbers, the
-//! body's and its dimension, 2. That is how meshio names groups of cells; texts, which the format has, too, it refuses.
+//! written, as the cell array `body`, and so are the names of the bodies: each is that of a field array of
+//! two numbers, the body's and its dimension, 2. That is how meshio names groups of cells; texts, which the
+//! format has, too, it refuses.
 //!
 //! Cells are all quadrilaterals of the mesh, then all triangles; cell fields follow that order.
 //!
@@ -140,7 +141,8 @@ impl Appended {
     fn group(&mut self, name: &str, number: i32) {
         let (name, offset) = (escaped(name), self.offset);
         self.header += &format!(
-            "<DataArray type=\"Int32\" Name=\"{name}\" NumberOfTuples=\"2\" format=\"appended\" offset=\"{offset}\"/>\n"
+            "<DataArray type=\"Int32\" Name=\"{name}\" NumberOfTuples=\"2\" format=\"appended\" \
+             offset=\"{offset}\"/>\n"
         );
         self.append(bytes([number, 2], i32::to_le_bytes));
     }

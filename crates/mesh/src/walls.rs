@@ -13,13 +13,13 @@ const POISSON: f64 = 0.3;
 /// Passes of the pattern search for each layer that a groove is deep.
 const SWEEPS: usize = 60;
 
-/// Side of the squares whose time step the cells near a wall are to reach, over that of fine cells. The shorter rows of
-/// thin rings and of discs have 0.9 to 0.95, and a groove need do no better.
+/// Side of the squares whose time step the cells near a wall are to reach, over that of fine cells. The
+/// shorter rows of thin rings and of discs have 0.9 to 0.95, and a groove need do no better.
 const LENGTH: f64 = 0.95;
 
-/// Moves the `movable` nodes of a part that was `plain` before its groove was made, for the critical step of the assembled cells: fine
-/// ones have sides of `side` [m], and where cells are put into order one by one, those of the length `enough` [m] need not become
-/// larger. The groove is as deep as so many `layers`.
+/// Moves the `movable` nodes of a part that was `plain` before its groove was made, for the critical step of
+/// the assembled cells: fine ones have sides of `side` [m], and where cells are put into order one by one,
+/// those of the length `enough` [m] need not become larger. The groove is as deep as so many `layers`.
 pub(crate) fn shape_by_walls(
     part: &mut Part,
     plain: &Part,
@@ -34,8 +34,8 @@ pub(crate) fn shape_by_walls(
     };
     let (gentle, harsh) = SHARPNESS.split_at(1);
     if optimise(part, gentle).is_none() {
-        // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by cell before
-        // another search, whichever comes out better.
+        // Rows that a deep groove or the search itself has tangled: turned back, or put into order cell by
+        // cell before another search, whichever comes out better.
         let turned_back = optimise(part, harsh);
         raise_critical_step_to(enough, &mut ordered, movable, POISSON, SWEEPS * (1 + layers));
         let searched = ordered.clone();

@@ -217,7 +217,8 @@ fn example_deepest_groove_stays_in_order() {
     assert!(relative_length(&part, 1e-3) > 0.35);
 }
 
-/// Each groove as it would be alone, in whatever order they are given; facets between two of them are equally long.
+/// Each groove as it would be alone, in whatever order they are given; facets between two of them are equally
+/// long.
 #[test]
 fn example_several_grooves_of_one_surface() {
     let n = RING.facets;
@@ -269,7 +270,8 @@ fn example_several_grooves_of_one_surface() {
     }
 }
 
-/// Columns on the far side of two grooves that are near to each other stay radial, and facets of either surface alike.
+/// Columns on the far side of two grooves that are near to each other stay radial, and facets of either
+/// surface alike.
 #[test]
 fn example_cells_away_from_two_near_grooves_are_alike() {
     let n = RING.facets;

@@ -1,4 +1,5 @@
-//! Meshes in files of other programs: what is written is read back, by us and by others; damaged ones get an answer.
+//! Meshes in files of other programs: what is written is read back, by us and by others; damaged ones get an
+//! answer.
 
 use std::process::Command;
 
@@ -48,8 +49,8 @@ fn roundtrip_places_corners_bodies_and_sets() {
                 (theirs.quads.clone(), theirs.triangles.clone())
             );
         }
-        // Numbers of nodes may differ, places may not: to the last bit, each corner where it was. Abaqus reads twenty characters of
-        // a number, which hold fourteen digits at least.
+        // Numbers of nodes may differ, places may not: to the last bit, each corner where it was. Abaqus
+        // reads twenty characters of a number, which hold fourteen digits at least.
         let exact = deck != Deck::Abaqus;
         let same = |a: f64, b: f64| {
             if exact { a.to_bits() == b.to_bits() } else { (a - b).abs() <= 1e-13 * a.abs() }
@@ -88,8 +89,8 @@ fn model(mesh: &Mesh) -> Model<'_> {
     }
 }
 
-/// Material, sections and contacts stand beside the same mesh, surfaces are closed lines of its boundary, and what the reader does not
-/// take is named.
+/// Material, sections and contacts stand beside the same mesh, surfaces are closed lines of its boundary, and
+/// what the reader does not take is named.
 #[test]
 fn roundtrip_a_model() {
     let mesh = mesh();
@@ -140,9 +141,10 @@ fn roundtrip_a_model() {
     }
 }
 
-/// A free ring as CalculiX computes it from our file: three motions without frequency, then pairs of bending modes.
-/// Source: Love (1927), thin ring in plane strain, ω² = E' h² n² (n² − 1)² / (12 ρ R⁴ (n² + 1)), E' = E/(1 − ν²); what shear and four nodes of
-/// reduced integration leave is below 3 % in a ring of R/h = 20 with eight layers.
+/// A free ring as CalculiX computes it from our file: three motions without frequency, then pairs of bending
+/// modes. Source: Love (1927), thin ring in plane strain, ω² = E' h² n² (n² − 1)² / (12 ρ R⁴ (n² + 1)), E' =
+/// E/(1 − ν²); what shear and four nodes of reduced integration leave is below 3 % in a ring of R/h = 20 with
+/// eight layers.
 #[test]
 fn peer_calculix_finds_the_frequencies_of_a_ring() {
     if Command::new("ccx").arg("-v").output().is_err() {
@@ -198,7 +200,8 @@ fn flight(mesh: &Mesh) -> Step {
 }
 
 /// Loads, weight and velocities of a step as CalculiX takes them from our file.
-/// Source: Newton (1687), x = v t + ½ (F/m + g) t² for the mean of all nodes of a free body, weighted by mass; half a per cent for the mean over nodes.
+/// Source: Newton (1687), x = v t + ½ (F/m + g) t² for the mean of all nodes of a free body, weighted by
+/// mass; half a per cent for the mean over nodes.
 #[test]
 fn peer_calculix_lets_a_disc_fly() {
     if Command::new("ccx").arg("-v").output().is_err() {
@@ -277,7 +280,8 @@ fn roundtrip_a_step() {
 #[test]
 fn example_files_of_other_hands() {
     // Columns of fixed width, a triangle, comments, a card that is no mesh.
-    let k = "*KEYWORD\n$ comment\n*NODE\n       1             0.0             0.0             0.0\n       2             1.0             0.0             0.0\n       3             1.0             1.0             0.0\n       4             0.0            1.d0             0.0\n*ELEMENT_SHELL\n       1       7       1       2       3       4\n       2       7       1       3       2       2\n*PART\nhousing\n         7         1\n*MAT_ELASTIC\n1\n*END\n";
+    let k = "*KEYWORD\n$ \
+        comment\n*NODE\n       1             0.0             0.0             0.0\n       2             1.0             0.0             0.0\n       3             1.0             1.0             0.0\n       4             0.0            1.d0             0.0\n*ELEMENT_SHELL\n       1       7       1       2       3       4\n       2       7       1       3       2       2\n*PART\nhousing\n         7         1\n*MAT_ELASTIC\n1\n*END\n";
     let read = Deck::LsDyna.read(k).expect("a mesh");
     assert_eq!(
         (read.mesh.quads.len(), read.mesh.triangles.len(), read.mesh.bodies[0].name.as_str()),
@@ -285,7 +289,8 @@ fn example_files_of_other_hands() {
     );
     assert_eq!(read.notes, ["line 14: `*MAT_ELASTIC` is not read"]);
     // Clockwise, with nodes of an element on two lines.
-    let inp = "*Node\n 10, 0, 0\n 20, 0, 1.\n 30, 1, 1\n 40, 1, 0\n** c\n*Element, type=CPS4, elset=Block\n 5, 10, 20,\n 30, 40\n*Nset, nset=Left\n 10, 20\n*Material, name=steel\n";
+    let inp = "*Node\n 10, 0, 0\n 20, 0, 1.\n 30, 1, 1\n 40, 1, 0\n** c\n*Element, type=CPS4, elset=Block\n \
+        5, 10, 20,\n 30, 40\n*Nset, nset=Left\n 10, 20\n*Material, name=steel\n";
     let read = Deck::Abaqus.read(inp).expect("a mesh");
     let corners = read.mesh.quads[0].map(|n| (read.mesh.x[n as usize], read.mesh.y[n as usize]));
     assert_eq!(corners, [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.0, 0.0)]);
@@ -351,7 +356,8 @@ fn survives_damaged_files() {
 
 #[test]
 fn peer_meshio_reads_the_same_mesh() {
-    // meshio 5.3.5, where the interpreter in STRIBECK_PYTHON (or python3) has it. It does not read keyword files.
+    // meshio 5.3.5, where the interpreter in STRIBECK_PYTHON (or python3) has it. It does not read keyword
+    // files.
     let Some(python) = python_with(&["meshio"]) else { return };
     let mesh = mesh();
     let folder = Scratch::create("decks");

@@ -1,4 +1,5 @@
-//! Files of meshes as other programs write them: each dialect says the same small mesh, and is read as the same.
+//! Files of meshes as other programs write them: each dialect says the same small mesh, and is read as the
+//! same.
 //!
 //! ```text
 //!  4 ─── 5 ─── 6      y = 1
@@ -47,7 +48,8 @@ fn issue_abaqus_cards_as_their_programs_write_them() {
         assert!(INP.contains(from));
         format!("{}{INP_SETS}", INP.replacen(from, to, 1))
     };
-    let lines = "*ELEMENT, TYPE=T3D2, ELSET=Line1\n11, 1, 2\n12, 2, 3\n*ELEMENT, TYPE=T3D2, ELSET=Line2\n13, 4, 5\n14, 5, 6\n";
+    let lines = "*ELEMENT, TYPE=T3D2, ELSET=Line1\n11, 1, 2\n12, 2, 3\n*ELEMENT, TYPE=T3D2, ELSET=Line2\n13, \
+        4, 5\n14, 5, 6\n";
     for (name, text) in [
         ("sets of one line", format!("{INP}{INP_SETS}")),
         ("small letters and blanks", format!("{INP}{INP_SETS}").to_lowercase().replace(", ", " , ")),
@@ -68,13 +70,15 @@ fn issue_abaqus_cards_as_their_programs_write_them() {
         (
             "sets of sets",
             format!(
-                "{INP}*NSET, NSET=all\nr1, FIT\n*NSET, NSET=r1\n1, 2\n*NSET, NSET=raceway\nR1, 3\n*NSET, NSET=fit\n4\n5\n6,\n"
+                "{INP}*NSET, NSET=all\nr1, FIT\n*NSET, NSET=r1\n1, 2\n*NSET, NSET=raceway\nR1, 3\n*NSET, \
+                 NSET=fit\n4\n5\n6,\n"
             ),
         ),
         (
             "a set of twenty items a line",
             format!(
-                "{INP}*NSET, NSET=raceway\n1,2,3,1,2,3,1,2,3,1,2,3,1,2,3,1,2,1,2,3\n*NSET, NSET=fit\n4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,5,6\n"
+                "{INP}*NSET, NSET=raceway\n1,2,3,1,2,3,1,2,3,1,2,3,1,2,3,1,2,1,2,3\n*NSET, \
+                 NSET=fit\n4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,4,5,6\n"
             ),
         ),
         (
@@ -98,7 +102,8 @@ fn issue_abaqus_cards_as_their_programs_write_them() {
         (
             "masses and beams",
             format!(
-                "{INP}*ELEMENT, TYPE=MASS, ELSET=m\n21, 1\n*ELEMENT, TYPE=B31H\n22, 1, 2\n*ELEMENT, TYPE=SPRINGA\n23, 1, 2\n{INP_SETS}"
+                "{INP}*ELEMENT, TYPE=MASS, ELSET=m\n21, 1\n*ELEMENT, TYPE=B31H\n22, 1, 2\n*ELEMENT, \
+                 TYPE=SPRINGA\n23, 1, 2\n{INP_SETS}"
             ),
         ),
         (
@@ -128,15 +133,18 @@ fn issue_abaqus_cards_as_their_programs_write_them() {
     );
 }
 
-/// As Abaqus/CAE writes it: a part, an instance that is shifted and turned, sets of the part and of the assembly.
+/// As Abaqus/CAE writes it: a part, an instance that is shifted and turned, sets of the part and of the
+/// assembly.
 #[test]
 fn issue_abaqus_parts_and_instances() {
     let part = format!(
         "*Heading\n*Preprint, echo=NO\n*Part, name=Ring\n{INP}*Nset, nset=inner\n 1, 2, 3\n*End Part\n"
     );
-    let sets = "*Nset, nset=raceway, instance=Ring-1\n 1, 2\n 3,\n*Nset, nset=fit, instance=Ring-1, generate\n 4, 6, 1\n";
+    let sets = "*Nset, nset=raceway, instance=Ring-1\n 1, 2\n 3,\n*Nset, nset=fit, instance=Ring-1, \
+        generate\n 4, 6, 1\n";
     let one = format!(
-        "{part}*Assembly, name=Assembly\n*Instance, name=Ring-1, part=Ring\n*End Instance\n{sets}*End Assembly\n*Material, name=m\n"
+        "{part}*Assembly, name=Assembly\n*Instance, name=Ring-1, part=Ring\n*End Instance\n{sets}*End \
+         Assembly\n*Material, name=m\n"
     );
     let read = check("one instance", Deck::Abaqus, one.as_bytes(), "steel");
     assert_eq!(read.notes, ["line 26: `*MATERIAL` is not read"]);
@@ -150,7 +158,8 @@ fn issue_abaqus_parts_and_instances() {
         .replace("5, 1., 1.", "5, 1., -2.")
         .replace("6, 2., 1.", "6, 1., -3.");
     let text = format!(
-        "{lain}*Assembly, name=A\n*Instance, name=Ring-1, part=Ring\n0., 1., 0.\n0., 0., 0., 0., 0., 1., 90.\n*End Instance\n{sets}*End Assembly\n"
+        "{lain}*Assembly, name=A\n*Instance, name=Ring-1, part=Ring\n0., 1., 0.\n0., 0., 0., 0., 0., 1., \
+         90.\n*End Instance\n{sets}*End Assembly\n"
     );
     let read = Deck::Abaqus.read(&text).expect("a mesh");
     for (place, expected) in
@@ -163,7 +172,8 @@ fn issue_abaqus_parts_and_instances() {
     }
     // Two instances have the same numbers, and none of the other's nodes.
     let two = format!(
-        "{part}*Assembly, name=A\n*Instance, name=A, part=Ring\n*End Instance\n*Instance, name=B, part=Ring\n0., 5., 0.\n*End Instance\n\
+        "{part}*Assembly, name=A\n*Instance, name=A, part=Ring\n*End Instance\n*Instance, name=B, \
+         part=Ring\n0., 5., 0.\n*End Instance\n\
          *Nset, nset=raceway, instance=B\n1, 2, 3\n*Nset, nset=both\nA.inner, B.1\n*End Assembly\n"
     );
     let read = Deck::Abaqus.read(&two).expect("a mesh");
@@ -193,7 +203,8 @@ fn issue_abaqus_parts_and_instances() {
     }
 }
 
-/// A set with members that are not there is passed over and named. meshio writes one such into every file that it has from Gmsh.
+/// A set with members that are not there is passed over and named. meshio writes one such into every file
+/// that it has from Gmsh.
 #[test]
 fn issue_sets_that_name_what_is_not_there() {
     let text = format!(
@@ -303,7 +314,8 @@ fn issue_lsdyna_cards_as_their_programs_write_them() {
 #[test]
 fn issue_lines_are_those_of_the_included_file() {
     let text = format!(
-        "*HEADING\n** *INCLUDE, INPUT=part.inp\n{}*NSET, NSET=raceway\n1, 2, 3\n*NSET, NSET=fit\n4, 5, 6\n*FILM\n",
+        "*HEADING\n** *INCLUDE, INPUT=part.inp\n{}*NSET, NSET=raceway\n1, 2, 3\n*NSET, NSET=fit\n4, 5, \
+         6\n*FILM\n",
         included("**", "part.inp", &format!("{INP}*SURFACE\n"))
     );
     let read = check("included", Deck::Abaqus, text.as_bytes(), "steel");
@@ -341,7 +353,8 @@ fn msh(version: &str, binary: bool) -> Vec<u8> {
     }
     text(
         &mut out,
-        "$EndMeshFormat\n$PhysicalNames\n4\n1 3 \"wetted\"\n1  4  \"raceway\"\n1 5 \"fit\"\n2 1 \"steel\"\n$EndPhysicalNames\n",
+        "$EndMeshFormat\n$PhysicalNames\n4\n1 3 \"wetted\"\n1  4  \"raceway\"\n1 5 \"fit\"\n2 \
+         1 \"steel\"\n$EndPhysicalNames\n",
     );
     let lines = [(1, 1, 2), (1, 2, 3), (2, 4, 5), (2, 5, 6)];
     let quads = [[1, 2, 5, 4], [2, 3, 6, 5]];
@@ -481,12 +494,15 @@ fn peer_meshio_writes_every_dialect() {
     let folder = Scratch::create("dialects");
     let script = "import meshio, numpy as np
 points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], float)
-cells = [('line', np.array([[0, 1], [1, 2]])), ('line', np.array([[3, 4], [4, 5]])), ('quad', np.array([[0, 1, 4, 3], [1, 2, 5, 4]]))]
+cells = [('line', np.array([[0, 1], [1, 2]])), ('line', np.array([[3, 4], [4, 5]])), ('quad', np.array([[0, \
+1, 4, 3], [1, 2, 5, 4]]))]
 none = np.array([], int)
-sets = dict(point_sets={'raceway': np.arange(3), 'fit': np.arange(3, 6)}, cell_sets={'steel': [none, none, np.arange(2)], 'curve': [np.arange(2), none, none]})
+sets = dict(point_sets={'raceway': np.arange(3), 'fit': np.arange(3, 6)}, cell_sets={'steel': [none, none, \
+np.arange(2)], 'curve': [np.arange(2), none, none]})
 meshio.Mesh(points, cells, **sets).write('a.inp')
 groups = dict(field_data={'raceway': np.array([4, 1]), 'fit': np.array([5, 1]), 'steel': np.array([1, 2])},
-              cell_data={'gmsh:physical': [np.array([4, 4]), np.array([5, 5]), np.array([1, 1])], 'gmsh:geometrical': [np.array([1, 1]), np.array([2, 2]), np.array([1, 1])]},
+              cell_data={'gmsh:physical': [np.array([4, 4]), np.array([5, 5]), np.array([1, 1])], \
+              'gmsh:geometrical': [np.array([1, 1]), np.array([2, 2]), np.array([1, 1])]},
               point_data={'gmsh:dim_tags': np.array([[1, 1]] * 3 + [[1, 2]] * 3)})
 mesh = meshio.Mesh(points, cells, **groups)
 for name in ['gmsh22', 'gmsh']:
@@ -500,7 +516,8 @@ print('written')";
         ("a.inp", Deck::Abaqus, "steel"),
         ("gmsh22_False.msh", Deck::Gmsh, "steel"),
         ("gmsh22_True.msh", Deck::Gmsh, "steel"),
-        // It writes the groups of curves into version 4.1, and none of surfaces that have no nodes of their own.
+        // It writes the groups of curves into version 4.1, and none of surfaces that have no nodes of their
+        // own.
         ("gmsh_False.msh", Deck::Gmsh, "surface 1"),
         ("gmsh_True.msh", Deck::Gmsh, "surface 1"),
     ] {

@@ -141,8 +141,8 @@ proptest! {
     }
 }
 
-/// A fine rim around a core of three times larger squares: each layer is a row of quadrilaterals, no cell is smaller
-/// than in a disc of fine cells, and far fewer cells are needed.
+/// A fine rim around a core of three times larger squares: each layer is a row of quadrilaterals, no cell is
+/// smaller than in a disc of fine cells, and far fewer cells are needed.
 #[test]
 fn example_layers_around_a_coarse_core() {
     let coarse = Disc { size: 1.5e-3, ..DISC };

@@ -32,9 +32,9 @@ fn polygon(radius: f64, n: usize) -> f64 {
     0.5 * n as f64 * radius * radius * (TAU / n as f64).sin()
 }
 
-/// Three columns of fine cells become one: 4 cells per 3 facets in the transition, 5 coarse rows in the 8 mm that
-/// remain (cells of 1.59 mm), and area, boundary and both circles are those of two polygons. Where three do not divide
-/// the facets, one or two groups of two facets cost 2 quadrilaterals and a triangle each.
+/// Three columns of fine cells become one: 4 cells per 3 facets in the transition, 5 coarse rows in the 8 mm
+/// that remain (cells of 1.59 mm), and area, boundary and both circles are those of two polygons. Where three
+/// do not divide the facets, one or two groups of two facets cost 2 quadrilaterals and a triangle each.
 #[test]
 fn example_area_surfaces_and_counts() {
     for (facets, threes, pairs) in [(1257, 419, 0), (1256, 418, 1), (1255, 417, 2)] {
@@ -44,7 +44,8 @@ fn example_area_surfaces_and_counts() {
             let (inner, outer) = if fine == Circle::Inner { (facets, coarse) } else { (coarse, facets) };
             assert_eq!(part.quads.len(), 2 * facets + 4 * threes + 2 * pairs + 5 * coarse, "{fine:?}");
             assert_eq!(part.triangles.len(), pairs);
-            // The sum over thousands of cells adds their roundings. A group of two makes a longer chord shorter.
+            // The sum over thousands of cells adds their roundings. A group of two makes a longer chord
+            // shorter.
             let polygons = polygon(0.11, outer) - polygon(0.1, inner);
             let tolerance = if pairs == 0 { 1e-12 } else { 1e-6 };
             assert_close(part.area(), polygons, tolerance, "area");
@@ -96,7 +97,8 @@ fn example_grading_keeps_the_critical_step() {
                 let facets = (TAU * radius / side) as usize;
                 let part = made(Annulus { facets, layers, ..RING }, grading);
                 let kept = relative_length(&part, side);
-                // Inside a fine outer circle cells narrow: by 2 % in the 2 mm that the coarsest fine layers take.
+                // Inside a fine outer circle cells narrow: by 2 % in the 2 mm that the coarsest fine layers
+                // take.
                 assert!(kept > 0.98, "{layers} {fine_layers} {transitions} {fine:?}: {kept:.4}");
                 assert!(smallest_jacobian(&part) > 0.0);
                 assert_boundary_is(&part, &["inner", "outer"]);
@@ -116,7 +118,8 @@ fn example_groove_in_the_fine_circle() {
         assert_eq!(part.y[..1257], uniform.y[..1257]);
         assert!(smallest_jacobian(&part) > 0.0);
         assert_boundary_is(&part, &["inner", "outer"]);
-        // The search for better cells leaves the coarse circle alone: its nodes are every third of the uniform one's.
+        // The search for better cells leaves the coarse circle alone: its nodes are every third of the
+        // uniform one's.
         for &n in &surface(&part, "outer").nodes {
             let [x, y] = point(&part, n);
             let is = |m: usize| (uniform.x[m] - x).hypot(uniform.y[m] - y) < 1e-12;

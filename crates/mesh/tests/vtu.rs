@@ -162,7 +162,8 @@ fn golden_a_file_that_others_read() {
     assert!(std::fs::read(golden).expect("readable") == file, "the format has changed");
 }
 
-/// Places, cells, bodies and their names as meshio 5.3.5 reads them, where the interpreter in STRIBECK_PYTHON (or python3) has it.
+/// Places, cells, bodies and their names as meshio 5.3.5 reads them, where the interpreter in STRIBECK_PYTHON
+/// (or python3) has it.
 #[test]
 fn peer_meshio_opens_the_file() {
     let Some(python) = python_with(&["meshio"]) else { return };
@@ -179,7 +180,8 @@ m = meshio.read('a.vtu')
 assert m.points.shape == ({}, 3) and (m.points == m.point_data['reference_m']).all()
 assert abs((m.points ** 2).sum() / {:e} - 1) < 1e-14
 assert [(c.type, len(c.data)) for c in m.cells] == [('quad', {}), ('triangle', {})], m
-assert {{name: list(held) for name, held in m.field_data.items()}} == {{'disc': [0, 2], 'plate': [1, 2]}}, m.field_data
+assert {{name: list(held) for name, held in m.field_data.items()}} == {{'disc': [0, 2], 'plate': [1, 2]}}, \
+m.field_data
 assert sorted(set(np.concatenate([b.ravel() for b in m.cell_data['body']]))) == [0, 1]
 print('agreed')",
         mesh.x.len(),

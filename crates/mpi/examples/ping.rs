@@ -1,4 +1,5 @@
-//! What messages cost between the processes of this machine: `mpirun -n 2 ping`. The constants of PERFORMANCE, section 9.
+//! What messages cost between the processes of this machine: `mpirun -n 2 ping`. The constants of
+//! PERFORMANCE, section 9.
 
 use std::time::Instant;
 

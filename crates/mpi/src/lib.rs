@@ -1,4 +1,5 @@
-//! Several processes that run one model together, over MPI: what the solver asks of [`Ranks`](stribeck_solver::ranks::Ranks).
+//! Several processes that run one model together, over MPI: what the solver asks of
+//! [`Ranks`](stribeck_solver::ranks::Ranks).
 //!
 //! Without the feature `mpi` the crate is empty.
 

@@ -46,7 +46,8 @@ pub(crate) fn spectral_correlation<'py>(
     Ok((found.cyclic_grid_hz, found.cyclic, found.grid_hz, values.into_pyarray(py)))
 }
 
-/// For each band with signal: ends, root mean square, kurtosis, distance of the lines of its spectrum, the spectrum.
+/// For each band with signal: ends, root mean square, kurtosis, distance of the lines of its spectrum, the
+/// spectrum.
 #[pyfunction]
 #[expect(clippy::type_complexity, reason = "a tuple in Python, too")]
 pub(crate) fn band_envelopes<'py>(
@@ -69,7 +70,8 @@ pub(crate) fn band_envelopes<'py>(
         .collect())
 }
 
-/// What is said of the distance of two events, then lag, correlation and the distance from which on a second one would show.
+/// What is said of the distance of two events, then lag, correlation and the distance from which on a second
+/// one would show.
 #[pyfunction]
 #[expect(clippy::type_complexity, reason = "a tuple in Python, too")]
 pub(crate) fn event_spacing(

@@ -1,4 +1,5 @@
-//! The Python module `stribeck._stribeck`: thin functions that `python/stribeck/__init__.py` gives names, defaults and help.
+//! The Python module `stribeck._stribeck`: thin functions that `python/stribeck/__init__.py` gives names,
+//! defaults and help.
 
 mod runs;
 mod signals;

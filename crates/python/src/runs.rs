@@ -27,7 +27,8 @@ const PACE: Duration = Duration::from_millis(100);
 
 /// The command line of the program.
 #[derive(Debug, Parser)]
-#[command(name = "stribeck", version = host::VERSION, about = "Simulates rolling element bearings and says how far to believe it")]
+#[command(name = "stribeck", version = host::VERSION, about = "Simulates rolling element bearings and says \
+    how far to believe it")]
 struct Line {
     #[command(subcommand)]
     command: Command,
@@ -89,7 +90,8 @@ impl Watch {
     }
 }
 
-/// The folder of a run that has come to an end, or what stopped it. A run that Python interrupted keeps what it has.
+/// The folder of a run that has come to an end, or what stopped it. A run that Python interrupted keeps what
+/// it has.
 fn ended(watch: Watch, dir: &RunDir, done: anyhow::Result<RunInfo>) -> PyResult<PathBuf> {
     if let Some(why) = watch.raised {
         return Err(why);

@@ -182,7 +182,8 @@ pub(crate) fn whitened<'py>(
     Ok(whitened.ratios().to_vec().into_pyarray(py))
 }
 
-/// The highest family of harmonics: fundamental, height, heights of all harmonics, probability of a false alarm.
+/// The highest family of harmonics: fundamental, height, heights of all harmonics, probability of a false
+/// alarm.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "a spectrum of three and a search of four")]
 pub(crate) fn comb<'py>(

@@ -1,4 +1,5 @@
-//! The geometry of contact: outlines of rollers and raceways, and how deep they sink into each other (THEORY §9.3).
+//! The geometry of contact: outlines of rollers and raceways, and how deep they sink into each other (THEORY
+//! §9.3).
 
 pub mod outline;
 

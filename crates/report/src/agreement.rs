@@ -1,4 +1,5 @@
-//! How far the reduced model is from the full one: the page of a validation, and what the report of a reduced run says of it.
+//! How far the reduced model is from the full one: the page of a validation, and what the report of a reduced
+//! run says of it.
 
 use std::fs;
 use std::path::Path;
@@ -47,7 +48,8 @@ pub fn write_agreement(folder: &Path, agreement: &Agreement) -> Result<(), Error
 fn lead(agreement: &Agreement) -> String {
     let [full, reduced, times] = agreement.cost();
     format!(
-        "{} by both models, {:.0} ms each. A simulated millisecond takes {full} of processor time by the full model and {reduced} by the \
+        "{} by both models, {:.0} ms each. A simulated millisecond takes {full} of processor time by the \
+         full model and {reduced} by the \
          reduced one: {times}.",
         starts(agreement.starts),
         agreement.simulated_ms
@@ -87,8 +89,10 @@ fn table(agreement: &Agreement) -> Markup {
             }
         }
         p class="hint" {
-            "Pairs of runs have the same start. Third octaves are levels of the mean power over the starts, both components together, and \
-             their range is that of the bands. A limit is kept or not where the interval, or twice the standard error of each band, \
+            "Pairs of runs have the same start. Third octaves are levels of the mean power over the starts, \
+             both components together, and \
+             their range is that of the bands. A limit is kept or not where the interval, or twice the \
+             standard error of each band, \
              leaves no other answer."
         }
         @if !agreement.correlations.is_empty() {
@@ -114,9 +118,12 @@ fn peaks(agreement: &Agreement) -> Markup {
         }
         p class="hint" {
             (format!(
-                "Magnitude of both components below {:.0} kHz, as a recorder shows it: means of the largest of each start with their \
-                 95 % intervals, and how far the means are apart with one standard error. It has no limit, because it is that of a single \
-                 impact. Above that the modes of the reduced model end, and peaks of raw samples do not compare.",
+                "Magnitude of both components below {:.0} kHz, as a recorder shows it: means of the largest \
+                 of each start with their \
+                 95 % intervals, and how far the means are apart with one standard error. It has no limit, \
+                 because it is that of a single \
+                 impact. Above that the modes of the reduced model end, and peaks of raw samples do not \
+                 compare.",
                 1e-3 * first.below_hz
             ))
         }
@@ -130,7 +137,8 @@ fn alike(agreement: &Agreement) -> String {
         .iter()
         .map(|c| format!("{:.2} below {:.1} kHz", c.value.mean, 1e-3 * c.below_hz));
     format!(
-        "Waveforms of the first sensor, a_y, correlate by {}; above a few kilohertz the waveform of one impact is chaotic in both models.",
+        "Waveforms of the first sensor, a_y, correlate by {}; above a few kilohertz the waveform of one \
+         impact is chaotic in both models.",
         each.collect::<Vec<_>>().join(" and ")
     )
 }
@@ -156,7 +164,10 @@ fn octaves(octaves: &Octaves) -> Figure {
     .with(line("full", Colour::Grey, &octaves.full_db))
     .with(line("reduced", Colour::Blue, &octaves.reduced_db));
     if let Some(largest) = octaves.error_db.iter().copied().reduce(f64::max) {
-        figure = figure.note(format!("By the scatter of the starts the difference is known to {largest:.1} dB at worst (one standard error)."));
+        figure = figure.note(format!(
+            "By the scatter of the starts the difference is known to {largest:.1} \
+            dB at worst (one standard error)."
+        ));
     }
     figure
 }
@@ -179,7 +190,8 @@ pub(super) fn of_run(scene: &Scene, run_dir: &Path) -> Markup {
         @match nearest {
             None => p {
                 "This is a reduced model, and no validation of a scene like it lies beside the run. "
-                code { "stribeck validate SCENE" } " runs both models from the same starts and says how far apart they are."
+                code { "stribeck validate SCENE" } " runs both models from the same starts and says how far \
+                    apart they are."
             },
             Some((differences, agreement)) => {
                 p { (distance(&differences, &agreement)) " " (lead(&agreement)) " " strong { (verdict(&agreement)) } }
@@ -199,8 +211,8 @@ fn distance(differences: &[String], agreement: &Agreement) -> String {
     format!("The nearest scene that was validated, {}, differs in {listed}{rest}.", agreement.scene)
 }
 
-/// Fields in which two scenes differ, with this scene's value and the other's. What a start draws, names, lengths of records and
-/// guards make no other model.
+/// Fields in which two scenes differ, with this scene's value and the other's. What a start draws, names,
+/// lengths of records and guards make no other model.
 fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
     let plain = |scene: &Scene| {
         let mut scene = scene.clone();

@@ -1,4 +1,5 @@
-//! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to trust it.
+//! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to
+//! trust it.
 
 use maud::{Markup, html};
 use stribeck_dsp::PeriodCount;
@@ -47,7 +48,8 @@ fn defect(run: &Run, summary: &Summary) -> String {
     if spalls.is_empty() {
         let families: Vec<String> = faults.iter().map(|on| family_of(*on)).collect();
         return format!(
-            "Entries and exits are picked for spalls of raceways, and there is none. Look for the families in the spectra: {}.",
+            "Entries and exits are picked for spalls of raceways, and there is none. Look for the families \
+             in the spectra: {}.",
             families.join("; ")
         );
     }
@@ -171,7 +173,8 @@ fn mesh(summary: &Summary) -> String {
     if let Some(duty) = unsteady(summary) {
         let (least, most) = duty.relative_speed_rpm;
         return format!(
-            "The speed of the {} goes from {least:.0} to {most:.0} rpm, so facet lines have no frequency and are not looked for.",
+            "The speed of the {} goes from {least:.0} to {most:.0} rpm, so facet lines have no frequency and \
+             are not looked for.",
             duty.over()
         )
         .replace('-', "−");
@@ -181,7 +184,9 @@ fn mesh(summary: &Summary) -> String {
         return "Nothing turns, so that no facets pass a contact.".into();
     }
     if families.iter().all(|f| f.lead.is_none()) {
-        return "This record is too short, or sampled too slowly, to tell a family of facet lines from anything else.".into();
+        return "This record is too short, or sampled too slowly, to tell a family of facet lines from \
+            anything else."
+            .into();
     }
     let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
     let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);
@@ -190,7 +195,8 @@ fn mesh(summary: &Summary) -> String {
         let level = f.level_g.map_or(String::new(), |g| format!(", up to {}", gravities(g)));
         let off_hz = f.offset_resolutions.unwrap_or(0.0) * resolution_hz;
         format!(
-            "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands every {spacing_hz:.1} Hz{level}",
+            "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands \
+             every {spacing_hz:.1} Hz{level}",
             f.carrier_hz.unwrap_or(f64::NAN)
         )
         .replace('-', "−")
@@ -266,12 +272,14 @@ fn physics(run: &Run, summary: &Summary) -> String {
             format!(" {name} ({hz:.1} Hz) stands in the spectrum with its multiples {}.", seen.join(", "))
         } else if periods < PeriodCount::ENOUGH {
             format!(
-                " {name} ({hz:.1} Hz) cannot stand as a line of the spectrum: the record holds {periods:.1} of its periods, {:.0} are needed.",
+                " {name} ({hz:.1} Hz) cannot stand as a line of the spectrum: the record holds {periods:.1} \
+                 of its periods, {:.0} are needed.",
                 PeriodCount::ENOUGH
             )
         } else {
             format!(
-                " {name} ({hz:.1} Hz) does not stand as a line of the spectrum, though the record holds {periods:.1} of its periods: look at the \
+                " {name} ({hz:.1} Hz) does not stand as a line of the spectrum, though the record holds \
+                 {periods:.1} of its periods: look at the \
                  envelope."
             )
         }
@@ -309,7 +317,8 @@ fn trust(summary: &Summary) -> String {
         }
     });
     format!(
-        "{energy}{load}.{spectrum} Peaks are those of one start: another start angle moves them by tens of per cent. They also \
+        "{energy}{load}.{spectrum} Peaks are those of one start: another start angle moves them by tens of \
+         per cent. They also \
          depend on contact stiffness, damping and pocket clearance, which are choices of the scene."
     )
 }

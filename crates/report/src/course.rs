@@ -23,9 +23,12 @@ pub(super) fn picture(course: &Course, unit: &str) -> Picture {
     draw_key(&mut sheet, shades.top_db);
     let mut picture = Picture::new("spectrogram", "Spectrogram", sheet);
     picture.caption =
-        "Horizontal bands are resonances and steady lines, slanted ones follow the speed, vertical ones are knocks and events.".into();
+        "Horizontal bands are resonances and steady lines, slanted ones follow the speed, vertical ones are \
+         knocks and events."
+            .into();
     picture.note = format!(
-        "Density in dB re 1 ({unit})²/Hz, lines {:.1} Hz apart, Hann window; each column is the mean over {}.",
+        "Density in dB re 1 ({unit})²/Hz, lines {:.1} Hz apart, Hann window; each column is the mean over \
+         {}.",
         course.grid_hz,
         Scale::of(course.step_s).text(course.step_s, 0.01 * course.step_s, "s")
     );

@@ -24,7 +24,8 @@ pub enum Error {
     #[error("summary.json cannot be made: {0}")]
     Summary(#[source] serde_json::Error),
     /// A file of the report cannot be written.
-    #[error("{} cannot be written: {why}; check that the folder is writable and the disk is not full", .path.display())]
+    #[error("{} cannot be written: {why}; check that the folder is writable and the disk is not \
+        full", .path.display())]
     Write {
         /// The file.
         path: PathBuf,

@@ -171,9 +171,14 @@ fn load(scene: &ResolvedScene, findings: &Findings) -> Vec<Figure> {
         }
     ))
     .note(format!(
-        "Dynamic: mean over all rollers and samples in bins of one degree. Static: rigid rings{}, mean over {} of cage positions{}.{}",
+        "Dynamic: mean over all rollers and samples in bins of one degree. Static: rigid rings{}, mean over \
+         {} of cage positions{}.{}",
         if scene.written.operation.load_varies() { " under the mean load" } else { "" },
-        if scene.written.rollers_in_place().count() < scene.written.bearing.rollers { "a whole turn" } else { "one roller spacing" },
+        if scene.written.rollers_in_place().count() < scene.written.bearing.rollers {
+            "a whole turn"
+        } else {
+            "one roller spacing"
+        },
         if spalled { "; a roller over the defect is left out" } else { "" },
         if scene.written.housing.is_rigid() { "" } else { " An elastic outer ring differs by 10 to 20 %." }
     ));

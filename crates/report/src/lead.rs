@@ -75,7 +75,8 @@ fn load(scene: &ResolvedScene, duty: Option<&DutyFinding>) -> String {
     }
 }
 
-/// The speed in words, with its range on record where it changes, and the sense where it is not the usual one.
+/// The speed in words, with its range on record where it changes, and the sense where it is not the usual
+/// one.
 fn speed(scene: &ResolvedScene, duty: Option<&DutyFinding>) -> String {
     let o = &scene.written.operation;
     let [inner, outer] = match duty {

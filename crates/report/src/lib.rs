@@ -1,7 +1,8 @@
 //! The page of a run: figures, tables and words in one file that needs no network.
 //!
-//! [`write()`] turns a run directory into `report.html`, `summary.json` and `figures/`. The numbers are those of
-//! [`stribeck_analysis`]; nothing is concluded here, and nothing simulates. The same directory gives the same bytes.
+//! [`write()`] turns a run directory into `report.html`, `summary.json` and `figures/`. The numbers are those
+//! of [`stribeck_analysis`]; nothing is concluded here, and nothing simulates. The same directory gives the
+//! same bytes.
 //!
 //! ```no_run
 //! let summary = stribeck_report::write("runs/singh2014".as_ref())?;

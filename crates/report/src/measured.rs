@@ -151,7 +151,8 @@ fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
     figures
 }
 
-/// The enhanced envelope spectrum with the places of all families: dashed where they are expected, solid where found.
+/// The enhanced envelope spectrum with the places of all families: dashed where they are expected, solid
+/// where found.
 fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
     // Slow changes of level fill the beginning.
     let first = ((LOWEST_CYCLIC_HZ / spectrum.grid_hz) as usize).clamp(1, spectrum.values.len().max(2) - 1);
@@ -162,11 +163,13 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
         Axis::plain("Mean coherence", ""),
     )
     .caption(
-        "How surely each part of the spectrum comes and goes at a rate, averaged over all parts. It shows what knocks where the \
+        "How surely each part of the spectrum comes and goes at a rate, averaged over all parts. It shows \
+         what knocks where the \
          signal is weak; the verdict does not rest on it.",
     )
     .note(format!(
-        "From the first {:.2} s: cyclic lines {:.3} Hz apart, carriers {:.1} Hz apart. Dashed where a family is expected, solid \
+        "From the first {:.2} s: cyclic lines {:.3} Hz apart, carriers {:.1} Hz apart. Dashed where a family \
+         is expected, solid \
          where it was found.",
         spectrum.duration_s, spectrum.grid_hz, spectrum.carrier_hz
     ))
@@ -192,7 +195,8 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
     figure
 }
 
-/// The envelope spectrum in which a family stands, with its harmonics and, where they are expected, its sidebands.
+/// The envelope spectrum in which a family stands, with its harmonics and, where they are expected, its
+/// sidebands.
 fn envelope(
     band: &BandEnvelope,
     family: &Family,

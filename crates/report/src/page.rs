@@ -61,7 +61,8 @@ pub(crate) fn head(name: &str) -> Markup {
     }
 }
 
-/// A heading, what stands before the figures, the figures (`otherwise` when there are none) and what stands after them.
+/// A heading, what stands before the figures, the figures (`otherwise` when there are none) and what stands
+/// after them.
 pub(crate) fn section(
     id: &str,
     name: &str,

@@ -61,7 +61,8 @@ impl Pictures {
                 pictures.stress = stress::pictures(record, findings, &mesh, &window, &frames)?;
                 if pictures.stress.iter().all(|picture| picture.id != "stress") {
                     pictures.notes.push(
-                        "no picture of the stress under a roller: none that crosses the spall stands in the window while frames are kept \
+                        "no picture of the stress under a roller: none that crosses the spall stands in the \
+                         window while frames are kept \
                          (`output.frames`)"
                             .into(),
                     );

@@ -238,7 +238,8 @@ impl Figure {
         })
     }
 
-    /// Range of the vertical axis: the fixed one or that of the data inside the horizontal range, with a margin.
+    /// Range of the vertical axis: the fixed one or that of the data inside the horizontal range, with a
+    /// margin.
     pub fn y_range(&self) -> (f64, f64) {
         self.y.range.unwrap_or_else(|| {
             let (from, to) = self.x_range();

@@ -25,8 +25,9 @@ use crate::{Error, agreement, answer, sections, tables};
 /// An interrupted or diverged run gives a report of what exists, with a banner.
 ///
 /// # Errors
-/// [`Error::Run`] when the directory is not a run, its scene was changed, a file cannot be understood or the report cannot be written,
-/// [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
+/// [`Error::Run`] when the directory is not a run, its scene was changed, a file cannot be understood or the
+/// report cannot be written, [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and
+/// [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
 pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     write_between(run_dir, f64::NEG_INFINITY..f64::INFINITY)
 }
@@ -125,7 +126,8 @@ fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
     Ok(html! {
         h2 #numbers { "Appendix: the paper beside this run" }
         p class="hint" {
-            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It prints neither thickness, cage \
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It \
+             prints neither thickness, cage \
              pockets, damping nor the place of its sensor, so its levels are no test of this model."
         }
         details {
@@ -158,7 +160,8 @@ fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
     html! {
         h2 #notes { "Notes" }
         p class="hint" {
-            "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a name in a legend hides its \
+            "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a \
+             name in a legend hides its \
              curve."
         }
         @if summary.notes.is_empty() && run.info.warnings.is_empty() { p { "None." } }

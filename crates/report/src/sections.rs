@@ -75,7 +75,8 @@ pub(super) fn duty(summary: &Summary) -> Markup {
                 @for (n, (name, order)) in duty.orders.iter().enumerate() { @if n > 0 { ", " } (name) " " (format!("{order:.4}")) }
                 "."
                 @if duty.envelope.is_some() {
-                    " The squared envelope of the leading sensor was averaged over equal steps of that angle (THEORY §7.11)."
+                    " The squared envelope of the leading sensor was averaged over equal steps of that angle \
+                     (THEORY §7.11)."
                 }
             }
         }
@@ -94,7 +95,8 @@ pub(super) fn duty(summary: &Summary) -> Markup {
                     }
                 }
             }
-            p class="hint" { (format!("{:.1} periods of {}; resolution {:.3} orders, one over the turns on record.", envelope.periods, envelope.family, envelope.resolution)) }
+            p class="hint" { (format!("{:.1} periods of {}; resolution {:.3} orders, one over the turns on \
+                record.", envelope.periods, envelope.family, envelope.resolution)) }
         }
     }
 }
@@ -106,7 +108,8 @@ fn unsteady(summary: &Summary) -> bool {
 
 /// What stands in the place of lines at constant frequencies where the speed changes.
 fn no_lines() -> Markup {
-    html! { p class="hint" { "The speed changes, so that no line of the mesh or of the defect has a place here: see " a href="#duty" { "Speed and load" } "." } }
+    html! { p class="hint" { "The speed changes, so that no line of the mesh or of the defect has a place \
+    here: see " a href="#duty" { "Speed and load" } "." } }
 }
 
 /// Verdicts on the families, and their lines.
@@ -142,8 +145,10 @@ pub(super) fn families(summary: &Summary) -> Markup {
             }
         }
         p class="hint" {
-            "Each family is a carrier with sidebands at multiples of BPFO. Its comb is fitted with the recorded motion of the rollers to \
-             both components of every sensor and to the force on every loaded roller, and must explain them clearly better than combs \
+            "Each family is a carrier with sidebands at multiples of BPFO. Its comb is fitted with the \
+             recorded motion of the rollers to \
+             both components of every sensor and to the force on every loaded roller, and must explain them \
+             clearly better than combs \
              that are off their place and than the other families (THEORY §7.7)."
         }
         @if summary.families.iter().any(|f| f.carrier_hz.is_some()) {
@@ -189,7 +194,8 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
     html! {
         p {
-            "Sensor “" (summary.levels.sensor.as_deref().unwrap_or("none")) "”, a_y. Facet lines are claimed by a family that was found, never by \
+            "Sensor “" (summary.levels.sensor.as_deref().unwrap_or("none")) "”, a_y. Facet lines are claimed \
+             by a family that was found, never by \
              their place alone."
         }
         div class="scroll" {
@@ -238,12 +244,15 @@ pub(super) fn readings(summary: &Summary) -> Markup {
             thead { tr { th { "Formula" } th class="n" { "Gives" } th { "Evidence in this run" } } }
             tbody {
                 tr {
-                    td { "Paper, equation (2): π f_c D_i / ℓ, the cage's speed" } td class="n" { (format!("{printed:.0} Hz")) }
-                    td { "the measured facet line nearest to it, at any sensor: " (hz(nearest).unwrap_or("none".into())) }
+                    td { "Paper, equation (2): π f_c D_i / ℓ, the cage's \
+                        speed" } td class="n" { (format!("{printed:.0} Hz")) }
+                    td { "the measured facet line nearest to it, at any \
+                        sensor: " (hz(nearest).unwrap_or("none".into())) }
                 }
                 tr {
                     td { "Speed of the contact along the ring: π (f_s − f_c) D_i / ℓ" } (cell(hz(inner)))
-                    td { "vertices pass the inner raceway at the spin's rate, as at the outer one: " (hz(vertices).unwrap_or("–".into())) }
+                    td { "vertices pass the inner raceway at the spin's rate, as at the outer \
+                        one: " (hz(vertices).unwrap_or("–".into())) }
                 }
             }
         }
@@ -251,8 +260,10 @@ pub(super) fn readings(summary: &Summary) -> Markup {
             h3 { "4545 Hz" }
             p {
                 "A cursor between two sampled peaks reads a whole number of samples: " (format!("{:.0}, {:.0} or {:.0} Hz", r.neighbours_hz.0, r.reads_hz, r.neighbours_hz.1))
-                ". " (format!("{:.0} %", 100.0 * r.share_in_tone)) " of the periods of a pure 4671 Hz tone are " (r.samples) " samples long, so the reading \
-                 needs no second tone. The paper's own sum of two tones swells on a carrier of " (format!("{:.0} Hz", r.equation_3_carrier_hz)) "; "
+                ". " (format!("{:.0} %", 100.0 * r.share_in_tone)) " of the periods of a pure 4671 Hz tone \
+                 are " (r.samples) " samples long, so the reading \
+                 needs no second tone. The paper's own sum of two tones swells on a carrier \
+                 of " (format!("{:.0} Hz", r.equation_3_carrier_hz)) "; "
                 (format!("{:.0} %", 100.0 * r.equation_3_common.1)) " of its gaps are " (r.equation_3_common.0) " samples, "
                 (format!("{:.0} %", 100.0 * r.share_in_equation_3)) " read 4545 Hz."
             }
@@ -292,10 +303,13 @@ pub(super) fn diagnosis(summary: &Summary) -> Markup {
     let number = |hz: Option<f64>| cell(hz.map(|hz| format!("{hz:.2}")));
     html! {
         h3 #diagnosis { "What the record shows by itself" }
-        p { "Sensor channel " code { (diagnosis.channel) } ", judged as a measured record is, without the scene: " (diagnosis.verdict) }
+        p { "Sensor channel " code { (diagnosis.channel) } ", judged as a measured record is, without the \
+            scene: " (diagnosis.verdict) }
         @if diagnosis.families.iter().any(|family| family.claimed && !family.present) {
-            p { "What is claimed and is no defect of the scene may be the rattle of elements that come under the load: a run has no noise "
-                "but its bearing's, so that this alone can swing its power as knocks do. In a machine's noise such claims go "
+            p { "What is claimed and is no defect of the scene may be the rattle of elements that come under \
+                the load: a run has no noise "
+                "but its bearing's, so that this alone can swing its power as knocks do. In a machine's \
+                 noise such claims go "
                 "(`stribeck export` with `--sensor`, `noise_density`)." }
         }
         div class="scroll" {
@@ -328,7 +342,8 @@ pub(super) fn diagnosis(summary: &Summary) -> Markup {
             }
         }
         p class="hint" {
-            "The envelope spectra resolve " (format!("{:.2} Hz", diagnosis.resolution_hz)) ". BSF is the spin of a rolling element, which strikes \
+            "The envelope spectra resolve " (format!("{:.2} Hz", diagnosis.resolution_hz)) ". BSF is the \
+             spin of a rolling element, which strikes \
              twice a turn; sidebands are those of the first three harmonics."
             @if summary.kinematics.outer_ring_hz > 0.0 { " FTF is the cage as seen from the outer ring." }
         }
@@ -374,7 +389,8 @@ pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
         h3 { "Length of the defect, from the events" }
         (folded(table, summary.events.len(), "lengths, passage by passage"))
         p class="hint" {
-            "Off: event against the roller's centre over the edge without slip. The estimate allows for the load that a roller still carries \
+            "Off: event against the roller's centre over the edge without slip. The estimate allows for the \
+             load that a roller still carries \
              behind an edge (THEORY §7.5)."
         }
     }

@@ -218,7 +218,8 @@ pub(super) fn levels(summary: &Summary) -> Markup {
             }
         }
         p class="hint" {
-            "Mean acceleration of each sampling interval. Start-up: to the first entry, 2 ms at most. Entry: from 0.5 ms before the edge to \
+            "Mean acceleration of each sampling interval. Start-up: to the first entry, 2 ms at most. Entry: \
+             from 0.5 ms before the edge to \
              1 ms after unloading. Exit: from 1 ms before loading to 2 ms after the edge."
         }
     }

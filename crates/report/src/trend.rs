@@ -1,4 +1,5 @@
-//! The page of several measured records side by side: how health and defect families went from one to the next.
+//! The page of several measured records side by side: how health and defect families went from one to the
+//! next.
 
 use std::path::Path;
 
@@ -30,8 +31,8 @@ pub struct TrendEntry {
 /// Highest limit that is drawn, over the highest value.
 const ROOM: f64 = 2.0;
 
-/// Writes `trend.json` and `trend.html` of some records, in their order, into `folder`, which must be there; `limits` are drawn
-/// beside the levels.
+/// Writes `trend.json` and `trend.html` of some records, in their order, into `folder`, which must be there;
+/// `limits` are drawn beside the levels.
 ///
 /// # Errors
 /// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
@@ -99,7 +100,8 @@ fn table(entries: &[TrendEntry]) -> Markup {
                 }
             }
         }
-        p class="hint" { "Levels of the first harmonic above the background of the envelope spectrum; bold where a defect is claimed." }
+        p class="hint" { "Levels of the first harmonic above the background of the envelope spectrum; bold \
+            where a defect is claimed." }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The report in a real browser: no error in its console, every figure drawn.
 //!
-//! Needs Chromium. Where it is absent the test says so and checks nothing; under `STRIBECK_NEED_BROWSER`, which `.ci/run`
-//! sets, it fails instead.
+//! Needs Chromium. Where it is absent the test says so and checks nothing; under `STRIBECK_NEED_BROWSER`,
+//! which `.ci/run` sets, it fails instead.
 
 mod synthetic;
 

@@ -1,4 +1,5 @@
-//! Many starts made of closed forms: the numbers of all of them together, and the page that is made from their files.
+//! Many starts made of closed forms: the numbers of all of them together, and the page that is made from
+//! their files.
 
 mod synthetic;
 
@@ -53,7 +54,8 @@ fn example_numbers_of_three_starts_that_differ_by_their_gain() {
     assert_eq!(file["starts"].as_array().map(Vec::len), Some(5));
     assert!(file.get("levels").is_none(), "numbers of one start would be taken for those of all");
 
-    // Three rollers cross in every start; none touches a floor, because the synthetic one carries nothing there.
+    // Three rollers cross in every start; none touches a floor, because the synthetic one carries nothing
+    // there.
     let events = summary.ensemble.items("events");
     assert_eq!(events.len(), 3);
     assert_eq!(events[2].get("roller"), Some(&Merged::Same(3.into())));

@@ -1,4 +1,5 @@
-//! A run of closed forms through the whole report: every number must come back, and every figure must be there.
+//! A run of closed forms through the whole report: every number must come back, and every figure must be
+//! there.
 
 mod synthetic;
 
@@ -41,7 +42,8 @@ fn whole(name: &str) -> (Scratch, Summary) {
 fn roundtrip_every_number_of_the_synthetic_run() {
     // The slope of least squares of exact data is exact to rounding.
     const EXACT: f64 = 1e-6;
-    // The median moves a step by less than a tenth of the facet period of 0.21 ms; a slip of 0.1 % moves nothing more.
+    // The median moves a step by less than a tenth of the facet period of 0.21 ms; a slip of 0.1 % moves
+    // nothing more.
     const EVENT_MS: f64 = 0.03;
     let (_folder, summary) = whole("numbers");
 
@@ -433,8 +435,8 @@ fn refuses_a_stretch_that_holds_nothing_and_keeps_the_report() {
     assert!(before == read(&folder.0, "report.html"), "the page changed");
 }
 
-/// A quarter of a turn of a load that turns with the shaft, from where it adds to the other: its mean along that is 2/π of it.
-/// Source: mean of a cosine; the load, THEORY §6.3.
+/// A quarter of a turn of a load that turns with the shaft, from where it adds to the other: its mean along
+/// that is 2/π of it. Source: mean of a cosine; the load, THEORY §6.3.
 #[test]
 fn analytic_rollers_carry_what_a_rotating_load_does_over_the_record() {
     /// The mean over samples of 30 ms is off by half a sampling interval at its ends.

@@ -1,7 +1,9 @@
-//! **What is recorded, and in which order.** The names are a contract with reports and readers; no other file knows them.
+//! **What is recorded, and in which order.** The names are a contract with reports and readers; no other file
+//! knows them.
 //!
-//! A model fills a [`Sample`]; [`Channels`] turns it into a row of `trace.npy`. Adding a channel that follows from a sample is one
-//! line in [`Channels::visit`]; one that a model must provide is a field of [`Sample`] besides.
+//! A model fills a [`Sample`]; [`Channels`] turns it into a row of `trace.npy`. Adding a channel that follows
+//! from a sample is one line in [`Channels::visit`]; one that a model must provide is a field of [`Sample`]
+//! besides.
 
 use std::fmt::Arguments;
 
@@ -92,7 +94,8 @@ pub struct Channels {
     shaft: ShaftChannels,
 }
 
-/// What the duty adds where speed or load change: the angle of the shaft, that of an outer ring that turns, and the load.
+/// What the duty adds where speed or load change: the angle of the shaft, that of an outer ring that turns,
+/// and the load.
 #[derive(Debug, Clone)]
 struct ShaftChannels {
     /// `None` where nothing changes.
@@ -122,7 +125,8 @@ impl Channels {
         self.visit(sample, &mut |_, value| row.push(value));
     }
 
-    /// Every channel in its order, with its value in a sample. Names are formatted only where they are asked for.
+    /// Every channel in its order, with its value in a sample. Names are formatted only where they are asked
+    /// for.
     fn visit(&self, sample: &Sample, channel: &mut impl FnMut(Arguments<'_>, f64)) {
         channel(format_args!("time_s"), sample.time);
         for (name, sensor) in self.sensors.iter().zip(&sample.sensors) {
@@ -162,7 +166,8 @@ impl Channels {
 }
 
 impl ShaftChannels {
-    /// Angles by which shaft and outer ring have turned since the start [rad], counter-clockwise positive, and the load [N].
+    /// Angles by which shaft and outer ring have turned since the start [rad], counter-clockwise positive,
+    /// and the load [N].
     fn visit(&self, time: f64, channel: &mut impl FnMut(Arguments<'_>, f64)) {
         let Some(duty) = &self.duty else { return };
         channel(format_args!("shaft.angle_rad"), duty.shaft_rad(time));

@@ -4,9 +4,9 @@
 //! stribeck checkpoint\n   version u32   identity, 16 letters   length u64   CRC-32 of the content u32   content
 //! ```
 //!
-//! The identity is that of the scene but for its duration ([`identity`]), so that a run can be made longer. Numbers are
-//! little-endian; the content is in [postcard](https://postcard.jamesmunns.com) format. Mesh and layout are
-//! no part of it: they follow from the scene.
+//! The identity is that of the scene but for its duration ([`identity`]), so that a run can be made longer.
+//! Numbers are little-endian; the content is in [postcard](https://postcard.jamesmunns.com) format. Mesh and
+//! layout are no part of it: they follow from the scene.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -59,7 +59,8 @@ impl<S: Serialize + DeserializeOwned> Checkpoint<S> {
         Ok(bytes)
     }
 
-    /// Reads the checkpoint at `path` of the scene with the [`identity`] `scene`. Memory is bounded by the size of the file.
+    /// Reads the checkpoint at `path` of the scene with the [`identity`] `scene`. Memory is bounded by the
+    /// size of the file.
     pub(crate) fn read(path: &Path, scene: &str) -> Result<Self, Error> {
         let bad = |reason: String| refused(path, reason);
         let io = |source| stribeck_scene::Error::Io {
@@ -123,14 +124,16 @@ fn parse(header: &[u8], scene: &str) -> Result<(u64, u32), String> {
     let version = u32::from_le_bytes(*version);
     if version != VERSION {
         return Err(format!(
-            "its checkpoint has the version {version}, and this program knows {VERSION}. Continue the run with the program that began \
+            "its checkpoint has the version {version}, and this program knows {VERSION}. Continue the run \
+             with the program that began \
              it, named in `run.json`"
         ));
     }
     let (hash, rest) = rest.split_at_checked(HASH).ok_or_else(cut)?;
     if hash != scene.as_bytes() {
         return Err(format!(
-            "its checkpoint belongs to another scene than `scene.ron` ({} and {scene}, but for the duration). Put the run's own \
+            "its checkpoint belongs to another scene than `scene.ron` ({} and {scene}, but for the \
+             duration). Put the run's own \
              `scene.ron` back; a changed scene needs a new run",
             String::from_utf8_lossy(hash).escape_debug()
         ));

@@ -7,9 +7,10 @@
 //! | rollers out of the space between the raceways | | [`OUT_OF_PLACE`] |
 //! | the cage's offset over its room between the raceways | above 1 | a cage's thickness beyond |
 //!
-//! The fields are those of `guards` in the scene. Energy, penetration in shares of an element and what else depends on the model is
-//! watched by the model itself. A warning is given once, at the first sample above its limit. What has been seen is in checkpoints
-//! and in [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
+//! The fields are those of `guards` in the scene. Energy, penetration in shares of an element and what else
+//! depends on the model is watched by the model itself. A warning is given once, at the first sample above
+//! its limit. What has been seen is in checkpoints and in [`GuardInfo`](stribeck_scene::run_info::GuardInfo):
+//! a continued run warns as an unbroken one does.
 
 mod softness;
 
@@ -19,7 +20,8 @@ use stribeck_scene::{advice, resolved::ResolvedScene, run_info::RunInfo};
 
 use softness::Softness;
 
-/// Rollers may leave the space between the raceways, and a housing the outer ring, by this share of a roller's radius.
+/// Rollers may leave the space between the raceways, and a housing the outer ring, by this share of a
+/// roller's radius.
 pub const OUT_OF_PLACE: f64 = 0.5;
 
 /// A roller carries something above this share of the load.
@@ -131,7 +133,8 @@ impl Guards {
         seen.longest_unsupported_s = seen.longest_unsupported_s.max(time);
         if is_new {
             info.warnings.push(format!(
-                "no roller has carried anything for {:.2} ms {}: the load hangs in the air. Start `preloaded`, or look at `bearing` for a \
+                "no roller has carried anything for {:.2} ms {}: the load hangs in the air. Start \
+                 `preloaded`, or look at `bearing` for a \
                  clearance that the load cannot close",
                 1e3 * time,
                 When::of(info)
@@ -146,7 +149,8 @@ impl Guards {
             if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
                 let through = if radius < self.annulus[0] { "inner" } else { "outer" };
                 return Some(format!(
-                    "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from that of the outer ring {when}. Take a \
+                    "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from \
+                     that of the outer ring {when}. Take a \
                      larger `contact.penalty_scale`, less `operation.load_n` or a smaller {}",
                     1e3 * radius,
                     self.step_field
@@ -163,7 +167,8 @@ impl Guards {
         info.guards.cage_offset_m = before.max(off);
         if off > room.stop {
             return Some(format!(
-                "the cage has cut through a ring: its centre is {:.2} mm from that of the outer ring {when}, and between the raceways it has \
+                "the cage has cut through a ring: its centre is {:.2} mm from that of the outer ring {when}, \
+                 and between the raceways it has \
                  {} mm of room. Nothing holds it there: take {}",
                 1e3 * off,
                 room.in_words(),
@@ -172,7 +177,8 @@ impl Guards {
         }
         if off > room.warning && before <= room.warning {
             info.warnings.push(format!(
-                "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a real one would rub on a ring, \
+                "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a \
+                 real one would rub on a ring, \
                  which the model does not know. To hold it, take {}",
                 1e3 * off,
                 room.in_words(),

@@ -1,8 +1,8 @@
 //! One run of a bearing, whatever model moves it: samples, energy ledger, guards, checkpoints.
 //!
-//! A model in motion implements [`Motion`](time_loop::Motion): it takes the steps of a sampling interval and fills a
-//! [`Sample`](channels::Sample). [`Run`](time_loop::Run) drives it, writes `trace.npy` and `energy.npy`, stops what diverges and
-//! saves checkpoints.
+//! A model in motion implements [`Motion`](time_loop::Motion): it takes the steps of a sampling interval and
+//! fills a [`Sample`](channels::Sample). [`Run`](time_loop::Run) drives it, writes `trace.npy` and
+//! `energy.npy`, stops what diverges and saves checkpoints.
 //!
 //! | Question | File |
 //! |---|---|

@@ -17,7 +17,8 @@ use crate::{
 pub fn take_over(info: &mut RunInfo, scene: &ResolvedScene, host: &Host<'_>) {
     if (&info.version, &info.commit) != (&host.version, &host.commit) {
         info.warnings.push(format!(
-            "version {} ({}) began this run and version {} ({}) continued it: its bits may differ from those of an \
+            "version {} ({}) began this run and version {} ({}) continued it: its bits may differ from those \
+             of an \
              unbroken run",
             info.version, info.commit, host.version, host.commit
         ));
@@ -47,8 +48,8 @@ pub fn read_saved<S: Serialize + DeserializeOwned>(
     Ok(saved)
 }
 
-/// Steps of the whole run. Steps and samples of a checkpoint must be those of its scene: forged ones could ask for any
-/// number of steps.
+/// Steps of the whole run. Steps and samples of a checkpoint must be those of its scene: forged ones could
+/// ask for any number of steps.
 fn check_counts(dir: &RunDir, scene: &ResolvedScene, info: &RunInfo) -> Result<u64, Error> {
     let refused = |reason: String| Err(Error::Resume { path: dir.path().to_owned(), reason });
     let &ResolvedScene { interval, duration, .. } = scene;
@@ -59,14 +60,16 @@ fn check_counts(dir: &RunDir, scene: &ResolvedScene, info: &RunInfo) -> Result<u
         && info.steps as f64 == info.samples as f64 * per_sample;
     if !fits {
         return refused(
-            "its checkpoint counts steps and samples that its scene does not have: it was damaged. Otherwise start it anew from its \
+            "its checkpoint counts steps and samples that its scene does not have: it was damaged. Otherwise \
+             start it anew from its \
              `scene.ron`; its samples stay readable until then"
                 .to_owned(),
         );
     }
     if info.samples as f64 > samples {
         return refused(format!(
-            "its checkpoint holds {} ms, and `solver.duration_ms` asks for {}: a run can be made longer, not shorter. \
+            "its checkpoint holds {} ms, and `solver.duration_ms` asks for {}: a run can be made longer, not \
+             shorter. \
              Otherwise start it anew",
             // To the nanosecond, so that it reads as it was written.
             (1e9 * interval * info.samples as f64).round() / 1e6,
@@ -79,8 +82,8 @@ fn check_counts(dir: &RunDir, scene: &ResolvedScene, info: &RunInfo) -> Result<u
 /// More steps in a sample than any scene has: a second in steps of a nanosecond.
 const MOST_STEPS: f64 = 1e9;
 
-/// Refuses runs that ended by themselves, as far as `run.json` tells; a warning when it does not. Scene and checkpoint are
-/// enough to continue.
+/// Refuses runs that ended by themselves, as far as `run.json` tells; a warning when it does not. Scene and
+/// checkpoint are enough to continue.
 fn may_go_on(dir: &RunDir, scene: &ResolvedScene) -> Result<Option<String>, Error> {
     let info = match dir.read_info() {
         Ok(info) => info,

@@ -29,7 +29,8 @@ pub trait Motion: Send {
     /// When the model cannot take steps at all.
     fn interval(&mut self, steps: usize) -> Result<Ledger, Error>;
 
-    /// The sample at the end of the interval. Called once an interval: means and changes count from there anew.
+    /// The sample at the end of the interval. Called once an interval: means and changes count from there
+    /// anew.
     fn sample(&mut self) -> &Sample;
 
     /// Steps taken.
@@ -139,7 +140,8 @@ impl<M: Motion> Run<M> {
         })
     }
 
-    /// A run as it was saved. Samples that were written after the checkpoint are cut off; they will come again.
+    /// A run as it was saved. Samples that were written after the checkpoint are cut off; they will come
+    /// again.
     ///
     /// # Errors
     /// When the traces cannot be written, or hold fewer samples.
@@ -173,7 +175,8 @@ impl<M: Motion> Run<M> {
         let earlier = (self.info.wall_s, self.info.cpu_s, self.info.loop_cpu_s);
         let workers = Workers::new(host.threads)?;
         let (began, set_up_cpu) = ((host.wall_s)(), (host.cpu_s)());
-        // Read when they are written: asking the system for processor time takes as long as several steps of a small model.
+        // Read when they are written: asking the system for processor time takes as long as several steps of
+        // a small model.
         let note_times = |info: &mut RunInfo| {
             // Clocks may jump; times that are written only grow.
             info.wall_s = info.wall_s.max(earlier.0 + (host.wall_s)() - began);
@@ -189,7 +192,8 @@ impl<M: Motion> Run<M> {
         progress.phase = "run";
         progress.steps = self.info.steps_planned;
         for sample in self.info.samples + 1..=samples {
-            // The steps of an interval run inside the pool: a fork from outside costs much more than one within.
+            // The steps of an interval run inside the pool: a fork from outside costs much more than one
+            // within.
             let ledger = workers.run(|| self.motion.interval(steps_per_sample))?;
             self.write(&ledger)?;
             self.motion.picture(sample)?;
@@ -217,7 +221,8 @@ impl<M: Motion> Run<M> {
             }
         }
         note_times(&mut self.info);
-        // A diverged run keeps the one before: that is the state before things went wrong. A complete one can be made longer.
+        // A diverged run keeps the one before: that is the state before things went wrong. A complete one can
+        // be made longer.
         if self.info.status != Status::Diverged {
             self.save(dir, &mut saved, host)?;
         }

@@ -9,7 +9,8 @@ pub(crate) const MOST_FRICTION: f64 = 2.0;
 pub fn holds_cage(scene: &Scene) -> String {
     let corners = scene.cage.as_ref().is_some_and(|cage| cage.pocket == PocketWalls::Corners);
     let pockets = if corners {
-        "a smaller `cage.pocket_clearance_um`, or another `cage.outer_diameter_mm`, so that its pockets are narrower than rollers"
+        "a smaller `cage.pocket_clearance_um`, or another `cage.outer_diameter_mm`, so that its pockets are \
+         narrower than rollers"
     } else {
         "`cage.pocket: corners` with pockets narrower than rollers"
     };

@@ -14,7 +14,8 @@
 //! )
 //! ```
 //!
-//! Equal files make equal scenes. What a variant is lies in its scene alone, so a run is named by the scene's content.
+//! Equal files make equal scenes. What a variant is lies in its scene alone, so a run is named by the scene's
+//! content.
 
 mod design;
 mod refusal;
@@ -40,7 +41,8 @@ const MOST_STARTS: usize = 10_000;
 /// Values that no field takes are shown up to this many at once.
 const MOST_PROBLEMS: usize = 10;
 
-/// When there is such a value, others are looked for in this many variants: a range of a field that counts has one in nearly all.
+/// When there is such a value, others are looked for in this many variants: a range of a field that counts
+/// has one in nearly all.
 const MOST_LOOKED_AT: usize = 1000;
 
 /// What lies in a campaign's file.
@@ -117,7 +119,8 @@ pub struct Variant {
     pub start: usize,
     /// Values of the fields that vary, as they would be written.
     pub values: Vec<String>,
-    /// `train`, `validation` or `test`; the same for all starts of a variant, and for variants of equal scenes.
+    /// `train`, `validation` or `test`; the same for all starts of a variant, and for variants of equal
+    /// scenes.
     pub split: &'static str,
     /// The scene, or why there is none.
     pub scene: Result<Scene, String>,
@@ -127,8 +130,9 @@ impl Campaign {
     /// Reads a campaign's file and makes its scenes. Paths in it count from its folder.
     ///
     /// # Errors
-    /// What is wrong with the file, with its line: its own fields, those of a scene that it names, and the scene that it starts
-    /// from, and values that their field cannot have. A scene that cannot be is no error here: its variant says why.
+    /// What is wrong with the file, with its line: its own fields, those of a scene that it names, and the
+    /// scene that it starts from, and values that their field cannot have. A scene that cannot be is no error
+    /// here: its variant says why.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text = std::fs::read_to_string(path).map_err(|e| refusal::unreadable(&shown, &e))?;
@@ -154,7 +158,8 @@ impl Campaign {
             return refuse(
                 "split",
                 format!(
-                    "is {train}, {validation} and {test}, and sums to {sum}; its three shares are from 0 to 1 and sum to 1"
+                    "is {train}, {validation} and {test}, and sums to {sum}; its three shares are from 0 to \
+                     1 and sum to 1"
                 ),
             );
         }
@@ -213,7 +218,8 @@ impl Campaign {
                 None => common = Some(outside),
                 Some(common) => common.retain(|problem| outside.contains(problem)),
             }
-            // By the scene, however its values are written: equal scenes are in one part and have the same starts, others have not.
+            // By the scene, however its values are written: equal scenes are in one part and have the same
+            // starts, others have not.
             let drawn = scene.as_ref().map_or_else(|_| fold(values), nameless);
             let scene = scene.map_err(|why| place.of_variant(&why, &rows, row).to_string());
             let split = split_of(&file.split, file.seed, drawn);

@@ -1,7 +1,7 @@
 //! Bearings by name: what their defect frequencies follow from.
 //!
-//! Makers do not print the number of rolling elements of every bearing; where no source is known for it, the entry has
-//! none and the user must give it. Any bearing can be given by its numbers:
+//! Makers do not print the number of rolling elements of every bearing; where no source is known for it, the
+//! entry has none and the user must give it. Any bearing can be given by its numbers:
 //! `elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0`.
 
 use std::f64::consts::PI;
@@ -68,17 +68,20 @@ type Row = (&'static str, Element, Option<u32>, f64, f64, f64, Option<[f64; 3]>,
 /// Name of the paper's bearing.
 pub const PAPER: &str = "paper";
 
-const SINGH: &str = "S. Singh et al., Numerical noise generation in modelled bearing vibration signals, Inter-Noise 2014, table 1";
+const SINGH: &str = "S. Singh et al., Numerical noise generation in modelled bearing vibration signals, \
+    Inter-Noise 2014, table 1";
 const CWRU: &str = "Case Western Reserve University Bearing Data Center, bearing information";
 const IMS: &str = "J. Lee et al., Bearing data set, IMS, University of Cincinnati, 2007";
 const XJTU: &str = "B. Wang et al., IEEE Trans. Reliab. 69 (2020) 401–412, table II";
-const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design, makers' catalogues: d = (E − F)/2, pitch (E + F)/2";
-const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints raceways: F and E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + F)/2";
+const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design, makers' catalogues: d = (E \
+    − F)/2, pitch (E + F)/2";
+const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints raceways: F and \
+    E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + F)/2";
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
 
-/// Raceway diameters F and E [mm] of cylindrical roller bearings of E design, by designation, with bore, outside diameter and
-/// width [mm] by ISO 15; those of [`IN_PROPORTION`] from its neighbour.
+/// Raceway diameters F and E [mm] of cylindrical roller bearings of E design, by designation, with bore,
+/// outside diameter and width [mm] by ISO 15; those of [`IN_PROPORTION`] from its neighbour.
 const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 22] = [
     ("NU 202", 19.3, 30.3, [15.0, 35.0, 11.0]),
     ("NU 203", 22.1, 35.1, [17.0, 40.0, 12.0]),
@@ -104,7 +107,8 @@ const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 22] = [
     ("NU 312", 77.0, 115.0, [60.0, 130.0, 31.0]),
 ];
 
-/// The one whose raceways are printed nowhere: 15 + 27·(24.2 − 17)/30 and 15 + 27·(40.2 − 17)/30 mm, to a tenth.
+/// The one whose raceways are printed nowhere: 15 + 27·(24.2 − 17)/30 and 15 + 27·(40.2 − 17)/30 mm, to a
+/// tenth.
 const IN_PROPORTION: &str = "NU 302";
 
 const OTHERS: [Row; 8] = [
@@ -118,7 +122,8 @@ const OTHERS: [Row; 8] = [
     ("UER204", Element::Ball, Some(8), 7.92, 34.55, 0.0, Some([20.0, 47.0, 17.0]), XJTU),
 ];
 
-/// Cylindrical roller bearings by where their flanges are, which a plane model does not have: rollers and raceways are the same.
+/// Cylindrical roller bearings by where their flanges are, which a plane model does not have: rollers and
+/// raceways are the same.
 const FLANGES: [&str; 4] = ["NU", "NJ", "NUP", "N"];
 
 /// All bearings that have a name here.
@@ -141,7 +146,8 @@ fn names() -> String {
     format!("{}, or {} with {}", others.join(", "), FLANGES.join(", "), sizes.join(", "))
 }
 
-/// What a scene of a bearing in the catalogue rests on that no catalogue prints; nothing for a scene of the user's own numbers.
+/// What a scene of a bearing in the catalogue rests on that no catalogue prints; nothing for a scene of the
+/// user's own numbers.
 pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     let Some(known) = all().into_iter().find(|known| known.name == bearing.designation) else {
         return Vec::new();
@@ -151,33 +157,38 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     // Another number is the user's.
     if known.elements.is_none() && known.usual_elements() == bearing.rollers {
         notes.push(format!(
-            "makers fit different numbers of rolling elements into {name}; unless `elements` gave them, {} are assumed here",
+            "makers fit different numbers of rolling elements into {name}; unless `elements` gave them, {} \
+             are assumed here",
             bearing.rollers
         ));
     }
     if known.source == PROPORTION {
         notes.push(format!(
-            "no catalogue known here prints the raceways of {name}; they are assumed to lie where those of its next larger size do, between bore and outside"
+            "no catalogue known here prints the raceways of {name}; they are assumed to lie where those of \
+             its next larger size do, between bore and outside"
         ));
     }
     match known.element {
         Element::Roller => notes.push(format!(
-            "clearance, cage and the length of the rollers, {length} mm, are usual ones for {name}, not its maker's"
+            "clearance, cage and the length of the rollers, {length} mm, are usual ones for {name}, not its \
+             maker's"
         )),
         Element::Ball => notes.push(format!(
-            "the balls of {name} run as cylinders {length} mm long, between which raceways approach each other as with balls at the load that the scene was made for; pressures and stresses are those of lines, not of points, and clearance and cage are usual ones"
+            "the balls of {name} run as cylinders {length} mm long, between which raceways approach each \
+             other as with balls at the load that the scene was made for; pressures and stresses are those \
+             of lines, not of points, and clearance and cage are usual ones"
         )),
     }
     notes
 }
 
-/// Circumference of the pitch circle over the rolling elements side by side, where their number is not known: cages of E
-/// design leave about a quarter.
+/// Circumference of the pitch circle over the rolling elements side by side, where their number is not known:
+/// cages of E design leave about a quarter.
 const SPACING: f64 = 1.25;
 
 impl CatalogueBearing {
-    /// Diameter of a rolling element and of the pitch circle as they are read [mm]: to the micrometre, which differences of raceways
-    /// miss by their last digits.
+    /// Diameter of a rolling element and of the pitch circle as they are read [mm]: to the micrometre, which
+    /// differences of raceways miss by their last digits.
     pub fn shown_mm(&self) -> [f64; 2] {
         [self.diameter_mm, self.pitch_mm].map(|mm| (1e3 * mm).round() / 1e3)
     }
@@ -207,8 +218,8 @@ impl CatalogueBearing {
         }
     }
 
-    /// A bearing by its name (spaces, hyphens and suffixes such as `-2RS1/C3` or `ECP` do not matter), by its numbers, or both:
-    /// `NU 205, elements=13`.
+    /// A bearing by its name (spaces, hyphens and suffixes such as `-2RS1/C3` or `ECP` do not matter), by its
+    /// numbers, or both: `NU 205, elements=13`.
     ///
     /// # Errors
     /// What is not understood, with the names and numbers that are.
@@ -277,7 +288,8 @@ impl CatalogueBearing {
         let ([diameter, pitch], most) = (bearing.shown_mm(), bearing.most_elements());
         if let Some(elements) = bearing.elements.filter(|elements| *elements > most) {
             return Err(format!(
-                "`{text}` is no bearing: {elements} rolling elements of {diameter} mm do not fit on a pitch circle of {pitch} mm: {most} at most"
+                "`{text}` is no bearing: {elements} rolling elements of {diameter} mm do not fit on a pitch \
+                 circle of {pitch} mm: {most} at most"
             ));
         }
         Ok(bearing)
@@ -290,7 +302,8 @@ impl CatalogueBearing {
     pub fn orders(&self) -> Result<DefectOrders, String> {
         let Some(elements) = self.elements else {
             return Err(format!(
-                "makers fit different numbers of rolling elements into `{0}`: count them, and give `--bearing \"{0}, elements=…\"`",
+                "makers fit different numbers of rolling elements into `{0}`: count them, and give \
+                 `--bearing \"{0}, elements=…\"`",
                 self.name
             ));
         };
@@ -333,8 +346,8 @@ fn find(name: &str, advice: &str) -> Result<CatalogueBearing, String> {
         |text: &str| text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_uppercase();
     let fits = |asked: &str, bearing: &CatalogueBearing| {
         let own = plain(&bearing.name);
-        // `6205-2RS1` and `6205-2Z` are a 6205, with two seals or shields, and 62055 is not. Inserts have bores of their own, which their
-        // balls do not know of: `UER204-12`.
+        // `6205-2RS1` and `6205-2Z` are a 6205, with two seals or shields, and 62055 is not. Inserts have
+        // bores of their own, which their balls do not know of: `UER204-12`.
         asked.strip_prefix(&own).is_some_and(|rest| {
             let mut letters = rest.chars();
             match letters.next() {
@@ -359,8 +372,9 @@ mod tests {
 
     #[test]
     fn peer_orders_are_those_that_the_data_center_prints() {
-        // Case Western Reserve University Bearing Data Center (2000), defect frequencies, in multiples of the shaft; its 4.7135
-        // and 3.9874 are twice the spin. Dimensions have four digits there, so the third decimal is shared.
+        // Case Western Reserve University Bearing Data Center (2000), defect frequencies, in multiples of the
+        // shaft; its 4.7135 and 3.9874 are twice the spin. Dimensions have four digits there, so the third
+        // decimal is shared.
         const SHARED: f64 = 2e-3;
         for (name, bpfi, bpfo, ftf, twice_bsf) in
             [("6205-2RS", 5.4152, 3.5848, 0.39828, 4.7135), ("6203 2RS", 4.9469, 3.0530, 0.3817, 3.9874)]

@@ -54,8 +54,8 @@ mod tests {
         (ContactNumbers::of(&scene, &material, 1e-3 * scene.mesh.size_mm), scene)
     }
 
-    /// Source: Hallquist 2006, LS-DYNA Theory Manual, chapter on contact: standard penalty, segment-based penalty and
-    /// contact damping.
+    /// Source: Hallquist 2006, LS-DYNA Theory Manual, chapter on contact: standard penalty, segment-based
+    /// penalty and contact damping.
     #[test]
     fn analytic_published_formulas_for_a_block_behind_a_segment() {
         // A segment of a by a on a cube of edge a: A²/V = a; its force over the penetration, over its area.
@@ -69,7 +69,8 @@ mod tests {
             let (found, _) = numbers(ContactFormula::LsdynaStandard, passes);
             let k = 0.1 * bulk * area * area / volume;
             close(found.stiffness, count * k / area);
-            // ξ = 2 m ω with m the smaller mass and ω = √(k (m₁ + m₂)/(m₁ m₂)), for each pass; a node has half a cube.
+            // ξ = 2 m ω with m the smaller mass and ω = √(k (m₁ + m₂)/(m₁ m₂)), for each pass; a node has
+            // half a cube.
             let m = 0.5 * rho * volume;
             let critical = 2.0 * m * (k * 2.0 * m / (m * m)).sqrt();
             // What `Law::with_damping` makes of it at a ratio of one.

@@ -1,5 +1,5 @@
-//! Deviations of raceways and rolling elements from round: what a scene says of them, and how deep the surface lies at any
-//! angle.
+//! Deviations of raceways and rolling elements from round: what a scene says of them, and how deep the
+//! surface lies at any angle.
 
 use std::f64::consts::{PI, TAU};
 
@@ -131,8 +131,8 @@ pub struct RoughnessScene {
     pub shortest_mm: f64,
     /// Seed of the phases.
     pub seed: u64,
-    /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random walk, 0 the same at all
-    /// wavelengths of the band; a self-affine profile of the Hurst exponent H has 1 + 2H.
+    /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random walk,
+    /// 0 the same at all wavelengths of the band; a self-affine profile of the Hurst exponent H has 1 + 2H.
     #[serde(skip_serializing_if = "is_random_walk")]
     pub slope: f64,
 }
@@ -304,8 +304,8 @@ struct Piece {
 }
 
 impl Relief {
-    /// What the deviations make of a surface of the radius `radius` [m] whose facets are `facet_mm` long; `None` when none of
-    /// them is `on` it. Grooves of raceways are no part of it.
+    /// What the deviations make of a surface of the radius `radius` [m] whose facets are `facet_mm` long;
+    /// `None` when none of them is `on` it. Grooves of raceways are no part of it.
     pub fn of(deviations: &[DeviationScene], on: RollingSurface, radius: f64, facet_mm: f64) -> Option<Self> {
         let mut relief = Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 };
         let mut any = false;
@@ -488,7 +488,8 @@ mod tests {
         assert!(relief(RollingSurface::Roller(2)).is_none());
     }
 
-    /// Source: THEORY §6.4; the mean square over the circumference is half the sum of the squares of the amplitudes (Parseval).
+    /// Source: THEORY §6.4; the mean square over the circumference is half the sum of the squares of the
+    /// amplitudes (Parseval).
     #[test]
     fn analytic_roughness_has_its_root_mean_square_and_band() {
         let relief = on_outer(FormScene::Roughness(RoughnessScene { rq_um: 0.4, ..Default::default() }));
@@ -504,7 +505,8 @@ mod tests {
     }
 
     /// The power in two bands of the profile, from its sine and cosine parts at each order, tells the slope.
-    /// Source: Persson et al. 2005, §2: a self-affine profile of the Hurst exponent H has C(q) ∝ q^−(1 + 2H); THEORY §6.4.
+    /// Source: Persson et al. 2005, §2: a self-affine profile of the Hurst exponent H has C(q) ∝ q^−(1 + 2H);
+    /// THEORY §6.4.
     #[test]
     fn analytic_roughness_has_the_slope_of_its_spectrum() {
         const N: usize = 4096;
@@ -532,7 +534,8 @@ mod tests {
         }
     }
 
-    /// Scenes from before there was a slope keep their text, and so their hash, and their surface to the last bit.
+    /// Scenes from before there was a slope keep their text, and so their hash, and their surface to the last
+    /// bit.
     #[test]
     fn invariant_roughness_without_a_slope_is_a_random_walk() {
         let plain = ron::to_string(&RoughnessScene::default()).expect("written");

@@ -182,7 +182,8 @@ mod tests {
     #[test]
     fn example_rings_that_both_change_their_speed() {
         const RIGID: &str = "housing=rigid()";
-        // The shaft from 500 to 1500 rpm in 20 ms, the outer ring at −100 rpm: turns against it are the area between the two.
+        // The shaft from 500 to 1500 rpm in 20 ms, the outer ring at −100 rpm: turns against it are the area
+        // between the two.
         let ramp = "operation.speed_profile=ramp(from_ms: 0, to_ms: 20, to: 1500)";
         let beside = with(&[RIGID, ramp, "operation.outer_speed_rpm=-100"]);
         assert_eq!(beside.relative_range_rpm(0.0, 0.02), [600.0, 1600.0]);
@@ -193,8 +194,9 @@ mod tests {
         close(beside.outer_rad(0.03), TAU * 0.03 * 100.0 / 60.0);
         let [inner, outer] = beside.mean_speeds_rpm(0.02);
         assert_eq!([inner, outer].map(f64::round), [1000.0, -100.0]);
-        // Both change, and their difference turns between the corners of either: 500 + 100 sin(2π 5 t) against a ramp of
-        // 5 rpm/ms. Its derivative, 1000π cos(10πt) − 5000, never vanishes: it falls from 500 to −500 at 200 ms.
+        // Both change, and their difference turns between the corners of either: 500 + 100 sin(2π 5 t)
+        // against a ramp of 5 rpm/ms. Its derivative, 1000π cos(10πt) − 5000, never vanishes: it falls from
+        // 500 to −500 at 200 ms.
         let both = with(&[
             RIGID,
             "operation.speed_profile=harmonic(amplitude: 100, hz: 5)",

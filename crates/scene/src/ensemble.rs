@@ -1,7 +1,7 @@
 //! Many starts of one scene: what is drawn for each, and `ensemble.json`, which says how many there are.
 //!
-//! Nobody knows how a bearing stood when the clock began, and what rattles or strikes in it depends on that. So a start
-//! draws what a scene leaves to chance, from a seed and its number:
+//! Nobody knows how a bearing stood when the clock began, and what rattles or strikes in it depends on that.
+//! So a start draws what a scene leaves to chance, from a seed and its number:
 //!
 //! | drawn | evenly over |
 //! |---|---|
@@ -9,10 +9,10 @@
 //! | phase of the rollers' meshes | one facet of a roller |
 //! | place of each roller in its pocket | the clearance of the pocket, to either side |
 //!
-//! A turn by more than a facet would mostly shift the record in time; within one, the same rollers cross the defect in every
-//! start, none of them earlier than in the scene, and their events can be compared. All rollers have one phase, so that the
-//! copies of their mesh keep the pattern of the scene. What was drawn stands in the scene of the start, which
-//! makes it a run like any other.
+//! A turn by more than a facet would mostly shift the record in time; within one, the same rollers cross the
+//! defect in every start, none of them earlier than in the scene, and their events can be compared. All
+//! rollers have one phase, so that the copies of their mesh keep the pattern of the scene. What was drawn
+//! stands in the scene of the start, which makes it a run like any other.
 
 use std::collections::BTreeMap;
 
@@ -21,8 +21,8 @@ use serde::{Deserialize, Serialize};
 use crate::dice::Dice;
 use crate::scene::Scene;
 
-/// Angles are drawn in millionths of a degree, places in thousandths of a micrometre: short to read, and finer than
-/// anything that a mesh resolves.
+/// Angles are drawn in millionths of a degree, places in thousandths of a micrometre: short to read, and
+/// finer than anything that a mesh resolves.
 const DIGITS: [f64; 2] = [1e6, 1e3];
 
 /// Longest name of a scene, as [`Scene::validate`] has it.
@@ -139,8 +139,8 @@ mod tests {
         assert!((1..50).all(|number| start(&turned, 1, number).validate().is_ok()));
     }
 
-    /// Draws fill their ranges evenly: mean and variance of a uniform distribution, (b − a)²/12, within four standard
-    /// errors of so many draws.
+    /// Draws fill their ranges evenly: mean and variance of a uniform distribution, (b − a)²/12, within four
+    /// standard errors of so many draws.
     #[test]
     fn invariant_draws_are_even_over_their_ranges() {
         const STARTS: usize = 2000;

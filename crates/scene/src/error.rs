@@ -28,7 +28,8 @@ pub enum Error {
 
     /// The rigid-ring load distribution was not found.
     #[error(
-        "no static load distribution found: after {iterations} iterations {residual_n:.3e} N of {load_n:.4} N are unbalanced. \
+        "no static load distribution found: after {iterations} iterations {residual_n:.3e} N of {load_n:.4} \
+         N are unbalanced. \
          Check `load_n` against `thickness_mm`: the approach must stay far below the roller's radius"
     )]
     NoEquilibrium {
@@ -73,7 +74,8 @@ pub enum Error {
 
     /// The folder for a run, or for what is made of runs, holds something else.
     #[error(
-        "`{}` holds files of something else (for example `{found}`), and what is written there would mix with them. \
+        "`{}` holds files of something else (for example `{found}`), and what is written there would mix \
+         with them. \
          Try another folder with --out, or empty this one",
         path.display()
     )]
@@ -101,7 +103,8 @@ pub enum Error {
     },
 
     /// Another process is writing this run.
-    #[error("`{}` is being written by another run (process {owner}). Wait for it, or choose another folder with --out", path.display())]
+    #[error("`{}` is being written by another run (process {owner}). Wait for it, or choose another folder \
+        with --out", path.display())]
     FolderInUse {
         /// The folder.
         path: PathBuf,
@@ -110,7 +113,8 @@ pub enum Error {
     },
 
     /// A folder that should hold a run does not.
-    #[error("`{}` is not a run of Stribeck: `{missing}` is missing. Name the folder of a run, such as those below `runs/`", path.display())]
+    #[error("`{}` is not a run of Stribeck: `{missing}` is missing. Name the folder of a run, such as those \
+        below `runs/`", path.display())]
     NotARun {
         /// The folder.
         path: PathBuf,
@@ -132,7 +136,8 @@ pub enum Error {
 
     /// `scene.ron` is not the scene that was simulated.
     #[error(
-        "`scene.ron` in `{}` was changed after the run: it is the scene {found}, and `run.json` names {expected}. Put the run's own \
+        "`scene.ron` in `{}` was changed after the run: it is the scene {found}, and `run.json` names \
+         {expected}. Put the run's own \
          `scene.ron` back, or simulate the changed one anew",
         path.display()
     )]

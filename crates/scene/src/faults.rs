@@ -17,12 +17,14 @@ impl Scene {
         (1..=self.bearing.rollers).filter(move |number| !missing(*number))
     }
 
-    /// Spalls with steep walls, which meshes of raceways are cut with: `defect`, then those of `defects` in their order.
+    /// Spalls with steep walls, which meshes of raceways are cut with: `defect`, then those of `defects` in
+    /// their order.
     pub fn grooves(&self) -> Vec<DefectScene> {
         self.defect.iter().cloned().chain(self.defects.iter().filter_map(DeviationScene::groove)).collect()
     }
 
-    /// Spalls of raceways, whose entries and exits a report looks for: `defect`, then those of `defects` in their order.
+    /// Spalls of raceways, whose entries and exits a report looks for: `defect`, then those of `defects` in
+    /// their order.
     pub fn spalls(&self) -> Vec<DefectScene> {
         let of_defects = self.defects.iter().filter_map(|deviation| {
             let FormScene::Spall(spall) = &deviation.form else { return None };
@@ -48,8 +50,8 @@ impl Scene {
         self.spalls().into_iter().next()
     }
 
-    /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, the outer raceway first
-    /// and rollers last. Waves and other diameters are none.
+    /// Surfaces with a defect that strikes once a passage: spalls, dents and profiles, each surface once, the
+    /// outer raceway first and rollers last. Waves and other diameters are none.
     pub fn faults(&self) -> Vec<RollingSurface> {
         let of_defect = self.defect.iter().map(|defect| match defect.ring {
             DefectRing::Outer => RollingSurface::Outer,

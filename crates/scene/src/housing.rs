@@ -1,7 +1,8 @@
 //! What holds the outer ring and takes the load: the paper's adapter, or other housings.
 //!
-//! The inner ring turns about a fixed centre, and the load pushes what is outside towards it, as on a wheel or under the
-//! paper's adapter. A load on the shaft of a housing that stands still is the same seen from the shaft.
+//! The inner ring turns about a fixed centre, and the load pushes what is outside towards it, as on a wheel
+//! or under the paper's adapter. A load on the shaft of a housing that stands still is the same seen from the
+//! shaft.
 
 use serde::{Deserialize, Serialize};
 
@@ -34,8 +35,8 @@ pub struct PedestalScene {
     pub top_mm: f64,
 }
 
-/// An elastic housing from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the centre of the bearing
-/// in the origin. Its material is that of the bearing.
+/// An elastic housing from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the
+/// centre of the bearing in the origin. Its material is that of the bearing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct MeshHousingScene {
@@ -60,8 +61,8 @@ pub struct RigidHousingScene {
     pub mass_kg: f64,
 }
 
-/// Springs and dampers all around the ring, evenly spread, to a frame that does not deform or turn and takes the load. Each
-/// spring holds its node of the ring in every direction.
+/// Springs and dampers all around the ring, evenly spread, to a frame that does not deform or turn and takes
+/// the load. Each spring holds its node of the ring in every direction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SpringHousingScene {

@@ -1,9 +1,9 @@
-//! Ideal kinematics: who turns how fast when nothing slips, when a roller crosses the defect, and which tones the facets
-//! of a mesh make.
+//! Ideal kinematics: who turns how fast when nothing slips, when a roller crosses the defect, and which tones
+//! the facets of a mesh make.
 //!
-//! Angles count counter-clockwise from the x axis. An inner ring at a positive speed turns clockwise, so its angular velocity
-//! and that of the cage are negative, and that of a roller is positive; at a negative speed all are the other way round.
-//! Frequencies are magnitudes.
+//! Angles count counter-clockwise from the x axis. An inner ring at a positive speed turns clockwise, so its
+//! angular velocity and that of the cage are negative, and that of a roller is positive; at a negative speed
+//! all are the other way round. Frequencies are magnitudes.
 
 use std::f64::consts::TAU;
 
@@ -12,16 +12,16 @@ use crate::scene::{BearingScene, DefectRing, DefectScene, Scene};
 
 /// Speeds of a bearing whose rollers do not slip.
 ///
-/// Three definitions of the cage's speed differ by one part in ten thousand, because a bearing with clearance has no
-/// single pitch circle; each has its own field.
+/// Three definitions of the cage's speed differ by one part in ten thousand, because a bearing with clearance
+/// has no single pitch circle; each has its own field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kinematics {
     /// Shaft frequency f_s, of the inner ring [Hz].
     pub shaft_hz: f64,
     /// Frequency of the outer ring f_o [Hz]; zero for one that stands still.
     pub outer_ring_hz: f64,
-    /// Cage frequency in space, the fundamental train frequency [Hz]: (f_s·D_i + f_o·D_o)/(D_i + D_o), rolling on both raceways
-    /// with the roller's centre half-way between them.
+    /// Cage frequency in space, the fundamental train frequency [Hz]: (f_s·D_i + f_o·D_o)/(D_i + D_o),
+    /// rolling on both raceways with the roller's centre half-way between them.
     pub cage_hz: f64,
     /// The same as seen from the outer ring [Hz], (f_s − f_o)·D_i/(D_i + D_o). Event times use this one.
     pub cage_on_outer_hz: f64,
@@ -29,8 +29,8 @@ pub struct Kinematics {
     pub cage_on_inner_hz: f64,
     /// Cage frequency by the paper's equation (1), BPFO/N_r [Hz].
     pub cage_equation_1_hz: f64,
-    /// Cage frequency of rollers that ride on the outer raceway, as seen from it [Hz]: the centre's path has the radius
-    /// (D_o − D_r)/2. The initial velocities use this one.
+    /// Cage frequency of rollers that ride on the outer raceway, as seen from it [Hz]: the centre's path has
+    /// the radius (D_o − D_r)/2. The initial velocities use this one.
     pub cage_outer_hz: f64,
     /// Ball (here roller) pass frequency of the outer raceway, the paper's equation (1) [Hz].
     pub bpfo_hz: f64,
@@ -48,10 +48,11 @@ pub struct Kinematics {
     pub cage_rad_s: f64,
     /// Angular velocity of a roller in space, riding on the outer raceway [rad/s].
     pub roller_rad_s: f64,
-    /// Angular velocity of a roller seen from the cage, `roller_rad_s − cage_rad_s` [rad/s], positive where the inner ring turns
-    /// clockwise against the outer one.
+    /// Angular velocity of a roller seen from the cage, `roller_rad_s − cage_rad_s` [rad/s], positive where
+    /// the inner ring turns clockwise against the outer one.
     pub roller_relative_rad_s: f64,
-    /// Speed of the contact point along the outer raceway [m/s], positive, with [`Kinematics::cage_on_outer_hz`].
+    /// Speed of the contact point along the outer raceway [m/s], positive, with
+    /// [`Kinematics::cage_on_outer_hz`].
     pub contact_speed_m_s: f64,
     bearing: Dimensions,
 }
@@ -68,8 +69,8 @@ struct Dimensions {
 pub struct FacetCounts {
     /// Facets (= vertices) of a roller.
     pub roller: usize,
-    /// Effective facets of the outer raceway: 2π divided by the angle of one facet outside the defect, so that the
-    /// finer facets of a graded defect do not count.
+    /// Effective facets of the outer raceway: 2π divided by the angle of one facet outside the defect, so
+    /// that the finer facets of a graded defect do not count.
     pub outer: f64,
     /// Effective facets of the inner raceway, defined likewise.
     pub inner: f64,
@@ -111,20 +112,22 @@ impl Kinematics {
         Self::between(&scene.bearing, duty.speed_rpm(0.0), duty.outer_speed_rpm(0.0))
     }
 
-    /// Kinematics of a scene's bearing at its mean speeds over the run: where a speed changes, ratios of its frequencies to that of
-    /// the rings against each other are what holds.
+    /// Kinematics of a scene's bearing at its mean speeds over the run: where a speed changes, ratios of its
+    /// frequencies to that of the rings against each other are what holds.
     pub fn at_mean_speed(scene: &Scene) -> Self {
         let duration_s = 1e-3 * scene.solver.duration_ms;
         let [inner_rpm, outer_rpm] = scene.duty().mean_speeds_rpm(duration_s);
         Self::between(&scene.bearing, inner_rpm, outer_rpm)
     }
 
-    /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive, and the outer one at rest.
+    /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive, and the
+    /// outer one at rest.
     pub fn new(bearing: &BearingScene, speed_rpm: f64) -> Self {
         Self::between(bearing, speed_rpm, 0.0)
     }
 
-    /// Kinematics of `bearing` with the inner and the outer ring at these speeds [rpm], clockwise where they are positive.
+    /// Kinematics of `bearing` with the inner and the outer ring at these speeds [rpm], clockwise where they
+    /// are positive.
     pub fn between(bearing: &BearingScene, inner_rpm: f64, outer_rpm: f64) -> Self {
         let (shaft, ring) = (inner_rpm / 60.0, outer_rpm / 60.0);
         // Rollers see the difference; what they do in space has the outer ring's motion on top.
@@ -135,8 +138,9 @@ impl Kinematics {
         let pitch = (outer + inner) / 2.0;
         let cage_on_outer_hz = relative_hz * inner / (inner + outer);
         let bpfo_hz = relative_hz * count / 2.0 * (1.0 - roller / pitch);
-        // Riding on the outer raceway, the roller touches the inner one at radius (D_o − 2 D_r)/2 in the load zone,
-        // where the ring has come up by the clearance; the ring's surface speed is that of its own radius.
+        // Riding on the outer raceway, the roller touches the inner one at radius (D_o − 2 D_r)/2 in the load
+        // zone, where the ring has come up by the clearance; the ring's surface speed is that of its own
+        // radius.
         let centre_path = (outer - roller) / 2.0;
         let cage_outer_hz = relative_hz * (inner / 2.0) / (2.0 * centre_path);
         let on_outer_rad_s = -TAU * cage_outer_hz.copysign(clockwise_hz);
@@ -164,16 +168,17 @@ impl Kinematics {
         }
     }
 
-    /// 1 for an inner ring that turns clockwise against the outer one or stands, −1 for one that turns counter-clockwise.
+    /// 1 for an inner ring that turns clockwise against the outer one or stands, −1 for one that turns
+    /// counter-clockwise.
     pub fn sense(&self) -> f64 {
         if self.shaft_rad_s > self.outer_rad_s { -1.0 } else { 1.0 }
     }
 
     /// Facet-passing tones of a mesh, THEORY §5.
     ///
-    /// A roller shows its vertices to both raceways at N_v·f_spin; the nodes of the outer raceway pass a contact at
-    /// N_o·f_c, those of the inner one at N_i·(f_s − f_c). Spin is the same number at both raceways, so the roller has
-    /// one tone, not two.
+    /// A roller shows its vertices to both raceways at N_v·f_spin; the nodes of the outer raceway pass a
+    /// contact at N_o·f_c, those of the inner one at N_i·(f_s − f_c). Spin is the same number at both
+    /// raceways, so the roller has one tone, not two.
     pub fn facet_tones(&self, facets: FacetCounts) -> [Tone; 3] {
         [
             Tone { name: "roller_vertices", hz: facets.roller as f64 * self.roller_spin_hz },
@@ -182,11 +187,11 @@ impl Kinematics {
         ]
     }
 
-    /// The paper's equation (2) for the outer and the inner raceway [Hz], elements of `element_size` [m]: for comparison
-    /// only.
+    /// The paper's equation (2) for the outer and the inner raceway [Hz], elements of `element_size` [m]: for
+    /// comparison only.
     ///
-    /// The value for the inner raceway uses the cage's speed where the speed of the contact relative to the inner ring
-    /// belongs, so it stands for no motion in the bearing.
+    /// The value for the inner raceway uses the cage's speed where the speed of the contact relative to the
+    /// inner ring belongs, so it stands for no motion in the bearing.
     pub fn paper_noise_hz(&self, element_size: f64) -> (f64, f64) {
         let tone = |diameter_m: f64| TAU * self.cage_on_outer_hz * diameter_m / (2.0 * element_size);
         (tone(self.bearing.outer_m), tone(self.bearing.inner_m))
@@ -194,10 +199,10 @@ impl Kinematics {
 
     /// Rollers that leave `defect` within `duration_s`, in the order of their entry.
     ///
-    /// They start at the angles `start_deg`, roller 1 first. As seen from the outer ring all move with the shaft: clockwise at
-    /// a positive speed, where the leading edge is the one at the larger angle; as seen from the inner one, which turns
-    /// faster, the other way round. A roller that starts inside the defect has a negative entry time. Empty when the rings
-    /// stand still against each other.
+    /// They start at the angles `start_deg`, roller 1 first. As seen from the outer ring all move with the
+    /// shaft: clockwise at a positive speed, where the leading edge is the one at the larger angle; as seen
+    /// from the inner one, which turns faster, the other way round. A roller that starts inside the defect
+    /// has a negative entry time. Empty when the rings stand still against each other.
     pub fn crossings(&self, defect: &DefectScene, start_deg: &[f64], duration_s: f64) -> Vec<Crossing> {
         let sense = self.sense();
         let (speed, diameter, ahead) = match defect.ring {
@@ -223,8 +228,8 @@ impl Kinematics {
     }
 }
 
-/// Angles of a scene's rollers at the start [°], counter-clockwise from the x axis, roller 1 first, and those where one is
-/// missing.
+/// Angles of a scene's rollers at the start [°], counter-clockwise from the x axis, roller 1 first, and those
+/// where one is missing.
 pub fn roller_angles_deg(scene: &Scene) -> Vec<f64> {
     let b = &scene.bearing;
     let path_mm = 0.5 * (b.outer_race_diameter_mm - b.roller_diameter_mm);
@@ -238,7 +243,8 @@ pub fn roller_angles_deg(scene: &Scene) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    /// Source: an inner raceway meets every roller (f_s − f_c) N times in N turns of the cage relative to it, THEORY §5.1.
+    /// Source: an inner raceway meets every roller (f_s − f_c) N times in N turns of the cage relative to it,
+    /// THEORY §5.1.
     #[test]
     fn analytic_rollers_cross_an_inner_defect_at_bpfi() {
         let scene = Scene::default();
@@ -249,7 +255,8 @@ mod tests {
         // Formulas with the pitch circle share the clearance between the raceways otherwise.
         assert_close(apart, 1.0 / k.bpfi_hz, PRINTED);
         assert_close(apart, 1.0 / (24.0 * (k.shaft_hz - k.cage_hz)), 1e-9);
-        // The roller behind the defect in the sense of rotation comes never first: the inner ring runs ahead of it.
+        // The roller behind the defect in the sense of rotation comes never first: the inner ring runs ahead
+        // of it.
         assert_eq!(crossings[0].roller, 24);
         let length_m = k.contact_speed_m_s * (crossings[0].exit_s - crossings[0].entry_s);
         assert_close(length_m, 10e-3, 1e-9);
@@ -320,7 +327,8 @@ mod tests {
 
     #[test]
     fn invariant_contact_points_do_not_slip() {
-        // Riding on the outer raceway: the roller's outermost point stands still, its innermost one moves with the ring.
+        // Riding on the outer raceway: the roller's outermost point stands still, its innermost one moves
+        // with the ring.
         let k = paper();
         let centre = k.cage_rad_s * 91.0e-3;
         assert!((centre + k.roller_rad_s * 9.0e-3).abs() < 1e-12);
@@ -350,7 +358,8 @@ mod tests {
         assert_close(inner, 3864.0, ROUNDED_INPUT);
     }
 
-    /// Source: Singh et al. 2014, table 1, computed apart from this program (`fixtures/reference/event_times.json`).
+    /// Source: Singh et al. 2014, table 1, computed apart from this program
+    /// (`fixtures/reference/event_times.json`).
     #[test]
     fn analytic_event_times_of_the_reference() {
         let text = include_str!("../../../fixtures/reference/event_times.json");
@@ -383,7 +392,8 @@ mod tests {
         assert!(inside[0].entry_s < 0.0 && inside[0].roller == 1);
     }
 
-    /// Rolling without slip (THEORY §5.1): a roller ahead by s arrives earlier by s over the speed of its centre.
+    /// Rolling without slip (THEORY §5.1): a roller ahead by s arrives earlier by s over the speed of its
+    /// centre.
     #[test]
     fn analytic_a_roller_out_of_the_middle_of_its_pocket_arrives_as_much_later() {
         let mut scene = Scene::default();
@@ -399,8 +409,8 @@ mod tests {
         }
     }
 
-    /// What turns the other way is the mirror image: frequencies stay, angular velocities change their sign, and rollers that
-    /// start at mirrored angles meet a mirrored defect at the same times.
+    /// What turns the other way is the mirror image: frequencies stay, angular velocities change their sign,
+    /// and rollers that start at mirrored angles meet a mirrored defect at the same times.
     #[test]
     fn invariant_a_shaft_that_turns_back_is_the_mirror_image() {
         let scene = Scene::default();

@@ -1,11 +1,12 @@
-//! What a user writes and what a run leaves: scenes of rolling element bearings, their kinematics, run folders and traces.
+//! What a user writes and what a run leaves: scenes of rolling element bearings, their kinematics, run
+//! folders and traces.
 //!
 //! Nothing here meshes or simulates, so that whoever only reads a run links neither.
 //!
 //! # A scene: who turns how fast, who carries how much
 //!
-//! A scene is a text in [RON](https://docs.rs/ron); what it does not say has a default. Numbers carry their unit in their
-//! name there, and are SI in a [`ResolvedScene`](resolved::ResolvedScene).
+//! A scene is a text in [RON](https://docs.rs/ron); what it does not say has a default. Numbers carry their
+//! unit in their name there, and are SI in a [`ResolvedScene`](resolved::ResolvedScene).
 //!
 //! ```
 //! use stribeck_scene::{Scene, kinematics::Kinematics, static_load};

@@ -13,7 +13,8 @@ pub(crate) struct LineContacts {
     poisson: f64,
     /// Radius of the roller [m].
     roller: f64,
-    /// Outer and inner contact: effective radius and ring thickness [m]; no thickness of a ring that does not deform.
+    /// Outer and inner contact: effective radius and ring thickness [m]; no thickness of a ring that does not
+    /// deform.
     sides: [(f64, Option<f64>); 2],
 }
 
@@ -59,10 +60,11 @@ impl LineContacts {
         sum
     }
 
-    /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²]; `None` beyond the largest approach that the law
-    /// knows, where contacts as wide as the roller would give way without more load.
+    /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²]; `None` beyond the largest
+    /// approach that the law knows, where contacts as wide as the roller would give way without more load.
     pub(crate) fn load(&self, delta: f64) -> Option<(f64, f64)> {
-        // δ(w) is concave, so Newton from below never overshoots; 80 is more than the logarithms of any real load.
+        // δ(w) is concave, so Newton from below never overshoots; 80 is more than the logarithms of any real
+        // load.
         let mut w = delta / (80.0 * self.softness);
         for _ in 0..100 {
             let (at, slope) = self.approach(w);
@@ -76,8 +78,8 @@ impl LineContacts {
         (slope > 0.0 && (at - delta).abs() <= 1e-9 * delta).then_some((w, 1.0 / slope))
     }
 
-    /// Energy of the contacts under the line load `w` at the approach `delta` that it makes [J/m]: ∫ w dδ, by parts w δ less ∫ δ dw, in
-    /// which each logarithm of w leaves w²/4.
+    /// Energy of the contacts under the line load `w` at the approach `delta` that it makes [J/m]: ∫ w dδ, by
+    /// parts w δ less ∫ δ dw, in which each logarithm of w leaves w²/4.
     pub(crate) fn energy(&self, w: f64, delta: f64) -> f64 {
         let all: f64 = self.sides.iter().map(|(_, depth)| logarithms(*depth)).sum();
         0.5 * w * delta - 0.25 * all * self.softness * w * w

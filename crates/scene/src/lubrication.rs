@@ -1,5 +1,5 @@
-//! Oil films of loaded contacts in steady rolling, from the textbook: for a plan, and for the least thickness that a film
-//! keeps (THEORY §4.6). No pressure is computed.
+//! Oil films of loaded contacts in steady rolling, from the textbook: for a plan, and for the least thickness
+//! that a film keeps (THEORY §4.6). No pressure is computed.
 
 use crate::{
     duty::LONGEST_RUN_S, error::Error, kinematics::Kinematics, resolved::ResolvedScene, static_load,
@@ -16,8 +16,8 @@ pub struct LoadedFilm {
     pub thickness: f64,
     /// Thickness over the composite roughness, λ [-].
     pub lambda: f64,
-    /// Thickness below which no film of the raceway falls [m]: that of the loaded contact, or where it is thinner the
-    /// composite roughness, whose tips then hold the surfaces apart.
+    /// Thickness below which no film of the raceway falls [m]: that of the loaded contact, or where it is
+    /// thinner the composite roughness, whose tips then hold the surfaces apart.
     pub least: f64,
 }
 
@@ -29,13 +29,15 @@ pub fn loaded_films(scene: &ResolvedScene) -> Result<Option<[LoadedFilm; 2]>, Er
     let Some(film) = scene.film else { return Ok(None) };
     let load = static_load::at_start(scene)?.max_roller_n() / scene.thickness;
     let k = Kinematics::of(&scene.written);
-    // What sweeps over either surface is the contact: with the cage over the outer raceway, against the shaft over the inner.
+    // What sweeps over either surface is the contact: with the cage over the outer raceway, against the shaft
+    // over the inner.
     let speeds = [
         (k.cage_rad_s - k.outer_rad_s).abs() * scene.outer_race_radius,
         (k.shaft_rad_s - k.cage_rad_s).abs() * scene.inner_race_radius,
     ];
     let modulus = 2.0 * scene.material.contact_modulus();
-    // The least film is that of the slowest moment of the profile, however long the run: it can be made longer.
+    // The least film is that of the slowest moment of the profile, however long the run: it can be made
+    // longer.
     let slowest = scene.varying_duty().map_or(1.0, |duty| {
         let slowest = duty.slowest_rpm(LONGEST_RUN_S) / 60.0;
         let at_start = k.cage_on_outer_hz + k.cage_on_inner_hz;
@@ -61,9 +63,10 @@ pub fn loaded_films(scene: &ResolvedScene) -> Result<Option<[LoadedFilm; 2]>, Er
 /// h = 2.65 R G^0.54 U^0.7 W^−0.13     G = αE′,  U = ηu/(E′R),  W = w/(E′R)
 /// ```
 ///
-/// with the viscosity η [Pa s], its pressure coefficient α [1/Pa], E′ = E/(1 − ν²) of like bodies [Pa], the relative radius R
-/// [m], the entrainment speed u [m/s] and the load a length w [N/m]. Source: D. Dowson, Proc. Instn Mech. Engrs 182 (3A)
-/// (1967–68) 151–167, after D. Dowson, G. R. Higginson, Elasto-hydrodynamic Lubrication, Pergamon 1966.
+/// with the viscosity η [Pa s], its pressure coefficient α [1/Pa], E′ = E/(1 − ν²) of like bodies [Pa], the
+/// relative radius R [m], the entrainment speed u [m/s] and the load a length w [N/m]. Source: D. Dowson,
+/// Proc. Instn Mech. Engrs 182 (3A) (1967–68) 151–167, after D. Dowson, G. R. Higginson, Elasto-hydrodynamic
+/// Lubrication, Pergamon 1966.
 fn least_thickness(
     viscosity: f64,
     pressure_viscosity: f64,
@@ -82,9 +85,10 @@ mod tests {
     use super::*;
     use crate::scene::{FilmScene, OperationScene, Scene};
 
-    /// B. J. Hamrock, S. R. Schmid, B. O. Jacobson, Fundamentals of Fluid Film Lubrication, 2nd ed. 2004, use the same groups.
-    /// By hand, for η = 0.04 Pa s, α = 22/GPa, E′ = 228 GPa, R = 11.43 mm, u = 2 m/s and w = 500 kN/m: G = 5016, U = 3.0698e-11,
-    /// W = 1.9186e-4, so 2.65 · 99.65 · 4.378e-8 · 3.042 · 11.43 mm = 0.402 µm.
+    /// B. J. Hamrock, S. R. Schmid, B. O. Jacobson, Fundamentals of Fluid Film Lubrication, 2nd ed. 2004, use
+    /// the same groups. By hand, for η = 0.04 Pa s, α = 22/GPa, E′ = 228 GPa, R = 11.43 mm, u = 2 m/s and w =
+    /// 500 kN/m: G = 5016, U = 3.0698e-11, W = 1.9186e-4, so 2.65 · 99.65 · 4.378e-8 · 3.042 · 11.43 mm =
+    /// 0.402 µm.
     #[test]
     fn analytic_film_of_a_loaded_line_contact() {
         let found = least_thickness(0.04, 22e-9, 228e9, 11.43e-3, 2.0, 5e5);

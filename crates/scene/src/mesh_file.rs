@@ -1,8 +1,9 @@
-//! The mesh of a run, read back from its `mesh.vtu`: bodies by name, where their nodes are free of stress and where they are
-//! when the run starts, and their elements. Nothing needs to be meshed again to draw a run.
+//! The mesh of a run, read back from its `mesh.vtu`: bodies by name, where their nodes are free of stress and
+//! where they are when the run starts, and their elements. Nothing needs to be meshed again to draw a run.
 //!
-//! `mesh.vtu` is a file for ParaView as well (VTK's unstructured grid, appended raw data). It is read as this program
-//! writes it: an XML header of one tag a line, then the arrays, little-endian, each after its length in 64 bits.
+//! `mesh.vtu` is a file for ParaView as well (VTK's unstructured grid, appended raw data). It is read as this
+//! program writes it: an XML header of one tag a line, then the arrays, little-endian, each after its length
+//! in 64 bits.
 //!
 //! | array | type | what |
 //! |---|---|---|
@@ -12,10 +13,12 @@
 //! | `types`, `connectivity` | u8, i32 | cells: quadrilaterals (9) first, then triangles (5), and their nodes |
 //! | `body` | i32 a cell | the body that it belongs to |
 //!
-//! Earlier versions wrote the names as one array `body_names` of texts, each of which ends with a zero byte; they are read, too.
+//! Earlier versions wrote the names as one array `body_names` of texts, each of which ends with a zero byte;
+//! they are read, too.
 //!
-//! A reduced run keeps no more of rings and housing than their modes: they stand in the file as at the preload of the reduction, whose
-//! rollers stand symmetrically about the defect, so that one serves all starts. Rollers and cage stand where the run starts.
+//! A reduced run keeps no more of rings and housing than their modes: they stand in the file as at the
+//! preload of the reduction, whose rollers stand symmetrically about the defect, so that one serves all
+//! starts. Rollers and cage stand where the run starts.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -24,8 +27,8 @@ use std::path::Path;
 
 use crate::error::Error;
 
-/// Name of the array that holds the positions free of stress: displacements of [`frames`](crate::frames) count from
-/// these, and positions under preload less a displacement would have other last digits.
+/// Name of the array that holds the positions free of stress: displacements of [`frames`](crate::frames)
+/// count from these, and positions under preload less a displacement would have other last digits.
 pub const REFERENCE: &str = "reference_m";
 
 /// Longest header that is read.
@@ -71,8 +74,8 @@ impl RunMesh {
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] when the file cannot be read; [`Error::Mesh`] when it is damaged, or was written by a version that
-    /// did not keep the positions free of stress.
+    /// [`Error::Io`] when the file cannot be read; [`Error::Mesh`] when it is damaged, or was written by a
+    /// version that did not keep the positions free of stress.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         let mut file = open(path).map_err(|source| Error::Io {

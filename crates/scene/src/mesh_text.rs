@@ -1,8 +1,9 @@
 //! Mesh files as the text that a scene holds: with the files that they include, and binary ones in letters.
 //!
-//! A run holds all of its scene, so that `*INCLUDE` has to be followed when the scene is read. The lines of another file stand between two
-//! comments, `** included: part.inp` and `** end of included` (`$` in LS-DYNA's files), from which the reader of meshes knows which file
-//! a line is of. A binary file is `base64:` and its bytes in that encoding (RFC 4648).
+//! A run holds all of its scene, so that `*INCLUDE` has to be followed when the scene is read. The lines of
+//! another file stand between two comments, `** included: part.inp` and `** end of included` (`$` in
+//! LS-DYNA's files), from which the reader of meshes knows which file a line is of. A binary file is
+//! `base64:` and its bytes in that encoding (RFC 4648).
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -44,8 +45,8 @@ pub(crate) fn read(file: &Path, most: u64) -> Result<String, String> {
     Ok(text.out)
 }
 
-/// Text of any encoding that has ASCII in it: what is not UTF-8 is taken for Latin-1, which has a letter for every byte. UTF-16 is known by
-/// its byte order mark.
+/// Text of any encoding that has ASCII in it: what is not UTF-8 is taken for Latin-1, which has a letter for
+/// every byte. UTF-16 is known by its byte order mark.
 fn text_of(bytes: Vec<u8>) -> String {
     let units = |order: fn([u8; 2]) -> u16| {
         let units = bytes[2..].as_chunks().0.iter().map(|pair| order(*pair));
@@ -242,16 +243,17 @@ mod tests {
         let text = |name: &str| read(&folder.join(name), 10_000);
         assert_eq!(
             text("main.inp").as_deref(),
-            Ok(
-                "*HEADING\n** *Include,\n**  input=\"parts/a.inp\"\n** included: parts/a.inp\n*NODE, INPUT=nodes.txt\n** included: nodes.txt\n\
-                1, 0, 0\n** end of included\n** *INCLUDE, INPUT=main_b.inp\n** included: main_b.inp\n** b\n** end of included\n\
-                ** end of included\n*NSET, NSET=x\n1\n"
-            )
+            Ok("*HEADING\n** *Include,\n**  input=\"parts/a.inp\"\n** included: parts/a.inp\n*NODE, \
+                 INPUT=nodes.txt\n** included: nodes.txt\n\
+                1, 0, 0\n** end of included\n** *INCLUDE, INPUT=main_b.inp\n** included: main_b.inp\n** \
+                b\n** end of included\n\
+                ** end of included\n*NSET, NSET=x\n1\n")
         );
         assert_eq!(
             text("main.k").as_deref(),
             Ok(
-                "*KEYWORD\n$ *INCLUDE\n$ c\n$ parts/ +\n$ a.k\n$ included: parts/a.k\n*NODE\n       1\n$ end of included\n*NODE\n*END\n"
+                "*KEYWORD\n$ *INCLUDE\n$ c\n$ parts/ +\n$ a.k\n$ included: parts/a.k\n*NODE\n       1\n$ end \
+                 of included\n*NODE\n*END\n"
             )
         );
         for (name, words) in

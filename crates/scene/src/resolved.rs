@@ -1,11 +1,11 @@
-//! A scene in SI units: the one place where the millimetres, degrees and gigapascals of a file are converted into the
-//! numbers that the program computes with.
+//! A scene in SI units: the one place where the millimetres, degrees and gigapascals of a file are converted
+//! into the numbers that the program computes with.
 //!
-//! A scene is resolved once, where it enters: when a run begins or continues, when its folder is read, by a command that
-//! plans or exports. From there on a [`ResolvedScene`] is passed.
+//! A scene is resolved once, where it enters: when a run begins or continues, when its folder is read, by a
+//! command that plans or exports. From there on a [`ResolvedScene`] is passed.
 //!
-//! Where the rounding of a quotient may change a bit of a result, the numbers as written are used instead: the ratios of
-//! diameters in [`kinematics`](crate::kinematics), the samples at which frames are written.
+//! Where the rounding of a quotient may change a bit of a result, the numbers as written are used instead:
+//! the ratios of diameters in [`kinematics`](crate::kinematics), the samples at which frames are written.
 
 use std::f64::consts::{PI, TAU};
 
@@ -18,8 +18,8 @@ use crate::scene::{
     CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
 };
 
-/// A scene in SI: dimensions, material, mesh, contact, load and times, and beside them the scene as written for what has no
-/// unit to convert. Lengths are [m], angles [rad], counter-clockwise from the x axis.
+/// A scene in SI: dimensions, material, mesh, contact, load and times, and beside them the scene as written
+/// for what has no unit to convert. Lengths are [m], angles [rad], counter-clockwise from the x axis.
 ///
 /// ```
 /// let scene = stribeck_scene::Scene::default().resolve();
@@ -51,7 +51,8 @@ pub struct ResolvedScene {
     pub clearance: f64,
     /// Angle of the middle of the pocket of roller 1 [rad].
     pub first_roller_angle: f64,
-    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise [m]; empty: not at all.
+    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise [m]; empty:
+    /// not at all.
     pub roller_offsets: Vec<f64>,
     /// Angle by which the meshes of all rollers are turned about their own centres [rad].
     pub roller_phase: f64,
@@ -101,8 +102,8 @@ pub struct ResolvedScene {
     pub frame_half_width: Option<f64>,
 }
 
-/// How far straight walls of pockets reach beyond the path of the rollers' centres, in radii of a roller: several facets,
-/// and farther than a roller that floats across its clearance or stands in a defect.
+/// How far straight walls of pockets reach beyond the path of the rollers' centres, in radii of a roller:
+/// several facets, and farther than a roller that floats across its clearance or stands in a defect.
 const BEYOND_PITCH_CIRCLE: f64 = 0.2;
 
 /// The rigid cage.
@@ -171,8 +172,9 @@ impl ResolvedScene {
         self.grooves.iter().filter(move |groove| groove.ring == ring)
     }
 
-    /// Facets that a whole turn of the raceway of `ring` would have at the mean spacing outside its grooves, of
-    /// all its `facets`: floors are meshed as finely as the raceway, in two facets at least, and upright walls take no angle.
+    /// Facets that a whole turn of the raceway of `ring` would have at the mean spacing outside its grooves,
+    /// of all its `facets`: floors are meshed as finely as the raceway, in two facets at least, and upright
+    /// walls take no angle.
     pub fn facets_around(&self, ring: DefectRing, facets: usize) -> f64 {
         let radius = match ring {
             DefectRing::Outer => self.outer_race_radius,
@@ -286,8 +288,8 @@ impl CageGeometry {
         [self.outer_radius - self.thickness, self.outer_radius]
     }
 
-    /// Radii between which the walls of pockets reach [m], for rollers of the radius `roller` whose centres run on the radius
-    /// `path`.
+    /// Radii between which the walls of pockets reach [m], for rollers of the radius `roller` whose centres
+    /// run on the radius `path`.
     pub fn walls(&self, path: f64, roller: f64) -> [f64; 2] {
         let [inner, outer] = self.radii();
         match self.pocket {
@@ -305,7 +307,8 @@ pub fn pocket_half_width(inner: f64, outer: f64, path: f64, reach: f64) -> f64 {
     if (inner..=outer).contains(&path) {
         return reach;
     }
-    // The corner nearest to the pitch circle touches first: |corner − centre| = reach with the corner on `edge`.
+    // The corner nearest to the pitch circle touches first: |corner − centre| = reach with the corner on
+    // `edge`.
     let edge = if path < inner { inner } else { outer };
     let height = (edge * edge + path * path - reach * reach) / (2.0 * path);
     (edge * edge - height * height).max(0.0).sqrt().min(PI * edge)

@@ -2,8 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-/// A ring from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the centre of the bearing in the origin. Its
-/// material is that of the bearing, its raceway the circle of `bearing`, and what the file cuts into that.
+/// A ring from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the centre of the
+/// bearing in the origin. Its material is that of the bearing, its raceway the circle of `bearing`, and what
+/// the file cuts into that.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RingMeshScene {
@@ -16,8 +17,8 @@ pub struct RingMeshScene {
     pub text: String,
     /// Name of the set of nodes all along the raceway.
     pub raceway: String,
-    /// Name of the set of nodes all along the other side: the outer ring's back, which sits in the housing, or the inner ring's bore, which
-    /// turns with the shaft.
+    /// Name of the set of nodes all along the other side: the outer ring's back, which sits in the housing,
+    /// or the inner ring's bore, which turns with the shaft.
     pub fit: String,
 }
 

@@ -6,16 +6,16 @@
 //!          .lock                                                                       held while the run writes
 //! ```
 //!
-//! An ensemble of many starts has `ensemble.json` and a folder for each start, `start-001`, `start-002` …, which is the folder
-//! of a run, in place of `run.json` and what a run writes.
+//! An ensemble of many starts has `ensemble.json` and a folder for each start, `start-001`, `start-002` …,
+//! which is the folder of a run, in place of `run.json` and what a run writes.
 //!
 //! A run is never written over another one that holds samples: [`RunDir::create`] refuses such a folder,
-//! [`RunDir::create_numbered`] takes the next free one, and [`RunDir::replace`] keeps the earlier run until the new one is
-//! complete. What other commands make of runs takes no folder of a run ([`check_folder`]).
+//! [`RunDir::create_numbered`] takes the next free one, and [`RunDir::replace`] keeps the earlier run until
+//! the new one is complete. What other commands make of runs takes no folder of a run ([`check_folder`]).
 //!
-//! The checkpoint is there from the first step of a run on. Whatever kills the run, the folder can be read, and continued
-//! from the last checkpoint: traces never hold fewer samples than it counts. A complete run keeps its last one, so that it
-//! can be made longer.
+//! The checkpoint is there from the first step of a run on. Whatever kills the run, the folder can be read,
+//! and continued from the last checkpoint: traces never hold fewer samples than it counts. A complete run
+//! keeps its last one, so that it can be made longer.
 
 mod earlier;
 mod ensemble;
@@ -53,11 +53,12 @@ const SUMMARY: &str = "summary.json";
 const FIGURES: &str = "figures";
 const FRAMES: &str = "frames";
 const LOCK: &str = ".lock";
-/// Written beside a file, then renamed over it: a reader sees the old file or the new one, never half of either.
+/// Written beside a file, then renamed over it: a reader sees the old file or the new one, never half of
+/// either.
 const PARTIAL: &str = ".part";
 
-/// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no run, so it
-/// goes first and nothing half removed is taken for a result.
+/// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no
+/// run, so it goes first and nothing half removed is taken for a result.
 const FILES: [&str; 10] = [INFO, ENSEMBLE, REPORT, SUMMARY, TRACE, SIGNALS, ENERGY, MESH, CHECKPOINT, SCENE];
 
 /// Folders that a run or its report fills, and what they write there.
@@ -68,8 +69,8 @@ const UNTOUCHED: &str = "Nothing was changed; choose a folder that can be writte
 /// More runs of one name are something else than an experiment.
 const MOST_NUMBERS: usize = 100_000;
 
-/// The folder of one run. While it is being written, an operating-system lock keeps every other run out of it; the lock
-/// dies with its process, so a killed run never blocks the next one.
+/// The folder of one run. While it is being written, an operating-system lock keeps every other run out of
+/// it; the lock dies with its process, so a killed run never blocks the next one.
 #[derive(Debug)]
 pub struct RunDir {
     path: PathBuf,
@@ -79,13 +80,14 @@ pub struct RunDir {
 }
 
 impl RunDir {
-    /// Reserves the folder at `path` for a new run, making it when it is missing. What a run left that never took a sample
-    /// stays untouched until [`RunDir::start`].
+    /// Reserves the folder at `path` for a new run, making it when it is missing. What a run left that never
+    /// took a sample stays untouched until [`RunDir::start`].
     ///
     /// # Errors
     ///
-    /// [`Error::FolderHoldsRun`] when an earlier run left samples there; [`Error::ForeignFolder`] when it holds something
-    /// other than a run; [`Error::FolderInUse`] when another run writes it; [`Error::Io`] when it cannot be written.
+    /// [`Error::FolderHoldsRun`] when an earlier run left samples there; [`Error::ForeignFolder`] when it
+    /// holds something other than a run; [`Error::FolderInUse`] when another run writes it; [`Error::Io`]
+    /// when it cannot be written.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref().to_owned();
         let reservation = Reservation::new(&path)?;
@@ -99,7 +101,8 @@ impl RunDir {
         Ok(Self { path, reservation, replaces: None })
     }
 
-    /// As [`RunDir::create`], but where there is a run already takes the first free folder of `path-2`, `path-3` ….
+    /// As [`RunDir::create`], but where there is a run already takes the first free folder of `path-2`,
+    /// `path-3` ….
     ///
     /// # Errors
     ///
@@ -119,8 +122,8 @@ impl RunDir {
     }
 
     /// Reserves a folder for a new run that takes the place of the one at `path` when it is complete
-    /// ([`RunDir::take_place`]); until then it lies beside it, in `path.new`. Where there is nothing to keep, the folder at
-    /// `path` itself.
+    /// ([`RunDir::take_place`]); until then it lies beside it, in `path.new`. Where there is nothing to keep,
+    /// the folder at `path` itself.
     ///
     /// # Errors
     ///
@@ -145,13 +148,14 @@ impl RunDir {
         }
     }
 
-    /// Puts a complete run in the place of the one that it was to replace ([`RunDir::replace`]), also after it was
-    /// continued. What the owner added to the earlier folder stays there. Nothing happens to other runs.
+    /// Puts a complete run in the place of the one that it was to replace ([`RunDir::replace`]), also after
+    /// it was continued. What the owner added to the earlier folder stays there. Nothing happens to other
+    /// runs.
     ///
     /// # Errors
     ///
-    /// [`Error::FolderInUse`] when another process writes the earlier run, [`Error::Io`] when the system refuses: both runs
-    /// are then still there.
+    /// [`Error::FolderInUse`] when another process writes the earlier run, [`Error::Io`] when the system
+    /// refuses: both runs are then still there.
     pub fn take_place(mut self) -> Result<Self, Error> {
         if let Some(old) = self.replaces.take() {
             replacement::swap(&self.path, &old)?;
@@ -224,8 +228,8 @@ impl RunDir {
     ///
     /// # Errors
     ///
-    /// [`Error::NotARun`] when `scene.ron` or both others are missing; [`Error::FolderInUse`] when the run is still going;
-    /// [`Error::Io`] when the folder cannot be written.
+    /// [`Error::NotARun`] when `scene.ron` or both others are missing; [`Error::FolderInUse`] when the run is
+    /// still going; [`Error::Io`] when the folder cannot be written.
     pub fn reopen(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         if !path.join(CHECKPOINT).is_file() {
@@ -250,7 +254,8 @@ impl RunDir {
     ///
     /// # Errors
     ///
-    /// [`Error::NotARun`] when `scene.ron` or `run.json` is missing; [`Error::Ensemble`] when it is that of many starts.
+    /// [`Error::NotARun`] when `scene.ron` or `run.json` is missing; [`Error::Ensemble`] when it is that of
+    /// many starts.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         is_run(path, &[SCENE, INFO])?;

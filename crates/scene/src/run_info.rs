@@ -45,8 +45,8 @@ pub struct RunInfo {
     pub loop_cpu_s: f64,
     /// Wall-clock time from start to the first step (mesh, preload) [s].
     pub setup_s: f64,
-    /// Simulated times from which the run was continued [s]; none for a run in one piece. Clocks count all pieces;
-    /// version, machine and threads are those of the last one.
+    /// Simulated times from which the run was continued [s]; none for a run in one piece. Clocks count all
+    /// pieces; version, machine and threads are those of the last one.
     #[serde(default)]
     pub resumed_at_s: Vec<f64>,
     /// What the reduced model kept; none in the full one.
@@ -60,7 +60,7 @@ pub struct RunInfo {
     /// Vertical force that the rollers must carry: load plus the weight of adapter and outer ring [N].
     pub expected_support_n: f64,
     /// What the run does not take of its scene: what of the mesh files of housing and rings was passed over.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub notes: Vec<String>,
     /// Warnings, in the order in which they arose.
     pub warnings: Vec<String>,
@@ -111,20 +111,22 @@ pub struct ReducedInfo {
 /// Energy verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EnergyInfo {
-    /// Largest |imbalance| divided by the peak strain energy [-]; infinite (`null` in the file) after an overflow.
+    /// Largest |imbalance| divided by the peak strain energy [-]; infinite (`null` in the file) after an
+    /// overflow.
     #[serde(deserialize_with = "null_is_infinite")]
     pub max_relative_error: f64,
     /// Peak strain energy [J]; infinite likewise.
     #[serde(deserialize_with = "null_is_infinite")]
     pub peak_strain_j: f64,
-    /// What friction, films and damping have turned into heat [J]; nothing in runs of programs that did not say.
+    /// What friction, films and damping have turned into heat [J]; nothing in runs of programs that did not
+    /// say.
     #[serde(default, deserialize_with = "null_is_infinite")]
     pub heat_j: f64,
 }
 
 impl EnergyInfo {
-    /// Largest |imbalance| over the heat [-], where that is more than was ever stored as strain: in a long run what a step is off by
-    /// grows with the heat, and the strain energy does not.
+    /// Largest |imbalance| over the heat [-], where that is more than was ever stored as strain: in a long
+    /// run what a step is off by grows with the heat, and the strain energy does not.
     pub fn share_of_heat(&self) -> Option<f64> {
         let share = self.max_relative_error * self.peak_strain_j / self.heat_j;
         (self.heat_j > self.peak_strain_j && share.is_finite()).then_some(share)
@@ -136,8 +138,8 @@ impl EnergyInfo {
     }
 }
 
-/// What an energy is off by, over the peak strain energy and, where that is more, over the heat, in words. A rigid housing stores next to
-/// nothing as strain: what exceeds that is told by its share of the heat alone.
+/// What an energy is off by, over the peak strain energy and, where that is more, over the heat, in words. A
+/// rigid housing stores next to nothing as strain: what exceeds that is told by its share of the heat alone.
 pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
     let strain = format!("{:.3} % of the peak strain energy", 100.0 * of_strain);
     match of_heat.map(|share| format!("{:.3} % of the heat", 100.0 * share)) {
@@ -159,7 +161,8 @@ pub struct GuardInfo {
     pub hourglass_share: f64,
     /// Deepest penetration over the element size [-].
     pub penetration_share: f64,
-    /// Least area of an element over its area at rest [-]; infinite (`null` in the file) before it was looked at.
+    /// Least area of an element over its area at rest [-]; infinite (`null` in the file) before it was looked
+    /// at.
     #[serde(deserialize_with = "null_is_infinite")]
     pub least_area: f64,
     /// Largest strain for which the critical time step has been computed again [-].

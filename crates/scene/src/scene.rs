@@ -60,8 +60,8 @@ pub enum ModelScene {
     /// All bodies of finite elements.
     #[default]
     Full,
-    /// Outer ring and housing in their modes below a frequency, rollers and cage rigid with local compliance: a second in
-    /// a few seconds.
+    /// Outer ring and housing in their modes below a frequency, rollers and cage rigid with local compliance:
+    /// a second in a few seconds.
     Reduced(ReducedScene),
 }
 
@@ -90,8 +90,9 @@ pub struct BearingScene {
     pub inner_race_diameter_mm: f64,
     /// Radial thickness of the inner ring [mm].
     pub inner_ring_thickness_mm: f64,
-    /// What fits, temperature or an adjustment add to the diametral clearance that the diameters leave [µm]; below zero they take
-    /// from it, and beyond it they press the rollers between the raceways. The inner raceway has it; absent for 0.
+    /// What fits, temperature or an adjustment add to the diametral clearance that the diameters leave [µm];
+    /// below zero they take from it, and beyond it they press the rollers between the raceways. The inner
+    /// raceway has it; absent for 0.
     #[serde(skip_serializing_if = "housing::is_zero")]
     pub clearance_change_um: f64,
     /// Number of rolling elements.
@@ -100,7 +101,8 @@ pub struct BearingScene {
     pub roller_diameter_mm: f64,
     /// Out-of-plane thickness of the plane-strain model [mm]; the paper does not state it.
     pub thickness_mm: f64,
-    /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow counter-clockwise.
+    /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow
+    /// counter-clockwise.
     pub first_roller_deg: f64,
 }
 
@@ -116,8 +118,8 @@ pub struct CageScene {
     pub pocket_clearance_um: f64,
     /// Which part of a roller the walls of its pocket touch.
     pub pocket: PocketWalls,
-    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise, roller 1 first [µm];
-    /// empty: all in the middle.
+    /// How far each roller starts from the middle of its pocket along its path, counter-clockwise, roller 1
+    /// first [µm]; empty: all in the middle.
     pub roller_offsets_um: Vec<f64>,
 }
 
@@ -125,11 +127,11 @@ pub struct CageScene {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PocketWalls {
-    /// That which lies between the cage's diameters. Off the pitch circle corners touch rollers above or below their
-    /// centres, and push them across their track too.
+    /// That which lies between the cage's diameters. Off the pitch circle corners touch rollers above or
+    /// below their centres, and push them across their track too.
     Corners,
-    /// Their flanks: walls reach across the pitch circle, and push along the track alone. The mass of the cage is that of
-    /// its diameters.
+    /// Their flanks: walls reach across the pitch circle, and push along the track alone. The mass of the
+    /// cage is that of its diameters.
     Straight,
 }
 
@@ -214,13 +216,14 @@ pub struct MeshScene {
 
 /// Larger elements away from the raceways and the rims of the rollers.
 ///
-/// Facets that roll on each other keep their length, so a graded mesh has the same facet-passing tone. In the rings three
-/// facets become one, as often as `coarse_mm` and the thickness of the ring allow. The adapter continues the columns of
-/// the outer ring, the rollers get a coarser core.
+/// Facets that roll on each other keep their length, so a graded mesh has the same facet-passing tone. In the
+/// rings three facets become one, as often as `coarse_mm` and the thickness of the ring allow. The adapter
+/// continues the columns of the outer ring, the rollers get a coarser core.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GradingScene {
-    /// Element edge that is not exceeded in the rings and the rollers, and the height of the adapter's elements [mm].
+    /// Element edge that is not exceeded in the rings and the rollers, and the height of the adapter's
+    /// elements [mm].
     pub coarse_mm: f64,
     /// Layers of full fineness along the raceways; rollers get one more.
     pub fine_layers: usize,
@@ -242,13 +245,15 @@ pub enum RollerCopies {
 pub struct OperationScene {
     /// Load on the top edge of the adapter, downwards, or on another housing [N].
     pub load_n: f64,
-    /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; absent for 270, downwards, with
-    /// the load zone at the top. A pedestal and a housing from a mesh take 90, too, a rigid one and springs any.
+    /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; absent for 270,
+    /// downwards, with the load zone at the top. A pedestal and a housing from a mesh take 90, too, a rigid
+    /// one and springs any.
     #[serde(skip_serializing_if = "housing::is_down")]
     pub load_angle_deg: f64,
     /// Speed of the inner ring [rpm]; positive clockwise, negative counter-clockwise.
     pub speed_rpm: f64,
-    /// Speed of the outer ring with its housing, which must be rigid then [rpm], counted likewise; absent for 0.
+    /// Speed of the outer ring with its housing, which must be rigid then [rpm], counted likewise; absent for
+    /// 0.
     #[serde(skip_serializing_if = "housing::is_zero")]
     pub outer_speed_rpm: f64,
     /// Gravity, downwards [m/s²].
@@ -267,7 +272,8 @@ pub struct OperationScene {
     pub rotating_load: Option<RotatingLoadScene>,
 }
 
-/// How speed or load goes over time ([`duty`](crate::duty)). Values have the unit of the field that they vary.
+/// How speed or load goes over time ([`duty`](crate::duty)). Values have the unit of the field that they
+/// vary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProfileScene {
@@ -275,11 +281,12 @@ pub enum ProfileScene {
     Ramp(RampScene),
     /// The field's value with a sine about it.
     Harmonic(HarmonicScene),
-    /// Times [ms], ascending, and values: straight lines between them, the first and the last value before and behind them.
-    /// The field itself has no part in it.
+    /// Times [ms], ascending, and values: straight lines between them, the first and the last value before
+    /// and behind them. The field itself has no part in it.
     Points(Vec<(f64, f64)>),
-    /// The same from a CSV file, whose first line names its columns, `time_ms` and `value`. Its path counts from the folder
-    /// of the scene. When a scene is read its points take the place of the file, so a run holds all of its scene.
+    /// The same from a CSV file, whose first line names its columns, `time_ms` and `value`. Its path counts
+    /// from the folder of the scene. When a scene is read its points take the place of the file, so a run
+    /// holds all of its scene.
     Table(String),
 }
 
@@ -307,8 +314,8 @@ pub struct HarmonicScene {
     pub phase_deg: f64,
 }
 
-/// A force on the housing that turns with the inner ring, as that of an unbalanced shaft. Where the housing is guided up and
-/// down it takes the vertical part; the horizontal one goes into the guide.
+/// A force on the housing that turns with the inner ring, as that of an unbalanced shaft. Where the housing
+/// is guided up and down it takes the vertical part; the horizontal one goes into the guide.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RotatingLoadScene {
@@ -336,8 +343,8 @@ pub struct ContactScene {
     pub formula: ContactFormula,
     /// Penalty stiffness as a multiple of what the formula names [-].
     pub penalty_scale: f64,
-    /// Gap at which contact of rollers sets in [µm]: up to as deep a penetration the pressure rises as a parabola, beyond
-    /// it in proportion. Zero for a sharp corner.
+    /// Gap at which contact of rollers sets in [µm]: up to as deep a penetration the pressure rises as a
+    /// parabola, beyond it in proportion. Zero for a sharp corner.
     pub onset_um: f64,
     /// Normal contact damping as a fraction of critical [-].
     pub damping_ratio: f64,
@@ -347,21 +354,24 @@ pub struct ContactScene {
     pub seat_friction: f64,
 }
 
-/// By which formula the stiffness and the critical damping of contact are reckoned, for squares of the mesh's size.
+/// By which formula the stiffness and the critical damping of contact are reckoned, for squares of the mesh's
+/// size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactFormula {
     /// `penalty_scale` × E / element size; critical damping of two equal surface layers on that spring.
     ElementLayer,
-    /// LS-DYNA's standard penalty: `penalty_scale` (`SLSFAC` × `SFS`, usually 0.1) × bulk modulus × area² / volume of the
-    /// element behind a segment, on each pass. `damping_ratio` is `VDC` / 100, whose critical damping is 2 m ω.
+    /// LS-DYNA's standard penalty: `penalty_scale` (`SLSFAC` × `SFS`, usually 0.1) × bulk modulus × area² /
+    /// volume of the element behind a segment, on each pass. `damping_ratio` is `VDC` / 100, whose critical
+    /// damping is 2 m ω.
     LsdynaStandard,
-    /// LS-DYNA's segment-based penalty (`SOFT` = 2): `penalty_scale` (likewise) × ½ m₁m₂/(m₁ + m₂) / Δt², of segments with
-    /// half an element each. `damping_ratio` as in the standard penalty.
+    /// LS-DYNA's segment-based penalty (`SOFT` = 2): `penalty_scale` (likewise) × ½ m₁m₂/(m₁ + m₂) / Δt², of
+    /// segments with half an element each. `damping_ratio` as in the standard penalty.
     LsdynaSegment,
 }
 
-/// What the facets of raceways and rollers stand for. Corners (walls of the defect, cage) stay sharp in any case.
+/// What the facets of raceways and rollers stand for. Corners (walls of the defect, cage) stay sharp in any
+/// case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactSurface {
@@ -379,7 +389,8 @@ pub enum ContactSurface {
 pub enum ContactInterpolation {
     /// Every facet with its own two nodes.
     Linear,
-    /// As a cubic spline of smoothed nodes, six to a facet: a load that rolls over it does not see where nodes are.
+    /// As a cubic spline of smoothed nodes, six to a facet: a load that rolls over it does not see where
+    /// nodes are.
     Spline,
 }
 
@@ -389,8 +400,8 @@ pub enum ContactInterpolation {
 pub enum ContactPasses {
     /// Those of both bodies, each with half of the stiffness.
     Two,
-    /// Those of the roller alone, with the whole stiffness: half the work, for points that stand closer than the features
-    /// of a raceway.
+    /// Those of the roller alone, with the whole stiffness: half the work, for points that stand closer than
+    /// the features of a raceway.
     One,
 }
 
@@ -430,7 +441,8 @@ pub struct SolverScene {
     pub mass_damping_per_s: f64,
     /// What the mass damping is relative to.
     pub damping_frame: DampingFrame,
-    /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs time step.
+    /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs time
+    /// step.
     pub stiffness_damping_ns: f64,
     /// Damping of chosen bodies at nearly one ratio over a band of frequencies.
     pub structural_damping: Option<StructuralDampingScene>,
@@ -438,8 +450,8 @@ pub struct SolverScene {
     pub start: Start,
 }
 
-/// Structural damping: the loss of a body's material and joints, which hardly depends on frequency. Each branch costs memory
-/// traffic, all of them about 5 % of the time step for 2 %.
+/// Structural damping: the loss of a body's material and joints, which hardly depends on frequency. Each
+/// branch costs memory traffic, all of them about 5 % of the time step for 2 %.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct StructuralDampingScene {
@@ -449,8 +461,8 @@ pub struct StructuralDampingScene {
     pub from_khz: f64,
     /// Upper end of the band [kHz]; above it the ratio falls as one over the frequency.
     pub to_khz: f64,
-    /// Maxwell branches beside every element, 1 to 3: over a factor of 20 in frequency the ratio is within −49 and +25 %
-    /// with one, −8 and +4 % with two, 1 % with three.
+    /// Maxwell branches beside every element, 1 to 3: over a factor of 20 in frequency the ratio is within
+    /// −49 and +25 % with one, −8 and +4 % with two, 1 % with three.
     pub branches: usize,
     /// Which bodies.
     pub bodies: Vec<DampedBody>,
@@ -474,8 +486,8 @@ pub enum DampedBody {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingFrame {
-    /// A roller's motion along the raceways and its spin: what drives and brakes rolling stays friction alone, while
-    /// rattling across the clearance is damped, as oil would. Outer ring and adapter: rest.
+    /// A roller's motion along the raceways and its spin: what drives and brakes rolling stays friction
+    /// alone, while rattling across the clearance is damped, as oil would. Outer ring and adapter: rest.
     Rolling,
     /// The rigid motion of each body: only its vibration is damped.
     RigidMotion,
@@ -533,16 +545,18 @@ pub struct SensorScene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuardsScene {
-    /// Imbalance of energy over the peak strain energy above which the run carries a warning [%]; of a reduced run, over the most that rings
-    /// and contacts have stored.
+    /// Imbalance of energy over the peak strain energy above which the run carries a warning [%]; of a
+    /// reduced run, over the most that rings and contacts have stored.
     pub energy_warning_percent: f64,
-    /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat, too.
+    /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat,
+    /// too.
     pub energy_stop_percent: f64,
     /// Hourglass energy over strain energy above which the run carries a warning [%].
     pub hourglass_warning_percent: f64,
     /// Penetration over the element size above which the run carries a warning [%].
     pub penetration_warning_percent: f64,
-    /// … and above which it stops [%]; at 200 % contact takes a point for one on the far side of a body and lets go.
+    /// … and above which it stops [%]; at 200 % contact takes a point for one on the far side of a body and
+    /// lets go.
     pub penetration_stop_percent: f64,
     /// Area of an element over its area at rest below which the run stops [%].
     pub area_stop_percent: f64,
@@ -550,8 +564,8 @@ pub struct GuardsScene {
     pub unsupported_warning_ms: f64,
 }
 
-/// Side of the squares inside a graded roller, in facets of its rim. With longer ones the triangles between rim and
-/// core become needles, and nothing is left to save: most elements of a roller lie along its rim.
+/// Side of the squares inside a graded roller, in facets of its rim. With longer ones the triangles between
+/// rim and core become needles, and nothing is left to save: most elements of a roller lie along its rim.
 const CORE_FACETS: f64 = 3.0;
 
 impl GradingScene {

@@ -1,8 +1,8 @@
 //! From a RON file to a checked [`Scene`], and back.
 //!
-//! Reading is strict: an unknown field, a wrong type, a number outside its range or bodies that cannot exist are errors
-//! that show the line, the field, the value, what is allowed and what to try. Missing fields take their defaults, which
-//! [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
+//! Reading is strict: an unknown field, a wrong type, a number outside its range or bodies that cannot exist
+//! are errors that show the line, the field, the value, what is allowed and what to try. Missing fields take
+//! their defaults, which [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
 
 mod check;
 mod deviations;
@@ -47,10 +47,11 @@ impl Scene {
         Self::read_with(path, &[] as &[&str])
     }
 
-    /// Reads the scene file at `path`, applies `overrides` (`field.path=value`, in order), then checks the result.
+    /// Reads the scene file at `path`, applies `overrides` (`field.path=value`, in order), then checks the
+    /// result.
     ///
-    /// The check comes last, so an override may repair a file. Its values are RON: `mesh.size_mm=1.0`, `cage=None`,
-    /// `contact.method=collocated`, `output.sensors[0].angle_deg=30`.
+    /// The check comes last, so an override may repair a file. Its values are RON: `mesh.size_mm=1.0`,
+    /// `cage=None`, `contact.method=collocated`, `output.sensors[0].angle_deg=30`.
     ///
     /// # Errors
     ///
@@ -62,8 +63,8 @@ impl Scene {
         compose(&text, &path.display().to_string(), folder, overrides)
     }
 
-    /// Checks the scene in `text`; `file_name` is what errors call it. Tables of the scene are looked for from the present
-    /// folder.
+    /// Checks the scene in `text`; `file_name` is what errors call it. Tables of the scene are looked for
+    /// from the present folder.
     ///
     /// # Errors
     ///
@@ -72,8 +73,8 @@ impl Scene {
         compose(text, file_name, Path::new(""), &[] as &[&str])
     }
 
-    /// This scene with `overrides` applied, checked. The syntax is that of [`Scene::read_with`]; tables are looked for from
-    /// the present folder.
+    /// This scene with `overrides` applied, checked. The syntax is that of [`Scene::read_with`]; tables are
+    /// looked for from the present folder.
     ///
     /// # Errors
     ///
@@ -107,8 +108,9 @@ pub struct Replaced {
     pub now: String,
 }
 
-/// What the scene file at `path` says and `bearing=NAME` among `overrides` replaces: to another bearing than the file's all follows that
-/// surrounds it, but for what further overrides give. Nothing where the scene cannot be read.
+/// What the scene file at `path` says and `bearing=NAME` among `overrides` replaces: to another bearing than
+/// the file's all follows that surrounds it, but for what further overrides give. Nothing where the scene
+/// cannot be read.
 pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<Replaced> {
     let is_bearing = |text: &&str| text.split('=').next().is_some_and(|path| path.trim() == "bearing");
     let all: Vec<&str> = overrides.iter().map(AsRef::as_ref).collect();
@@ -131,8 +133,9 @@ pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<R
         .collect()
 }
 
-/// What is wrong with `field` of the scene file at `path`, or of the default scene, under `overrides`: `message`, shown where the
-/// field was written. For what is found in a sound scene later, as in the meshes that it names.
+/// What is wrong with `field` of the scene file at `path`, or of the default scene, under `overrides`:
+/// `message`, shown where the field was written. For what is found in a sound scene later, as in the meshes
+/// that it names.
 pub fn refused_at<S: AsRef<str>>(
     path: Option<&Path>,
     overrides: &[S],
@@ -191,8 +194,9 @@ fn understand<S: AsRef<str>>(
     overrides::apply(scene, overrides)
 }
 
-/// Whether the scene file at `path`, or the default scene, can be read with `overrides`. What further overrides may repair is not
-/// looked at: numbers outside their range, bodies that cannot exist, tables that are not there.
+/// Whether the scene file at `path`, or the default scene, can be read with `overrides`. What further
+/// overrides may repair is not looked at: numbers outside their range, bodies that cannot exist, tables that
+/// are not there.
 pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
     match path {
         Some(path) => {
@@ -202,8 +206,8 @@ pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> R
     }
 }
 
-/// Those of `overrides` whose value cannot be read as one of its field, with their numbers; none where the scene that they are
-/// for cannot be read itself.
+/// Those of `overrides` whose value cannot be read as one of its field, with their numbers; none where the
+/// scene that they are for cannot be read itself.
 pub(crate) fn unreadable_values<S: AsRef<str>>(
     path: Option<&Path>,
     overrides: &[S],

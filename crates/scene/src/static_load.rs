@@ -1,8 +1,8 @@
 //! Static load distribution between two rigid rings: which roller carries how much, THEORY §6.
 //!
-//! After Stribeck and Sjövall, with a radial clearance and the compliance of a plane-strain line contact: the roller's
-//! half by Johnson (*Contact Mechanics*, 1985, §5.6), the ring's side as a half-plane down to the ring's thickness
-//! (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
+//! After Stribeck and Sjövall, with a radial clearance and the compliance of a plane-strain line contact: the
+//! roller's half by Johnson (*Contact Mechanics*, 1985, §5.6), the ring's side as a half-plane down to the
+//! ring's thickness (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
 
 use crate::error::Error;
 use crate::kinematics::roller_angles_deg;
@@ -14,8 +14,8 @@ use crate::scene::Scene;
 const TOLERANCE: f64 = 1e-10;
 /// The search is a damped Newton iteration on a convex energy; it needs about ten.
 const MAX_ITERATIONS: usize = 200;
-/// A step goes no farther than so many times the clearance and the approach of a roller that carries everything: where few
-/// rollers are touched, or none, a direction has no stiffness that would say how far.
+/// A step goes no farther than so many times the clearance and the approach of a roller that carries
+/// everything: where few rollers are touched, or none, a direction has no stiffness that would say how far.
 const REACH: f64 = 10.0;
 /// Shortest part of a step that is tried.
 const SHORTEST: f64 = 1e-9;
@@ -68,15 +68,17 @@ impl RigidRings {
         }
     }
 
-    /// Approach of the two raceways at a roller [m] under the force `load_n` [N] through it: both its contacts.
+    /// Approach of the two raceways at a roller [m] under the force `load_n` [N] through it: both its
+    /// contacts.
     pub fn approach_m(&self, load_n: f64) -> f64 {
         if load_n > 0.0 { self.compliance.approach(load_n / self.length_m).0 } else { 0.0 }
     }
 
-    /// Equilibrium of the outer ring under `load_n`, downwards, over rollers at `angles_deg` (90° is the top).
+    /// Equilibrium of the outer ring under `load_n`, downwards, over rollers at `angles_deg` (90° is the
+    /// top).
     ///
-    /// A roller that carries nothing, because it stands in a defect, is left out of the list. Horizontal forces balance
-    /// too, so the angles need not be symmetric.
+    /// A roller that carries nothing, because it stands in a defect, is left out of the list. Horizontal
+    /// forces balance too, so the angles need not be symmetric.
     ///
     /// # Errors
     ///
@@ -101,7 +103,8 @@ impl RigidRings {
                 value: angles_deg.len() as f64,
                 allowed: "so many that two that carry stand less than half a turn apart about the load"
                     .to_owned(),
-                suggestion: "The ring would fall past the rollers: take more of them, or fewer that are missing or over a defect",
+                suggestion: "The ring would fall past the rollers: take more of them, or fewer that are \
+                    missing or over a defect",
             });
         }
         let directions: Vec<[f64; 2]> =
@@ -109,7 +112,8 @@ impl RigidRings {
         self.newton(load_n, &directions)
     }
 
-    /// Damped Newton iteration on the ring's displacement; the energy is convex, so the residual's energy norm falls.
+    /// Damped Newton iteration on the ring's displacement; the energy is convex, so the residual's energy
+    /// norm falls.
     fn newton(&self, load_n: f64, directions: &[[f64; 2]]) -> Result<StaticLoad, Error> {
         // Start where every upper roller is pressed a little: the stiffness is then regular.
         let mut shift = [0.0, -2.0 * self.clearance_m - 1e-6];
@@ -220,8 +224,9 @@ pub fn at_start(scene: &ResolvedScene) -> Result<StaticLoad, Error> {
     RigidRings::new(scene).distribute(scene.duty.load_n(0.0), &angles_to_load_deg(&scene.written))
 }
 
-/// Angles of a scene's rollers at the start as seen in a frame whose load comes from above [°], in their order, without those
-/// that are missing: what [`RigidRings::distribute`] takes. For a load downwards they are the angles themselves.
+/// Angles of a scene's rollers at the start as seen in a frame whose load comes from above [°], in their
+/// order, without those that are missing: what [`RigidRings::distribute`] takes. For a load downwards they
+/// are the angles themselves.
 pub fn angles_to_load_deg(scene: &Scene) -> Vec<f64> {
     let turned = scene.load_zone_deg() - 90.0;
     let angles = roller_angles_deg(scene);
@@ -248,8 +253,8 @@ mod tests {
         rings.distribute(50_000.0, &angles).expect("equilibrium")
     }
 
-    /// A roller stands under the load; thickness [mm], loaded rollers, largest load [kN], approach [µm], gain of the
-    /// neighbours when that roller unloads.
+    /// A roller stands under the load; thickness [mm], loaded rollers, largest load [kN], approach [µm], gain
+    /// of the neighbours when that roller unloads.
     #[test]
     fn analytic_load_distribution_of_the_paper_bearing() {
         for (thickness, loaded, max_kn, approach_um, gain) in [
@@ -293,8 +298,9 @@ mod tests {
 
     #[test]
     fn survives_any_load_that_a_bearing_may_carry() {
-        // Once light loads left the rings without contact on the way, and the search ended far outside the bearing. Few rollers
-        // leave one of them alone under the load. Between rigid rings the law of the contact has fewer logarithms.
+        // Once light loads left the rings without contact on the way, and the search ended far outside the
+        // bearing. Few rollers leave one of them alone under the load. Between rigid rings the law of the
+        // contact has fewer logarithms.
         let rigid = Scene::parse("(housing: rigid(), defect: None)", "here").expect("valid");
         for rollers in [3, 4, 5, 24] {
             for turned in 0..8 {

@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 /// Bytes of a line of cache, and of eight numbers.
 const LINE: usize = 64;
 
-/// An array of f64 whose first number begins a line of cache, and so does every eighth one after it: a vector loaded at a
-/// multiple of its length never spans two lines. It reads and writes as a slice.
+/// An array of f64 whose first number begins a line of cache, and so does every eighth one after it: a vector
+/// loaded at a multiple of its length never spans two lines. It reads and writes as a slice.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Field(AVec<f64, ConstAlign<LINE>>);

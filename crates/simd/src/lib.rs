@@ -1,14 +1,15 @@
-//! A small toolbox for numerical kernels: vectors of f64 for any instruction set, arrays aligned for them, and work shared
-//! out over threads.
+//! A small toolbox for numerical kernels: vectors of f64 for any instruction set, arrays aligned for them,
+//! and work shared out over threads.
 //!
-//! A kernel is written once, over a [`Number`](lanes::Number): a single `f64`, or a [`Vector`](lanes::Vector) of one (plain
-//! instructions), four (AVX2) or eight (AVX-512) of them. Which one, [`pulp`] decides when the program runs: the binary
-//! holds the kernel for each instruction set and takes the best that the processor has. A caller therefore depends on
-//! `pulp` as well, for its traits `Simd` and `WithSimd`.
+//! A kernel is written once, over a [`Number`](lanes::Number): a single `f64`, or a [`Vector`](lanes::Vector)
+//! of one (plain instructions), four (AVX2) or eight (AVX-512) of them. Which one, [`pulp`] decides when the
+//! program runs: the binary holds the kernel for each instruction set and takes the best that the processor
+//! has. A caller therefore depends on `pulp` as well, for its traits `Simd` and `WithSimd`.
 //!
-//! Vectors fuse multiplication and addition on every instruction set ([`times_plus`](lanes::Number::times_plus)), so the
-//! results of a kernel have the same bits on all of them. Sums over lanes keep that only if they are taken in columns of
-//! [`LANES`](lanes::LANES), whatever the length of a vector.
+//! Vectors fuse multiplication and addition on every instruction set
+//! ([`times_plus`](lanes::Number::times_plus)), so the results of a kernel have the same bits on all of them.
+//! Sums over lanes keep that only if they are taken in columns of [`LANES`](lanes::LANES), whatever the
+//! length of a vector.
 //!
 //! # Example: hardening springs
 //!
@@ -60,9 +61,10 @@
 //! assert_eq!(forces, plain);
 //! ```
 //!
-//! Everything on the way from `with_simd` to an instruction must be `#[inline(always)]`: code in a function or closure of its
-//! own would be compiled for the plain instruction set, and each operation of a vector become a call. So is what `map` does to the
-//! items of an array, and `map_or` to an option. Programs that were compiled so have such operations among their symbols.
+//! Everything on the way from `with_simd` to an instruction must be `#[inline(always)]`: code in a function
+//! or closure of its own would be compiled for the plain instruction set, and each operation of a vector
+//! become a call. So is what `map` does to the items of an array, and `map_or` to an option. Programs that
+//! were compiled so have such operations among their symbols.
 //!
 //! # Where to look
 //!

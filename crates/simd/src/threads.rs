@@ -10,10 +10,10 @@ const MARGIN: usize = 2;
 
 /// Calls `each` for every item, on up to `threads` threads. Results do not depend on how many there are.
 ///
-/// Two threads begin at either end and meet where they may, so an item mostly stays with the core that has it in its
-/// cache, and neither waits for longer than one item takes. More than two threads are
-/// split into halves, which get runs of about equal `work`. A fork takes some microseconds, so that items of less than `least`
-/// work for each of two threads stay on the caller's.
+/// Two threads begin at either end and meet where they may, so an item mostly stays with the core that has it
+/// in its cache, and neither waits for longer than one item takes. More than two threads are
+/// split into halves, which get runs of about equal `work`. A fork takes some microseconds, so that items of
+/// less than `least` work for each of two threads stay on the caller's.
 pub fn share_out<T: Send>(
     items: &mut [T],
     threads: usize,
@@ -24,8 +24,8 @@ pub fn share_out<T: Send>(
     share_out_with_first(items, threads, least, work, &mut Met::default(), &mut |item| each(item), each);
 }
 
-/// The same, but one thread calls `first` for the first items, in order, and all others call `other` for the rest. How many
-/// items either gets may differ from call to call; `met` remembers it for the next one.
+/// The same, but one thread calls `first` for the first items, in order, and all others call `other` for the
+/// rest. How many items either gets may differ from call to call; `met` remembers it for the next one.
 pub fn share_out_with_first<T: Send>(
     items: &mut [T],
     threads: usize,
@@ -54,7 +54,8 @@ pub fn share_out_with_first<T: Send>(
     }
 }
 
-/// How many of the first items hold about `part` of `whole` equal parts of all work; `items` are the work of each.
+/// How many of the first items hold about `part` of `whole` equal parts of all work; `items` are the work of
+/// each.
 pub fn cut(items: impl ExactSizeIterator<Item = usize>, all: usize, part: usize, whole: usize) -> usize {
     let last = items.len().saturating_sub(1);
     let mut before = 0;
@@ -71,15 +72,16 @@ pub fn cut(items: impl ExactSizeIterator<Item = usize>, all: usize, part: usize,
 pub struct Met(usize);
 
 impl Met {
-    /// The items that either thread may get this time: `margin` of them on either side of where the threads last met.
+    /// The items that either thread may get this time: `margin` of them on either side of where the threads
+    /// last met.
     pub fn open(self, margin: usize, items: usize) -> Range<usize> {
         let to = (self.0 + margin).min(items);
         self.0.saturating_sub(margin).min(to)..to
     }
 }
 
-/// An iterator that two threads take items from. It has a line of cache to itself, because a line that another thread has
-/// just written is slow to load.
+/// An iterator that two threads take items from. It has a line of cache to itself, because a line that
+/// another thread has just written is slow to load.
 #[repr(align(128))]
 struct Shared<I>(Mutex<I>);
 
@@ -90,9 +92,9 @@ impl<I: DoubleEndedIterator> Shared<I> {
     }
 }
 
-/// Two threads take items until none is left. One calls `here`, for those of the `left` part from its first one on; the other
-/// calls `there`, for those of the `right` part from its last one on. Both then go on with the part `between`, and a thread
-/// that finds it empty with the part of the other.
+/// Two threads take items until none is left. One calls `here`, for those of the `left` part from its first
+/// one on; the other calls `there`, for those of the `right` part from its last one on. Both then go on with
+/// the part `between`, and a thread that finds it empty with the part of the other.
 pub fn from_both_ends<I: Send>(
     [left, between, right]: [impl DoubleEndedIterator<Item = I> + Send; 3],
     mut here: impl FnMut(I) + Send,

@@ -1,5 +1,6 @@
-//! Steps of the paper's bearing in the modes below 30 kHz, with a sample after every fifth one as in a run: how long one takes
-//! as the rollers turn. The modes are made once and kept in the folder for temporary files.
+//! Steps of the paper's bearing in the modes below 30 kHz, with a sample after every fifth one as in a run:
+//! how long one takes as the rollers turn. The modes are made once and kept in the folder for temporary
+//! files.
 
 use std::path::Path;
 use std::time::Duration;

@@ -1,7 +1,8 @@
 //! Simulates the bearing of a scene by the model that the scene names, into a run directory.
 //!
-//! [`simulate`] begins a run, [`resume`] and [`extend`] continue one. Both models go through the same steps ([`model`]): they are
-//! prepared, set in motion and driven by the time loop of [`stribeck_run`]; channels, files and guards are the same.
+//! [`simulate`] begins a run, [`resume`] and [`extend`] continue one. Both models go through the same steps
+//! ([`model`]): they are prepared, set in motion and driven by the time loop of [`stribeck_run`]; channels,
+//! files and guards are the same.
 //!
 //! | Question | File |
 //! |---|---|

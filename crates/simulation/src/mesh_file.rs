@@ -1,4 +1,5 @@
-//! `mesh.vtu`: the mesh at the start of a run, deformed by its preload, with the places of its nodes free of stress.
+//! `mesh.vtu`: the mesh at the start of a run, deformed by its preload, with the places of its nodes free of
+//! stress.
 
 use stribeck_bearing::{assembly::Assembly, error::Error};
 use stribeck_mesh::vtu;

@@ -93,7 +93,8 @@ impl Model for Reduced {
         warnings
     }
 
-    /// Rings and housing as the preload of the reduction has left them; rollers and cage, which do not deform, where they are.
+    /// Rings and housing as the preload of the reduction has left them; rollers and cage, which do not
+    /// deform, where they are.
     fn mesh_file(&self, scene: &ResolvedScene) -> Result<Vec<u8>, Error> {
         let mesh = &self.assembly.model.mesh;
         let mut moved = self.moved.clone();
@@ -137,7 +138,8 @@ fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option
     let longest = 1e-6 * wanted.step_us;
     (time_step < longest && critical < longest).then(|| {
         format!(
-            "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} µs. A smaller `model.modes_khz` or \
+            "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} \
+             µs. A smaller `model.modes_khz` or \
              `contact.penalty_scale` allows longer ones",
             wanted.step_us,
             1e6 * time_step,
@@ -146,8 +148,8 @@ fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option
     })
 }
 
-/// A warning where facets pass their contacts in so few steps that the force between two of them is not resolved: the energy is then
-/// off by an error that grows with the square of the time step [s].
+/// A warning where facets pass their contacts in so few steps that the force between two of them is not
+/// resolved: the energy is then off by an error that grows with the square of the time step [s].
 fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Option<String> {
     if scene.written.contact.surface != ContactSurface::Facet {
         return None;
@@ -164,8 +166,10 @@ fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Op
     let steps = 1.0 / (hz * time_step);
     (steps < STEPS_A_FACET).then(|| {
         format!(
-            "at this speed a facet passes its contact in {steps:.1} steps of {:.2} µs ({:.1} kHz), and the energy is off by an error that \
-             grows with the square of the step: take `model.step_us` below {:.2}, fewer `mesh.roller_facets`, or `contact.surface: arc`",
+            "at this speed a facet passes its contact in {steps:.1} steps of {:.2} µs ({:.1} kHz), and the \
+             energy is off by an error that \
+             grows with the square of the step: take `model.step_us` below {:.2}, fewer \
+             `mesh.roller_facets`, or `contact.surface: arc`",
             1e6 * time_step,
             1e-3 * hz,
             1e6 / (hz * STEPS_A_FACET)
@@ -173,12 +177,13 @@ fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Op
     })
 }
 
-/// With as many steps a facet the energy is off by about 1 % of the peak strain energy in 3 ms, with half as many by 2 to 4 %: the paper's
-/// bearing at 5000, 15 000 and 30 000 rpm (`--set operation.speed_rpm=… --set model.step_us=…` on `reduced_30ms.ron`).
+/// With as many steps a facet the energy is off by about 1 % of the peak strain energy in 3 ms, with half as
+/// many by 2 to 4 %: the paper's bearing at 5000, 15 000 and 30 000 rpm (`--set operation.speed_rpm=… --set
+/// model.step_us=…` on `reduced_30ms.ron`).
 const STEPS_A_FACET: f64 = 20.0;
 
-/// Steps in a sample of a run of the scene, which has a reduced model. `runs` is where the folder of the run would lie: a reduction that
-/// earlier runs made is there, and one that must be made is kept there.
+/// Steps in a sample of a run of the scene, which has a reduced model. `runs` is where the folder of the run
+/// would lie: a reduction that earlier runs made is there, and one that must be made is kept there.
 ///
 /// # Errors
 /// When the scene cannot be meshed, preloaded or reduced.
@@ -187,7 +192,8 @@ pub fn steps_in_a_sample(scene: &ResolvedScene, runs: Option<&Path>) -> Result<u
     Ok(in_steps(scene, &wanted(scene), modal_bearing(scene, mesh.reduction)?)?.1)
 }
 
-/// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there are in a sample.
+/// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there
+/// are in a sample.
 fn in_steps(
     scene: &ResolvedScene,
     wanted: &ReducedScene,
@@ -204,8 +210,8 @@ fn in_steps(
     Ok((Bearing::new(modal, interval / steps as f64)?, steps))
 }
 
-/// A whole number of steps, none longer than `longest` [s], and two at least: what a sensor measures beyond the modes is a difference
-/// between two steps of a sample.
+/// A whole number of steps, none longer than `longest` [s], and two at least: what a sensor measures beyond
+/// the modes is a difference between two steps of a sample.
 fn steps_per_sample(scene: &ResolvedScene, longest: f64) -> usize {
     // A quotient of 5.000…1 is no sixth step.
     (1e-6 * scene.written.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize

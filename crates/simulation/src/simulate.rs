@@ -1,4 +1,5 @@
-//! **One run** of the model that a scene names: from its start, from a checkpoint, or on a rank that follows another.
+//! **One run** of the model that a scene names: from its start, from a checkpoint, or on a rank that follows
+//! another.
 
 use std::ops::ControlFlow;
 
@@ -44,31 +45,33 @@ fn dispatch<T: Task>(scene: &ResolvedScene, task: T) -> T::Output {
 /// Runs a scene and leaves its results in `dir`.
 ///
 /// `watch` is told about every sample and may break off the run, which then ends as
-/// [`Interrupted`](stribeck_scene::run_info::Status::Interrupted). A checkpoint is written at the start, now and then, and at an
-/// interruption; [`resume`] continues from it.
+/// [`Interrupted`](stribeck_scene::run_info::Status::Interrupted). A checkpoint is written at the start, now
+/// and then, and at an interruption; [`resume`] continues from it.
 ///
 /// # Errors
-/// When the scene cannot be meshed, preloaded or reduced, or the traces cannot be written. A run that diverges is not an error:
-/// its status and reason are in the returned [`RunInfo`]. A checkpoint that cannot be written is a warning there.
+/// When the scene cannot be meshed, preloaded or reduced, or the traces cannot be written. A run that
+/// diverges is not an error: its status and reason are in the returned [`RunInfo`]. A checkpoint that cannot
+/// be written is a warning there.
 pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
     let scene = &scene.resolve();
     dispatch(scene, Begin { scene, dir, host, watch })
 }
 
-/// Continues the run in `dir` from its checkpoint. Its files become those of an unbroken run, byte for byte, whatever
-/// the number of threads; the mesh is made again, the preload is not.
+/// Continues the run in `dir` from its checkpoint. Its files become those of an unbroken run, byte for byte,
+/// whatever the number of threads; the mesh is made again, the preload is not.
 ///
 /// `watch` as for [`simulate`].
 ///
 /// # Errors
-/// [`RunError::Resume`] when there is nothing to continue or nothing to continue from; otherwise as [`simulate`].
+/// [`RunError::Resume`] when there is nothing to continue or nothing to continue from; otherwise as
+/// [`simulate`].
 pub fn resume(dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
     let scene = &Scene::read(dir.scene())?.resolve();
     dispatch(scene, Continue { scene, dir, host, watch })
 }
 
-/// Continues the run in `dir` to another duration, also when it is complete. Its files become those of an unbroken run
-/// of this duration.
+/// Continues the run in `dir` to another duration, also when it is complete. Its files become those of an
+/// unbroken run of this duration.
 ///
 /// `watch` as for [`simulate`].
 ///
@@ -82,8 +85,8 @@ pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>)
     dispatch(scene, Continue { scene, dir, host, watch })
 }
 
-/// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked without
-/// making the model is.
+/// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked
+/// without making the model is.
 ///
 /// # Errors
 /// As [`resume`].
@@ -92,8 +95,8 @@ pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
     dispatch(scene, SavedUntil { scene, dir })
 }
 
-/// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing. For all ranks
-/// but the first.
+/// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing.
+/// For all ranks but the first.
 ///
 /// # Errors
 /// As on the first rank, but for its files.

@@ -13,8 +13,8 @@ use stribeck_scene::{
 use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 
-/// One allocation anywhere in a step would be twenty times this share of the steps; searches that find more than those
-/// before them, and grow a list, are far fewer.
+/// One allocation anywhere in a step would be twenty times this share of the steps; searches that find more
+/// than those before them, and grow a list, are far fewer.
 const PER_STEP: f64 = 0.05;
 
 /// A short run of a coarse bearing, oiled or dry; what it allocated.
@@ -35,8 +35,8 @@ fn run(film: Option<FilmScene>, time_step_factor: f64) -> (RunInfo, u64) {
     (info.expect("the scene is sound"), taken.count_total)
 }
 
-/// Mass damping, contact with damping and friction, oil, gravity, cage, sensors, energies: two runs of the same samples, one
-/// with three times the steps of the other, take the same memory.
+/// Mass damping, contact with damping and friction, oil, gravity, cage, sensors, energies: two runs of the
+/// same samples, one with three times the steps of the other, take the same memory.
 #[test]
 fn invariant_more_steps_between_samples_allocate_nothing_more() {
     for film in [None, Some(FilmScene::default())] {

@@ -30,8 +30,9 @@ fn column(run: &Run, name: &str) -> Vec<f64> {
 /// Turned back, with rollers at mirrored places, the bearing is its mirror image about the y axis.
 #[test]
 fn invariant_a_bearing_that_turns_back_is_the_mirror_image() {
-    // Meshes of rings and rollers mirror into themselves, but for the triangles within rollers and the tolerance of the preload.
-    // Of 0.1 m and 10 kN, before roller 1 comes near the defect, where cells differ.
+    // Meshes of rings and rollers mirror into themselves, but for the triangles within rollers and the
+    // tolerance of the preload. Of 0.1 m and 10 kN, before roller 1 comes near the defect, where cells
+    // differ.
     const TOLERANCE: f64 = 2e-3;
     let folder = Scratch::create("mirror");
     let there = coarse(0.6);
@@ -58,8 +59,8 @@ fn invariant_a_bearing_that_turns_back_is_the_mirror_image() {
     assert!(turned[turned.len() - 1] > 0.0);
 }
 
-/// From rest along a ramp, under a load that swells: rollers roll on a shaft of constant acceleration, the load is carried, and
-/// energy closes.
+/// From rest along a ramp, under a load that swells: rollers roll on a shaft of constant acceleration, the
+/// load is carried, and energy closes.
 #[test]
 fn conserves_energy_from_rest_under_a_load_that_swells() {
     const ENERGY: f64 = 0.001;

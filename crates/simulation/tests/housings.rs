@@ -19,7 +19,8 @@ use stribeck_testing::Scratch;
 /// A small bearing whose sides are quickly meshed.
 fn scene(more: &[&str]) -> Scene {
     let base = "(name: \"housing\", bearing: \"NU 205\", film: None, defect: None, output: (frames: None),
-        operation: (load_n: 5000, speed_rpm: 1500), mesh: (size_mm: 0.5, roller_facets: 48, grading: (coarse_mm: 1.5)), contact: (penalty_scale: 0.3),
+        operation: (load_n: 5000, speed_rpm: 1500), mesh: (size_mm: 0.5, roller_facets: 48, grading: \
+        (coarse_mm: 1.5)), contact: (penalty_scale: 0.3),
         solver: (duration_ms: 2))";
     let scene = Scene::parse(base, "here").expect("valid");
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/housings/pillow_block.msh");
@@ -44,8 +45,8 @@ const MESH: &str = "housing=mesh(file: \"FILE\", unit_mm: 1)";
 const SPRINGS: &str = "housing=springs(stiffness_n_um: 500, damping_n_s_m: 3000, mass_kg: 2)";
 const RIGID: &str = "housing=rigid(mass_kg: 2)";
 
-/// Source: the sum of the rollers' forces along the load is the load and the weight along it, in any direction that the
-/// housing takes; THEORY §4.
+/// Source: the sum of the rollers' forces along the load is the load and the weight along it, in any
+/// direction that the housing takes; THEORY §4.
 #[test]
 fn analytic_every_housing_hands_its_load_to_the_rollers() {
     for (housing, angle) in
@@ -98,7 +99,8 @@ fn example_a_missing_roller_leaves_its_pocket_empty_and_its_load_to_others() {
     assert!(found > 1.1 * before, "{found} N and {before} N with all rollers");
 }
 
-/// Source: rolling without slip between two rings that turn: the cage at (ω_i D_i + ω_o D_o)/(D_i + D_o), THEORY §5.1.
+/// Source: rolling without slip between two rings that turn: the cage at (ω_i D_i + ω_o D_o)/(D_i + D_o),
+/// THEORY §5.1.
 #[test]
 fn analytic_rollers_between_turning_rings() {
     for (inner, outer) in [(0.0, 1500.0), (1500.0, -800.0), (600.0, 600.0)] {
@@ -131,12 +133,13 @@ fn analytic_rollers_between_turning_rings() {
     }
 }
 
-/// The shaft speeds up, beside an outer ring that turns at one speed or through rest: both follow their angles, and a roller
-/// under load goes by the weighted mean of both.
+/// The shaft speeds up, beside an outer ring that turns at one speed or through rest: both follow their
+/// angles, and a roller under load goes by the weighted mean of both.
 /// Source: as above; the angle of a ramp is θ = ω₀t + ½αt², THEORY §6.3.
 #[test]
 fn analytic_rollers_between_rings_whose_speeds_change() {
-    // Of the way of the shaft against the outer ring: creep under the load, and what facets add on so short a way.
+    // Of the way of the shaft against the outer ring: creep under the load, and what facets add on so short a
+    // way.
     const ROLLING: f64 = 0.01;
     for outer in ["outer_speed_rpm=-800", "outer_speed_profile=ramp(to_ms: 2, to: 900)"] {
         let scene = scene(&[

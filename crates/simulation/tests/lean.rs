@@ -44,8 +44,8 @@ fn example_lean_scene_has_a_quarter_of_the_elements() {
     assert_eq!(found, [0, 2, 0], "triangles outside the rollers take the slow path");
 }
 
-/// No coarse cell, no transition and no column of the seat holds the time step back; the third layer along the rims of
-/// rollers, whose cells become narrower inwards, costs 3 %.
+/// No coarse cell, no transition and no column of the seat holds the time step back; the third layer along
+/// the rims of rollers, whose cells become narrower inwards, costs 3 %.
 #[test]
 fn example_lean_scene_keeps_the_critical_step() {
     // Of the elements and dry contact alone: structural damping and oil take their share of any mesh's step.
@@ -61,8 +61,8 @@ fn example_lean_scene_keeps_the_critical_step() {
     assert!(after > 0.96 * before, "{after:e} s instead of {before:e} s");
 }
 
-/// The seat has the nodes of the ring's back and at its ends continues the ring's facets, so that long facets do not
-/// press against the vertices of the other surface.
+/// The seat has the nodes of the ring's back and at its ends continues the ring's facets, so that long facets
+/// do not press against the vertices of the other surface.
 #[test]
 fn example_seat_and_ring_meet_node_to_node() {
     let lean = assembled(&lean());
@@ -85,8 +85,8 @@ fn example_seat_and_ring_meet_node_to_node() {
     for (end, x) in [(seat[0], -0.08), (seat[seat.len() - 1], 0.08)] {
         assert_eq!(end[0], x);
         let off = end[0].hypot(end[1]) - 0.11;
-        // A chord of 1.65 mm, cut at its middle or continued by less than 0.5 mm / cos 46°, leaves the circle by less
-        // than its sagitta of 3.1 µm or by 1.65 · 0.73 / (2 · 110) mm = 5.5 µm.
+        // A chord of 1.65 mm, cut at its middle or continued by less than 0.5 mm / cos 46°, leaves the circle
+        // by less than its sagitta of 3.1 µm or by 1.65 · 0.73 / (2 · 110) mm = 5.5 µm.
         assert!((-3.2e-6..5.6e-6).contains(&off), "the seat ends {off:e} m from the circle");
     }
 }
@@ -149,11 +149,12 @@ fn first_forces(scene: &Scene) -> Vec<f64> {
     (1..=scene.bearing.rollers).map(|i| force(i, "x").hypot(force(i, "y"))).collect()
 }
 
-/// Static load distribution, uniform and graded: rings that are coarse outside and rollers that are coarse inside must
-/// share the load as fine ones do.
+/// Static load distribution, uniform and graded: rings that are coarse outside and rollers that are coarse
+/// inside must share the load as fine ones do.
 #[test]
 fn example_graded_bearing_carries_its_load_like_the_uniform_one() {
-    // Of the largest force. What the project asks of a lean scene is 5 %; compliance of the coarse cells costs less.
+    // Of the largest force. What the project asks of a lean scene is 5 %; compliance of the coarse cells
+    // costs less.
     const TOLERANCE: f64 = 0.02;
     let mut scene = Scene::default();
     scene.mesh.size_mm = 1.0;

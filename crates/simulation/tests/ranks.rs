@@ -1,4 +1,5 @@
-//! One run over several ranks writes the bytes of one process, and goes on from a checkpoint over any other number of them.
+//! One run over several ranks writes the bytes of one process, and goes on from a checkpoint over any other
+//! number of them.
 
 mod common;
 
@@ -14,7 +15,8 @@ use stribeck_scene::{
 use stribeck_simulation::{follow, resume, simulate};
 use stribeck_testing::Scratch;
 
-/// Runs a scene, or the rest of the run in the folder, over so many ranks; breaks off after `samples` unless that is zero.
+/// Runs a scene, or the rest of the run in the folder, over so many ranks; breaks off after `samples` unless
+/// that is zero.
 fn run(scene: Option<&Scene>, folder: &Path, ranks: usize, threads: usize, samples: usize) {
     let mut seen = 0;
     let mut watch = |progress: &Progress| {
@@ -52,8 +54,8 @@ fn assert_same(whole: &Path, other: &Path, how: &str) {
     }
 }
 
-/// Contact, friction, films, a cage that moves as one piece, structural damping, gravity: over 1, 2, 3 and 5 ranks, with one
-/// thread and two on each. The wall clock stands still and every sample is saved.
+/// Contact, friction, films, a cage that moves as one piece, structural damping, gravity: over 1, 2, 3 and 5
+/// ranks, with one thread and two on each. The wall clock stands still and every sample is saved.
 #[test]
 fn invariant_any_number_of_ranks_writes_the_same_bytes() {
     let scene = coarse(0.3);
@@ -68,7 +70,8 @@ fn invariant_any_number_of_ranks_writes_the_same_bytes() {
     }
 }
 
-/// Bodies of several tiles, cut by ranks, in a scene whose elements are as fine as the paper's, mass damping included.
+/// Bodies of several tiles, cut by ranks, in a scene whose elements are as fine as the paper's, mass damping
+/// included.
 #[test]
 fn invariant_ranks_cut_through_bodies() {
     let mut scene = Scene { name: "cut".into(), ..Scene::default() };

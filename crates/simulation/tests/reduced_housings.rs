@@ -1,4 +1,5 @@
-//! What holds the outer ring of a reduced bearing, and how it turns, beside the full model and beside closed forms.
+//! What holds the outer ring of a reduced bearing, and how it turns, beside the full model and beside closed
+//! forms.
 
 mod common;
 
@@ -24,11 +25,13 @@ fn small(more: &str) -> Scene {
     Scene::parse(&text, "here").expect("a sound scene")
 }
 
-/// The shaft speeds up from rest beside an outer ring whose speed falls through rest: the cage goes by the weighted mean of both.
-/// Source: rolling without slip between two rings that turn, (ω_i D_i + ω_o D_o)/(D_i + D_o), THEORY §5.1; the angle of a ramp, §6.3.
+/// The shaft speeds up from rest beside an outer ring whose speed falls through rest: the cage goes by the
+/// weighted mean of both. Source: rolling without slip between two rings that turn, (ω_i D_i + ω_o D_o)/(D_i
+/// + D_o), THEORY §5.1; the angle of a ramp, §6.3.
 #[test]
 fn analytic_the_cage_between_rings_whose_speeds_change() {
-    // Rollers outside the load zone are pushed by the cage until they have come round: it lies a few plays of its pockets behind.
+    // Rollers outside the load zone are pushed by the cage until they have come round: it lies a few plays of
+    // its pockets behind.
     const BEHIND: f64 = 0.02;
     const ENERGY: f64 = 0.005;
     let operation = "load_n: 3000, speed_rpm: 0, speed_profile: ramp(to_ms: 60, to: 1800),
@@ -55,8 +58,8 @@ fn analytic_the_cage_between_rings_whose_speeds_change() {
     assert!(furthest < BEHIND, "{furthest}");
 }
 
-/// Rollers that roll lose by contact damping what those of the full model lose: half of it is lost as they turn in their contacts.
-/// Source: THEORY §4.2, by the full model from the same start.
+/// Rollers that roll lose by contact damping what those of the full model lose: half of it is lost as they
+/// turn in their contacts. Source: THEORY §4.2, by the full model from the same start.
 #[test]
 fn peer_contact_damping_of_rolling_is_that_of_the_full_model() {
     const TOLERANCE: f64 = 0.05;
@@ -83,13 +86,14 @@ fn peer_contact_damping_of_rolling_is_that_of_the_full_model() {
     );
 }
 
-/// From one start both models have the same forces in arrangements of which each is something else's limit: springs and dampers under
-/// a load that turns, a rigid housing under one, an outer ring that turns with a spall, also beside a shaft that speeds up and at a speed of
-/// its own that changes, a roller that is missing, and steep walls on both rings and on a roller.
+/// From one start both models have the same forces in arrangements of which each is something else's limit:
+/// springs and dampers under a load that turns, a rigid housing under one, an outer ring that turns with a
+/// spall, also beside a shaft that speeds up and at a speed of its own that changes, a roller that is
+/// missing, and steep walls on both rings and on a roller.
 #[test]
 fn example_arrangements_are_felt_as_by_the_full_model() {
-    // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes the stiffness of
-    // contacts by ±4 % (THEORY §9.6).
+    // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes
+    // the stiffness of contacts by ±4 % (THEORY §9.6).
     const FORCES: f64 = 0.03;
     const RAMP: &str = "speed_profile: ramp(from_ms: 0, to_ms: 2, to: 3000)";
     const SHAFT: &str = "operation: (load_n: 3000, load_angle_deg: 200, speed_rpm: 1500";
@@ -99,7 +103,8 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
         (
             "springs",
             format!(
-                "housing: springs(stiffness_n_um: 200, damping_n_s_m: 3000, mass_kg: 1), {SHAFT}, rotating_load: (force_n: 1500, angle_deg: 10))"
+                "housing: springs(stiffness_n_um: 200, damping_n_s_m: 3000, mass_kg: 1), {SHAFT}, \
+                 rotating_load: (force_n: 1500, angle_deg: 10))"
             ),
         ),
         (
@@ -111,14 +116,16 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
         (
             "ramps",
             format!(
-                "housing: rigid(mass_kg: 1), {spall}, {SHAFT}, outer_speed_rpm: 1000, {RAMP}, outer_speed_profile: points([(0, 0), (1, -2000)]))"
+                "housing: rigid(mass_kg: 1), {spall}, {SHAFT}, outer_speed_rpm: 1000, {RAMP}, \
+                 outer_speed_profile: points([(0, 0), (1, -2000)]))"
             ),
         ),
         ("missing", "defects: [(on: roller(4), form: missing)], operation: (load_n: 3000)".to_owned()),
         (
             "grooves",
             format!(
-                "defects: [(on: outer, angle_deg: 45, {steep}), (on: outer, angle_deg: 95, {steep}), (on: inner, angle_deg: 84, {steep})]"
+                "defects: [(on: outer, angle_deg: 45, {steep}), (on: outer, angle_deg: 95, {steep}), (on: \
+                 inner, angle_deg: 84, {steep})]"
             ),
         ),
         ("pitted roller", format!("defects: [(on: roller(3), angle_deg: 95, {steep})]")),
@@ -153,8 +160,9 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
     }
 }
 
-/// The outer ring turns about its own centre, which the load has moved: drive and friction see the same velocity of its raceway. RollerView
-/// about the middle of the bearing instead, 50 ms of this are off by 1.3 % with steps of any length.
+/// The outer ring turns about its own centre, which the load has moved: drive and friction see the same
+/// velocity of its raceway. RollerView about the middle of the bearing instead, 50 ms of this are off by 1.3
+/// % with steps of any length.
 #[test]
 fn conserves_energy_while_the_outer_ring_turns_under_load() {
     const ENERGY: f64 = 0.002;
@@ -167,7 +175,8 @@ fn conserves_energy_while_the_outer_ring_turns_under_load() {
     assert!(info.energy.max_relative_error < ENERGY, "{}", info.energy.max_relative_error);
 }
 
-/// A roller that lies in a spall deeper than contacts elsewhere reach, and longer than itself, leaves it over its edge.
+/// A roller that lies in a spall deeper than contacts elsewhere reach, and longer than itself, leaves it over
+/// its edge.
 #[test]
 fn conserves_energy_where_a_roller_leaves_a_deep_spall() {
     const ENERGY: f64 = 0.005;

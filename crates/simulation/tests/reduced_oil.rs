@@ -1,4 +1,5 @@
-//! Oil in the reduced model: beside the full one from the same start, its energy, and that a run goes on to the same bytes.
+//! Oil in the reduced model: beside the full one from the same start, its energy, and that a run goes on to
+//! the same bytes.
 
 mod common;
 
@@ -47,7 +48,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 #[test]
 fn invariant_a_run_with_oil_in_pieces_writes_the_same_bytes() {
     let folder = Scratch::create("oil-pieces");
-    // Roller 1 goes into the defect, where films end and begin; another is not round, so that films remember a place on its rim.
+    // Roller 1 goes into the defect, where films end and begin; another is not round, so that films remember
+    // a place on its rim.
     let scene = coarse(3.0).with_overrides(&[
         "defects=[(on: roller(9), form: waviness(order: 8, amplitude_um: 1.0))]".to_owned(),
     ]);
@@ -71,13 +73,15 @@ fn invariant_a_run_with_oil_in_pieces_writes_the_same_bytes() {
     }
 }
 
-/// Energy of 12 ms, in which a roller falls into the defect, and the load on the raceway: contact and films carry it together.
+/// Energy of 12 ms, in which a roller falls into the defect, and the load on the raceway: contact and films
+/// carry it together.
 #[test]
 fn conserves_energy_and_carries_the_load_with_oil() {
-    // As of dry contact at this step (`conserves_energy_and_carries_the_load`); films add the error of an implicit step of the first
-    // order, which their heat contains.
+    // As of dry contact at this step (`conserves_energy_and_carries_the_load`); films add the error of an
+    // implicit step of the first order, which their heat contains.
     const ENERGY: f64 = 0.005;
-    // The load over a period of the rollers, 5 ms, of which 12 ms are no multiple: what the last part of one is off by.
+    // The load over a period of the rollers, 5 ms, of which 12 ms are no multiple: what the last part of one
+    // is off by.
     const LOAD: f64 = 0.01;
     let folder = Scratch::create("oil-energy");
     let mut scene = coarse(12.0);
@@ -102,11 +106,11 @@ fn conserves_energy_and_carries_the_load_with_oil() {
 /// Full and reduced model from one start, until a roller has left the defect.
 #[test]
 fn example_films_are_those_of_the_full_model() {
-    // Means over a quarter of a millisecond, over the largest: as without oil, where nodes of a coarse mesh lie changes the stiffness of
-    // contacts by ±4 % (THEORY §9.6).
+    // Means over a quarter of a millisecond, over the largest: as without oil, where nodes of a coarse mesh
+    // lie changes the stiffness of contacts by ±4 % (THEORY §9.6).
     const FORCES: f64 = 0.03;
-    // By as much the rings approach each other more or less under the load, some 20 µm: by 0.8 µm; and an inner ring without modes
-    // is out of round by a micrometre less.
+    // By as much the rings approach each other more or less under the load, some 20 µm: by 0.8 µm; and an
+    // inner ring without modes is out of round by a micrometre less.
     const CLEARANCE_M: f64 = 2e-6;
     // A roller brings ½ m v² of its fall across the clearance, in proportion to the way: 2 of 20 to 40 µm.
     const HEAT: f64 = 0.1;
@@ -166,20 +170,23 @@ fn example_films_are_those_of_the_full_model() {
     assert!((heat[1] / heat[0] - 1.0).abs() < HEAT, "{} J, {} J", heat[0], heat[1]);
 }
 
-/// Both rings turn, the outer one with a dent under the oil, and a roller is missing: what drives them makes good what films do, and
-/// forces and films are those of the full model.
+/// Both rings turn, the outer one with a dent under the oil, and a roller is missing: what drives them makes
+/// good what films do, and forces and films are those of the full model.
 #[test]
 fn example_films_between_turning_rings() {
     // As of dry arrangements (`example_arrangements_are_felt_as_by_the_full_model`).
     const ENERGY: f64 = 0.01;
     const FORCES: f64 = 0.03;
-    // A film is as thick as the gap between the circles of roller and inner ring, its least thickness and what the bodies give under it:
-    // 0.4 µm at most where it carries less than 20 N (THEORY §4.6).
+    // A film is as thick as the gap between the circles of roller and inner ring, its least thickness and
+    // what the bodies give under it: 0.4 µm at most where it carries less than 20 N (THEORY §4.6).
     const LITTLE_N: f64 = 20.0;
     const GIVEN_M: f64 = 5e-7;
-    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.5), defect: None, housing: rigid(mass_kg: 1), \
-        defects: [(on: roller(4), form: missing), (on: outer, angle_deg: 20, form: dent(length_mm: 4, depth_mm: 0.02))], \
-        mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None), contact: (surface: arc, penalty_scale: 1, friction: 0.05), \
+    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.5), defect: None, housing: \
+        rigid(mass_kg: 1), \
+        defects: [(on: roller(4), form: missing), (on: outer, angle_deg: 20, form: dent(length_mm: 4, \
+        depth_mm: 0.02))], \
+        mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None), contact: (surface: arc, \
+        penalty_scale: 1, friction: 0.05), \
         solver: (duration_ms: 2, structural_damping: None), \
         operation: (load_n: 3000, load_angle_deg: 200, speed_rpm: 1500, outer_speed_rpm: -1000))";
     let scene = Scene::parse(text, "here").expect("a sound scene");
@@ -240,11 +247,13 @@ fn example_films_between_turning_rings() {
     assert!(off < FORCES, "{off}");
 }
 
-/// With few modes the panels of the seat answer for more than all of what a roller presses: films, too, give way with it within the step, and
-/// no pass over the panels may change more than the next one takes back. A step late, this run is off by a quarter of its peak strain energy, and by less with longer steps.
+/// With few modes the panels of the seat answer for more than all of what a roller presses: films, too, give
+/// way with it within the step, and no pass over the panels may change more than the next one takes back. A
+/// step late, this run is off by a quarter of its peak strain energy, and by less with longer steps.
 #[test]
 fn conserves_energy_while_films_answer_to_a_soft_seat() {
-    let text = "(bearing: \"NU 203\", model: reduced(modes_khz: 8, step_us: 0.25), defect: None, cage: (pocket: corners),
+    let text = "(bearing: \"NU 203\", model: reduced(modes_khz: 8, step_us: 0.25), defect: None, cage: \
+        (pocket: corners),
         operation: (load_n: 3000, speed_rpm: 1500), contact: (penalty_scale: 1, friction: 0.05),
         mesh: (size_mm: 0.36, roller_facets: 224), output: (frames: None),
         solver: (duration_ms: 15, mass_damping_per_s: 5000, structural_damping: None))";

@@ -1,4 +1,5 @@
-//! Whole runs of the reduced bearing: what they leave, that they go on to the same bytes, and how near the full model they are.
+//! Whole runs of the reduced bearing: what they leave, that they go on to the same bytes, and how near the
+//! full model they are.
 
 mod common;
 
@@ -77,8 +78,8 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
 }
 
 /// Modes up to 100 kHz do not take steps of 5 µs.
-/// Rollers that cannot touch the outer raceway are not looked at for a while. Where all are looked at in every step, all that is computed
-/// is the same.
+/// Rollers that cannot touch the outer raceway are not looked at for a while. Where all are looked at in
+/// every step, all that is computed is the same.
 #[test]
 fn invariant_rollers_that_are_not_looked_at_do_not_touch() {
     const BEFORE: usize = 2000;
@@ -104,7 +105,8 @@ fn invariant_rollers_that_are_not_looked_at_do_not_touch() {
 fn example_a_step_beyond_the_critical_one_is_shortened() {
     let folder = Scratch::create("reduced-step");
     let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 100.0, step_us: 5.0), film: None,
-        operation: (load_n: 3000.0, speed_rpm: 1500.0), mesh: (size_mm: 0.5, roller_facets: 56), output: (frames: None),
+        operation: (load_n: 3000.0, speed_rpm: 1500.0), mesh: (size_mm: 0.5, roller_facets: 56), output: \
+        (frames: None),
         solver: (duration_ms: 1.0, mass_damping_per_s: 5000.0, structural_damping: None))";
     let info = run(&Scene::parse(text, "here").expect("a sound scene"), &folder, "stiff", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
@@ -120,7 +122,8 @@ fn conserves_energy_and_carries_the_load() {
     const LOAD: f64 = 0.002;
     let folder = Scratch::create("reduced-load");
     let mut scene = coarse(22.0);
-    // It goes with the step: from three starts 0.50 to 0.67 % at 2 µs, 0.08 to 0.36 % at 1 µs, 0.05 to 0.09 % at 0.5 µs.
+    // It goes with the step: from three starts 0.50 to 0.67 % at 2 µs, 0.08 to 0.36 % at 1 µs, 0.05 to 0.09 %
+    // at 0.5 µs.
     scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 1.0 });
     let info = run(&scene, &folder, "run", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
@@ -135,14 +138,17 @@ fn conserves_energy_and_carries_the_load() {
     assert!((-sum / info.expected_support_n - 1.0).abs() < LOAD, "{sum} N");
 }
 
-/// The spring of friction, which nothing is in series with, is stiffer than the contact on which it stands: with steps that contacts alone
-/// allow, 3.3 µs, this is off by 42 % of the peak strain energy.
+/// The spring of friction, which nothing is in series with, is stiffer than the contact on which it stands:
+/// with steps that contacts alone allow, 3.3 µs, this is off by 42 % of the peak strain energy.
 #[test]
 fn issue_steps_are_short_enough_for_springs_of_friction() {
     let folder = Scratch::create("reduced-friction");
-    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 10, step_us: 5), film: None, defect: None, cage: None,
-        mesh: (size_mm: 0.7, roller_facets: 56), operation: (load_n: 10000, speed_rpm: 1500), output: (frames: None),
-        contact: (surface: arc, penalty_scale: 0.2, friction: 0.5), solver: (duration_ms: 10, structural_damping: None))";
+    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 10, step_us: 5), film: None, defect: None, \
+        cage: None,
+        mesh: (size_mm: 0.7, roller_facets: 56), operation: (load_n: 10000, speed_rpm: 1500), output: \
+        (frames: None),
+        contact: (surface: arc, penalty_scale: 0.2, friction: 0.5), solver: (duration_ms: 10, \
+        structural_damping: None))";
     let scene = Scene::parse(text, "here").expect("a sound scene");
     let info = run(&scene, &folder, "run", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
@@ -183,8 +189,8 @@ fn issue_runs_that_begin_together_make_one_reduction() {
     assert_eq!(left, 1, "the lock goes with the run that made it");
 }
 
-/// One reduction serves all starts, and every run has the mesh of its own: as the scene makes it, with rollers, of which one may be missing,
-/// where they begin.
+/// One reduction serves all starts, and every run has the mesh of its own: as the scene makes it, with
+/// rollers, of which one may be missing, where they begin.
 #[test]
 fn issue_a_reduced_run_writes_its_rollers_where_it_starts() {
     let folder = Scratch::create("reduced-meshes");
@@ -222,8 +228,8 @@ fn of(file: &str, fields: &[&str]) -> Scene {
     Scene::read_with(format!("{scenes}{file}"), fields).expect("valid")
 }
 
-/// Thin rings open and slip in their seats under every roller that falls onto a floor. Passes over the panels that end early, and rollers
-/// that answer a step late, are off by 2 to 26 % of the peak strain energy here.
+/// Thin rings open and slip in their seats under every roller that falls onto a floor. Passes over the panels
+/// that end early, and rollers that answer a step late, are off by 2 to 26 % of the peak strain energy here.
 #[test]
 fn conserves_energy_while_the_seat_opens_under_rollers() {
     let folder = Scratch::create("reduced-opens");
@@ -232,7 +238,8 @@ fn conserves_energy_while_the_seat_opens_under_rollers() {
             "nu203",
             "bearing=NU 203",
             ["cage.outer_diameter_mm=33.674", "cage.thickness_mm=1.426"],
-            "defects=[(on: outer, form: spall(length_mm: 2.5935, depth_mm: 0.0519)), (on: inner, form: spall(length_mm: 2.5935, depth_mm: 0.0519))]",
+            "defects=[(on: outer, form: spall(length_mm: 2.5935, depth_mm: 0.0519)), (on: inner, form: \
+             spall(length_mm: 2.5935, depth_mm: 0.0519))]",
         ),
         (
             "nu210",
@@ -249,8 +256,9 @@ fn conserves_energy_while_the_seat_opens_under_rollers() {
     }
 }
 
-/// Rollers that the cage guides, without friction and damping in a rigid housing, so that nothing becomes heat: corners of the pockets roll
-/// over arcs, and over the rounded vertices of facets. Over sharp ones the step is off by 3 to 15 thousandths of the energy of the contacts.
+/// Rollers that the cage guides, without friction and damping in a rigid housing, so that nothing becomes
+/// heat: corners of the pockets roll over arcs, and over the rounded vertices of facets. Over sharp ones the
+/// step is off by 3 to 15 thousandths of the energy of the contacts.
 #[test]
 fn conserves_energy_while_corners_of_the_cage_pass_vertices() {
     let folder = Scratch::create("reduced-corners");
@@ -279,12 +287,14 @@ fn conserves_energy_while_corners_of_the_cage_pass_vertices() {
     }
 }
 
-/// What the seat slips by in time, the ring's creep in its housing, costs no energy that the ledger does not know of.
+/// What the seat slips by in time, the ring's creep in its housing, costs no energy that the ledger does not
+/// know of.
 #[test]
 fn conserves_energy_while_the_ring_creeps_in_its_seat() {
-    // Of the heat. Rollers that found the raceway displaced only after they had come into contact won 1 % in half a second. Walls with
-    // another displacement at each end win too little in this time to be seen here: a second of the paper's mesh shows them (notes).
-    // The step leaves half of the bound, and twice as much at 1 µs.
+    // Of the heat. Rollers that found the raceway displaced only after they had come into contact won 1 % in
+    // half a second. Walls with another displacement at each end win too little in this time to be seen here:
+    // a second of the paper's mesh shows them (notes). The step leaves half of the bound, and twice as much
+    // at 1 µs.
     const OF_HEAT: f64 = 5e-4;
     let folder = Scratch::create("reduced-creep");
     let mut scene = coarse(200.0);
@@ -311,11 +321,12 @@ fn conserves_energy_while_the_ring_creeps_in_its_seat() {
     assert!(slips > 1.05 * holds, "{slips} J where it slips, {holds} J where it holds");
 }
 
-/// Over defects on raceways and rollers, in both models from one start: the same forces, and the energy balances.
+/// Over defects on raceways and rollers, in both models from one start: the same forces, and the energy
+/// balances.
 #[test]
 fn example_defects_are_felt_as_by_the_full_model() {
-    // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes the stiffness of
-    // contacts by ±4 % (THEORY §9.6).
+    // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes
+    // the stiffness of contacts by ±4 % (THEORY §9.6).
     const FORCES: f64 = 0.03;
     let mut scene = coarse(4.0);
     scene.defect = None;
@@ -359,8 +370,8 @@ fn example_defects_are_felt_as_by_the_full_model() {
 /// From one start, full and reduced model carry the load on the same rollers at first.
 #[test]
 fn example_the_reduced_model_starts_as_the_full_one() {
-    // Of the largest roller force. Where nodes of a mesh of 2 mm lie under a contact changes its stiffness by ±4 % at the
-    // largest force and ±5 % at light ones; the reduced model has the mean (THEORY §9.6).
+    // Of the largest roller force. Where nodes of a mesh of 2 mm lie under a contact changes its stiffness by
+    // ±4 % at the largest force and ±5 % at light ones; the reduced model has the mean (THEORY §9.6).
     const TOLERANCE: f64 = 0.04;
     let folder = Scratch::create("reduced-start");
     let scene = coarse(0.05);
@@ -383,13 +394,14 @@ fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
     trace.get(name).unwrap_or_else(|| panic!("the trace has no `{name}`"))
 }
 
-/// Turned back, with rollers at mirrored places, the bearing is its mirror image about the y axis: places across and spins
-/// change their sign, and so do forces across.
+/// Turned back, with rollers at mirrored places, the bearing is its mirror image about the y axis: places
+/// across and spins change their sign, and so do forces across.
 #[test]
 fn invariant_a_bearing_that_turns_back_is_the_mirror_image() {
-    // Meshes of 314 and 258 facets from the x axis on, rollers turned with their places and a defect at the top mirror into
-    // themselves, but the preload that both runs share is found to 1e-7 of the load only, which grows a little as idle rollers
-    // touch and let go. Of 0.1 m, 0.2 rad and 10 kN, until roller 1 goes into the defect.
+    // Meshes of 314 and 258 facets from the x axis on, rollers turned with their places and a defect at the
+    // top mirror into themselves, but the preload that both runs share is found to 1e-7 of the load only,
+    // which grows a little as idle rollers touch and let go. Of 0.1 m, 0.2 rad and 10 kN, until roller 1 goes
+    // into the defect.
     const TOLERANCE: f64 = 5e-5;
     // What sounds until then is what the preload left over.
     const OF_ACCELERATION: f64 = 0.2;
@@ -428,8 +440,8 @@ fn invariant_a_bearing_that_turns_back_is_the_mirror_image() {
     }
 }
 
-/// The coarse bearing without a defect, its cage guided by the rollers: pockets with corners keep it from floating away before
-/// all rollers run.
+/// The coarse bearing without a defect, its cage guided by the rollers: pockets with corners keep it from
+/// floating away before all rollers run.
 fn guided(duration_ms: f64) -> Scene {
     let mut scene = coarse(duration_ms);
     scene.defect = None;
@@ -437,13 +449,13 @@ fn guided(duration_ms: f64) -> Scene {
     scene
 }
 
-/// From rest along a ramp the shaft has the angle ½αt² of a constant acceleration; loaded rollers roll without slip and take
-/// the cage along.
+/// From rest along a ramp the shaft has the angle ½αt² of a constant acceleration; loaded rollers roll
+/// without slip and take the cage along.
 /// Source: THEORY §5.1, rolling without slip; (6.4), a constant acceleration.
 #[test]
 fn analytic_a_start_from_rest_takes_the_rollers_along() {
-    // The clearance of a pocket is 1.1 mrad. The cage lies some ten of them behind: rollers outside the load zone are pushed by its
-    // corners until they have come round.
+    // The clearance of a pocket is 1.1 mrad. The cage lies some ten of them behind: rollers outside the load
+    // zone are pushed by its corners until they have come round.
     const BEHIND: f64 = 0.02;
     // Roller 3 goes from 124° to 75°, under the load all the way.
     const ROLLING: f64 = 0.01;
@@ -476,7 +488,8 @@ fn analytic_a_start_from_rest_takes_the_rollers_along() {
 /// A load over time is carried at each of its values, and its work is in the ledger.
 #[test]
 fn conserves_energy_under_a_load_that_swells() {
-    // As for a constant load; the work of the load goes back and forth by a multiple of the strain energy's change.
+    // As for a constant load; the work of the load goes back and forth by a multiple of the strain energy's
+    // change.
     const ENERGY: f64 = 0.005;
     // What the ring's lowest modes add to the forces at a time, of the load then; none of it in the mean.
     const SWING: f64 = 0.08;
@@ -532,15 +545,18 @@ fn invariant_a_run_over_a_profile_in_pieces_writes_the_same_bytes() {
     }
 }
 
-/// A bearing that hardly anything loads: one or two rollers carry, and the ring would swing far before they touch. What they carry is
-/// the load, and the ring stays where its clearance lets it.
+/// A bearing that hardly anything loads: one or two rollers carry, and the ring would swing far before they
+/// touch. What they carry is the load, and the ring stays where its clearance lets it.
 #[test]
 fn example_light_loads() {
     for load_n in [300, 30, 3] {
         let text = format!(
-            "(bearing: \"NU 205\", model: reduced(step_us: 0.5), film: None, defect: None, operation: (load_n: {load_n}, speed_rpm: 1500),
-              cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), mesh: (roller_facets: 56), output: (frames: None),
-              contact: (surface: arc, friction: 0.05), solver: (duration_ms: 2, mass_damping_per_s: 5000, structural_damping: None))"
+            "(bearing: \"NU 205\", model: reduced(step_us: 0.5), film: None, defect: None, operation: \
+             (load_n: {load_n}, speed_rpm: 1500),
+              cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), mesh: (roller_facets: \
+              56), output: (frames: None),
+              contact: (surface: arc, friction: 0.05), solver: (duration_ms: 2, mass_damping_per_s: 5000, \
+              structural_damping: None))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
         let folder = Scratch::create("reduced-light");
@@ -554,16 +570,19 @@ fn example_light_loads() {
     }
 }
 
-/// A ring that does not deform leaves the compliance to the rollers and the inner ring, which theory takes as two half-spaces.
-/// Source: Stribeck and Sjövall's distribution between rigid rings with Johnson's approach of line contacts, THEORY §6.2; the load
-/// comes back as the sum of the rollers' forces.
+/// A ring that does not deform leaves the compliance to the rollers and the inner ring, which theory takes as
+/// two half-spaces. Source: Stribeck and Sjövall's distribution between rigid rings with Johnson's approach
+/// of line contacts, THEORY §6.2; the load comes back as the sum of the rollers' forces.
 #[test]
 fn analytic_rollers_in_a_rigid_housing() {
     for bearing in ["NU 205", "6305"] {
         let text = format!(
-            "(bearing: \"{bearing}\", model: reduced(step_us: 0.5), film: None, defect: None, housing: rigid(mass_kg: 1),
-              operation: (load_n: 3000, load_angle_deg: 215, speed_rpm: 100, gravity_m_s2: 0), output: (frames: None),
-              mesh: (size_mm: 0.2, roller_facets: 160, grading: (coarse_mm: 2)), contact: (surface: arc, penalty_scale: 10),
+            "(bearing: \"{bearing}\", model: reduced(step_us: 0.5), film: None, defect: None, housing: \
+             rigid(mass_kg: 1),
+              operation: (load_n: 3000, load_angle_deg: 215, speed_rpm: 100, gravity_m_s2: 0), output: \
+              (frames: None),
+              mesh: (size_mm: 0.2, roller_facets: 160, grading: (coarse_mm: 2)), contact: (surface: arc, \
+              penalty_scale: 10),
               solver: (duration_ms: 2))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
@@ -593,12 +612,16 @@ fn analytic_rollers_in_a_rigid_housing() {
     }
 }
 
-/// Rings in a rigid housing store next to nothing: beside what contacts store, what the step leaves is small, and no divergence.
+/// Rings in a rigid housing store next to nothing: beside what contacts store, what the step leaves is small,
+/// and no divergence.
 #[test]
 fn issue_a_light_load_in_a_rigid_housing_is_no_divergence() {
-    let text = "(name: \"light\", housing: rigid(mass_kg: 18.08), model: reduced(step_us: 2.0), film: None, defect: None,
-        defects: [(on: outer, angle_deg: 334.8, form: waviness(order: 7, amplitude_um: 0.79))], cage: (pocket: corners),
-        operation: (load_n: 193, speed_rpm: 535), solver: (duration_ms: 10), output: (interval_us: 50, frames: None))";
+    let text = "(name: \"light\", housing: rigid(mass_kg: 18.08), model: reduced(step_us: 2.0), film: None, \
+        defect: None,
+        defects: [(on: outer, angle_deg: 334.8, form: waviness(order: 7, amplitude_um: 0.79))], cage: \
+        (pocket: corners),
+        operation: (load_n: 193, speed_rpm: 535), solver: (duration_ms: 10), output: (interval_us: 50, \
+        frames: None))";
     let scene = Scene::parse(text, "here").expect("a sound scene");
     let info = run(&scene, &Scratch::create("reduced-rigid-light"), "run", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);

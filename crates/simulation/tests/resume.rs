@@ -104,8 +104,8 @@ fn assert_same_files(whole: &Folder, pieces: &Folder, how: &str) {
     assert!(frames > 2, "the scene asks for frames, and there are {frames}");
 }
 
-/// A run in pieces, on one thread and two by turns, writes the same files as one in one piece. Damping frames are placed
-/// at every 64th step; the breaks lie elsewhere.
+/// A run in pieces, on one thread and two by turns, writes the same files as one in one piece. Damping frames
+/// are placed at every 64th step; the breaks lie elsewhere.
 #[test]
 fn invariant_a_run_in_pieces_writes_the_same_bytes() {
     let scene = coarse(0.5);
@@ -134,7 +134,8 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
     assert!(info.warnings.is_empty(), "{:?}", info.warnings);
 }
 
-/// A complete run is made longer from its last state; the files are those of a run that was as long from the start.
+/// A complete run is made longer from its last state; the files are those of a run that was as long from the
+/// start.
 #[test]
 fn invariant_a_run_made_longer_writes_the_bytes_of_a_long_one() {
     let (short, long) = (Folder::new(), Folder::new());
@@ -185,8 +186,8 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// What `kill -9` leaves is what lies in the folder at that moment: the run goes on from the last checkpoint, of the start
-/// or of the hundredth sample, and forgets what was written after it.
+/// What `kill -9` leaves is what lies in the folder at that moment: the run goes on from the last checkpoint,
+/// of the start or of the hundredth sample, and forgets what was written after it.
 #[test]
 fn survives_a_kill_and_goes_on_from_its_last_checkpoint() {
     let scene = coarse(1.25);
@@ -244,8 +245,8 @@ fn refuses_a_damaged_checkpoint() {
     }
 }
 
-/// Damage under a length and a checksum that fit: what is wrong is found deeper, and gets an answer too. A failure shrinks
-/// to the fewest bytes.
+/// Damage under a length and a checksum that fit: what is wrong is found deeper, and gets an answer too. A
+/// failure shrinks to the fewest bytes.
 #[test]
 fn refuses_a_forged_checkpoint() {
     let folder = broken_off();
@@ -332,8 +333,8 @@ fn refuses_what_cannot_go_on_and_says_why() {
     assert!(!nothing.path().exists(), "a refused resume made a folder");
 }
 
-/// Clocks that are set back, jump ahead or stand still change times in `run.json` and nothing else: checkpoints are still
-/// written, and no time runs backwards.
+/// Clocks that are set back, jump ahead or stand still change times in `run.json` and nothing else:
+/// checkpoints are still written, and no time runs backwards.
 #[test]
 fn survives_a_clock_that_jumps() {
     let whole = Folder::new();

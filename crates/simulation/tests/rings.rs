@@ -15,8 +15,11 @@ use stribeck_scene::{
 use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 
-const SCENE: &str = "(name: \"ring\", bearing: \"NU 205\", film: None, defect: None, output: (frames: None), housing: springs(),
-    operation: (load_n: 5000, speed_rpm: 1500), mesh: (size_mm: 0.5, roller_facets: 48), contact: (penalty_scale: 0.3), solver: (duration_ms: 2))";
+const SCENE: &str =
+    "(name: \"ring\", bearing: \"NU 205\", film: None, defect: None, output: (frames: None), \
+    housing: springs(),
+    operation: (load_n: 5000, speed_rpm: 1500), mesh: (size_mm: 0.5, roller_facets: 48), contact: \
+    (penalty_scale: 0.3), solver: (duration_ms: 2))";
 
 const NOTCHED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/rings/notched_outer.msh");
 
@@ -128,7 +131,8 @@ fn analytic_a_notched_ring_in_a_pedestal_runs_and_carries_its_load() {
     assert!((-carried / info.expected_support_n - 1.0).abs() < 0.02, "{carried} N");
 }
 
-/// A ring as other programs write it, in two files and with what is no mesh, is the ring; and the run lists what was passed over.
+/// A ring as other programs write it, in two files and with what is no mesh, is the ring; and the run lists
+/// what was passed over.
 #[test]
 fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
     let plain = scene(&[]);

@@ -66,13 +66,13 @@ fn last_angle_deg(run: &Run, roller: usize) -> f64 {
     last("y").atan2(last("x")).to_degrees()
 }
 
-/// The preloaded bearing rolls: the cage turns at f_s·D_i/(D_i + D_o), the rollers carry load and weight, the energy
-/// ledger closes.
+/// The preloaded bearing rolls: the cage turns at f_s·D_i/(D_i + D_o), the rollers carry load and weight, the
+/// energy ledger closes.
 /// Source: THEORY §5.1, rolling without slip.
 #[test]
 fn analytic_bearing_rolls_and_carries_its_load() {
-    // Cage, load and ledger within 1 % each: what the project asks of the full scene too. On a 2 mm mesh the cage runs
-    // 1.1 % ahead after 4 ms.
+    // Cage, load and ledger within 1 % each: what the project asks of the full scene too. On a 2 mm mesh the
+    // cage runs 1.1 % ahead after 4 ms.
     const TOLERANCE: f64 = 0.01;
     let mut scene = coarse(6.0);
     scene.mesh.size_mm = 1.0;
@@ -100,8 +100,8 @@ fn analytic_bearing_rolls_and_carries_its_load() {
     );
 }
 
-/// The preload leaves equilibrium: before the first roller reaches the defect the vertical force through the rollers
-/// stays near the load, while a load put on at once overshoots by its own size.
+/// The preload leaves equilibrium: before the first roller reaches the defect the vertical force through the
+/// rollers stays near the load, while a load put on at once overshoots by its own size.
 #[test]
 fn example_preloaded_start_does_not_ring() {
     // What remains is the facet passing of a coarse polygon.
@@ -113,8 +113,8 @@ fn example_preloaded_start_does_not_ring() {
     }
 }
 
-/// Bearings whose rollers lie loosely while the preload is sought: the rings of the paper's mesh are thin, or nothing but
-/// their weight moves the rollers that carry nothing. Those must stay in their clearance.
+/// Bearings whose rollers lie loosely while the preload is sought: the rings of the paper's mesh are thin, or
+/// nothing but their weight moves the rollers that carry nothing. Those must stay in their clearance.
 #[test]
 fn example_thin_and_slow_bearings_find_their_equilibrium() {
     let lean = ("lean.ron", include_str!("../../../fixtures/scenes/lean.ron"));
@@ -150,7 +150,8 @@ fn example_stiffness_damping_is_paid_and_counted() {
     /// Of the peak strain energy: what a bearing may miss before it is warned.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
-    // Its heat alone is seen. Loaded bodies that turn drive themselves a little with it (THEORY §2.7): it may be negative.
+    // Its heat alone is seen. Loaded bodies that turn drive themselves a little with it (THEORY §2.7): it may
+    // be negative.
     (plain.solver.mass_damping_per_s, plain.solver.structural_damping) = (0.0, None);
     let mut scene = plain.clone();
     scene.solver.stiffness_damping_ns = 100.0;
@@ -170,7 +171,8 @@ fn example_stiffness_damping_is_paid_and_counted() {
     assert_same_bits(&one, &two, "two threads");
 }
 
-/// Structural damping shortens the step by a few per cent, its loss closes the ledger, and threads change no bit.
+/// Structural damping shortens the step by a few per cent, its loss closes the ledger, and threads change no
+/// bit.
 #[test]
 fn example_structural_damping_is_paid_and_counted() {
     /// Of the peak strain energy: what a bearing may miss before it is warned.
@@ -180,7 +182,8 @@ fn example_structural_damping_is_paid_and_counted() {
     let mut scene = plain.clone();
     scene.solver.structural_damping = Some(StructuralDampingScene::default());
     let ((undamped, _), (info, one)) = (run(&plain, 1), run(&scene, 1));
-    // √(1 + Σ g) with Σ g = 0.146, where a damped body sets the step; rollers do here, and the step is an estimate.
+    // √(1 + Σ g) with Σ g = 0.146, where a damped body sets the step; rollers do here, and the step is an
+    // estimate.
     const ESTIMATE: f64 = 1e-4;
     let shorter = info.critical_time_step_s / undamped.critical_time_step_s;
     assert!((0.93..=1.0 + ESTIMATE).contains(&shorter), "{shorter} of the undamped step");
@@ -197,7 +200,8 @@ fn example_structural_damping_is_paid_and_counted() {
     assert!(samples(&less) != samples(&one), "the rings are not damped");
 }
 
-/// Pockets push rollers along their track: walls that touch them at their flanks have no other direction, corners do.
+/// Pockets push rollers along their track: walls that touch them at their flanks have no other direction,
+/// corners do.
 #[test]
 fn example_straight_pockets_push_along_the_track() {
     let across = |pocket: PocketWalls| {
@@ -224,8 +228,8 @@ fn example_straight_pockets_push_along_the_track() {
     assert!(across(PocketWalls::Straight).abs() < 0.02);
 }
 
-/// Without a cage a roller with µ = 0.005 loses traction in the spall, rebounds from the exit edge and stays inside;
-/// the cage pushes it out. Seen on the first prototype of this bearing.
+/// Without a cage a roller with µ = 0.005 loses traction in the spall, rebounds from the exit edge and stays
+/// inside; the cage pushes it out. Seen on the first prototype of this bearing.
 #[test]
 fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     const TRAILING_EDGE_DEG: f64 = 90.0 - 2.8648;
@@ -233,7 +237,8 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     // A 1 mm mesh: on 2 mm the polygon rolls over the first time.
     scene.mesh.size_mm = 1.0;
     scene.mesh.roller_facets = 112;
-    // As it was seen: damping across the track takes the rebound from the roller, which then climbs out by itself.
+    // As it was seen: damping across the track takes the rebound from the roller, which then climbs out by
+    // itself.
     scene.solver.damping_frame = DampingFrame::RigidMotion;
     scene.solver.mass_damping_per_s = 150.0;
     // And on a stiff contact: on a soft one a roller sinks far enough into the edge to climb out.
@@ -253,8 +258,8 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     );
 }
 
-/// A step above the critical one creates energy: the run stops by itself, says where and what to try, and what it wrote
-/// stays readable.
+/// A step above the critical one creates energy: the run stops by itself, says where and what to try, and
+/// what it wrote stays readable.
 #[test]
 fn survives_a_run_that_diverges() {
     let mut scene = coarse(2.0);
@@ -282,12 +287,14 @@ fn survives_an_interruption_with_its_samples() {
     assert_eq!(Run::read(folder.path()).expect("readable").trace.len(), 10);
 }
 
-/// A coarse bearing's first 0.3 ms against our own blessed history (`fixtures/golden/coarse.csv`): a change of the
-/// physics shows here, a change of rounding does not. `STRIBECK_BLESS=1 cargo test …` writes the file anew.
+/// A coarse bearing's first 0.3 ms against our own blessed history (`fixtures/golden/coarse.csv`): a change
+/// of the physics shows here, a change of rounding does not. `STRIBECK_BLESS=1 cargo test …` writes the file
+/// anew.
 #[test]
 fn golden_coarse_bearing() {
-    // Sums over wide and narrow vectors and the system's sine and cosine round differently on another machine, far below
-    // this; the preload, whose factorisation does too, is left out. A change of the physics shows in the first digits.
+    // Sums over wide and narrow vectors and the system's sine and cosine round differently on another
+    // machine, far below this; the preload, whose factorisation does too, is left out. A change of the
+    // physics shows in the first digits.
     const TOLERANCE: f64 = 1e-6;
     const CHANNELS: [&str; 6] = [
         "sensor.side.ay_m_s2",
@@ -329,7 +336,8 @@ fn golden_coarse_bearing() {
     }
 }
 
-/// Centres stand where angle and place in the pocket say, and meshes are turned by their phase; the cage stays.
+/// Centres stand where angle and place in the pocket say, and meshes are turned by their phase; the cage
+/// stays.
 #[test]
 fn example_rollers_start_where_the_scene_puts_them() {
     // Sums and products of numbers of the size of one metre.

@@ -1,7 +1,9 @@
-//! One step of one body on one thread, motion of nodes included: time per element, by kind of element and size.
+//! One step of one body on one thread, motion of nodes included: time per element, by kind of element and
+//! size.
 //!
-//! `strips` a structured block; `gather` the same block with its node numbers shuffled; `congruent` equal discs, eight
-//! to a tile, quadrilaterals and triangles. Ten million elements need some gigabytes: set `STRIBECK_BENCH_LARGE`.
+//! `strips` a structured block; `gather` the same block with its node numbers shuffled; `congruent` equal
+//! discs, eight to a tile, quadrilaterals and triangles. Ten million elements need some gigabytes: set
+//! `STRIBECK_BENCH_LARGE`.
 
 use std::time::Duration;
 

@@ -1,9 +1,9 @@
 //! How far the kernel is from what this machine can do, measured in one run on one thread.
 //!
-//! Peak arithmetic in double precision, bandwidth beyond the second- and the third-level cache, then the whole step
-//! on structured blocks. The limit is the larger of (operations / peak) and (bytes / bandwidth); the fraction is the
-//! limit over the time measured. Every measurement is the shortest of many short runs, taken in turn, so that other
-//! programs on the machine disturb all of them alike.
+//! Peak arithmetic in double precision, bandwidth beyond the second- and the third-level cache, then the
+//! whole step on structured blocks. The limit is the larger of (operations / peak) and (bytes / bandwidth);
+//! the fraction is the limit over the time measured. Every measurement is the shortest of many short runs,
+//! taken in turn, so that other programs on the machine disturb all of them alike.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -12,8 +12,8 @@ use multiversion::multiversion;
 use stribeck_mesh::{Mesh, Rectangle};
 use stribeck_solver::{Dynamics, Elastic, Model};
 
-/// What one element and its node cost in a strip of congruent quadrilaterals, counted in the sources; a product with a
-/// sum in one rounding counts as two operations.
+/// What one element and its node cost in a strip of congruent quadrilaterals, counted in the sources; a
+/// product with a sum in one rounding counts as two operations.
 ///
 /// | where | product with sum | products | sums |
 /// |---|---|---|---|
@@ -27,8 +27,8 @@ use stribeck_solver::{Dynamics, Elastic, Model};
 /// | `advance.rs`, without damping | 4 | 0 | 2 |
 const OPERATIONS: f64 = 2.0 * 28.0 + 9.0 + 28.0;
 
-/// Bytes between the fields of a node and the caches that do not hold them: x, y, vx, vy in and out, Δt/m in. Forces
-/// stay in the scratch of a tile, which does not leave the second-level cache.
+/// Bytes between the fields of a node and the caches that do not hold them: x, y, vx, vy in and out, Δt/m in.
+/// Forces stay in the scratch of a tile, which does not leave the second-level cache.
 const BYTES: f64 = 9.0 * 8.0;
 
 /// Columns and rows: fields of 4 MB, beyond most second-level caches, and of 100 MB.
@@ -40,8 +40,8 @@ const LARGE: (usize, usize) = (4000, 2500);
 /// Elements of the arithmetic loop: two arrays that stay in the first-level cache.
 const NEAR: usize = 1024;
 
-/// Dependent operations on each of its elements, apart and fused: enough to hide loads and stores, few enough that
-/// the processor sees several elements at once. These came out fastest.
+/// Dependent operations on each of its elements, apart and fused: enough to hide loads and stores, few enough
+/// that the processor sees several elements at once. These came out fastest.
 const APART: usize = 6;
 /// See [`APART`].
 const FUSED: usize = 8;

@@ -1,7 +1,8 @@
 //! A pressure wave runs along a bar: its speed on finer and finer meshes against √((λ + 2µ)/ρ).
 //!
-//! The bar is struck at its left end with a constant pressure. Its front passes the middle of the bar when the particles
-//! there have half the speed p/(ρc) of those behind it (Achenbach, *Wave Propagation in Elastic Solids*, 1973, §1.3).
+//! The bar is struck at its left end with a constant pressure. Its front passes the middle of the bar when
+//! the particles there have half the speed p/(ρc) of those behind it (Achenbach, *Wave Propagation in Elastic
+//! Solids*, 1973, §1.3).
 //!
 //! `cargo run --release -p stribeck-solver --example bar_wave`
 
@@ -28,7 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Time step [s] of a bar with so many columns of elements, and the time [s] at which the front is in its middle.
+/// Time step [s] of a bar with so many columns of elements, and the time [s] at which the front is in its
+/// middle.
 fn arrival(steel: Elastic, columns: usize) -> Result<(f64, f64), Box<dyn Error>> {
     let bar = Rectangle { x0: 0.0, y0: 0.0, width: LENGTH, height: HEIGHT, columns, rows: 2 }.part()?;
     let mut mesh = Mesh::new();
@@ -38,7 +40,8 @@ fn arrival(steel: Elastic, columns: usize) -> Result<(f64, f64), Box<dyn Error>>
     // Its sides are held, so that plane waves run at the speed of an unbounded body.
     model.motion.fill(Motion::HeldY);
 
-    // Nodes that are pushed from outside are announced, then pushed: the force of a facet, a half on each of its ends.
+    // Nodes that are pushed from outside are announced, then pushed: the force of a facet, a half on each of
+    // its ends.
     let mut pushed = vec![false; model.mesh.x.len()];
     struck.iter().for_each(|&n| pushed[n as usize] = true);
     let mut dynamics = Dynamics::new(&model, &pushed, 1)?;

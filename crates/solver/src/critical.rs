@@ -24,15 +24,15 @@ const ACCURACY: f64 = 2e-3;
 /// Most Lanczos iterations.
 const ITERATIONS: usize = 400;
 
-/// Displacement of a probe over the shortest edge: strains of about 1e-6, where the response is linear and rounding is
-/// 1e-8 of it.
+/// Displacement of a probe over the shortest edge: strains of about 1e-6, where the response is linear and
+/// rounding is 1e-8 of it.
 const PROBE: f64 = 2e-6;
 
 /// Far from the origin positions round to more than that; a probe is this many of their last digits at least.
 const DIGITS: f64 = 1e5;
 
-/// What stiffness damping `beta` [s] leaves of the critical time step `undamped` [s], when it damps all stiffness
-/// (THEORY §2.7).
+/// What stiffness damping `beta` [s] leaves of the critical time step `undamped` [s], when it damps all
+/// stiffness (THEORY §2.7).
 pub fn damped_time_step(undamped: f64, beta: f64) -> f64 {
     if beta > 0.0 { undamped * undamped / (beta + beta.hypot(undamped)) } else { undamped }
 }
@@ -40,11 +40,11 @@ pub fn damped_time_step(undamped: f64, beta: f64) -> f64 {
 impl Dynamics {
     /// Critical time step of elements and forces at the present positions.
     ///
-    /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add in
-    /// any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms, zero leaves them
-    /// out). Rigid bodies have no K: D over their mass and inertia bounds theirs. Infinite when nothing has stiffness.
-    /// Stiffness damping makes K larger by 1 + 2β/`dt`; [`damped_time_step`] guesses that `dt`. Structural damping makes it
-    /// larger by the stiffness of its branches.
+    /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add
+    /// in any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms, zero
+    /// leaves them out). Rigid bodies have no K: D over their mass and inertia bounds theirs. Infinite when
+    /// nothing has stiffness. Stiffness damping makes K larger by 1 + 2β/`dt`; [`damped_time_step`] guesses
+    /// that `dt`. Structural damping makes it larger by the stiffness of its branches.
     pub fn critical_time_step(&self, forces: &[&dyn Force], dt: f64) -> Critical {
         let mut bound = vec![0.0; self.state.x.len()];
         forces.iter().for_each(|f| f.stiffness_bound(dt, &mut bound));
@@ -63,8 +63,8 @@ impl Dynamics {
         Critical { time_step: 2.0 / rigid, frequency: rigid, residual: 0.0, ..elastic }
     }
 
-    /// Critical time step of elements and of what the forces are as stiff as *now*, at the positions last given to them:
-    /// sharp, but good for this configuration alone. Damping and rigid bodies are left out.
+    /// Critical time step of elements and of what the forces are as stiff as *now*, at the positions last
+    /// given to them: sharp, but good for this configuration alone. Damping and rigid bodies are left out.
     pub fn present_critical_time_step(&self, forces: &[&dyn Force]) -> Critical {
         let mut springs = Vec::new();
         let (x, y) = (&self.state.x, &self.state.y);
@@ -227,8 +227,8 @@ fn normalise(v: &mut [f64]) {
     v.iter_mut().for_each(|p| *p /= length);
 }
 
-/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the sign count, and the last component of
-/// its unit eigenvector.
+/// Largest eigenvalue of a symmetric tridiagonal matrix, by bisection on the sign count, and the last
+/// component of its unit eigenvector.
 fn largest_of_tridiagonal(alpha: &[f64], beta: &[f64]) -> (f64, f64) {
     let n = alpha.len();
     let off = |i: usize| if i == 0 || i > beta.len() { 0.0 } else { beta[i - 1] };

@@ -14,8 +14,8 @@ pub enum Frame {
     Rest,
     /// The rigid part of the body's own motion: only its vibration is damped, its momentum stays.
     OwnMotion,
-    /// The body's own motion without what carries its centre of mass towards or away from a point [m]: motion on a circle
-    /// about that point and rotation stay, radial vibration is damped.
+    /// The body's own motion without what carries its centre of mass towards or away from a point [m]: motion
+    /// on a circle about that point and rotation stay, radial vibration is damped.
     Tangential {
         /// Centre of the circle [m].
         centre: [f64; 2],
@@ -48,7 +48,8 @@ pub struct MassDamping {
     frames: Vec<(usize, Frame)>,
 }
 
-/// Where a frame was last placed. It belongs to what changes in time, because frames are not placed in every step.
+/// Where a frame was last placed. It belongs to what changes in time, because frames are not placed in every
+/// step.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct PlacedFrame {
     /// A point of the frame [m].

@@ -1,11 +1,13 @@
-//! How far elements are from their reference shape: what a run is stopped by before an element turns inside out.
+//! How far elements are from their reference shape: what a run is stopped by before an element turns inside
+//! out.
 
 use crate::dynamics::Dynamics;
 
 /// The most distorted elements of a model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Distortion {
-    /// Least area over reference area of any element [-]: 1 at rest, zero or less when an element has turned inside out.
+    /// Least area over reference area of any element [-]: 1 at rest, zero or less when an element has turned
+    /// inside out.
     pub least_area: f64,
     /// Where that element is [m].
     pub place: [f64; 2],
@@ -14,8 +16,8 @@ pub struct Distortion {
 }
 
 impl Dynamics {
-    /// The most distorted elements of the present positions, measured at element centres. A position that is NaN gives an
-    /// area that is NaN.
+    /// The most distorted elements of the present positions, measured at element centres. A position that is
+    /// NaN gives an area that is NaN.
     pub fn distortion(&self) -> Distortion {
         let (x, y) = (&self.state.x, &self.state.y);
         let mut worst = Distortion { least_area: f64::INFINITY, place: [0.0; 2], largest_stretch: 0.0 };

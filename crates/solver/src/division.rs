@@ -1,9 +1,11 @@
-//! One model over ranks: which tiles each takes, what they tell each other in a step, and the whole state gathered again.
+//! One model over ranks: which tiles each takes, what they tell each other in a step, and the whole state
+//! gathered again.
 //!
-//! A rank sweeps its own tiles as threads do theirs. Their ghosts and whatever nodes its forces read come from the ranks
-//! that own them, once a step, while the tiles that nobody waits for are swept. What a step counts, and where rigid bodies
-//! are, every rank hears after every step; fields of other ranks' tiles are right only after [`Dynamics::gather`]. Sums are
-//! taken tile by tile in one order, as ever, so that ranks change no bit.
+//! A rank sweeps its own tiles as threads do theirs. Their ghosts and whatever nodes its forces read come
+//! from the ranks that own them, once a step, while the tiles that nobody waits for are swept. What a step
+//! counts, and where rigid bodies are, every rank hears after every step; fields of other ranks' tiles are
+//! right only after [`Dynamics::gather`]. Sums are taken tile by tile in one order, as ever, so that ranks
+//! change no bit.
 
 use std::sync::Arc;
 
@@ -29,16 +31,17 @@ const ENERGIES: usize = 2 + MAX_BRANCHES;
 /// Numbers that tell where a rigid body is, how it moves and what drove it.
 const RIGID: usize = 7;
 
-/// A new cut is taken where the busiest rank of the old one has so many times the work of the busiest of the new one.
+/// A new cut is taken where the busiest rank of the old one has so many times the work of the busiest of the
+/// new one.
 const WORTH_A_CUT: f64 = 1.03;
 
 /// Slots from one that counts for the place of its tile to the next.
 const PLACE_EVERY: usize = 61;
 
 impl Dynamics {
-    /// Divides the model among ranks from now on, all of which hold the same state: each moves its own tiles alone. Every rank
-    /// has to call the same methods in the same order then, and whoever wants to know the whole state calls
-    /// [`Dynamics::gather`] first.
+    /// Divides the model among ranks from now on, all of which hold the same state: each moves its own tiles
+    /// alone. Every rank has to call the same methods in the same order then, and whoever wants to know the
+    /// whole state calls [`Dynamics::gather`] first.
     pub fn divide(&mut self, ranks: Arc<dyn Ranks>) {
         let count = ranks.count();
         self.division = Some(Division {
@@ -67,9 +70,9 @@ impl Dynamics {
         self.division.as_ref().map_or(0, |division| division.rank_of[tile])
     }
 
-    /// Deals tiles out anew by their work and by `burdens`: slots, and the work that is done for them, in units of about a
-    /// nanosecond. The whole state must be known. True where a tile has gone to another rank; what is read elsewhere
-    /// must then be said again.
+    /// Deals tiles out anew by their work and by `burdens`: slots, and the work that is done for them, in
+    /// units of about a nanosecond. The whole state must be known. True where a tile has gone to another
+    /// rank; what is read elsewhere must then be said again.
     pub fn balance<'a>(&mut self, burdens: impl Iterator<Item = (&'a [u32], f64)>) -> bool {
         let Some(division) = &self.division else { return false };
         let (rank, count) = (division.ranks.rank(), division.ranks.count());
@@ -113,8 +116,8 @@ impl Dynamics {
         true
     }
 
-    /// Says which nodes the forces of each rank read, by their slots: from the next step on they are known there, as they are
-    /// now. Nodes of bodies that move as one piece are known everywhere.
+    /// Says which nodes the forces of each rank read, by their slots: from the next step on they are known
+    /// there, as they are now. Nodes of bodies that move as one piece are known everywhere.
     pub fn read_elsewhere(&mut self, wanted: Vec<Vec<u32>>) {
         let Some(division) = &mut self.division else { return };
         let (rank, tiles) = (division.ranks.rank(), &mut self.tiles);
@@ -241,7 +244,8 @@ impl Dynamics {
         self.division = Some(division);
     }
 
-    /// Sends what others read of nodes that have moved, and receives what this rank reads, while `meanwhile` moves others.
+    /// Sends what others read of nodes that have moved, and receives what this rank reads, while `meanwhile`
+    /// moves others.
     fn exchange(&mut self, division: &mut Division, meanwhile: impl Fn(&mut Self)) {
         let seams = if self.sees_ahead() { 4 } else { 2 };
         let State { x, y, vx, vy, .. } = &self.state;
@@ -263,7 +267,8 @@ impl Dynamics {
         }
     }
 
-    /// Moves rigid bodies, each on one rank, and lets every rank know where they are and what tiles have counted.
+    /// Moves rigid bodies, each on one rank, and lets every rank know where they are and what tiles have
+    /// counted.
     pub(crate) fn move_rigid_and_share(&mut self, parameters: &StepParameters, measure: bool) {
         let (dt, gravity) = (self.time_step, self.gravity);
         let Some(Division { ranks, rank_of, rank_of_rigid, shared, .. }) = &mut self.division else {

@@ -28,8 +28,8 @@ use stribeck_simd::{field::Field, lanes::LANES, threads::share_out};
 /// Steps from one count of the heat of damping to the next: counting costs as much as damping itself.
 const HEAT_EVERY: u64 = 4;
 
-/// Bytes that a thread's second-level cache is taken to hold. Where its part of a step reads less, prefetching gains
-/// nothing and costs some per cent.
+/// Bytes that a thread's second-level cache is taken to hold. Where its part of a step reads less,
+/// prefetching gains nothing and costs some per cent.
 const SECOND_LEVEL_CACHE: usize = 2 << 20;
 
 /// Nodes or elements that are worth another thread, for sums that are taken now and then.
@@ -255,9 +255,10 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Lets every rotating node turn at `rate` [rad/s], counter-clockwise positive, from the next step on: what was given in
-    /// the model holds until then. A step turns it by the exact angle `rate` · Δt; what is to follow an angle over time is
-    /// given the mean rate of each step. Restoring a snapshot leaves it as it is.
+    /// Lets every rotating node turn at `rate` [rad/s], counter-clockwise positive, from the next step on:
+    /// what was given in the model holds until then. A step turns it by the exact angle `rate` · Δt; what is
+    /// to follow an angle over time is given the mean rate of each step. Restoring a snapshot leaves it as it
+    /// is.
     ///
     /// # Errors
     /// As for the rate of a model.
@@ -271,7 +272,8 @@ impl Dynamics {
         Ok(())
     }
 
-    /// Lets every body that turns at a prescribed rate turn at this one, as [`Self::set_rotation_rate`] does nodes.
+    /// Lets every body that turns at a prescribed rate turn at this one, as [`Self::set_rotation_rate`] does
+    /// nodes.
     ///
     /// # Errors
     /// As for the rate of a model.
@@ -297,7 +299,8 @@ impl Dynamics {
 
     /// One step: everything pushes, every tile sums its elements and moves its nodes (THEORY §2.3).
     ///
-    /// With more than one thread, call it from within a pool of that size (`micropool`, whose caller is one of the threads).
+    /// With more than one thread, call it from within a pool of that size (`micropool`, whose caller is one
+    /// of the threads).
     pub fn step(&mut self, forces: &mut [&mut dyn Force]) {
         let mut pushed = std::mem::take(&mut self.forces);
         for force in forces {
@@ -313,7 +316,8 @@ impl Dynamics {
         self.state.time = self.state.step as f64 * self.time_step;
     }
 
-    /// A slot on which a force has acted since the start although nobody announced its node: nothing has read that force.
+    /// A slot on which a force has acted since the start although nobody announced its node: nothing has read
+    /// that force.
     pub fn unread_force(&self) -> Option<usize> {
         let NodeForces { fx, fy } = &self.forces;
         (0..fx.len()).find(|&slot| fx[slot] != 0.0 || fy[slot] != 0.0)
@@ -353,8 +357,8 @@ impl Dynamics {
         self.damped = (!bodies.is_empty()).then(|| bodies.into_iter().map(|(_, body)| body).collect());
     }
 
-    /// Sets the stiffness-proportional damping of elastic bodies, forces β K v; a mode of the angular frequency ω has the
-    /// damping ratio βω/2. It shortens the critical time step (THEORY §2.7).
+    /// Sets the stiffness-proportional damping of elastic bodies, forces β K v; a mode of the angular
+    /// frequency ω has the damping ratio βω/2. It shortens the critical time step (THEORY §2.7).
     ///
     /// # Errors
     /// When `beta` [s] is negative or not finite, or positive beside structural damping.
@@ -384,7 +388,8 @@ impl Dynamics {
         self.beta
     }
 
-    /// Places the damping frames now and then; in between the tiles move them on by the time since then [s], the result.
+    /// Places the damping frames now and then; in between the tiles move them on by the time since then [s],
+    /// the result.
     fn place_damping_frames(&mut self) -> f64 {
         let Some(damped) = self.damped.take() else { return 0.0 };
         let step = self.state.step;
@@ -483,8 +488,8 @@ impl Dynamics {
         }))
     }
 
-    /// Gives rigid body `at` (in mesh order of rigid bodies) a velocity [m/s] and spin [rad/s] about its centre; one that
-    /// turns at a prescribed rate keeps that.
+    /// Gives rigid body `at` (in mesh order of rigid bodies) a velocity [m/s] and spin [rad/s] about its
+    /// centre; one that turns at a prescribed rate keeps that.
     pub fn launch_rigid(&mut self, at: usize, velocity: [f64; 2], spin: f64) {
         self.rigid[at].velocity = velocity;
         if !self.rigid_bodies[at].turns() {

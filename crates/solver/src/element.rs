@@ -6,8 +6,8 @@
 use crate::{error::Error, material::Elastic};
 use stribeck_simd::lanes::Number;
 
-/// What a quadrilateral keeps of its reference shape, in a frame of its own: the material is isotropic, so only
-/// the shape matters, and congruent elements have equal references wherever they lie.
+/// What a quadrilateral keeps of its reference shape, in a frame of its own: the material is isotropic, so
+/// only the shape matters, and congruent elements have equal references wherever they lie.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct QuadReference {
     /// Gradient of shape function 1 (that of 3 is its negative) [1/m].
@@ -47,8 +47,8 @@ pub struct Stiffness<T = f64> {
 }
 
 impl Stiffness {
-    /// Constants for a material, thickness [m] and hourglass scale; scale 1 gives a square its exact stiffness
-    /// in pure bending, E' t / 12 (THEORY §2.2).
+    /// Constants for a material, thickness [m] and hourglass scale; scale 1 gives a square its exact
+    /// stiffness in pure bending, E' t / 12 (THEORY §2.2).
     pub fn new(material: &Elastic, thickness: f64, hourglass_scale: f64) -> Self {
         Self {
             lame: material.lame(),
@@ -67,8 +67,8 @@ pub(crate) fn area(corners: &[[f64; 2]]) -> f64 {
     0.5 * corners[1..].windows(2).map(twice).sum::<f64>()
 }
 
-/// Corners relative to the first, turned so that the first side direction (or, for quads, the line joining the
-/// middles of sides 4–1 and 2–3) is the first axis.
+/// Corners relative to the first, turned so that the first side direction (or, for quads, the line joining
+/// the middles of sides 4–1 and 2–3) is the first axis.
 fn own_frame<const N: usize>(corners: &[[f64; 2]; N]) -> [[f64; 2]; N] {
     let d = |a: usize, b: usize| [corners[b][0] - corners[a][0], corners[b][1] - corners[a][1]];
     let axis = if N == 4 {
@@ -183,8 +183,8 @@ pub(crate) fn hourglass<T: Number>(x: [T; 4], y: [T; 4], p: [T; 2], r: [T; 2], s
     [(-s1).times_plus(p[0], (-s2).times_plus(r[0], hx)), (-s1).times_plus(p[1], (-s2).times_plus(r[1], hy))]
 }
 
-/// Forces [N] on corners 1, 2 and 4 and minus the force on corner 3: where forces are summed it is subtracted, which saves a
-/// negation.
+/// Forces [N] on corners 1, 2 and 4 and minus the force on corner 3: where forces are summed it is
+/// subtracted, which saves a negation.
 pub(crate) type CornerForces<T> = [[T; 2]; 4];
 
 /// Forces on the corners from those of the diagonals and of the hourglass stiffness [N].

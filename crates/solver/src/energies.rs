@@ -1,8 +1,8 @@
-//! Energies at one time: sums over all elements and nodes, shared out over threads and taken in vectors. A run asks for them
-//! at every sample.
+//! Energies at one time: sums over all elements and nodes, shared out over threads and taken in vectors. A
+//! run asks for them at every sample.
 //!
-//! Sums have as many columns as [`LANES`] whatever the instruction set, and parts are added in one order, so that threads
-//! and vectors change no bit.
+//! Sums have as many columns as [`LANES`] whatever the instruction set, and parts are added in one order, so
+//! that threads and vectors change no bit.
 
 use std::ops::Range;
 
@@ -40,7 +40,8 @@ pub struct Velocities {
 }
 
 impl Dynamics {
-    /// Strain and hourglass energy of the present positions [J]. As [`Dynamics::step`], to be called from within the pool.
+    /// Strain and hourglass energy of the present positions [J]. As [`Dynamics::step`], to be called from
+    /// within the pool.
     pub fn elastic_energy(&self) -> ElasticEnergy {
         let Elements { bodies, .. } = self.elements();
         let mut parts: Vec<Part> = bodies.iter().flat_map(Part::of).collect();
@@ -83,8 +84,8 @@ impl Dynamics {
         velocities
     }
 
-    /// Kinetic energy [J] at the positions before the last step, given the velocities before it: ½ m v⁻·v⁺, the form that
-    /// a linear model conserves exactly (THEORY §2.5).
+    /// Kinetic energy [J] at the positions before the last step, given the velocities before it: ½ m v⁻·v⁺,
+    /// the form that a linear model conserves exactly (THEORY §2.5).
     pub fn kinetic_energy(&self, before: &Velocities) -> f64 {
         let s = &self.state;
         let elastic = 0.5

@@ -6,7 +6,8 @@
 pub enum Error {
     /// The iteration for natural modes did not come to its end.
     #[error(
-        "only {found} natural modes below {hertz} Hz were found in {iterations} iterations: take a lower limit"
+        "only {found} natural modes below {hertz} Hz were found in {iterations} iterations: take a lower \
+         limit"
     )]
     Modes {
         /// How many were found.
@@ -29,7 +30,8 @@ pub enum Error {
     },
     /// An element has no or negative area.
     #[error(
-        "element {element} of body `{body}` has area {area:e} m²: corners must run counter-clockwise around a positive area"
+        "element {element} of body `{body}` has area {area:e} m²: corners must run counter-clockwise around \
+         a positive area"
     )]
     BadElement {
         /// Body name.
@@ -57,7 +59,8 @@ pub enum Error {
     },
     /// A node carries no mass although it may move.
     #[error(
-        "node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its body rigid (with at least one element)"
+        "node {node} of body `{body}` belongs to no element and would have no mass; remove it or make its \
+         body rigid (with at least one element)"
     )]
     MasslessNode {
         /// Body name.
@@ -67,7 +70,9 @@ pub enum Error {
     },
     /// The static preload did not find equilibrium.
     #[error(
-        "static preload did not converge: after {iterations} iterations the unbalanced force is {residual_n:.3e} N, allowed {allowed_n:.3e} N, largest at x = {x_mm:.3} mm, y = {y_mm:.3} mm of body `{body}`; {advice}"
+        "static preload did not converge: after {iterations} iterations the unbalanced force is \
+         {residual_n:.3e} N, allowed {allowed_n:.3e} N, largest at x = {x_mm:.3} mm, y = {y_mm:.3} mm of \
+         body `{body}`; {advice}"
     )]
     NoEquilibrium {
         /// Newton iterations done.
@@ -87,7 +92,8 @@ pub enum Error {
     },
     /// The static stiffness matrix could not be factorised.
     #[error(
-        "static preload: the stiffness matrix could not be factorised ({0}); a body is probably held by nothing: check constraints and contacts"
+        "static preload: the stiffness matrix could not be factorised ({0}); a body is probably held by \
+         nothing: check constraints and contacts"
     )]
     Factorisation(String),
 }

@@ -1,4 +1,5 @@
-//! Elastic forces of all elements at any positions, for statics and the critical time step. A step has kernels of its own.
+//! Elastic forces of all elements at any positions, for statics and the critical time step. A step has
+//! kernels of its own.
 
 use pulp::{Arch, Simd, WithSimd};
 

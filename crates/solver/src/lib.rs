@@ -1,24 +1,25 @@
 //! Explicit dynamics of plane-strain finite elements, and the static equilibrium to start from.
 //!
-//! The crate knows bodies, not machines: a [`Model`] is a mesh, what its bodies are made of and how their nodes may
-//! move. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on nodes (loads, contact) is a
-//! [`Force`], given to each step as a list. A model pays only for the forces in its list.
+//! The crate knows bodies, not machines: a [`Model`] is a mesh, what its bodies are made of and how their
+//! nodes may move. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on nodes
+//! (loads, contact) is a [`Force`], given to each step as a list. A model pays only for the forces in its
+//! list.
 //!
 //! # Conventions
 //!
-//! SI units: m, kg, s, N, J, Pa, rad. Angles and spins are counter-clockwise positive. Forces and masses are those of
-//! the whole thickness. Strains and stresses are of plane strain, tension positive.
+//! SI units: m, kg, s, N, J, Pa, rad. Angles and spins are counter-clockwise positive. Forces and masses are
+//! those of the whole thickness. Strains and stresses are of plane strain, tension positive.
 //!
-//! Time is leapfrog: positions at `time`, velocities half a step earlier. Energies that balance exactly belong to the
-//! positions before the last step ([`Dynamics::kinetic_energy`]).
+//! Time is leapfrog: positions at `time`, velocities half a step earlier. Energies that balance exactly
+//! belong to the positions before the last step ([`Dynamics::kinetic_energy`]).
 //!
 //! Meshes number *nodes*; fields of the state are arrays over *slots*, places in memory
 //! ([`layout::Layout::slot_of_node`]). Forces push on slots.
 //!
 //! # Example: a bar struck at one end
 //!
-//! A steel bar of half a metre is hit at its left end for ten microseconds. The stress wave arrives at the other, free
-//! end after L/c and doubles the particle velocity there.
+//! A steel bar of half a metre is hit at its left end for ten microseconds. The stress wave arrives at the
+//! other, free end after L/c and doubles the particle velocity there.
 //!
 //! ```
 //! use stribeck_mesh::{Mesh, Rectangle};

@@ -17,7 +17,8 @@ pub enum Behaviour {
     Elastic,
     /// Moves as one piece; its elements give mass only.
     Rigid,
-    /// The same, but it turns at `rate` whatever pushes on it: a ring that is fixed to its housing, or driven with it.
+    /// The same, but it turns at `rate` whatever pushes on it: a ring that is fixed to its housing, or driven
+    /// with it.
     Turning {
         /// Angular velocity [rad/s], counter-clockwise positive.
         rate: f64,
@@ -100,9 +101,9 @@ impl Model {
         e.map(|n| [self.mesh.x[n as usize], self.mesh.y[n as usize]])
     }
 
-    /// References of all quadrilaterals and triangles, in mesh order. Quadrilaterals that follow one another with the same
-    /// shape but for rounding share one reference: an element then has the same forces whether it is computed in a strip or
-    /// alone, and their sum over the body is zero.
+    /// References of all quadrilaterals and triangles, in mesh order. Quadrilaterals that follow one another
+    /// with the same shape but for rounding share one reference: an element then has the same forces whether
+    /// it is computed in a strip or alone, and their sum over the body is zero.
     ///
     /// # Errors
     /// When an element has no positive area.

@@ -1,7 +1,7 @@
 //! Processes that run one model together, as the solver asks of them: ranks, in the words of MPI.
 //!
-//! Every rank makes the whole model and holds all of its arrays, but takes only its own tiles from step to step
-//! ([`Dynamics::divide`](crate::Dynamics::divide)). All ranks call the same methods in the same order.
+//! Every rank makes the whole model and holds all of its arrays, but takes only its own tiles from step to
+//! step ([`Dynamics::divide`](crate::Dynamics::divide)). All ranks call the same methods in the same order.
 
 use std::fmt::Debug;
 
@@ -13,8 +13,9 @@ pub trait Ranks: Debug + Send + Sync {
     /// How many there are.
     fn count(&self) -> usize;
 
-    /// Sends `outgoing[r]` to each rank r and receives `incoming[r]` from it, while `meanwhile` goes on. Lengths are those that
-    /// both sides know; between two ranks that have nothing for each other nothing is sent.
+    /// Sends `outgoing[r]` to each rank r and receives `incoming[r]` from it, while `meanwhile` goes on.
+    /// Lengths are those that both sides know; between two ranks that have nothing for each other nothing is
+    /// sent.
     fn exchange(&self, outgoing: &[Vec<f64>], incoming: &mut [Vec<f64>], meanwhile: &mut dyn FnMut());
 
     /// What every rank gives, one after the other in `all`; `lengths` says how long each part is.
@@ -30,8 +31,8 @@ pub fn broadcast(ranks: &dyn Ranks, own: &[u8]) -> Vec<u8> {
     ranks.all_gather_bytes(own).into_iter().next().unwrap_or_default()
 }
 
-/// What ranks tell each other of items each of which belongs to one of them: every rank adds the numbers of its own, all are
-/// gathered, and each is read in the same order.
+/// What ranks tell each other of items each of which belongs to one of them: every rank adds the numbers of
+/// its own, all are gathered, and each is read in the same order.
 #[derive(Debug, Default)]
 pub struct Shared {
     own: Vec<f64>,
@@ -74,8 +75,8 @@ impl Shared {
     }
 }
 
-/// Shares `items` with these works out over ranks: cut across the longer side of the box around their places again and again,
-/// so that each rank has about equal work in one piece. The rank of each item.
+/// Shares `items` with these works out over ranks: cut across the longer side of the box around their places
+/// again and again, so that each rank has about equal work in one piece. The rank of each item.
 pub(crate) fn cut_in_place(places: &[[f64; 2]], work: &[f64], ranks: usize) -> Vec<usize> {
     let mut rank_of = vec![0; places.len()];
     // Items, the first of the ranks that share them, and how many these are.

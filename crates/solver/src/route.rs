@@ -33,7 +33,8 @@ pub(crate) struct Route {
 }
 
 impl Route {
-    /// From what each rank reads of others; `owner` is the rank of a slot, `None` for one that every rank knows.
+    /// From what each rank reads of others; `owner` is the rank of a slot, `None` for one that every rank
+    /// knows.
     pub(crate) fn new(
         mut wanted: Vec<Vec<u32>>,
         rank: usize,

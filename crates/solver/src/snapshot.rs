@@ -10,7 +10,8 @@ use crate::{
     state::{Accumulated, State},
 };
 
-/// Everything about a model in motion that changes in time. The model, its time step and its damping are no part of it.
+/// Everything about a model in motion that changes in time. The model, its time step and its damping are no
+/// part of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     state: State,

@@ -1,5 +1,5 @@
-//! The springs and dashpots of structural damping in motion: where they are, how fast their bodies turn, what they hold and
-//! lose (THEORY §2.8).
+//! The springs and dashpots of structural damping in motion: where they are, how fast their bodies turn, what
+//! they hold and lose (THEORY §2.8).
 
 use crate::{
     dynamics::{DampedBody, Dynamics, Springs},
@@ -14,21 +14,21 @@ use crate::{
 };
 use stribeck_simd::{field::Field, lanes::LANES};
 
-/// Steps from one measurement of spins to the next, bodies turn at a steady pace; and most steps from one measurement of
-/// losses to the next.
+/// Steps from one measurement of spins to the next, bodies turn at a steady pace; and most steps from one
+/// measurement of losses to the next.
 const MEASURE_EVERY: u64 = 32;
 
-/// Measurements of losses in the shortest relaxation time τ. Dashpots lose most to vibrations of 1/(2πτ), whose loss swings
-/// twice a cycle: once in πτ.
+/// Measurements of losses in the shortest relaxation time τ. Dashpots lose most to vibrations of 1/(2πτ),
+/// whose loss swings twice a cycle: once in πτ.
 const MEASUREMENTS: f64 = 6.0;
 
 impl Dynamics {
-    /// Sets the structural damping of elastic bodies, or none; replaces an earlier one. Its springs are relaxed where the
-    /// bodies are now. It shortens the critical time step (THEORY §2.8).
+    /// Sets the structural damping of elastic bodies, or none; replaces an earlier one. Its springs are
+    /// relaxed where the bodies are now. It shortens the critical time step (THEORY §2.8).
     ///
     /// # Errors
-    /// When there is stiffness damping; when a body is not in the mesh, or does not deform, or when of bodies of one shape
-    /// some are damped and others are not: congruent bodies lie side by side in memory.
+    /// When there is stiffness damping; when a body is not in the mesh, or does not deform, or when of bodies
+    /// of one shape some are damped and others are not: congruent bodies lie side by side in memory.
     pub fn set_structural_damping(&mut self, damping: Option<&StructuralDamping>) -> Result<(), Error> {
         let chosen = || damping.iter().flat_map(|d| d.bodies());
         let damped = |body: &usize| chosen().any(|b| b == body);
@@ -90,8 +90,8 @@ impl Dynamics {
         self.springs.iter_mut().for_each(|springs| springs.measure = true);
     }
 
-    /// Heat of the dashpots since the start and energy of the springs, at the positions before the last step, which must
-    /// have measured it [J].
+    /// Heat of the dashpots since the start and energy of the springs, at the positions before the last step,
+    /// which must have measured it [J].
     pub fn structural_loss(&self) -> f64 {
         let SpringState { lost, held, .. } = &self.state.springs;
         lost.at_last_positions() + held

@@ -28,7 +28,8 @@ pub struct State {
 /// What changes in time of the springs and dashpots of structural damping.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SpringState {
-    /// How far the springs of each branch are stretched (x, y) [m], one value a slot, a step before the positions.
+    /// How far the springs of each branch are stretched (x, y) [m], one value a slot, a step before the
+    /// positions.
     pub(crate) stretch: Vec<[Field; 2]>,
     /// Angular velocity of each damped body when it was last measured [rad/s]; empty before.
     pub(crate) spins: Vec<f64>,
@@ -73,7 +74,8 @@ impl Accumulated {
         self.add(self.last);
     }
 
-    /// Adds a step that is counted, as every `every`-th is: in between it ran straight from the last one to this.
+    /// Adds a step that is counted, as every `every`-th is: in between it ran straight from the last one to
+    /// this.
     pub(crate) fn count(&mut self, step: f64, every: u64) {
         self.total += 0.5 * (every - 1) as f64 * (step - self.last);
         self.add(step);

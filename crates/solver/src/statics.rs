@@ -1,9 +1,9 @@
 //! Static equilibrium under loads and contact, the start of a run without ringing (THEORY §3).
 //!
-//! Newton's method on the positions with a sparse Cholesky factorisation. Bodies that nothing holds yet are slowed
-//! by a mass-proportional term as large as their own unbalanced force asks for, which vanishes at equilibrium.
-//! Motions that statics cannot decide (of a cylinder that rolls freely) are left to inertia: their unbalanced force
-//! is spread over the mass as in a free fall, so nothing rings when the run begins.
+//! Newton's method on the positions with a sparse Cholesky factorisation. Bodies that nothing holds yet are
+//! slowed by a mass-proportional term as large as their own unbalanced force asks for, which vanishes at
+//! equilibrium. Motions that statics cannot decide (of a cylinder that rolls freely) are left to inertia:
+//! their unbalanced force is spread over the mass as in a free fall, so nothing rings when the run begins.
 
 mod factor;
 mod graph;
@@ -39,7 +39,8 @@ pub struct Undecided {
 /// What to solve.
 #[derive(Debug, Clone)]
 pub struct Statics {
-    /// Slots of each body that finds its place, with its name: elastic ones, and those that move as one piece without turning.
+    /// Slots of each body that finds its place, with its name: elastic ones, and those that move as one piece
+    /// without turning.
     pub bodies: Vec<(String, Vec<u32>)>,
     /// Motions left to inertia.
     pub undecided: Vec<Undecided>,
@@ -83,8 +84,8 @@ impl Equilibrator {
         Self { unknowns: Unknowns::new(dynamics), tangent: Tangent::default() }
     }
 
-    /// Moves the nodes of `dynamics`, the model of [`Equilibrator::new`], to static equilibrium. The step and time
-    /// stay; velocities are not used.
+    /// Moves the nodes of `dynamics`, the model of [`Equilibrator::new`], to static equilibrium. The step and
+    /// time stay; velocities are not used.
     ///
     /// # Errors
     /// When the iteration does not converge or the matrix cannot be factorised.
@@ -195,7 +196,8 @@ fn no_equilibrium(d: &Dynamics, statics: &Statics, iterations: usize, residual_n
         body: body.map_or_else(String::new, |(name, _)| name.clone()),
         x_mm: 1e3 * d.state.x[slot],
         y_mm: 1e3 * d.state.y[slot],
-        advice: "check that the load can reach a support through bodies that touch; try a smaller load, a softer \
+        advice: "check that the load can reach a support through bodies that touch; try a smaller load, a \
+            softer \
                  contact or a start without preload",
     }
 }

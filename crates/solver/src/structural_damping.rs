@@ -4,11 +4,12 @@ use std::f64::consts::TAU;
 
 use crate::error::{Error, check};
 
-/// Most branches that a damping may have. Three are flat within some per cent over a factor of a hundred in frequency.
+/// Most branches that a damping may have. Three are flat within some per cent over a factor of a hundred in
+/// frequency.
 pub const MAX_BRANCHES: usize = 3;
 
-/// A spring and a dashpot in series, beside every element: it adds to the element's stiffness at frequencies far above
-/// 1/(2πτ), adds nothing far below, and takes most energy in between.
+/// A spring and a dashpot in series, beside every element: it adds to the element's stiffness at frequencies
+/// far above 1/(2πτ), adds nothing far below, and takes most energy in between.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Branch {
     /// Stiffness of the spring over that of the element [-].
@@ -27,8 +28,8 @@ pub struct StructuralDamping {
 /// Frequencies at which a fit looks at the band, spaced evenly in the logarithm.
 const SAMPLES: usize = 100;
 
-/// How close together the relaxation frequencies of a fit may be: the distance of the outer ones over the width of the band,
-/// both in the logarithm.
+/// How close together the relaxation frequencies of a fit may be: the distance of the outer ones over the
+/// width of the band, both in the logarithm.
 const LEAST_SPREAD: f64 = 0.2;
 
 /// How far they may reach beyond the band, both ends together, in the logarithm.
@@ -52,8 +53,8 @@ impl StructuralDamping {
         Ok(Self { branches, bodies })
     }
 
-    /// The damping whose ratio is nearest to `ratio` between two frequencies [Hz]: least squares of its relative deviation,
-    /// evenly over the logarithm of the frequency. Source: Emmerich and Korn 1987.
+    /// The damping whose ratio is nearest to `ratio` between two frequencies [Hz]: least squares of its
+    /// relative deviation, evenly over the logarithm of the frequency. Source: Emmerich and Korn 1987.
     ///
     /// # Errors
     /// When the ratio is not between 0 and 0.1, the band is empty, or so narrow that fewer branches do.
@@ -107,7 +108,8 @@ impl StructuralDamping {
         0.5 * imaginary / real
     }
 
-    /// Stiffness at `frequency` [Hz] over that of the elements alone [-]; it grows from 1 at rest. Infinity is a frequency.
+    /// Stiffness at `frequency` [Hz] over that of the elements alone [-]; it grows from 1 at rest. Infinity
+    /// is a frequency.
     pub fn stiffening(&self, frequency: f64) -> f64 {
         if frequency.is_infinite() {
             return 1.0 + self.branches.iter().map(|b| b.stiffness).sum::<f64>();
@@ -145,8 +147,8 @@ fn frequencies([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
     (0..SAMPLES).map(move |i| from * (to / from).powf(i as f64 / (SAMPLES - 1) as f64))
 }
 
-/// The branches with these relaxation times [s] that are nearest to a ratio over a band [Hz], and how far off they are; `None`
-/// where one would have to be negative.
+/// The branches with these relaxation times [s] that are nearest to a ratio over a band [Hz], and how far off
+/// they are; `None` where one would have to be negative.
 ///
 /// Loss factor 2ζ asks for Σ g (lost − 2ζ stored) = 2ζ, which is linear in the stiffnesses g.
 fn fitted(ratio: f64, band: [f64; 2], times: &[f64]) -> Option<(f64, Vec<Branch>)> {

@@ -1,7 +1,8 @@
 //! What a free body keeps: linear and angular momentum, energy, shape under spin.
 //!
 //! Leapfrog with total-Lagrangian elements conserves the momenta to rounding, whatever the step; the energy
-//! ½ m v⁻·v⁺ + U is exact for a linear force and wobbles with the strain for this one (Hairer, Lubich and Wanner,
+//! ½ m v⁻·v⁺ + U is exact for a linear force and wobbles with the strain for this one (Hairer, Lubich and
+//! Wanner,
 //! *Geometric Numerical Integration*, 2006, §I.1.4 and §VI.6).
 
 mod common;
@@ -52,7 +53,8 @@ fn conserves_momentum_of_a_vibrating_disc() {
 
 #[test]
 fn conserves_momentum_across_seams_of_tiles() {
-    // Tiles are cut across rows here, each at another column: strips on seams begin with other elements in either tile.
+    // Tiles are cut across rows here, each at another column: strips on seams begin with other elements in
+    // either tile.
     let mut d = ready(&body(&rectangle(0.21, 0.031, 420, 62)), 0.9);
     let wave = |x: f64, y: f64| (15.0 * x).cos() * (50.0 * y + 0.3).sin();
     for n in massive(&d) {
@@ -73,10 +75,10 @@ fn conserves_momentum_across_seams_of_tiles() {
 #[test]
 fn conserves_energy_over_a_million_steps() {
     let mut d = ready(&body(&rectangle(0.01, 0.008, 5, 4)), 0.45);
-    // 3 mm/s is a strain of 6e-7, so that the force is linear to about as much. What bends of it is balanced to second
-    // order in the step: ten millimetres a second give 1.3e-6. Positions of 1 cm are rounded to
-    // 2e-18 m, 1e-9 of displacements of some nanometres, and walk a thousand times as far in a million steps: one
-    // millimetre a second gives 1.4e-6. In between neither matters.
+    // 3 mm/s is a strain of 6e-7, so that the force is linear to about as much. What bends of it is balanced
+    // to second order in the step: ten millimetres a second give 1.3e-6. Positions of 1 cm are rounded to
+    // 2e-18 m, 1e-9 of displacements of some nanometres, and walk a thousand times as far in a million steps:
+    // one millimetre a second gives 1.4e-6. In between neither matters.
     stir(&mut d, 3e-3, 0.0);
     let start = step_and_balance(&mut d, &mut []).mechanical();
     let mut worst = 0.0_f64;
@@ -122,7 +124,8 @@ fn conserves_radius_energy_and_spin_of_a_spinning_disc() {
     // Centrifugal growth is about ρ ω² R²/(4 E) = 3e-6, twice that while it rings; a formulation that is not
     // objective would grow by a part of the angle of every step.
     assert!(grown > 1e-7 && grown < 2e-5, "the radius grows by {grown:e}");
-    // The ringing is 1e-6 of the energy and is balanced to second order in the step (a quarter for half of it).
+    // The ringing is 1e-6 of the energy and is balanced to second order in the step (a quarter for half of
+    // it).
     assert!(drift < 1e-6, "energy drifts by {drift:e}");
     // The moment of inertia breathes with the radius.
     assert!(slowest > spin * (1.0 - 4e-5) && fastest < spin * (1.0 + 4e-5), "{slowest} … {fastest} rad/s");
@@ -131,7 +134,8 @@ fn conserves_radius_energy_and_spin_of_a_spinning_disc() {
 
 #[test]
 fn conserves_the_ledger_of_a_constant_load() {
-    // A block held at one end is pulled at the other: work supplied = kinetic + elastic energy, at every step.
+    // A block held at one end is pulled at the other: work supplied = kinetic + elastic energy, at every
+    // step.
     let mut model = body(&rectangle(0.02, 0.01, 8, 4));
     for row in 0..=4 {
         model.motion[row * 9] = Motion::Held;
@@ -189,8 +193,8 @@ fn conserves_the_ledger_of_a_driven_ring() {
 
 #[test]
 fn conserves_the_ledger_of_a_ring_whose_speed_changes() {
-    // Driven from rest at a constant acceleration, and given the mean speed of each step: the bore follows ½αt², and the work
-    // of the drive is what the ring holds.
+    // Driven from rest at a constant acceleration, and given the mean speed of each step: the bore follows
+    // ½αt², and the work of the drive is what the ring holds.
     const ACCELERATION: f64 = 4e5;
     let part = stribeck_mesh::Annulus {
         inner_radius: 0.05,

@@ -1,7 +1,7 @@
 //! The critical time step: a closed form, an independent eigenvalue, and the edge itself.
 //!
-//! Belytschko, Liu and Moran, *Nonlinear Finite Elements for Continua and Structures* (2000), §6.6: leapfrog is
-//! stable up to Δt = 2/ω_max.
+//! Belytschko, Liu and Moran, *Nonlinear Finite Elements for Continua and Structures* (2000), §6.6: leapfrog
+//! is stable up to Δt = 2/ω_max.
 
 mod common;
 use common::*;
@@ -65,8 +65,8 @@ fn bodies() -> [(&'static str, Part); 3] {
 
 #[test]
 fn analytic_one_free_square() {
-    // Uniform dilatation u = ε (x, y) of one square of side a, lumped mass: strain energy ½ (λ + µ)(2ε)² V, kinetic
-    // energy ½ ρ V ε̇² a²/2, so ω² = 8 (λ + µ)/(ρ a²); shear and hourglass modes are slower.
+    // Uniform dilatation u = ε (x, y) of one square of side a, lumped mass: strain energy ½ (λ + µ)(2ε)² V,
+    // kinetic energy ½ ρ V ε̇² a²/2, so ω² = 8 (λ + µ)/(ρ a²); shear and hourglass modes are slower.
     let a = 1e-3;
     let d = lay_out(&body(&rectangle(a, a, 1, 1)));
     let s = steel();
@@ -163,7 +163,8 @@ fn invariant_the_limit_is_sharp() {
         let d = lay_out(&body(&part));
         let critical = d.critical_time_step(&[], 0.0).time_step;
         let exact = 2.0 / largest_eigenvalue(&d, &vec![0.0; d.state.x.len()]).sqrt();
-        // Near the limit a mode may swing 1/√(1 − 0.99²) = 7 times as far, and rigid motion drifts not at all.
+        // Near the limit a mode may swing 1/√(1 − 0.99²) = 7 times as far, and rigid motion drifts not at
+        // all.
         let below = excursion(&part, 0.99 * critical, 20_000);
         assert!(below < 3e-8, "{name}: {below:e} m at 0.99 of the critical step");
         // Growth by exp(2 arcosh 1.01) = 1.33 a step: a thousandfold within 25.

@@ -198,7 +198,8 @@ fn invariant_a_rigid_body_keeps_its_shape() {
     }
 }
 
-/// Kinetic energy, work of gravity and elastic energies [J] about the third step, and the first two by their definitions.
+/// Kinetic energy, work of gravity and elastic energies [J] about the third step, and the first two by their
+/// definitions.
 fn energies_on(threads: usize) -> ([f64; 4], [f64; 2]) {
     let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
     pool.install(|| {

@@ -36,7 +36,8 @@ fn motions(dynamics: &Dynamics) -> SmallMotions {
     SmallMotions::new(dynamics, &slots, &[], SHIFT).expect("definite with the shift")
 }
 
-/// Every eigenvalue of the whole matrix, by a dense solution: none is missing, none is there twice, and each is right to 1e-8.
+/// Every eigenvalue of the whole matrix, by a dense solution: none is missing, none is there twice, and each
+/// is right to 1e-8.
 #[test]
 fn invariant_modes_are_those_of_the_whole_matrix() {
     const TOLERANCE: f64 = 1e-8;
@@ -52,7 +53,8 @@ fn invariant_modes_are_those_of_the_whole_matrix() {
         })
         .collect();
     let matrix = Mat::from_fn(n, n, |i, j| columns[j][i] / root[i]);
-    // Values alone: with vectors faer 0.24.4 misses one of each pair of this matrix by up to 4e-4, and the matrix itself by 2e-4.
+    // Values alone: with vectors faer 0.24.4 misses one of each pair of this matrix by up to 4e-4, and the
+    // matrix itself by 2e-4.
     let values = matrix.self_adjoint_eigenvalues(Side::Lower).expect("symmetric");
     let limit = 20e3;
     let dense: Vec<f64> = values.iter().copied().filter(|s| s.max(0.0).sqrt() < TAU * limit).collect();
@@ -75,7 +77,8 @@ fn invariant_modes_are_those_of_the_whole_matrix() {
     }
 }
 
-/// All motions of a mesh so small that the last block has no room for as many vectors as the others: each is there once.
+/// All motions of a mesh so small that the last block has no room for as many vectors as the others: each is
+/// there once.
 #[test]
 fn invariant_all_modes_of_a_small_mesh_are_found() {
     let (dynamics, _) = ring(9, 2, 0.08, 0.1);
@@ -106,7 +109,8 @@ fn invariant_all_modes_of_a_small_mesh_are_found() {
 /// ```
 #[test]
 fn analytic_a_free_ring_has_the_frequencies_of_love() {
-    /// Shear and rotary inertia, which Love leaves out, lower a frequency by about n² (h/R)²/3 = 0.9 % for n = 4.
+    /// Shear and rotary inertia, which Love leaves out, lower a frequency by about n² (h/R)²/3 = 0.9 % for n
+    /// = 4.
     const TOLERANCE: f64 = 0.01;
     let (dynamics, steel) = ring(628, 4, 0.098, 0.102);
     let found = modes_below(&mut motions(&dynamics), 3000.0).expect("modes");

@@ -1,7 +1,7 @@
 //! Constant strain and rigid motion, the two fields that every element must represent exactly.
 //!
-//! Irons and Razzaque, *Experience with the patch test for convergence of finite elements* (1972); here in its
-//! explicit form: a body under a linear displacement field, its sides held, stays at rest.
+//! Irons and Razzaque, *Experience with the patch test for convergence of finite elements* (1972); here in
+//! its explicit form: a body under a linear displacement field, its sides held, stays at rest.
 
 mod common;
 
@@ -20,9 +20,9 @@ const DISTORTION: f64 = 0.3;
 /// Rounding of a nodal force relative to E · thickness · cell: strains are differences of numbers near one.
 const FORCE_ROUNDING: f64 = 3e-13;
 
-/// Rounding of two sums of the same few terms in different order, relative to the largest; strains of 1e-2 are
-/// differences of numbers near one, and congruent elements share one reference, which differs from theirs in the last
-/// digits.
+/// Rounding of two sums of the same few terms in different order, relative to the largest; strains of 1e-2
+/// are differences of numbers near one, and congruent elements share one reference, which differs from theirs
+/// in the last digits.
 const SUM_ROUNDING: f64 = 1e-11;
 
 fn square_cells() -> Part {
@@ -77,7 +77,8 @@ fn speed_under_linear_field(part: &Part, f: [[f64; 2]; 2]) -> f64 {
 
 #[test]
 fn patch_linear_field_stays_at_rest() {
-    // Stretch, shear and a turn of 0.2 rad together, strains of some per cent: the element is exact at any size.
+    // Stretch, shear and a turn of 0.2 rad together, strains of some per cent: the element is exact at any
+    // size.
     let (s, c) = 0.2_f64.sin_cos();
     let (a, b, g) = (1.02, 0.97, 0.03);
     let f = [[c * a - s * g, c * g - s * b], [s * a + c * g, s * g + c * b]];
@@ -220,7 +221,8 @@ fn patch_every_path_gives_the_same_accelerations() {
     }
 }
 
-/// More nodes than one tile holds, so that those at the seams have ghosts: a plate is cut between rows, a ring across them.
+/// More nodes than one tile holds, so that those at the seams have ghosts: a plate is cut between rows, a
+/// ring across them.
 #[test]
 fn patch_tiles_of_one_body_agree_with_the_plain_sum() {
     let mut plate = rectangle(0.12, 0.1, 120, 100);
@@ -265,8 +267,8 @@ fn patch_tiles_of_one_body_agree_with_the_plain_sum() {
 
 #[test]
 fn issue_small_cells_far_from_the_origin_are_still_alike() {
-    // Areas from products of absolute coordinates lost four digits here, so that copies of one body no longer counted
-    // as congruent and rows of equal cells not as uniform.
+    // Areas from products of absolute coordinates lost four digits here, so that copies of one body no longer
+    // counted as congruent and rows of equal cells not as uniform.
     let part = rectangle(0.3e-3, 0.2e-3, 6, 4);
     let mut mesh = Mesh::new();
     for i in 0..8 {

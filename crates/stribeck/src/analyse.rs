@@ -22,8 +22,8 @@ use crate::place::{Place, shown};
 /// Flags of `analyse`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// A file of signals (CSV, .npy, .npz, .mat, .h5, .uff, .tdms, .mf4, .parquet, .wav, .flac), or the folder of a run; several are set side by
-    /// side, in their order
+    /// A file of signals (CSV, .npy, .npz, .mat, .h5, .uff, .tdms, .mf4, .parquet, .wav, .flac), or the
+    /// folder of a run; several are set side by side, in their order
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     /// Samples a second [Hz], when the file does not say it
@@ -32,17 +32,20 @@ pub struct Options {
     /// Take the rate of `--rate-hz` where the file says another one, with a note
     #[arg(long, requires = "rate_hz")]
     force_rate: bool,
-    /// Channel, or a part of its name that no other has [default: the only one, or the first of the longest that moves]
+    /// Channel, or a part of its name that no other has [default: the only one, or the first of the longest
+    /// that moves]
     #[arg(long)]
     channel: Option<String>,
-    /// Bearing: its name, or its numbers, for example "elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0"
+    /// Bearing: its name, or its numbers, for example "elements=9, diameter_mm=7.94, pitch_mm=39.04,
+    /// angle_deg=0"
     #[arg(long)]
     bearing: Option<String>,
-    /// Speed of the shaft [1/min], or a range such as 1400..1600: then the line of the shaft that stands out there is followed
-    /// over the record, and a record whose speed varies is analysed over the angle
+    /// Speed of the shaft [1/min], or a range such as 1400..1600: then the line of the shaft that stands out
+    /// there is followed over the record, and a record whose speed varies is analysed over the angle
     #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse, allow_hyphen_values = true)]
     speed_rpm: Option<Speed>,
-    /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise, or of the angle of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
+    /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise, or of the angle
+    /// of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
     #[arg(long)]
     tacho: Option<String>,
     /// Pulses of the tachometer a turn, such as the teeth of its wheel
@@ -54,14 +57,16 @@ pub struct Options {
     /// Unit of the samples after that
     #[arg(long)]
     unit: Option<String>,
-    /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to 1000 Hz), kurtosis,
-    /// crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
+    /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
+    /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
     alarms: Vec<Limit>,
-    /// The first N files are of the sound machine: limits of all levels follow from their scatter, but for those given
+    /// The first N files are of the sound machine: limits of all levels follow from their scatter, but for
+    /// those given
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
-    /// Folder for findings.json and report.html [default: beside the working folder, the file's name and -analysis]
+    /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
+    /// -analysis]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -105,7 +110,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if let Some(count) = options.reference {
         ensure!(
             (LEAST_RECORDS..options.files.len()).contains(&count),
-            "`--reference {count}`: {} files were given; at least {LEAST_RECORDS} must be of the sound machine, and one more",
+            "`--reference {count}`: {} files were given; at least {LEAST_RECORDS} must be of the sound \
+             machine, and one more",
             options.files.len()
         );
     }
@@ -235,7 +241,8 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
         let same = (given / said - 1.0).abs() <= SAME_RATE;
         ensure!(
             same || options.force_rate,
-            "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave the option out, or add \
+            "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave \
+             the option out, or add \
              `--force-rate` if the file is wrong",
             file.display(),
             channel.name
@@ -280,8 +287,10 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     let claims = analysis.findings.families.iter().any(|family| family.claimed);
     if claims && scene.is_some() {
         notes.push(
-            "a run has no noise but its bearing's: what elements rattle as they come under the load can make a claim of its own, in a sound \
-             bearing, too. Its report says what is in the scene; `export` with `--sensor` and a `noise_density` gives it a machine's noise"
+            "a run has no noise but its bearing's: what elements rattle as they come under the load can make \
+             a claim of its own, in a sound \
+             bearing, too. Its report says what is in the scene; `export` with `--sensor` and a \
+             `noise_density` gives it a machine's noise"
                 .to_owned(),
         );
     }
@@ -291,13 +300,15 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     Ok(analysis)
 }
 
-/// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the longest.
+/// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the
+/// longest.
 fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Result<&'a Channel> {
     if let Some(name) = asked {
         let channel = recording.channel(name)?;
         ensure!(
             !channel.is_time,
-            "channel `{}` of `{}` rises evenly from sample to sample, as the time does: it is no signal; there are {}",
+            "channel `{}` of `{}` rises evenly from sample to sample, as the time does: it is no signal; \
+             there are {}",
             channel.name,
             recording.path.display(),
             recording.names()
@@ -332,7 +343,8 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
     Ok(channel)
 }
 
-/// Whether at least one sample in a hundred differs from the one before it; a channel that cannot be read is told later.
+/// Whether at least one sample in a hundred differs from the one before it; a channel that cannot be read is
+/// told later.
 fn moves(channel: &Channel) -> bool {
     let (mut before, mut changes) = (f64::NAN, 0_u64);
     let read = channel.for_each_block(|block| {
@@ -370,7 +382,8 @@ fn machine(
     } else if let Some(Speed::Between(low, high)) = options.speed_rpm {
         let found = ridge::speed(channel, rate_hz, low, high)?;
         notes.push(format!(
-            "the speed is that of the line that stands out between {low} and {high} rpm, {:.0} dB up: it goes by {:.1} % of its mean",
+            "the speed is that of the line that stands out between {low} and {high} rpm, {:.0} dB up: it \
+             goes by {:.1} % of its mean",
             found.height_db,
             100.0 * found.variation()
         ));
@@ -444,7 +457,8 @@ fn print(analysis: &Analysis) {
         let measured = f.measured_hz.map_or("        –".to_owned(), |hz| format!("{hz:9.3}"));
         let level = f.level_db.map_or("    –".to_owned(), |db| format!("{db:5.1}"));
         say!(
-            "  {:4} expected {:9.3} Hz, measured {measured} Hz, {level} dB, {} of 5 harmonics, false alarm {}: {}",
+            "  {:4} expected {:9.3} Hz, measured {measured} Hz, {level} dB, {} of 5 harmonics, false alarm \
+             {}: {}",
             f.name,
             f.expected_hz,
             f.harmonics,

@@ -38,7 +38,8 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
                 say!("{}", row(&bearing));
             }
             say!(
-                "Lengths in mm; frequencies in multiples of the shaft\u{2019}s, outer ring at rest. `?`: makers fit different numbers; \
+                "Lengths in mm; frequencies in multiples of the shaft\u{2019}s, outer ring at rest. `?`: \
+                 makers fit different numbers; \
                  a scene assumes one and says so. `stribeck bearings NAME` says where the numbers are from."
             );
         }
@@ -69,7 +70,8 @@ fn one(bearing: &CatalogueBearing) {
     }
     match bearing.orders() {
         Ok(o) => say!(
-            "  BPFO {:.4}, BPFI {:.4}, BSF {:.4} (a spot strikes twice as often), FTF {:.4} times the shaft\u{2019}s frequency",
+            "  BPFO {:.4}, BPFI {:.4}, BSF {:.4} (a spot strikes twice as often), FTF {:.4} times the \
+             shaft\u{2019}s frequency",
             o.bpfo,
             o.bpfi,
             o.bsf,

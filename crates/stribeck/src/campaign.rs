@@ -1,7 +1,9 @@
-//! `stribeck campaign`: many scenes made from one, each run in a folder of its own, and a data set of them all.
+//! `stribeck campaign`: many scenes made from one, each run in a folder of its own, and a data set of them
+//! all.
 //!
-//! The truth lies in the folders of the runs, which are named by what is in their scenes. So the same command starts and goes
-//! on, parts of it may run anywhere, in any order and at once, and the tables come out the same.
+//! The truth lies in the folders of the runs, which are named by what is in their scenes. So the same command
+//! starts and goes on, parts of it may run anywhere, in any order and at once, and the tables come out the
+//! same.
 
 mod datasheet;
 mod emit;
@@ -42,8 +44,8 @@ pub struct Options {
     /// Worker threads of all runs together [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
-    /// Most memory that runs side by side may take together [GB]; fewer go at a time where records are long [default: what the
-    /// system has free]
+    /// Most memory that runs side by side may take together [GB]; fewer go at a time where records are long
+    /// [default: what the system has free]
     #[arg(long, value_name = "G", value_parser = gigabytes)]
     memory_gb: Option<f64>,
     /// Goes on with what is there, which the command does anyway: for scripts that say so
@@ -52,8 +54,8 @@ pub struct Options {
     /// Runs only part I of N, for several machines; whichever comes last makes the tables
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<Shard>,
-    /// Runs nothing: prints the script that has an engine run the campaign in parts, to be sent to a file: `> job.sh`. Each part has
-    /// the --jobs, --threads [default there: one] and --memory-gb of this command
+    /// Runs nothing: prints the script that has an engine run the campaign in parts, to be sent to a file: `>
+    /// job.sh`. Each part has the --jobs, --threads [default there: one] and --memory-gb of this command
     #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
     emit: Option<emit::Engine>,
     /// Parts of an emitted script [default: as many as runs, 16 at most]
@@ -86,7 +88,8 @@ const TURN: &str = ".turn";
 
 const SCENES: &str = "scenes.txt";
 
-/// The folder of a campaign is known by the former from the first moment of its first part on, and by the latter when it is done.
+/// The folder of a campaign is known by the former from the first moment of its first part on, and by the
+/// latter when it is done.
 const MARKS: [&str; 2] = [TURN, "runs.parquet"];
 
 /// Where the things of a campaign are.
@@ -119,15 +122,16 @@ impl Folder {
         self.0.join(SCENES)
     }
 
-    /// Waits until no other part writes the files of the campaign itself, for as long as what is returned lives, and removes what a
-    /// part that was killed has left half written.
+    /// Waits until no other part writes the files of the campaign itself, for as long as what is returned
+    /// lives, and removes what a part that was killed has left half written.
     fn take_turn(&self) -> Result<File> {
         let path = self.0.join(TURN);
         let lock = || {
             let file = File::options().write(true).create(true).truncate(false).open(&path)?;
             match file.lock() {
                 Ok(()) => self.remove_left_overs(),
-                // Some network file systems know no locks: there, parts do not meet by the names of what they write.
+                // Some network file systems know no locks: there, parts do not meet by the names of what they
+                // write.
                 Err(error) if error.kind() == ErrorKind::Unsupported => {}
                 Err(error) => return Err(error),
             }
@@ -256,7 +260,8 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
     if let Some(there) = &there {
         ensure!(
             *there == campaign.text,
-            "`{}` holds another campaign, or an earlier text of this one: give a folder with `--out`, or compare `{}`",
+            "`{}` holds another campaign, or an earlier text of this one: give a folder with `--out`, or \
+             compare `{}`",
             shown(&folder.0),
             shown(&path)
         );
@@ -265,7 +270,8 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
             let same = before.lines().zip(scenes.lines()).take_while(|(before, now)| before == now).count();
             ensure!(
                 before == scenes,
-                "`{}` holds runs of other scenes, beginning with run {}: the table or the scene that this campaign names was changed \
+                "`{}` holds runs of other scenes, beginning with run {}: the table or the scene that this \
+                 campaign names was changed \
                  since. Give a folder with `--out`, or put it back",
                 shown(&folder.0),
                 same + 1
@@ -288,8 +294,8 @@ fn scenes(campaign: &Campaign) -> String {
     campaign.runs.iter().map(|run| format!("{} {}\n", run.number, hash(run))).collect()
 }
 
-/// Makes the tables when every run has come to an end, and says how matters stand. A part of a campaign has done what it was
-/// asked for when the runs that are its own, `mine`, have.
+/// Makes the tables when every run has come to an end, and says how matters stand. A part of a campaign has
+/// done what it was asked for when the runs that are its own, `mine`, have.
 fn conclude(
     folder: &Folder,
     campaign: &Campaign,
@@ -309,12 +315,14 @@ fn conclude(
         let all = campaign.runs.len();
         if left_here == 0 {
             eprintln!(
-                "this part is done; {left} of {all} runs of others are not at their end. Whichever part ends last makes the tables"
+                "this part is done; {left} of {all} runs of others are not at their end. Whichever part ends \
+                 last makes the tables"
             );
             return Ok(ExitCode::SUCCESS);
         }
         eprintln!(
-            "{left} of {all} runs are not at their end or without their numbers; the same command goes on. Tables are made when all are"
+            "{left} of {all} runs are not at their end or without their numbers; the same command goes on. \
+             Tables are made when all are"
         );
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
@@ -334,8 +342,8 @@ fn conclude(
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-/// Whether a run that has come to its end has its numbers and no more than is to be kept. Where all is kept, numbers can be made at
-/// any time.
+/// Whether a run that has come to its end has its numbers and no more than is to be kept. Where all is kept,
+/// numbers can be made at any time.
 fn is_settled(path: &Path, keep: Keep) -> Result<bool> {
     let dir = RunDir::open(path)?;
     Ok(keep == Keep::All || dir.summary().exists() && dir.keeps_only(keep))
@@ -370,8 +378,8 @@ fn read_summary(dir: &RunDir) -> Option<serde_json::Value> {
     serde_json::from_slice(&std::fs::read(dir.summary()).ok()?).ok()
 }
 
-/// Makes the summary of a run whose folder is locked, so that nothing stays beside it when this one is killed: the next one writes by
-/// the same name.
+/// Makes the summary of a run whose folder is locked, so that nothing stays beside it when this one is
+/// killed: the next one writes by the same name.
 fn write_summary(dir: &RunDir) -> Result<serde_json::Value> {
     let text = summarise(dir.path())?;
     write_atomic(&dir.summary(), text.as_bytes())?;

@@ -32,11 +32,12 @@ pub struct Options {
     /// Only channels whose name contains this, for example `sensor.`; may be repeated
     #[arg(long = "channel", value_name = "PART")]
     channels: Vec<String>,
-    /// Records the accelerations through a sensor instead: any of "rate_hz=25600, resonance_hz=30000, quality=30,
-    /// noise_density=0.002, range=500, bits=24, seed=1", in m/s²
+    /// Records the accelerations through a sensor instead: any of "rate_hz=25600, resonance_hz=30000,
+    /// quality=30, noise_density=0.002, range=500, bits=24, seed=1", in m/s²
     #[arg(long)]
     sensor: Option<String>,
-    /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, paraview, frames.vtkhdf or mesh.FORMAT]
+    /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, paraview, frames.vtkhdf
+    /// or mesh.FORMAT]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -56,7 +57,8 @@ enum Format {
     Parquet,
     /// Sound, 64-bit floats
     Wav,
-    /// ParaView: a folder of VTU files with the stress about the defect, a grid a frame, and the .pvd that lists them
+    /// ParaView: a folder of VTU files with the stress about the defect, a grid a frame, and the .pvd that
+    /// lists them
     #[value(alias = "vtu")]
     Pvd,
     /// ParaView: the same in one file (VTKHDF)
@@ -193,7 +195,8 @@ fn sensor(text: &str, rate_hz: f64) -> Result<Sensor> {
             "bits" if (2.0..=32.0).contains(&number) => sensor.bits = Some(number as u32),
             "seed" if number >= 0.0 => sensor.seed = number as u64,
             other => bail!(
-                "`{other}={number}` of the sensor: known are rate_hz, resonance_hz, quality, noise_density (not negative), range, \
+                "`{other}={number}` of the sensor: known are rate_hz, resonance_hz, quality, noise_density \
+                 (not negative), range, \
                  bits (2 to 32) and seed"
             ),
         }
@@ -264,7 +267,8 @@ fn series(dir: &RunDir, run: &Run, folder: PathBuf) -> Result<PathBuf> {
     let frames = stressed(dir, run)?;
     std::fs::create_dir_all(&folder).with_context(|| format!("cannot make `{}`", folder.display()))?;
     let mut index = String::from(
-        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
+         byte_order=\"LittleEndian\">\n<Collection>\n",
     );
     for note in provenance(run) {
         index += &format!("<!-- {} -->\n", note.replace("--", "- -"));

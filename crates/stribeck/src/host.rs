@@ -1,4 +1,5 @@
-//! What a run records about the machine and the program: clocks, names, versions. The crates are told, never look.
+//! What a run records about the machine and the program: clocks, names, versions. The crates are told, never
+//! look.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -12,7 +13,8 @@ const TICKS_PER_SECOND: f64 = 100.0;
 /// Version of the program, with the commit that it was built from.
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("STRIBECK_COMMIT"), ")");
 
-/// Commit that the program was built from, with a mark when files had been changed since; `unknown` outside a checkout.
+/// Commit that the program was built from, with a mark when files had been changed since; `unknown` outside a
+/// checkout.
 pub const COMMIT: &str = env!("STRIBECK_COMMIT");
 
 /// Calls `work` with a [`Host`] that describes this process; its clocks begin now.
@@ -45,8 +47,8 @@ fn with_clock<T>(
     })
 }
 
-/// Processor time of several runs side by side: the system counts that of the whole process, and each run that is going
-/// gets an equal part.
+/// Processor time of several runs side by side: the system counts that of the whole process, and each run
+/// that is going gets an equal part.
 #[derive(Debug, Default)]
 pub struct SharedClock(Mutex<Shares>);
 

@@ -40,7 +40,8 @@ impl Interrupt {
         Ok(Self(shared))
     }
 
-    /// Lets Ctrl-C end the program at once until the run in `place` takes its first step; what was made for it is removed.
+    /// Lets Ctrl-C end the program at once until the run in `place` takes its first step; what was made for
+    /// it is removed.
     pub fn need_not_wait_for(&self, place: Reservation) {
         *self.0.place.lock().unwrap_or_else(PoisonError::into_inner) = Some(place);
         // It may have been pressed while the place was made.

@@ -38,7 +38,8 @@ pub enum Command {
     Validate(validate::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
     Plan(plan::Options),
-    /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are from
+    /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are
+    /// from
     Bearings(bearings::Options),
     /// Says what a measured record shows: which defects, how sure, and what it cannot say
     Analyse(analyse::Options),

@@ -7,8 +7,8 @@ use std::sync::{Mutex, PoisonError};
 /// Why standard output took no more, once it did not.
 static CLOSED: Mutex<Option<Error>> = Mutex::new(None);
 
-/// Writes a line to standard output, as `println!` does. Where it takes no more, as that of `| head` after some lines, what the command
-/// does besides goes on, and [`trouble`] knows of it at the end.
+/// Writes a line to standard output, as `println!` does. Where it takes no more, as that of `| head` after
+/// some lines, what the command does besides goes on, and [`trouble`] knows of it at the end.
 macro_rules! say {
     ($($words:tt)*) => { $crate::out::line(format_args!($($words)*)) };
 }

@@ -44,7 +44,8 @@ impl Place {
                 .map(|Replaced { field, written, now }| format!("`{field}` {now} instead of {written}"));
             let told = told.collect::<Vec<_>>().join(", ");
             eprintln!(
-                "warning: with another bearing than that of `{}` goes what surrounds it: {told}. Give with --set what is to stay",
+                "warning: with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
+                 --set what is to stay",
                 file.display()
             );
         }
@@ -83,7 +84,8 @@ impl Place {
         self.newest(&["run.json", "ensemble.json"])
     }
 
-    /// The newest run below `runs/` that is one of its own; where there are ensembles alone, the newest of those.
+    /// The newest run below `runs/` that is one of its own; where there are ensembles alone, the newest of
+    /// those.
     ///
     /// # Errors
     /// When there is none.

@@ -44,7 +44,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let factor = scene.written.solver.time_step_factor;
     ensure!(
         factor <= 1.0,
-        "`solver.time_step_factor` is {factor}: steps longer than the critical one diverge. Take a `solver.time_step_factor` below 1"
+        "`solver.time_step_factor` is {factor}: steps longer than the critical one diverge. Take a \
+         `solver.time_step_factor` below 1"
     );
     let assembly = Assembly::new(&scene)?;
     let mesh =
@@ -64,7 +65,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         1e3 * plan.facet_m
     );
     say!(
-        "  chords, lumped model: {:.0} g at {:.0} Hz (width of the contact leaves {:.2}, phases of the rollers {:.2}){}",
+        "  chords, lumped model: {:.0} g at {:.0} Hz (width of the contact leaves {:.2}, phases of the \
+         rollers {:.2}){}",
         plan.lumped.level_g,
         plan.lumped.frequency_hz,
         plan.lumped.smoothing.abs(),
@@ -77,7 +79,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     );
     if let Some([outer, inner]) = plan.films {
         say!(
-            "  oil under it (Dowson and Higginson): {:.2} and {:.2} µm at the outer and inner raceway, {:.1} and {:.1} times the roughness",
+            "  oil under it (Dowson and Higginson): {:.2} and {:.2} µm at the outer and inner raceway, {:.1} \
+             and {:.1} times the roughness",
             1e6 * outer.thickness,
             1e6 * inner.thickness,
             outer.lambda,
@@ -86,7 +89,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let k = &Kinematics::of(&scene.written);
     say!(
-        "  families, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as often), FTF {:.2}, shaft {:.2}",
+        "  families, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as often), FTF \
+         {:.2}, shaft {:.2}",
         k.bpfo_hz,
         k.bpfi_hz,
         k.bsf_hz,
@@ -97,7 +101,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         ModelScene::Full => {
             let cost = 1e-9 * options.ns_per_element_step * plan.steps * plan.elements as f64;
             say!(
-                "  {} elements, steps of at least {:.0} ns, at most {:.0} of them: at most about {cost:.0} s of processor time at {} ns per element-step",
+                "  {} elements, steps of at least {:.0} ns, at most {:.0} of them: at most about {cost:.0} s \
+                 of processor time at {} ns per element-step",
                 plan.elements,
                 1e9 * plan.time_step_s,
                 plan.steps,
@@ -120,7 +125,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
                 * scene.written.rollers_in_place().count() as f64;
             let step_us = scene.written.output.interval_us / per_sample as f64;
             say!(
-                "  reduced model: {steps:.0} steps of {step_us:.3} µs: about {} of processor time at {} ns per roller-step{}, beside the modes of {} elements",
+                "  reduced model: {steps:.0} steps of {step_us:.3} µs: about {} of processor time at {} ns \
+                 per roller-step{}, beside the modes of {} elements",
                 clock(cost),
                 options.ns_per_roller_step,
                 if scene.written.film.is_some() { " and 3.6 times as much with oil" } else { "" },
@@ -135,7 +141,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
                 };
                 let why = if step_us < 0.99 * reduced.step_us {
                     format!(
-                        ": modes and contacts{dampers} allow steps of {step_us:.3} µs, not the {} µs of `model.step_us`",
+                        ": modes and contacts{dampers} allow steps of {step_us:.3} µs, not the {} µs of \
+                         `model.step_us`",
                         reduced.step_us
                     )
                 } else {

@@ -1,4 +1,5 @@
-//! Processes that run one scene together, where the program was built with the feature `mpi` and started by `mpirun`.
+//! Processes that run one scene together, where the program was built with the feature `mpi` and started by
+//! `mpirun`.
 
 use std::sync::Arc;
 

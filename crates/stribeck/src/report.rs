@@ -38,7 +38,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if RunDir::is_ensemble(&folder) {
         anyhow::ensure!(
             time_s == (f64::NEG_INFINITY..f64::INFINITY),
-            "`{}` is an ensemble: --from-s and --to-s choose from the record of one run; name one of its starts",
+            "`{}` is an ensemble: --from-s and --to-s choose from the record of one run; name one of its \
+             starts",
             shown(&folder)
         );
         for note in stribeck_report::write_ensemble(&folder)?.notes {

@@ -70,8 +70,9 @@ impl<'a> Shop<'a> {
         }
     }
 
-    /// Runs what is due until nothing is left, Ctrl-C is pressed or the disk refuses. `ended` is told of each run, with why it
-    /// could not be made; what the disk or the folder refused can follow when that has changed, and is not told.
+    /// Runs what is due until nothing is left, Ctrl-C is pressed or the disk refuses. `ended` is told of each
+    /// run, with why it could not be made; what the disk or the folder refused can follow when that has
+    /// changed, and is not told.
     pub(crate) fn run(&self, ended: &(dyn Fn(&Due, Option<&Error>) + Sync)) {
         std::thread::scope(|scope| {
             (1..self.jobs.count).for_each(|_| drop(scope.spawn(|| self.work(ended))));
@@ -96,7 +97,8 @@ impl<'a> Shop<'a> {
             };
             let done = self.clock.with(self.jobs.threads, due.number, |host| {
                 let dir = RunDir::create_over(&due.folder)?;
-                // Only while the folder is held: another program may have run it since it was found to be due.
+                // Only while the folder is held: another program may have run it since it was found to be
+                // due.
                 match State::of(&due.folder, &due.scene) {
                     State::New => simulation::simulate(&due.scene, &dir, host, &mut watch),
                     State::Begun => simulation::extend(&dir, due.scene.solver.duration_ms, host, &mut watch),

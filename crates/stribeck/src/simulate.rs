@@ -28,7 +28,8 @@ use crate::ranks::Processes;
 pub struct Options {
     /// Scene file [default: the bearing of the paper, as in fixtures/scenes/singh2014.ron]
     scene: Option<PathBuf>,
-    /// Folder of the run [default: runs/NAME, the name of the scene; runs/NAME-2 … when there is a run already]
+    /// Folder of the run [default: runs/NAME, the name of the scene; runs/NAME-2 … when there is a run
+    /// already]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replaces the run in the folder, once the new one is complete; until then that lies in DIR.new
@@ -47,8 +48,8 @@ pub struct Options {
     /// Writes no report at the end
     #[arg(long)]
     no_report: bool,
-    /// Runs the scene from N starts, in one folder with one report: start angle, phase of the rollers' facets and places
-    /// in the cage's pockets are drawn; with --resume more starts for an ensemble
+    /// Runs the scene from N starts, in one folder with one report: start angle, phase of the rollers' facets
+    /// and places in the cage's pockets are drawn; with --resume more starts for an ensemble
     #[arg(long, value_name = "N", value_parser = starts)]
     starts: Option<usize>,
     /// Starts that run side by side, each with its share of the threads [default: as many as threads]
@@ -71,7 +72,9 @@ pub(crate) fn threads(text: &str) -> Result<usize, String> {
 pub(crate) fn jobs(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
     number.ok_or_else(|| {
-        "the number of starts side by side is a whole number from 1 to 1024; leave it out for as many as there are threads".to_owned()
+        "the number of starts side by side is a whole number from 1 to 1024; leave it out for as many as \
+         there are threads"
+            .to_owned()
     })
 }
 
@@ -79,7 +82,8 @@ pub(crate) fn jobs(text: &str) -> Result<usize, String> {
 fn starts(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| (1..=10_000).contains(n));
     number.ok_or_else(|| {
-        "the number of starts is a whole number from 1 to 10000; ten tell a mean from its scatter, leave it out for a single run"
+        "the number of starts is a whole number from 1 to 10000; ten tell a mean from its scatter, leave it \
+         out for a single run"
             .to_owned()
     })
 }
@@ -111,13 +115,15 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     }
     ensure!(
         ranks.is_none() || options.starts.is_none(),
-        "an ensemble is many runs side by side, and several processes run one: start it without `mpirun`, or its starts one by one"
+        "an ensemble is many runs side by side, and several processes run one: start it without `mpirun`, or \
+         its starts one by one"
     );
     let continued = options.resume.as_deref().map(|run| place.locate_run(run));
     match &continued {
         Some(folder) if RunDir::is_ensemble(folder) => return ensemble::run(options, place),
         Some(folder) if options.starts.is_some() => bail!(
-            "`{0}` is a single run, and --starts adds to an ensemble. An ensemble of its scene: {1} simulate {0}/scene.ron --starts {2}",
+            "`{0}` is a single run, and --starts adds to an ensemble. An ensemble of its scene: {1} simulate \
+             {0}/scene.ron --starts {2}",
             shown(folder),
             place.program,
             options.starts.unwrap_or(1)
@@ -128,7 +134,8 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     for (flag, given) in [("--jobs", options.jobs.is_some()), ("--seed", options.seed.is_some())] {
         ensure!(
             !given,
-            "`{flag}` belongs to an ensemble: say how many starts with `--starts N`. A single run has `--threads` and no seed"
+            "`{flag}` belongs to an ensemble: say how many starts with `--starts N`. A single run has \
+             `--threads` and no seed"
         );
     }
     let threads = options.threads.unwrap_or_else(|| if ranks.is_some() { 1 } else { host::cores() });
@@ -163,7 +170,8 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     });
     meter.finish();
     if finished.is_err() {
-        // The interrupt has its copy of the place, too, so that nothing made for a run that never began goes with `dir` alone.
+        // The interrupt has its copy of the place, too, so that nothing made for a run that never began goes
+        // with `dir` alone.
         dir.reservation().unless_started(|| {});
     }
 
@@ -199,7 +207,8 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     })
 }
 
-/// The folder of a new run. The user's own choice is taken or refused; the default gives way to runs that are there.
+/// The folder of a new run. The user's own choice is taken or refused; the default gives way to runs that are
+/// there.
 fn reserve(options: &Options, place: &Place, scene: &Scene) -> Result<RunDir> {
     let by_name = place.runs().join(&scene.name);
     let folder = options.out.as_deref().unwrap_or(&by_name);
@@ -220,7 +229,10 @@ fn reserve(options: &Options, place: &Place, scene: &Scene) -> Result<RunDir> {
 fn take_place(dir: RunDir) -> Result<RunDir> {
     let path = shown(dir.path());
     dir.take_place().with_context(|| {
-        format!("the new run is complete, but lies in `{path}` and not yet in the place of the earlier one: move it there")
+        format!(
+            "the new run is complete, but lies in `{path}` and not yet in the place of the earlier one: \
+            move it there"
+        )
     })
 }
 
@@ -238,7 +250,8 @@ fn check_overrides(overrides: &[String]) -> Result<()> {
     let other = overrides.iter().find(|text| text.split('=').next().unwrap_or_default().trim() != MAY_CHANGE);
     if let Some(other) = other {
         bail!(
-            "`--set {other}` cannot be used with --resume: the samples so far belong to the scene as it was. Only `{MAY_CHANGE}` may \
+            "`--set {other}` cannot be used with --resume: the samples so far belong to the scene as it was. \
+             Only `{MAY_CHANGE}` may \
              change; for anything else start a new run"
         );
     }

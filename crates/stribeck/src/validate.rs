@@ -1,4 +1,5 @@
-//! `stribeck validate`: the same starts of a scene by the full and by the reduced model, and how far apart they are.
+//! `stribeck validate`: the same starts of a scene by the full and by the reduced model, and how far apart
+//! they are.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -37,11 +38,13 @@ pub struct Options {
     /// Worker threads of all runs together [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
-    /// Folder of the runs and of the page [default: runs/NAME-validation]; the same command goes on with what is there
+    /// Folder of the runs and of the page [default: runs/NAME-validation]; the same command goes on with what
+    /// is there
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Folder of the runs of the full model, for example that of another validation: other modes or another step need no other ones.
-    /// Those that are missing are made there, those that are too short are made longer [default: `full` in the folder of the page]
+    /// Folder of the runs of the full model, for example that of another validation: other modes or another
+    /// step need no other ones. Those that are missing are made there, those that are too short are made
+    /// longer [default: `full` in the folder of the page]
     #[arg(long, value_name = "DIR")]
     full: Option<PathBuf>,
 }
@@ -55,7 +58,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scene = place.scene(Some(&options.scene), &options.set)?;
     if 1e-3 * scene.solver.duration_ms < LEAST_S {
         bail!(
-            "`solver.duration_ms` is {}; at least {} to compare models, which is done from {} ms on. Take a longer run: \
+            "`solver.duration_ms` is {}; at least {} to compare models, which is done from {} ms on. Take a \
+             longer run: \
              --set solver.duration_ms=30",
             scene.solver.duration_ms,
             1e3 * LEAST_S,
@@ -118,7 +122,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 /// Samples of a run of the full model, at most: 140 MB, a quarter of a second.
 const SAMPLES: f64 = 131_072.0;
 
-/// The scene by the full and by the reduced model. The full one is sampled more often, unless it is long, and makes no pictures.
+/// The scene by the full and by the reduced model. The full one is sampled more often, unless it is long, and
+/// makes no pictures.
 fn models(scene: &Scene) -> Result<[Scene; 2]> {
     let by = |model: ModelScene| -> Result<Scene> {
         let scene = Scene { model, ..scene.clone() };
@@ -149,7 +154,8 @@ fn due(folders: &[PathBuf; 2], models: &[Scene; 2], options: &Options) -> Result
             match State::of(&folder, &scene) {
                 State::Done => {}
                 State::Other => bail!(
-                    "`{}` holds a run of another scene, seed or duration: give another folder with `{}`, or move it away",
+                    "`{}` holds a run of another scene, seed or duration: give another folder with `{}`, or \
+                     move it away",
                     shown(&folder),
                     flag
                 ),
@@ -163,7 +169,8 @@ fn due(folders: &[PathBuf; 2], models: &[Scene; 2], options: &Options) -> Result
 fn print(agreement: &Agreement) {
     let [full, reduced, times] = agreement.cost();
     say!(
-        "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval (dB: mean, least and most of the bands)",
+        "{}: {} starts of {:.0} ms; reduced less full, mean and 95 % interval (dB: mean, least and most of \
+         the bands)",
         agreement.scene,
         agreement.starts,
         agreement.simulated_ms

@@ -92,7 +92,8 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     let table = Recording::open(desk.join("A/runs.parquet")).expect("a table");
     let loads = table.channel("scene.operation.load_n").expect("a column").read().expect("numbers");
     assert_eq!(loads.len(), 8);
-    // Once more: nothing is run, and the tables stay; what a kill has left beside them does not, and files of the owner's do.
+    // Once more: nothing is run, and the tables stay; what a kill has left beside them does not, and files of
+    // the owner's do.
     let (left, own) = (desk.join("A/runs.4711.new"), desk.join("A/notes.new"));
     for path in [&left, &own] {
         fs::write(path, "half").expect("it can be written");
@@ -338,7 +339,8 @@ fn example_equal_scenes_are_run_once_and_what_two_programs_have_run_stays() {
 #[test]
 fn refuses_a_folder_whose_table_or_scene_was_changed() {
     let text = "(name: \"x\", scene: \"quick.ron\", set: [\"mesh.size_mm=4.0\", \"mesh.roller_facets=40\",
-        \"solver.start=sudden\", \"solver.duration_ms=0.1\", \"output.frames=None\"], variants: table(\"t.csv\"))";
+        \"solver.start=sudden\", \"solver.duration_ms=0.1\", \"output.frames=None\"], variants: \
+        table(\"t.csv\"))";
     let desk = desk("campaign-changed", text);
     fs::write(desk.join("t.csv"), "operation.load_n\n10000\n20000\n").expect("a table");
     assert!(run(&desk, &["--out=A"]).status.success());
@@ -411,7 +413,8 @@ fn example_scripts_for_engines_name_every_part() {
 
 #[test]
 fn peer_tables_open_in_pandas_polars_and_duckdb() {
-    // pandas 3.1.1, polars 2.1.0 and DuckDB 2.0.0, where the interpreter in STRIBECK_PYTHON (or python3) has them.
+    // pandas 3.1.1, polars 2.1.0 and DuckDB 2.0.0, where the interpreter in STRIBECK_PYTHON (or python3) has
+    // them.
     let Some(python) = python_with(&["pandas", "pyarrow", "polars", "duckdb"]) else { return };
     let desk = desk("campaign-peers", CAMPAIGN);
     assert!(run(&desk, &["--out=A"]).status.success());
@@ -419,7 +422,8 @@ fn peer_tables_open_in_pandas_polars_and_duckdb() {
 import pandas, polars, duckdb
 a = pandas.read_parquet('A/runs.parquet')
 b = polars.read_parquet('A/runs.parquet')
-n = duckdb.execute(\"select count(*), sum(load_n) from 'A/runs.parquet' where status = 'complete'\").fetchone()
+n = duckdb.execute(\"select count(*), sum(load_n) from 'A/runs.parquet' where status = \
+'complete'\").fetchone()
 assert len(a) == len(b) == n[0] == 8 and abs(a.load_n.sum() - n[1]) < 1e-6, (len(a), n)
 assert list(a.columns) == b.columns and a.split.isin(['train', 'validation', 'test']).all()
 s = pandas.read_parquet('A/signals.parquet')
@@ -434,7 +438,8 @@ print('agreed')
 
 #[test]
 fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
-    // HyperQueue 0.27.0 with a server and two workers, where the interpreter in STRIBECK_PYTHON (or python3) has it.
+    // HyperQueue 0.27.0 with a server and two workers, where the interpreter in STRIBECK_PYTHON (or python3)
+    // has it.
     let Some(python) = python_with(&["hyperqueue"]) else { return };
     let desk = desk("campaign-hyperqueue", CAMPAIGN);
     assert!(run(&desk, &["--out=A"]).status.success());

@@ -1,4 +1,5 @@
-//! What a campaign leaves for those who learn from it: ground truth, events, and a page that says what is there.
+//! What a campaign leaves for those who learn from it: ground truth, events, and a page that says what is
+//! there.
 
 #![cfg(unix)]
 
@@ -19,7 +20,8 @@ const CAMPAIGN: &str = "(
     keep: KEEP,
     variants: grid([(field: \"defects\", values: [
         [(on: outer, angle_deg: 85.0, form: spall(length_mm: 8.0, depth_mm: 0.2))],
-        [(on: roller(3), angle_deg: 30.0, form: dent(length_mm: 3.0, depth_mm: 0.02)), (on: roller(5), form: missing)],
+        [(on: roller(3), angle_deg: 30.0, form: dent(length_mm: 3.0, depth_mm: 0.02)), (on: roller(5), form: \
+        missing)],
         [(on: inner, form: waviness(order: 9, amplitude_um: 1.0))],
         [],
     ])]),

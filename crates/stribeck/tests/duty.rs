@@ -76,8 +76,8 @@ fn over_angle(folder: &Path, shocks: ShockOrder) -> OverAngle {
     }
 }
 
-/// The run-up of `fixtures/scenes/ramp.ron`: over the angle of the shaft BPFO and its multiples stand within one resolution of
-/// kinematics; in time, at the mean speed, nothing stands there.
+/// The run-up of `fixtures/scenes/ramp.ron`: over the angle of the shaft BPFO and its multiples stand within
+/// one resolution of kinematics; in time, at the mean speed, nothing stands there.
 /// Source: THEORY §5.1, rolling without slip; the cage runs some half per cent behind.
 #[test]
 fn analytic_bpfo_follows_the_tacho_of_a_ramp() {
@@ -113,10 +113,11 @@ fn analytic_bpfo_follows_the_tacho_of_a_ramp() {
     assert!(!page.contains("Family of facet lines") && summary.notch.is_none());
 }
 
-/// The power over the orders of four starts of the same run-up: the first four multiples of BPFO stand within one resolution of
-/// what the cage does. One start tells the first alone: others are 3 to 15 dB high from starts 0.01° apart.
-/// Source: THEORY §5.1; the limit that of noise: a mean of four has a χ² distribution of eight degrees of freedom, which exceeds 3.56
-/// times its median once in a thousand, as often as a single power exceeds ten times its own.
+/// The power over the orders of four starts of the same run-up: the first four multiples of BPFO stand within
+/// one resolution of what the cage does. One start tells the first alone: others are 3 to 15 dB high from
+/// starts 0.01° apart. Source: THEORY §5.1; the limit that of noise: a mean of four has a χ² distribution of
+/// eight degrees of freedom, which exceeds 3.56 times its median once in a thousand, as often as a single
+/// power exceeds ten times its own.
 #[test]
 fn analytic_multiples_of_bpfo_stand_in_the_mean_of_some_run_ups() {
     const STARTS: usize = 4;
@@ -156,17 +157,21 @@ fn analytic_multiples_of_bpfo_stand_in_the_mean_of_some_run_ups() {
     }
 }
 
-/// The shaft speeds up against an outer ring that turns the other way and has a spall: families have orders of the shaft against the
-/// ring, over that angle BPFO stands within a resolution of kinematics, and rollers pass the spall when the rings have come so far. Contacts
-/// are damped to the full, because nothing else quiets a ring in a rigid housing, which would ring on from knock to knock.
-/// Source: THEORY §5.1, rolling without slip.
+/// The shaft speeds up against an outer ring that turns the other way and has a spall: families have orders
+/// of the shaft against the ring, over that angle BPFO stands within a resolution of kinematics, and rollers
+/// pass the spall when the rings have come so far. Contacts are damped to the full, because nothing else
+/// quiets a ring in a rigid housing, which would ring on from knock to knock. Source: THEORY §5.1, rolling
+/// without slip.
 #[test]
 fn analytic_bpfo_follows_the_difference_of_two_speeds() {
     /// What a roller may move in its pocket and a cage falls behind [rad of the cage on the ring].
     const PLAY: f64 = 0.05;
-    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30.0, step_us: 0.5), film: None, defect: None,
-        defects: [(on: outer, angle_deg: 40, form: spall(length_mm: 2, depth_mm: 0.06))], housing: rigid(mass_kg: 1),
-        operation: (load_n: 3000, speed_rpm: 300, speed_profile: ramp(to_ms: 600, to: 1500), outer_speed_rpm: -600),
+    let text =
+        "(bearing: \"NU 205\", model: reduced(modes_khz: 30.0, step_us: 0.5), film: None, defect: None,
+        defects: [(on: outer, angle_deg: 40, form: spall(length_mm: 2, depth_mm: 0.06))], housing: \
+        rigid(mass_kg: 1),
+        operation: (load_n: 3000, speed_rpm: 300, speed_profile: ramp(to_ms: 600, to: 1500), \
+        outer_speed_rpm: -600),
         cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), mesh: (roller_facets: 56),
         contact: (surface: arc, friction: 0.05, damping_ratio: 1.0), output: (frames: None),
         solver: (duration_ms: 600, mass_damping_per_s: 5000, structural_damping: None))";
@@ -245,7 +250,8 @@ fn invariant_a_mirrored_run_has_the_same_report() {
         for (a, b) in
             [(a.entry_ms, b.entry_ms), (a.exit_ms, b.exit_ms)].into_iter().filter_map(|(a, b)| a.zip(b))
         {
-            // Idle rollers rattle differently once rounding has grown: as two starts of one scene on so coarse a mesh.
+            // Idle rollers rattle differently once rounding has grown: as two starts of one scene on so
+            // coarse a mesh.
             assert!((a - b).abs() < 0.2, "{a} ms and {b} ms");
             edges += 1;
         }
@@ -262,8 +268,8 @@ fn invariant_a_mirrored_run_has_the_same_report() {
     assert!(page.contains("500 rpm counter-clockwise"));
 }
 
-/// A spall that turns with the shaft and one that stands: the centres of loaded rollers pass their edges when rolling without slip
-/// says, and the lengths that the forces give are those of the scene.
+/// A spall that turns with the shaft and one that stands: the centres of loaded rollers pass their edges when
+/// rolling without slip says, and the lengths that the forces give are those of the scene.
 /// Source: THEORY §5.1 and §7.5.
 #[test]
 fn analytic_spalls_of_both_raceways_have_events_and_lengths() {

@@ -72,7 +72,8 @@ fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes(
         );
     }
 
-    // The report again, from the files alone; without a name that of the newest run, whether one start or many.
+    // The report again, from the files alone; without a name that of the newest run, whether one start or
+    // many.
     let page = bytes(&desk, "A/report.html");
     fs::remove_file(desk.join("A/report.html")).expect("removable");
     fs::remove_file(desk.join("A/summary.json")).expect("removable");

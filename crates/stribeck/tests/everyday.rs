@@ -159,7 +159,8 @@ fn invariant_runs_without_a_folder_are_numbered_even_when_they_start_together() 
 fn invariant_several_runs_share_a_tree_of_folders() {
     let desk = Desk::new("xargs");
     let line = format!(
-        "printf '0.1\\n0.2\\n0.3\\n' | xargs -P3 -I{{}} {} simulate quick.ron {} {SHORT} --set defect.depth_mm={{}} --out deep/{{}}",
+        "printf '0.1\\n0.2\\n0.3\\n' | xargs -P3 -I{{}} {} simulate quick.ron {} {SHORT} --set \
+         defect.depth_mm={{}} --out deep/{{}}",
         env!("CARGO_BIN_EXE_stribeck"),
         COARSE.join(" ")
     );
@@ -251,7 +252,8 @@ fn invariant_the_program_says_what_it_is_and_needs_no_files() {
     assert!(!desk.0.join("runs").exists());
 }
 
-/// A housing for another bearing is told in the line of the scene that names it, and no folder is left by any command.
+/// A housing for another bearing is told in the line of the scene that names it, and no folder is left by any
+/// command.
 #[test]
 fn refuses_the_mesh_of_another_bearing_where_the_scene_names_it() {
     let desk = Desk::new("another-housing");
@@ -283,13 +285,16 @@ fn refuses_the_mesh_of_another_bearing_where_the_scene_names_it() {
     says(&set, &["bore does not fit the outer ring", "--set housing=mesh(file: \"block.msh\")"]);
 }
 
-/// A reduced run of a scene that names its bearing, as a user begins with: its plan has its steps, its mesh goes to other programs, and
-/// another bearing on the command line says what it has replaced.
+/// A reduced run of a scene that names its bearing, as a user begins with: its plan has its steps, its mesh
+/// goes to other programs, and another bearing on the command line says what it has replaced.
 #[test]
 fn example_a_reduced_run_from_its_plan_to_a_deck() {
     let desk = Desk::new("reduced");
-    let text = "(name: \"mine\", model: reduced(), bearing: \"NU 205\", defect: None, film: None, operation: (load_n: 3000, speed_rpm: 1500),
-        mesh: (size_mm: 1, roller_facets: 48), contact: (penalty_scale: 0.3), solver: (duration_ms: 0.2), output: (frames: None))";
+    let text =
+        "(name: \"mine\", model: reduced(), bearing: \"NU 205\", defect: None, film: None, operation: \
+        (load_n: 3000, speed_rpm: 1500),
+        mesh: (size_mm: 1, roller_facets: 48), contact: (penalty_scale: 0.3), solver: (duration_ms: 0.2), \
+        output: (frames: None))";
     fs::write(desk.0.join("mine.ron"), text).expect("writable");
     let run = desk.run(&["simulate", "mine.ron", "--no-report", "--threads=1"]);
     assert!(run.status.success(), "{}", said(&run));

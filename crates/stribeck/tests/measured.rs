@@ -336,16 +336,34 @@ fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
     }
     let named = stribeck(desk.path(), &["analyse", "a.csv", "--channel", "time_us"]);
     assert!(!named.status.success() && said(&named).contains("it is no signal"), "{}", said(&named));
-    // In milliseconds without a word of it, the rate that is given decides.
+    // In milliseconds without a word of it no rate follows, and the one that is given decides.
     std::fs::write(desk.join("b.csv"), table("", 12_800.0, |t| format!("{:.4}", 1e3 * t))).unwrap();
-    let words = ["analyse", "b.csv", "--bearing=6205", "--speed-rpm=1200", "--rate-hz=12800"];
-    says(&stribeck(desk.path(), &words), &["a defect of the outer raceway", "12.8 Hz if these are seconds"]);
+    let words = ["analyse", "b.csv", "--bearing=6205", "--speed-rpm=1200"];
+    let output = stribeck(desk.path(), &words);
+    assert!(!output.status.success(), "{}", said(&output));
+    let either = "12.8 Hz if these are seconds, 12800 Hz if they are milliseconds: no rate follows";
+    says(&output, &["does not say how fast it was sampled: give `--rate-hz`", either]);
+    let output = stribeck(desk.path(), &[&words[..], &["--rate-hz=12800"]].concat());
+    says(&output, &["a defect of the outer raceway", either]);
     // What is said to be too slow is said with a rate that would do.
-    let output = stribeck(desk.path(), &words[..4]);
+    let output = stribeck(desk.path(), &[&words[..], &["--rate-hz=12.8"]].concat());
     says(
         &output,
         &["cannot tell whether there is a defect", "harmonics of 71.7 Hz: sample at 610 Hz or faster"],
     );
+}
+
+#[test]
+fn issue_a_wrong_rate_in_a_file_can_be_overruled() {
+    let desk = Scratch::create("measured-force");
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{t:.7}"));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    // Twice the rate is twice the speed.
+    let words = ["analyse", "a.csv", "--bearing=6205", "--speed-rpm=2400", "--rate-hz=25600"];
+    let output = stribeck(desk.path(), &words);
+    assert!(!output.status.success() && said(&output).contains("`--force-rate`"), "{}", said(&output));
+    let output = stribeck(desk.path(), &[&words[..], &["--force-rate"]].concat());
+    says(&output, &["a defect of the outer raceway (BPFO at 143", "the file says 12800 Hz"]);
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! The contacts of `fixtures/scenes/physical.ron` are Hertz's: pressed by the preload, held against closed forms.
+//! The contacts of `fixtures/scenes/physical.ron` are Hertz's: pressed by the preload, held against closed
+//! forms.
 
 use std::f64::consts::PI;
 
@@ -9,17 +10,19 @@ use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
 use stribeck_testing::ledger;
 
-/// Elements of a tenth of a millimetre average the stress, and contact sinks in by a thirtieth of the approach.
+/// Elements of a tenth of a millimetre average the stress, and contact sinks in by a thirtieth of the
+/// approach.
 const TOLERANCE: f64 = 0.05;
 
-/// Line contact of half-width a: the von Mises stress is largest at this depth over a, with this share of the peak pressure,
-/// for ν = 0.3 in plane strain (Johnson 1985, §4.2, from (4.49)).
+/// Line contact of half-width a: the von Mises stress is largest at this depth over a, with this share of the
+/// peak pressure, for ν = 0.3 in plane strain (Johnson 1985, §4.2, from (4.49)).
 const DEEPEST: [f64; 2] = [0.704, 0.5575];
 
 /// Nodes about a contact whose elements are looked at [m].
 const NEAR: f64 = 0.5e-3;
 
-/// A line contact by Johnson 1985: (4.43) and (4.45); the approach of a cylinder's axis to it, half of (5.57).
+/// A line contact by Johnson 1985: (4.43) and (4.45); the approach of a cylinder's axis to it, half of
+/// (5.57).
 struct Hertz {
     half_width: f64,
     peak: f64,
@@ -35,11 +38,12 @@ impl Hertz {
     }
 }
 
-/// Half-width and largest pressure [m, Pa] that forces on nodes stand for, given as place along the surface and force a
-/// length out of plane [m, N/m].
+/// Half-width and largest pressure [m, Pa] that forces on nodes stand for, given as place along the surface
+/// and force a length out of plane [m, N/m].
 ///
-/// The mean of x² under p₀ √(1 − x²/a²) is a²/4. Forces on nodes that are h apart have h²/6 more: each stands for a straight-line
-/// share of the pressure, and between two nodes x² lies below its chord by h²/6 in the mean.
+/// The mean of x² under p₀ √(1 − x²/a²) is a²/4. Forces on nodes that are h apart have h²/6 more: each stands
+/// for a straight-line share of the pressure, and between two nodes x² lies below its chord by h²/6 in the
+/// mean.
 fn pressure(forces: &[(f64, f64)]) -> [f64; 2] {
     let sum: f64 = forces.iter().map(|(_, f)| f).sum();
     let middle = forces.iter().map(|(x, f)| x * f).sum::<f64>() / sum;

@@ -1,4 +1,5 @@
-//! A real run of the coarse bearing through the report: what the events and the pictures are made of is simulated here.
+//! A real run of the coarse bearing through the report: what the events and the pictures are made of is
+//! simulated here.
 
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -44,7 +45,8 @@ fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
         assert_eq!((&read.name, &read.quads, &read.triangles), (&made.name, &made.quads, &made.triangles));
     }
     assert_eq!(read.bodies.len(), made.bodies.len());
-    // The load of 50 kN has pressed the bearing together by tens of micrometres, and by less than half a millimetre.
+    // The load of 50 kN has pressed the bearing together by tens of micrometres, and by less than half a
+    // millimetre.
     let moved = read.start.iter().zip(&read.reference).map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1]));
     let most = moved.fold(0.0, f64::max);
     assert!((1e-5..5e-4).contains(&most), "{most} m");

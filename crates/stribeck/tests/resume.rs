@@ -1,4 +1,5 @@
-//! Real processes that end before their run does: killed, or without space on the disk. `--resume` finishes their run.
+//! Real processes that end before their run does: killed, or without space on the disk. `--resume` finishes
+//! their run.
 
 #![cfg(unix)]
 
@@ -20,7 +21,8 @@ const SCENE: [&str; 5] = [
     "--no-report",
 ];
 
-/// The traces must have come this far before a run is killed [bytes]: beyond a checkpoint, with most still to come.
+/// The traces must have come this far before a run is killed [bytes]: beyond a checkpoint, with most still to
+/// come.
 const UNDER_WAY: u64 = 250_000;
 
 /// A killed run that has not come this far has hung.
@@ -75,7 +77,8 @@ fn survives_kills_and_full_disks_without_loss() {
     assert!(simulate(&whole, "1").status().expect("it starts").success());
     start_and_kill(&killed);
 
-    // A limit on the length of files stands for a full disk: the checkpoint does not fit at once, the trace soon not.
+    // A limit on the length of files stands for a full disk: the checkpoint does not fit at once, the trace
+    // soon not.
     let limited = Command::new("sh")
         .args([
             "-c",

@@ -1,4 +1,5 @@
-//! A simulated record through a sensor, a file and the program that the file belongs to: the verdict of the run's own report.
+//! A simulated record through a sensor, a file and the program that the file belongs to: the verdict of the
+//! run's own report.
 
 use std::path::Path;
 use std::process::{Command, Output};
@@ -53,8 +54,8 @@ fn claimed(families: &Value) -> Vec<(String, f64)> {
 
 #[test]
 fn peer_a_simulated_record_gives_the_verdict_of_its_run_through_every_format() {
-    // pandas 3.1.1, numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8, pyarrow 26.0.1 and soundfile 0.14.0, where the interpreter in
-    // STRIBECK_PYTHON (or python3) has them.
+    // pandas 3.1.1, numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8, pyarrow 26.0.1 and soundfile 0.14.0, where the
+    // interpreter in STRIBECK_PYTHON (or python3) has them.
     let desk = Scratch::create("same-door");
     std::fs::write(desk.join("spalled.ron"), SCENE).unwrap();
     let output = stribeck(desk.path(), &["simulate", "spalled.ron"]);

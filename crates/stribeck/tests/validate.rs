@@ -213,7 +213,8 @@ fn refuses_to_compare_a_run_that_diverged() {
     says(&nothing, &["<SCENE>"]);
 }
 
-/// `validate` and `analyse` put their page in the place of a run's report, and `campaign` its runs among what lay in a folder.
+/// `validate` and `analyse` put their page in the place of a run's report, and `campaign` its runs among what
+/// lay in a folder.
 #[test]
 fn issue_no_command_writes_over_a_run_or_among_foreign_files() {
     let desk = Scratch::create("products");

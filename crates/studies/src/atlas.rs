@@ -29,7 +29,8 @@ const BEARINGS: [&str; 12] = [
     "6305",
 ];
 
-/// Defects of the columns: the name, the list of `defects` by lengths in diameters of a roller (thousandths where a field has micrometres), and the families they have.
+/// Defects of the columns: the name, the list of `defects` by lengths in diameters of a roller (thousandths
+/// where a field has micrometres), and the families they have.
 const DEFECTS: [(&str, &str, &[&str]); 8] = [
     ("outer-spall", "(on: outer, form: spall(length_mm: {0.4}, depth_mm: {0.008}))", &["BPFO"]),
     ("inner-spall", "(on: inner, form: spall(length_mm: {0.4}, depth_mm: {0.008}))", &["BPFI"]),
@@ -43,18 +44,21 @@ const DEFECTS: [(&str, &str, &[&str]); 8] = [
     ),
     (
         "two",
-        "(on: outer, form: spall(length_mm: {0.4}, depth_mm: {0.008})), (on: inner, form: spall(length_mm: {0.4}, depth_mm: {0.008}))",
+        "(on: outer, form: spall(length_mm: {0.4}, depth_mm: {0.008})), (on: inner, form: spall(length_mm: \
+         {0.4}, depth_mm: {0.008}))",
         &["BPFO", "BPFI"],
     ),
     (
         "waves",
-        "(on: outer, form: waviness(order: 7, amplitude_um: {0.06})), (on: inner, form: waviness(order: 9, amplitude_um: {0.06})), \
+        "(on: outer, form: waviness(order: 7, amplitude_um: {0.06})), (on: inner, form: waviness(order: 9, \
+         amplitude_um: {0.06})), \
          (on: roller(2), form: diameter(larger_um: {-0.1}))",
         &[],
     ),
 ];
 
-/// Bearing time for a spot on one rolling element, which is under the load a part of every turn of the cage only [ms].
+/// Bearing time for a spot on one rolling element, which is under the load a part of every turn of the cage
+/// only [ms].
 const ROLLER_MS: f64 = 2400.0;
 
 /// Passages of rollers over the outer raceway in a run of the full model.
@@ -126,7 +130,8 @@ fn variant(host: &dyn Host, bearing: &str, defect: &str, list: &str) -> Result<(
     }
     let plain = Scene::read_with(host.root().join(SCENE), &variant.set)?;
     let roller = plain.bearing.roller_diameter_mm;
-    // A cage of the paper's proportions: its corners touch rollers above their middles, so that they guide it.
+    // A cage of the paper's proportions: its corners touch rollers above their middles, so that they guide
+    // it.
     let cage = 0.22 * roller;
     let digits = |mm: f64| (1e3 * mm).round() / 1e3;
     variant = variant
@@ -137,7 +142,8 @@ fn variant(host: &dyn Host, bearing: &str, defect: &str, list: &str) -> Result<(
     Ok((variant, scene))
 }
 
-/// The text with every number in braces, in diameters of a roller, in millimetres; thousandths of a diameter, in micrometres.
+/// The text with every number in braces, in diameters of a roller, in millimetres; thousandths of a diameter,
+/// in micrometres.
 fn in_diameters(list: &str, roller_mm: f64) -> String {
     let mut text = String::new();
     let mut rest = list;
@@ -191,7 +197,8 @@ const LEDGER: f64 = 0.01;
 /// Sidebands of six that make the right ones.
 const SIDEBANDS: usize = 3;
 
-/// What the rhythm within a passage resolves of its frequency: knocks last about 1 ms, and three follow the first one.
+/// What the rhythm within a passage resolves of its frequency: knocks last about 1 ms, and three follow the
+/// first one.
 const RHYTHM: f64 = 0.04;
 
 /// A family that is claimed at another place than the motion has it, or without its sidebands.
@@ -211,12 +218,19 @@ fn misplaced(family: &DiagnosedFamily, diagnosis: &DiagnosisFinding) -> Option<S
 
 fn introduce(sheet: &mut Sheet) {
     sheet.say(
-        "Does a defect in a scene come out as what it is? Every bearing runs with every defect, in proportion to its rollers: 0.8 s at \
-         1500 rpm by the reduced model, 2.4 s with a spot on one rolling element, which is loaded a part of every turn of the cage only, and one and a half passages of a roller by the full one. The record of the first sensor is then judged as \
-         one from a machine would be, without the scene (`stribeck analyse`, THEORY §7.9): it is right when it claims every family of the scene's defects \
-         and no other, each within one resolution of the recorded motion and, for BPFI and BSF, with three of the six sidebands at the shaft\u{2019}s and \
-         the cage\u{2019}s distance (a BSF that is told by the rhythm of its knocks within a passage has no lines, and its frequency is to be within \
-         4 % of the motion\u{2019}s), and when each model that has run it ends with less than 1 % of the energy missing. *waves* have no defect: two raceways with \
+        "Does a defect in a scene come out as what it is? Every bearing runs with every defect, in \
+         proportion to its rollers: 0.8 s at \
+         1500 rpm by the reduced model, 2.4 s with a spot on one rolling element, which is loaded a part of \
+         every turn of the cage only, and one and a half passages of a roller by the full one. The record of \
+         the first sensor is then judged as \
+         one from a machine would be, without the scene (`stribeck analyse`, THEORY §7.9): it is right when \
+         it claims every family of the scene's defects \
+         and no other, each within one resolution of the recorded motion and, for BPFI and BSF, with three \
+         of the six sidebands at the shaft\u{2019}s and \
+         the cage\u{2019}s distance (a BSF that is told by the rhythm of its knocks within a passage has no \
+         lines, and its frequency is to be within \
+         4 % of the motion\u{2019}s), and when each model that has run it ends with less than 1 % of the \
+         energy missing. *waves* have no defect: two raceways with \
          waviness and a roller that is too small.",
     );
 }
@@ -231,7 +245,8 @@ fn matrix(sheet: &mut Sheet, cells: &[Cell<'_>]) {
     sheet.value("matrix", "all", "by the full model, too", Some(full as f64));
     sheet.value("matrix", "all", "claimed rightly", Some(claims as f64));
     sheet.say(&format!(
-        "In each field what the record was said to show; **bold** where something is wrong, which the next table names. Of {} fields {claims} \
+        "In each field what the record was said to show; **bold** where something is wrong, which the next \
+         table names. Of {} fields {claims} \
          claim what is there and nothing else, and {right} are right in everything; {full} have been run by \
          the full model, too.",
         cells.len()
@@ -287,9 +302,12 @@ fn noise(sheet: &mut Sheet, cells: &[Cell<'_>]) {
     let false_ones = false_ones.count();
     sheet.value("noise", "all", "claimed falsely", Some(false_ones as f64));
     sheet.say(&format!(
-        "A run has no noise but its bearing's, and what elements rattle as they come under the load is then all there is: it swings the power of \
-         a sound bearing's record as knocks do. A machine has more. With white noise over the record, its rms {} % of the record's own, the claims are \
-         those below: {all} of {} fields claim what is there and nothing else, and {false_ones} claim something that is not there.",
+        "A run has no noise but its bearing's, and what elements rattle as they come under the load is then \
+         all there is: it swings the power of \
+         a sound bearing's record as knocks do. A machine has more. With white noise over the record, its \
+         rms {} % of the record's own, the claims are \
+         those below: {all} of {} fields claim what is there and nothing else, and {false_ones} claim \
+         something that is not there.",
         number(100.0 * NOISE, 0),
         cells.len()
     ));
@@ -339,7 +357,8 @@ fn failures(sheet: &mut Sheet, cells: &[Cell<'_>]) {
 fn balance(sheet: &mut Sheet, cells: &[Cell<'_>]) {
     sheet.heading("Energy and load");
     sheet.say(
-        "The worst over the defects of each bearing: energy that is missing at the end or on the way, over the largest strain energy; and the mean force \
+        "The worst over the defects of each bearing: energy that is missing at the end or on the way, over \
+         the largest strain energy; and the mean force \
          through the rollers against load and weight.",
     );
     let rows: Vec<Vec<String>> = BEARINGS

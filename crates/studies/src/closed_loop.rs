@@ -1,5 +1,5 @@
-//! `cargo xtask study loop`: measured spalls, their lengths, and whether simulated spalls of these lengths knock as the
-//! measured ones do.
+//! `cargo xtask study loop`: measured spalls, their lengths, and whether simulated spalls of these lengths
+//! knock as the measured ones do.
 
 use std::path::{Path, PathBuf};
 
@@ -36,7 +36,8 @@ const SPEEDS: [u32; 3] = [600, 900, 1200];
 const SIZES: [u32; 3] = [2, 5, 8];
 /// Speed at which the loop is closed [1/min].
 const LOOPED_RPM: u32 = 900;
-/// Time simulated, in turns of the shaft: six hold 22 passages, too few for a second event to show for certain.
+/// Time simulated, in turns of the shaft: six hold 22 passages, too few for a second event to show for
+/// certain.
 const TURNS: f64 = 24.0;
 /// How far the simulated spacing may be from the measured one.
 const ALLOWED: f64 = 0.05;
@@ -93,8 +94,10 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     }
     let mut sheet = Sheet::new(host.root(), "loop", "Measured spalls, and simulated ones of their lengths");
     sheet.say(
-        "Written with the folder of the records of HIT-SM as the study's argument: bearing 6205, spalls over 2, 5 and 8° of arc of \
-         either raceway, 600, 900 and 1200 rpm, 5 s at 51.2 kHz. `stribeck analyse` is given the rate, the bearing and the speed, and nothing of the spall.",
+        "Written with the folder of the records of HIT-SM as the study's argument: bearing 6205, spalls over \
+         2, 5 and 8° of arc of \
+         either raceway, 600, 900 and 1200 rpm, 5 s at 51.2 kHz. `stribeck analyse` is given the rate, the \
+         bearing and the speed, and nothing of the spall.",
     );
     lengths(&mut sheet, &records);
     // Only lengths that a second event gives have a spacing.
@@ -283,7 +286,8 @@ fn lengths(sheet: &mut Sheet, records: &[Measured]) {
     sheet.value("lengths", "all", "covered", Some(covered as f64));
     let verdict = |held: bool| if held { "holds" } else { "**does not hold**" };
     sheet.say(&format!(
-        "- Sizes in their order, 2 < 5 < 8°, at each speed: {}{}.\n- Median error of {} lengths {} % (at most {} %): {}.\n- The interval holds \
+        "- Sizes in their order, 2 < 5 < 8°, at each speed: {}{}.\n- Median error of {} lengths {} % (at \
+         most {} %): {}.\n- The interval holds \
          the length in {covered} of {} records (at least {COVERED}): {}.",
         verdict(unordered.is_empty()),
         if unordered.is_empty() { String::new() } else { format!(", {}", unordered.join(", ")) },
@@ -295,7 +299,10 @@ fn lengths(sheet: &mut Sheet, records: &[Measured]) {
         verdict(covered >= COVERED),
     ));
     sheet.say(
-        "Where an interval begins at 0, no second event follows the knock. If entry and exit both knock, the spall is shorter than twice the estimate, else it would show one; if not, it may have any length up to the distance of two elements, where the interval ends. The sizes of others are those of spalls shorter than half of that distance ([spalls](spalls.md)).",
+        "Where an interval begins at 0, no second event follows the knock. If entry and exit both knock, the \
+         spall is shorter than twice the estimate, else it would show one; if not, it may have any length up \
+         to the distance of two elements, where the interval ends. The sizes of others are those of spalls \
+         shorter than half of that distance ([spalls](spalls.md)).",
     );
 }
 
@@ -317,11 +324,16 @@ fn ordered(records: &[Measured], raceway: usize, rpm: u32) -> bool {
 fn loops(sheet: &mut Sheet, first: &[Pass<'_>], second: &[Pass<'_>]) {
     sheet.heading("The loop");
     sheet.say(&format!(
-        "A record with a second event gives a length. For those at {LOOPED_RPM} rpm a 6205 with a spall of that length, 0.2 mm deep, under 100 N, is simulated for {TURNS} \
-         turns (`fixtures/scenes/studies/loop.ron`, reduced model, 100 kHz), and its sensor\u{2019}s record goes through `stribeck analyse`, too: is the time \
-         between entry and exit the measured one, within {} %? The record does not say the load, which matters: an element that rings press together \
-         comes free some way behind the first edge, and is caught as far before the second one (THEORY §7.5). So the first pass, with the value of \
-         `spall_mm`, comes out short. In the second one the spall is longer by what the contact runs in the time that was missing. *By load* is \
+        "A record with a second event gives a length. For those at {LOOPED_RPM} rpm a 6205 with a spall of \
+         that length, 0.2 mm deep, under 100 N, is simulated for {TURNS} \
+         turns (`fixtures/scenes/studies/loop.ron`, reduced model, 100 kHz), and its sensor\u{2019}s record \
+         goes through `stribeck analyse`, too: is the time \
+         between entry and exit the measured one, within {} %? The record does not say the load, which \
+         matters: an element that rings press together \
+         comes free some way behind the first edge, and is caught as far before the second one (THEORY \
+         §7.5). So the first pass, with the value of \
+         `spall_mm`, comes out short. In the second one the spall is longer by what the contact runs in the \
+         time that was missing. *By load* is \
          the time from half of an element\u{2019}s load to half of it, on outer raceways.",
         100.0 * ALLOWED
     ));
@@ -369,7 +381,8 @@ fn loops(sheet: &mut Sheet, first: &[Pass<'_>], second: &[Pass<'_>]) {
     sheet.value("loop", "all", "closed", Some(closed as f64));
     let once = first.iter().filter(|pass| pass.off().is_some_and(|off| off.abs() <= ALLOWED)).count();
     sheet.say(&format!(
-        "Within {} % of the measured time: {once} of {} with the length as it is estimated, {closed} with the length corrected once.",
+        "Within {} % of the measured time: {once} of {} with the length as it is estimated, {closed} with \
+         the length corrected once.",
         100.0 * ALLOWED,
         first.len()
     ));

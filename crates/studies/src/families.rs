@@ -1,5 +1,5 @@
-//! `cargo xtask study families`: whether the family of lines of N_v facets is named rightly, for counts that were not used
-//! to choose the threshold, and how often a comb that is not there would be.
+//! `cargo xtask study families`: whether the family of lines of N_v facets is named rightly, for counts that
+//! were not used to choose the threshold, and how often a comb that is not there would be.
 
 use anyhow::Result;
 use stribeck_analysis::families::{Candidate, FamilyFinding, Source, identify};
@@ -39,11 +39,16 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let runner = Runner::new("families", &options.flags, host);
     let mut sheet = Sheet::new(host.root(), "families", "Families of facet lines: is the name right?");
     sheet.say(&format!(
-        "The scene `lean` for 30 ms with rollers of N_v facets. Lines belong at N_v × spin + m × BPFO; the method and its threshold \
-         are those of THEORY §7.7. *Off* is the fitted carrier less the one by the recorded motion, in resolutions of 33 Hz; *lead* \
-         how far the comb is ahead of every other, where 0.3 count; the shares are those that the comb explains of the accelerations \
-         and of the roller forces in its band. The threshold was chosen on {CALIBRATED:?}. {DRAWN} counts were then drawn from \
-         {} to {} by the seed {SEED}; {CLOSEST:?}, whose carriers stand closest to those of the raceways, were added.",
+        "The scene `lean` for 30 ms with rollers of N_v facets. Lines belong at N_v × spin + m × BPFO; the \
+         method and its threshold \
+         are those of THEORY §7.7. *Off* is the fitted carrier less the one by the recorded motion, in \
+         resolutions of 33 Hz; *lead* \
+         how far the comb is ahead of every other, where 0.3 count; the shares are those that the comb \
+         explains of the accelerations \
+         and of the roller forces in its band. The threshold was chosen on {CALIBRATED:?}. {DRAWN} counts \
+         were then drawn from \
+         {} to {} by the seed {SEED}; {CLOSEST:?}, whose carriers stand closest to those of the raceways, \
+         were added.",
         RANGE.start(),
         RANGE.end()
     ));
@@ -82,8 +87,10 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     verdicts(&mut sheet, "arc", &arcs);
     sheet.heading("Names that nothing bears");
     sheet.say(&format!(
-        "To each record {FALSE_COMBS} combs were offered beside its vertices, one at a time: nodes of an outer or an inner raceway in \
-         numbers that the bearing does not have, drawn so that their carriers lie within {FALSE_REACH} BPFO of the true one."
+        "To each record {FALSE_COMBS} combs were offered beside its vertices, one at a time: nodes of an \
+         outer or an inner raceway in \
+         numbers that the bearing does not have, drawn so that their carriers lie within {FALSE_REACH} BPFO \
+         of the true one."
     ));
     sheet.table(&["counts", "records", "false combs", "found", "not told apart", "highest lead"], &rates);
     Ok(Answer::on(sheet.write()?))

@@ -1,5 +1,6 @@
-//! `cargo xtask study impulse`: whether the impulse at the exit is that of a finer mesh. A single impulse says little: rollers
-//! without load rattle, and two starts that differ by a microsecond differ by a factor. Their distributions are compared.
+//! `cargo xtask study impulse`: whether the impulse at the exit is that of a finer mesh. A single impulse
+//! says little: rollers without load rattle, and two starts that differ by a microsecond differ by a factor.
+//! Their distributions are compared.
 
 pub(crate) mod statistics;
 mod variants;
@@ -39,8 +40,8 @@ struct Quantity {
 /// Running means over these times leave what is slower than 8.9, 4.4 and 2.1 kHz (−3 dB) [s].
 const MEANS_S: [f64; 3] = [50e-6, 100e-6, 210e-6];
 
-/// The first blow: so long from the first contact behind the groove on. Then the load comes back, and the cage runs into
-/// the roller.
+/// The first blow: so long from the first contact behind the groove on. Then the load comes back, and the
+/// cage runs into the roller.
 const BLOW_S: f64 = 0.3e-3;
 
 /// A roller that the outer raceway pushes by so much has met it [N].
@@ -123,12 +124,17 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
 
 fn introduce<'a>(sheet: &mut Sheet, meshes: &[Vec<String>], groups: impl Iterator<Item = &'a Group>) {
     sheet.say(
-        "The first impulse of the bearing: vertical acceleration within 1 ms of the exit of roller 1, from starts 0.01° of the \
-         cage (10 µs) apart. The impulse of a single start says little, for rollers without load rattle, and what each of \
-         them does in the exit's millisecond differs from start to start by more than meshes do. So means over the \
+        "The first impulse of the bearing: vertical acceleration within 1 ms of the exit of roller 1, from \
+         starts 0.01° of the \
+         cage (10 µs) apart. The impulse of a single start says little, for rollers without load rattle, and \
+         what each of \
+         them does in the exit's millisecond differs from start to start by more than meshes do. So means \
+         over the \
          starts are compared, with their standard errors. Differences of more than \
-         two of their standard errors are bold; of the others one cannot say that there is any. A running mean over 50, 100 \
-         and 210 µs leaves what is slower than 8.9, 4.4 and 2.1 kHz. The first blow is the 0.3 ms from where the roller meets \
+         two of their standard errors are bold; of the others one cannot say that there is any. A running \
+         mean over 50, 100 \
+         and 210 µs leaves what is slower than 8.9, 4.4 and 2.1 kHz. The first blow is the 0.3 ms from where \
+         the roller meets \
          the raceway again.",
     );
     sheet.table(&["mesh", "what it is", "starts"], meshes);
@@ -185,7 +191,8 @@ fn compare(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
     sheet.table(&heads(groups, &offs), &rows);
 }
 
-/// Where the roller lies in its pocket, what the cage does to it, and what the slow part of the impulse goes with.
+/// Where the roller lies in its pocket, what the cage does to it, and what the slow part of the impulse goes
+/// with.
 fn of_roller(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
     let rows: Vec<Vec<String>> =
         OF_ROLLER.iter().map(|&quantity| means(sheet, "roller 1", quantity, groups).0).collect();
@@ -199,7 +206,8 @@ fn of_roller(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
     let blow = correlation(|i| i.blow_g[2]);
     let [behind, cage, blow] = [behind, cage, blow].map(|value| number(value, 2));
     sheet.say(&format!(
-        "Correlations within meshes of the peak below 2.1 kHz at the sensor {sensor}: {behind} with the roller's place in its \
+        "Correlations within meshes of the peak below 2.1 kHz at the sensor {sensor}: {behind} with the \
+         roller's place in its \
          pocket, {cage} with the force of the cage, {blow} with the first blow below 2.1 kHz.",
     ));
 }
@@ -301,8 +309,8 @@ fn roller(record: &Record<'_>, met: usize) -> Option<Roller> {
     Some(Roller { behind_um: 1e6 * behind(seen(0), seen(met)), cage_n: forces.fold(0.0, f64::max) })
 }
 
-/// How far a roller lies behind the middle of its pocket [m], where it was at the start, in a bearing that turns clockwise:
-/// from its place seen from the cage's centre [m] and the cage's angle [rad], then and now.
+/// How far a roller lies behind the middle of its pocket [m], where it was at the start, in a bearing that
+/// turns clockwise: from its place seen from the cage's centre [m] and the cage's angle [rad], then and now.
 fn behind(([x0, y0], angle0): ([f64; 2], f64), ([x, y], angle): ([f64; 2], f64)) -> f64 {
     let turned = (x0 * y - y0 * x).atan2(x0 * x + y0 * y);
     (turned - (angle - angle0)) * x.hypot(y)

@@ -3,19 +3,19 @@
 /// An explicit scheme for ẍ = a(x, ẋ).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Scheme {
-    /// Central differences in their velocity form; the same positions as leapfrog. Velocities that forces depend on lag by
-    /// half a step. Second order, no dissipation.
+    /// Central differences in their velocity form; the same positions as leapfrog. Velocities that forces
+    /// depend on lag by half a step. Second order, no dissipation.
     CentralDifference,
-    /// Tchamwa and Wielgosz: x += Δt v + φ Δt² a, v += Δt a. First order; damps high frequencies for φ > 1 (Maheo, Grolleau
-    /// and Rio, *Damping efficiency of the Tchamwa–Wielgosz explicit dissipative scheme*, Computational Mechanics 51
-    /// (2013), §2).
+    /// Tchamwa and Wielgosz: x += Δt v + φ Δt² a, v += Δt a. First order; damps high frequencies for φ > 1
+    /// (Maheo, Grolleau and Rio, *Damping efficiency of the Tchamwa–Wielgosz explicit dissipative scheme*,
+    /// Computational Mechanics 51 (2013), §2).
     TchamwaWielgosz {
         /// φ ≥ 1; 1.03 is customary.
         phi: f64,
     },
-    /// Noh and Bathe: two sub-steps, p and 1 − p, with one evaluation each. Second order; damps what a mesh does not
-    /// resolve (*An explicit time integration scheme for the analysis of wave propagations*, Computers & Structures 129
-    /// (2013), §2).
+    /// Noh and Bathe: two sub-steps, p and 1 − p, with one evaluation each. Second order; damps what a mesh
+    /// does not resolve (*An explicit time integration scheme for the analysis of wave propagations*,
+    /// Computers & Structures 129 (2013), §2).
     NohBathe {
         /// Split of the step; 0.54 is customary.
         p: f64,

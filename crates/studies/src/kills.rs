@@ -1,4 +1,5 @@
-//! `cargo xtask study kills`: a run is killed at random moments, and continued; its files must be those of an unbroken run.
+//! `cargo xtask study kills`: a run is killed at random moments, and continued; its files must be those of an
+//! unbroken run.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -48,8 +49,10 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     std::fs::remove_dir_all(&folder).ok();
     let tally = done?;
     let said = format!(
-        "{} kills (`kill -9`) at random moments of a run of {} ms: {} of them while it was being continued from an earlier one, {} before \
-         its first checkpoint, so that it began anew. All {} runs came to their end with the bytes of an unbroken run, on one thread and \
+        "{} kills (`kill -9`) at random moments of a run of {} ms: {} of them while it was being continued \
+         from an earlier one, {} before \
+         its first checkpoint, so that it began anew. All {} runs came to their end with the bytes of an \
+         unbroken run, on one thread and \
          on two by turns.",
         tally.kills, options.duration_ms, tally.again, tally.too_early, tally.finished
     );
@@ -105,7 +108,8 @@ impl Killer<'_> {
                 }
                 tally.kills += 1;
                 tally.again += usize::from(continued);
-                // Before the first checkpoint there is nothing to continue; the program says so, and a new run is taken.
+                // Before the first checkpoint there is nothing to continue; the program says so, and a new
+                // run is taken.
                 continued = run.join("checkpoint").exists();
                 tally.too_early += usize::from(!continued);
                 if !continued && run.join("run.json").exists() {

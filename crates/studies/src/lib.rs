@@ -1,12 +1,12 @@
 //! Questions that are answered by many runs: one question, many runs, one table.
 //!
-//! A study is a list of variants: a scene and what is changed in it. Runs are kept in `runs/study/STUDY/VARIANT`; those
-//! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
-//! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
+//! A study is a list of variants: a scene and what is changed in it. Runs are kept in
+//! `runs/study/STUDY/VARIANT`; those that are finished are not repeated, and one that was interrupted is
+//! continued. The answer goes to `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 //!
-//! `cargo xtask study` is the command. Nothing that simulates depends on this crate; elements, precisions and integrators
-//! that no run uses live here ([`reference`], [`integrators`]). Like every library here it prints nothing and reads no
-//! clock: what it needs of the program that runs it is its [`Host`].
+//! `cargo xtask study` is the command. Nothing that simulates depends on this crate; elements, precisions and
+//! integrators that no run uses live here ([`reference`], [`integrators`]). Like every library here it prints
+//! nothing and reads no clock: what it needs of the program that runs it is its [`Host`].
 
 pub mod integrators;
 pub mod reference;
@@ -74,7 +74,8 @@ impl Study {
     /// Runs what has not been run and writes the answer.
     ///
     /// # Errors
-    /// When a variant is not a scene, a page cannot be written, or at an interruption; what has been run is kept.
+    /// When a variant is not a scene, a page cannot be written, or at an interruption; what has been run is
+    /// kept.
     pub fn run(&self, host: &dyn Host) -> Result<Answer> {
         match self {
             Self::Paper(options) => paper::run(options, host),

@@ -1,5 +1,5 @@
-//! `cargo xtask study long`: the bearing for 0.35 s, the first spectrum of this model that resolves 3 Hz, and the defect's
-//! family in an envelope spectrum.
+//! `cargo xtask study long`: the bearing for 0.35 s, the first spectrum of this model that resolves 3 Hz, and
+//! the defect's family in an envelope spectrum.
 
 mod pictures;
 mod tables;
@@ -34,7 +34,8 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
             let runs = Runner::new("long", &options.flags, host).run(&[Variant::new("long", LONG, &[])])?;
             let Some(finished) = runs.into_iter().next() else {
                 bail!(
-                    "`{LONG}` has not been run: leave out `--tables-only`, or name a finished run with `--run DIR`"
+                    "`{LONG}` has not been run: leave out `--tables-only`, or name a finished run with \
+                     `--run DIR`"
                 );
             };
             if let Err(why) = &finished.summary {

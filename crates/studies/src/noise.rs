@@ -25,13 +25,20 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let runner = Runner::new("noise", &options.flags, host);
     let mut sheet = Sheet::new(host.root(), "noise", "Contact noise: its causes, one by one");
     sheet.say(
-        "Runs of 12 ms: roller 1 leaves the defect at 5.1 ms. *Line* is the amplitude of the roller vertices\u{2019} line (4671 Hz \
-         with 112 facets) and *between* the root mean square, both of the acceleration vector between 7.1 and 11.4 ms, where no \
-         roller meets the defect: 4.3 ms resolve 230 Hz, so the line holds the race nodes\u{2019} too. *Background* is what the \
-         same measure gives at four neighbouring frequencies, 0.7 and 1.4 kHz away on either side, where the mesh has no line \
-         (root of the mean square): a line that does not stand above it is not there. *Ringing* is the root mean square \
-         above 20 kHz, *start* that of the first 0.3 ms. *Ripple* is the rms of the force on the most loaded roller about a \
-         cubic in time over its mean, 2.4 to 4.3 ms. Impulses need more starts: [impulse](impulse.md). What a step of the cure costs is measured by itself: [PERFORMANCE](../PERFORMANCE.md), §6.",
+        "Runs of 12 ms: roller 1 leaves the defect at 5.1 ms. *Line* is the amplitude of the roller \
+         vertices\u{2019} line (4671 Hz \
+         with 112 facets) and *between* the root mean square, both of the acceleration vector between 7.1 \
+         and 11.4 ms, where no \
+         roller meets the defect: 4.3 ms resolve 230 Hz, so the line holds the race nodes\u{2019} too. \
+         *Background* is what the \
+         same measure gives at four neighbouring frequencies, 0.7 and 1.4 kHz away on either side, where the \
+         mesh has no line \
+         (root of the mean square): a line that does not stand above it is not there. *Ringing* is the root \
+         mean square \
+         above 20 kHz, *start* that of the first 0.3 ms. *Ripple* is the rms of the force on the most loaded \
+         roller about a \
+         cubic in time over its mean, 2.4 to 4.3 ms. Impulses need more starts: [impulse](impulse.md). What \
+         a step of the cure costs is measured by itself: [PERFORMANCE](../PERFORMANCE.md), §6.",
     );
     let mut ends = Vec::new();
     for (table, title, list) in [
@@ -48,11 +55,15 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
         sheet.table(&["variant", "what it shows"], &shown);
         let rows: Vec<&Finished> = runs.iter().collect();
         sheet.say(
-            "Each row is one start; idle rollers that rattle can double a quiet level from one start to the next. \
+            "Each row is one start; idle rollers that rattle can double a quiet level from one start to the \
+             next. \
              Line, background and level between the impulses [g] at each sensor:",
         );
         sheet.runs(table, &rows, &LEVELS);
-        sheet.say("Effects, forces and cost; *points* is the line of the contact points, their number on a facet times the vertices\u{2019} line:");
+        sheet.say(
+            "Effects, forces and cost; *points* is the line of the contact points, their number on a \
+            facet times the vertices\u{2019} line:",
+        );
         sheet.runs(&format!("{table}-effects"), &rows, &EFFECTS);
         ends.extend(runs);
     }
@@ -85,8 +96,10 @@ fn background(sheet: &mut Sheet, long: &[Finished], ends: &[Finished]) {
         long.iter().chain(["paper", "smooth", "smooth-124"].into_iter().filter_map(named)).collect();
     sheet.heading("Is the residue a line?");
     sheet.say(
-        "All four sensors together (root of the sum of squares). The long runs have two quiet stretches of 4.3 ms, whose powers are averaged. \
-         In `smooth-124` the line is predicted at 5172 Hz; what stands at 4671 Hz there is no line of the mesh.",
+        "All four sensors together (root of the sum of squares). The long runs have two quiet stretches of \
+         4.3 ms, whose powers are averaged. \
+         In `smooth-124` the line is predicted at 5172 Hz; what stands at 4671 Hz there is no line of the \
+         mesh.",
     );
     sheet.runs("background", &rows, &RESIDUE);
     for run in rows {
@@ -129,12 +142,12 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
     ] {
         figure = figure.with(Series::sampled(words, colour, 0.0, 50.0, values));
     }
-    sheet.picture(
-        &figure.caption(format!(
-            "a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge. The notch rings with a \
-             time constant of Q/\u{3c0}f = 1 ms, also from the impulse at 5.1 ms: what stands at the line behind it is partly its own."
-        )),
-    )?;
+    sheet.picture(&figure.caption(format!(
+        "a_y at {sensor}, 7.1 to 11.4 ms, Hann window: lines closer than 460 Hz merge. The notch rings \
+             with a \
+             time constant of Q/\u{3c0}f = 1 ms, also from the impulse at 5.1 ms: what stands at the line \
+             behind it is partly its own."
+    )))?;
     let mut figure = Figure::new(
         &format!("{id}-forces"),
         "Force of roller 2 on the outer ring",
@@ -166,7 +179,8 @@ fn noise_at(run: &Finished, sensor: usize, hz: Option<f64>) -> Option<Noise> {
     measure(&Record::whole(&read).ok()?, &name, &passages, hz.unwrap_or(line))
 }
 
-/// Amplitude at the seat of the line that the points of the facets make [g]; `None` when samples are too far apart for it.
+/// Amplitude at the seat of the line that the points of the facets make [g]; `None` when samples are too far
+/// apart for it.
 fn points_line_g(run: &Finished) -> Option<f64> {
     const SEAT: usize = 2;
     let read = Run::read(&run.folder).ok()?;

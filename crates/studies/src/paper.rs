@@ -1,4 +1,5 @@
-//! `cargo xtask study paper`: which reading of the paper agrees with it best, and whether its hypothesis holds.
+//! `cargo xtask study paper`: which reading of the paper agrees with it best, and whether its hypothesis
+//! holds.
 
 mod base;
 mod hypothesis;
@@ -42,9 +43,12 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let wanted = |part| options.part.is_none_or(|only| only == part);
     let mut sheet = Sheet::new(host.root(), "paper", "The paper's choices and its hypothesis");
     sheet.say(
-        "All runs are of the graded mesh `fixtures/scenes/studies/lean.ron`, which has the paper's facets on raceways and rollers, and \
-         last 12 ms unless stated: one exit at 5 ms and the quiet time until the next entry at 11.9 ms. They resolve 83 Hz; lines \
-         closer than 167 Hz merge. Accelerations are means over 10 µs of a_y at the sensor on the ring's side (0°), unless stated.",
+        "All runs are of the graded mesh `fixtures/scenes/studies/lean.ron`, which has the paper's facets on \
+         raceways and rollers, and \
+         last 12 ms unless stated: one exit at 5 ms and the quiet time until the next entry at 11.9 ms. They \
+         resolve 83 Hz; lines \
+         closer than 167 Hz merge. Accelerations are means over 10 µs of a_y at the sensor on the ring's \
+         side (0°), unless stated.",
     );
     // The other half is shown as far as it has been run.
     let base = runner.run_if(wanted(Part::Base), &base::variants())?;

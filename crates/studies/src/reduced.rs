@@ -1,4 +1,5 @@
-//! `cargo xtask study reduced`: how far the reduced bearing is from the full one, scene by scene, with what it does not keep.
+//! `cargo xtask study reduced`: how far the reduced bearing is from the full one, scene by scene, with what
+//! it does not keep.
 
 use std::path::Path;
 
@@ -214,10 +215,14 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
 
     let mut sheet = Sheet::new(host.root(), "reduced", "The reduced bearing beside the full one");
     sheet.say(
-        "How far is the reduced model from the full one, and what does it not keep? Each scene runs by both from the same starts \
-         (`stribeck validate`). Differences are reduced less full: means over the starts with half their 95 % intervals, or, of \
-         accelerations, one standard error. No number was fitted to any of them, but faults were found on the first scene, with 20 rollers \
-         and with oil: these are not unseen. **Bold** is outside its limit by more than chance may be; a limit that so few starts cannot \
+        "How far is the reduced model from the full one, and what does it not keep? Each scene runs by both \
+         from the same starts \
+         (`stribeck validate`). Differences are reduced less full: means over the starts with half their 95 \
+         % intervals, or, of \
+         accelerations, one standard error. No number was fitted to any of them, but faults were found on \
+         the first scene, with 20 rollers \
+         and with oil: these are not unseen. **Bold** is outside its limit by more than chance may be; a \
+         limit that so few starts cannot \
          tell is listed below.",
     );
     scenes(&mut sheet, &all);
@@ -248,7 +253,8 @@ impl Case {
     }
 }
 
-/// Runs both models from all starts, those that are missing. Models of one scene share the runs of the full model.
+/// Runs both models from all starts, those that are missing. Models of one scene share the runs of the full
+/// model.
 ///
 /// # Errors
 /// When a run does not come to its end.
@@ -305,7 +311,10 @@ fn scenes(sheet: &mut Sheet, all: &[Compared]) {
         .collect();
     let names = ["scene", "file", "changed", "ms", "starts", "full, s/ms", "reduced, s/ms"];
     sheet.table(&names, &rows);
-    sheet.say("The last two columns are processor time of a simulated millisecond, of as many runs side by side as there were cores.");
+    sheet.say(
+        "The last two columns are processor time of a simulated millisecond, of as many runs side by \
+        side as there were cores.",
+    );
 }
 
 /// What rollers carry, when, and how fast the cage is.
@@ -341,7 +350,8 @@ fn forces(sheet: &mut Sheet, all: &[Compared]) {
     ];
     sheet.table(&names, &all.iter().map(of).collect::<Vec<_>>());
     sheet.say(
-        "Limits: 1 %, 0.1 %, 0.05 ms, 0.2 %. Forces are means over 0.25 ms, of every roller; correlations those of the vertical acceleration \
+        "Limits: 1 %, 0.1 %, 0.05 ms, 0.2 %. Forces are means over 0.25 ms, of every roller; correlations \
+         those of the vertical acceleration \
          at the first sensor, start by start.",
     );
 }
@@ -426,7 +436,8 @@ fn accelerations(sheet: &mut Sheet, all: &[Compared]) {
     ];
     sheet.table(&names, &rows);
     sheet.say(
-        "Levels of the mean power over the starts, both components together. One band in twenty is off by two standard errors by chance. \
+        "Levels of the mean power over the starts, both components together. One band in twenty is off by \
+         two standard errors by chance. \
          In a rigid housing all sensors move as one.",
     );
 }
@@ -454,7 +465,10 @@ fn peaks(sheet: &mut Sheet, all: &[Compared]) {
     };
     let rows: Vec<Vec<String>> = all.iter().filter(|c| !c.agreement.peaks.is_empty()).map(row_of).collect();
     sheet.table(&["scene", "side", "shoulder", "seat", "bottom"], &rows);
-    sheet.say("Means of the largest of each start, with one standard error. They have no limit: each is that of a single impact.");
+    sheet.say(
+        "Means of the largest of each start, with one standard error. They have no limit: each is that \
+        of a single impact.",
+    );
 }
 
 /// What is not kept, and what cannot be told.
@@ -491,9 +505,12 @@ fn outside(sheet: &mut Sheet, all: &[Compared]) {
     ];
     sheet.table(&names, &rows);
     sheet.say(
-        "Third octaves of a sensor are one quantity, and kept when each of their bands is. Over ten passages the difference of the cages has \
-         its time: rollers come the later, the farther they are behind. What the reduced model leaves out is in \
-         THEORY §9.6; of the NU 205 the band at 3.2 kHz holds the tone of the full model\u{2019}s mesh, which it has not.",
+        "Third octaves of a sensor are one quantity, and kept when each of their bands is. Over ten passages \
+         the difference of the cages has \
+         its time: rollers come the later, the farther they are behind. What the reduced model leaves out is \
+         in \
+         THEORY §9.6; of the NU 205 the band at 3.2 kHz holds the tone of the full model\u{2019}s mesh, \
+         which it has not.",
     );
 }
 
@@ -520,7 +537,10 @@ fn balance(sheet: &mut Sheet, ledgers: &[Finished]) {
         "processor time, s a simulated second",
     ];
     sheet.table(&names, &rows);
-    sheet.say("`reduced.ron` with samples every 100 µs. The error of the step adds up with the heat, and goes as the square of the step.");
+    sheet.say(
+        "`reduced.ron` with samples every 100 µs. The error of the step adds up with the heat, and \
+        goes as the square of the step.",
+    );
     for run in ledgers {
         let energy = run.numbers().map(|summary| &summary.energy);
         sheet.value("energy", &run.variant.name, "of strain energy", energy.map(|e| e.max_relative_error));

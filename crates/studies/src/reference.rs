@@ -1,8 +1,9 @@
-//! Elements assembled one after the other, for comparisons: what the fast kernel computes, and choices that it does not
-//! have. Nothing here is used in a run.
+//! Elements assembled one after the other, for comparisons: what the fast kernel computes, and choices that
+//! it does not have. Nothing here is used in a run.
 //!
-//! Choices: quadrilaterals of one point with hourglass stiffness or of 2 × 2 points, double or mixed precision (forces of
-//! an element in single precision from differences of positions in double), linear bulk viscosity.
+//! Choices: quadrilaterals of one point with hourglass stiffness or of 2 × 2 points, double or mixed
+//! precision (forces of an element in single precision from differences of positions in double), linear bulk
+//! viscosity.
 
 use anyhow::{Result, ensure};
 use stribeck_solver::{
@@ -36,8 +37,8 @@ pub struct Choice {
     pub rule: Rule,
     /// Precision of element forces.
     pub precision: Precision,
-    /// Coefficient b of the linear bulk viscosity: a pressure b ρ c √A ε̇ against the rate of volume change; 0 for none,
-    /// 0.06 is customary.
+    /// Coefficient b of the linear bulk viscosity: a pressure b ρ c √A ε̇ against the rate of volume change;
+    /// 0 for none, 0.06 is customary.
     pub bulk_viscosity: f64,
 }
 
@@ -93,8 +94,8 @@ impl Reference {
     /// Takes the model's bodies; held components do not move.
     ///
     /// # Errors
-    /// When the model is one that the solver refuses, has rigid bodies or prescribed rotations, or `bulk_viscosity` is
-    /// negative.
+    /// When the model is one that the solver refuses, has rigid bodies or prescribed rotations, or
+    /// `bulk_viscosity` is negative.
     pub fn new(model: &Model, choice: Choice) -> Result<Self> {
         let viscosity = choice.bulk_viscosity;
         ensure!(
@@ -281,8 +282,8 @@ fn full_forces(x: [f64; 4], y: [f64; 4], points: &[GaussPoint; 4], k: &Stiffness
     force
 }
 
-/// [`quad_forces`] in single precision, from differences in double. Strains are found from the displacement gradient of
-/// the diagonals' inner products, as far as single precision lets them.
+/// [`quad_forces`] in single precision, from differences in double. Strains are found from the displacement
+/// gradient of the diagonals' inner products, as far as single precision lets them.
 fn single_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> [[f64; 2]; 4] {
     let s = |v: f64| v as f32;
     let p = [s(x[0] - x[2]), s(y[0] - y[2])];
@@ -317,7 +318,8 @@ fn single_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> 
     .map(|f| f.map(f64::from))
 }
 
-/// Viscous forces on the first two shape functions: the pressure b ρ c √A tr D on the present sides of the element.
+/// Viscous forces on the first two shape functions: the pressure b ρ c √A tr D on the present sides of the
+/// element.
 fn viscous(
     at: [[f64; 2]; 2],
     rate: [[f64; 2]; 2],

@@ -174,13 +174,20 @@ fn introduce(sheet: &mut Sheet, rows: &[Row]) {
     let (finest, starts) =
         reference.map_or(("no reference", 0), |row| (row.choice.name.as_str(), row.starts.len()));
     sheet.say(&format!(
-        "What a simulated millisecond of the paper\u{2019}s bearing costs, and how far the result is from the finest mesh\u{2019}s \
-         ({finest} at the contacts and the defect, {starts} starts). Contact keeps its stiffness and its damping over an area on all meshes, so that \
-         only the mesh, the step and the way contact is evaluated differ. *Reduced* points have the modes of outer ring and \
-         adapter on such a mesh (THEORY §9), at one step or another, with more modes or fewer, on coarser facets or on arcs. *Seconds* are processor time of the time loop, \
-         the least over the starts, because other work on the machine only adds to it. *Force* is the mean of the outer raceway on roller 2 from {FROM_MS} to 6.5 ms; *events* are when roller 1 \
-         loses the raceway and meets it again, the larger error as a share of the time in between; both start by start. The \
-         *impulse* after the exit is chaotic: starts 0.01° of the cage apart differ more than meshes do, so its mean over \
+        "What a simulated millisecond of the paper\u{2019}s bearing costs, and how far the result is from \
+         the finest mesh\u{2019}s \
+         ({finest} at the contacts and the defect, {starts} starts). Contact keeps its stiffness and its \
+         damping over an area on all meshes, so that \
+         only the mesh, the step and the way contact is evaluated differ. *Reduced* points have the modes of \
+         outer ring and \
+         adapter on such a mesh (THEORY §9), at one step or another, with more modes or fewer, on coarser \
+         facets or on arcs. *Seconds* are processor time of the time loop, \
+         the least over the starts, because other work on the machine only adds to it. *Force* is the mean \
+         of the outer raceway on roller 2 from {FROM_MS} to 6.5 ms; *events* are when roller 1 \
+         loses the raceway and meets it again, the larger error as a share of the time in between; both \
+         start by start. The \
+         *impulse* after the exit is chaotic: starts 0.01° of the cage apart differ more than meshes do, so \
+         its mean over \
          the starts is compared, with one standard error.",
     ));
 }

@@ -25,7 +25,8 @@ pub struct Flags {
     #[arg(long, value_name = "N", conflicts_with = "threads", default_value_t = 1,
         value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: u16,
-    /// Runs only variants whose name contains this; may be repeated. The others are shown when they have been run
+    /// Runs only variants whose name contains this; may be repeated. The others are shown when they have been
+    /// run
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// Runs nothing: makes the tables from what has been run
@@ -125,8 +126,8 @@ impl<'a> Runner<'a> {
         Self { folder: host.root().join("runs/study").join(study), flags: flags.clone(), host }
     }
 
-    /// Runs every variant that has not been run and returns all that have been, in their order. A variant that fails
-    /// says why in its place and does not end the study.
+    /// Runs every variant that has not been run and returns all that have been, in their order. A variant
+    /// that fails says why in its place and does not end the study.
     ///
     /// # Errors
     /// When a variant is not a scene, or at Ctrl-C; what has been run is kept.

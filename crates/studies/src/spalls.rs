@@ -1,4 +1,5 @@
-//! `cargo xtask study spalls`: simulated spalls of known length through `stribeck analyse`: does it say how long they are?
+//! `cargo xtask study spalls`: simulated spalls of known length through `stribeck analyse`: does it say how
+//! long they are?
 
 use anyhow::Result;
 
@@ -29,7 +30,8 @@ const COARSE: [&str; 4] = [
 ];
 /// Turns of the shaft: inner raceways bring the spall under the load once a turn.
 const TURNS: [u32; 2] = [6, 20];
-/// Distances of events are the same within this part: what two bands must agree on is 5 %, and a load is picked to as much.
+/// Distances of events are the same within this part: what two bands must agree on is 5 %, and a load is
+/// picked to as much.
 const SAME: f64 = 0.1;
 
 /// A run and where its spall is.
@@ -48,7 +50,8 @@ struct Case {
 struct Told {
     case: Case,
     found: Found,
-    /// Passages on record, those of which both events are seen in the force, and those in which the floor is touched.
+    /// Passages on record, those of which both events are seen in the force, and those in which the floor is
+    /// touched.
     passages: [usize; 3],
     /// Median time from half of the load to half of it [s].
     by_load_s: Option<f64>,
@@ -113,14 +116,19 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     }
     let mut sheet = Sheet::new(host.root(), "spalls", "Simulated spalls of known length");
     sheet.say(
-        "Rectangular spalls, 0.2 mm deep, of 2 to 20 mm: on the outer raceway of a 6205 under 100 N at three speeds, six turns of the shaft each, and on \
-         its inner one, twenty turns (`fixtures/scenes/studies/loop.ron`); on the outer raceway of the paper’s bearing under 50 kN (`fixtures/scenes/reduced.ron`, 1 s); \
-         all by the reduced model, with two lengths by the full one, too, 0.3 s on a graded mesh of 1 mm. The record of the first sensor, as \
+        "Rectangular spalls, 0.2 mm deep, of 2 to 20 mm: on the outer raceway of a 6205 under 100 N at three \
+         speeds, six turns of the shaft each, and on \
+         its inner one, twenty turns (`fixtures/scenes/studies/loop.ron`); on the outer raceway of the \
+         paper’s bearing under 50 kN (`fixtures/scenes/reduced.ron`, 1 s); \
+         all by the reduced model, with two lengths by the full one, too, 0.3 s on a graded mesh of 1 mm. \
+         The record of the first sensor, as \
          simulated, goes through `stribeck analyse`, which is told nothing of the spall (THEORY §7.9).",
     );
     sheet.say(
-        "*Unloads* counts the passages on record in which the element’s own force falls below half and comes back to it, *floor* those in which it touches the floor; \
-         *by load* is what the contact runs between the two, the median: the distance of the events that a perfect record would show. The force is told for outer raceways only.",
+        "*Unloads* counts the passages on record in which the element’s own force falls below half and comes \
+         back to it, *floor* those in which it touches the floor; \
+         *by load* is what the contact runs between the two, the median: the distance of the events that a \
+         perfect record would show. The force is told for outer raceways only.",
     );
     table(&mut sheet, &told);
     counts(&mut sheet, &told);
@@ -288,11 +296,16 @@ fn counts(sheet: &mut Sheet, told: &[Told]) {
     line("no length given; no defect is claimed", &|t| t.found.spall_mm.is_none() && !t.is_claimed());
     sheet.table(&["record", "records", "interval holds the length", "median off, %"], &lines);
     sheet.say(
-        "A length holds for a spall shorter than half of the distance of two elements; a note in `findings.json` says so, with the longer one that would knock in the \
-         same rhythm. In a longer spall the shorter time is the one from its exit to the entry of the next element, and the record does not say which of two \
-         events comes first: in measured records with a second event the louder one is now the first and now the second. Where one knock an element is heard, the \
-         interval takes in all lengths up to the distance of two elements, and a spall longer than that is not thought of. Estimates are short \
-         because elements come free some way behind the first edge and are caught before the second one (*by load*); the upper end leaves room for it. Why some \
+        "A length holds for a spall shorter than half of the distance of two elements; a note in \
+         `findings.json` says so, with the longer one that would knock in the \
+         same rhythm. In a longer spall the shorter time is the one from its exit to the entry of the next \
+         element, and the record does not say which of two \
+         events comes first: in measured records with a second event the louder one is now the first and now \
+         the second. Where one knock an element is heard, the \
+         interval takes in all lengths up to the distance of two elements, and a spall longer than that is \
+         not thought of. Estimates are short \
+         because elements come free some way behind the first edge and are caught before the second one (*by \
+         load*); the upper end leaves room for it. Why some \
          records, of which the elements do unload, show neither a second event nor its absence is open.",
     );
 }

@@ -1,4 +1,5 @@
-//! `cargo xtask study stability`: stiff and extreme cases, what the energy did, and whether the code stopped honestly.
+//! `cargo xtask study stability`: stiff and extreme cases, what the energy did, and whether the code stopped
+//! honestly.
 
 mod geometry;
 mod limit;
@@ -110,9 +111,13 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let all = || chapters.iter().flat_map(|c| &c.cases);
     let count = |v: Verdict| all().filter(|c| c.verdict == v).count();
     sheet.say(&format!(
-        "{} stiff and extreme cases: {} end with a right answer, {} with a warning that says what to change, {} were stopped by a guard, \
-         {} refused before they began, **{} ended wrong and undetected**. *Energy* is the largest imbalance over the peak of the energy in \
-         the model (strain energy for bearings); a run warns above 0.5 % (from its tenth sample on: a load that comes at once is measured against a strain energy that has just begun) and stops above 25 %. Rigs are small models of bodies, \
+        "{} stiff and extreme cases: {} end with a right answer, {} with a warning that says what to change, \
+         {} were stopped by a guard, \
+         {} refused before they began, **{} ended wrong and undetected**. *Energy* is the largest imbalance \
+         over the peak of the energy in \
+         the model (strain energy for bearings); a run warns above 0.5 % (from its tenth sample on: a load \
+         that comes at once is measured against a strain energy that has just begun) and stops above 25 %. \
+         Rigs are small models of bodies, \
          contacts and loads under the same limits; bearings are whole scenes.",
         all().count(),
         count(Verdict::Right),

@@ -31,7 +31,8 @@ impl Sheet {
     /// An empty sheet under a title, of the repository at `root`.
     pub(crate) fn new(root: &Path, study: &'static str, title: &str) -> Self {
         let text = format!(
-            "# {title}\n\nWritten by `cargo xtask study {study}`, every number in [{study}.csv]({study}.csv).\n"
+            "# {title}\n\nWritten by `cargo xtask study {study}`, every number in \
+             [{study}.csv]({study}.csv).\n"
         );
         Self {
             study,

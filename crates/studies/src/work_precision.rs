@@ -10,8 +10,10 @@ use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use crate::{Answer, Host, Sheet};
 
 /// Where the bearing as a whole is.
-const BEARING: &str = "The whole bearing has no known answer. What a simulated millisecond costs, and how far it then is from the finest \
-     mesh, is in [run_time](run_time.md), by the full model and by the reduced one: its modes, its step, its facets.\n\n\
+const BEARING: &str = "The whole bearing has no known answer. What a simulated millisecond costs, and how \
+    far it then is from the finest \
+     mesh, is in [run_time](run_time.md), by the full model and by the reduced one: its modes, its step, its \
+     facets.\n\n\
      ![Error of the force on a loaded roller against processor time](run_time-force.svg)";
 
 /// One calculation.
@@ -92,8 +94,9 @@ impl Problem {
         front
     }
 
-    /// A sentence a target: the cheapest choice that reaches it and stays below it when it is refined further, so that no
-    /// lucky cancellation is recommended; the finest point of a curve needs half the error.
+    /// A sentence a target: the cheapest choice that reaches it and stays below it when it is refined
+    /// further, so that no lucky cancellation is recommended; the finest point of a curve needs half the
+    /// error.
     fn advice(&self) -> Vec<String> {
         let holds = |name: &str, point: &Point, share: f64| {
             let Some(curve) = self.curves.iter().find(|c| c.name == name) else { return false };
@@ -202,12 +205,18 @@ fn timed(host: &dyn Host, work: impl FnOnce() -> Result<(f64, f64)>, size: f64) 
 pub(crate) fn run(host: &dyn Host) -> Result<Answer> {
     let mut sheet = Sheet::new(host.root(), "work_precision", "Work and precision");
     sheet.say(
-        "Error against work for problems with a known answer, one curve a choice. Work is counted in elements evaluated \
-         (element-steps; Noh–Bathe evaluates twice a step), which does not depend on the machine; seconds of this machine are in the \
-         table of values. A static problem counts its elements. The one-point quadrilateral in double precision under central \
-         differences is what runs do. *Full integration, mixed precision, bulk viscosity, Tchamwa–Wielgosz and Noh–Bathe exist for \
-         this study only* (`crates/studies/src/reference.rs`, `integrators.rs`): a plain path without strips, so that their seconds \
-         compare with each other and not with those of a run. On the Pareto front lies what nothing else beats in both; \
+        "Error against work for problems with a known answer, one curve a choice. Work is counted in \
+         elements evaluated \
+         (element-steps; Noh–Bathe evaluates twice a step), which does not depend on the machine; seconds of \
+         this machine are in the \
+         table of values. A static problem counts its elements. The one-point quadrilateral in double \
+         precision under central \
+         differences is what runs do. *Full integration, mixed precision, bulk viscosity, Tchamwa–Wielgosz \
+         and Noh–Bathe exist for \
+         this study only* (`crates/studies/src/reference.rs`, `integrators.rs`): a plain path without \
+         strips, so that their seconds \
+         compare with each other and not with those of a run. On the Pareto front lies what nothing else \
+         beats in both; \
          advice leaves out points whose curve does not stay below the error when it is refined further.",
     );
     let problems: [fn(&dyn Host) -> Result<Problem>; 8] = [

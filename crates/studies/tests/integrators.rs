@@ -1,4 +1,5 @@
-//! Integrators and elements for comparisons: their orders, limits and damping; and that the plain path is the kernel's.
+//! Integrators and elements for comparisons: their orders, limits and damping; and that the plain path is the
+//! kernel's.
 
 #[path = "../../solver/tests/common/mod.rs"]
 mod common;
@@ -38,7 +39,8 @@ fn converges_integrators_with_their_order() {
 #[test]
 fn analytic_limits_of_the_integrators() {
     // Central differences: 2. Tchamwa–Wielgosz: trace 2 − φΩ² and determinant 1 − (φ − 1)Ω² of its step give
-    // Ω = 2/√(2φ − 1). Noh–Bathe with p = 1/2 is two steps of central differences: 4; an uneven split shortens that a little.
+    // Ω = 2/√(2φ − 1). Noh–Bathe with p = 1/2 is two steps of central differences: 4; an uneven split
+    // shortens that a little.
     let [central, tchamwa, noh] = SCHEMES.map(|s| s.limit());
     ledger::compare(
         "limit Ω of central differences",
@@ -152,7 +154,8 @@ fn example_mixed_precision_and_viscosity_change_what_they_should() {
     let mixed = Choice { precision: Precision::Mixed, ..Choice::default() };
     let single = standing_wave(32, mixed, Scheme::CentralDifference, 0.5);
     assert!((single - double).abs() < 0.01 && single != double, "{single} against {double}");
-    // The rate of decay of a wave of 64 cells is b (h/2) k²c… : its amplitude loses b π²/32 · 1.3 in 1.3 periods.
+    // The rate of decay of a wave of 64 cells is b (h/2) k²c… : its amplitude loses b π²/32 · 1.3 in 1.3
+    // periods.
     let viscous = Choice { bulk_viscosity: 0.06, ..Choice::default() };
     let damped = standing_wave(32, viscous, Scheme::CentralDifference, 0.5);
     let lost = 0.06 * PI * PI * 1.3 / 32.0 * (1.3 * 2.0 * PI).cos().abs() / 2_f64.sqrt();

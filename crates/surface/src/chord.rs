@@ -1,4 +1,5 @@
-//! Facets that hang on their own two nodes: a chord as polynomial, and the height of an arc above it (THEORY §4.4).
+//! Facets that hang on their own two nodes: a chord as polynomial, and the height of an arc above it (THEORY
+//! §4.4).
 
 use stribeck_simd::lanes::Number;
 
@@ -11,8 +12,9 @@ use crate::{
     surface::Surface,
 };
 
-/// A point at the distance d from a facet is compared with the neighbour where it stands closer to an end than this
-/// times d: the line that halves the angle at a joint leans by half the turn there, at most 0.175 at what is no corner.
+/// A point at the distance d from a facet is compared with the neighbour where it stands closer to an end
+/// than this times d: the line that halves the angle at a joint leans by half the turn there, at most 0.175
+/// at what is no corner.
 const NEAR_END: f64 = 0.25;
 
 /// A chord in present positions.
@@ -32,8 +34,8 @@ pub struct ChordFacet {
     rise: Rise,
 }
 
-/// A foot so far within a chord of the length 1/`inverse` that no neighbour is nearer: the flag where it is so, zero
-/// elsewhere.
+/// A foot so far within a chord of the length 1/`inverse` that no neighbour is nearer: the flag where it is
+/// so, zero elsewhere.
 #[inline(always)]
 pub fn within_chord<N: Number>(place: N, gap: N, inverse: N, flag: N) -> N {
     let (zero, one) = (flag.constant(0.0), flag.constant(1.0));

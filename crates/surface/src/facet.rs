@@ -1,4 +1,5 @@
-//! A single facet, whatever its curve: points on it, feet on it, and how node fields and forces map to its coefficients.
+//! A single facet, whatever its curve: points on it, feet on it, and how node fields and forces map to its
+//! coefficients.
 
 use crate::{
     foot::{FacetPoint, Foot, Push},
@@ -26,10 +27,12 @@ pub trait Facet: Copy {
     /// The closest point of this facet alone.
     fn closest(&self, p: [f64; 2]) -> Closest;
 
-    /// Whether a foot lies so far within the facet that no neighbour is nearer, unless there is a corner between.
+    /// Whether a foot lies so far within the facet that no neighbour is nearer, unless there is a corner
+    /// between.
     fn holds(&self, foot: &Foot<f64>) -> bool;
 
-    /// Whether `p`, whose foot on this facet is `foot`, belongs to the neighbour beyond a joint without a kink.
+    /// Whether `p`, whose foot on this facet is `foot`, belongs to the neighbour beyond a joint without a
+    /// kink.
     fn is_past(&self, foot: &Foot<f64>, other: &Self, forward: bool, p: [f64; 2]) -> bool;
 
     /// Coefficients of a node field.

@@ -1,9 +1,9 @@
-//! Points of facets and their feet on others: how they move, and what forces on them do to the facets (THEORY §4.4), over any
-//! [`Number`].
+//! Points of facets and their feet on others: how they move, and what forces on them do to the facets (THEORY
+//! §4.4), over any [`Number`].
 //!
-//! A facet's curve is a polynomial c(s), linear in the positions of some nodes, plus a height e along its normal n:
-//! x = c(s) + e(s) n. Its variation is δx = δc − e t (n·δc′)/|c′|, with the unit tangent t: the height turns with the
-//! curve. Velocities follow from the same two terms, forces go the same way back.
+//! A facet's curve is a polynomial c(s), linear in the positions of some nodes, plus a height e along its
+//! normal n: x = c(s) + e(s) n. Its variation is δx = δc − e t (n·δc′)/|c′|, with the unit tangent t: the
+//! height turns with the curve. Velocities follow from the same two terms, forces go the same way back.
 
 use stribeck_simd::lanes::Number;
 
@@ -76,7 +76,8 @@ impl<N: Number> FacetPoint<N> {
 }
 
 impl<N: Number> Foot<N> {
-    /// How a point with the velocity `v` moves against this foot, on a facet that moves with these coefficients.
+    /// How a point with the velocity `v` moves against this foot, on a facet that moves with these
+    /// coefficients.
     #[inline(always)]
     pub fn sliding(&self, v: [N; 2], motion: &impl Coefficients<N>) -> Sliding<N> {
         let swing = dot(self.curve_normal, motion.slope(self.place));

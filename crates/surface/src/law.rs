@@ -13,15 +13,15 @@ pub struct Law {
     pub damping: f64,
     /// Coulomb coefficient [-]; zero for none.
     pub friction: f64,
-    /// Gap at which contact sets in [m]: from there to as deep a penetration the pressure rises as a parabola, beyond it
-    /// with the penalty stiffness. Zero for a sharp corner.
+    /// Gap at which contact sets in [m]: from there to as deep a penetration the pressure rises as a
+    /// parabola, beyond it with the penalty stiffness. Zero for a sharp corner.
     pub onset: f64,
     /// Tangential stiffness while sticking, as a share of the normal one [-].
     pub tangential: f64,
 }
 
-/// Tangential stiffness of a contact between like elastic bodies relative to the normal one is 2(1−ν)/(2−ν) = 0.82
-/// (Mindlin); it must not exceed 1, or it would enter the critical time step.
+/// Tangential stiffness of a contact between like elastic bodies relative to the normal one is 2(1−ν)/(2−ν) =
+/// 0.82 (Mindlin); it must not exceed 1, or it would enter the critical time step.
 const TANGENTIAL: f64 = 0.8;
 
 impl Law {
@@ -88,7 +88,8 @@ impl<N: Number> Onset<N> {
         }
     }
 
-    /// Effective penetration [m], its fall with the gap [-] and its work, all per stiffness, at gaps below the onset.
+    /// Effective penetration [m], its fall with the gap [-] and its work, all per stiffness, at gaps below
+    /// the onset.
     #[inline(always)]
     pub fn depth(&self, gap: N) -> [N; 3] {
         let Self { gap: e, quarter, work } = *self;

@@ -1,18 +1,20 @@
 //! Oriented polylines in the plane, the smooth curves that they stand for, and the closest points on them.
 //!
-//! 1. A [`Surface`] is a polyline of nodes. It may stand for a smooth curve ([`Surface::smoothed`]), which follows its nodes
-//!    facet by facet or as a spline ([`Surface::splined`]).
-//! 2. [`project`] gives the foot of a point on a surface in present positions: the signed gap, its gradient, and where.
+//! 1. A [`Surface`] is a polyline of nodes. It may stand for a smooth curve ([`Surface::smoothed`]), which
+//!    follows its nodes facet by facet or as a spline ([`Surface::splined`]).
+//! 2. [`project`] gives the foot of a point on a surface in present positions: the signed gap, its gradient,
+//!    and where.
 //! 3. A [`Law`] holds the numbers of contact between two surfaces: penalty, damping, Coulomb friction.
 //!
-//! Positions are arrays by slot, which the caller owns and moves. The crate knows neither elements nor a time loop; contact
-//! evaluates surfaces in its kernels through the modules below, whose mathematics stands once, over a
-//! [`Number`](stribeck_simd::lanes::Number): `f64` for single points, a vector for many.
+//! Positions are arrays by slot, which the caller owns and moves. The crate knows neither elements nor a time
+//! loop; contact evaluates surfaces in its kernels through the modules below, whose mathematics stands once,
+//! over a [`Number`](stribeck_simd::lanes::Number): `f64` for single points, a vector for many.
 //!
 //! # Conventions
 //!
-//! SI units. Along a surface the solid lies on the left and the outward normal points to the right. A gap [m] is a signed
-//! distance: positive apart, negative in penetration. A place on a facet runs from 0 at its first node to 1 at its second.
+//! SI units. Along a surface the solid lies on the left and the outward normal points to the right. A gap [m]
+//! is a signed distance: positive apart, negative in penetration. A place on a facet runs from 0 at its first
+//! node to 1 at its second.
 //!
 //! # Example: a polygon that stands for a circle
 //!

@@ -1,10 +1,11 @@
 //! Narrow phase: the foot of a point on a surface, and the signed gap (THEORY §4.1, §4.4).
 //!
-//! Between two steps a foot moves by a small part of a facet, so the search sets out from the facet where the point was found
-//! last and walks from neighbour to neighbour. parry2d, which does the broad phase, projects points too; the walk is our own
-//! because the gap needs what a closest point does not say: a sign that does not depend on a closed interior, a normal
-//! that turns without a jump at joints, curves above the chords and splines, and no descent into a tree for a facet that is
-//! already known. On plain polylines both must agree: a test holds them together (`tests/projection.rs`).
+//! Between two steps a foot moves by a small part of a facet, so the search sets out from the facet where the
+//! point was found last and walks from neighbour to neighbour. parry2d, which does the broad phase, projects
+//! points too; the walk is our own because the gap needs what a closest point does not say: a sign that does
+//! not depend on a closed interior, a normal that turns without a jump at joints, curves above the chords and
+//! splines, and no descent into a tree for a facet that is already known. On plain polylines both must agree:
+//! a test holds them together (`tests/projection.rs`).
 
 use crate::{chord::ChordFacet, facet::Facet, foot::Foot, spline_facet::SplineFacet, surface::Surface};
 
@@ -12,8 +13,8 @@ use crate::{chord::ChordFacet, facet::Facet, foot::Foot, spline_facet::SplineFac
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Projection {
-    /// Gap [m]. Positive when apart, negative when penetrating: the signed distance to a polyline, or the height above
-    /// the curve of a smooth surface.
+    /// Gap [m]. Positive when apart, negative when penetrating: the signed distance to a polyline, or the
+    /// height above the curve of a smooth surface.
     pub gap: f64,
     /// Gradient of the gap with respect to the point: the outward normal of the primary surface.
     pub normal: [f64; 2],

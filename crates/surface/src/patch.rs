@@ -8,7 +8,8 @@ use crate::{
     polynomial::{Coefficients, Polynomial, cubic, cubic_slope},
 };
 
-/// Feet this close to a smooth joint belong to either facet: the curve goes on beyond its ends as far as that.
+/// Feet this close to a smooth joint belong to either facet: the curve goes on beyond its ends as far as
+/// that.
 pub const JOINT: f64 = 1e-9;
 
 /// A foot is found when less than this part of a facet is left to it.
@@ -100,8 +101,8 @@ impl<N: Number> Patch<N> {
         [minus(p, self.curve.value(s)), self.curve.slope(s), bend]
     }
 
-    /// Foot of `p` on the curve, which goes on beyond its ends, and what part of a facet is left to it. Corrections end
-    /// when the feet of all that are `wanted` are found, or after so many.
+    /// Foot of `p` on the curve, which goes on beyond its ends, and what part of a facet is left to it.
+    /// Corrections end when the feet of all that are `wanted` are found, or after so many.
     #[inline(always)]
     pub fn foot(&self, p: [N; 2], wanted: N, corrections: usize) -> (Foot<N>, N) {
         let (half, one, small) = (p[0].constant(0.5), p[0].constant(1.0), p[0].constant(FOUND));
@@ -161,7 +162,8 @@ mod tests {
 
     const CORRECTIONS: usize = 6;
 
-    /// Curves that leave their chord by up to a twentieth, with heights of a hundredth; points about the facet.
+    /// Curves that leave their chord by up to a twentieth, with heights of a hundredth; points about the
+    /// facet.
     fn cases() -> Vec<(Patch<f64>, [f64; 2])> {
         let mut seed = 1882_u64;
         let mut random = |scale: f64| {
@@ -207,7 +209,8 @@ mod tests {
     }
 
     fn check(what: &str, (patch, p): &(Patch<f64>, [f64; 2]), found: [f64; 4]) {
-        // What corrections leave, and roundings of places of order one; the gradient has a difference of 1e-6.
+        // What corrections leave, and roundings of places of order one; the gradient has a difference of
+        // 1e-6.
         const ROUNDING: f64 = 1e-11;
         const DIFFERENCE: f64 = 1e-8;
         let [place, gap] = bisected(patch, *p);

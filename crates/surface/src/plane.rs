@@ -1,6 +1,7 @@
 //! Vectors in the plane, and choices lane by lane, over any [`Number`].
 //!
-//! Nothing in code over a `Number` is a closure: what a closure does is not compiled for the vectors' instruction set.
+//! Nothing in code over a `Number` is a closure: what a closure does is not compiled for the vectors'
+//! instruction set.
 
 use stribeck_simd::lanes::Number;
 
@@ -42,7 +43,8 @@ pub fn force_of<N: Number>(normal: [N; 2], pressure: N, shear: N) -> [N; 2] {
     [pressure * nx - shear * ny, pressure * ny + shear * nx]
 }
 
-/// `yes` where the flag is one, `no` where it is zero. Chosen, not multiplied: a lane that does not count may hold no number.
+/// `yes` where the flag is one, `no` where it is zero. Chosen, not multiplied: a lane that does not count may
+/// hold no number.
 #[inline(always)]
 pub fn choose<N: Number>(flag: N, yes: N, no: N) -> N {
     flag.constant(0.0).choose_below(flag, yes, no)

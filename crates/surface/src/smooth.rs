@@ -7,8 +7,8 @@ use crate::polyline::Vertices;
 pub enum Smoothing {
     /// Itself: contact is with the chords.
     Facet,
-    /// A circle about a known centre [m]: facets whose two ends are equally far from it become arcs, others (walls of a
-    /// groove, radial sides) stay chords.
+    /// A circle about a known centre [m]: facets whose two ends are equally far from it become arcs, others
+    /// (walls of a groove, radial sides) stay chords.
     Arc {
         /// Centre in the reference positions [m].
         centre: [f64; 2],
@@ -17,15 +17,16 @@ pub enum Smoothing {
     Nagata,
 }
 
-/// Ends of a facet count as equally far from the centre of an arc when their distances differ by less than this share of
-/// its length: a facet that leans by more is no part of that circle.
+/// Ends of a facet count as equally far from the centre of an arc when their distances differ by less than
+/// this share of its length: a facet that leans by more is no part of that circle.
 const LEAN: f64 = 1e-3;
 
-/// Vertices where the smoothed curve still turns by more than this keep the rules of a polyline's vertex [rad].
+/// Vertices where the smoothed curve still turns by more than this keep the rules of a polyline's vertex
+/// [rad].
 pub const KINK: f64 = 1e-3;
 
-/// Height of the curve above its chord, towards the outward normal, as a function of the place s on the facet:
-/// h = s(1−s)(r₀(1−s) − r₁s), the cubic that leaves its ends with slopes r₀ and r₁ [m per facet].
+/// Height of the curve above its chord, towards the outward normal, as a function of the place s on the
+/// facet: h = s(1−s)(r₀(1−s) − r₁s), the cubic that leaves its ends with slopes r₀ and r₁ [m per facet].
 pub type Rise = [f64; 2];
 
 /// Height [m] of the curve at a place.
@@ -72,16 +73,17 @@ fn arc(at: &Vertices<'_>, f: usize, [cx, cy]: [f64; 2]) -> Rise {
     [4.0 * sag * outward, -4.0 * sag * outward]
 }
 
-/// Slopes of each facet from directions at its vertices: that of the circle through a vertex and its two neighbours, or
-/// of the facet's own neighbour where one of its ends is a corner. Source: the curve is Nagata's patch in the plane.
+/// Slopes of each facet from directions at its vertices: that of the circle through a vertex and its two
+/// neighbours, or of the facet's own neighbour where one of its ends is a corner. Source: the curve is
+/// Nagata's patch in the plane.
 fn nagata(at: &Vertices<'_>, corner: &[bool]) -> Vec<Rise> {
     let n = at.facets();
     let along = |f: usize| {
         let ([ax, ay], [bx, by]) = at.ends(f);
         [bx - ax, by - ay]
     };
-    // Angle [rad] by which the curve leaves a facet's chord, at its first and its second end: the turn at the vertex,
-    // shared in proportion to the lengths, as on a circle.
+    // Angle [rad] by which the curve leaves a facet's chord, at its first and its second end: the turn at the
+    // vertex, shared in proportion to the lengths, as on a circle.
     let share = |f: usize, g: usize, of: usize| {
         let (p, q) = (along(f), along(g));
         let turn = (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);

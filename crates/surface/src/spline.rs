@@ -1,9 +1,9 @@
-//! Surfaces that move as splines of their nodes: a load that travels over them does not see where the nodes are
-//! (THEORY §4.5).
+//! Surfaces that move as splines of their nodes: a load that travels over them does not see where the nodes
+//! are (THEORY §4.5).
 //!
-//! The curve is the uniform cubic B-spline whose control points are means of three neighbouring nodes, ¼ (1, 2, 1), plus a
-//! height that makes it the surface's own curve in the reference positions. Corners are kept: the nodes beyond one are
-//! its mirror images through the corner.
+//! The curve is the uniform cubic B-spline whose control points are means of three neighbouring nodes, ¼ (1,
+//! 2, 1), plus a height that makes it the surface's own curve in the reference positions. Corners are kept:
+//! the nodes beyond one are its mirror images through the corner.
 
 use crate::{
     foot::Push,
@@ -129,7 +129,8 @@ impl Spline {
     }
 }
 
-/// Rows of the spline on a facet whose nearest corners stand at these offsets from its first vertex (−2 and 3 at most).
+/// Rows of the spline on a facet whose nearest corners stand at these offsets from its first vertex (−2 and 3
+/// at most).
 fn matrix(low: i64, high: i64) -> Rows {
     // A node, or what stands for it beyond a corner, in nodes of the support.
     fn node(offset: i64, low: i64, high: i64) -> [f64; SUPPORT] {

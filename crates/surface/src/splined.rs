@@ -1,4 +1,5 @@
-//! Making a surface move as a spline: the heights that keep its curve where it is in the reference positions (THEORY §4.5).
+//! Making a surface move as a spline: the heights that keep its curve where it is in the reference positions
+//! (THEORY §4.5).
 
 use crate::{
     chord::ChordFacet, facet::Facet, narrow_phase::find_foot, patch::Patch, spline::Spline, surface::Surface,

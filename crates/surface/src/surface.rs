@@ -10,7 +10,8 @@ use crate::{
 /// Vertices that turn by more than this are corners: they get a contact point of their own [rad].
 const CORNER_ANGLE: f64 = 0.35;
 
-/// An oriented boundary polyline: walking along it the solid lies on the left, the outward normal points right.
+/// An oriented boundary polyline: walking along it the solid lies on the left, the outward normal points
+/// right.
 #[derive(Debug, Clone)]
 pub struct Surface {
     /// Name, for messages.
@@ -83,8 +84,8 @@ impl Surface {
         })
     }
 
-    /// The same polyline, standing for a smooth curve through its vertices in the reference positions `x`, `y` [m] by
-    /// slot. The curve then moves and turns with each facet's two ends.
+    /// The same polyline, standing for a smooth curve through its vertices in the reference positions `x`,
+    /// `y` [m] by slot. The curve then moves and turns with each facet's two ends.
     ///
     /// # Errors
     /// When the curve leaves a facet by more than half its length: the polyline is too coarse for it.
@@ -204,8 +205,8 @@ impl Surface {
         }
     }
 
-    /// What shares of both signs add to a bound on forces dealt out to each vertex [-]: one, but beside corners of a
-    /// spline.
+    /// What shares of both signs add to a bound on forces dealt out to each vertex [-]: one, but beside
+    /// corners of a spline.
     pub fn unevenness(&self) -> Vec<f64> {
         let mut most = vec![1.0_f64; self.slots.len()];
         for f in (0..self.facets()).filter(|_| self.spline.is_some()) {

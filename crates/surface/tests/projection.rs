@@ -75,8 +75,8 @@ proptest! {
 
     #[test]
     fn invariant_gap_is_the_signed_distance((x, y) in convex(), side in 0..14_usize, along in 0.0..1.0_f64, off in -0.5..0.5_f64) {
-        // A point near a side: outside by up to half that side, inside by up to half the shortest of all. Deeper points
-        // may belong to the side after next, and are not what contact meets.
+        // A point near a side: outside by up to half that side, inside by up to half the shortest of all.
+        // Deeper points may belong to the side after next, and are not what contact meets.
         let surface = polygon(&x, &y);
         let (a, n) = (side % x.len(), x.len());
         let b = (a + 1) % n;
@@ -89,14 +89,16 @@ proptest! {
         // The search hands over the nearest side, and a point moves on by less than a side between two steps.
         for start in [nearest, (nearest + 1) % n, (nearest + n - 1) % n] {
             let found = project(&surface, &x, &y, p, start).expect("a closed surface has no ends");
-            prop_assert!((found.gap - distance).abs() < ROUNDING, "from {start}: {found:?}, distance {distance}");
+            prop_assert!((found.gap - distance).abs() < ROUNDING, "from {start}: {found:?}, distance \
+                {distance}");
             prop_assert!(is_foot(&x, &y, p, &found), "{found:?}");
         }
     }
 
     #[test]
     fn invariant_gap_moves_along_its_normal((x, y) in convex(), px in -2.0..2.0_f64, py in -2.0..2.0_f64) {
-        // The normal is the gradient of the gap, which is what makes the force of a penalty that of its energy.
+        // The normal is the gradient of the gap, which is what makes the force of a penalty that of its
+        // energy.
         let surface = polygon(&x, &y);
         let (nearest, distance) = slowly(&x, &y, [px, py]);
         if distance < 0.01 {
@@ -178,8 +180,8 @@ fn vector([x, y]: [f64; 2]) -> Vector {
     Vector::new(x, y)
 }
 
-/// A polyline about the origin that is neither convex nor even: radii within a tenth, angles within a third of their
-/// mean distance.
+/// A polyline about the origin that is neither convex nor even: radii within a tenth, angles within a third
+/// of their mean distance.
 fn uneven() -> impl Strategy<Value = (Vec<f64>, Vec<f64>)> {
     prop::collection::vec((-0.05..0.05_f64, -0.33..0.33_f64), 12..80).prop_map(|vertices| {
         let n = vertices.len() as f64;
@@ -204,7 +206,8 @@ proptest! {
         let indices = (0..facets).map(|f| [f as u32, ((f + 1) % n) as u32]).collect();
         let theirs = Polyline::new(x.iter().zip(&y).map(|(x, y)| vector([*x, *y])).collect(), Some(indices));
 
-        // A point beside a facet, closer to it than the facets' shortest: farther off, two places may be equally close.
+        // A point beside a facet, closer to it than the facets' shortest: farther off, two places may be
+        // equally close.
         let (a, b) = (side % facets, (side % facets + 1) % n);
         let (tx, ty) = (x[b] - x[a], y[b] - y[a]);
         let shortest = (0..facets).map(|f| (x[(f + 1) % n] - x[f]).hypot(y[(f + 1) % n] - y[f])).fold(1.0, f64::min);
@@ -225,7 +228,8 @@ proptest! {
                     y[ours.facet] + ours.place * (y[next] - y[ours.facet]),
                 ];
                 prop_assert!((vector(foot) - found.point).length() < 1e-6, "{ours:?}, {found:?}");
-                // The gradient of a distance is the direction from the closest point, outwards when it is apart.
+                // The gradient of a distance is the direction from the closest point, outwards when it is
+                // apart.
                 let away = (vector(p) - found.point) / ours.gap;
                 let close = distance < 1e-4;
                 prop_assert!(close || (away - vector(ours.normal)).length() < 1e-8, "{ours:?}, {found:?}");
@@ -234,7 +238,8 @@ proptest! {
                     prop_assert!(distance < ROUNDING || inside == (ours.gap < 0.0), "{ours:?}, inside {inside}");
                 }
             }
-            // Beyond the ends of an open surface there is no gap: there the closest point is the first or the last node.
+            // Beyond the ends of an open surface there is no gap: there the closest point is the first or the
+            // last node.
             None => {
                 let ends = [[x[0], y[0]], [x[n - 1], y[n - 1]]];
                 let at_end = ends.iter().any(|end| (vector(*end) - found.point).length() < ROUNDING);

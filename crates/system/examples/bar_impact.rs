@@ -1,5 +1,5 @@
-//! A bar hits an equal one at rest. The compression wave runs to the far end of each and back as tension, so they part
-//! after 2L/c (Goldsmith, *Impact*, 1960, §2.2).
+//! A bar hits an equal one at rest. The compression wave runs to the far end of each and back as tension, so
+//! they part after 2L/c (Goldsmith, *Impact*, 1960, §2.2).
 
 use stribeck_contact::Law;
 use stribeck_mesh::Rectangle;

@@ -1,5 +1,6 @@
-//! A disc pressed between two rigid plates. Its centre comes nearer to each by δ = a²/(4R) (2 ln(4R/a) − 1), where the
-//! line load P makes the half-width a = √(4PR/(πE*)) (Johnson, *Contact Mechanics*, 1985, §4.2 and §5.6).
+//! A disc pressed between two rigid plates. Its centre comes nearer to each by δ = a²/(4R) (2 ln(4R/a) − 1),
+//! where the line load P makes the half-width a = √(4PR/(πE*)) (Johnson, *Contact Mechanics*, 1985, §4.2 and
+//! §5.6).
 
 use std::f64::consts::PI;
 use stribeck_contact::{Law, Smoothing};

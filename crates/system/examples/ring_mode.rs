@@ -1,5 +1,5 @@
-//! A free ring in its lowest bending mode, at the frequency f = n (n² − 1)/(2πR²) √(E'I/(ρA(n² + 1))) with n = 2 (Love, *A
-//! Treatise on the Mathematical Theory of Elasticity*, 1927, §293; E' is that of plane strain).
+//! A free ring in its lowest bending mode, at the frequency f = n (n² − 1)/(2πR²) √(E'I/(ρA(n² + 1))) with n
+//! = 2 (Love, *A Treatise on the Mathematical Theory of Elasticity*, 1927, §293; E' is that of plane strain).
 
 use std::f64::consts::TAU;
 use stribeck_mesh::Annulus;

@@ -13,8 +13,8 @@ use crate::{
 };
 
 impl Plan {
-    /// Lays everything out for `threads` workers. With more than one, take steps within [`Workers`](crate::Workers) of as
-    /// many.
+    /// Lays everything out for `threads` workers. With more than one, take steps within
+    /// [`Workers`](crate::Workers) of as many.
     ///
     /// # Errors
     /// When the solver or contact refuses something.

@@ -1,7 +1,8 @@
 //! One system over ranks: who computes which interaction of surfaces, and when all is known everywhere.
 //!
-//! Between two ledgers a rank knows its own tiles, what its interactions read, and what every interaction came to. A ledger,
-//! and so a sample and a checkpoint, begins and ends with the whole state gathered on every rank.
+//! Between two ledgers a rank knows its own tiles, what its interactions read, and what every interaction
+//! came to. A ledger, and so a sample and a checkpoint, begins and ends with the whole state gathered on
+//! every rank.
 
 use std::sync::Arc;
 
@@ -19,10 +20,10 @@ impl Forces {
 }
 
 impl System {
-    /// Divides the system among ranks from now on, all of which hold the same: each moves its own tiles and computes the
-    /// contacts and films at them. Every rank has to call the same methods in the same order, and gets the same from them
-    /// wherever no other place is named. Loads and the user's laws are computed by all, and may read the nodes that they
-    /// announce.
+    /// Divides the system among ranks from now on, all of which hold the same: each moves its own tiles and
+    /// computes the contacts and films at them. Every rank has to call the same methods in the same order,
+    /// and gets the same from them wherever no other place is named. Loads and the user's laws are computed
+    /// by all, and may read the nodes that they announce.
     ///
     /// Places, velocities and snapshots are those of the whole system after [`System::step_with_ledger`] and
     /// [`System::gather`], resultants after every step.
@@ -95,7 +96,8 @@ impl System {
         Ok(())
     }
 
-    /// Where interactions are to be looked for in the next step, does so with all nodes of surfaces, and deals them out anew.
+    /// Where interactions are to be looked for in the next step, does so with all nodes of surfaces, and
+    /// deals them out anew.
     fn look_over_ranks(&mut self) -> Result<(), Error> {
         let step = self.steps();
         let Some(division) = &self.division else { return Ok(()) };
@@ -128,7 +130,8 @@ impl System {
         Ok(())
     }
 
-    /// Deals interactions out: each to the ranks that move nodes within its reach, the first of which speaks for it.
+    /// Deals interactions out: each to the ranks that move nodes within its reach, the first of which speaks
+    /// for it.
     fn assign(&mut self) {
         let (Some(division), Some(ranks)) = (&mut self.division, self.dynamics.ranks()) else { return };
         let (rank, count, moment) = (ranks.rank(), ranks.count(), self.dynamics.moment());

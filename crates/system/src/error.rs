@@ -43,13 +43,15 @@ pub enum Error {
 
     /// A step without a time step.
     #[error(
-        "no time step is set: call `set_time_step_factor` (0.9 of the critical step is usual) or `set_time_step` first"
+        "no time step is set: call `set_time_step_factor` (0.9 of the critical step is usual) or \
+         `set_time_step` first"
     )]
     NoTimeStep,
 
     /// A force was laid on a node that its law had not announced; the solver has not read it.
     #[error(
-        "a force acts on a node of `{body}` at x = {x_mm:.3} mm, y = {y_mm:.3} mm that no force announced: name it in the \
+        "a force acts on a node of `{body}` at x = {x_mm:.3} mm, y = {y_mm:.3} mm that no force announced: \
+         name it in the \
          nodes of `Plan::force`"
     )]
     UnannouncedForce {

@@ -8,15 +8,15 @@
 //! | area of an element over its area at rest | | `area_stop_percent` |
 //! | time step over the critical one as elements deform | above 1 | |
 //!
-//! A warning is given once, at the first look above its limit. What has been seen is in [`Seen`], and so in snapshots: a
-//! system that is continued warns as an unbroken one does.
+//! A warning is given once, at the first look above its limit. What has been seen is in [`Seen`], and so in
+//! snapshots: a system that is continued warns as an unbroken one does.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{ledger::Scale, system::System};
 
-/// The critical time step is computed again each time the largest strain has grown by this much [-]; stretched by one per
-/// cent, elements are stiffer by one and a half.
+/// The critical time step is computed again each time the largest strain has grown by this much [-];
+/// stretched by one per cent, elements are stiffer by one and a half.
 const STRAIN_STEP: f64 = 0.01;
 
 /// Strain energy below this share of its peak makes no hourglass share: noise over noise.
@@ -35,14 +35,15 @@ pub struct Limits {
     pub hourglass_warning_percent: f64,
     /// Penetration over the element size above which there is a warning [%].
     pub penetration_warning_percent: f64,
-    /// … and above which to stop [%]; at 200 % contact takes a point for one on the far side of a body and lets go.
+    /// … and above which to stop [%]; at 200 % contact takes a point for one on the far side of a body and
+    /// lets go.
     pub penetration_stop_percent: f64,
     /// Area of an element over its area at rest below which to stop [%].
     pub area_stop_percent: f64,
     /// The element size [m]; `None` takes the shortest facet of all contact surfaces.
     pub element_size: Option<f64>,
-    /// Elements are looked at, and a small imbalance is warned of, at every so many looks: to look at all elements costs as
-    /// much as two steps.
+    /// Elements are looked at, and a small imbalance is warned of, at every so many looks: to look at all
+    /// elements costs as much as two steps.
     pub elements_every: u64,
 }
 
@@ -158,8 +159,8 @@ impl std::fmt::Display for Finding {
 }
 
 impl System {
-    /// Looks whether all is well after [`System::step_with_ledger`], whose ledger it judges: what is beyond its limits, in
-    /// the order of the table above. Every guard looks, so that the worst of each is known.
+    /// Looks whether all is well after [`System::step_with_ledger`], whose ledger it judges: what is beyond
+    /// its limits, in the order of the table above. Every guard looks, so that the worst of each is known.
     pub fn look(&mut self) -> Vec<Finding> {
         let mut seen = *self.seen();
         seen.looks += 1;
@@ -192,7 +193,8 @@ impl System {
             return found(
                 true,
                 format!(
-                    "{what} {when}; the fastest node is {}. Try a smaller {time_step_factor}, a smaller {penalty}, or look for \
+                    "{what} {when}; the fastest node is {}. Try a smaller {time_step_factor}, a smaller \
+                     {penalty}, or look for \
                      bodies that overlap",
                     self.fastest()
                 ),
@@ -204,7 +206,8 @@ impl System {
             return found(
                 false,
                 format!(
-                    "energy is out of balance by {:.2} % of the {over} (limit {energy_warning_percent} %){} {when}: take a smaller \
+                    "energy is out of balance by {:.2} % of the {over} (limit {energy_warning_percent} %){} \
+                     {when}: take a smaller \
                      {time_step_factor}, a smaller {penalty}, or start {}",
                     100.0 * error,
                     self.share_of_heat(),
@@ -215,8 +218,9 @@ impl System {
         None
     }
 
-    /// The imbalance as a share of the heat, where that is more than was ever stored as strain: fast bodies that slide or shear oil turn
-    /// much more energy into heat than they store, and the error of the time step grows with it.
+    /// The imbalance as a share of the heat, where that is more than was ever stored as strain: fast bodies
+    /// that slide or shear oil turn much more energy into heat than they store, and the error of the time
+    /// step grows with it.
     fn share_of_heat(&self) -> String {
         let ledger = self.last_ledger();
         let heat = ledger.friction + ledger.damping + ledger.contact_damping + ledger.film;
@@ -238,7 +242,8 @@ impl System {
             watched: Watched::Hourglass,
             stops: false,
             message: format!(
-                "hourglass energy is {:.1} % of the strain energy (limit {limit} %) {}: elements bend more than they stretch. Take \
+                "hourglass energy is {:.1} % of the strain energy (limit {limit} %) {}: elements bend more \
+                 than they stretch. Take \
                  a smaller {}, or another {}",
                 100.0 * share,
                 self.when(),
@@ -263,7 +268,8 @@ impl System {
             watched: Watched::Penetration,
             stops,
             message: format!(
-                "{} penetrate each other by {:.1} µm, {:.0} % of the element size (limit {limit} %) {}: take a larger {}, a larger \
+                "{} penetrate each other by {:.1} µm, {:.0} % of the element size (limit {limit} %) {}: take \
+                 a larger {}, a larger \
                  {} or less {}",
                 self.pairs[pair],
                 1e6 * depth,
@@ -284,7 +290,8 @@ impl System {
         seen.least_area = seen.least_area.min(now.least_area);
         if now.least_area < 0.01 * self.limits.area_stop_percent {
             let message = format!(
-                "an element at x = {:.3} mm, y = {:.3} mm has {:.1} % of its area left (limit {} %) {}: it is about to turn inside \
+                "an element at x = {:.3} mm, y = {:.3} mm has {:.1} % of its area left (limit {} %) {}: it \
+                 is about to turn inside \
                  out, beyond what a linear material means. Take less {}, a larger {}, or start {}",
                 1e3 * now.place[0],
                 1e3 * now.place[1],
@@ -312,7 +319,8 @@ impl System {
                 watched: Watched::TimeStep,
                 stops: false,
                 message: format!(
-                    "the time step of {:.3} ns is above the critical one of the deformed mesh, {:.3} ns, {}: {advice}",
+                    "the time step of {:.3} ns is above the critical one of the deformed mesh, {:.3} ns, {}: \
+                     {advice}",
                     1e9 * step,
                     1e9 * critical,
                     self.when()

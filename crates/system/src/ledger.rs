@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Imbalance is never measured against less than this share of the kinetic energy: where nothing is strained, the
-/// rounding of a large kinetic energy is no imbalance.
+/// Imbalance is never measured against less than this share of the kinetic energy: where nothing is strained,
+/// the rounding of a large kinetic energy is no imbalance.
 const ROUNDING: f64 = 1e-9;
 
 /// Energies at the positions before the last step [J].
@@ -23,7 +23,8 @@ pub struct Ledger {
     pub further: f64,
     /// Heat of friction since the start.
     pub friction: f64,
-    /// Heat of mass, stiffness and structural damping since the start, and what the springs of the latter hold.
+    /// Heat of mass, stiffness and structural damping since the start, and what the springs of the latter
+    /// hold.
     pub damping: f64,
     /// Heat of damping in contact, and in forces that the user has added, since the start.
     pub contact_damping: f64,
@@ -45,7 +46,8 @@ impl Ledger {
         self.kinetic + self.strain + self.hourglass + self.contact + self.further
     }
 
-    /// What is in the model and what has left it, less what came in [J]: constant but for the error of the time step.
+    /// What is in the model and what has left it, less what came in [J]: constant but for the error of the
+    /// time step.
     pub fn balance(&self) -> f64 {
         self.kinetic
             + self.strain
@@ -97,7 +99,8 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Enters a ledger, and completes it; the first one is what it counts from where nothing was entered before.
+    /// Enters a ledger, and completes it; the first one is what it counts from where nothing was entered
+    /// before.
     pub fn begin_or_enter(&mut self, ledger: &mut Ledger, scale: Scale) {
         self.reference.get_or_insert(ledger.balance());
         self.enter(ledger, scale);

@@ -1,17 +1,17 @@
 //! Bodies in motion with contact, loads and the ledger of their energy, in node numbers and surface names.
 //!
-//! A [`Plan`] says what there is: bodies, materials, constraints, which surfaces may touch, what pushes. [`Plan::build`]
-//! makes it a [`System`], which finds equilibrium, takes steps, balances its energy and says when something goes wrong.
-//! Where nodes lie in the solver's memory concerns this crate alone.
+//! A [`Plan`] says what there is: bodies, materials, constraints, which surfaces may touch, what pushes.
+//! [`Plan::build`] makes it a [`System`], which finds equilibrium, takes steps, balances its energy and says
+//! when something goes wrong. Where nodes lie in the solver's memory concerns this crate alone.
 //!
 //! # Conventions
 //!
-//! SI units: m, kg, s, N, J, Pa, rad; angles and spins are counter-clockwise positive. Forces are those of the whole
-//! thickness. Time is leapfrog: positions at [`System::time`], velocities half a step earlier, the ledger at the positions
-//! before the last step.
+//! SI units: m, kg, s, N, J, Pa, rad; angles and spins are counter-clockwise positive. Forces are those of
+//! the whole thickness. Time is leapfrog: positions at [`System::time`], velocities half a step earlier, the
+//! ledger at the positions before the last step.
 //!
-//! Only nodes that a force has announced are pushed: surfaces of contact pairs and loads announce theirs by themselves,
-//! [`Plan::force`] asks for those of a law of your own.
+//! Only nodes that a force has announced are pushed: surfaces of contact pairs and loads announce theirs by
+//! themselves, [`Plan::force`] asks for those of a law of your own.
 //!
 //! # Example: a block falls on another
 //!
@@ -42,8 +42,8 @@
 //! # }
 //! ```
 //!
-//! `examples/` has four problems with a closed form: a bar's impact, a pressed disc, a block that slides to rest, a ring's
-//! bending mode.
+//! `examples/` has four problems with a closed form: a bar's impact, a pressed disc, a block that slides to
+//! rest, a ring's bending mode.
 //!
 //! # Where to look
 //!

@@ -17,8 +17,8 @@ impl System {
         [s.vx[n], s.vy[n]]
     }
 
-    /// Sets the velocity of a node of an elastic body [m/s]; a rigid body is moved by [`System::launch`]. The ledger counts
-    /// from the next step.
+    /// Sets the velocity of a node of an elastic body [m/s]; a rigid body is moved by [`System::launch`]. The
+    /// ledger counts from the next step.
     pub fn set_velocity(&mut self, node: u32, velocity: [f64; 2]) {
         let n = self.slot(node);
         [self.dynamics.state.vx[n], self.dynamics.state.vy[n]] = velocity;
@@ -66,8 +66,8 @@ impl System {
         self.rigid_number(body).map(|at| &self.dynamics.rigid[at])
     }
 
-    /// Gives a body a velocity [m/s] and a spin about its centre of mass [rad/s], in place of those that it has. The
-    /// ledger counts from the next step; the nodes of a rigid body take the velocity up in it.
+    /// Gives a body a velocity [m/s] and a spin about its centre of mass [rad/s], in place of those that it
+    /// has. The ledger counts from the next step; the nodes of a rigid body take the velocity up in it.
     pub fn launch(&mut self, body: usize, velocity: [f64; 2], spin: f64) {
         self.balance.reference = None;
         if let Some(at) = self.rigid_number(body) {

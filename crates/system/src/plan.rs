@@ -11,15 +11,16 @@ use crate::{
 
 /// Bodies, contact pairs and loads, until they are set in motion by [`Plan::build`].
 ///
-/// The surfaces and marks of a part are named after its body: the rim of the disc that was added as `wheel` is
-/// `wheel.rim`, its centre `wheel.centre`.
+/// The surfaces and marks of a part are named after its body: the rim of the disc that was added as `wheel`
+/// is `wheel.rim`, its centre `wheel.centre`.
 pub struct Plan {
     /// Mesh, materials, rigid bodies, constraints, the thickness and gravity.
     pub model: Model,
-    /// β of the stiffness-proportional damping of elastic bodies [s]: a mode of the angular frequency ω has the damping
-    /// ratio βω/2.
+    /// β of the stiffness-proportional damping of elastic bodies [s]: a mode of the angular frequency ω has
+    /// the damping ratio βω/2.
     pub stiffness_damping: f64,
-    /// Damping of some elastic bodies, by their numbers in the mesh, at nearly one ratio over a band of frequencies.
+    /// Damping of some elastic bodies, by their numbers in the mesh, at nearly one ratio over a band of
+    /// frequencies.
     pub structural_damping: Option<StructuralDamping>,
     pub(crate) names: Names,
     /// In the order in which they were named.
@@ -33,8 +34,8 @@ pub struct Plan {
 /// Two surfaces that may touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// Name of the pair, also in messages: "*name* penetrate each other". Several pairs may share one, and have one
-    /// resultant then.
+    /// Name of the pair, also in messages: "*name* penetrate each other". Several pairs may share one, and
+    /// have one resultant then.
     pub name: String,
     /// Name of one surface; the resultant of the pair is the force on its body.
     pub first: String,
@@ -49,7 +50,8 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// The points of either surface against the other, four on every facet. The pair is called "*first* and *second*".
+    /// The points of either surface against the other, four on every facet. The pair is called "*first* and
+    /// *second*".
     pub fn new(first: &str, second: &str, law: Law) -> Self {
         Self {
             name: format!("{first} and {second}"),
@@ -75,7 +77,8 @@ pub struct Film {
     pub oil: Oil,
     /// Penalty stiffness of the contact of the two [Pa/m].
     pub stiffness: f64,
-    /// Entrainment speed before the first step [m/s]: half the sum of the speeds of both surfaces against the contact.
+    /// Entrainment speed before the first step [m/s]: half the sum of the speeds of both surfaces against the
+    /// contact.
     pub speed: f64,
 }
 
@@ -145,8 +148,8 @@ impl Plan {
         })
     }
 
-    /// Adds an elastic body whose nodes are free, where it stands; its surfaces and marks are called `name.surface` and
-    /// `name.mark`.
+    /// Adds an elastic body whose nodes are free, where it stands; its surfaces and marks are called
+    /// `name.surface` and `name.mark`.
     ///
     /// # Errors
     /// When the name is taken.
@@ -182,8 +185,8 @@ impl Plan {
         Ok(())
     }
 
-    /// Lets a surface stand for a smooth curve; with `spline` the curve moves as a spline of the nodes, else with each
-    /// facet's two ends.
+    /// Lets a surface stand for a smooth curve; with `spline` the curve moves as a spline of the nodes, else
+    /// with each facet's two ends.
     ///
     /// # Errors
     /// When there is no surface of that name.
@@ -204,8 +207,8 @@ impl Plan {
 
     /// Lets two surfaces touch.
     ///
-    /// Two threads take pairs from either end of the list. The pair with by far the most work had better come first, and
-    /// those of one body together.
+    /// Two threads take pairs from either end of the list. The pair with by far the most work had better come
+    /// first, and those of one body together.
     ///
     /// # Errors
     /// When there is no surface of one of the names.
@@ -228,7 +231,8 @@ impl Plan {
         Ok(())
     }
 
-    /// Pushes on a surface with `total` [N] in all, spread evenly over its length; the load has the name of the surface.
+    /// Pushes on a surface with `total` [N] in all, spread evenly over its length; the load has the name of
+    /// the surface.
     ///
     /// # Errors
     /// When there is no surface of that name, or it has a load already.
@@ -247,8 +251,8 @@ impl Plan {
         self.add_load(name, LoadedNodes::Nodes(forces))
     }
 
-    /// Adds a law of the user that may push on `nodes` and on no others. `make` is given their places in the arrays that
-    /// forces see, in the same order.
+    /// Adds a law of the user that may push on `nodes` and on no others. `make` is given their places in the
+    /// arrays that forces see, in the same order.
     ///
     /// # Errors
     /// When a node is not in the mesh.

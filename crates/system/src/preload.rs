@@ -1,4 +1,5 @@
-//! The staged preload: static equilibrium under loads, gravity and contact, before the first step (THEORY §3).
+//! The staged preload: static equilibrium under loads, gravity and contact, before the first step (THEORY
+//! §3).
 
 use stribeck_solver::{
     Behaviour,
@@ -10,8 +11,8 @@ use crate::{error::Error, names::nodes_of, system::System};
 /// Unbalanced force allowed on the worst node, as a share of the load.
 const TOLERANCE: f64 = 1e-7;
 
-/// Contacts that change sides for ever keep a preload from its tolerance. Where less than this share of the load is
-/// unbalanced on the worst node, it is accepted and said.
+/// Contacts that change sides for ever keep a preload from its tolerance. Where less than this share of the
+/// load is unbalanced on the worst node, it is accepted and said.
 const ENOUGH: f64 = 1e-4;
 
 /// The same for a stage before the last.
@@ -23,14 +24,14 @@ const ROUGH: f64 = 1e4;
 /// Most iterations of a stage.
 const ITERATIONS: usize = 80;
 
-/// How to find equilibrium. Elastic bodies move, and those that turn at a prescribed rate, without turning; rigid ones stay
-/// where they are.
+/// How to find equilibrium. Elastic bodies move, and those that turn at a prescribed rate, without turning;
+/// rigid ones stay where they are.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Preload {
     /// The load that tolerances are shares of [N]; `None` takes the sum of all loads and weights.
     pub load: Option<f64>,
-    /// Gaps over which the contact law is rounded, stage by stage [m]; the last stage, zero, is the law itself. Bodies
-    /// that nothing touches yet feel others over such a gap and find their place.
+    /// Gaps over which the contact law is rounded, stage by stage [m]; the last stage, zero, is the law
+    /// itself. Bodies that nothing touches yet feel others over such a gap and find their place.
     pub softness: Vec<f64>,
     /// A body moves at most this far as a whole in one iteration [m].
     pub longest_step: f64,
@@ -66,14 +67,14 @@ pub struct UndecidedMotion {
 /// How a preload ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settled {
-    /// Force that is left on the worst node [N] where the tolerance was not reached; the motion then begins with a
-    /// little ringing.
+    /// Force that is left on the worst node [N] where the tolerance was not reached; the motion then begins
+    /// with a little ringing.
     pub unbalanced: Option<f64>,
 }
 
 impl System {
-    /// Moves the bodies to static equilibrium under loads, gravity and contact, over ever sharper contact laws. Velocities
-    /// and time stay.
+    /// Moves the bodies to static equilibrium under loads, gravity and contact, over ever sharper contact
+    /// laws. Velocities and time stay.
     ///
     /// # Errors
     /// When a stage ends far from equilibrium or the stiffness matrix cannot be factorised.

@@ -6,8 +6,8 @@ use stribeck_solver::snapshot::Snapshot as MotionSnapshot;
 
 use crate::{error::Error, forces::Forces, guards::Seen, ledger::Balance, load::LoadMemory, system::System};
 
-/// What changes in time. Bodies, pairs, limits, the time step and damping are no part of it; of forces added by
-/// [`Plan::force`](crate::Plan::force) it is what they say that they remember.
+/// What changes in time. Bodies, pairs, limits, the time step and damping are no part of it; of forces added
+/// by [`Plan::force`](crate::Plan::force) it is what they say that they remember.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     motion: MotionSnapshot,

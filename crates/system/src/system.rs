@@ -15,8 +15,8 @@ use crate::{
     names::{Names, unknown},
 };
 
-/// Bodies in motion, with contact, loads and the ledger of their energy. Everything is asked for in node numbers of the
-/// mesh and in names.
+/// Bodies in motion, with contact, loads and the ledger of their energy. Everything is asked for in node
+/// numbers of the mesh and in names.
 ///
 /// Time is leapfrog: positions at [`System::time`], velocities half a step earlier.
 #[derive(Debug)]
@@ -85,16 +85,18 @@ impl System {
         }
     }
 
-    /// Critical time step [s] of elements, contact and the user's laws at the present positions; damping of contact and of
-    /// stiffness acts half a step late and counts with the step that it is used at. Infinite when nothing is stiff.
+    /// Critical time step [s] of elements, contact and the user's laws at the present positions; damping of
+    /// contact and of stiffness acts half a step late and counts with the step that it is used at. Infinite
+    /// when nothing is stiff.
     pub fn critical_time_step(&self) -> f64 {
         let first = self.dynamics.critical_time_step(&[&self.forces], 0.0).time_step;
         let damped = damped_time_step(first, self.dynamics.stiffness_damping());
         self.dynamics.critical_time_step(&[&self.forces], 0.9 * damped).time_step
     }
 
-    /// Critical time step [s] of elements and of what contact and the user's laws are as stiff as now: sharp, but good for
-    /// these positions alone. Damping and rigid bodies are left out; infinite when nothing is stiff.
+    /// Critical time step [s] of elements and of what contact and the user's laws are as stiff as now: sharp,
+    /// but good for these positions alone. Damping and rigid bodies are left out; infinite when nothing is
+    /// stiff.
     pub fn present_critical_time_step(&self) -> f64 {
         self.dynamics.present_critical_time_step(&[&self.forces]).time_step
     }
@@ -136,8 +138,9 @@ impl System {
         Ok(())
     }
 
-    /// Lets all nodes that were constrained to rotate turn at `rate` [rad/s], counter-clockwise positive, from the next step
-    /// on. No part of a [`Snapshot`](crate::Snapshot): it is a function of time, which whoever drives a system knows.
+    /// Lets all nodes that were constrained to rotate turn at `rate` [rad/s], counter-clockwise positive,
+    /// from the next step on. No part of a [`Snapshot`](crate::Snapshot): it is a function of time, which
+    /// whoever drives a system knows.
     ///
     /// # Errors
     /// When the rate is not finite or beyond π·10⁶.
@@ -145,7 +148,8 @@ impl System {
         Ok(self.dynamics.set_rotation_rate(rate)?)
     }
 
-    /// Lets all rigid bodies that turn at a prescribed rate turn at this one [rad/s], as [`System::set_rotation_rate`] does nodes.
+    /// Lets all rigid bodies that turn at a prescribed rate turn at this one [rad/s], as
+    /// [`System::set_rotation_rate`] does nodes.
     ///
     /// # Errors
     /// As there.
@@ -156,8 +160,8 @@ impl System {
     /// One step: everything pushes, everything moves (THEORY §2.3).
     ///
     /// # Errors
-    /// When no time step is set, or, at the first step and those of [`System::step_with_ledger`], when a law of the user
-    /// has pushed on a node that it did not announce.
+    /// When no time step is set, or, at the first step and those of [`System::step_with_ledger`], when a law
+    /// of the user has pushed on a node that it did not announce.
     pub fn step(&mut self) -> Result<(), Error> {
         if self.balance.reference.is_some() && self.dynamics.time_step() > 0.0 {
             return self.advance();
@@ -177,8 +181,8 @@ impl System {
         Ok(ledger)
     }
 
-    /// Takes `steps` steps and looks after the first and after every `every`-th that follows; `see` is shown each ledger.
-    /// The first finding that stops ends it.
+    /// Takes `steps` steps and looks after the first and after every `every`-th that follows; `see` is shown
+    /// each ledger. The first finding that stops ends it.
     ///
     /// # Errors
     /// As [`System::step`].
@@ -266,7 +270,8 @@ impl System {
         Err(Error::UnannouncedForce { body: self.body_of(node).to_owned(), x_mm: 1e3 * x, y_mm: 1e3 * y })
     }
 
-    /// Takes a system apart, to measure one part of a step alone. What is left speaks in the solver's own numbers.
+    /// Takes a system apart, to measure one part of a step alone. What is left speaks in the solver's own
+    /// numbers.
     pub fn into_parts(self) -> Parts {
         let Forces { contacts, films, loads, further } = self.forces;
         let others = Box::new(Forces { contacts: None, films, loads, further });
@@ -313,8 +318,9 @@ impl System {
         self.forces.films.iter().flat_map(|films| films.resultants())
     }
 
-    /// Force of all contact pairs on each node of the mesh at the present positions [N], in and out of equilibrium. Nothing
-    /// moves and contact remembers no more than before, but resultants are those of the present positions from here on.
+    /// Force of all contact pairs on each node of the mesh at the present positions [N], in and out of
+    /// equilibrium. Nothing moves and contact remembers no more than before, but resultants are those of the
+    /// present positions from here on.
     pub fn contact_forces(&mut self) -> Vec<[f64; 2]> {
         let mut force = NodeForces::zeros(self.dynamics.state.x.len());
         if let Some(contacts) = &mut self.forces.contacts {
@@ -326,8 +332,8 @@ impl System {
         nodes.map(|node| self.slot(node)).map(|n| [force.fx[n], force.fy[n]]).collect()
     }
 
-    /// What the contact pairs of that name did in the last step together: the force on their first surfaces' bodies, and
-    /// the deepest penetration.
+    /// What the contact pairs of that name did in the last step together: the force on their first surfaces'
+    /// bodies, and the deepest penetration.
     ///
     /// # Errors
     /// When there is no pair of that name.

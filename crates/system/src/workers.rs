@@ -5,8 +5,8 @@ use crate::error::Error;
 /// Rounds of waiting until a thread that has nothing to do goes to sleep: about a millisecond.
 const SPINS_BEFORE_SLEEP: usize = 20_000;
 
-/// Threads that wait awake between two forks, which are some ten microseconds apart: put to sleep, they would come back
-/// too late for every one of them. The thread that calls is one of them.
+/// Threads that wait awake between two forks, which are some ten microseconds apart: put to sleep, they would
+/// come back too late for every one of them. The thread that calls is one of them.
 pub struct Workers(Option<micropool::ThreadPool>);
 
 impl std::fmt::Debug for Workers {
@@ -29,7 +29,8 @@ impl Workers {
         Ok(Self(Some(pool.idle_spin_cycles(SPINS_BEFORE_SLEEP).build())))
     }
 
-    /// Runs work inside the pool: many steps at once, because a fork from outside costs much more than one within.
+    /// Runs work inside the pool: many steps at once, because a fork from outside costs much more than one
+    /// within.
     pub fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match &self.0 {
             Some(pool) => pool.install(work),

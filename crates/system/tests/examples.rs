@@ -18,8 +18,8 @@ fn assert_small(error: Result<f64, Box<dyn std::error::Error>>, tolerance: f64) 
     assert!(error.abs() < tolerance, "off by {error:+.2e}, allowed {tolerance:.1e}");
 }
 
-/// Goldsmith 1960, §2.2. Contact is a spring as stiff as one cell, which both bars share: two transits of one of 400
-/// cells, and the wave's front is as wide as some.
+/// Goldsmith 1960, §2.2. Contact is a spring as stiff as one cell, which both bars share: two transits of one
+/// of 400 cells, and the wave's front is as wide as some.
 #[test]
 fn analytic_bars_part_after_two_transits() {
     assert_small(bar_impact::error(), 0.02);
@@ -31,7 +31,8 @@ fn analytic_disc_between_plates() {
     assert_small(hertz_disc::error(), 0.02);
 }
 
-/// Coulomb 1785 (Persson 2000, §1): v²/(2µg). The normal force swings about the weight, and with it friction; their mean is what counts.
+/// Coulomb 1785 (Persson 2000, §1): v²/(2µg). The normal force swings about the weight, and with it friction;
+/// their mean is what counts.
 #[test]
 fn analytic_block_slides_to_rest() {
     assert_small(sliding_block::error(), 0.005);

@@ -150,15 +150,17 @@ fn conserves_momentum_and_energy_through_oil() {
     for k in 0..2 {
         assert!((after[k] - before[k]).abs() < ROUNDING * before[1].abs(), "{k}: {before:?} {after:?}");
     }
-    // Forces turn nothing where they are placed; until they are placed anew, after sixteen steps, their ends slide apart.
+    // Forces turn nothing where they are placed; until they are placed anew, after sixteen steps, their ends
+    // slide apart.
     let impulse = 2.0 * before[1].abs();
     let lever = 16.0 * system.time_step() * (0.4 + 30.0 * RADIUS);
     assert!((after[2] - before[2]).abs() < impulse * lever, "{before:?} {after:?}");
     assert!(worst < 1e-3, "{worst}");
 }
 
-/// Half the time step halves the error of a film that is squeezed: its thickness is stepped by implicit Euler, E. Hairer, S. P.
-/// Nørsett, G. Wanner, Solving Ordinary Differential Equations I, Springer 1993, II.3.
+/// Half the time step halves the error of a film that is squeezed: its thickness is stepped by implicit
+/// Euler, E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, Springer 1993,
+/// II.3.
 #[test]
 fn converges_with_the_time_step() {
     /// Fitted over three halvings; the pattern of looks is not the same for all.
@@ -185,7 +187,8 @@ fn converges_with_the_time_step() {
 /// A contact that carries more than its film can lift is as stiff as a dry one, in the preload and in motion.
 #[test]
 fn invariant_a_loaded_contact_is_as_dry() {
-    /// What preloads of either leave unbalanced, 3·10⁻⁶ N, over contact of 10⁸ N/m [m] and its motion thereafter.
+    /// What preloads of either leave unbalanced, 3·10⁻⁶ N, over contact of 10⁸ N/m [m] and its motion
+    /// thereafter.
     const TOLERANCE: f64 = 1e-13;
     let least = 1e-6;
     let [mut oiled, mut dry] = [true, false].map(|oil| {

@@ -79,8 +79,8 @@ fn on_a_spring(at: usize, announced: usize) -> System {
     system
 }
 
-/// Through an impact with friction, under a load and gravity. A penalty law has a corner, which a step cuts: the error falls
-/// with the step, to below what the guards warn of.
+/// Through an impact with friction, under a load and gravity. A penalty law has a corner, which a step cuts:
+/// the error falls with the step, to below what the guards warn of.
 #[test]
 fn conserves_energy_through_contact_friction_loads_and_gravity() {
     let errors = [0.8, 0.2].map(|factor| {
@@ -101,9 +101,9 @@ fn conserves_energy_through_contact_friction_loads_and_gravity() {
     assert!(errors[1] < 0.01 && errors[1] < 0.5 * errors[0], "{errors:?}");
 }
 
-/// A load that is switched and reversed does the work that the bodies gain: the trapezoidal rule over each step is what
-/// leapfrog conserves, for a linear model. At strains of σ/E = 3e-6 nonlinearity leaves as much; the rectangle rule would be
-/// off by some per cent.
+/// A load that is switched and reversed does the work that the bodies gain: the trapezoidal rule over each
+/// step is what leapfrog conserves, for a linear model. At strains of σ/E = 3e-6 nonlinearity leaves as much;
+/// the rectangle rule would be off by some per cent.
 #[test]
 fn conserves_energy_under_loads_that_change() {
     const TOLERANCE: f64 = 3e-6;
@@ -222,7 +222,8 @@ fn invariant_an_unstable_step_is_stopped() {
 /// Bodies that rest on each other stay at rest after the preload.
 #[test]
 fn invariant_a_settled_system_stays_at_rest() {
-    // Contacts that change sides for ever, here at the edge of the lower block, may leave this share of the load unbalanced.
+    // Contacts that change sides for ever, here at the edge of the lower block, may leave this share of the
+    // load unbalanced.
     const TOLERANCE: f64 = 1e-4;
     let mut system = plan().build(1).expect("a sound plan");
     let settled = system.settle(&Preload::default()).expect("the load reaches the ground");
@@ -241,7 +242,8 @@ fn invariant_a_settled_system_stays_at_rest() {
     assert!((found / expected - 1.0).abs() < TOLERANCE, "{found} N instead of {expected} N");
 }
 
-/// Present contact forces cancel over both bodies, carry what the preload put on them, and asking changes nothing.
+/// Present contact forces cancel over both bodies, carry what the preload put on them, and asking changes
+/// nothing.
 #[test]
 fn conserves_momentum_of_present_contact_forces() {
     let mut system = plan().build(1).expect("a sound plan");
@@ -265,8 +267,8 @@ fn conserves_momentum_of_present_contact_forces() {
     assert!(on_upper[1] > 999.0, "{on_upper:?}");
 }
 
-/// The largest kinetic energy [J] while pressed blocks, stirred a little, take 3000 steps of `factor` times the critical step
-/// of their present positions; that at the beginning.
+/// The largest kinetic energy [J] while pressed blocks, stirred a little, take 3000 steps of `factor` times
+/// the critical step of their present positions; that at the beginning.
 fn stirred(factor: f64) -> [f64; 2] {
     let mut plan = Plan::new(0.007);
     plan.add("lower", &block(0.0, 0.0), steel()).expect("a new name");
@@ -285,8 +287,8 @@ fn stirred(factor: f64) -> [f64; 2] {
     [kinetic[0], kinetic.into_iter().fold(0.0, f64::max)]
 }
 
-/// Central differences are stable to 2/ω_max and no farther (Belytschko, Liu & Moran 2000, §6.6.5). Blocks that do not part keep
-/// the stiffness that the step was found for.
+/// Central differences are stable to 2/ω_max and no farther (Belytschko, Liu & Moran 2000, §6.6.5). Blocks
+/// that do not part keep the stiffness that the step was found for.
 #[test]
 fn analytic_present_critical_time_step_is_sharp() {
     let [start, below] = stirred(0.998);

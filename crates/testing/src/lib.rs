@@ -1,8 +1,8 @@
-//! What the tests of several crates share: comparisons, rows of `docs/VALIDATION.md`, repeatable numbers, temporary
-//! folders, what a program said, and other programs to hold ours against.
+//! What the tests of several crates share: comparisons, rows of `docs/VALIDATION.md`, repeatable numbers,
+//! temporary folders, what a program said, and other programs to hold ours against.
 //!
-//! It depends on no other crate of the workspace, so that all can have it as a dev-dependency. What needs the solver
-//! stands in `tests/common` of the crate that uses it.
+//! It depends on no other crate of the workspace, so that all can have it as a dev-dependency. What needs the
+//! solver stands in `tests/common` of the crate that uses it.
 
 pub mod ledger;
 mod noise;

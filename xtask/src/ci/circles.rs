@@ -1,8 +1,9 @@
 //! Modules that use each other in a circle: none may be read without the others.
 //!
-//! A circle that must be needs a line in ARCHITECTURE: "Circle in `contact`: `a` and `b`, because …". Modules of a folder
-//! are looked at by themselves, under the name of the folder (`solver/kernel`). That a folder's modules use what their
-//! parent defines, and the parent its modules, makes no circle; what tests use does not count, in a file `tests.rs` either.
+//! A circle that must be needs a line in ARCHITECTURE: "Circle in `contact`: `a` and `b`, because …". Modules
+//! of a folder are looked at by themselves, under the name of the folder (`solver/kernel`). That a folder's
+//! modules use what their parent defines, and the parent its modules, makes no circle; what tests use does
+//! not count, in a file `tests.rs` either.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -74,7 +75,8 @@ fn compare(circles: &[Circle], architecture: &str) -> Vec<String> {
         }
         let all = modules.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         complaints.push(format!(
-            "{place}: {} modules use each other in a circle ({all}), for one {}: break it, or add a line \"Circle in \
+            "{place}: {} modules use each other in a circle ({all}), for one {}: break it, or add a \
+             line \"Circle in \
              `{place}`: {all}, because …\" to ARCHITECTURE",
             modules.len(),
             way.join(" → ")
@@ -170,7 +172,8 @@ impl Modules {
         }
     }
 
-    /// Notes the paths of a `use`, and the names that they get here. `before` is what stands in front of a brace.
+    /// Notes the paths of a `use`, and the names that they get here. `before` is what stands in front of a
+    /// brace.
     fn import(&mut self, place: &Place, before: &Place, tree: &[TokenTree]) {
         let (path, len) = path_at(tree);
         let mut whole = [before.as_slice(), &path].concat();

@@ -10,7 +10,8 @@ use super::{layers, markdown, sources, test_names};
 /// Files that every crate may have; ARCHITECTURE says once what is in them.
 const EVERYWHERE: [&str; 4] = ["lib.rs", "error.rs", "mod.rs", "tests.rs"];
 
-/// Every file and test that ARCHITECTURE names exists, and its code map names every source file or a folder around it.
+/// Every file and test that ARCHITECTURE names exists, and its code map names every source file or a folder
+/// around it.
 pub(super) fn check(root: &Path) -> Result<Vec<String>> {
     let text = std::fs::read_to_string(root.join("docs/ARCHITECTURE.md"))
         .context("cannot read docs/ARCHITECTURE.md")?;

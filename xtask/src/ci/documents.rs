@@ -79,7 +79,8 @@ fn compare_terms(text: &str) -> Vec<String> {
     complaints
 }
 
-/// Every `cargo xtask …` and `stribeck …` in the documents is accepted by the command line, and every fixture it names exists.
+/// Every `cargo xtask …` and `stribeck …` in the documents is accepted by the command line, and every fixture
+/// it names exists.
 pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
     let mut complaints = Vec::new();
     for name in documents(root)? {
@@ -113,8 +114,8 @@ pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// The pages of the book of `docs` link to each other and to pictures and tables beside them: a page that SUMMARY does not list
-/// is none of the book, and what lies outside of `docs` is not in it.
+/// The pages of the book of `docs` link to each other and to pictures and tables beside them: a page that
+/// SUMMARY does not list is none of the book, and what lies outside of `docs` is not in it.
 pub(crate) fn check_book(root: &Path) -> Result<Vec<String>> {
     let summary = read(root, "docs/SUMMARY.md")?;
     let pages = markdown::links(&summary).into_iter();
@@ -147,7 +148,8 @@ fn links_out_of_a_book(pages: &[(&str, String)]) -> Vec<String> {
     complaints
 }
 
-/// README, CONTRIBUTING, what lies in `docs/`, `docs/notes/` and `docs/guide/src/`, and the README of every crate.
+/// README, CONTRIBUTING, what lies in `docs/`, `docs/notes/` and `docs/guide/src/`, and the README of every
+/// crate.
 fn documents(root: &Path) -> Result<Vec<String>> {
     let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
     for folder in ["docs", "docs/notes", "docs/guide/src"] {
@@ -169,7 +171,8 @@ fn wrong_command(root: &Path, command: &str) -> Option<String> {
     let begins = |name: &str| command.starts_with(name).then_some(name.len());
     let at =
         command.find("cargo xtask").map(|at| at + "cargo xtask".len()).or_else(|| begins("stribeck "))?;
-    // What stands behind a comment, a pipe or another command is not ours; nor is a placeholder such as `[SCENE]`.
+    // What stands behind a comment, a pipe or another command is not ours; nor is a placeholder such as
+    // `[SCENE]`.
     let ours = command[at..].split(['#', '|', ';', '&', '>']).next().unwrap_or_default();
     let words: Vec<&str> = ours.split_whitespace().filter(|word| !word.contains(['[', '…', '<'])).collect();
     if words.is_empty() {

@@ -7,7 +7,8 @@ use anyhow::{Context, Result};
 /// What tests share: every crate may have it as a dev-dependency, and none otherwise.
 const TESTING: &str = "testing";
 
-/// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a paragraph in ARCHITECTURE.
+/// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a
+/// paragraph in ARCHITECTURE.
 const LAYERS: [(&str, &[&str]); 24] = [
     (TESTING, &[]),
     ("mesh", &[]),
@@ -99,8 +100,10 @@ mod tests {
 
     #[test]
     fn example_arrows_against_the_layers_are_found() {
-        let manifest = "[package]\nname = \"stribeck-solver\"\n[dependencies]\nstribeck-mesh.workspace = true\n\
-                        stribeck-contact = { path = \"x\" }\n[dev-dependencies]\nstribeck-dsp.workspace = true\n";
+        let manifest = "[package]\nname = \"stribeck-solver\"\n[dependencies]\nstribeck-mesh.workspace = \
+            true\n\
+                        stribeck-contact = { path = \"x\" }\n[dev-dependencies]\nstribeck-dsp.workspace = \
+                        true\n";
         let complaints = compare("solver", manifest, &["mesh"]);
         assert_eq!(complaints.len(), 2);
         assert!(complaints[0].contains("`contact`") && complaints[1].contains("`dsp`"));

@@ -30,7 +30,8 @@ pub(crate) fn blocks(text: &str, language: &str) -> Vec<String> {
     found
 }
 
-/// Targets of links to files, `[text](docs/x.md#section)` → `docs/x.md`, and of pictures; none of links to the network.
+/// Targets of links to files, `[text](docs/x.md#section)` → `docs/x.md`, and of pictures; none of links to
+/// the network.
 pub(crate) fn links(text: &str) -> Vec<&str> {
     let mut targets: Vec<&str> = text.split("](").skip(1).filter_map(|rest| rest.split(')').next()).collect();
     targets.retain(|target| !target.contains("://") && !target.contains(char::is_whitespace));

@@ -65,7 +65,8 @@ mod tests {
     fn refuses_manifests_that_lack_a_field() {
         assert_eq!(missing_fields("[package]\npublish = false\n"), None);
         assert_eq!(missing_fields("[package]\n").map(|fields| fields.len()), Some(6));
-        let full = "description = \"x\"\nkeywords = [\"x\"]\ncategories = [\"science\"]\nlicense.workspace = true\n\
+        let full = "description = \"x\"\nkeywords = [\"x\"]\ncategories = [\"science\"]\nlicense.workspace = \
+            true\n\
                     repository.workspace = true\ninclude.workspace = true\n";
         assert_eq!(missing_fields(full), Some(Vec::new()));
     }

@@ -11,7 +11,8 @@ const GENERAL: [&str; 8] = ["mesh", "simd", "solver", "mpi", "contact", "system"
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
 
-/// Crates that may print and read the clock: programs, a module that others are written with, and what only the project's development uses.
+/// Crates that may print and read the clock: programs, a module that others are written with, and what only
+/// the project's development uses.
 const LOUD: [&str; 4] = ["python", "stribeck", "studies", "testing"];
 /// What prints or reads the clock.
 const NOISES: [&str; 6] =

@@ -8,7 +8,8 @@ use anyhow::{Context, Result, ensure};
 /// Names the folder into which tests write their rows.
 pub(super) const FOLDER: &str = "STRIBECK_LEDGER";
 
-/// A number may differ from the document's by this share of its row's tolerance: other processors round otherwise.
+/// A number may differ from the document's by this share of its row's tolerance: other processors round
+/// otherwise.
 const ROUNDING: f64 = 0.3;
 
 /// … or by this share of itself, the last digit shown.
@@ -27,8 +28,8 @@ struct Row {
     tolerance: f64,
 }
 
-/// Checks the document against the rows in the folder that the environment names, and writes it anew when they differ; nothing
-/// to check without one.
+/// Checks the document against the rows in the folder that the environment names, and writes it anew when
+/// they differ; nothing to check without one.
 pub(super) fn check(root: &Path) -> Result<Vec<String>> {
     match std::env::var_os(FOLDER) {
         Some(folder) => renew(root, &PathBuf::from(folder)),
@@ -79,7 +80,8 @@ fn same(old: &str, new: &str) -> bool {
     if a.len() != b.len() || a.len() < 8 {
         return old == new;
     }
-    // Cells: nothing, quantity, ours, theirs, unit, difference, tolerance, source, test, nothing. The difference follows.
+    // Cells: nothing, quantity, ours, theirs, unit, difference, tolerance, source, test, nothing. The
+    // difference follows.
     let words = [1, 3, 4, 6, 7, 8].iter().all(|&i| a[i] == b[i]);
     let number = |text: &str| text.parse::<f64>().ok();
     let (Some(p), Some(q), Some(theirs)) = (number(&a[2]), number(&b[2]), number(&b[3])) else {
@@ -122,9 +124,12 @@ fn parse(line: &str) -> Option<Row> {
 
 fn render(rows: &[Row]) -> String {
     let mut text = String::from(
-        "# Validation\n\nWhat the tests compare with closed forms and with other programs. Written by `cargo xtask ci` from the tests \
-         themselves (`crates/testing/src/ledger.rs`), which fail beyond the tolerance. Whole problems solved by other codes are in \
-         [compare](results/compare.md), error against work in [work_precision](results/work_precision.md), extreme cases in \
+        "# Validation\n\nWhat the tests compare with closed forms and with other programs. Written by `cargo \
+         xtask ci` from the tests \
+         themselves (`crates/testing/src/ledger.rs`), which fail beyond the tolerance. Whole problems solved \
+         by other codes are in \
+         [compare](results/compare.md), error against work in [work_precision](results/work_precision.md), \
+         extreme cases in \
          [stability](results/stability.md).\n",
     );
     let mut package = "";
@@ -133,7 +138,8 @@ fn render(rows: &[Row]) -> String {
             package = &row.package;
             let _ = write!(
                 text,
-                "\n## {}\n\n| quantity | ours | theirs | unit | difference | tolerance | source | test |\n|---|---|---|---|---|---|---|---|\n",
+                "\n## {}\n\n| quantity | ours | theirs | unit | difference | tolerance | source | test \
+                 |\n|---|---|---|---|---|---|---|---|\n",
                 package.trim_start_matches("stribeck-")
             );
         }
@@ -172,12 +178,14 @@ fn digits(value: f64, count: usize) -> String {
 mod tests {
     use super::*;
 
-    const LINE: &str = "stribeck-solver\tspeed of a wave\tm/s\tAchenbach 1973, §1.3\tanalytic_speed\t5.8561234e3\t5.8560e3\t1e-3";
+    const LINE: &str = "stribeck-solver\tspeed of a wave\tm/s\tAchenbach 1973, \
+        §1.3\tanalytic_speed\t5.8561234e3\t5.8560e3\t1e-3";
 
     #[test]
     fn example_rows_are_rendered_with_their_digits() {
         let text = render(&[parse(LINE).expect("a row")]);
-        let row = "| speed of a wave | 5856.1 | 5856 | m/s | 0.0021 % | 0.1 % | Achenbach 1973, §1.3 | `analytic_speed` |";
+        let row = "| speed of a wave | 5856.1 | 5856 | m/s | 0.0021 % | 0.1 % | Achenbach 1973, §1.3 | \
+            `analytic_speed` |";
         assert!(text.contains("## solver") && text.contains(row), "{text}");
         assert_eq!([digits(0.0, 3), digits(1.5e-7, 3), digits(123_456.0, 2)], ["0", "1.50e-7", "123456"]);
     }

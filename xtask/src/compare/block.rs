@@ -29,7 +29,8 @@ pub(super) struct Block {
 }
 
 impl Block {
-    /// Squares of 0.5 mm. The step is below the critical one of every element here (60 ns with full integration).
+    /// Squares of 0.5 mm. The step is below the critical one of every element here (60 ns with full
+    /// integration).
     pub(super) fn new(columns: usize, rows: usize) -> Self {
         Self {
             columns,
@@ -135,7 +136,8 @@ impl Program for Ours {
     }
 }
 
-/// The numbers below `n` in an order without pattern, always the same (Knuth's linear congruential generator).
+/// The numbers below `n` in an order without pattern, always the same (Knuth's linear congruential
+/// generator).
 fn shuffled(n: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
     let mut noise = 1_u64;
@@ -152,7 +154,8 @@ pub(super) fn problem(block: &Block, folder: &Path) -> Result<Problem> {
     let file = folder.join(format!("block-{elements}.json"));
     write_json(&file, block)?;
     let text = format!(
-        "A free block of steel in plane strain, {} × {} squares of 0.5 mm, central differences of {:.0} ns, lumped \
+        "A free block of steel in plane strain, {} × {} squares of 0.5 mm, central differences of {:.0} ns, \
+         lumped \
          mass, no contact, started by a smooth velocity field of {} m/s.",
         block.columns,
         block.rows,

@@ -20,16 +20,16 @@ pub(super) struct Peer {
     pub(super) twin: Option<(&'static str, f64)>,
 }
 
-/// Shapes are known to 3·10⁻¹⁴ from positions of 0.1 m; a body that is longer by as much everywhere is off by 10⁻⁹ of
-/// displacements of some µm, and a thousand steps add about the same.
+/// Shapes are known to 3·10⁻¹⁴ from positions of 0.1 m; a body that is longer by as much everywhere is off by
+/// 10⁻⁹ of displacements of some µm, and a thousand steps add about the same.
 pub(super) const ROUNDING: f64 = 1e-8;
 const SAME: &str = "same element: rounding";
 
 /// Strains are about 2·10⁻⁴, and so are the terms that a small-strain element leaves out.
 const LINEAR: f64 = 1e-3;
 
-/// Two elements of the same order: the dispersion of waves differs by some (kh)²/24 = 4·10⁻⁵ a radian, over ten radians
-/// and more in the short waves.
+/// Two elements of the same order: the dispersion of waves differs by some (kh)²/24 = 4·10⁻⁵ a radian, over
+/// ten radians and more in the short waves.
 const DISPERSION: f64 = 2e-3;
 const OTHER: &str = "another element: dispersion";
 

@@ -48,7 +48,8 @@ pub(super) fn timed(work: impl FnOnce()) -> Time {
 
 /// Processor time of this thread [s], where the system tells it.
 fn thread_cpu_s() -> Option<f64> {
-    // The system brings this number up to date when a thread offers its processor, and else every few milliseconds.
+    // The system brings this number up to date when a thread offers its processor, and else every few
+    // milliseconds.
     std::thread::yield_now();
     let text = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     Some(1e-9 * text.split_whitespace().next()?.parse::<f64>().ok()?)

@@ -22,8 +22,8 @@ const YOUNGS_MODULUS: f64 = 200e9;
 const POISSONS_RATIO: f64 = 0.3;
 const DENSITY: f64 = 7850.0;
 
-/// Gap between disc and blocks at the start [m], and speed of the upper block [m/s]: the blow takes about 40 µs and
-/// flattens the disc by 10 µm.
+/// Gap between disc and blocks at the start [m], and speed of the upper block [m/s]: the blow takes about 40
+/// µs and flattens the disc by 10 µm.
 const GAP: f64 = 1e-7;
 const SPEED: f64 = 1.0;
 
@@ -134,8 +134,10 @@ pub(super) fn problem(folder: &Path) -> Result<Problem> {
     let start = mesh.x.iter().zip(&mesh.y).map(|(x, y)| [*x, *y]).collect();
     let elements = mesh.elements();
     let text = format!(
-        "A disc of 18 mm between two blocks of 20 × 10 mm, elements of 0.5 mm ({} quads, {} triangles); the lower block \
-         is held, the upper one comes down with {SPEED} m/s. Frictionless penalty contact (E / 0.5 mm), nodes of either \
+        "A disc of 18 mm between two blocks of 20 × 10 mm, elements of 0.5 mm ({} quads, {} triangles); the \
+         lower block \
+         is held, the upper one comes down with {SPEED} m/s. Frictionless penalty contact (E / 0.5 mm), \
+         nodes of either \
          side against facets of the other; steps of {:.2} ns. Contact is part of the time per element.",
         mesh.quads.len(),
         mesh.triangles.len(),

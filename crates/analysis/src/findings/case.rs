@@ -76,7 +76,8 @@ impl<'a> Case<'a> {
             let time = record.time_s();
             let [from_s, to_s] = [time.first(), time.last()].map(|t| t.copied().unwrap_or(0.0));
             notes.push(format!(
-                "only {from_s:.3} to {to_s:.3} s of the record of {:.3} s are looked at: `stribeck report --from-s --to-s` chooses others",
+                "only {from_s:.3} to {to_s:.3} s of the record of {:.3} s are looked at: `stribeck report \
+                 --from-s --to-s` chooses others",
                 run.info.simulated_s
             ));
         }
@@ -265,7 +266,8 @@ impl<'a> Case<'a> {
             return Ok(Orders { duty, spectrum: None });
         }
         notes.push(
-            "the speed changes: families have orders and no frequencies, and the tables and figures of lines at constant frequencies, \
+            "the speed changes: families have orders and no frequencies, and the tables and figures of lines \
+             at constant frequencies, \
              the notch among them, are left out. Other frequencies are those at the mean speed"
                 .into(),
         );

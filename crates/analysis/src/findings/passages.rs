@@ -230,7 +230,8 @@ fn events_of(
     events.retain(|(event, _)| event.level_n.is_none_or(|level| level > least_n));
     if events.len() < all {
         notes.push(format!(
-            "{} of {all} passages over the spall of the {} raceway lie outside the load zone and are no events",
+            "{} of {all} passages over the spall of the {} raceway lie outside the load zone and are no \
+             events",
             all - events.len(),
             course.spall.ring.name()
         ));
@@ -359,7 +360,8 @@ pub(super) fn level_finding(
     }
     if filter.is_some() && !sensors.is_empty() && finding.between_filtered_g.is_none() {
         notes.push(format!(
-            "no filtered level between events: after the notch's transient of {:.2} ms no sample is free of events",
+            "no filtered level between events: after the notch's transient of {:.2} ms no sample is free of \
+             events",
             1e3 * (settled - start)
         ));
     }

@@ -77,7 +77,8 @@ pub(super) fn tracks_and_channels(
     let early = families::too_early(record.len(), interval_s, bpfo_hz).unwrap_or(0);
     if early > 0 && steady {
         notes.push(format!(
-            "the mesh\u{2019}s families of lines are sought in the last {:.3} s of the record, {:.0} periods of BPFO",
+            "the mesh\u{2019}s families of lines are sought in the last {:.3} s of the record, {:.0} periods \
+             of BPFO",
             interval_s * (record.len() - early) as f64,
             families::MOST_PERIODS
         ));

@@ -82,7 +82,8 @@ pub(super) fn filter(
         (Some(tone), _) => {
             if leading.is_none() {
                 notes.push(format!(
-                    "no facet tone stands {} dB above its surroundings at the leading sensor: the notch is at that of sensor {}",
+                    "no facet tone stands {} dB above its surroundings at the leading sensor: the notch is \
+                     at that of sensor {}",
                     tones::LEAST_PROMINENCE_DB,
                     tone.sensor
                 ));
@@ -100,7 +101,8 @@ pub(super) fn filter(
                 ),
             };
             notes.push(format!(
-                "no notch: with `contact.surface: {}` no roller goes over edges of facets, and {seen}, so that a filter there would take \
+                "no notch: with `contact.surface: {}` no roller goes over edges of facets, and {seen}, so \
+                 that a filter there would take \
                  nothing of them away; its figures and numbers are left out",
                 if run.scene.written.contact.surface == ContactSurface::Arc { "arc" } else { "nagata" },
             ));
@@ -108,7 +110,8 @@ pub(super) fn filter(
         }
         (None, predicted) => {
             notes.push(format!(
-                "no facet tone stands {} dB above its surroundings at any sensor: the notch is at the predicted one",
+                "no facet tone stands {} dB above its surroundings at any sensor: the notch is at the \
+                 predicted one",
                 tones::LEAST_PROMINENCE_DB
             ));
             predicted.unwrap_or(PAPER_CENTRE_HZ)
@@ -191,7 +194,8 @@ mod tests {
     use super::super::HARMONICS;
     use super::*;
 
-    /// Knocks 19.8 times a second in 5 s, each of a few milliseconds: segments of a third of a second hold 6.6 of them.
+    /// Knocks 19.8 times a second in 5 s, each of a few milliseconds: segments of a third of a second hold
+    /// 6.6 of them.
     #[test]
     fn issue_lines_of_a_slow_bearing_stand_in_the_spectrum_of_the_whole_record() {
         const RATE_HZ: f64 = 2000.0;

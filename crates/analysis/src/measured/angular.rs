@@ -15,7 +15,8 @@ const LONGEST: u64 = 1 << 24;
 /// The number of samples a turn keeps every sample at the lowest speed.
 ///
 /// # Errors
-/// [`Error::File`] when it cannot be read, [`Error::Signal`] for pulses that do not ascend or leave the record.
+/// [`Error::File`] when it cannot be read, [`Error::Signal`] for pulses that do not ascend or leave the
+/// record.
 pub fn over_angle(channel: &Channel, rate_hz: f64, pulses: &[f64]) -> Result<Option<(Channel, f64)>, Error> {
     if channel.len > LONGEST || pulses.len() < 3 {
         return Ok(None);

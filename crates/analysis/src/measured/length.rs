@@ -42,8 +42,10 @@ pub(super) fn estimate(
         Ok(EventSpacing::Pairs(spacing)) => {
             let run = speed * spacing.lag_s;
             let why = format!(
-                "the length of the spall holds for one shorter than half of the {apart:.1} mm between two elements. One of {:.1} mm or a \
-                 little more, whose exit and the entry of the next element are as far apart, would knock in the same rhythm",
+                "the length of the spall holds for one shorter than half of the {apart:.1} mm between two \
+                 elements. One of {:.1} mm or a \
+                 little more, whose exit and the entry of the next element are as far apart, would knock in \
+                 the same rhythm",
                 apart - run
             );
             (Some(Interval { value: run, low: RANGE.0 * run, high: RANGE.1 * run }), Some(why))
@@ -51,15 +53,19 @@ pub(super) fn estimate(
         Ok(EventSpacing::Alone { clear_from_s }) => {
             let both = RANGE.1 * speed * clear_from_s;
             let why = format!(
-                "no second event follows each knock: if entry and exit both knock, the spall is shorter than {both:.2} mm, and the value given is \
-                 the middle of that. One that is shallow, or crossed under so heavy a load that no element comes free, or whose entry is \
-                 soft, knocks once whatever its length, and the record does not say which: so the interval leaves all lengths up to the \
+                "no second event follows each knock: if entry and exit both knock, the spall is shorter than \
+                 {both:.2} mm, and the value given is \
+                 the middle of that. One that is shallow, or crossed under so heavy a load that no element \
+                 comes free, or whose entry is \
+                 soft, knocks once whatever its length, and the record does not say which: so the interval \
+                 leaves all lengths up to the \
                  {apart:.1} mm between two elements, and takes it that the spall is no longer than that"
             );
             (Some(Interval { value: 0.5 * both, low: 0.0, high: apart.max(both) }), Some(why))
         }
         Ok(EventSpacing::Unknown) => {
-            let why = "no length of a spall: the record is too noisy, or rings too long, to tell a second event after each knock";
+            let why = "no length of a spall: the record is too noisy, or rings too long, to tell a second \
+                event after each knock";
             (None, Some(why.to_owned()))
         }
         Err(why) => (None, Some(format!("no length of a spall: {why}"))),

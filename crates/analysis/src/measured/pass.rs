@@ -117,7 +117,8 @@ impl Pass {
         }
         if let Some(reach) = self.screening.out_of_range() {
             return Err(Error::NoSignal(format!(
-                "channel `{}` moves by {reach:.1e}, whose powers lie beyond the range of numbers: bring it near 1 with `--scale`",
+                "channel `{}` moves by {reach:.1e}, whose powers lie beyond the range of numbers: bring it \
+                 near 1 with `--scale`",
                 channel.name
             )));
         }

@@ -16,18 +16,21 @@ const HEIGHT_DB: f64 = 12.0;
 /// Follows the shaft's line between two speeds [1/min] in a channel sampled `rate_hz` times a second.
 ///
 /// # Errors
-/// [`Error::NoSignal`] for a range that is none or in which no line stands out, [`Error::File`], [`Error::Signal`].
+/// [`Error::NoSignal`] for a range that is none or in which no line stands out, [`Error::File`],
+/// [`Error::Signal`].
 pub fn speed(channel: &Channel, rate_hz: f64, low_rpm: f64, high_rpm: f64) -> Result<Ridge, Error> {
     let (low_hz, high_hz) = (low_rpm / 60.0, high_rpm / 60.0);
     if !(low_hz > 0.0 && low_hz < high_hz && high_hz < 0.25 * rate_hz) {
         return Err(Error::NoSignal(format!(
-            "speeds of {low_rpm} to {high_rpm} rpm: they must ascend from above 0, and lie below a quarter of the sample rate"
+            "speeds of {low_rpm} to {high_rpm} rpm: they must ascend from above 0, and lie below a quarter \
+             of the sample rate"
         )));
     }
     let samples = (TURNS / low_hz * rate_hz) as usize;
     if (channel.len as usize) < 4 * samples {
         return Err(Error::NoSignal(format!(
-            "the record is too short to follow a speed: {:.1} s hold 64 turns at {low_rpm} rpm; give `--speed-rpm` one number",
+            "the record is too short to follow a speed: {:.1} s hold 64 turns at {low_rpm} rpm; give \
+             `--speed-rpm` one number",
             4.0 * TURNS / low_hz
         )));
     }
@@ -60,7 +63,8 @@ pub fn speed(channel: &Channel, rate_hz: f64, low_rpm: f64, high_rpm: f64) -> Re
     let found = ridge(&all, steepest_hz_s).map_err(Error::Signal)?;
     if found.height_db < HEIGHT_DB {
         return Err(Error::NoSignal(format!(
-            "no line stands out between {low_rpm} and {high_rpm} rpm: the best is {:.1} dB up, {HEIGHT_DB} are needed. Give \
+            "no line stands out between {low_rpm} and {high_rpm} rpm: the best is {:.1} dB up, {HEIGHT_DB} \
+             are needed. Give \
              another range, one `--speed-rpm`, or `--tacho`",
             found.height_db
         )));

@@ -52,7 +52,8 @@ pub(super) fn tell(
     family.over = Some(name);
     family.claimed = true;
     family.reason = Reason::Decided(format!(
-        "with the mean course in a period of {name} divided out of the power its lines stand, no unrelated comb stands as high, and the \
+        "with the mean course in a period of {name} divided out of the power its lines stand, no unrelated \
+         comb stands as high, and the \
          power swings by {:.0} %",
         100.0 * second.depth
     ));

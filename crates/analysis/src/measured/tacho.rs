@@ -1,7 +1,8 @@
 //! The speed of a shaft from the pulses of a tachometer.
 //!
-//! Pulses that are missing are bridged, and those that are too many are dropped, as long as they are few; a record in which they
-//! are many is refused, because its speed would be one of the tachometer and not of the shaft.
+//! Pulses that are missing are bridged, and those that are too many are dropped, as long as they are few; a
+//! record in which they are many is refused, because its speed would be one of the tachometer and not of the
+//! shaft.
 
 use stribeck_formats::Channel;
 
@@ -22,8 +23,8 @@ pub struct Turns {
     pub notes: Vec<String>,
 }
 
-/// Levels between which a pulse must rise and fall to count, as parts of the way from its low to its high level: noise and
-/// glitches that stay between them are none.
+/// Levels between which a pulse must rise and fall to count, as parts of the way from its low to its high
+/// level: noise and glitches that stay between them are none.
 const LOW: f64 = 0.3;
 const HIGH: f64 = 0.7;
 /// Samples that show the two levels, at most.
@@ -43,13 +44,13 @@ pub fn turns(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
     pulses(channel, rate_hz, 1)
 }
 
-/// Counts the pulses of a channel sampled `rate_hz` times a second, `per_turn` of them a turn: rising edges through the middle
-/// between its low and its high level, their times interpolated between samples. Pulses that are missing are put in, and those
-/// that are too many taken out, with a note of their number and times.
+/// Counts the pulses of a channel sampled `rate_hz` times a second, `per_turn` of them a turn: rising edges
+/// through the middle between its low and its high level, their times interpolated between samples. Pulses
+/// that are missing are put in, and those that are too many taken out, with a note of their number and times.
 ///
 /// # Errors
-/// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when it holds fewer than three pulses, or when so many are missing
-/// or too many that no speed follows.
+/// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when it holds fewer than three pulses, or when
+/// so many are missing or too many that no speed follows.
 pub fn pulses(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, Error> {
     let edges = edges(channel)?;
     let name = &channel.name;
@@ -158,7 +159,8 @@ fn mended(edges: &[f64], name: &str, rate_hz: f64) -> Result<(Vec<f64>, Vec<Stri
     let count = mended.len() as f64;
     let too_many = |what: &str, of: &[f64]| {
         Error::NoSignal(format!(
-            "tachometer `{name}`: {} of {count} pulses are {what}, the first at {:.4} s: no speed follows. Is it the right channel, \
+            "tachometer `{name}`: {} of {count} pulses are {what}, the first at {:.4} s: no speed follows. \
+             Is it the right channel, \
              or give the speed by `--speed-rpm`",
             of.len(),
             of.first().unwrap_or(&0.0) / rate_hz
@@ -176,7 +178,8 @@ fn mended(edges: &[f64], name: &str, rate_hz: f64) -> Result<(Vec<f64>, Vec<Stri
     });
     if let Some(at) = sudden {
         return Err(Error::NoSignal(format!(
-            "tachometer `{name}`: the speed changes by {:.0} % from one pulse to the next at {:.4} s, as no shaft does: no speed \
+            "tachometer `{name}`: the speed changes by {:.0} % from one pulse to the next at {:.4} s, as no \
+             shaft does: no speed \
              follows. Is it the right channel, or give the speed by `--speed-rpm`",
             100.0 * ((at[2] - at[1]) / (at[1] - at[0])).max((at[1] - at[0]) / (at[2] - at[1])) - 100.0,
             at[1] / rate_hz
@@ -208,7 +211,8 @@ const PULSES: f64 = 60.0;
 /// pulses a turn.
 ///
 /// # Errors
-/// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when the shaft turns back, or less than a twentieth of a turn.
+/// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when the shaft turns back, or less than a
+/// twentieth of a turn.
 pub fn of_angle(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
     let angle = channel.read()?;
     let (first, last) = (angle.first().copied().unwrap_or(0.0), angle.last().copied().unwrap_or(0.0));
@@ -279,7 +283,8 @@ mod tests {
         assert!(of_angle(&Channel::held("shaft.angle_rad", vec![0.0; 9]), 1.0).is_err());
     }
 
-    /// Pulses of a tenth of a turn at 1200 rpm, 12 800 samples a second, `n` turns; `keep` says whether turn k has one.
+    /// Pulses of a tenth of a turn at 1200 rpm, 12 800 samples a second, `n` turns; `keep` says whether turn
+    /// k has one.
     fn wheel(n: usize, keep: impl Fn(usize) -> bool) -> Vec<f64> {
         let turn = |at: usize| at as f64 / 640.0 + 0.003;
         (0..640 * n).map(|at| f64::from(turn(at).fract() < 0.1 && keep(turn(at) as usize))).collect()

@@ -2,8 +2,8 @@
 //!
 //! Three questions, all of which must be answered with yes (THEORY §7.9):
 //!
-//! 1. Is it more than noise? The comb test of [`stribeck_dsp::CombTest`] over all bands, with the probability of a false
-//!    alarm under noise of the record's own colour.
+//! 1. Is it more than noise? The comb test of [`stribeck_dsp::CombTest`] over all bands, with the probability
+//!    of a false alarm under noise of the record's own colour.
 //! 2. Is it more than the record's other lines? Machines are full of lines; the family must stand higher than
 //!    combs of unrelated fundamentals in the same spectrum.
 //! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
@@ -353,7 +353,8 @@ fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
         });
         let Some(other) = other else { continue };
         let why = if cannot_be(&families[at]) {
-            "and no turn of the cage is heard in them, as it is where a spot on a rolling element comes under the load"
+            "and no turn of the cage is heard in them, as it is where a spot on a rolling element comes \
+             under the load"
         } else {
             "which are nearer to their place"
         };
@@ -399,7 +400,10 @@ fn decide(families: &mut [Family]) {
         } else {
             family.claimed = true;
             let other = family.not_told_apart_from.map_or(String::new(), |name| {
-                format!("; the lines of {name} have their places within a resolution of these, and the record does not tell which it is")
+                format!(
+                    "; the lines of {name} have their places within a resolution of these, and the \
+                    record does not tell which it is"
+                )
             });
             format!("{} harmonics stand, the power swings by {:.0} %{other}", family.harmonics, 100.0 * depth)
         };
@@ -432,7 +436,8 @@ fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
     family.in_passages = true;
     family.claimed = true;
     family.reason = Reason::Decided(format!(
-        "something knocks once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an element, which no unrelated rhythm \
+        "something knocks once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an \
+         element, which no unrelated rhythm \
          does as much; from turn to turn it loses its phase, so that it has no lines"
     ));
     let cage = &mut families[cage];
@@ -455,9 +460,15 @@ fn conclude(families: &[Family]) -> String {
             let off = 100.0 * (hz / f.expected_hz - 1.0);
             let other = families.iter().find(|other| f.not_told_apart_from == Some(other.name));
             match other {
-                None => format!("a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its place)", f.name.part(), f.name),
+                None => format!(
+                    "a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its \
+                    place)",
+                    f.name.part(),
+                    f.name
+                ),
                 Some(other) => format!(
-                    "a defect of {} or of {}, which it does not tell apart ({} at {hz:.2} Hz, {off:+.1} % from its place, and {} times {} \
+                    "a defect of {} or of {}, which it does not tell apart ({} at {hz:.2} Hz, {off:+.1} % \
+                     from its place, and {} times {} \
                      stand within a resolution)",
                     f.name.part(),
                     other.name.part(),
@@ -474,7 +485,8 @@ fn conclude(families: &[Family]) -> String {
     let highest = families.iter().filter(|f| f.knocks()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
     if let Some(highest) = highest {
         return format!(
-            "The record knocks, and does not say where: {} stands highest, but unrelated combs stand as high. A longer record, or one \
+            "The record knocks, and does not say where: {} stands highest, but unrelated combs stand as \
+             high. A longer record, or one \
              nearer to the bearing, may tell.",
             highest.name
         );
@@ -482,7 +494,8 @@ fn conclude(families: &[Family]) -> String {
     let weak: Vec<&str> = families.iter().filter(|f| f.is_there()).map(|f| f.name.name()).collect();
     let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name.name()).collect();
     if unheard.len() == families.len() {
-        return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, for every family. The reasons \
+        return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, \
+            for every family. The reasons \
                 say which length or rate would do."
             .to_owned();
     }

@@ -28,7 +28,8 @@ fn table_1(source: &RowInputs<'_>) -> Vec<PaperRow> {
         given("Inner ring thickness h_i", 10.0, b.inner_ring_thickness_mm, "mm"),
     ];
     let cage = source.scene.written.cage.as_ref();
-    let why = "given; it lies outside the pitch circle of 181.98 mm, so the pockets cut it into as many pieces as rollers: one rigid body here";
+    let why = "given; it lies outside the pitch circle of 181.98 mm, so the pockets cut it into as many \
+        pieces as rollers: one rigid body here";
     rows.push(number(PART, "Cage outer diameter D_c", 196.0, cage.map(|c| c.outer_diameter_mm), "mm", why));
     rows.push(number(PART, "Cage thickness h_c", 4.0, cage.map(|c| c.thickness_mm), "mm", GIVEN));
     rows.push(given("Roller diameter D_r", 18.0, b.roller_diameter_mm, "mm"));
@@ -75,7 +76,8 @@ fn discretisation(source: &RowInputs<'_>) -> Vec<PaperRow> {
             5.0,
             Some(waves / 20.0),
             "",
-            "\"nearly 5 times\"; a criterion for waves in the ring, blind to facets, which are the source of the noise",
+            "\"nearly 5 times\"; a criterion for waves in the ring, blind to facets, which are the source of \
+             the noise",
         ),
         number(
             PART,
@@ -84,7 +86,8 @@ fn discretisation(source: &RowInputs<'_>) -> Vec<PaperRow> {
             Some(mesh.roller_facets as f64),
             "",
             &format!(
-                "the paper rounds a circumference; a mesh of quadrilaterals needs an even count, best a multiple of 4. \
+                "the paper rounds a circumference; a mesh of quadrilaterals needs an even count, best a \
+                 multiple of 4. \
                  {} edges of {facet_mm:.4} mm give {:.0} Hz without slip",
                 mesh.roller_facets,
                 source.prediction.facet_lines.first().map_or(0.0, |l| l.1)
@@ -124,7 +127,8 @@ fn operation(source: &RowInputs<'_>) -> Vec<PaperRow> {
             Some(1e-3 * o.load_n),
             "kN",
             &format!(
-                "given, but per nothing: a plane model needs a thickness, {} mm here (5 to 50 mm are consistent with the \
+                "given, but per nothing: a plane model needs a thickness, {} mm here (5 to 50 mm are \
+                 consistent with the \
                  paper's figures)",
                 scene.written.bearing.thickness_mm
             ),

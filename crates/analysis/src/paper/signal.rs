@@ -75,7 +75,8 @@ fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let sensor = levels.sensor.as_deref().unwrap_or("none");
     let why = |what: &str| {
         format!(
-            "{what}; sensor “{sensor}”. The paper states neither thickness, contact stiffness, damping nor the place of its sensor: docs/results/paper.md says what each does"
+            "{what}; sensor “{sensor}”. The paper states neither thickness, contact stiffness, damping nor \
+             the place of its sensor: docs/results/paper.md says what each does"
         )
     };
     vec![
@@ -131,7 +132,8 @@ fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "3 Hz",
             record,
             "–",
-            "30 ms resolve 33 Hz; 3 Hz is the grid of a zero-padded transform. fixtures/scenes/long.ron has a true 3 Hz",
+            "30 ms resolve 33 Hz; 3 Hz is the grid of a zero-padded transform. fixtures/scenes/long.ron has \
+             a true 3 Hz",
         ),
         number(
             NOISE,
@@ -152,7 +154,8 @@ fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "23 kHz",
             fifth.map_or("not found".into(), |hz| format!("{:.2} kHz", 1e-3 * hz)),
             "–",
-            "\"approximately\" in the paper; ours counts when it stands 10 dB above its surroundings and its family is found",
+            "\"approximately\" in the paper; ours counts when it stands 10 dB above its surroundings and its \
+             family is found",
         )
         .telling(fifth.map(|hz| 1e-3 * hz), "kHz"),
         number(
@@ -170,7 +173,8 @@ fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
             Some(inner),
             "Hz",
             &format!(
-                "as the paper computes it, with the cage's speed. The contact runs over the inner ring at ω_i − ω_c: {} Hz. \
+                "as the paper computes it, with the cage's speed. The contact runs over the inner ring at \
+                 ω_i − ω_c: {} Hz. \
                  Spin is one number, so vertices pass both raceways equally often",
                 inner_right.map_or("–".into(), |hz| format!("{hz:.0}"))
             ),
@@ -211,9 +215,15 @@ fn beat(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "Hz",
             &reading.map_or("needs a sample rate".into(), |r| {
                 format!(
-                    "{} samples: a cursor reads {:.0}, {:.0} or {:.0} Hz and nothing between. {:.0} % of the periods of a pure \
+                    "{} samples: a cursor reads {:.0}, {:.0} or {:.0} Hz and nothing between. {:.0} % of the \
+                     periods of a pure \
                      {TONE_HZ:.0} Hz tone are that long. Lines of this run near it: {}",
-                    r.samples, r.neighbours_hz.0, r.reads_hz, r.neighbours_hz.1, 100.0 * r.share_in_tone, near_cursor(source)
+                    r.samples,
+                    r.neighbours_hz.0,
+                    r.reads_hz,
+                    r.neighbours_hz.1,
+                    100.0 * r.share_in_tone,
+                    near_cursor(source)
                 )
             }),
         ),
@@ -231,10 +241,18 @@ fn beat(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "4545 Hz",
             reading.map_or("–".into(), |r| {
                 let (gap, share) = r.equation_3_common;
-                format!("carrier {:.0} Hz; {:.0} % of the gaps are {gap} samples, {:.0} % read {:.0} Hz", r.equation_3_carrier_hz, 100.0 * share, 100.0 * r.share_in_equation_3, r.reads_hz)
+                format!(
+                    "carrier {:.0} Hz; {:.0} % of the gaps are {gap} samples, {:.0} % read {:.0} \
+                    Hz",
+                    r.equation_3_carrier_hz,
+                    100.0 * share,
+                    100.0 * r.share_in_equation_3,
+                    r.reads_hz
+                )
             }),
             "–",
-            "two equal tones swell on the mean of their frequencies; a single pair of cursors reads one of several numbers of samples",
+            "two equal tones swell on the mean of their frequencies; a single pair of cursors reads one of \
+             several numbers of samples",
         ),
         words(
             NOISE,
@@ -250,7 +268,8 @@ fn beat(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "5–16 ms, less 17–28 ms",
             format!("{a:.0} and {b:.0} Hz beat once in {:.0} ms", 1e3 / (a - b).abs().max(1e-3)),
             "–",
-            "3864 and 4712 Hz would beat every 1.2 ms; the lines of the mesh lie tens of hertz apart and beat slower than the gap between impulses",
+            "3864 and 4712 Hz would beat every 1.2 ms; the lines of the mesh lie tens of hertz apart and \
+             beat slower than the gap between impulses",
         ),
     ]
 }
@@ -284,14 +303,33 @@ fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let db = |v: Option<f64>| v.map_or("–".into(), |v| format!("{v:.1}"));
     let four = notch.map_or("no notch".into(), |n| {
         format!(
-            "Hann {} / {} dB, boxcar {} / {} dB with / without the filter's transient; a clean tone gives 29 dB (boxcar) and 56 dB (Hann)",
-            db(n.attenuation_db), db(n.attenuation_settled_db), db(n.attenuation_boxcar_db), db(n.attenuation_boxcar_settled_db)
+            "Hann {} / {} dB, boxcar {} / {} dB with / without the filter's transient; a clean tone gives 29 \
+             dB (boxcar) and 56 dB (Hann)",
+            db(n.attenuation_db),
+            db(n.attenuation_settled_db),
+            db(n.attenuation_boxcar_db),
+            db(n.attenuation_boxcar_settled_db)
         )
     });
     vec![
         words(NOTCH, "Order of the filter", "2", "2".into(), "none", "infinite impulse response, one pass"),
-        number(NOTCH, "Quality factor Q", 15.0, notch.map(|n| n.q), "", "width at −3 dB exactly centre/Q, as scipy.signal.iirnotch"),
-        number(NOTCH, "Centre", TONE_HZ, notch.map(|n| n.centre_hz), "Hz", "placed on the tone that this run shows"),
+        number(
+            NOTCH,
+            "Quality factor Q",
+            15.0,
+            notch.map(|n| n.q),
+            "",
+            "width at −3 dB exactly centre/Q, as \
+            scipy.signal.iirnotch",
+        ),
+        number(
+            NOTCH,
+            "Centre",
+            TONE_HZ,
+            notch.map(|n| n.centre_hz),
+            "Hz",
+            "placed on the tone that this run shows",
+        ),
         number(NOTCH, "Taken from the tone", 25.0, notch.and_then(|n| n.attenuation_db), "dB", &four),
         number(
             NOTCH,
@@ -301,7 +339,8 @@ fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "dB",
             &notch.map_or(String::new(), |n| {
                 format!(
-                    "|H(4545 Hz)| of the paper's notch from its coefficients; {} dB with the centre used here. A property of the filter, not of a tone",
+                    "|H(4545 Hz)| of the paper's notch from its coefficients; {} dB with the centre used \
+                     here. A property of the filter, not of a tone",
                     n.attenuation_4545_db.map_or("–".into(), |db| format!("{db:.2}"))
                 )
             }),
@@ -310,7 +349,11 @@ fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
             NOTCH,
             "Zoom of the spectra, Fig. 7b",
             "4–6 kHz",
-            if (4000.0..6000.0).contains(&notch.map_or(0.0, |n| n.centre_hz)) { "4–6 kHz".into() } else { "about the tone".into() },
+            if (4000.0..6000.0).contains(&notch.map_or(0.0, |n| n.centre_hz)) {
+                "4–6 kHz".into()
+            } else {
+                "about the tone".into()
+            },
             "–",
             "see Spectra",
         ),
@@ -353,7 +396,8 @@ fn events(source: &RowInputs<'_>) -> Vec<PaperRow> {
                 ms(event.exit_ms)
             ),
             "–",
-            "unloading, impact on the floor, load taken over from a neighbour, re-stressing; picked from the forces",
+            "unloading, impact on the floor, load taken over from a neighbour, re-stressing; picked from the \
+             forces",
         ));
     }
     rows

@@ -3,7 +3,8 @@
 use stribeck_bearing::assembly::{Assembly, Machine};
 use stribeck_scene::scene::Scene;
 
-/// Steps that close the clearance: 40 µm at the acceleration of 50 kN on 2 kg, in steps of 35 ns, and as long again.
+/// Steps that close the clearance: 40 µm at the acceleration of 50 kN on 2 kg, in steps of 35 ns, and as long
+/// again.
 pub(crate) const CLOSING: usize = 4000;
 
 /// A part of the critical step of elements and contact that leaves room for changes.

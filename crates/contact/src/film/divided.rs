@@ -74,7 +74,8 @@ impl Interactions for Films {
     fn hear(&mut self, which: usize, report: &[f64]) {
         let film = &mut self.films[which];
         let &[heat, force, depth, dry, above, ref shares @ ..] = report else { return };
-        // What others need not know stays with the rank that computes the film: where it ends, what it carries, whether it is solid.
+        // What others need not know stays with the rank that computes the film: where it ends, what it
+        // carries, whether it is solid.
         film.pushed = Pushed { heat, force, pressed: [depth, dry], ..film.pushed };
         let mut layer = film.memory.layer.unwrap_or(Layer::at(above));
         layer.above = above;

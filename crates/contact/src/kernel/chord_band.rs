@@ -21,7 +21,8 @@ use stribeck_surface::{Surface, foot::Push, plane::choose};
 pub(crate) struct ChordBand<'a> {
     pub(crate) points: &'a Points,
     pub(crate) candidates: &'a [Candidate],
-    /// Of all points of the pass: where they were found last, until when they are inactive, what they remember.
+    /// Of all points of the pass: where they were found last, until when they are inactive, what they
+    /// remember.
     pub(crate) nearest: &'a [u32],
     pub(crate) inactive_until: &'a mut [f64],
     pub(crate) history: &'a mut Histories,

@@ -53,8 +53,8 @@ pub(crate) enum Joints {
 }
 
 impl ChordLanes {
-    /// From the slots of each chord's ends, in so many lanes. They are compared one after the other: whole vectors would wait
-    /// for slots that are on their way to memory.
+    /// From the slots of each chord's ends, in so many lanes. They are compared one after the other: whole
+    /// vectors would wait for slots that are on their way to memory.
     #[inline(always)]
     pub(crate) fn new(lanes: usize, mut ends_of: impl FnMut(usize) -> [u32; 2]) -> Self {
         let mut ends = [[0; LANES]; 2];

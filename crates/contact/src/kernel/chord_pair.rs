@@ -1,8 +1,9 @@
 //! Points of one chord against another chord: feet, motion and forces, over any [`Number`].
 //!
-//! On chords everything is linear in the place of a point, so all points take the same few operations, whether they lie
-//! on one facet ([`chord_row`](super::chord_row)) or on many ([`chord_band`](super::chord_band)). Points near the end of
-//! the other chord are left for [`single_points`](super::single_points).
+//! On chords everything is linear in the place of a point, so all points take the same few operations,
+//! whether they lie on one facet ([`chord_row`](super::chord_row)) or on many
+//! ([`chord_band`](super::chord_band)). Points near the end of the other chord are left for
+//! [`single_points`](super::single_points).
 
 use stribeck_simd::lanes::Number;
 
@@ -113,7 +114,8 @@ impl<N: Number> ChordPair<N> {
         }
     }
 
-    /// One where points at these places have their feet beyond the other chord, behind its end or before its beginning.
+    /// One where points at these places have their feet beyond the other chord, behind its end or before its
+    /// beginning.
     #[inline(always)]
     pub(crate) fn beyond(&self, place: N, end: bool) -> N {
         let (zero, one) = (place.constant(0.0), place.constant(1.0));

@@ -1,5 +1,5 @@
-//! Rows of points on one chord: whole vectors of them, each against the one of two chords of the other surface that is
-//! below it (PERFORMANCE.md §2).
+//! Rows of points on one chord: whole vectors of them, each against the one of two chords of the other
+//! surface that is below it (PERFORMANCE.md §2).
 //!
 //! Points near the end of the other chord or near a corner are left over.
 
@@ -14,8 +14,9 @@ use super::{
 use stribeck_surface::{foot::Push, plane::choose};
 
 impl Row<'_> {
-    /// Chords against chords: evaluates the points that certainly touch and pushes their forces; those that certainly do not
-    /// are inactive for a while. Feet follow one another, mostly on one chord or on two: each point takes the one below it.
+    /// Chords against chords: evaluates the points that certainly touch and pushes their forces; those that
+    /// certainly do not are inactive for a while. Feet follow one another, mostly on one chord or on two:
+    /// each point takes the one below it.
     #[inline(always)]
     pub(crate) fn touch_chords<V: Simd, const MEMORY: bool>(
         self,

@@ -1,4 +1,5 @@
-//! One evaluation of a pass: which facets are active, vectors of their points first, then what is left over, one by one.
+//! One evaluation of a pass: which facets are active, vectors of their points first, then what is left over,
+//! one by one.
 
 use pulp::{Arch, Simd, WithSimd};
 use stribeck_simd::lanes::{LANES, Number, Vector};
@@ -69,7 +70,8 @@ impl Sum {
 
 /// How rows of points on facets of one kind are done in vectors, against facets of the same kind.
 trait RowFacet: Facet {
-    /// What acts on the other surface may wait in `others`; the facet in motion is left in `own` where it was needed.
+    /// What acts on the other surface may wait in `others`; the facet in motion is left in `own` where it was
+    /// needed.
     fn touch_row<V: Simd, const MEMORY: bool>(
         simd: V,
         row: Row<'_>,
@@ -118,7 +120,8 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) -> Sum {
-        // Which curves meet is asked once a pass, and whether points remember; the loop over points is compiled for each.
+        // Which curves meet is asked once a pass, and whether points remember; the loop over points is
+        // compiled for each.
         let memory = self.memory.history.is_some();
         match [self.secondary, self.primary].map(|surface| surface.spline().is_some()) {
             [false, false] if memory => self.evaluate::<V, ChordFacet, ChordFacet, true>(simd),
@@ -269,7 +272,8 @@ struct Facets<'a, S: Facet, P: Facet> {
 }
 
 impl<S: Facet, P: Facet> Facets<'_, S, P> {
-    /// Finishes a facet: evaluates the points that are left over, hands forces over and finds out when it is active again.
+    /// Finishes a facet: evaluates the points that are left over, hands forces over and finds out when it is
+    /// active again.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // what a pass remembers, field by field
     fn finish<V: Simd>(

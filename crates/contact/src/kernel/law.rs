@@ -1,5 +1,5 @@
-//! What acts at points in contact, and what they remember (THEORY §4.2–4.3), over any [`Number`]: at single points and at whole
-//! vectors of them.
+//! What acts at points in contact, and what they remember (THEORY §4.2–4.3), over any [`Number`]: at single
+//! points and at whole vectors of them.
 
 use stribeck_simd::lanes::Number;
 
@@ -88,7 +88,8 @@ impl<N: Number> Totals<N> {
 }
 
 impl<N: Number> LawKernel<N> {
-    /// Of the kind of `like`, per length of surface for the thickness [m] of a pass, per area for a thickness of one.
+    /// Of the kind of `like`, per length of surface for the thickness [m] of a pass, per area for a thickness
+    /// of one.
     #[inline(always)]
     pub(crate) fn new(
         like: N,
@@ -234,11 +235,13 @@ mod tests {
     /// A point of surface: gap, weight, opening, along, slip and damping force of the step before.
     type State = [f64; 6];
 
-    /// What acts and what is remembered: pressure, shear, slip, damping force; stored energy, heat of friction and of damping.
+    /// What acts and what is remembered: pressure, shear, slip, damping force; stored energy, heat of
+    /// friction and of damping.
     type Acted = [f64; 7];
 
-    /// The law as a textbook has it, branch by branch: a penalty with a parabola about the corner, a dashpot that never pulls,
-    /// and Coulomb friction by return mapping (Wriggers, Computational Contact Mechanics, 2nd ed., §§5.2, 6.5).
+    /// The law as a textbook has it, branch by branch: a penalty with a parabola about the corner, a dashpot
+    /// that never pulls, and Coulomb friction by return mapping (Wriggers, Computational Contact Mechanics,
+    /// 2nd ed., §§5.2, 6.5).
     fn textbook(law: &Law, [gap, weight, opening, along, slip, damping]: State) -> Acted {
         let (k, c, e) = (law.stiffness * weight * THICKNESS, law.damping * weight * THICKNESS, law.onset);
         if gap >= e {

@@ -1,9 +1,9 @@
 //! Rows of points on one facet of a spline: whole vectors of them against facets of another spline.
 //!
-//! The points of a facet mostly have their feet on one or two facets of the other surface, already known from the step
-//! before. Every lane takes the coefficients of its own; a correction of third order from the foot on the chord finds the
-//! foot on the curve, a second one where that is not enough. Lanes whose foot is not found by then, or lies beyond the
-//! facet's ends, are left for [`single_points`](super::single_points).
+//! The points of a facet mostly have their feet on one or two facets of the other surface, already known from
+//! the step before. Every lane takes the coefficients of its own; a correction of third order from the foot
+//! on the chord finds the foot on the curve, a second one where that is not enough. Lanes whose foot is not
+//! found by then, or lies beyond the facet's ends, are left for [`single_points`](super::single_points).
 
 use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};
@@ -51,8 +51,8 @@ impl<V: Simd> MovingPatch<V> {
     }
 }
 
-/// One or two facets of the primary surface that points have their feet on, kept from one facet of points to the next:
-/// what acts on them is handed to the nodes when others come.
+/// One or two facets of the primary surface that points have their feet on, kept from one facet of points to
+/// the next: what acts on them is handed to the nodes when others come.
 pub(crate) struct OtherPatches<V: Simd> {
     facets: [Option<LoadedPatch<V>>; 2],
 }
@@ -123,8 +123,8 @@ fn sums<V: Simd>(Polynomial(forces): &Polynomial<Vector<V>, 4>) -> Polynomial<f6
 }
 
 impl Row<'_> {
-    /// Splines against splines: evaluates the points whose feet lie within the facets known for the first and the last of
-    /// them; those that certainly do not touch are inactive for a while.
+    /// Splines against splines: evaluates the points whose feet lie within the facets known for the first and
+    /// the last of them; those that certainly do not touch are inactive for a while.
     #[inline(always)]
     pub(crate) fn touch_patches<V: Simd, const MEMORY: bool>(
         self,

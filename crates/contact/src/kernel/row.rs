@@ -1,4 +1,5 @@
-//! The points of one facet of a pass, whole vectors of them: what evaluations of chords and of splines have in common.
+//! The points of one facet of a pass, whole vectors of them: what evaluations of chords and of splines have
+//! in common.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
@@ -17,7 +18,8 @@ const ROOM: usize = Method::MOST_POINTS + LANES;
 pub(crate) struct Row<'a> {
     pub(crate) candidate: &'a Candidate,
     pub(crate) points: &'a Points,
-    /// Of all points of the pass: where they were found last, until when they are inactive, what they remember.
+    /// Of all points of the pass: where they were found last, until when they are inactive, what they
+    /// remember.
     pub(crate) nearest: &'a [u32],
     pub(crate) inactive_until: &'a mut [f64],
     pub(crate) history: &'a mut Histories,

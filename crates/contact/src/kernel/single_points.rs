@@ -1,5 +1,5 @@
-//! Points one by one: near ends and corners, on arcs, between chords and splines, in the static preload, where vectors of points
-//! do not do them.
+//! Points one by one: near ends and corners, on arcs, between chords and splines, in the static preload,
+//! where vectors of points do not do them.
 
 use stribeck_solver::state::Moment;
 
@@ -89,7 +89,8 @@ impl<S: Facet, P: Facet> SinglePoints<'_, S, P> {
                 damping,
             };
             let Some(foot) = foot.filter(|foot| kernel.touches(foot.gap, 1.0) > 0.0) else {
-                // Points off both ends of an open surface have no foot; they are looked at after the next search.
+                // Points off both ends of an open surface have no foot; they are looked at after the next
+                // search.
                 inactive_until[i] = NEVER;
                 if let Some(foot) = foot {
                     state.sliding = MovingFacet::new(facet, primary, at).sliding(own.velocity(&point), &foot);

@@ -72,8 +72,8 @@ impl Scene {
         (d, contacts)
     }
 
-    /// The same with curves instead of polylines, which move as splines of their nodes where that is asked for, and the
-    /// points of the first surface of each pair alone.
+    /// The same with curves instead of polylines, which move as splines of their nodes where that is asked
+    /// for, and the points of the first surface of each pair alone.
     pub(crate) fn lay_out_smooth(&self, model: &Model, curves: &[(Smoothing, bool)]) -> (Dynamics, Contacts) {
         let d = Dynamics::new(model, &vec![true; model.mesh.x.len()], 1).expect("a model that can run");
         let (x, y) = (&d.state.x, &d.state.y);

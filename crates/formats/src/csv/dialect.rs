@@ -1,4 +1,5 @@
-//! How a table is written: what splits its columns, which sign is the decimal point, where its rows of numbers begin.
+//! How a table is written: what splits its columns, which sign is the decimal point, where its rows of
+//! numbers begin.
 
 use super::stamp::stamp;
 
@@ -136,8 +137,9 @@ impl Dialect {
     }
 }
 
-/// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line above has no
-/// comma, or the first part is `-0`, or what is behind the comma has always the same digits, zeros at its beginning, too.
+/// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line
+/// above has no comma, or the first part is `-0`, or what is behind the comma has always the same digits,
+/// zeros at its beginning, too.
 fn is_one_column(head: &[String], rows: &[String]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
     let pairs: Option<Vec<(&str, &str)>> = rows

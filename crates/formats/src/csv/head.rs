@@ -22,7 +22,8 @@ pub(crate) fn names(head: &[String], dialect: Dialect, columns: usize) -> (Vec<S
     ((0..columns).map(|n| name(n).unwrap_or_else(|| format!("column {}", n + 1))).collect(), units)
 }
 
-/// The words of a line, where they are as many as there are columns; `# t_ms acc_g` may be split otherwise than its rows.
+/// The words of a line, where they are as many as there are columns; `# t_ms acc_g` may be split otherwise
+/// than its rows.
 fn words(line: &str, dialect: Dialect, columns: usize) -> Option<Vec<String>> {
     let split = |separator: char| {
         let mut all: Vec<String> =

@@ -1,4 +1,5 @@
-//! Lines of a text in any of the usual encodings: UTF-8, UTF-16 and, where it is neither, Latin-1 as Windows has it.
+//! Lines of a text in any of the usual encodings: UTF-8, UTF-16 and, where it is neither, Latin-1 as Windows
+//! has it.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};

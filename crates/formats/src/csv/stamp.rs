@@ -1,4 +1,5 @@
-//! Time stamps in texts: ISO 8601 with or without a zone, `31.12.2024 08:00:00,125`, `12/31/2024 8:00:00 PM`, times of a day.
+//! Time stamps in texts: ISO 8601 with or without a zone, `31.12.2024 08:00:00,125`, `12/31/2024 8:00:00 PM`,
+//! times of a day.
 
 use jiff::Timestamp;
 use jiff::civil::{Date, DateTime, Time};

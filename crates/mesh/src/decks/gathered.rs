@@ -46,7 +46,8 @@ impl Gathered {
         self.node_sets.entry(name.to_owned()).or_default()
     }
 
-    /// Says that something in `line` was passed over. The same words are said once, with the number of places.
+    /// Says that something in `line` was passed over. The same words are said once, with the number of
+    /// places.
     pub(super) fn note(&mut self, line: usize, what: impl Into<String>) {
         let what = what.into();
         match self.notes.iter_mut().find(|(known, _)| *known == what) {

@@ -1,4 +1,5 @@
-//! What makes a mesh a model: material, sections, surfaces and contacts, and a step with its loads and motions.
+//! What makes a mesh a model: material, sections, surfaces and contacts, and a step with its loads and
+//! motions.
 
 use std::collections::{BTreeMap, HashMap};
 

@@ -1,4 +1,5 @@
-//! Lines of files that were put in the place of an `*INCLUDE`: which file they come from, and which of its lines they are.
+//! Lines of files that were put in the place of an `*INCLUDE`: which file they come from, and which of its
+//! lines they are.
 //!
 //! Whoever puts them there encloses them in two comments, which [`Origins`] looks for:
 //!
@@ -35,7 +36,8 @@ pub(super) fn mark(line: &str) -> Option<Mark<'_>> {
 /// The file that each line comes from, as far as it is another one.
 #[derive(Debug, Default)]
 pub(super) struct Origins {
-    /// First line, by the number in the whole text from 1, the file and the number of that line in it; ascending.
+    /// First line, by the number in the whole text from 1, the file and the number of that line in it;
+    /// ascending.
     pieces: Vec<(usize, Option<String>, usize)>,
 }
 

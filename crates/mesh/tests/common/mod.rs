@@ -57,7 +57,8 @@ pub(crate) fn boundary_edges(part: &Part) -> Vec<[u32; 2]> {
     edges.iter().filter(|[a, b]| !edges.contains(&[*b, *a])).copied().collect()
 }
 
-/// The facets of the named surfaces must be exactly the boundary edges: no gap, none twice, solid on the left.
+/// The facets of the named surfaces must be exactly the boundary edges: no gap, none twice, solid on the
+/// left.
 pub(crate) fn assert_boundary_is(part: &Part, names: &[&str]) {
     let mut facets: Vec<[u32; 2]> = Vec::new();
     for name in names {

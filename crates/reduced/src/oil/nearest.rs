@@ -67,7 +67,8 @@ impl Curved {
         let surface = Surface::new(name, slots, true, &x, &y)?.smoothed(Smoothing::Nagata, &x, &y)?;
         let lands = Land::of(&surface, &x, &y);
         if lands.is_empty() {
-            let reason = "has nothing but corners, which no film lies across: oil needs facets that meet at less than 20°, by `mesh.size_mm`, \
+            let reason = "has nothing but corners, which no film lies across: oil needs facets that meet at \
+                less than 20°, by `mesh.size_mm`, \
                           `mesh.outer_facets` and `mesh.inner_facets`";
             return Err(SurfaceError::BadSurface { name: name.to_owned(), reason }.into());
         }
@@ -80,7 +81,8 @@ impl Curved {
     /// When there are corners in it.
     pub(crate) fn rim(outline: &Outline) -> Result<Self, Error> {
         let name = "rim of a roller";
-        let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more `mesh.roller_facets`, 19 at least";
+        let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more \
+            `mesh.roller_facets`, 19 at least";
         let corners = || SurfaceError::BadSurface { name: name.to_owned(), reason };
         let curved = Self::new(name, outline, false).map_err(|_| corners())?;
         if curved.lands.len() == 1 { Ok(curved) } else { Err(corners().into()) }

@@ -51,7 +51,8 @@ fn calibrated(scene: &ResolvedScene, of_paper: bool) -> String {
     }
     let last = chosen.pop().unwrap_or_default();
     let source = if of_paper {
-        "The paper prints none of them; a level in g that meets the paper's is agreement by choice, and no test"
+        "The paper prints none of them; a level in g that meets the paper's is agreement by choice, and no \
+         test"
     } else {
         "Levels in g depend on all of them"
     };
@@ -127,7 +128,8 @@ fn scatter(summary: &EnsembleSummary) -> String {
         .and_then(|s| s.deviation)
         .map_or(String::new(), |d| format!(" The tone's frequency scatters by {} Hz.", shown(d, 1)));
     format!(
-        "Peaks of a_y at sensor “{sensor}”, mean of {complete} starts ± 95 %: {}.{line} What differs by less than the intervals is no difference.",
+        "Peaks of a_y at sensor “{sensor}”, mean of {complete} starts ± 95 %: {}.{line} What differs by less \
+         than the intervals is no difference.",
         levels.join("; ")
     )
 }

@@ -96,10 +96,12 @@ fn acceleration(findings: &EnsembleFindings) -> Option<Figure> {
         .with(sampled("10 % of starts below", Colour::Orange, low).as_edge())
         .with(sampled(&format!("start {number}"), Colour::Blue, leading.raw_g.clone()))
         .caption(format!(
-            "Start {number}, whose peak at exits is the median, in front of what 80 % of the starts do at the same time."
+            "Start {number}, whose peak at exits is the median, in front of what 80 % of the starts do at \
+             the same time."
         ))
         .note(
-            "Upright: mean entries (orange) and exits (green) by the contact forces. Start angles move them by up to a facet. \
+            "Upright: mean entries (orange) and exits (green) by the contact forces. Start angles move them \
+             by up to a facet. \
              A single start leaves the band wherever it strikes at its own moment.",
         );
     figure.marks = passages(findings);
@@ -164,12 +166,16 @@ fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
     let marks = families(findings, first);
     let title =
         format!("Power spectral density of a_y at sensor “{sensor}”, mean of {} starts", leading.len());
-    let mut whole = banded(over("spectrum", &title, (0.0, half)))
-        .caption("Lines that stand in the mean repeat from start to start; the band says how much a single start differs.");
+    let mut whole = banded(over("spectrum", &title, (0.0, half))).caption(
+        "Lines that stand in the mean repeat from start to start; the band says how much a single \
+            start differs.",
+    );
     let zoom = about_the_tone(findings.summary.number("notch.centre_hz").map(|s| s.median), &marks, half);
     let title = format!("The same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
-    let mut close = banded(over("spectrum-zoom", &title, zoom))
-        .caption("Upright: carriers of families of facet lines, full where most starts hold them, dashed where they belong otherwise.");
+    let mut close = banded(over("spectrum-zoom", &title, zoom)).caption(
+        "Upright: carriers of families of facet lines, full where most starts hold them, dashed \
+            where they belong otherwise.",
+    );
     (whole.marks, close.marks) = (marks.clone(), marks.clone());
     let mut figures = vec![whole, close];
     if first.sensors.len() > 1 {
@@ -186,8 +192,8 @@ fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
     figures
 }
 
-/// Carriers of the families: fitted where most starts hold them, by the motion where most do not; where the records are too
-/// short to judge, by geometry.
+/// Carriers of the families: fitted where most starts hold them, by the motion where most do not; where the
+/// records are too short to judge, by geometry.
 fn families(findings: &EnsembleFindings, first: &Findings) -> Vec<Mark> {
     let items = findings.summary.ensemble.items("families");
     let colours = [Colour::Green, Colour::Purple, Colour::Teal];

@@ -162,7 +162,10 @@ pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
     }
     let mut picture = Picture::new("events", "Events, a dot for every start", sheet);
     picture.caption = "Whether the contact forces show an event, and when.".into();
-    picture.note = "Each start on its own clock, so that its start angle moves nothing. Thick: median. Thin: the mean's 95 % interval.".into();
+    picture.note =
+        "Each start on its own clock, so that its start angle moves nothing. Thick: median. Thin: \
+        the mean's 95 % interval."
+            .into();
     Some(picture)
 }
 

@@ -55,8 +55,8 @@ pub(super) fn mean(s: &Statistic, factor: f64, decimals: usize) -> String {
     }
 }
 
-/// Decimals of a level: as many as given, or more where the interval of its mean, of a single start a tenth of the level, is smaller
-/// than those show.
+/// Decimals of a level: as many as given, or more where the interval of its mean, of a single start a tenth
+/// of the level, is smaller than those show.
 pub(super) fn decimals(s: &Statistic, least: usize) -> usize {
     const MOST: usize = 6;
     let half = s.high.map(|high| high - s.mean).filter(|half| *half > 1e-9 * s.mean.abs());
@@ -114,7 +114,8 @@ pub(super) fn main(summary: &EnsembleSummary) -> Markup {
             }
         }
         p class="hint" {
-            "± is the 95 % interval of the mean by Student's t: it narrows with more starts. 10 % to 90 % is what a single start does. Scatter: \
+            "± is the 95 % interval of the mean by Student's t: it narrows with more starts. 10 % to 90 % is \
+             what a single start does. Scatter: \
              standard deviation over mean. Every other number of the summary is in summary.json, likewise."
         }
     }
@@ -211,7 +212,8 @@ pub(super) fn families(summary: &EnsembleSummary) -> Markup {
                 }
             }
         }
-        p class="hint" { "Each start is judged by itself, against its own recorded motion (THEORY §7.7); shares with their 95 % interval." }
+        p class="hint" { "Each start is judged by itself, against its own recorded motion (THEORY §7.7); \
+            shares with their 95 % interval." }
     }
 }
 
@@ -266,7 +268,8 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
             }
         }
         p class="hint" {
-            "Starts that show the event, and means ± 95 % of those. Off: after the centre would stand over the edge without slip. #3: what the roller \
+            "Starts that show the event, and means ± 95 % of those. Off: after the centre would stand over \
+             the edge without slip. #3: what the roller \
              carries while a neighbour is in the defect, over what it carried before."
         }
     }
@@ -296,8 +299,10 @@ pub(super) fn paper(summary: &EnsembleSummary) -> Markup {
         .collect();
     html! {
         p class="hint" {
-            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It prints neither thickness, cage pockets, \
-             damping nor the place of its sensor, so its levels are no test of this model. Where a number is the same in every start, the page of \
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It \
+             prints neither thickness, cage pockets, \
+             damping nor the place of its sensor, so its levels are no test of this model. Where a number is \
+             the same in every start, the page of \
              any of them says more."
         }
         div class="scroll" {
@@ -390,7 +395,8 @@ pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
             }
         }
         p class="hint" {
-            "A start is a run of its own: `stribeck report` in its folder makes its page, and `stribeck simulate` with its scene.ron gives the same \
+            "A start is a run of its own: `stribeck report` in its folder makes its page, and `stribeck \
+             simulate` with its scene.ron gives the same \
              samples again. Places in the pockets stand in its scene as `cage.roller_offsets_um`."
         }
     }

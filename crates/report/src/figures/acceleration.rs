@@ -24,10 +24,14 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     figure = match findings.summary.events.len() {
         0 => figure,
         1..=DRAWN => figure.note(
-            "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the forces show none and the \
+            "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the \
+             forces show none and the \
              place of the roller on its way is drawn.",
         ),
-        _ => figure.note("Entries and exits are too many to be drawn here; they stand in the table of the contact forces."),
+        _ => figure.note(
+            "Entries and exits are too many to be drawn here; they stand in the table of the \
+            contact forces.",
+        ),
     };
     figure.bands = start_up(findings);
     if findings.of_paper {
@@ -106,8 +110,10 @@ fn instantaneous(
     Ok(Some(
         figure
             .caption(
-                "The sensor\u{2019}s acceleration changes within a sampling interval, with every contact that opens or closes; an instantaneous one \
-                 aliases what is faster than half the sampling rate, so every other figure uses the mean over each interval.",
+                "The sensor\u{2019}s acceleration changes within a sampling interval, with every contact \
+                 that opens or closes; an instantaneous one \
+                 aliases what is faster than half the sampling rate, so every other figure uses the mean \
+                 over each interval.",
             )
             .note("The mean is the change of velocity over one interval divided by the interval."),
     ))
@@ -120,8 +126,8 @@ fn over_time(id: &str, title: &str) -> Figure {
 /// Most passages that are drawn: the lines of more would hide the signal.
 const DRAWN: usize = 40;
 
-/// Entries and exits by the forces, dashed by rolling without slip where the forces show none; of many only the first is
-/// named in full, of very many none is drawn.
+/// Entries and exits by the forces, dashed by rolling without slip where the forces show none; of many only
+/// the first is named in full, of very many none is drawn.
 fn passages(events: &[Event]) -> Vec<Mark> {
     let mut marks = Vec::new();
     if events.len() > DRAWN {
@@ -162,7 +168,8 @@ fn both_signs(levels: &[(f64, &str)]) -> Vec<Level> {
 fn transient_note(findings: &Findings) -> String {
     findings.summary.notch.as_ref().map_or(String::new(), |n| {
         format!(
-            "Second-order notch at {:.1} Hz, Q = {}, one pass. In the shaded time the filter still answers to the start (60 dB \
+            "Second-order notch at {:.1} Hz, Q = {}, one pass. In the shaded time the filter still answers \
+             to the start (60 dB \
              of its ringing, time constant {:.2} ms).{}",
             n.centre_hz,
             n.q,

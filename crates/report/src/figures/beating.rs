@@ -21,11 +21,11 @@ pub(super) fn figures() -> [Figure; 2] {
             .with(Series::sampled("equation (3)", Colour::Blue, 0.0, step, sum.clone()))
     };
     let whole = chart("beat", "Fig. 5a: the paper's two tones added")
-        .caption(format!(
-            "{outer:.0} and {inner:.0} Hz swell and fade {:.0} times a second.",
-            outer - inner
-        ))
-        .note("Equation (3) with A₁ = A₂ = 1 and φ = 0. Of these two frequencies only the first is in the model: vertices pass the inner raceway as often as the outer one.");
+        .caption(format!("{outer:.0} and {inner:.0} Hz swell and fade {:.0} times a second.", outer - inner))
+        .note(
+            "Equation (3) with A₁ = A₂ = 1 and φ = 0. Of these two frequencies only the first is in the \
+            model: vertices pass the inner raceway as often as the outer one.",
+        );
     let envelope: Vec<f64> =
         (0..SAMPLES).map(|n| 2.0 * (0.5 * TAU * (outer - inner) * n as f64 * step).cos().abs()).collect();
     let reads = |samples: usize| SAMPLE_RATE_HZ / samples as f64;
@@ -33,7 +33,8 @@ pub(super) fn figures() -> [Figure; 2] {
     let mut zoom = chart("beat-zoom", "Fig. 5b: the same from 10 to 15 ms, with its envelope")
         .with(Series::sampled("envelope", Colour::Orange, 0.0, step, envelope))
         .caption(format!(
-            "Two neighbouring peaks are a whole number of samples apart: 22 read {:.0} Hz ({:.0} % of them), 23 read {:.0} Hz \
+            "Two neighbouring peaks are a whole number of samples apart: 22 read {:.0} Hz ({:.0} % of them), \
+             23 read {:.0} Hz \
              ({:.0} %). Within a swell they follow the mean of the two tones, {:.0} Hz.",
             reads(22),
             share(22),
@@ -42,8 +43,10 @@ pub(super) fn figures() -> [Figure; 2] {
             0.5 * (outer + inner)
         ))
         .note(format!(
-            "The paper reads {CURSOR_HZ:.0} Hz from one such pair and finds it again in its acceleration. A pure tone of 4671 Hz \
-             sampled at 100 kHz shows the same pair of cursors in two periods of five, without any second tone."
+            "The paper reads {CURSOR_HZ:.0} Hz from one such pair and finds it again in its acceleration. A \
+             pure tone of 4671 Hz \
+             sampled at 100 kHz shows the same pair of cursors in two periods of five, without any second \
+             tone."
         ));
     zoom.x.range = Some((0.010, 0.015));
     [whole, zoom]

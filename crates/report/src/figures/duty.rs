@@ -77,7 +77,8 @@ fn orders(findings: &Findings) -> Option<Figure> {
     .with(Series::sampled("squared envelope", Colour::Blue, 0.0, spectrum.resolution().grid_hz, floored))
     .caption(format!("Where the speed changes, {} stands at its order.", envelope.family))
     .note(format!(
-        "Envelope of {:.0} to {:.0} Hz, averaged over equal steps of the angle; {:.1} periods of {}, resolution {:.3} orders.",
+        "Envelope of {:.0} to {:.0} Hz, averaged over equal steps of the angle; {:.1} periods of {}, \
+         resolution {:.3} orders.",
         envelope.band_hz.0, envelope.band_hz.1, envelope.periods, envelope.family, envelope.resolution
     ));
     figure.marks = envelope

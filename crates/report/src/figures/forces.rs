@@ -78,7 +78,10 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
             time(event.entry_ms),
             time(event.exit_ms)
         ))
-        .note("Events follow the rule of THEORY §7.4; edges are drawn where the roller's centre passes them without slip.")
+        .note(
+            "Events follow the rule of THEORY §7.4; edges are drawn where the roller's centre passes them \
+            without slip.",
+        )
 }
 
 /// What all rollers carry together, sample by sample.
@@ -103,7 +106,8 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
     .synced("time")
     .with(Series::sampled("sum, each sample", Colour::Blue, time[0], record.interval_s(), sum.clone()))
     .caption(format!(
-        "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by {:.1} % (RMS), between \
+        "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by \
+         {:.1} % (RMS), between \
          {:+.0} and {:+.0} %, because {}ring and housing have mass.",
         off(mean),
         100.0 * rms / supported,
@@ -111,7 +115,8 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
         off(high),
         if record.run().scene.written.operation.load_varies() { "the load changes and " } else { "" }
     ).replace('-', "−"))
-    .note("The difference accelerates the outer ring and its housing. Load plus their weight is the dashed line.");
+    .note("The difference accelerates the outer ring and its housing. Load plus their weight is the dashed \
+        line.");
     figure.levels = vec![Level { y: supported, label: "load and weight".into(), colour: Colour::Orange }];
     Some(figure)
 }

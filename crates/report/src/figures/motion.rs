@@ -71,12 +71,19 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
     );
     let figures = [
         spin.caption(
-            "A loaded roller rolls; in the defect and outside the load zone nothing drives it at the outer raceway, and where its \
+            "A loaded roller rolls; in the defect and outside the load zone nothing drives it at the outer \
+             raceway, and where its \
              speed then differs from rolling it slips until the contact has it again.",
         )
         .note(note.clone()),
         orbit
-            .caption(format!("The cage turns {slip} of its speed without slip, over the whole record.").replace('-', "−"))
+            .caption(
+                format!(
+                    "The cage turns {slip} of its speed without slip, over the whole \
+                record."
+                )
+                .replace('-', "−"),
+            )
             .note(note),
     ];
     Ok(figures.into_iter().filter(|figure| !figure.series.is_empty()).collect())

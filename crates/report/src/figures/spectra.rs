@@ -1,6 +1,7 @@
 //! Spectra: the paper's Figs. 3 and 7, the other sensors, low frequencies, the envelope.
 //!
-//! Colours say where a line comes from: green, purple and teal are the mesh, red is the defect, brown is the ring.
+//! Colours say where a line comes from: green, purple and teal are the mesh, red is the defect, brown is the
+//! ring.
 
 use stribeck_dsp::Spectrum;
 
@@ -20,7 +21,8 @@ const LOW_HZ: f64 = 2_500.0;
 const FAMILY: usize = 10;
 /// Where each colour of the marks comes from, of those that are drawn.
 fn legend(findings: &Findings) -> String {
-    let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, purple nodes of the outer and \
+    let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, \
+        purple nodes of the outer and \
                 teal of the inner raceway";
     let kinds = [
         (!unsteady(findings), mesh),
@@ -119,8 +121,8 @@ fn zoom(findings: &Findings, raw: &Spectrum) -> (f64, f64) {
     about_the_tone(notch_hz, &line_marks(findings), 0.5 * raw.sample_rate_hz())
 }
 
-/// Where a spectrum is drawn close: about the notch, or without one about the carriers among `marks`, those that are there first. The
-/// paper zooms to 4–6 kHz; a coarser mesh has its tone elsewhere.
+/// Where a spectrum is drawn close: about the notch, or without one about the carriers among `marks`, those
+/// that are there first. The paper zooms to 4–6 kHz; a coarser mesh has its tone elsewhere.
 pub(in super::super) fn about_the_tone(notch_hz: Option<f64>, marks: &[Mark], half_hz: f64) -> (f64, f64) {
     const PAPER_HZ: (f64, f64) = (4000.0, 6000.0);
     const AROUND_HZ: f64 = 1000.0;
@@ -168,7 +170,8 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
             format!("The record is long enough to separate the multiples of {name}.")
         }
         Some((name, hz)) => format!(
-            "{name} and its multiples belong at the red lines; this record holds {:.1} of its periods, too few to show them.",
+            "{name} and its multiples belong at the red lines; this record holds {:.1} of its periods, too \
+             few to show them.",
             raw.resolution().record_s * hz
         ),
     };
@@ -264,7 +267,8 @@ fn decibels(name: &str, colour: Colour, spectrum: &Spectrum, most: usize) -> Ser
     Series::sampled(name, colour, 0.0, spectrum.resolution().grid_hz, floored)
 }
 
-/// The harmonics of every facet line. The raceway's stand so close to the rollers' that they carry no label at this scale.
+/// The harmonics of every facet line. The raceway's stand so close to the rollers' that they carry no label
+/// at this scale.
 fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
     let colours = [Colour::Green, Colour::Purple, Colour::Teal];
     let label = |index: usize, harmonic: usize| match (index, harmonic) {
@@ -284,8 +288,8 @@ fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
     marks
 }
 
-/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not, by geometry where no motion
-/// tells it.
+/// Carrier and sidebands of every family that was found; the predicted carrier of those that were not, by
+/// geometry where no motion tells it.
 fn line_marks(findings: &Findings) -> Vec<Mark> {
     let bpfo = findings.summary.kinematics.bpfo_hz.unwrap_or(findings.prediction.kinematics.bpfo_hz);
     let mut marks = Vec::new();

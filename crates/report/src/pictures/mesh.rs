@@ -158,7 +158,8 @@ pub(super) fn defect(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
     );
     picture.caption = match &scene.written.leading_spall() {
         Some(d) => format!(
-            "The defect, {} mm long and {} mm deep, is made by nodes that are moved {}; no element is left out.",
+            "The defect, {} mm long and {} mm deep, is made by nodes that are moved {}; no element is left \
+             out.",
             d.length_mm,
             d.depth_mm,
             if outwards > 0.0 { "outwards" } else { "inwards" }

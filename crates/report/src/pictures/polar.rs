@@ -49,7 +49,8 @@ pub(super) fn picture(scene: &ResolvedScene, findings: &Findings) -> Option<Pict
         _ => "; an elastic ring spreads the load otherwise",
     };
     picture.note = format!(
-        "In motion: mean over all rollers and samples in bins of 1°. At rest: Stribeck and Sjövall, rigid rings with clearance{elastic}."
+        "In motion: mean over all rollers and samples in bins of 1°. At rest: Stribeck and Sjövall, rigid \
+         rings with clearance{elastic}."
     );
     Some(picture)
 }

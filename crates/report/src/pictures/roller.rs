@@ -23,7 +23,8 @@ pub(super) fn picture(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
     magnified(&mut sheet, radius, facets, sag_um);
     let mut picture = Picture::new("roller", "A polygonised roller", sheet);
     picture.caption = format!(
-        "A roller of {facets} facets looks round, and yet each facet lies {sag_um:.2} µm inside the circle in its middle: {}.",
+        "A roller of {facets} facets looks round, and yet each facet lies {sag_um:.2} µm inside the circle \
+         in its middle: {}.",
         if scene.written.contact.surface == ContactSurface::Facet {
             "that is what the contacts hear"
         } else {

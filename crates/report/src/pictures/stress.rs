@@ -45,8 +45,8 @@ struct Hertz {
     half_width: f64,
 }
 
-/// Highest von Mises stress under a line contact over its largest pressure, for ν = 0.3: yield begins at p₀ = 1.79 Y
-/// (Johnson 1985, §6.1).
+/// Highest von Mises stress under a line contact over its largest pressure, for ν = 0.3: yield begins at p₀ =
+/// 1.79 Y (Johnson 1985, §6.1).
 const VON_MISES_OF_PRESSURE: f64 = 1.0 / 1.79;
 
 impl Hertz {
@@ -60,7 +60,8 @@ impl Hertz {
     fn beside(&self, von_mises: f64) -> String {
         let expected = VON_MISES_OF_PRESSURE * self.pressure;
         format!(
-            "Hertz has a pressure of {:.2} GPa over a half-width of {:.2} mm under this load, and a highest von Mises stress of {:.2} GPa \
+            "Hertz has a pressure of {:.2} GPa over a half-width of {:.2} mm under this load, and a highest \
+             von Mises stress of {:.2} GPa \
              below it: the picture shows {:.0} % of that.",
             1e-9 * self.pressure,
             1e3 * self.half_width,
@@ -91,8 +92,8 @@ pub(super) fn pictures(
     Ok(pictures)
 }
 
-/// The first frame with the roller that crosses first, seen where it touches the outer raceway, and the frame with the highest stress near the
-/// trailing edge while the roller climbs out.
+/// The first frame with the roller that crosses first, seen where it touches the outer raceway, and the frame
+/// with the highest stress near the trailing edge while the roller climbs out.
 fn moments(
     record: &Record<'_>,
     findings: &Findings,
@@ -223,8 +224,10 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
         hertz.extend(m.hertz.map(|h| format!(" {}", h.beside(cell.von_mises))));
     }
     picture.caption = format!("The highest stress is {}.{hertz}", places.join(" and "));
-    picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this model. A penalty softer than the \
-                    material and elements wider than the contact spread the pressure; a sharp edge has as much stress as its elements resolve."
+    picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this \
+        model. A penalty softer than the \
+                    material and elements wider than the contact spread the pressure; a sharp edge has as \
+                    much stress as its elements resolve."
         .into();
     picture
 }
@@ -242,7 +245,8 @@ fn scale_of_colours(sheet: &mut Sheet, at: [f64; 2], end: f64) {
     sheet.text([at[0] + 246.0, at[1] + 11.0], 12.0, Anchor::Start, "#000", &words);
 }
 
-/// The first passage that frames of these times show from its entry to its exit, its roller in the window half-way.
+/// The first passage that frames of these times show from its entry to its exit, its roller in the window
+/// half-way.
 fn crossing<'a>(
     record: &Record<'_>,
     findings: &'a Findings,
@@ -318,14 +322,16 @@ fn moving(
     picture.animation = Some(bytes);
     picture.caption = match crossing {
         Some(event) => format!(
-            "Roller {} unloads over the leading edge, its neighbours take its load, and it is caught again by the trailing edge; watch the \
+            "Roller {} unloads over the leading edge, its neighbours take its load, and it is caught again \
+             by the trailing edge; watch the \
              stress run into the rings.",
             event.roller
         ),
         None => "No roller unloads over the spall and is loaded again here while frames are kept.".to_owned(),
     };
     picture.note = format!(
-        "{} pictures from {:.1} to {:.1} ms, {:.0} times slower than the bearing; yellow is {} von Mises and more. On paper: {:.1} ms.",
+        "{} pictures from {:.1} to {:.1} ms, {:.0} times slower than the bearing; yellow is {} von Mises and \
+         more. On paper: {:.1} ms.",
         all.len(),
         1e3 * first,
         1e3 * last,

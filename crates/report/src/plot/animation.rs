@@ -99,7 +99,8 @@ fn palette() -> Vec<u8> {
     palette
 }
 
-/// Colour of a level from 0 to 1: dark blue over green to yellow, evenly bright steps (after matplotlib's viridis).
+/// Colour of a level from 0 to 1: dark blue over green to yellow, evenly bright steps (after matplotlib's
+/// viridis).
 pub fn shade_rgb(level: f64) -> [u8; 3] {
     const STOPS: [[f64; 3]; 6] = [
         [68.0, 1.0, 84.0],

@@ -1,8 +1,10 @@
-//! Base64 (RFC 4648, section 4) of little-endian 32-bit floats: a third more than binary, and any page holds it.
+//! Base64 (RFC 4648, section 4) of little-endian 32-bit floats: a third more than binary, and any page holds
+//! it.
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
-/// Encodes values as little-endian f32; a value that f32 cannot hold becomes not-a-number, a gap in the chart.
+/// Encodes values as little-endian f32; a value that f32 cannot hold becomes not-a-number, a gap in the
+/// chart.
 pub(super) fn floats(values: &[f64]) -> String {
     let mut bytes = Vec::with_capacity(4 * values.len());
     for &v in values {

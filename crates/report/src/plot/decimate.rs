@@ -2,8 +2,8 @@
 
 use super::Series;
 
-/// Points of `series` between `from` and `to` in runs without a gap, at most about `limit` of them, extremes kept, in
-/// order.
+/// Points of `series` between `from` and `to` in runs without a gap, at most about `limit` of them, extremes
+/// kept, in order.
 pub(super) fn runs(series: &Series, from: f64, to: f64, limit: usize) -> Vec<Vec<(f64, f64)>> {
     let shown: Vec<(f64, f64)> = (0..series.y.len())
         .map(|n| (series.position(n), series.y[n]))

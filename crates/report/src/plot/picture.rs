@@ -94,7 +94,8 @@ impl Sheet {
         let words = words.replace('&', "&amp;").replace('<', "&lt;");
         let _ = write!(
             self.body,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-family=\"sans-serif\" font-size=\"{size}\" text-anchor=\"{anchor}\" \
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-family=\"sans-serif\" font-size=\"{size}\" \
+             text-anchor=\"{anchor}\" \
              fill=\"{colour}\">{words}</text>"
         );
     }
@@ -104,7 +105,8 @@ impl Sheet {
         let ([x, y], [w, h]) = (at, size);
         let _ = write!(
             self.body,
-            "<clipPath id=\"{name}\"><rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/></clipPath><g clip-path=\"url(#{name})\">"
+            "<clipPath id=\"{name}\"><rect x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"/></clipPath><g \
+             clip-path=\"url(#{name})\">"
         );
         draw(self);
         self.body.push_str("</g>");

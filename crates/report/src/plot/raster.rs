@@ -44,7 +44,8 @@ mod tests {
     fn example_letters_leave_ink() {
         let drawing = |words: &str| {
             let svg = format!(
-                "<svg width=\"60\" height=\"20\" xmlns=\"http://www.w3.org/2000/svg\"><rect width=\"60\" height=\"20\" fill=\"#fff\"/>\
+                "<svg width=\"60\" height=\"20\" xmlns=\"http://www.w3.org/2000/svg\"><rect width=\"60\" \
+                 height=\"20\" fill=\"#fff\"/>\
                  <text x=\"2\" y=\"15\" font-family=\"sans-serif\" font-size=\"14\">{words}</text></svg>"
             );
             png("letters", &svg).unwrap()

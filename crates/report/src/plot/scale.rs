@@ -49,7 +49,8 @@ impl Scale {
     }
 }
 
-/// Round positions (1, 2 or 5 times a power of ten) inside `[low, high]`, about `wanted` of them, and their step.
+/// Round positions (1, 2 or 5 times a power of ten) inside `[low, high]`, about `wanted` of them, and their
+/// step.
 pub fn ticks(low: f64, high: f64, wanted: usize) -> (Vec<f64>, f64) {
     let span = high - low;
     if !span.is_finite() || span <= 0.0 {

@@ -8,7 +8,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::{Axis, Colour, Figure, Scale, Style, Ticks, decimate, labels, ticks};
 use crate::Error;
 
-/// Drawing units a pixel: the library rounds coordinates to whole units, which would turn gentle slopes into stairs.
+/// Drawing units a pixel: the library rounds coordinates to whole units, which would turn gentle slopes into
+/// stairs.
 const FINE: u32 = 4;
 /// Size of every picture [units].
 const SIZE: (u32, u32) = (960 * FINE, 400 * FINE);
@@ -234,7 +235,8 @@ impl Colour {
     }
 }
 
-/// Ticks, grid lines, frame and axis names. The library's own mesh cannot carry one SI prefix for a whole axis.
+/// Ticks, grid lines, frame and axis names. The library's own mesh cannot carry one SI prefix for a whole
+/// axis.
 fn draw_grid(
     root: &Area<'_>,
     chart: &Chart<'_, '_>,

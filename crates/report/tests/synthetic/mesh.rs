@@ -1,4 +1,5 @@
-//! `mesh.vtu` of a bearing of few elements, as a run writes it: rings of quadrilaterals, rollers of triangles.
+//! `mesh.vtu` of a bearing of few elements, as a run writes it: rings of quadrilaterals, rollers of
+//! triangles.
 
 use std::f64::consts::TAU;
 use std::path::Path;

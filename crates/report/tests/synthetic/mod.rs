@@ -107,8 +107,8 @@ pub(crate) fn write(path: &Path, status: Status, samples: usize) {
     write_scene(path, &Scene::default(), status, samples, 1.0);
 }
 
-/// Writes an ensemble of `starts` starts into `path`, drawn from the seed 5: as many complete ones as there are gains, one that
-/// diverged when there is a fourth, and a failure for the fifth.
+/// Writes an ensemble of `starts` starts into `path`, drawn from the seed 5: as many complete ones as there
+/// are gains, one that diverged when there is a fourth, and a failure for the fifth.
 pub(crate) fn write_ensemble(path: &Path, gains: &[f64], starts: usize) {
     let scene = Scene::default();
     let dir = RunDir::create(path).expect("a free folder");
@@ -131,7 +131,8 @@ pub(crate) fn write_ensemble(path: &Path, gains: &[f64], starts: usize) {
     }
 }
 
-/// Writes a scene of the paper's bearing with `samples` samples into `path`, accelerations `gain` times as strong.
+/// Writes a scene of the paper's bearing with `samples` samples into `path`, accelerations `gain` times as
+/// strong.
 pub(crate) fn write_scene(path: &Path, scene: &Scene, status: Status, samples: usize, gain: f64) {
     let dir = RunDir::create(path).expect("a free folder");
     let info = RunInfo { scene_hash: scene.hash(), ..info(status, samples) };
@@ -216,7 +217,8 @@ fn acceleration_g(t: f64, sensor: usize, crossings: &[Crossing], noise: &mut Noi
     strength * (tone + impulse + NOISE_G * noise.next())
 }
 
-/// Motion and forces of all rollers: the upper ones share the load by the cosine, those in the defect carry nothing.
+/// Motion and forces of all rollers: the upper ones share the load by the cosine, those in the defect carry
+/// nothing.
 fn rollers(scene: &Scene, t: f64, crossings: &[Crossing], row: &mut Vec<f64>) {
     let k = Kinematics::of(scene);
     let count = scene.bearing.rollers;

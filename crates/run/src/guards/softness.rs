@@ -10,7 +10,8 @@ use super::When;
 /// Contact that sinks in by more than this share of the defect's depth moves its edges.
 const OF_DEPTH: f64 = 0.5;
 
-/// What a penetration is to be compared with [m]: a contact that sinks in by more is softer than the bearing itself.
+/// What a penetration is to be compared with [m]: a contact that sinks in by more is softer than the bearing
+/// itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Softness {
     /// Half of the diametral clearance.
@@ -44,8 +45,10 @@ impl Softness {
             String::new()
         };
         format!(
-            "contact has sunk in by {} {when}: it is softer than the bearing, which has {} of radial clearance and by Hertz gives way by {} at a \
-             contact{depth}. Load zone, times and impulses are those of a softer bearing; a larger `contact.penalty_scale` is nearer to steel",
+            "contact has sunk in by {} {when}: it is softer than the bearing, which has {} of radial \
+             clearance and by Hertz gives way by {} at a \
+             contact{depth}. Load zone, times and impulses are those of a softer bearing; a larger \
+             `contact.penalty_scale` is nearer to steel",
             um(penetration),
             um(self.radial_clearance),
             um(self.hertz),

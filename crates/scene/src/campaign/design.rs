@@ -89,7 +89,8 @@ impl Table {
     }
 }
 
-/// Cells of a line: where each is written, and what is in it. One in quotes may hold commas, and quotes written twice.
+/// Cells of a line: where each is written, and what is in it. One in quotes may hold commas, and quotes
+/// written twice.
 fn cells(line: &str) -> Vec<(Range<usize>, String)> {
     let mut cells = Vec::new();
     let mut begin = 0;
@@ -176,7 +177,8 @@ impl Axis {
             (Some(from), Some(to)) if values.is_empty() => {
                 if !(from.is_finite() && to.is_finite() && from < to && (!self.log || from > 0.0)) {
                     return Err(format!(
-                        "`{field}` goes from {from} to {to}; `from` is below `to`, and above 0 with `log: true`"
+                        "`{field}` goes from {from} to {to}; `from` is below `to`, and above 0 with `log: \
+                         true`"
                     ));
                 }
                 let value =
@@ -258,13 +260,15 @@ fn table(path: &Path) -> Result<Rows, String> {
     let fields = texts(head);
     if fields.len() == 1 && head.contains(';') {
         return Err(format!(
-            "table `{}`, line 1: cells are parted by semicolons; save it with commas, and numbers with points",
+            "table `{}`, line 1: cells are parted by semicolons; save it with commas, and numbers with \
+             points",
             table.name
         ));
     }
     if let Some(empty) = fields.iter().position(String::is_empty) {
         return Err(format!(
-            "table `{}`, line 1: column {} has no name; it is that of a field, and R leaves row numbers out with `row.names = FALSE`",
+            "table `{}`, line 1: column {} has no name; it is that of a field, and R leaves row numbers out \
+             with `row.names = FALSE`",
             table.name,
             empty + 1
         ));
@@ -274,7 +278,8 @@ fn table(path: &Path) -> Result<Rows, String> {
         let row = texts(line);
         if row.len() != fields.len() {
             return Err(format!(
-                "table `{}`, line {}: {} cells where the first line names {} fields; a value with a comma in it stands in quotes",
+                "table `{}`, line {}: {} cells where the first line names {} fields; a value with a comma in \
+                 it stands in quotes",
                 table.name,
                 number + 1,
                 row.len(),

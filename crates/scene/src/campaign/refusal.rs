@@ -1,4 +1,5 @@
-//! What is wrong with a campaign's file, said as of scenes: with line, field, what is allowed and what to try.
+//! What is wrong with a campaign's file, said as of scenes: with line, field, what is allowed and what to
+//! try.
 
 use ron::error::SpannedError;
 
@@ -70,8 +71,8 @@ impl<'a> File<'a> {
         problems.filter(|problem| varies(problem, rows, row).is_none()).cloned().collect()
     }
 
-    /// A value that its field cannot have, of a variant's row and a field's column: in the list or the range that it is from, or
-    /// in the table's own file.
+    /// A value that its field cannot have, of a variant's row and a field's column: in the list or the range
+    /// that it is from, or in the table's own file.
     pub(super) fn value(&self, problem: Problem, rows: &Rows, row: usize, column: usize) -> Problem {
         let place = match &rows.table {
             Some(table) => table.cell(row, column).map(|cell| place_in_file(&table.name, &table.text, cell)),
@@ -142,7 +143,8 @@ impl<'a> File<'a> {
                     Some(near) => format!("did you mean `{near}`?"),
                     None if scene_file::unknown_field(found).is_none() => {
                         format!(
-                            "a field of the scene stands in `set: [\"{found}=…\"]`, or in `variants` where it varies"
+                            "a field of the scene stands in `set: [\"{found}=…\"]`, or in `variants` where \
+                             it varies"
                         )
                     }
                     None => String::new(),
@@ -212,7 +214,8 @@ fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize> {
     (0..rows.fields.len()).find(|column| rows.argument(row, *column) == *argument)
 }
 
-const EXAMPLE: &str = "a campaign has `name` and `variants`, and may have `scene`, `set`, `seed`, `starts`, `split` and `keep`; \
+const EXAMPLE: &str = "a campaign has `name` and `variants`, and may have `scene`, `set`, `seed`, `starts`, \
+    `split` and `keep`; \
                        fixtures/campaigns/quick64.ron is one";
 
 /// The part of a campaign that has this name among its types.

@@ -87,7 +87,8 @@ fn invariant_equal_scenes_are_in_one_part_however_they_are_written() {
 
 #[test]
 fn invariant_variants_share_no_start() {
-    let text = "(name: \"x\", starts: 3, variants: grid([(field: \"operation.load_n\", values: [10000, 20000, 30000])]))";
+    let text = "(name: \"x\", starts: 3, variants: grid([(field: \"operation.load_n\", values: [10000, \
+        20000, 30000])]))";
     let campaign = parse(text).unwrap();
     let angle = |run: &Variant| run.scene.as_ref().unwrap().bearing.first_roller_deg;
     let mut angles: Vec<f64> = campaign.runs.iter().map(angle).collect();
@@ -120,7 +121,8 @@ fn refuses_campaigns_that_cannot_be() {
         // Refused before so many places are made.
         (
             with(
-                "variants: latin_hypercube(count: 1000000000000000, over: [(field: \"seed\", from: 1, to: 2)])",
+                "variants: latin_hypercube(count: 1000000000000000, over: [(field: \"seed\", from: 1, to: \
+                 2)])",
             ),
             &["a.ron:2:11", "1000000000000000 points", "1 to 1000000"],
         ),
@@ -138,7 +140,8 @@ fn refuses_campaigns_that_cannot_be() {
         ),
         (
             with(
-                "variants: grid([(field: \"operation.load_n\", values: [1]),\n(field: \"operation.load_n\", values: [2])])",
+                "variants: grid([(field: \"operation.load_n\", values: [1]),\n(field: \"operation.load_n\", \
+                 values: [2])])",
             ),
             &["a.ron:3:9", "`operation.load_n` is named twice"],
         ),
@@ -186,7 +189,8 @@ fn refuses_values_that_their_field_cannot_have() {
         (grid("(field: \"bearing\", values: [\"NU 205\", \"NV 205\"])"), &["a.ron:3:39", "`NV 205`", "NU"]),
         (
             grid(
-                "(field: \"defects\", values: [[], [(on: outer, form: spal(length_mm: 6.0, depth_mm: 0.1))]])",
+                "(field: \"defects\", values: [[], [(on: outer, form: spal(length_mm: 6.0, depth_mm: \
+                 0.1))]])",
             ),
             &["a.ron:3:33", "`spal`", "did you mean `spall`?"],
         ),
@@ -249,7 +253,8 @@ fn refuses_cells_that_their_field_cannot_have_in_the_tables_own_lines() {
 fn example_a_table_as_spreadsheets_write_it() {
     let scratch = stribeck_testing::Scratch::create("campaign-quoted");
     let table = "\u{feff}\"operation.load_n\",\"bearing\",\"contact.surface\",name,output.sensors\r\n\
-                 10000,\"NU 205\",\"arc\",\"rig\",\"[(name: \"\"a\"\", angle_deg: 10.0)]\"\r\n20000,6205,facet,b,\"[(name: \"\"b\"\", angle_deg: 5)]\"\r\n";
+                 10000,\"NU 205\",\"arc\",\"rig\",\"[(name: \"\"a\"\", angle_deg: \
+                 10.0)]\"\r\n20000,6205,facet,b,\"[(name: \"\"b\"\", angle_deg: 5)]\"\r\n";
     std::fs::write(scratch.join("t.csv"), table).unwrap();
     let text = "(name: \"t\", variants: table(\"t.csv\"))";
     let campaign = Campaign::parse(text, "a.ron", scratch.path()).unwrap();
@@ -303,6 +308,7 @@ fn example_the_guide_shows_the_campaigns_of_the_repository() {
 #[test]
 fn example_variants_repair_the_scene_that_they_start_from() {
     // Deeper than the ring is thick, but for what varies.
-    let text = "(name: \"x\", set: [\"defect.depth_mm=9\"], variants: grid([(field: \"defect.depth_mm\", values: [0.2])]))";
+    let text = "(name: \"x\", set: [\"defect.depth_mm=9\"], variants: grid([(field: \"defect.depth_mm\", \
+        values: [0.2])]))";
     assert!(parse(text).unwrap().runs[0].scene.is_ok());
 }

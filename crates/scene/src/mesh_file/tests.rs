@@ -1,4 +1,5 @@
-//! A file that the mesher's own test makes byte for byte (`crates/mesh/tests/vtu.rs`), and what can happen to it.
+//! A file that the mesher's own test makes byte for byte (`crates/mesh/tests/vtu.rs`), and what can happen to
+//! it.
 
 use std::io::Cursor;
 

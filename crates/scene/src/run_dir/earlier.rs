@@ -33,7 +33,8 @@ impl Earlier {
             let ended = starts.iter().filter(|start| start.has_ended()).count();
             return (!starts.is_empty()).then(|| Self::Ensemble { wanted: read.map(|e| e.starts), ended });
         }
-        // A trace that cannot be read may be worth a lot to its owner; one that is not there is not, unless its numbers are.
+        // A trace that cannot be read may be worth a lot to its owner; one that is not there is not, unless
+        // its numbers are.
         let there = |name: &str| folder.join(name).exists();
         let samples = TraceFile::open(folder.join(TRACE)).map_or(1, |trace| trace.len());
         let numbers = !there(TRACE) && there(SUMMARY) && there(INFO);

@@ -56,8 +56,8 @@ impl RunDir {
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] or [`Error::Scene`] when one of them cannot be read, [`Error::RunInfo`] when it cannot be understood,
-    /// [`Error::OtherScene`] when the scene was changed.
+    /// [`Error::Io`] or [`Error::Scene`] when one of them cannot be read, [`Error::RunInfo`] when it cannot
+    /// be understood, [`Error::OtherScene`] when the scene was changed.
     pub fn read_ensemble(&self) -> Result<(Scene, Ensemble), Error> {
         let ensemble: Ensemble = files::read_json(&self.path.join(ENSEMBLE))?;
         let scene = Scene::read(self.scene())?;
@@ -83,8 +83,8 @@ impl RunDir {
     ///
     /// # Errors
     ///
-    /// As [`RunDir::open_ensemble`]; [`Error::FolderInUse`] when it is still going; [`Error::Io`] when the folder cannot be
-    /// written.
+    /// As [`RunDir::open_ensemble`]; [`Error::FolderInUse`] when it is still going; [`Error::Io`] when the
+    /// folder cannot be written.
     pub fn reopen_ensemble(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref();
         is_run(path, &[SCENE, ENSEMBLE])?;
@@ -98,7 +98,8 @@ impl RunDir {
         self.path.join(folder_name(number))
     }
 
-    /// Reserves a folder for a new run, whatever run lies there: it is removed when the new one takes its first step.
+    /// Reserves a folder for a new run, whatever run lies there: it is removed when the new one takes its
+    /// first step.
     ///
     /// # Errors
     ///

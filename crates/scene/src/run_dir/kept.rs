@@ -39,13 +39,14 @@ impl RunDir {
         }
     }
 
-    /// Removes what `keep` does not name of a run that has come to its end: samples, energy ledger, mesh, frames and checkpoint.
-    /// Nothing is removed before the channels of sensors lie in a file of their own, where they are kept; and the trace goes last, so
-    /// that after a kill it can be done once more.
+    /// Removes what `keep` does not name of a run that has come to its end: samples, energy ledger, mesh,
+    /// frames and checkpoint. Nothing is removed before the channels of sensors lie in a file of their own,
+    /// where they are kept; and the trace goes last, so that after a kill it can be done once more.
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] or [`Error::Trace`] when the trace cannot be read, the disk refuses or a file cannot be removed.
+    /// [`Error::Io`] or [`Error::Trace`] when the trace cannot be read, the disk refuses or a file cannot be
+    /// removed.
     pub fn keep_only(&self, keep: Keep) -> Result<(), Error> {
         if self.keeps_only(keep) {
             return Ok(());

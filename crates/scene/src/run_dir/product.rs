@@ -6,13 +6,14 @@ use super::earlier::Earlier;
 use super::{ENSEMBLE, INFO, UNTOUCHED, files, free_name, reservation};
 use crate::error::Error;
 
-/// Refuses a folder for what a command makes of runs or records, unless it is missing, empty, or holds one of `marks`: names below it
-/// by which the command knows what it wrote itself, and beside which anything may lie.
+/// Refuses a folder for what a command makes of runs or records, unless it is missing, empty, or holds one of
+/// `marks`: names below it by which the command knows what it wrote itself, and beside which anything may
+/// lie.
 ///
 /// # Errors
 ///
-/// [`Error::FolderHoldsRun`] when a run lies there; [`Error::ForeignFolder`] when it holds something else; [`Error::Io`] when it
-/// cannot be read.
+/// [`Error::FolderHoldsRun`] when a run lies there; [`Error::ForeignFolder`] when it holds something else;
+/// [`Error::Io`] when it cannot be read.
 pub fn check_folder(path: &Path, marks: &[&str]) -> Result<(), Error> {
     if !path.exists() {
         return Ok(());

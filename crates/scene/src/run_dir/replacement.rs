@@ -1,4 +1,5 @@
-//! A run that takes the place of another one, once it is complete. Until then it lies beside it, in `NAME.new`.
+//! A run that takes the place of another one, once it is complete. Until then it lies beside it, in
+//! `NAME.new`.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! A folder that is kept for one run: made when it is missing, locked against other processes, and taken away again when
-//! the run never starts.
+//! A folder that is kept for one run: made when it is missing, locked against other processes, and taken away
+//! again when the run never starts.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
@@ -78,7 +78,8 @@ impl Reservation {
         self.state().started
     }
 
-    /// When the run has not begun, takes away what was made for it and calls `end`; the run cannot begin meanwhile.
+    /// When the run has not begun, takes away what was made for it and calls `end`; the run cannot begin
+    /// meanwhile.
     pub fn unless_started(&self, end: impl FnOnce()) {
         let mut state = self.state();
         if !state.started {

@@ -28,7 +28,10 @@ impl Run {
         let wanted = self.info.samples;
         let short = |(name, found): (&str, usize)| {
             (found < wanted).then(|| {
-                format!("`{name}` holds {found} of the {wanted} samples that the run wrote: it was cut off. Restore it, or repeat the run")
+                format!(
+                    "`{name}` holds {found} of the {wanted} samples that the run wrote: it was cut off. \
+                    Restore it, or repeat the run"
+                )
             })
         };
         [(TRACE, self.trace.len()), (ENERGY, self.energy.len())].into_iter().filter_map(short).collect()
@@ -47,8 +50,8 @@ impl Run {
         Err(Error::OtherScene { path: path.to_owned(), found, expected: expected.clone() })
     }
 
-    /// Reads the run in the folder `path`, also one that was interrupted, killed or is still going. Its samples stay on disk until
-    /// they are asked for.
+    /// Reads the run in the folder `path`, also one that was interrupted, killed or is still going. Its
+    /// samples stay on disk until they are asked for.
     ///
     /// # Errors
     ///

@@ -1,4 +1,5 @@
-//! What a scene means: ranges first, then what must fit together. Every value that is proposed has been tried.
+//! What a scene means: ranges first, then what must fit together. Every value that is proposed has been
+//! tried.
 
 use super::finding::{Finding, Proposal};
 use super::origin::Origin;
@@ -32,7 +33,8 @@ fn findings(scene: &Scene) -> Vec<Finding> {
     found
 }
 
-/// The finding with at most one value in each remedy: the one that leaves fewest of those `found`, this one not.
+/// The finding with at most one value in each remedy: the one that leaves fewest of those `found`, this one
+/// not.
 fn tried(finding: &Finding, found: &[Finding], scene: &Scene, schema: &Schema) -> Finding {
     let mut finding = finding.clone();
     let this = finding.clone();
@@ -47,7 +49,8 @@ fn tried(finding: &Finding, found: &[Finding], scene: &Scene, schema: &Schema) -
     finding
 }
 
-/// How many findings are left with the override `argument`; `None` when `finding` is among them, or a new one.
+/// How many findings are left with the override `argument`; `None` when `finding` is among them, or a new
+/// one.
 fn left_by(argument: &str, finding: &Finding, found: &[Finding], scene: &Scene) -> Option<usize> {
     let (repaired, _) = overrides::apply(scene.clone(), &[argument]).ok()?;
     let left = findings(&repaired);

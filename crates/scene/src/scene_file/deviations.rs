@@ -1,4 +1,5 @@
-//! Deviations from round that a mesh can follow: as long as several facets, and no steeper than its cells can lean.
+//! Deviations from round that a mesh can follow: as long as several facets, and no steeper than its cells can
+//! lean.
 
 use std::f64::consts::PI;
 
@@ -24,7 +25,8 @@ const WAVE_FACETS: f64 = 6.0;
 const OF_RACEWAY: f64 = 0.5;
 const OF_ROLLER: f64 = 0.25;
 
-/// Facets between two spalls, between a groove and any defect, and between two grooves, whose walls take facets too.
+/// Facets between two spalls, between a groove and any defect, and between two grooves, whose walls take
+/// facets too.
 const BESIDE_SPALL: f64 = 2.0;
 const BESIDE_GROOVE: f64 = 10.0;
 const BETWEEN_GROOVES: f64 = 20.0;
@@ -33,7 +35,8 @@ const BETWEEN_GROOVES: f64 = 20.0;
 const OF_THICKNESS: f64 = 0.3;
 const OF_RADIUS: f64 = 0.15;
 
-/// Steepest part of the dent's hollow and of its rim, in depths over half its length and heights over the same.
+/// Steepest part of the dent's hollow and of its rim, in depths over half its length and heights over the
+/// same.
 const HOLLOW_SLOPE: f64 = 1.54;
 const RIM_SLOPE: f64 = 3.08;
 
@@ -395,7 +398,8 @@ impl<'a> Checked<'a> {
         let path = self.path("form");
         (widest >= 180.0).then(|| {
             let message = format!(
-                "`{path}` is `missing`: the {} rollers that are left leave {widest:.0}° without one, and a ring falls through 180°",
+                "`{path}` is `missing`: the {} rollers that are left leave {widest:.0}° without one, and a \
+                 ring falls through 180°",
                 left.len()
             );
             Finding::new(message, vec![Remedy::new("defects", "fewer neighbours that are missing")])
@@ -437,7 +441,8 @@ impl<'a> Checked<'a> {
             }
             let path = self.path("angle_deg");
             let message = format!(
-                "`defects[{}]` lies {apart:.2} mm from `defects[{other}]`, middle to middle, and needs {needed:.2} mm: lengths and \
+                "`defects[{}]` lies {apart:.2} mm from `defects[{other}]`, middle to middle, and needs \
+                 {needed:.2} mm: lengths and \
                  {} facets",
                 self.index,
                 number(facets)
@@ -466,7 +471,8 @@ impl<'a> Checked<'a> {
             return None;
         }
         let message = format!(
-            "`film` is there, and `defects[{}]` lies on {}: oil knows round rollers, and raceways that slope by {:.0}° at most \
+            "`film` is there, and `defects[{}]` lies on {}: oil knows round rollers, and raceways that slope \
+             by {:.0}° at most \
              without kinks, but for walls at right angles{}",
             self.index,
             self.surface(),
@@ -509,7 +515,8 @@ impl<'a> Checked<'a> {
         }
         let path = self.path("angle_deg");
         let message = format!(
-            "`defects[{}]` lies {:.2} mm from `defect`, middle to middle, and needs {:.2} mm: lengths and {} facets",
+            "`defects[{}]` lies {:.2} mm from `defect`, middle to middle, and needs {:.2} mm: lengths and {} \
+             facets",
             self.index,
             apart,
             needed,

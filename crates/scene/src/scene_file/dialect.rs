@@ -23,8 +23,9 @@ impl Scene {
 
     /// Name of the scene's content: FNV-1a, 64 bits, of [`Scene::to_ron`], 16 hexadecimal digits.
     ///
-    /// Two files with the same fields have the same hash, whatever their comments and omitted defaults. A field that came
-    /// after the first scenes counts where it is used: their hashes stay, and so do their runs and checkpoints.
+    /// Two files with the same fields have the same hash, whatever their comments and omitted defaults. A
+    /// field that came after the first scenes counts where it is used: their hashes stay, and so do their
+    /// runs and checkpoints.
     pub fn hash(&self) -> String {
         const LATER: [&str; 12] = [
             "defects: [],",

@@ -1,5 +1,5 @@
-//! How large a run may be: elements that fit the bodies in a number that fits a computer, samples that fit a disk; and bands
-//! and lists that hold something.
+//! How large a run may be: elements that fit the bodies in a number that fits a computer, samples that fit a
+//! disk; and bands and lists that hold something.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,8 @@ use crate::scene::{DefectRing, ModelScene, ProfileScene, Scene, Start};
 
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
 const MAX_ELEMENTS: f64 = 2e7;
-/// Rows of a trace: an hour at 100 kHz, and some more. With 24 rollers ten million are 19 GB; `stribeck plan` says it before.
+/// Rows of a trace: an hour at 100 kHz, and some more. With 24 rollers ten million are 19 GB; `stribeck plan`
+/// says it before.
 const MAX_SAMPLES: f64 = 4e8;
 
 /// Upper over lower end of the narrowest band of structural damping.
@@ -22,8 +23,8 @@ const NARROWEST_BAND: f64 = 2.0;
 /// A vertex is a corner when it turns by this angle [°] …
 const CORNER_DEG: f64 = 20.1;
 
-/// … and an edge of a defect turns by its slope less half of what the raceway turns from facet to facet, up to a few degrees. None
-/// slopes less under oil [°].
+/// … and an edge of a defect turns by its slope less half of what the raceway turns from facet to facet, up
+/// to a few degrees. None slopes less under oil [°].
 const LEAST_EDGE_DEG: f64 = 22.0;
 
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";
@@ -113,7 +114,8 @@ fn too_many_elements(scene: &Scene) -> Option<Finding> {
     if total <= MAX_ELEMENTS {
         return None;
     }
-    // Four parts share the elements. Those of a disc grow with the square of its facets, those of a ring with the facets.
+    // Four parts share the elements. Those of a disc grow with the square of its facets, those of a ring with
+    // the facets.
     let excess = most / (MAX_ELEMENTS / 4.0);
     let b = &scene.bearing;
     let allowed = format!("at most {} elements in all bodies", number(MAX_ELEMENTS));
@@ -145,7 +147,8 @@ fn too_many_elements(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(message, remedies))
 }
 
-/// Roughly how many elements each field asks for. In floating point: a slip may ask for more than any integer.
+/// Roughly how many elements each field asks for. In floating point: a slip may ask for more than any
+/// integer.
 fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
     let (b, mesh) = (&scene.bearing, &scene.mesh);
     let layers = |thickness: f64| (thickness / mesh.size_mm).max(1.0);
@@ -211,7 +214,8 @@ fn too_few_samples(scene: &Scene) -> Option<Finding> {
     ))
 }
 
-/// Oil ends at the edges of a defect: walls that a surface turns into more gently are no end, and a film would lie across them.
+/// Oil ends at the edges of a defect: walls that a surface turns into more gently are no end, and a film
+/// would lie across them.
 fn oiled_edges(scene: &Scene) -> Option<Finding> {
     scene.film.as_ref()?;
     let defect = scene.defect.as_ref()?;
@@ -225,7 +229,8 @@ fn oiled_edges(scene: &Scene) -> Option<Finding> {
         return None;
     }
     let message = format!(
-        "`film` is there, and the edges of `defect` slope by {}°: oil knows edges of {least}° or more on facets of {} mm",
+        "`film` is there, and the edges of `defect` slope by {}°: oil knows edges of {least}° or more on \
+         facets of {} mm",
         number(defect.edge_slope_deg),
         number(facet)
     );
@@ -315,7 +320,8 @@ fn load_profile(scene: &Scene) -> Option<Finding> {
     profile(LOAD_PROFILE, o.load_profile.as_ref()?, ("operation.load_n", o.load_n))
 }
 
-/// Pictures that begin before they end. Those of a bearing by its name end with the run, however early, and the reduced model has none.
+/// Pictures that begin before they end. Those of a bearing by its name end with the run, however early, and
+/// the reduced model has none.
 fn frames(scene: &Scene) -> Option<Finding> {
     let frames = scene.output.frames.as_ref().filter(|_| scene.model == ModelScene::Full)?;
     if frames.from_ms <= frames.to_ms || frames.to_ms == scene.solver.duration_ms {
@@ -334,7 +340,8 @@ fn frames(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(message, remedies))
 }
 
-/// A profile with a beginning, an end and values that its field may have; `field` has the name and the value of the latter.
+/// A profile with a beginning, an end and values that its field may have; `field` has the name and the value
+/// of the latter.
 fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Option<Finding> {
     match profile {
         ProfileScene::Ramp(ramp) if ramp.to_ms <= ramp.from_ms => {
@@ -389,8 +396,8 @@ fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Op
     }
 }
 
-/// A rotating load that does not lift an adapter, which lies on its ring. Any other housing surrounds the ring and pulls it along; the
-/// run then only needs a load that presses at its start.
+/// A rotating load that does not lift an adapter, which lies on its ring. Any other housing surrounds the
+/// ring and pulls it along; the run then only needs a load that presses at its start.
 fn rotating_load(scene: &Scene) -> Option<Finding> {
     const FORCE: &str = "operation.rotating_load.force_n";
     let rotating = scene.operation.rotating_load.as_ref()?;
@@ -421,7 +428,8 @@ fn rotating_load(scene: &Scene) -> Option<Finding> {
     (start <= 0.0).then(|| {
         const ANGLE: &str = "operation.rotating_load.angle_deg";
         let message = format!(
-            "`{ANGLE}` is {}: with {FORCE} = {} the load at the start comes to {} N, and a run starts under a load that presses",
+            "`{ANGLE}` is {}: with {FORCE} = {} the load at the start comes to {} N, and a run starts under \
+             a load that presses",
             number(rotating.angle_deg),
             number(rotating.force_n),
             number(start)

@@ -45,7 +45,8 @@ pub(crate) fn other_format(text: &str) -> Option<Habit> {
     habit("YAML, or RON without its outer brackets", how)
 }
 
-/// The first line that says something, and where it begins. Comments of YAML and TOML are passed over where more follows.
+/// The first line that says something, and where it begins. Comments of YAML and TOML are passed over where
+/// more follows.
 fn first_line(text: &str) -> Option<(usize, &str)> {
     let mut comment = None;
     let mut at = 0;
@@ -78,7 +79,8 @@ fn one_value(text: &str) -> String {
     super::wording::shown(&if word { format!("{value:?}") } else { value.to_owned() })
 }
 
-/// A decimal comma where reading stopped, at the byte `at`: the field, its whole value, and the value with a point.
+/// A decimal comma where reading stopped, at the byte `at`: the field, its whole value, and the value with a
+/// point.
 pub(crate) fn decimal_comma<'a>(text: &str, outline: &'a Outline, at: usize) -> Option<(&'a Entry, Habit)> {
     let entry = outline.entries.iter().rfind(|entry| entry.value.end <= at && entry.key != entry.value)?;
     let end = comma_number(&text[entry.value.start..])? + entry.value.start;

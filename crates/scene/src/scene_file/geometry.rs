@@ -1,5 +1,6 @@
-//! Bodies that cannot exist: rollers that overlap the rings or each other, a cage outside its gap, a defect deeper than
-//! the ring. Each relation says for every field in it what the field may be while the others stay.
+//! Bodies that cannot exist: rollers that overlap the rings or each other, a cage outside its gap, a defect
+//! deeper than the ring. Each relation says for every field in it what the field may be while the others
+//! stay.
 
 use std::f64::consts::PI;
 
@@ -24,7 +25,8 @@ const MAX_PRELOAD_RATIO: f64 = 0.005;
 const USUAL_CLEARANCE_RATIO: f64 = 0.002;
 /// Below the floor of a defect this part of the ring must be left to carry the load.
 pub(super) const MAX_DEFECT_DEPTH_RATIO: f64 = 0.6;
-/// Widest edge of a defect in facets, each edge being one, and as a part of the defect's length (`stribeck_mesh::Groove`).
+/// Widest edge of a defect in facets, each edge being one, and as a part of the defect's length
+/// (`stribeck_mesh::Groove`).
 const WIDEST_WALL: f64 = 2.0;
 const WALL_OF_LENGTH: f64 = 0.4;
 /// Width of the paper's adapter over the outside diameter of its outer ring.
@@ -145,7 +147,8 @@ fn clearance_change(scene: &Scene) -> Option<Finding> {
         return None;
     }
     let message = format!(
-        "`{CHANGE}` is {}, which leaves a clearance of {:.0} µm: between {:.0} µm ({} % of the roller's diameter) and {:.0} µm ({} %) is \
+        "`{CHANGE}` is {}, which leaves a clearance of {:.0} µm: between {:.0} µm ({} % of the roller's \
+         diameter) and {:.0} µm ({} %) is \
          expected of fits and temperature",
         number(b.clearance_change_um),
         1e3 * clearance,
@@ -328,7 +331,8 @@ fn pockets_miss(cage: &CageScene, roller: f64, pitch: f64) -> Finding {
     let (outer, inner) = diameters(cage);
     let pocket = roller + 2e-3 * cage.pocket_clearance_um;
     let message = format!(
-        "the pockets, {} mm wide on the pitch circle of diameter {} mm, do not cut through the cage, whose diameters \
+        "the pockets, {} mm wide on the pitch circle of diameter {} mm, do not cut through the cage, whose \
+         diameters \
          are {} and {} mm",
         number(pocket),
         number(pitch),
@@ -385,7 +389,8 @@ fn places(scene: &Scene) -> Option<Finding> {
     let worst = (0..rollers).max_by(farthest).filter(|&i| offsets[i].abs() > clearance)?;
     let path = format!("{OFFSETS}[{worst}]");
     let message = format!(
-        "`{path}` is {}: roller {} would start in the wall of its pocket, which leaves it {} µm to either side",
+        "`{path}` is {}: roller {} would start in the wall of its pocket, which leaves it {} µm to either \
+         side",
         number(offsets[worst]),
         worst + 1,
         number(clearance)
@@ -416,7 +421,8 @@ fn largest(high: f64, fits: impl Fn(f64) -> bool) -> f64 {
     low
 }
 
-/// Largest half angle [rad] that a pocket cuts out of the ring between two radii; `None` when it misses a surface.
+/// Largest half angle [rad] that a pocket cuts out of the ring between two radii; `None` when it misses a
+/// surface.
 fn widest_pocket(inner: f64, outer: f64, pitch_radius: f64, pocket: f64) -> Option<f64> {
     let half_angle = |r: f64| {
         let cosine = (r * r + pitch_radius * pitch_radius - pocket * pocket) / (2.0 * r * pitch_radius);
@@ -495,7 +501,8 @@ fn defect_length(scene: &Scene) -> Option<Finding> {
     }
     let what = if length >= around { "the whole raceway" } else { "any load zone" };
     let message = format!(
-        "the defect, {} mm long, is longer than {what}: the raceway measures {:.1} mm, its loaded half {:.1} mm",
+        "the defect, {} mm long, is longer than {what}: the raceway measures {:.1} mm, its loaded half {:.1} \
+         mm",
         number(length),
         around,
         around / 2.0
@@ -528,7 +535,8 @@ fn defect_edges(scene: &Scene) -> Option<Finding> {
     }
     let steep = round_up((defect.depth_mm / widest).atan().to_degrees(), 1);
     let message = format!(
-        "the edges of the defect, {} mm deep at {}°, would be {:.3} mm wide; a mesh of {} mm and a defect of {} mm have room for {:.3} mm",
+        "the edges of the defect, {} mm deep at {}°, would be {:.3} mm wide; a mesh of {} mm and a defect of \
+         {} mm have room for {:.3} mm",
         number(defect.depth_mm),
         number(defect.edge_slope_deg),
         wall,

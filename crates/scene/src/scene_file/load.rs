@@ -6,7 +6,8 @@ use std::path::Path;
 use super::problem::{Place, Problem, SceneError};
 use super::suggest;
 
-/// A scene file holds some fifty numbers, and that of a run the mesh of a housing, too; more is something else.
+/// A scene file holds some fifty numbers, and that of a run the mesh of a housing, too; more is something
+/// else.
 const MAX_BYTES: u64 = 8 << 20;
 
 /// The text of the scene file at `path`, refused when it cannot be one.
@@ -50,7 +51,8 @@ fn advice(error: &std::io::Error, path: &Path) -> String {
             None => "check the path, which counts from the present folder".to_owned(),
         },
         ErrorKind::PermissionDenied => {
-            "`ls -l` shows who may read it, and `chmod` changes that for a file of your own; its folders must be \
+            "`ls -l` shows who may read it, and `chmod` changes that for a file of your own; its folders \
+             must be \
              open to you, too"
                 .to_owned()
         }

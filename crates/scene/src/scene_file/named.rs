@@ -1,7 +1,8 @@
-//! `bearing: "NU 205"`: all numbers of a bearing from its designation, and of all that surrounds it unless the file says
-//! otherwise.
+//! `bearing: "NU 205"`: all numbers of a bearing from its designation, and of all that surrounds it unless
+//! the file says otherwise.
 //!
-//! What no catalogue prints follows the paper's bearing in proportion: the mesh has as many facets, contact the same pressure.
+//! What no catalogue prints follows the paper's bearing in proportion: the mesh has as many facets, contact
+//! the same pressure.
 
 use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
@@ -18,8 +19,8 @@ const ROLLER_LENGTH: f64 = 0.6;
 /// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.
 const STRIBECK: f64 = 4.37;
 
-/// The text with a designation in the place of its bearing's numbers blanked out, so that all other places stay, and the
-/// designation.
+/// The text with a designation in the place of its bearing's numbers blanked out, so that all other places
+/// stay, and the designation.
 pub(crate) fn take(text: &str, outline: &Outline) -> Option<(String, String)> {
     let value = outline.get("bearing")?.value.clone();
     let name = designation(&text[value.clone()])?;
@@ -49,14 +50,15 @@ pub(crate) fn designation(value: &str) -> Option<String> {
     (!inner.contains('"')).then(|| inner.to_owned())
 }
 
-/// Room between the outer raceway and a cage with corners, and its thickness, in diameters of a roller: it lies outside of the
-/// pitch circle then, as that of the paper's bearing.
+/// Room between the outer raceway and a cage with corners, and its thickness, in diameters of a roller: it
+/// lies outside of the pitch circle then, as that of the paper's bearing.
 const OFF_RACE: f64 = 0.22;
 
 /// Friction of steel on steel in oil. That of the paper's scene, a tenth of it, lets small bearings skid.
 const FRICTION: f64 = 0.05;
 
-/// Puts the bearing into the scene, and around it what the user did not write; `given` has the paths of what was.
+/// Puts the bearing into the scene, and around it what the user did not write; `given` has the paths of what
+/// was.
 ///
 /// # Errors
 /// Words on what is not known of the bearing, or why a plane model has no such bearing.
@@ -70,7 +72,11 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         let own = CatalogueBearing::of_scene(&paper);
         let off = [known.diameter_mm - own.diameter_mm, known.pitch_mm - own.pitch_mm, known.angle_deg];
         if off.iter().any(|off| off.abs() > 1e-6) {
-            return Err("the paper's bearing takes `elements` beside its name; give other diameters as fields of `bearing`".into());
+            return Err(
+                "the paper's bearing takes `elements` beside its name; give other diameters as fields \
+                of `bearing`"
+                    .into(),
+            );
         }
         scene.bearing.rollers = known.elements.map_or(paper.bearing.rollers, |n| n as usize);
         return Ok(());
@@ -93,7 +99,8 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         if !given("cage.pocket") {
             cage.pocket = PocketWalls::Corners;
         }
-        // Corners hold a cage across where they touch rollers above their middles, straight walls where they reach to both sides.
+        // Corners hold a cage across where they touch rollers above their middles, straight walls where they
+        // reach to both sides.
         let [outer, thick] = match cage.pocket {
             PocketWalls::Corners => [bearing.outer_race_diameter_mm - OFF_RACE * roller, OFF_RACE * roller],
             PocketWalls::Straight => [known.pitch_mm + 0.4 * roller, 0.4 * roller],
@@ -161,7 +168,8 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
     let name = &known.name;
     if known.angle_deg != 0.0 {
         return Err(format!(
-            "`{name}` has a contact angle of {}°, and a plane model has none: its rows share the load along the shaft, too",
+            "`{name}` has a contact angle of {}°, and a plane model has none: its rows share the load along \
+             the shaft, too",
             known.angle_deg
         ));
     }
@@ -170,8 +178,8 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
     };
     let (ball, pitch) = (known.diameter_mm, known.pitch_mm);
     let clearance = clearance_mm(known.element, bore_mm);
-    // Rings are as far apart as the catalogue says; the clearance is taken from the rollers, or from the groove of the outer
-    // ring.
+    // Rings are as far apart as the catalogue says; the clearance is taken from the rollers, or from the
+    // groove of the outer ring.
     let (roller, outer) = match known.element {
         Element::Roller => (ball - 0.5 * clearance, pitch + ball),
         Element::Ball => (ball, pitch + ball + clearance),
@@ -207,7 +215,8 @@ fn clearance_mm(element: Element, bore_mm: f64) -> f64 {
     1e-3 * um
 }
 
-/// Length of cylinders [mm] that let the raceways approach each other at the most loaded place as balls would (THEORY §6.2).
+/// Length of cylinders [mm] that let the raceways approach each other at the most loaded place as balls would
+/// (THEORY §6.2).
 fn thickness_of_balls(scene: &Scene) -> f64 {
     let g = scene.resolve();
     let load = STRIBECK * g.load / g.rollers as f64;

@@ -1,5 +1,5 @@
-//! Who wrote a field: a line of the file, an argument of the command line, or nobody (a default); and so, who is to blame
-//! where several fields do not go together.
+//! Who wrote a field: a line of the file, an argument of the command line, or nobody (a default); and so, who
+//! is to blame where several fields do not go together.
 
 use super::finding::{Finding, Proposal};
 use super::outline::Outline;
@@ -20,8 +20,8 @@ impl Override {
         command_line(&self.argument, self.value_start(), self.argument.len())
     }
 
-    /// The value of the field `rest` inside this override's value (empty: the whole); `None` where it is left out. The name
-    /// of a bearing gives all of its fields.
+    /// The value of the field `rest` inside this override's value (empty: the whole); `None` where it is left
+    /// out. The name of a bearing gives all of its fields.
     fn place_of(&self, rest: &str) -> Option<Place> {
         let from = self.value_start();
         if rest.is_empty() || self.path == "bearing" && !self.argument[from..].contains('(') {
@@ -63,8 +63,8 @@ impl<'a> Origin<'a> {
 
     /// Blames one field of a finding, and proposes the first value of its remedy.
     ///
-    /// The command line was written last, and a default by nobody: what was written later is blamed first, and among
-    /// equals the likeliest culprit that one value can repair.
+    /// The command line was written last, and a default by nobody: what was written later is blamed first,
+    /// and among equals the likeliest culprit that one value can repair.
     pub(crate) fn problem(&self, finding: Finding) -> Problem {
         let mut candidates: Vec<Candidate> = Vec::with_capacity(finding.remedies.len());
         for remedy in finding.remedies {

@@ -1,8 +1,8 @@
 //! Where each field of a RON text stands: `bearing.rollers` → byte range of its key and of its value.
 //!
-//! RON reports the place of a syntax error but forgets the place of a value that it accepted, so an error of meaning
-//! (a negative diameter) could not be underlined. This scanner remembers. It is tolerant: on a broken text it keeps
-//! what it has understood so far, and it never fails.
+//! RON reports the place of a syntax error but forgets the place of a value that it accepted, so an error of
+//! meaning (a negative diameter) could not be underlined. This scanner remembers. It is tolerant: on a broken
+//! text it keeps what it has understood so far, and it never fails.
 
 use std::ops::Range;
 
@@ -220,7 +220,8 @@ impl<'a> Scanner<'a> {
                 let value = self.value(&field, depth + 1)?;
                 self.entries.push(Entry { path: field, key, value });
             } else {
-                // The inside of `Some(…)` is the field itself, so it keeps the path and is not an entry of its own.
+                // The inside of `Some(…)` is the field itself, so it keeps the path and is not an entry of
+                // its own.
                 self.value(path, depth + 1)?;
             }
             self.separator(')')?;

@@ -1,7 +1,7 @@
 //! `--set field.path=value`: writes one value into the text of the complete scene and reads that text again.
 //!
-//! Working on the text keeps RON's own rules for enums, options and numbers: an override means exactly what the same
-//! words would mean in the file.
+//! Working on the text keeps RON's own rules for enums, options and numbers: an override means exactly what
+//! the same words would mean in the file.
 
 use super::limits::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::origin::{Override, command_line};
@@ -30,9 +30,9 @@ pub(crate) fn apply<S: AsRef<str>>(
     Ok((scene, set))
 }
 
-/// Those of `arguments` whose value no reading of their field takes: words that are not its words, numbers of another type,
-/// names of no bearing. The others are applied as far as they go, so each value meets the scene that it is written for. What
-/// a value means, and whether it goes together with others, is not looked at.
+/// Those of `arguments` whose value no reading of their field takes: words that are not its words, numbers of
+/// another type, names of no bearing. The others are applied as far as they go, so each value meets the scene
+/// that it is written for. What a value means, and whether it goes together with others, is not looked at.
 pub(crate) fn unreadable_values<S: AsRef<str>>(mut scene: Scene, arguments: &[S]) -> Vec<(usize, Problem)> {
     let schema = Schema::new();
     let given = named::written_by(arguments);
@@ -47,7 +47,8 @@ pub(crate) fn unreadable_values<S: AsRef<str>>(mut scene: Scene, arguments: &[S]
     unreadable
 }
 
-/// Whether an argument that the scene refuses names a field of it and no bearing that is known: its value is to blame.
+/// Whether an argument that the scene refuses names a field of it and no bearing that is known: its value is
+/// to blame.
 fn is_of_value(scene: &Scene, argument: &str, schema: &Schema) -> bool {
     let Some((path, value)) = argument.split_once('=') else { return false };
     let path = path.trim();
@@ -181,7 +182,8 @@ pub(crate) fn known(
     Err(problem)
 }
 
-/// Whether `path` is a field that an item of a list may have in the form that it has, and that its text leaves out.
+/// Whether `path` is a field that an item of a list may have in the form that it has, and that its text
+/// leaves out.
 fn absent_in_its_form(path: &str, schema: &Schema, text: &str, outline: &Outline) -> bool {
     let form = || {
         let (group, name) = path.rsplit_once('.').filter(|(group, _)| group.contains('['))?;

@@ -3,7 +3,8 @@
 use std::fmt;
 use std::ops::Range;
 
-/// Source lines are shown up to this many characters around the mark, so that a one-line megabyte stays readable.
+/// Source lines are shown up to this many characters around the mark, so that a one-line megabyte stays
+/// readable.
 const SHOWN_WIDTH: usize = 110;
 
 /// Everything that is wrong with a scene. Displays as one underlined excerpt per problem.
@@ -115,7 +116,8 @@ impl Problem {
         }
     }
 
-    /// The same problem with a value that stands at `place` by itself, without the name of its field. No `--set` removes it there.
+    /// The same problem with a value that stands at `place` by itself, without the name of its field. No
+    /// `--set` removes it there.
     pub(crate) fn of_value_at(mut self, place: Place) -> Self {
         if let Some((field, value)) = self.repair.take().as_deref().and_then(|repair| repair.split_once('='))
             && let Some(note) = self.suggestion.strip_prefix(&format!("--set {}", for_a_shell(field, value)))

@@ -37,7 +37,8 @@ fn walls(scene: &Scene, ring: DefectRing, field: &str) -> Option<Finding> {
         (path.clone(), Remedy::new(format!("{path}.form.edge"), "`sloped` or `rounded`").value("sloped", ""))
     };
     let message = format!(
-        "`{path}` has steep walls on a ring whose mesh is that of `{field}.file`: such a spall has to be in the file{or}"
+        "`{path}` has steep walls on a ring whose mesh is that of `{field}.file`: such a spall has to be in \
+         the file{or}"
     );
     Some(Finding::new(message, vec![remedy, generated(field)]))
 }
@@ -61,7 +62,8 @@ fn clearance(scene: &Scene, ring: DefectRing, field: &str) -> Option<Finding> {
         return None;
     }
     let message = format!(
-        "`bearing.clearance_change_um` is {}, and the inner raceway is that of `{field}.file`: let the file have it",
+        "`bearing.clearance_change_um` is {}, and the inner raceway is that of `{field}.file`: let the file \
+         have it",
         number(change)
     );
     let remedy = Remedy::new("bearing.clearance_change_um", "0").number(0.0, "as in the file");

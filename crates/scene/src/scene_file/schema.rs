@@ -24,7 +24,8 @@ const OPTIONAL_GROUPS: [&str; 9] = [
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
-    /// A scene with everything, and one for each further form of the housing: a field is looked for in their order.
+    /// A scene with everything, and one for each further form of the housing: a field is looked for in their
+    /// order.
     scenes: Vec<Complete>,
 }
 
@@ -109,8 +110,8 @@ impl Schema {
         Some(&text[value])
     }
 
-    /// The field `name` of the group behind `word` at `path`: the scene that has such a group, the field's path there and its
-    /// value.
+    /// The field `name` of the group behind `word` at `path`: the scene that has such a group, the field's
+    /// path there and its value.
     pub(crate) fn behind(&self, path: &str, word: &str, name: &str) -> Option<(&Scene, String, &str)> {
         let path = &first_item(path);
         let groups: Vec<String> =

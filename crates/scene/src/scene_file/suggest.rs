@@ -1,12 +1,13 @@
-//! What the user may have meant: the nearest name, the missing or other unit, the section where a name belongs.
+//! What the user may have meant: the nearest name, the missing or other unit, the section where a name
+//! belongs.
 
 use super::wording::number;
 
 /// Names closer than this (Jaro–Winkler, 1 is equal) are worth proposing.
 const NEAR: f64 = 0.80;
 
-/// A word of this many letters with one of them wrong, too many, missing or in the place of its neighbour is worth proposing, too;
-/// the measure of likeness sees little in common in short words.
+/// A word of this many letters with one of them wrong, too many, missing or in the place of its neighbour is
+/// worth proposing, too; the measure of likeness sees little in common in short words.
 const SLIP: usize = 3;
 
 /// A part of a name has as many letters at least.
@@ -88,7 +89,8 @@ pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> Option<Stri
             _ => format!("did you mean `{name}`?"),
         });
     }
-    // `roller_count` for `rollers` is near; so is `diameter` inside `roller_diameter_mm`, once the unit is off.
+    // `roller_count` for `rollers` is near; so is `diameter` inside `roller_diameter_mm`, once the unit is
+    // off.
     if let Some(name) = nearest(found, siblings) {
         return Some(format!("did you mean `{name}`?"));
     }

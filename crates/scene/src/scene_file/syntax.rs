@@ -11,8 +11,8 @@ use super::{foreign, limits, suggest};
 use crate::catalogue::CatalogueBearing;
 use crate::scene::Scene;
 
-/// Reads the types of a scene; its meaning is checked later. `written` is what the user wrote, in which all places are those of
-/// `text`.
+/// Reads the types of a scene; its meaning is checked later. `written` is what the user wrote, in which all
+/// places are those of `text`.
 pub(crate) fn parse(text: &str, written: &str, file: &str) -> Result<Scene, SceneError> {
     deserialize(text).map_err(|fault| {
         let place = place_in_file(file, written, fault.range.clone());

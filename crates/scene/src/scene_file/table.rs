@@ -1,5 +1,5 @@
-//! Profiles from CSV files, and meshes of housings and rings: a scene that was read holds what is in them, so that a run holds all of its
-//! scene.
+//! Profiles from CSV files, and meshes of housings and rings: a scene that was read holds what is in them, so
+//! that a run holds all of its scene.
 //!
 //! ```text
 //! time_ms, value
@@ -7,8 +7,8 @@
 //! 100,     1500
 //! ```
 //!
-//! The first line names the columns, of which two are read: `time_ms` and `value` of a speed or a load, `position_mm` and
-//! `depth_um` of a surface. What follows a `#` is a comment.
+//! The first line names the columns, of which two are read: `time_ms` and `value` of a speed or a load,
+//! `position_mm` and `depth_um` of a surface. What follows a `#` is a comment.
 
 use std::fs::File;
 use std::io::Read;

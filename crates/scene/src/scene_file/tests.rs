@@ -84,12 +84,13 @@ fn example_the_hash_is_fnv_1a_of_the_content() {
 
 #[test]
 fn example_a_later_field_changes_the_hash_only_where_it_is_used() {
-    // The hash of the paper's scene before there was stiffness damping, with what were defaults then: a field that it does not
-    // use leaves it alone.
+    // The hash of the paper's scene before there was stiffness damping, with what were defaults then: a field
+    // that it does not use leaves it alone.
     const FIRST: &str = "d300e82243b85717";
     let hash = |pocket: &str, film: &str, structural: &str, more: &str| {
         let scene = format!(
-            "(mesh: (roller_copies: translated), cage: (pocket: {pocket}), film: {film}, solver: (time_step_factor: 0.95, \
+            "(mesh: (roller_copies: translated), cage: (pocket: {pocket}), film: {film}, solver: \
+             (time_step_factor: 0.95, \
              mass_damping_per_s: 5000.0, structural_damping: {structural}, {more}))"
         );
         parse(&scene).expect("valid").hash()
@@ -244,8 +245,8 @@ fn refuses_overlapping_bodies_with_numbers() {
 
 #[test]
 fn refuses_more_rollers_than_fit_the_pitch_circle() {
-    // 2 asin(18 / 181.98) = 11.355°, so 31 rollers touch nowhere and 32 do. A pocket of radius 9.9 mm cuts ±5.85° out of
-    // the cage, more than half of 360° / 31.
+    // 2 asin(18 / 181.98) = 11.355°, so 31 rollers touch nowhere and 32 do. A pocket of radius 9.9 mm cuts
+    // ±5.85° out of the cage, more than half of 360° / 31.
     assert!(parse("(cage: None, bearing: (rollers: 31))").is_ok());
     let problem = only(parse("(cage: None, bearing: (rollers: 32))"));
     assert_eq!(problem.allowed, "at most 31 rollers");
@@ -437,7 +438,8 @@ fn refuses_what_a_ring_from_a_file_leaves_to_the_file() {
             "`defect` has steep walls on a ring whose mesh is that of `outer_ring_mesh.file`",
         ),
         (
-            "film: None, defect: None, defects: [(on: inner, form: spall(edge: rectangular)), (on: outer, form: spall(edge: rectangular))]",
+            "film: None, defect: None, defects: [(on: inner, form: spall(edge: rectangular)), (on: outer, \
+             form: spall(edge: rectangular))]",
             "defects[1].form.edge",
             "`defects[1]` has steep walls",
         ),
@@ -510,7 +512,8 @@ fn refuses_housings_that_do_not_fit() {
         (
             "bearing: (clearance_change_um: -200)",
             "bearing.clearance_change_um",
-            "leaves a clearance of -160 µm: between -90 µm (-0.5 % of the roller's diameter) and 1800 µm (10 %)",
+            "leaves a clearance of -160 µm: between -90 µm (-0.5 % of the roller's diameter) and 1800 µm (10 \
+             %)",
         ),
     ] {
         let problem = only(parse(&format!("({scene})")));
@@ -758,13 +761,15 @@ fn refuses_reduced_scenes_of_what_only_the_full_model_has() {
     }
 }
 
-/// An exciter pulls a housing that surrounds its ring against the load, too; a run only starts under a load that presses.
+/// An exciter pulls a housing that surrounds its ring against the load, too; a run only starts under a load
+/// that presses.
 #[test]
 fn issue_a_rotating_load_beyond_the_static_one_runs_where_nothing_can_lift() {
     let scene = |housing: &str, angle_deg: f64| {
         parse(&format!(
             "(bearing: \"NU 205\", housing: {housing}, defect: None,
-              operation: (load_n: 200, speed_rpm: 1500, rotating_load: (force_n: 3000, angle_deg: {angle_deg})))"
+              operation: (load_n: 200, speed_rpm: 1500, rotating_load: (force_n: 3000, angle_deg: \
+              {angle_deg})))"
         ))
     };
     for housing in ["rigid(mass_kg: 5)", "springs()", "pedestal()"] {

@@ -3,7 +3,8 @@
 /// Longer values are cut.
 const SHOWN: usize = 40;
 
-/// A number with at most nine significant digits, as RON reads it; very large and very small ones with an exponent.
+/// A number with at most nine significant digits, as RON reads it; very large and very small ones with an
+/// exponent.
 pub(crate) fn number(value: f64) -> String {
     let rounded = format!("{value:.8e}").parse::<f64>().unwrap_or(value);
     let plain = rounded == 0.0 || (1e-4..1e7).contains(&rounded.abs()) || !rounded.is_finite();

@@ -1,10 +1,10 @@
-//! Traces of so many channels that their names alone are longer than the header that `numpy.load` reads: the same channels as a
-//! NumPy archive, one array each.
+//! Traces of so many channels that their names alone are longer than the header that `numpy.load` reads: the
+//! same channels as a NumPy archive, one array each.
 //!
-//! The file keeps its name, `trace.npy`. `numpy.load` knows an archive by its first bytes and not by its name, so that
-//! `numpy.load("trace.npy")["roller.50.outer_fy_n"]` is a time history here, too. A run writes rows, as always, and makes the archive
-//! of them when it ends; one that goes on makes rows of it first. Arrays are stored without compression, channel after channel, and
-//! channels are read from where they lie.
+//! The file keeps its name, `trace.npy`. `numpy.load` knows an archive by its first bytes and not by its
+//! name, so that `numpy.load("trace.npy")["roller.50.outer_fy_n"]` is a time history here, too. A run writes
+//! rows, as always, and makes the archive of them when it ends; one that goes on makes rows of it first.
+//! Arrays are stored without compression, channel after channel, and channels are read from where they lie.
 
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
@@ -73,21 +73,22 @@ impl Archive {
     }
 }
 
-/// Writes channels as an archive at `path`, as many at a time as need little memory: `columns` reads the values of some of them.
+/// Writes channels as an archive at `path`, as many at a time as need little memory: `columns` reads the
+/// values of some of them.
 pub(super) fn write(
     path: &Path,
     names: &[String],
     rows: usize,
     columns: impl Fn(&[String]) -> Result<Vec<Vec<f64>>, Error>,
 ) -> Result<(), Error> {
-    let io = |source| {
-        Error::Io {
+    let io = |source| Error::Io {
         action: "write",
         path: path.to_owned(),
-        kept: "The samples stay readable in the rows that they were written in; free some space and continue or repeat the run"
-            .to_owned(),
+        kept:
+            "The samples stay readable in the rows that they were written in; free some space and continue \
+            or repeat the run"
+                .to_owned(),
         source,
-    }
     };
     let zipped = |why: zip::result::ZipError| io(why.into());
     let mut archive = ZipWriter::new(BufWriter::new(File::create(path).map_err(io)?));

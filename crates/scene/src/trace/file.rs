@@ -1,4 +1,5 @@
-//! A trace that stays on disk: its channels are read when they are asked for, also those of a run that was killed.
+//! A trace that stays on disk: its channels are read when they are asked for, also those of a run that was
+//! killed.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
@@ -38,12 +39,13 @@ enum Layout {
 impl TraceFile {
     /// Opens the trace at `path`.
     ///
-    /// The number of rows comes from the file's size, because a killed run leaves a stale number in the header; a last
-    /// row that was not finished is left out.
+    /// The number of rows comes from the file's size, because a killed run leaves a stale number in the
+    /// header; a last row that was not finished is left out.
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] when the file cannot be read; [`Error::Trace`] when its header is cut off or belongs to other data.
+    /// [`Error::Io`] when the file cannot be read; [`Error::Trace`] when its header is cut off or belongs to
+    /// other data.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, Error> {
         let path = path.as_ref().to_owned();
         let io = |source| cannot_read(&path, source);
@@ -127,8 +129,8 @@ impl TraceFile {
         Ok(last.get(name).and_then(|column| column.first().copied()))
     }
 
-    /// The channels that are `wanted`, in file order, over the samples `rows` as far as they are there. One pass over these rows,
-    /// however many channels.
+    /// The channels that are `wanted`, in file order, over the samples `rows` as far as they are there. One
+    /// pass over these rows, however many channels.
     ///
     /// # Errors
     ///
@@ -265,7 +267,8 @@ impl Part {
 fn cannot_read(path: &Path, source: std::io::Error) -> Error {
     let kept = match source.kind() {
         ErrorKind::NotFound => {
-            "Check the path; `stribeck simulate` writes traces, and a campaign with `keep` may have removed them"
+            "Check the path; `stribeck simulate` writes traces, and a campaign with `keep` may have removed \
+             them"
         }
         ErrorKind::PermissionDenied => {
             "The file is there, and you may not read it: ask its owner, or `chmod +r` it"

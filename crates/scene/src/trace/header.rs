@@ -4,16 +4,17 @@
 //! \x93NUMPY 1 0 <length> {'descr': [('time_s', '<f8'), …], 'fortran_order': False, 'shape': (12,), }   …\n
 //! ```
 //!
-//! `numpy.load` refuses headers of more than 10 000 characters. Where the list of pairs is longer, the same record type is
-//! described in its short form, which takes four characters a channel beside the name instead of thirteen:
+//! `numpy.load` refuses headers of more than 10 000 characters. Where the list of pairs is longer, the same
+//! record type is described in its short form, which takes four characters a channel beside the name instead
+//! of thirteen:
 //!
 //! ```text
 //! {'descr': ('V24', {'names':['time_s','x','y'],'formats':'ddd'}), 'fortran_order': False, 'shape': (12,), }
 //! ```
 //!
-//! `numpy.dtype` takes both (*NumPy Reference*, Data type objects: a base type with a new type, and a dictionary of names and
-//! formats, here a sequence of one-letter type codes). Of names that are too long for that, too, no header can be short enough:
-//! see [`archive`](super::archive).
+//! `numpy.dtype` takes both (*NumPy Reference*, Data type objects: a base type with a new type, and a
+//! dictionary of names and formats, here a sequence of one-letter type codes). Of names that are too long for
+//! that, too, no header can be short enough: see [`archive`](super::archive).
 
 use std::collections::HashSet;
 
@@ -52,14 +53,16 @@ fn pairs<S: AsRef<str>>(names: &[S]) -> String {
     format!("[{}]", fields.join(", "))
 }
 
-/// The record type in its short form. The letter `d` is the machine's own double, which is little-endian wherever this program is built.
+/// The record type in its short form. The letter `d` is the machine's own double, which is little-endian
+/// wherever this program is built.
 fn short_form<S: AsRef<str>>(names: &[S]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("'{}'", name.as_ref())).collect();
     let (size, formats) = (8 * names.len(), "d".repeat(names.len()));
     format!("('V{size}', {{'names':[{}],'formats':'{formats}'}})", quoted.join(","))
 }
 
-/// What stands before the number of rows; the prefix of the file [bytes], and the length of the header after it.
+/// What stands before the number of rows; the prefix of the file [bytes], and the length of the header after
+/// it.
 fn layout(descr: &str) -> (String, usize, usize) {
     let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (");
     // The longest tail decides the length; shorter ones are filled with spaces.

@@ -309,7 +309,8 @@ fn invariant_an_archive_is_read_in_parts_as_rows_are() {
     assert_eq!(finite.columns, [&column[..2500]]);
 }
 
-/// A run that ended may go on, whatever form its trace has: an archive, or a header that an earlier version wrote.
+/// A run that ended may go on, whatever form its trace has: an archive, or a header that an earlier version
+/// wrote.
 #[test]
 fn roundtrip_every_form_can_be_continued() {
     let file = File::new();

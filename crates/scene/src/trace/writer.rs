@@ -14,9 +14,10 @@ const COPIED_BYTES: usize = 1 << 24;
 
 /// Appends rows to a `.npy` file.
 ///
-/// Rows go to disk every hundred, first the data and then the number of rows in the header, so that a run which is
-/// killed leaves a file that NumPy opens. Where the names of the channels are too long for a header that `numpy.load` reads,
-/// [`TraceWriter::finish`] makes an archive of the rows; before that they open with a larger `max_header_size`.
+/// Rows go to disk every hundred, first the data and then the number of rows in the header, so that a run
+/// which is killed leaves a file that NumPy opens. Where the names of the channels are too long for a header
+/// that `numpy.load` reads, [`TraceWriter::finish`] makes an archive of the rows; before that they open with
+/// a larger `max_header_size`.
 ///
 /// # Examples
 ///
@@ -50,8 +51,8 @@ impl TraceWriter {
     ///
     /// # Errors
     ///
-    /// [`Error::Trace`] for names that are empty, equal or not printable ASCII; [`Error::Io`] when the file cannot be
-    /// written.
+    /// [`Error::Trace`] for names that are empty, equal or not printable ASCII; [`Error::Io`] when the file
+    /// cannot be written.
     pub fn create<S: AsRef<str>>(path: impl AsRef<Path>, names: &[S]) -> Result<Self, Error> {
         let path = path.as_ref().to_owned();
         let bad = |message| Error::Trace { path: path.clone(), message };
@@ -77,12 +78,13 @@ impl TraceWriter {
         })
     }
 
-    /// Opens the file of an earlier writer, to go on after its first `rows` rows; what follows them is cut off.
+    /// Opens the file of an earlier writer, to go on after its first `rows` rows; what follows them is cut
+    /// off.
     ///
     /// # Errors
     ///
-    /// [`Error::Trace`] when the file has other channels or fewer rows, and it is then left alone; [`Error::Io`] when it
-    /// cannot be read or written.
+    /// [`Error::Trace`] when the file has other channels or fewer rows, and it is then left alone;
+    /// [`Error::Io`] when it cannot be read or written.
     pub fn resume<S: AsRef<str>>(path: impl AsRef<Path>, names: &[S], rows: u64) -> Result<Self, Error> {
         let path = path.as_ref().to_owned();
         let bad = |message| Error::Trace { path: path.clone(), message };
@@ -111,7 +113,8 @@ impl TraceWriter {
         let held = file.metadata().map_err(io)?.len().saturating_sub(header.len() as u64) / record;
         if held < rows {
             return Err(bad(format!(
-                "it holds {held} samples and the checkpoint counts {rows}: it was cut off. Restore it, or start the run anew"
+                "it holds {held} samples and the checkpoint counts {rows}: it was cut off. Restore it, or \
+                 start the run anew"
             )));
         }
         file.set_len(header.len() as u64 + rows * record).map_err(io)?;
@@ -143,8 +146,8 @@ impl TraceWriter {
     ///
     /// # Errors
     ///
-    /// [`Error::Trace`] when the number of values is not that of the channels; [`Error::Io`] when the disk refuses, with
-    /// the number of rows that are safe.
+    /// [`Error::Trace`] when the number of values is not that of the channels; [`Error::Io`] when the disk
+    /// refuses, with the number of rows that are safe.
     pub fn push(&mut self, row: &[f64]) -> Result<(), Error> {
         if row.len() != self.names.len() {
             let message =
@@ -164,7 +167,8 @@ impl TraceWriter {
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] when the disk refuses, with the number of rows that are safe. After a failure nothing more is written.
+    /// [`Error::Io`] when the disk refuses, with the number of rows that are safe. After a failure nothing
+    /// more is written.
     pub fn flush(&mut self) -> Result<(), Error> {
         let written = self.write_pending();
         self.told(written)
@@ -177,7 +181,8 @@ impl TraceWriter {
             action: "write",
             path: self.path.clone(),
             kept: format!(
-                "The first {} rows stay readable; free some space, then continue the run from its checkpoint or repeat it",
+                "The first {} rows stay readable; free some space, then continue the run from its checkpoint \
+                 or repeat it",
                 self.rows_on_disk
             ),
             source,
@@ -237,11 +242,13 @@ impl TraceWriter {
 }
 
 impl TraceFile {
-    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little memory.
+    /// Writes the channels that are `wanted` to a trace at `path`, as many samples at a time as need little
+    /// memory.
     ///
     /// # Errors
     ///
-    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is wanted.
+    /// [`Error::Io`] when the file cannot be read or the disk refuses; [`Error::Trace`] when no channel is
+    /// wanted.
     pub fn copy(&self, path: impl AsRef<Path>, wanted: impl Fn(&str) -> bool) -> Result<(), Error> {
         self.rows_to(path, wanted)?.finish()
     }
@@ -284,8 +291,8 @@ fn renamed(from: &Path, to: &Path) -> Result<(), Error> {
     })
 }
 
-/// Makes rows of an archive of these channels, and of rows that stand after a header of another length, so that they can be appended to.
-/// Other files are left alone.
+/// Makes rows of an archive of these channels, and of rows that stand after a header of another length, so
+/// that they can be appended to. Other files are left alone.
 fn rows_again<S: AsRef<str>>(path: &Path, names: &[S], header_length: usize) -> Result<(), Error> {
     let Ok(found) = TraceFile::open(path) else { return Ok(()) };
     let same = found.names().iter().map(String::as_str).eq(names.iter().map(AsRef::as_ref));

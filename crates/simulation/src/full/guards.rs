@@ -10,7 +10,8 @@
 //! | critical time step over that of a square cell | below [`SMALL_STEP`] | |
 //! | the housing's height above the outer ring | | [`OUT_OF_PLACE`] |
 //!
-//! [`System::look`] watches what can go wrong with any bodies in motion and says it in the scene's words ([`arm`]).
+//! [`System::look`] watches what can go wrong with any bodies in motion and says it in the scene's words
+//! ([`arm`]).
 
 use stribeck_bearing::assembly::{Assembly, Machine};
 use stribeck_run::guards::{self, OUT_OF_PLACE, Placed, When};
@@ -53,7 +54,8 @@ impl Guards {
         let (step, critical) = (info.time_step_s, info.critical_time_step_s);
         if step > critical {
             warnings.push(format!(
-                "the time step of {:.2} ns is {:.3} times the critical one: the run may diverge. Take a `solver.time_step_factor` \
+                "the time step of {:.2} ns is {:.3} times the critical one: the run may diverge. Take a \
+                 `solver.time_step_factor` \
                  below 1",
                 1e9 * step,
                 step / critical
@@ -62,12 +64,15 @@ impl Guards {
         let facet = std::f64::consts::PI * scene.written.bearing.roller_diameter_mm
             / scene.written.mesh.roller_facets as f64;
         let size = 1e-3 * scene.written.mesh.size_mm.min(facet);
-        // A regular mesh of squares of side a has ω = (2/a) √((λ + 2µ)/ρ) at most for plane waves along a row.
+        // A regular mesh of squares of side a has ω = (2/a) √((λ + 2µ)/ρ) at most for plane waves along a
+        // row.
         let square = size / steel.dilatational_speed();
         if critical < SMALL_STEP * square {
             warnings.push(format!(
-                "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {:.2} mm: some cell is very small, or the \
-                 contact very stiff, or stiffness damping strong. Look at `defect.depth_mm`, `mesh.roller_facets`, `contact.penalty_scale` and \
+                "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {:.2} mm: \
+                 some cell is very small, or the \
+                 contact very stiff, or stiffness damping strong. Look at `defect.depth_mm`, \
+                 `mesh.roller_facets`, `contact.penalty_scale` and \
                  `solver.stiffness_damping_ns`, or expect a run {:.0} \
                  times as long",
                 1e9 * critical,
@@ -123,7 +128,8 @@ impl Guards {
         let off = housing - ring - self.housing_height?;
         (off.abs() > self.seat).then(|| {
             format!(
-                "the housing has left the outer ring by {:.3} mm {}: take a larger `contact.penalty_scale`, or less \
+                "the housing has left the outer ring by {:.3} mm {}: take a larger `contact.penalty_scale`, \
+                 or less \
                  `operation.load_n`",
                 1e3 * off,
                 When::of(info)

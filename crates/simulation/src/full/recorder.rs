@@ -161,8 +161,8 @@ fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-/// Velocity of a sensor [m/s]: that of its node; for a rigid ring, the ring centre's velocity, because the sensor sits on the
-/// housing.
+/// Velocity of a sensor [m/s]: that of its node; for a rigid ring, the ring centre's velocity, because the
+/// sensor sits on the housing.
 fn velocity(machine: &Machine, node: u32) -> [f64; 2] {
     machine.system.rigid(machine.outer).map_or_else(|| machine.system.velocity(node), |ring| ring.velocity)
 }

@@ -1,4 +1,5 @@
-//! What is watched of a reduced run beside [the guards of all models](stribeck_run::guards): energy and penetration.
+//! What is watched of a reduced run beside [the guards of all models](stribeck_run::guards): energy and
+//! penetration.
 
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
 use stribeck_run::guards::{self, Placed, When};
@@ -29,16 +30,17 @@ impl LedgerError {
         }
     }
 
-    /// Its share of the most that rings and contacts have stored, which is `most` [J], in per cent. Rings in a rigid housing store next to
-    /// nothing, contacts do.
+    /// Its share of the most that rings and contacts have stored, which is `most` [J], in per cent. Rings in
+    /// a rigid housing store next to nothing, contacts do.
     fn percent(&self, most: f64) -> f64 {
         100.0 * self.imbalance / most.max(f64::MIN_POSITIVE)
     }
 
-    /// Whether an imbalance of `percent` of the largest stored energy is a divergence. A run that turns energy into heat for seconds
-    /// accumulates the error of the time step, one or two thousandths of the heat, and in time exceeds any share of the stored energy;
-    /// under a very light load the imbalance is some billionths of the kinetic energy. Neither is a divergence, which exceeds both other
-    /// shares at once.
+    /// Whether an imbalance of `percent` of the largest stored energy is a divergence. A run that turns
+    /// energy into heat for seconds accumulates the error of the time step, one or two thousandths of the
+    /// heat, and in time exceeds any share of the stored energy; under a very light load the imbalance is
+    /// some billionths of the kinetic energy. Neither is a divergence, which exceeds both other shares at
+    /// once.
     fn is_divergence(&self, percent: f64, stop_percent: f64) -> bool {
         let apart = percent > stop_percent && self.of_heat > GATHERED && self.of_motion > OF_MOTION;
         apart || percent.is_nan() || self.of_heat.is_nan()
@@ -59,7 +61,8 @@ impl LedgerError {
 const GATHERED: f64 = 0.01;
 const OF_MOTION: f64 = 1e-6;
 
-/// With fewer modes in a seat none may be among them in which the ring bends: two or three are motions of the whole.
+/// With fewer modes in a seat none may be among them in which the ring bends: two or three are motions of the
+/// whole.
 const FEW_MODES: usize = 5;
 
 /// A cage that strays by more than this share of a roller's radius is not held by its pockets.
@@ -92,19 +95,23 @@ impl Guards {
         let modes = bearing.reduction.modes;
         if bearing.has_seat() && modes < FEW_MODES {
             warnings.push(format!(
-                "only {modes} modes of ring and housing lie below `model.modes_khz`, and the ring may bend in none of them: such runs find no \
+                "only {modes} modes of ring and housing lie below `model.modes_khz`, and the ring may bend \
+                 in none of them: such runs find no \
                  start or gain energy with steps of any length. Take a larger `model.modes_khz`"
             ));
         }
         if scene.written.output.frames.is_some() {
             warnings.push(
-                "no pictures of the stress: the reduced model has no elements beside its modes. `model: full` has them".to_owned(),
+                "no pictures of the stress: the reduced model has no elements beside its modes. `model: \
+                 full` has them"
+                    .to_owned(),
             );
         }
         warnings
     }
 
-    /// Looks at a bearing after a sample, and at the imbalance of its energy: adds warnings to `info`; the reason to stop, if there is one.
+    /// Looks at a bearing after a sample, and at the imbalance of its energy: adds warnings to `info`; the
+    /// reason to stop, if there is one.
     pub(super) fn look(
         &mut self,
         info: &mut RunInfo,
@@ -137,7 +144,8 @@ impl Guards {
         let percent = off.percent(info.guards.stored_j);
         if off.is_divergence(percent, limits.energy_stop_percent) {
             return Some(format!(
-                "energy is off by {percent:.3} % of the most that rings and contacts have stored and {} {when}. {}",
+                "energy is off by {percent:.3} % of the most that rings and contacts have stored and {} \
+                 {when}. {}",
                 off.share_of_heat(),
                 self.advice()
             ));
@@ -145,7 +153,8 @@ impl Guards {
         if percent > limits.energy_warning_percent && !info.guards.energy_warned {
             info.guards.energy_warned = true;
             info.warnings.push(format!(
-                "energy was off by {percent:.3} % of the most that rings and contacts have stored and {} {when}: take a smaller `model.step_us`",
+                "energy was off by {percent:.3} % of the most that rings and contacts have stored and {} \
+                 {when}: take a smaller `model.step_us`",
                 off.share_of_heat()
             ));
         }
@@ -157,13 +166,16 @@ impl Guards {
         let astray = self.placed.cage.map_or(0.0, |[x, y]| x.hypot(y));
         if astray > ASTRAY * self.roller_radius {
             return format!(
-                "The cage has strayed by {:.2} mm, and a wall of a pocket that goes past the middle of its roller lets go of it all at once. \
+                "The cage has strayed by {:.2} mm, and a wall of a pocket that goes past the middle of its \
+                 roller lets go of it all at once. \
                  Nothing holds it there: take {}",
                 1e3 * astray,
                 self.shared.holds_cage()
             );
         }
-        "Take a smaller `model.step_us`, a larger `model.modes_khz`, or `model: full` to see which of the two models is wrong".to_owned()
+        "Take a smaller `model.step_us`, a larger `model.modes_khz`, or `model: full` to see which of the \
+         two models is wrong"
+            .to_owned()
     }
 
     fn penetration(&self, info: &mut RunInfo, share: f64, when: When) -> Option<String> {
@@ -178,7 +190,8 @@ impl Guards {
         }
         (share > stop).then(|| {
             format!(
-                "contact has sunk in by {:.0} % of an element {when}: take a larger `contact.penalty_scale` or less `operation.load_n`",
+                "contact has sunk in by {:.0} % of an element {when}: take a larger `contact.penalty_scale` \
+                 or less `operation.load_n`",
                 100.0 * share
             )
         })
@@ -203,7 +216,8 @@ mod tests {
             ([0.37, 100.0, 0.1], 5e-3, false),
             // 1 N, 0.03 ms: half of what they store, hardly any heat yet.
             ([4e-10, 1e-11, 0.11], 7e-10, false),
-            // 193 N in a rigid housing, 4 ms: a quarter of what the rings store, half a hundredth of what contacts do beside them.
+            // 193 N in a rigid housing, 4 ms: a quarter of what the rings store, half a hundredth of what
+            // contacts do beside them.
             ([8.8e-6, 4.9e-4, 6.2], 1.6e-3, false),
             ([f64::NAN, 1.0, 1.0], 1.0, true),
         ] {

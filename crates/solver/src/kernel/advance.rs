@@ -1,4 +1,5 @@
-//! Moving nodes: central difference, with damping where there is some, and prescribed rotation (THEORY §2.3, §2.6).
+//! Moving nodes: central difference, with damping where there is some, and prescribed rotation (THEORY §2.3,
+//! §2.6).
 
 use std::marker::PhantomData;
 
@@ -32,8 +33,8 @@ pub(crate) struct Step<S: Simd> {
     fall: [Vector<S>; 2],
     /// What is left of a velocity after a step, (1 − αΔt/2)/(1 + αΔt/2).
     keep: Vector<S>,
-    /// Velocity that the frame of each lane gives back in a step, at the origin [m/s] and by place [1/s]; the first with
-    /// gravity.
+    /// Velocity that the frame of each lane gives back in a step, at the origin [m/s] and by place [1/s]; the
+    /// first with gravity.
     drift_x: [f64; LANES],
     drift_y: [f64; LANES],
     turn: [f64; LANES],
@@ -80,7 +81,8 @@ pub(crate) fn gain(rate: f64, dt: f64) -> f64 {
     1.0 / (1.0 + 0.5 * rate * dt)
 }
 
-/// Fields of a tile, and the forces summed so far. All are longer by a group of lanes than the last node that counts.
+/// Fields of a tile, and the forces summed so far. All are longer by a group of lanes than the last node that
+/// counts.
 pub(crate) struct Nodes<'a> {
     /// Positions that elements see [m].
     pub(crate) x: &'a mut [f64],
@@ -98,11 +100,13 @@ pub(crate) struct Nodes<'a> {
     pub(crate) mass: &'a [f64],
 }
 
-/// How many nodes ahead a strip prefetches, so that their values have come from memory when the strip reaches them.
+/// How many nodes ahead a strip prefetches, so that their values have come from memory when the strip reaches
+/// them.
 pub(crate) const FETCH: usize = 128;
 
 impl Nodes<'_> {
-    /// Prefetches what a strip will read further on: positions of the row `high`, and the rest of the row `low` if it moves.
+    /// Prefetches what a strip will read further on: positions of the row `high`, and the rest of the row
+    /// `low` if it moves.
     #[inline(always)]
     pub(crate) fn fetch(&self, low: usize, high: usize, moves: bool) {
         prefetch_index(&*self.x, high + FETCH);
@@ -140,7 +144,8 @@ pub(crate) trait Damping {
     const DAMPS: bool;
     /// Whether the heat of that is counted.
     const COUNTS: bool;
-    /// Whether there is stiffness or structural damping: elements see positions that are not those of the nodes.
+    /// Whether there is stiffness or structural damping: elements see positions that are not those of the
+    /// nodes.
     const STIFFNESS: bool = false;
 }
 
@@ -174,12 +179,12 @@ impl<D: Damping> Damping for WithStiffness<D> {
     const STIFFNESS: bool = true;
 }
 
-/// Takes a group of nodes from `at` on one step on under forces x, y [N]: v += Δt·a, x += Δt·v. With `LAST`, only the
-/// first `n` of them.
+/// Takes a group of nodes from `at` on one step on under forces x, y [N]: v += Δt·a, x += Δt·v. With `LAST`,
+/// only the first `n` of them.
 ///
-/// `lane` is that of the first node, zero where all lanes have one frame. `free` is one for a component that answers to
-/// forces, zero for one that is held. Forces summed in `nodes` become zero. Adds to `heat` what, times αΔt, is the heat of
-/// damping.
+/// `lane` is that of the first node, zero where all lanes have one frame. `free` is one for a component that
+/// answers to forces, zero for one that is held. Forces summed in `nodes` become zero. Adds to `heat` what,
+/// times αΔt, is the heat of damping.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // all that a group of nodes has
 pub(crate) fn advance<S: Simd, D: Damping, const LAST: bool>(
@@ -239,7 +244,8 @@ fn put<S: Simd, const LAST: bool>(value: Vector<S>, n: usize, to: &mut [f64], at
     if LAST { value.store_first(n, to, at) } else { value.store(to, at) }
 }
 
-/// Takes a row of nodes one step on under the forces summed so far. `lanes` says that they are of bodies in lanes.
+/// Takes a row of nodes one step on under the forces summed so far. `lanes` says that they are of bodies in
+/// lanes.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // see `advance`
 pub(crate) fn advance_row<S: Simd, D: Damping>(
@@ -263,8 +269,9 @@ pub(crate) fn advance_row<S: Simd, D: Damping>(
     }
 }
 
-/// Turns a row about a centre [m] by the exact angle of one step at `rate` [rad/s]; returns the work [J] of the drive,
-/// whose force is what mass and other forces leave over. `gain` is that of the nodes' `step_over_mass`.
+/// Turns a row about a centre [m] by the exact angle of one step at `rate` [rad/s]; returns the work [J] of
+/// the drive, whose force is what mass and other forces leave over. `gain` is that of the nodes'
+/// `step_over_mass`.
 #[inline(always)]
 pub(crate) fn rotate<D: Damping>(
     nodes: &mut Nodes<'_>,

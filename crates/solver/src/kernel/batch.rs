@@ -5,8 +5,8 @@ use pulp::Simd;
 use crate::element::QuadReference;
 use stribeck_simd::lanes::{LANES, Vector};
 
-/// Elements of a batch. All are gathered before the first is computed, because a vector that is read while its numbers are
-/// still on their way to memory stalls the processor.
+/// Elements of a batch. All are gathered before the first is computed, because a vector that is read while
+/// its numbers are still on their way to memory stalls the processor.
 pub(crate) const BATCH: usize = 8 * LANES;
 
 /// Corner values of a batch of elements, one row a corner.
@@ -24,7 +24,8 @@ pub(crate) fn corner_vectors<S: Simd>(simd: S, v: &Corners, at: usize) -> [Vecto
     ]
 }
 
-/// Adds corner forces [N] of a batch of quadrilaterals to those of the nodes; that on the third corner is handed over negative.
+/// Adds corner forces [N] of a batch of quadrilaterals to those of the nodes; that on the third corner is
+/// handed over negative.
 #[inline(always)]
 pub(crate) fn scatter<'a>(
     corners: impl Iterator<Item = &'a [u32; 4]>,
@@ -67,8 +68,8 @@ impl QuadBatch {
         Self { x: zeros, y: zeros, gradients: zeros, rest: zeros }
     };
 
-    /// Fills the batch with at most [`BATCH`] elements at positions `x`, `y` [m]. Those that it lacks then have no volume and
-    /// lie in one point.
+    /// Fills the batch with at most [`BATCH`] elements at positions `x`, `y` [m]. Those that it lacks then
+    /// have no volume and lie in one point.
     #[inline(always)]
     pub(crate) fn gather(&mut self, elements: &[([u32; 4], QuadReference)], x: &[f64], y: &[f64]) {
         for (l, (corners, q)) in elements.iter().enumerate() {

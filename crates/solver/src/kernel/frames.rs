@@ -16,7 +16,8 @@ pub(crate) struct LaneFrames {
     spin: [f64; LANES],
 }
 
-/// How the frames of a tile's bodies move in one step: velocity at the origin [m/s] and angular velocity [rad/s].
+/// How the frames of a tile's bodies move in one step: velocity at the origin [m/s] and angular velocity
+/// [rad/s].
 #[derive(Debug, Clone)]
 pub(crate) struct LaneMotion {
     pub(crate) origin_x: [f64; LANES],

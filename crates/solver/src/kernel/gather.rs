@@ -1,5 +1,5 @@
-//! The kernels for elements outside strips: a few at a time wherever their nodes lie, or the same element of congruent
-//! bodies at a time.
+//! The kernels for elements outside strips: a few at a time wherever their nodes lie, or the same element of
+//! congruent bodies at a time.
 
 use pulp::Simd;
 
@@ -87,8 +87,8 @@ pub(crate) fn congruent_elements<S: Simd>(
     }
 }
 
-/// A run of quadrilaterals each of which has its left side in common with the one before: what both do to those two nodes
-/// stays in registers.
+/// A run of quadrilaterals each of which has its left side in common with the one before: what both do to
+/// those two nodes stays in registers.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // the arrays of one kernel
 fn congruent_quads<S: Simd>(

@@ -1,12 +1,12 @@
 //! How nodes and elements lie in memory (design: PERFORMANCE.md).
 //!
-//! Nodes live in **slots**. A **tile** is a run of slots that one thread works on: its own nodes, then *ghosts*,
-//! copies of neighbours' nodes that its seam elements read. A tile computes every element that touches one of its
-//! own nodes, so no two tiles write to the same node and the sum at a node has one fixed order whatever the number
-//! of threads.
+//! Nodes live in **slots**. A **tile** is a run of slots that one thread works on: its own nodes, then
+//! *ghosts*, copies of neighbours' nodes that its seam elements read. A tile computes every element that
+//! touches one of its own nodes, so no two tiles write to the same node and the sum at a node has one fixed
+//! order whatever the number of threads.
 //!
-//! Two kinds of tile: a piece of one body, whose quadrilaterals form strips; and eight congruent bodies side by
-//! side, node by node, so that one instruction works on the same element of all eight.
+//! Two kinds of tile: a piece of one body, whose quadrilaterals form strips; and eight congruent bodies side
+//! by side, node by node, so that one instruction works on the same element of all eight.
 
 use std::{collections::HashSet, ops::Range};
 
@@ -24,8 +24,8 @@ pub(crate) const SHORTEST_STRIP: usize = 4;
 /// Most nodes of one body in one tile: about 0.5 MB of fields, which stays in a second-level cache.
 const TILE_NODES: usize = 8000;
 
-/// Cost of an element across a seam, relative to one of a strip: its nodes are gathered from lines of cache that are not
-/// prefetched.
+/// Cost of an element across a seam, relative to one of a strip: its nodes are gathered from lines of cache
+/// that are not prefetched.
 const ACROSS: usize = 10;
 
 /// No slot.
@@ -57,8 +57,8 @@ pub(crate) struct TileLayout {
     pub(crate) body: usize,
     /// Its bodies: one, or up to [`LANES`] congruent ones.
     pub(crate) bodies: Vec<usize>,
-    /// Quadrilaterals, local corners, and their number in the mesh. In a tile of congruent bodies those of the
-    /// first body, whose corners are multiples of [`LANES`].
+    /// Quadrilaterals, local corners, and their number in the mesh. In a tile of congruent bodies those of
+    /// the first body, whose corners are multiples of [`LANES`].
     pub(crate) quads: Vec<([u32; 4], usize)>,
     /// Triangles, likewise.
     pub(crate) triangles: Vec<([u32; 3], usize)>,
@@ -90,8 +90,9 @@ pub(crate) fn lay_out(model: &Model, quads: &[QuadReference], triangles: &[Trian
     layout
 }
 
-/// Deals items to two sides, the largest first, each to the side with less work, and joins these where the small ones are:
-/// two threads that begin at either end then have equal work left where they meet, and little of it.
+/// Deals items to two sides, the largest first, each to the side with less work, and joins these where the
+/// small ones are: two threads that begin at either end then have equal work left where they meet, and little
+/// of it.
 fn small_ones_inwards<T>(mut items: Vec<T>, work: impl Fn(&T) -> usize) -> impl Iterator<Item = T> {
     items.sort_by_key(|item| std::cmp::Reverse(work(item)));
     let [mut left, mut right] = [(0, Vec::new()), (0, Vec::new())];
@@ -264,7 +265,8 @@ impl Layout {
     }
 }
 
-/// First nodes of the rows along strips of a list of quadrilaterals; none of them lies within the row of another strip.
+/// First nodes of the rows along strips of a list of quadrilaterals; none of them lies within the row of
+/// another strip.
 fn row_starts(quads: &[[u32; 4]]) -> HashSet<u32> {
     let (mut first, mut within) = (HashSet::new(), HashSet::new());
     for strip in find_strips(quads).into_iter().filter(|s| s.len >= SHORTEST_STRIP) {
@@ -286,8 +288,8 @@ fn each_tile(tiles: &[usize], mut f: impl FnMut(usize)) {
     }
 }
 
-/// Tile of each node of a body: recursive bisection until a tile is small enough, across the longer side or between two
-/// rows, whichever costs less. Within a tile nodes keep their order, so rows stay rows.
+/// Tile of each node of a body: recursive bisection until a tile is small enough, across the longer side or
+/// between two rows, whichever costs less. Within a tile nodes keep their order, so rows stay rows.
 fn bisect(mesh: &Mesh, body: &Body) -> Vec<usize> {
     let first = body.nodes.start;
     let mut tile = vec![0; body.nodes.len()];

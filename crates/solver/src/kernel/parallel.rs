@@ -92,11 +92,12 @@ impl DoubleEndedIterator for Turned<'_> {
     }
 }
 
-/// Tiles on either side of where two threads met last that are swept last in every step, so that they may meet elsewhere.
+/// Tiles on either side of where two threads met last that are swept last in every step, so that they may
+/// meet elsewhere.
 const UNDECIDED: usize = 1;
 
-/// Sweeps tiles; two threads from either end to where they meet, in every second step from there outwards but for the tiles
-/// about it, which come last. More threads share runs of about equal work.
+/// Sweeps tiles; two threads from either end to where they meet, in every second step from there outwards but
+/// for the tiles about it, which come last. More threads share runs of about equal work.
 pub(crate) fn sweep_all(runs: TileRuns<'_>, scratch: &mut [Scratch], parameters: StepParameters) {
     match scratch {
         [] => {}

@@ -1,12 +1,13 @@
-//! Two more forms of the quadrilateral's force, for the hot loops: in terms of the inner products of the diagonals, they take
-//! fewer numbers or fewer operations than [`crate::element::quad_forces`] and differ from it by rounding (THEORY §2.1).
+//! Two more forms of the quadrilateral's force, for the hot loops: in terms of the inner products of the
+//! diagonals, they take fewer numbers or fewer operations than [`crate::element::quad_forces`] and differ
+//! from it by rounding (THEORY §2.1).
 
 use stribeck_simd::lanes::Number;
 
 use crate::element::{CornerForces, QuadReference, Stiffness, corner_forces, hourglass};
 
-/// What a kernel takes of a quadrilateral whose neighbours are of other shapes: the fewest numbers that hold its shape
-/// (THEORY §2.1).
+/// What a kernel takes of a quadrilateral whose neighbours are of other shapes: the fewest numbers that hold
+/// its shape (THEORY §2.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct QuadShape<T = f64> {
     /// Inner products of the reference diagonals p·p, r·r and p·r [m²].
@@ -24,7 +25,8 @@ impl QuadShape {
     pub(crate) fn new(q: &QuadReference, k: &Stiffness) -> Self {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let (b11, b12, b22) = (dot(q.b1, q.b1), dot(q.b1, q.b2), dot(q.b2, q.b2));
-        // The diagonals are dual to the gradients, so their inner products are the inverse of those of the gradients.
+        // The diagonals are dual to the gradients, so their inner products are the inverse of those of the
+        // gradients.
         let determinant = b11 * b22 - b12 * b12;
         let rest = [b22 / determinant, b11 / determinant, -b12 / determinant];
         Self { rest, scale: 0.5 * k.two_shear * q.volume * determinant * determinant, s1: q.s1, s2: q.s2 }
@@ -32,7 +34,8 @@ impl QuadShape {
 }
 
 impl<T: Number> QuadShape<T> {
-    /// Forces on the four corners at positions `x`, `y` [m]; equal to [`crate::element::quad_forces`] but for rounding.
+    /// Forces on the four corners at positions `x`, `y` [m]; equal to [`crate::element::quad_forces`] but for
+    /// rounding.
     #[inline(always)]
     pub(crate) fn forces(&self, x: [T; 4], y: [T; 4], k: &Stiffness<T>) -> CornerForces<T> {
         let [pp, rr, pr] = self.rest;
@@ -56,13 +59,14 @@ impl<T: Number> QuadShape<T> {
     }
 }
 
-/// A quadrilateral's reference and material in terms of the inner products of its diagonals: the fewest operations
-/// where the numbers need not be loaded for every element (THEORY §2.1).
+/// A quadrilateral's reference and material in terms of the inner products of its diagonals: the fewest
+/// operations where the numbers need not be loaded for every element (THEORY §2.1).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct QuadMetric<T = f64> {
     /// Minus the inner products of the reference diagonals p·p, r·r and p·r [m²].
     minus_rest: [T; 3],
-    /// Minus the stiffness [N/m³] from changes of p·p and r·r to the tensions along p·p, r·r and p·r: 11, 12, 22, 13, 23.
+    /// Minus the stiffness [N/m³] from changes of p·p and r·r to the tensions along p·p, r·r and p·r: 11, 12,
+    /// 22, 13, 23.
     stiffness: [T; 5],
     /// The same from a change of p·r, which counts twice.
     from_mixed: [T; 3],
@@ -79,7 +83,8 @@ impl QuadMetric {
     pub(crate) fn new(q: &QuadReference, k: &Stiffness) -> Self {
         let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
         let (b11, b12, b22) = (dot(q.b1, q.b1), dot(q.b1, q.b2), dot(q.b2, q.b2));
-        // The diagonals are dual to the gradients, so their inner products are the inverse of those of the gradients.
+        // The diagonals are dual to the gradients, so their inner products are the inverse of those of the
+        // gradients.
         let determinant = b11 * b22 - b12 * b12;
         let minus_rest = [-b22 / determinant, -b11 / determinant, b12 / determinant];
         let (half_lame, shear, v) = (0.5 * k.lame, 0.5 * k.two_shear, q.volume);
@@ -129,7 +134,8 @@ impl QuadMetric {
 }
 
 impl<T: Number> QuadMetric<T> {
-    /// Forces on the four corners at positions `x`, `y` [m]; equal to [`crate::element::quad_forces`] but for rounding.
+    /// Forces on the four corners at positions `x`, `y` [m]; equal to [`crate::element::quad_forces`] but for
+    /// rounding.
     #[inline(always)]
     pub(crate) fn forces(&self, x: [T; 4], y: [T; 4]) -> CornerForces<T> {
         let ([k11, k12, k22, k13, k23], [m1, m2, m3]) = (self.stiffness, self.from_mixed);

@@ -1,4 +1,5 @@
-//! Stiffness damping: elements see each node where it would be a time β later, so that their forces hold β K v (THEORY §2.7).
+//! Stiffness damping: elements see each node where it would be a time β later, so that their forces hold β K
+//! v (THEORY §2.7).
 
 use pulp::{Simd, WithSimd};
 
@@ -69,7 +70,8 @@ impl WithSimd for Extrapolate<'_> {
         let step = &Step::new(simd, &parameters, 0.0, &LaneFrames::REST);
         extrapolated.fx[..n].fill(0.0);
         extrapolated.fy[..n].fill(0.0);
-        // Forces where elements see the nodes less those where the nodes are: −f of the latter, plus f of the former.
+        // Forces where elements see the nodes less those where the nodes are: −f of the latter, plus f of the
+        // former.
         for extrapolate in [false, true] {
             let (x, y) = if extrapolate {
                 (&mut extrapolated.x[..n], &mut extrapolated.y[..n])

@@ -1,5 +1,5 @@
-//! The kernel over a strip: element forces, sums at nodes, and the motion of the row that the strip completes, in one pass;
-//! neighbours are computed side by side in vectors (PERFORMANCE.md).
+//! The kernel over a strip: element forces, sums at nodes, and the motion of the row that the strip
+//! completes, in one pass; neighbours are computed side by side in vectors (PERFORMANCE.md).
 
 use std::ops::Range;
 
@@ -48,7 +48,8 @@ pub(crate) fn strip_forces<S: Simd>(
     run::<S, Undamped, false>(simd, strip, varying, stiffness, nodes, step, heat);
 }
 
-/// Forces of a group of elements on their right corners: (x, y) of the lower row and minus that of the upper one.
+/// Forces of a group of elements on their right corners: (x, y) of the lower row and minus that of the upper
+/// one.
 type Right<S> = [[Vector<S>; 2]; 2];
 
 /// Elements before those that are alike, those, and elements after them.
@@ -120,8 +121,8 @@ fn groups<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
     right
 }
 
-/// Brings corner forces of a group of neighbouring elements to the nodes at their left corners; `right` are those of the
-/// group before on its right corners. With `LAST`, only the first `n` nodes count.
+/// Brings corner forces of a group of neighbouring elements to the nodes at their left corners; `right` are
+/// those of the group before on its right corners. With `LAST`, only the first `n` nodes count.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // the arrays of one kernel
 fn group<S: Simd, D: Damping, const COMPLETES: bool, const LAST: bool>(
@@ -163,8 +164,8 @@ fn first<S: Simd>(f: [Vector<S>; 2], n: usize) -> [Vector<S>; 2] {
 
 /// Where a strip's kernel finds the references of a group of elements.
 trait References<S: Simd> {
-    /// Forces [N] on the corners of the group that begins with element `e` of the strip, whose lower and upper rows of
-    /// nodes begin at `row`.
+    /// Forces [N] on the corners of the group that begins with element `e` of the strip, whose lower and
+    /// upper rows of nodes begin at `row`.
     fn at(
         &self,
         simd: S,

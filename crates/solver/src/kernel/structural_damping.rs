@@ -1,5 +1,5 @@
-//! Structural damping: elements see each node where stretched springs would pull it, so that their forces hold those of the
-//! springs (THEORY §2.8); and the energy of the springs.
+//! Structural damping: elements see each node where stretched springs would pull it, so that their forces
+//! hold those of the springs (THEORY §2.8); and the energy of the springs.
 
 use std::ops::Range;
 
@@ -49,8 +49,8 @@ impl BranchSteps {
     }
 }
 
-/// Takes the springs of a tile a step on and finds where its elements see the nodes. Ghosts must have positions and
-/// velocities.
+/// Takes the springs of a tile a step on and finds where its elements see the nodes. Ghosts must have
+/// positions and velocities.
 pub(crate) struct Stretch<'a> {
     pub(crate) tile: &'a Tile,
     pub(crate) fields: TileFields<'a>,
@@ -88,8 +88,8 @@ impl WithSimd for Stretch<'_> {
         if !branches.measure {
             return energies;
         }
-        // ½ g u·K u, with K u the change of the elastic forces by a displacement u. Steps that measure see their nodes anew
-        // afterwards, to the same bits.
+        // ½ g u·K u, with K u the change of the elastic forces by a displacement u. Steps that measure see
+        // their nodes anew afterwards, to the same bits.
         let k = &tile.stiffness.of(Vector::all(simd, 0.0));
         let step = &Step::new(simd, &parameters, 0.0, &LaneFrames::REST);
         let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
@@ -143,7 +143,8 @@ fn displace<S: Simd>(simd: S, to: &mut [f64], share: f64, u: &[f64]) {
     }
 }
 
-/// Takes the springs of some nodes, whole groups of lanes, a step on and finds where elements see these nodes.
+/// Takes the springs of some nodes, whole groups of lanes, a step on and finds where elements see these
+/// nodes.
 #[inline(always)]
 pub(crate) fn stretch_nodes<S: Simd>(
     simd: S,
@@ -162,8 +163,9 @@ pub(crate) fn stretch_nodes<S: Simd>(
     }
 }
 
-/// The same for a number of branches that is known when the program is compiled. Springs are stretched by the velocity
-/// relative to a rotation at the spin of each lane's body: a rigid motion is then seen as one and the same shift of all nodes.
+/// The same for a number of branches that is known when the program is compiled. Springs are stretched by the
+/// velocity relative to a rotation at the spin of each lane's body: a rigid motion is then seen as one and
+/// the same shift of all nodes.
 #[inline(always)]
 fn stretch<S: Simd, const BRANCHES: usize>(
     simd: S,

@@ -211,7 +211,8 @@ impl Sweep<'_> {
     }
 }
 
-/// Springs of structural damping that follow the sweep: a row of nodes is then in cache when its elements are computed.
+/// Springs of structural damping that follow the sweep: a row of nodes is then in cache when its elements are
+/// computed.
 struct Springs<'a> {
     structural: &'a TileStructural,
     branches: &'a BranchSteps,
@@ -338,7 +339,8 @@ mod tests {
         sweep.with_simd(Scalar)
     }
 
-    /// Velocities [m/s] after a step of every tile in `lanes` lanes, and by the sum over all elements one by one.
+    /// Velocities [m/s] after a step of every tile in `lanes` lanes, and by the sum over all elements one by
+    /// one.
     fn velocities(mesh: Mesh, lanes: usize) -> [Vec<f64>; 2] {
         let steel = Elastic::new(200e9, 0.3, 7850.0).expect("a possible material");
         let mut model = Model::new(mesh, steel, 0.02).expect("a possible model");
@@ -413,8 +415,9 @@ mod tests {
         [found, expected]
     }
 
-    /// Strips, gathered elements and congruent bodies give nodes the forces that elements give one by one, whatever the
-    /// instruction set: rows of every length modulo the lanes, elements alike, different, and alike but for the ends.
+    /// Strips, gathered elements and congruent bodies give nodes the forces that elements give one by one,
+    /// whatever the instruction set: rows of every length modulo the lanes, elements alike, different, and
+    /// alike but for the ends.
     #[test]
     fn invariant_sweeps_sum_the_same_forces_in_any_number_of_lanes() {
         // Rounding of forces that cancel; a missing or doubled corner changes velocities by some m/s.

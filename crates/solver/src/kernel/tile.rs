@@ -30,7 +30,8 @@ pub(crate) struct Tile {
     /// Quadrilaterals outside strips; their references stand in `varying` from group `first_gathered` on.
     pub(crate) quads: Vec<[u32; 4]>,
     pub(crate) first_gathered: usize,
-    /// Quadrilaterals of congruent bodies: runs, and the right corners (2, 3) of each element in the first body.
+    /// Quadrilaterals of congruent bodies: runs, and the right corners (2, 3) of each element in the first
+    /// body.
     pub(crate) runs: Vec<CongruentRun>,
     pub(crate) quads_of_runs: Vec<([u32; 2], QuadMetric)>,
     /// Triangles; in a tile of congruent bodies those of the first body.
@@ -106,8 +107,8 @@ fn runs(flags: &[bool]) -> Vec<Range<usize>> {
 /// Fewer elements that are alike are not worth a loop of their own.
 const LEAST_ALIKE: usize = 4 * LANES;
 
-/// The longest run of `n` elements that are the same, in groups of lanes: it begins with one and ends with one or with the last
-/// element. Empty where no run is long and not all are the same.
+/// The longest run of `n` elements that are the same, in groups of lanes: it begins with one and ends with
+/// one or with the last element. Empty where no run is long and not all are the same.
 fn alike(n: usize, same: impl Fn(usize, usize) -> bool) -> Range<usize> {
     let (mut longest, mut from) = (0..0, 0);
     for end in 1..=n {
@@ -129,8 +130,8 @@ fn alike(n: usize, same: impl Fn(usize, usize) -> bool) -> Range<usize> {
 pub(crate) struct Strip {
     pub(crate) corners: [u32; 4],
     pub(crate) len: usize,
-    /// Neighbours that are all alike, as on a square grid or along a ring's row: whole groups of lanes, the last one perhaps
-    /// shorter.
+    /// Neighbours that are all alike, as on a square grid or along a ring's row: whole groups of lanes, the
+    /// last one perhaps shorter.
     pub(crate) alike: Range<usize>,
     /// Reference of those.
     pub(crate) metric: QuadMetric,
@@ -140,7 +141,8 @@ pub(crate) struct Strip {
     pub(crate) completes: bool,
 }
 
-/// Quadrilaterals of congruent bodies, each of which has its left side in common with the right one of the one before.
+/// Quadrilaterals of congruent bodies, each of which has its left side in common with the right one of the
+/// one before.
 #[derive(Debug, Clone)]
 pub(crate) struct CongruentRun {
     /// Corners 1 and 4 of the first element.
@@ -148,7 +150,8 @@ pub(crate) struct CongruentRun {
     pub(crate) quads: Range<usize>,
 }
 
-/// Consecutive own nodes that move alike and are complete once strip `after` is done, and do not move with it.
+/// Consecutive own nodes that move alike and are complete once strip `after` is done, and do not move with
+/// it.
 #[derive(Debug, Clone)]
 pub(crate) struct Finish {
     /// Number of strips that must be done.
@@ -245,7 +248,8 @@ impl Tile {
         let corners: Vec<[u32; 4]> = layout.quads.iter().map(|&(c, _)| c).collect();
         for run in find_strips(&corners) {
             let elements = &layout.quads[run.first_element..run.first_element + run.len];
-            // The two rows of corners must not overlap, or a strip would write to one node in two lanes at once.
+            // The two rows of corners must not overlap, or a strip would write to one node in two lanes at
+            // once.
             let rows_apart = run.corners[0].abs_diff(run.corners[3]) as usize > run.len;
             let pairs = run.corners[1] == run.corners[0] + 1 && run.corners[2] == run.corners[3] + 1;
             if run.len < SHORTEST_STRIP || !rows_apart || !pairs {
@@ -363,8 +367,8 @@ mod tests {
         let elements: usize = strips.iter().map(|s| s.len).sum();
         let alike: usize = strips.iter().map(|s| s.alike.len()).sum();
         assert!(elements > 9 * model.mesh.quads.len() / 10, "{elements} elements in strips");
-        // The groove and two thicknesses on either side of it are a thirteenth of the ring; a part of a group of lanes is lost
-        // beside them.
+        // The groove and two thicknesses on either side of it are a thirteenth of the ring; a part of a group
+        // of lanes is lost beside them.
         assert!(20 * alike > 17 * elements, "{alike} of {elements} are alike");
     }
 }

@@ -18,8 +18,8 @@ impl VaryingReferences {
     /// Numbers of a [`QuadShape`].
     const KINDS: usize = 6;
 
-    /// Appends groups with the shapes of some elements; returns the number of the first group. The last group is filled up
-    /// with its last element, and one more follows, because kernels read a group beyond the end.
+    /// Appends groups with the shapes of some elements; returns the number of the first group. The last group
+    /// is filled up with its last element, and one more follows, because kernels read a group beyond the end.
     pub(crate) fn push(&mut self, elements: impl ExactSizeIterator<Item = QuadShape>) -> usize {
         let start = self.0.len() / (Self::KINDS * LANES);
         let groups = elements.len() / LANES + 1;

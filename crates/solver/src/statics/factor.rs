@@ -28,8 +28,9 @@ pub(super) struct Factor {
 }
 
 impl Factor {
-    /// Lays out the factor of matrices with this pattern, eliminated in the order in which they are numbered. Its numbers
-    /// take over the memory of those of a factor that is done with: fresh memory costs as much as half a factorisation.
+    /// Lays out the factor of matrices with this pattern, eliminated in the order in which they are numbered.
+    /// Its numbers take over the memory of those of a factor that is done with: fresh memory costs as much as
+    /// half a factorisation.
     pub(super) fn new(matrix: &Matrix, memory: Vec<f64>) -> Result<Self, Error> {
         // Without an ordering the analysis wants the upper triangle and the numbers the lower one.
         let upper = matrix.pattern().transpose().to_col_major().map_err(failed)?;
@@ -79,7 +80,8 @@ impl Factor {
         Ok(())
     }
 
-    /// Solves in place for right-hand sides of `n` numbers that follow one another: the factor is read once for several of them.
+    /// Solves in place for right-hand sides of `n` numbers that follow one another: the factor is read once
+    /// for several of them.
     pub(super) fn solve(&mut self, rhs: &mut [f64], n: usize) {
         for some in rhs.chunks_mut((COLUMNS * n).max(1)) {
             let columns = some.len() / n;

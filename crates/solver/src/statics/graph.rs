@@ -50,9 +50,9 @@ impl Graph {
 
     /// An order of elimination with little fill: nested dissection (George 1973).
     ///
-    /// A straight cut halves the nodes; those along it come last, because they alone join the halves, and each half is
-    /// cut again. Of the cuts across the longest way of a part and along x and y, in the middle of it, the shortest is
-    /// taken.
+    /// A straight cut halves the nodes; those along it come last, because they alone join the halves, and
+    /// each half is cut again. Of the cuts across the longest way of a part and along x and y, in the middle
+    /// of it, the shortest is taken.
     pub(super) fn dissect(&self, places: &[[f64; 2]]) -> Vec<u32> {
         let n = self.len();
         let mut nodes: Vec<u32> = (0..n as u32).collect();

@@ -5,7 +5,8 @@ use crate::{dynamics::Dynamics, rigid::RigidMotion, state::NodeForces};
 /// Least mass-proportional stiffness [1/s²]: keeps the matrix definite where nothing else does.
 const LEAST_HOLD: f64 = 1e5;
 
-/// Mass-proportional stiffness [1/s²] that keeps a body's unbalanced resultant from moving it farther than `step`.
+/// Mass-proportional stiffness [1/s²] that keeps a body's unbalanced resultant from moving it farther than
+/// `step`.
 pub(super) fn hold(d: &Dynamics, slots: &[u32], force: &NodeForces, step: f64) -> f64 {
     let s = &d.state;
     let body = RigidMotion::of(

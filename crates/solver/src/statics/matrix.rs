@@ -36,9 +36,9 @@ impl Matrix {
         Self { first, nodes, columns, rows, values }
     }
 
-    /// Adds `block` where the equations of node `row` (first index) and node `column` (second index) meet, for a row
-    /// that is not eliminated before the column; of a node with itself, the lower triangle. False when that place is
-    /// not in the pattern.
+    /// Adds `block` where the equations of node `row` (first index) and node `column` (second index) meet,
+    /// for a row that is not eliminated before the column; of a node with itself, the lower triangle. False
+    /// when that place is not in the pattern.
     #[must_use]
     pub(super) fn add(&mut self, row: u32, column: u32, block: [[f64; 2]; 2]) -> bool {
         let n = column as usize;

@@ -23,10 +23,12 @@ pub struct Modes {
     pub shapes: Vec<Vec<f64>>,
 }
 
-/// Largest residual of a mode that counts as found, relative: the error of its frequency is the square of that.
+/// Largest residual of a mode that counts as found, relative: the error of its frequency is the square of
+/// that.
 const RESIDUAL: f64 = 1e-7;
 
-/// Vectors that are taken through an iteration together: the factor and all vectors before are read once for them.
+/// Vectors that are taken through an iteration together: the factor and all vectors before are read once for
+/// them.
 const BLOCK: usize = 4;
 
 /// Vectors between two looks at what has converged.
@@ -61,7 +63,8 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
         basis.take_out_the_last(&mut images);
         let m = basis.len();
         let lengths = basis.extend(images);
-        // Of a block that is cut short because hardly any room is left, nothing is known before it has been taken through.
+        // Of a block that is cut short because hardly any room is left, nothing is known before it has been
+        // taken through.
         let all = m == basis.len();
         if !all && (lengths.ncols() < BLOCK || !m.is_multiple_of(LOOK_EVERY)) {
             continue;
@@ -103,8 +106,8 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
     Err(Error::Modes { found, iterations: basis.len(), hertz })
 }
 
-/// Eigenvalues, ascending, and eigenvectors of a symmetric matrix; `None` if they are not found. By the QR algorithm whatever the size:
-/// faer 0.24.4 divides large matrices, and errs then where values are repeated.
+/// Eigenvalues, ascending, and eigenvectors of a symmetric matrix; `None` if they are not found. By the QR
+/// algorithm whatever the size: faer 0.24.4 divides large matrices, and errs then where values are repeated.
 fn eigen(matrix: &Mat<f64>) -> Option<(Vec<f64>, Mat<f64>)> {
     let m = matrix.nrows();
     let params = SelfAdjointEvdParams { recursion_threshold: usize::MAX, ..Auto::<f64>::auto() };
@@ -136,7 +139,8 @@ struct Basis {
     movable: usize,
     /// Vectors, one after the other.
     vectors: Vec<f64>,
-    /// Of each block whose image (K + σM)⁻¹M V is known: products by mass of that image with this block and the one before it.
+    /// Of each block whose image (K + σM)⁻¹M V is known: products by mass of that image with this block and
+    /// the one before it.
     blocks: Vec<Mat<f64>>,
     /// Vectors in the last block, and in the one before it.
     last: [usize; 2],
@@ -206,7 +210,8 @@ impl Basis {
         along
     }
 
-    /// Takes the last block out of its image, and the one before it: the image has no part along others but for rounding.
+    /// Takes the last block out of its image, and the one before it: the image has no part along others but
+    /// for rounding.
     fn take_out_the_last(&mut self, image: &mut [f64]) {
         let [last, before] = self.last;
         let all = self.first(self.len());
@@ -235,11 +240,11 @@ impl Basis {
         t
     }
 
-    /// Takes all vectors out of some more, makes these orthogonal, too, and adds as many as there can be; returns them in terms of
-    /// what was added.
+    /// Takes all vectors out of some more, makes these orthogonal, too, and adds as many as there can be;
+    /// returns them in terms of what was added.
     ///
-    /// Where next to nothing is left, as with natural frequencies that come in pairs, rounding has parts along the basis again: it
-    /// goes on until hardly anything is taken out any more (Parlett 1998, §6.9).
+    /// Where next to nothing is left, as with natural frequencies that come in pairs, rounding has parts
+    /// along the basis again: it goes on until hardly anything is taken out any more (Parlett 1998, §6.9).
     fn extend(&mut self, mut more: Vec<f64>) -> Mat<f64> {
         let n = self.mass.len();
         let count = (more.len() / n).min(self.movable - self.len());

@@ -86,8 +86,8 @@ impl Undecided {
         .centre
     }
 
-    /// The modes as fields over the slots, mass-orthogonal by construction (translation of the centre, rotation
-    /// about it): calls `f` with each slot's direction and the mode's mass.
+    /// The modes as fields over the slots, mass-orthogonal by construction (translation of the centre,
+    /// rotation about it): calls `f` with each slot's direction and the mode's mass.
     fn modes(&self, d: &Dynamics) -> Vec<(Vec<[f64; 2]>, f64)> {
         let s = &d.state;
         let body = RigidMotion::of(

@@ -1,5 +1,5 @@
-//! Small motions of some bodies about their present positions: stiffness, mass, and solutions with a factor that serves for
-//! many right-hand sides. What is needed to find natural modes and flexibilities.
+//! Small motions of some bodies about their present positions: stiffness, mass, and solutions with a factor
+//! that serves for many right-hand sides. What is needed to find natural modes and flexibilities.
 
 use super::{
     factor::Factor,
@@ -11,8 +11,8 @@ use crate::{dynamics::Dynamics, error::Error, force::RankOne};
 
 /// K and M of some bodies with springs between them, and a factor of K + σM.
 ///
-/// Fields of displacements and forces hold two numbers an unknown node, x before y ([`SmallMotions::equation`]); components
-/// that are held stay in them, have no mass and do not move.
+/// Fields of displacements and forces hold two numbers an unknown node, x before y
+/// ([`SmallMotions::equation`]); components that are held stay in them, have no mass and do not move.
 pub struct SmallMotions {
     unknowns: Unknowns,
     stiffness: Matrix,
@@ -45,8 +45,8 @@ impl From<RankOne<'_>> for Spring {
 }
 
 impl SmallMotions {
-    /// Of the bodies whose slots are given, elastic or moving as one piece whose turn is prescribed, at the present positions
-    /// of `dynamics`. `shift` σ [rad²/s²] makes the
+    /// Of the bodies whose slots are given, elastic or moving as one piece whose turn is prescribed, at the
+    /// present positions of `dynamics`. `shift` σ [rad²/s²] makes the
     /// matrix definite where bodies can move as a whole.
     ///
     /// # Errors
@@ -102,7 +102,8 @@ impl SmallMotions {
         self.mass.len()
     }
 
-    /// Where the x of a slot stands in a field, its y following; `None` for one that is not part of it or held altogether.
+    /// Where the x of a slot stands in a field, its y following; `None` for one that is not part of it or
+    /// held altogether.
     pub fn equation(&self, slot: u32) -> Option<usize> {
         self.unknowns.of(slot).map(|node| 2 * node)
     }
@@ -129,8 +130,8 @@ impl SmallMotions {
         force
     }
 
-    /// Solves (K + σM) u = f in place for one field or several, one after another, which takes less time than one by one; what is
-    /// given for held components is left out.
+    /// Solves (K + σM) u = f in place for one field or several, one after another, which takes less time than
+    /// one by one; what is given for held components is left out.
     pub fn solve(&mut self, fields: &mut [f64]) {
         for field in fields.chunks_exact_mut(self.mass.len()) {
             for (value, mass) in field.iter_mut().zip(&self.mass) {

@@ -5,7 +5,8 @@ use crate::element::{QuadReference, Stiffness, TriangleReference};
 /// k · d dᵀ summed over a few d, (x, y) of each corner in turn; N is twice the number of corners.
 pub(super) struct ElementMatrix<const N: usize>(pub(super) [[f64; N]; N]);
 
-/// Strain of one mode [1/m] that a unit displacement of a node gives, from its shape gradient and the component.
+/// Strain of one mode [1/m] that a unit displacement of a node gives, from its shape gradient and the
+/// component.
 type StrainOf = fn([f64; 2], usize) -> f64;
 
 /// Stiffness of a quadrilateral with corners `c` [m].

@@ -8,8 +8,8 @@ use crate::dynamics::Dynamics;
 /// Stands for a slot that does not move.
 const FIXED: u32 = u32::MAX;
 
-/// Nodes that may move, two equations each; a held component has one of its own that says nothing. Nodes of a body that
-/// moves as one piece without turning share the equations of its first one.
+/// Nodes that may move, two equations each; a held component has one of its own that says nothing. Nodes of a
+/// body that moves as one piece without turning share the equations of its first one.
 pub(super) struct Unknowns {
     /// Their slots, in the order of elimination.
     pub(super) slots: Vec<u32>,

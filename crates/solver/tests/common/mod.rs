@@ -151,7 +151,8 @@ pub(crate) fn equilibrate(
     d.equilibrate(forces, &statics)
 }
 
-/// Rings and discs that are large enough for several tiles, strips of both kinds, triangles and congruent bodies.
+/// Rings and discs that are large enough for several tiles, strips of both kinds, triangles and congruent
+/// bodies.
 pub(crate) fn workshop() -> Model {
     let mut mesh = Mesh::new();
     let ring = Annulus {

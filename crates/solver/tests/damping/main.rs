@@ -47,8 +47,8 @@ fn conserves_the_ledger_of_mass_damping() {
     for n in massive(&d) {
         (d.state.vx[n], d.state.vy[n]) = (1e-3 * noise.uniform(), 1e-3 * noise.uniform());
     }
-    // Heat is counted in every fourth step: the first steps, while half of the energy goes from motion into strain, are
-    // too short for that.
+    // Heat is counted in every fourth step: the first steps, while half of the energy goes from motion into
+    // strain, are too short for that.
     run(&mut d, &mut [], 16);
     let [start, none] = step_and_count(&mut d);
     let mut heat = none;
@@ -59,7 +59,8 @@ fn conserves_the_ledger_of_mass_damping() {
         worst = worst.max((mechanical + heat - start - none).abs());
     }
     assert!(heat - none > 0.8 * start, "{heat} J of {start} J");
-    // Heat is counted from the mean of two half steps, which is right on average over a period, not at each instant.
+    // Heat is counted from the mean of two half steps, which is right on average over a period, not at each
+    // instant.
     assert!(worst < 5e-3 * start, "{:e} of the energy is missing", worst / start);
 }
 
@@ -87,7 +88,8 @@ fn conserves_rigid_motion_under_relative_damping() {
     let carried = 0.5 * rigid.mass * (rigid.velocity[0].powi(2) + rigid.velocity[1].powi(2))
         + 0.5 * rigid.inertia * rigid.spin.powi(2);
     let vibration = start - carried;
-    // Amplitudes fall as exp(−α t/2), here by exp(−10): what is left is the rigid motion and its static stretch.
+    // Amplitudes fall as exp(−α t/2), here by exp(−10): what is left is the rigid motion and its static
+    // stretch.
     let [left, heat] = step_and_count(&mut d);
     assert!(left - carried < 1e-6 * vibration + 1e-5 * carried, "{left} J against {carried} J");
     // The heat is that of the mean velocity of two half steps; the start lies within the first of them.
@@ -96,7 +98,8 @@ fn conserves_rigid_motion_under_relative_damping() {
 
 #[test]
 fn example_damping_set_in_the_middle_of_a_run_acts_at_once() {
-    // Whatever the number of the step: a body in flight must not be braked against a frame that was never placed.
+    // Whatever the number of the step: a body in flight must not be braked against a frame that was never
+    // placed.
     for late in [0, 10, 63] {
         let mut d = ready(&disc_at(0.0, 0.0), 0.9);
         for n in massive(&d) {

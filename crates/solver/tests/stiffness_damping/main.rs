@@ -70,7 +70,8 @@ fn conserves_the_ledger_of_stiffness_damping() {
     let mut d = lay_out(&workshop());
     damp(&mut d, 5e-9, 0.9);
     shake(&mut d, 1e-3);
-    // The first steps turn half of the energy from motion into strain, too fast for counting every fourth step.
+    // The first steps turn half of the energy from motion into strain, too fast for counting every fourth
+    // step.
     run(&mut d, &mut [], 16);
     let balance = |d: &mut Dynamics| {
         let now = step_and_balance(d, &mut []);

@@ -1,4 +1,5 @@
-//! Structural damping: the ratio over a band, what it does to a ring, a bar and a spin, its edge of stability and its ledger.
+//! Structural damping: the ratio over a band, what it does to a ring, a bar and a spin, its edge of stability
+//! and its ledger.
 //!
 //! Problems with a closed form have a file each.
 
@@ -35,8 +36,8 @@ fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
     [now.mechanical() - now.drive, d.structural_loss()]
 }
 
-/// Decay rate [1/s] and angular frequency [rad/s] of a vibration with the stiffness ω₀² (1 + Σ g sτ/(1 + sτ)): the root of
-/// s² + ω₀² (…) = 0 near iω₀, by Newton's method on complex numbers.
+/// Decay rate [1/s] and angular frequency [rad/s] of a vibration with the stiffness ω₀² (1 + Σ g sτ/(1 +
+/// sτ)): the root of s² + ω₀² (…) = 0 near iω₀, by Newton's method on complex numbers.
 fn root(branches: &[Branch], omega: f64) -> [f64; 2] {
     type C = [f64; 2];
     let mul = |a: C, b: C| [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]];
@@ -76,8 +77,8 @@ fn amplitude(d: &Dynamics, shape: &[[f64; 2]]) -> f64 {
     part / whole
 }
 
-/// Angular frequency [rad/s] and damping ratio of a mode whose velocity starts with `shape` [m/s], from the zeros and the
-/// extremes of its amplitude over `cycles`.
+/// Angular frequency [rad/s] and damping ratio of a mode whose velocity starts with `shape` [m/s], from the
+/// zeros and the extremes of its amplitude over `cycles`.
 fn ring_down(d: &mut Dynamics, shape: &[[f64; 2]], guess: f64, cycles: f64) -> [f64; 2] {
     for s in massive(d) {
         [d.state.vx[s], d.state.vy[s]] = shape[s];
@@ -129,7 +130,8 @@ fn conserves_the_ledger_of_structural_damping() {
             d.state.vx[n as usize] += 3.0 * (300.0 * d.state.y[n as usize]).cos();
         }
     }
-    // Within the first steps half of the noise turns into strain, and springs come under load: too fast to be measured.
+    // Within the first steps half of the noise turns into strain, and springs come under load: too fast to be
+    // measured.
     run(&mut d, &mut [], 96);
     let [start, none] = step_and_count(&mut d);
     let (mut loss, mut worst) = (none, 0.0_f64);
@@ -141,8 +143,8 @@ fn conserves_the_ledger_of_structural_damping() {
     assert!(worst < 1e-2 * (loss - none), "{:e} of the loss is missing", worst / (loss - none));
 }
 
-/// A disc that flies and spins while it vibrates keeps its momentum and its angular momentum, and the springs of
-/// its damping do not stretch it.
+/// A disc that flies and spins while it vibrates keeps its momentum and its angular momentum, and the springs
+/// of its damping do not stretch it.
 #[test]
 fn conserves_momentum_and_the_size_of_a_spinning_disc() {
     let part = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");
@@ -164,7 +166,8 @@ fn conserves_momentum_and_the_size_of_a_spinning_disc() {
         let all: Vec<u32> = massive(&d).into_iter().map(|n| n as u32).collect();
         (before, momentum(&d), d.rigid_motion(&all))
     };
-    // Rounding in 20 000 steps; without the measured spin of the body the springs would take 1.7 Nm s of every 100 000.
+    // Rounding in 20 000 steps; without the measured spin of the body the springs would take 1.7 Nm s of
+    // every 100 000.
     const ROUNDING: f64 = 1e-10;
     for shaken in [0.0, 0.1] {
         let (before, after, body) = moved(true, shaken);

@@ -39,10 +39,15 @@ pub(super) fn without(channel: &Channel, notes: &mut Vec<String>) -> Result<Whol
         Channel::held(&channel.name, samples).at_rate(channel.rate_hz).in_unit(channel.unit.clone())
     };
     if (from, until) == (0, samples.len()) {
-        notes.push(format!("{missing} samples of `{}` are no numbers, the first of them sample {first}: straight lines bridge them", channel.name));
+        notes.push(format!(
+            "{missing} samples of `{}` are no numbers, the first of them sample {first}: \
+            straight lines bridge them",
+            channel.name
+        ));
     } else {
         notes.push(format!(
-            "{missing} samples of `{}` are no numbers, the first of them sample {first}: the longest stretch without them is taken, \
+            "{missing} samples of `{}` are no numbers, the first of them sample {first}: the longest stretch \
+             without them is taken, \
              samples {from} to {} of {}",
             channel.name,
             until - 1,

@@ -44,7 +44,8 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
     let scenes: Vec<&Scene> = rows.iter().filter_map(|row| row.scene.as_ref()).collect();
     let mut page = format!(
         "# Data set `{}`\n\n\
-         Simulated by Stribeck {}; nothing in it was measured. Each run is a folder below `runs/`, named by the hash of its scene, \
+         Simulated by Stribeck {}; nothing in it was measured. Each run is a folder below `runs/`, named by \
+         the hash of its scene, \
          with its complete scene, provenance{}.\n\n| | |\n|---|---|\n",
         campaign.name,
         programs(rows),
@@ -59,21 +60,30 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
     }
     page += &format!(
         "\n## Tables\n\n\
-         `{RUNS}` has a row for each run, also for those that failed: `status` and `reason` say why, and `warnings` what the guards of \
+         `{RUNS}` has a row for each run, also for those that failed: `status` and `reason` say why, and \
+         `warnings` what the guards of \
          a run have warned of, a line each. `{EVENTS}` has a row for each \
-         passage of a roller over a spall of a raceway{}; `run` joins them. The split is drawn by the scene of a variant, so no scene \
+         passage of a roller over a spall of a raceway{}; `run` joins them. The split is drawn by the scene \
+         of a variant, so no scene \
          and no start of it stands in two parts.\n\n\
-         Ground truth: `model`, `fault_*`, `deviation_type`, `shaft_speed_rpm` and `load_n`, which a profile may vary. A fault strikes \
-         once a passage; waves, roughness and other diameters are deviations. Size, depth and angle at the start are those of the first \
-         fault of the scene that has a length. `bpfo_hz`, `bpfi_hz`, `bsf_hz` and `ftf_hz` are kinematic, without slip. `scene.*` are \
-         the fields that vary, `summary.*` what the analysis of each run found (docs/THEORY.md, §7, says how). Of an event, \
-         `expected_*` is when the roller's centre is over an edge without slip, `path_*` when the recorded one is, and `entry_ms` and \
-         `exit_ms` are read from its force. What depends on machine or interruptions is only in the folders of the runs.\n\n## Limits\n\n",
+         Ground truth: `model`, `fault_*`, `deviation_type`, `shaft_speed_rpm` and `load_n`, which a profile \
+         may vary. A fault strikes \
+         once a passage; waves, roughness and other diameters are deviations. Size, depth and angle at the \
+         start are those of the first \
+         fault of the scene that has a length. `bpfo_hz`, `bpfi_hz`, `bsf_hz` and `ftf_hz` are kinematic, \
+         without slip. `scene.*` are \
+         the fields that vary, `summary.*` what the analysis of each run found (docs/THEORY.md, §7, says \
+         how). Of an event, \
+         `expected_*` is when the roller's centre is over an edge without slip, `path_*` when the recorded \
+         one is, and `entry_ms` and \
+         `exit_ms` are read from its force. What depends on machine or interruptions is only in the folders \
+         of the runs.\n\n## Limits\n\n",
         if written.signals.is_empty() {
             String::new()
         } else {
             format!(
-                ", `{SIGNALS}` one for each sample of the accelerations, a group of rows a run, of the runs that are complete: one that \
+                ", `{SIGNALS}` one for each sample of the accelerations, a group of rows a run, of the runs \
+                 that are complete: one that \
                  diverged has no signals there"
             )
         },
@@ -141,7 +151,9 @@ fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'stat
 /// What the data cannot say, by what is in them.
 fn limits(scenes: &[&Scene]) -> Vec<String> {
     let mut limits = vec![
-        "A plane model of the thickness that each scene gives: nothing tilts, and nothing moves along the axis.".to_owned(),
+        "A plane model of the thickness that each scene gives: nothing tilts, and nothing moves along the \
+         axis."
+            .to_owned(),
     ];
     let reduced = scenes.iter().filter_map(|scene| match &scene.model {
         ModelScene::Full => None,
@@ -150,14 +162,16 @@ fn limits(scenes: &[&Scene]) -> Vec<String> {
     let reduced: Vec<f64> = reduced.collect();
     if reduced.len() < scenes.len() {
         limits.push(
-            "Full model: peaks above some kilohertz differ between starts of one scene by tens of per cent: learn from distributions, \
+            "Full model: peaks above some kilohertz differ between starts of one scene by tens of per cent: \
+             learn from distributions, \
              not from single records."
                 .to_owned(),
         );
     }
     if !reduced.is_empty() {
         limits.push(format!(
-            "Reduced model: outer ring and housing have their modes up to {}, rollers and cage are rigid bodies with local compliance; \
+            "Reduced model: outer ring and housing have their modes up to {}, rollers and cage are rigid \
+             bodies with local compliance; \
              what lies above is not of the structure.",
             span(reduced.into_iter(), "kHz")
         ));
@@ -170,7 +184,8 @@ fn limits(scenes: &[&Scene]) -> Vec<String> {
     for (form, limit) in [
         (
             "spall",
-            "Spalls have a flat floor between two edges, as long as the bearing is thick; they do not grow, and have no debris.",
+            "Spalls have a flat floor between two edges, as long as the bearing is thick; they do not grow, \
+             and have no debris.",
         ),
         ("dent", "Dents are smooth hollows with a raised rim, as long as the bearing is thick."),
         ("profile", "Profiles are linear between their points, and the same along the axis."),

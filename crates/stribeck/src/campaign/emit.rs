@@ -37,8 +37,9 @@ impl Part {
 /// Parts of a campaign for which nobody has said how many.
 const MOST_PARTS: u32 = 16;
 
-/// The script. It may be submitted again after any loss: what is done is not done twice. A part that ends before others leaves the
-/// tables to them and has done its work; so an engine that reports a failure has one to report.
+/// The script. It may be submitted again after any loss: what is done is not done twice. A part that ends
+/// before others leaves the tables to them and has done its work; so an engine that reports a failure has one
+/// to report.
 pub(super) fn script(engine: Engine, file: &Path, out: &Path, part: Part) -> Result<String> {
     let absolute = |path: &Path| -> Result<PathBuf> {
         std::path::absolute(path).with_context(|| format!("`{}` has no absolute path", path.display()))
@@ -60,12 +61,14 @@ pub(super) fn script(engine: Engine, file: &Path, out: &Path, part: Part) -> Res
         .map_or_else(String::new, |gb| format!("#SBATCH --mem={:.0}M\n", (1e9 * gb / 1048576.0).ceil()));
     Ok(match engine {
         Engine::Slurm => format!(
-            "#!/bin/sh\n#SBATCH --job-name=stribeck\n#SBATCH --array=1-{of}\n#SBATCH --cpus-per-task={threads}\n{memory}#SBATCH --requeue\n\
+            "#!/bin/sh\n#SBATCH --job-name=stribeck\n#SBATCH --array=1-{of}\n#SBATCH \
+             --cpus-per-task={threads}\n{memory}#SBATCH --requeue\n\
              # Submit with `sbatch`; once more after a loss. The last part that ends makes the tables.\n{}\n",
             command("$SLURM_ARRAY_TASK_ID")?
         ),
         Engine::Hq => format!(
-            "#!/bin/sh\n# Run it where `hq` finds its server; once more after a loss. The last part that ends makes the tables.\n\
+            "#!/bin/sh\n# Run it where `hq` finds its server; once more after a loss. The last part that \
+             ends makes the tables.\n\
              hq submit --array=1-{of} --cpus={threads} --crash-limit=unlimited --wait -- sh -c '{}'\n",
             command("$HQ_TASK_ID")?.replace('\'', "'\\''")
         ),

@@ -5,7 +5,8 @@ use stribeck_scene::scene::Scene;
 /// Of a model [GB]: 100 000 elements with the factors of their preload, or the modes of as many.
 const MODEL_GB: f64 = 0.3;
 
-/// Channels as long as the record that its numbers take at once: time and cage, the transforms of one sensor, and a few rollers …
+/// Channels as long as the record that its numbers take at once: time and cage, the transforms of one sensor,
+/// and a few rollers …
 const CHANNELS: f64 = 24.0;
 /// … of each sensor, filtered too …
 const OF_SENSOR: f64 = 4.0;
@@ -20,7 +21,8 @@ pub(super) fn need_gb(scene: &Scene) -> f64 {
     MODEL_GB + 8e-9 * channels * g.duration / g.interval
 }
 
-/// What programs may still take, and this one where it has a limit of its own [GB]; `None` where the system does not tell.
+/// What programs may still take, and this one where it has a limit of its own [GB]; `None` where the system
+/// does not tell.
 pub(super) fn free_gb() -> Option<f64> {
     let about = std::fs::read_to_string("/proc/meminfo").ok();
     let available = about.and_then(|about| {

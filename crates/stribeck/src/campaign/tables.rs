@@ -1,4 +1,5 @@
-//! The data set of a campaign: a table with a row for each run, one with a row for each event, one with the sampled signals.
+//! The data set of a campaign: a table with a row for each run, one with a row for each event, one with the
+//! sampled signals.
 
 mod events;
 mod signals;
@@ -25,7 +26,8 @@ pub(super) const RUNS: &str = "runs.parquet";
 pub(super) const EVENTS: &str = "events.parquet";
 pub(super) const SIGNALS: &str = "signals.parquet";
 
-/// One run in the table. What depends on the machine or on interruptions, such as seconds, stays in its folder.
+/// One run in the table. What depends on the machine or on interruptions, such as seconds, stays in its
+/// folder.
 pub(super) struct Row {
     pub(super) number: usize,
     pub(super) split: &'static str,
@@ -101,7 +103,8 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
     campaign.runs.iter().zip(stages).map(row).collect()
 }
 
-/// All numbers of a summary that stand alone, by their path; lists are left to the run's folder, clocks as well.
+/// All numbers of a summary that stand alone, by their path; lists are left to the run's folder, clocks as
+/// well.
 fn flatten(value: &Value, path: &str, to: &mut BTreeMap<String, f64>) {
     match value {
         Value::Object(fields) => {
@@ -145,8 +148,8 @@ pub(super) fn is_half_written(name: &OsStr) -> bool {
     parts.next().is_some_and(|process| process.parse::<u32>().is_ok()) && parts.next().is_some()
 }
 
-/// Lets `write` make a file beside `path`, then puts it in its place. Parts that write the same file at once do not meet: each has
-/// a name of its own until then.
+/// Lets `write` make a file beside `path`, then puts it in its place. Parts that write the same file at once
+/// do not meet: each has a name of its own until then.
 pub(super) fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     let beside = path.with_extension(format!("{}{HALF_WRITTEN}", std::process::id()));
     let written = write(&beside).and_then(|()| {

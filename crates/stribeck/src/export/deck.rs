@@ -14,7 +14,8 @@ use stribeck_scene::scene::MaterialScene;
 
 use super::provenance;
 
-/// The mesh of the run, each body a part or set of its name, with material, sections and contacts where the format has them.
+/// The mesh of the run, each body a part or set of its name, with material, sections and contacts where the
+/// format has them.
 pub(super) fn write(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Result<PathBuf> {
     let whole = RunMesh::read(dir.mesh())?;
     let nodes = |body: &mesh_file::Body| {
@@ -44,7 +45,8 @@ pub(super) fn write(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Resul
     Ok(path)
 }
 
-/// What the scene says of the bodies of its mesh. The cage touches nothing here: its pockets are walls of the scene, not of the mesh.
+/// What the scene says of the bodies of its mesh. The cage touches nothing here: its pockets are walls of the
+/// scene, not of the mesh.
 fn model<'a>(scene: &ResolvedScene, mesh: &'a Mesh) -> Model<'a> {
     let MaterialScene { youngs_modulus_gpa, poissons_ratio, density_kg_m3 } = scene.written.material;
     let named = |name: &str| mesh.bodies.iter().position(|body| body.name == name);
@@ -88,7 +90,8 @@ fn step(scene: &ResolvedScene, mesh: &Mesh) -> Result<Step> {
     let (own, k) = (&assembly.model.mesh, &assembly.kinematics);
     if (&own.x, &own.y) != (&mesh.x, &mesh.y) {
         bail!(
-            "another version of the program has made this run, which meshes the scene otherwise: repeat the run, or `--to msh`, which \
+            "another version of the program has made this run, which meshes the scene otherwise: repeat the \
+             run, or `--to msh`, which \
              has the mesh alone"
         );
     }

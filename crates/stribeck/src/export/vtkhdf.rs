@@ -1,4 +1,5 @@
-//! All frames of a run in one VTKHDF file: an unstructured grid that changes from step to step, in version 2.2 of the format.
+//! All frames of a run in one VTKHDF file: an unstructured grid that changes from step to step, in version
+//! 2.2 of the format.
 //!
 //! Every offset that a reader may ask for is written, those of the fields too: ParaView crashes without them.
 

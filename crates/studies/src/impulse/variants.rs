@@ -24,7 +24,8 @@ pub(super) struct Mesh {
     pub(super) starts: Vec<Variant>,
 }
 
-/// What is compared, with so many starts of each mesh, and half as many in tight pockets, where less scatters.
+/// What is compared, with so many starts of each mesh, and half as many in tight pockets, where less
+/// scatters.
 pub(super) fn families(starts: u16) -> [Family; 2] {
     let few = (starts / 2).max(2);
     let cure = [ARC, SPLINE, ONSET];
@@ -37,7 +38,8 @@ pub(super) fn families(starts: u16) -> [Family; 2] {
         all("uniform", "0.5 mm throughout, the cure", UNIFORM, &cured, starts),
         all(
             "fine",
-            "0.25 mm, graded, the cure with the contact\u{2019}s stiffness and damping over an area and its onset unchanged",
+            "0.25 mm, graded, the cure with the contact\u{2019}s stiffness and damping over an area and its \
+             onset unchanged",
             LEAN,
             &fine,
             starts,

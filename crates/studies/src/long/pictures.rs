@@ -43,8 +43,10 @@ pub(super) fn spectra(sheet: &mut Sheet, findings: &Findings) -> Result<()> {
     let highest = lines.iter().map(|l| l.1).fold(0.0, f64::max);
     let range = ((lowest - ABOUT_HZ).max(0.0), highest + ABOUT_HZ);
     let mut zoom = figure("lines", "The facet lines, resolved", range, true).caption(
-        "Grey, the paper\u{2019}s record length on the paper\u{2019}s grid of 3 Hz: one hump 67 Hz wide. Blue, a record that resolves 3 Hz. \
-         Dashed: roller vertices (green), nodes of the outer (purple) and of the inner raceway (teal) by rolling without slip; solid: \
+        "Grey, the paper\u{2019}s record length on the paper\u{2019}s grid of 3 Hz: one hump 67 Hz wide. \
+         Blue, a record that resolves 3 Hz. \
+         Dashed: roller vertices (green), nodes of the outer (purple) and of the inner raceway (teal) by \
+         rolling without slip; solid: \
          by the recorded motion.",
     );
     let colours = [Colour::Green, Colour::Purple, Colour::Teal];

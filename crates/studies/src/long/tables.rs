@@ -23,8 +23,10 @@ pub(super) fn cost(sheet: &mut Sheet, run: &Run, summary: &Summary) {
     let (info, cost) = (&run.info, &summary.run);
     let elements = info.mesh.quads + info.mesh.triangles;
     sheet.say(&format!(
-        "Scene `{}`: {elements} elements, {:.0} ms of bearing time in {} steps of {:.2} ns, threads: {}; {} after a set-up of {}, {} of \
-         processor time; {:.2} ns of wall clock for one element and one step. {}, commit {}. Largest energy imbalance {:.2} % of the peak \
+        "Scene `{}`: {elements} elements, {:.0} ms of bearing time in {} steps of {:.2} ns, threads: {}; {} \
+         after a set-up of {}, {} of \
+         processor time; {:.2} ns of wall clock for one element and one step. {}, commit {}. Largest energy \
+         imbalance {:.2} % of the peak \
          strain energy.",
         summary.scene,
         cost.simulated_ms,
@@ -46,7 +48,8 @@ pub(super) fn cost(sheet: &mut Sheet, run: &Run, summary: &Summary) {
     if let (Some(load), Some(drive)) = (gained("external_j"), gained("drive_j")) {
         let missing = summary.energy.max_relative_error * summary.energy.peak_strain_j;
         sheet.say(&format!(
-            "The imbalance is counted against the strain energy, {:.2} J at most; over this time load and drive supplied {:.2} J, of which \
+            "The imbalance is counted against the strain energy, {:.2} J at most; over this time load and \
+             drive supplied {:.2} J, of which \
              it is {:.2} %.",
             summary.energy.peak_strain_j,
             load + drive,
@@ -94,7 +97,8 @@ pub(super) fn lines(sheet: &mut Sheet, findings: &Findings) {
     let Some(sensor) = findings.sensors.first().map(|s| s.name.as_str()) else { return };
     sheet.heading("Lines and verdicts");
     sheet.say(&format!(
-        "At the sensor `{sensor}`. *Predicted* is rolling without slip, *by motion* follows the recorded motion of cage and rollers. A \
+        "At the sensor `{sensor}`. *Predicted* is rolling without slip, *by motion* follows the recorded \
+         motion of cage and rollers. A \
          line counts when it stands 10 dB above its surroundings."
     ));
     let origin = |family: Origin| match family {
@@ -151,8 +155,10 @@ pub(super) fn envelope(sheet: &mut Sheet, findings: &Findings) {
         return;
     };
     sheet.say(&format!(
-        "Squared envelope of {:.0} to {:.0} Hz, the whole record with a Hann window: {:.2} Hz are resolved, {:.1} periods of BPFO are on \
-         record. The paper computes {} Hz and reads {} Hz from its trace; without slip these dimensions give {:.2} Hz, and the \
+        "Squared envelope of {:.0} to {:.0} Hz, the whole record with a Hann window: {:.2} Hz are resolved, \
+         {:.1} periods of BPFO are on \
+         record. The paper computes {} Hz and reads {} Hz from its trace; without slip these dimensions give \
+         {:.2} Hz, and the \
          recorded cage {} Hz.",
         finding.band_hz.0,
         finding.band_hz.1,

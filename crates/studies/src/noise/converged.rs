@@ -63,10 +63,13 @@ pub(super) fn write(sheet: &mut Sheet, groups: &[(&str, Vec<Finished>)]) {
     let Some((_, fine)) = groups.last() else { return };
     sheet.heading("Is what is left right? Elements of 0.25 mm");
     sheet.say(
-        "The same bearing on graded meshes, from three starts that differ by 0.01° of the cage (10 µs): chords at 0.5 mm \
-         (`chords`), the cure at 0.5 mm (`cured`), and the cure at 0.25 mm with the contact\u{2019}s stiffness and damping over \
+        "The same bearing on graded meshes, from three starts that differ by 0.01° of the cage (10 µs): \
+         chords at 0.5 mm \
+         (`chords`), the cure at 0.5 mm (`cured`), and the cure at 0.25 mm with the contact\u{2019}s \
+         stiffness and damping over \
          an area and its onset unchanged (`fine`). Mean over the starts, smallest and largest in \
-         brackets; forces are means from 2.4 to 4.3 ms, while roller 1 is over the defect, and *between* is what it is in the tables \
+         brackets; forces are means from 2.4 to 4.3 ms, while roller 1 is over the defect, and *between* is \
+         what it is in the tables \
          above.",
     );
     let names: Vec<&str> =

@@ -75,7 +75,8 @@ pub(super) fn remainder() -> Vec<Step> {
         cure(
             "smooth-narrow",
             &[NARROW],
-            "A narrower onset, 3 µm: points that come and go sound at eight times the line\u{2019}s frequency, 37.4 kHz, \
+            "A narrower onset, 3 µm: points that come and go sound at eight times the line\u{2019}s \
+             frequency, 37.4 kHz, \
              most of all at the seat.",
         ),
         cure("smooth-one-pass", &["contact.passes=one"], "The two half passes against one."),

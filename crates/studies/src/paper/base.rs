@@ -77,8 +77,8 @@ const COLUMNS: [Column; 8] = [
     Column { name: "off, octaves", decimals: 2, of: misfit },
 ];
 
-/// Mean distance of tone, impulse, between and notched level from the paper's, in octaves: 1 is a factor of two. A tone
-/// that does not stand out has no level; it counts one octave.
+/// Mean distance of tone, impulse, between and notched level from the paper's, in octaves: 1 is a factor of
+/// two. A tone that does not stand out has no level; it counts one octave.
 fn misfit(run: &Finished) -> Option<f64> {
     let levels = &run.numbers()?.levels;
     let octaves = |ours: f64, paper: f64| (ours / paper).log2().abs();
@@ -94,9 +94,12 @@ fn misfit(run: &Finished) -> Option<f64> {
 pub(super) fn write(sheet: &mut Sheet, runs: &[Finished]) -> Result<()> {
     sheet.heading("What the paper leaves open");
     sheet.say(&format!(
-        "The paper's levels are ± {:.0} g at the exits, ± {:.0} g between them and ± {:.0} g behind the notch; its tone stands at {:.0} Hz and \
-         is about {TONE_G:.0} g strong, what the notch takes. *Off* is the mean distance of these four levels from the paper's in \
-         octaves, so 1 is a factor of two. Each variant changes one choice of `base-default`, the default scene with copies in \
+        "The paper's levels are ± {:.0} g at the exits, ± {:.0} g between them and ± {:.0} g behind the \
+         notch; its tone stands at {:.0} Hz and \
+         is about {TONE_G:.0} g strong, what the notch takes. *Off* is the mean distance of these four \
+         levels from the paper's in \
+         octaves, so 1 is a factor of two. Each variant changes one choice of `base-default`, the default \
+         scene with copies in \
          one orientation.",
         theirs::IMPULSE_G,
         theirs::BETWEEN_G,
@@ -181,9 +184,12 @@ fn dissipation(sheet: &mut Sheet, runs: &[&Finished]) {
     }
     sheet.heading("High-frequency dissipation");
     sheet.say(
-        "Stiffness-proportional damping β (THEORY §2.7) has the damping ratio βω/2. 5 ns are what the linear bulk viscosity of 0.06, \
-         usual in explicit codes, does to elements of 0.5 mm. *Instant* is the root mean square of the nodal acceleration of \
-         single steps at the side sensor between the impulses, where the mesh rings in the MHz range; *between* is the peak of the \
+        "Stiffness-proportional damping β (THEORY §2.7) has the damping ratio βω/2. 5 ns are what the linear \
+         bulk viscosity of 0.06, \
+         usual in explicit codes, does to elements of 0.5 mm. *Instant* is the root mean square of the nodal \
+         acceleration of \
+         single steps at the side sensor between the impulses, where the mesh rings in the MHz range; \
+         *between* is the peak of the \
          mean over 10 µs, which is what a record of 100 kHz should hold.",
     );
     sheet.runs("dissipation", &rows, &DISSIPATION);
@@ -208,7 +214,8 @@ const DISSIPATION: [Column; 8] = [
     },
 ];
 
-/// Root mean square of a_y of single steps at the leading sensor from 7 ms on [g]: after the exit and its ringing.
+/// Root mean square of a_y of single steps at the leading sensor from 7 ms on [g]: after the exit and its
+/// ringing.
 fn instant_g(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
     let record = Record::whole(&read).ok()?;
@@ -224,15 +231,16 @@ fn heat_j(run: &Finished) -> Option<f64> {
     Run::read(&run.folder).ok()?.energy.channel("damping_j").ok()??.last().copied()
 }
 
-/// Copies in one orientation against copies turned with the pattern, over three passages, each run twice: the second with
-/// another time step, so that their difference is the scatter of one scene.
+/// Copies in one orientation against copies turned with the pattern, over three passages, each run twice: the
+/// second with another time step, so that their difference is the scatter of one scene.
 fn thirty(sheet: &mut Sheet, runs: &[&Finished]) {
     if runs.is_empty() {
         return;
     }
     sheet.heading("Translated or rotated copies, 30 ms");
     sheet.say(
-        "Three passages. The runs called *again* differ from the others by a time step five per cent shorter and by nothing else: \
+        "Three passages. The runs called *again* differ from the others by a time step five per cent shorter \
+         and by nothing else: \
          what differs between them is the scatter of one scene, whose idle rollers rattle by chance.",
     );
     sheet.runs("thirty", runs, &COLUMNS);
@@ -241,7 +249,8 @@ fn thirty(sheet: &mut Sheet, runs: &[&Finished]) {
     if let [Some(a), Some(b), Some(c), Some(d)] = all {
         let (difference, scatter) = (0.5 * (a + b) - 0.5 * (c + d), (a - b).abs().max((c - d).abs()));
         sheet.say(&format!(
-            "Translated copies are {} octaves off on average, rotated ones {}; runs of one scene differ by up to {}. {}",
+            "Translated copies are {} octaves off on average, rotated ones {}; runs of one scene differ by \
+             up to {}. {}",
             number(0.5 * (a + b), 2),
             number(0.5 * (c + d), 2),
             number(scatter, 2),

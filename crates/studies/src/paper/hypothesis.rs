@@ -1,5 +1,6 @@
-//! What follows from the paper's hypothesis, that polygonised rollers make the tone: where it must stand and how strong it
-//! must be when facets, speed, load and orientation change. A bearing without a defect, so that nothing knocks.
+//! What follows from the paper's hypothesis, that polygonised rollers make the tone: where it must stand and
+//! how strong it must be when facets, speed, load and orientation change. A bearing without a defect, so that
+//! nothing knocks.
 
 use anyhow::Result;
 use stribeck_analysis::load::support;
@@ -14,7 +15,8 @@ use super::{LEAN, LONG};
 use crate::table::{number, quantity_by};
 use crate::{Column, Finished, Sheet, Variant};
 
-/// Raceways with counts of their own, so that their lines stand 900 Hz and more away from those of the rollers.
+/// Raceways with counts of their own, so that their lines stand 900 Hz and more away from those of the
+/// rollers.
 const RACES: [&str; 2] = ["mesh.outer_facets=1000", "mesh.inner_facets=820"];
 /// The stiff contact: it smooths the facets least, so the line is clearest.
 const STIFF: &str = "contact.penalty_scale=1.0";
@@ -77,7 +79,8 @@ pub(super) fn line(run: &Finished) -> Option<Line> {
     clearest(run).filter(|l| l.above_db >= LEAST_PROMINENCE_DB)
 }
 
-/// How far the roller line stands above its surroundings at the sensor that hears it most clearly [dB], line or not.
+/// How far the roller line stands above its surroundings at the sensor that hears it most clearly [dB], line
+/// or not.
 pub(super) fn above(run: &Finished) -> Option<f64> {
     clearest(run).map(|l| l.above_db)
 }
@@ -107,7 +110,8 @@ fn resolution(run: &Finished) -> Option<f64> {
     Some(run.numbers()?.spectrum.as_ref()?.resolution_hz)
 }
 
-/// Where the pattern of all rollers has its strongest line by the recorded motion [Hz]; sliding rollers have none.
+/// Where the pattern of all rollers has its strongest line by the recorded motion [Hz]; sliding rollers have
+/// none.
 fn pattern(run: &Finished) -> Option<f64> {
     let motion = &run.numbers()?.kinematics;
     rolling(run).filter(|r| *r >= ROLLS)?;
@@ -148,15 +152,24 @@ fn force_line(run: &Finished) -> Option<f64> {
 pub(super) fn write(sheet: &mut Sheet, runs: &[Finished]) -> Result<()> {
     sheet.heading("Experiments on the hypothesis");
     sheet.say(
-        "A bearing without a defect, 30 ms: 33 Hz are resolved, and nothing knocks. The raceways have 1000 and 820 facets, \
-         whose lines stand near 3754 Hz, so that what stands at N_v × spin comes from the rollers alone, and the contact is stiff \
-         (E/h), which smooths the facets least. *Friction to roll* is what the most loaded roller needs to be turned over its own vertices \
-         by traction (THEORY §5.4); the scene has 0.005. *Rolling* is the spin of the loaded rollers relative to the cage over that \
-         of rolling without slip. *Off* is measured against N_v × spin without slip, in resolutions of the record; \
-         *pattern* is where copies in one orientation have their line by the recorded motion (THEORY §5.5). *Lumped* is the \
-         acceleration of a rigid ring on springs that follow the polygons (`crates/analysis/src/lumped.rs`): its phases and its \
-         smoothing by the contact\u{2019}s width, without the ring\u{2019}s own dynamics. *Sum of forces* is the line in the \
-         vertical force of all rollers, which knows no transfer path. A line counts when it stands 10 dB above its surroundings.",
+        "A bearing without a defect, 30 ms: 33 Hz are resolved, and nothing knocks. The raceways have 1000 \
+         and 820 facets, \
+         whose lines stand near 3754 Hz, so that what stands at N_v × spin comes from the rollers alone, and \
+         the contact is stiff \
+         (E/h), which smooths the facets least. *Friction to roll* is what the most loaded roller needs to \
+         be turned over its own vertices \
+         by traction (THEORY §5.4); the scene has 0.005. *Rolling* is the spin of the loaded rollers \
+         relative to the cage over that \
+         of rolling without slip. *Off* is measured against N_v × spin without slip, in resolutions of the \
+         record; \
+         *pattern* is where copies in one orientation have their line by the recorded motion (THEORY §5.5). \
+         *Lumped* is the \
+         acceleration of a rigid ring on springs that follow the polygons (`crates/analysis/src/lumped.rs`): \
+         its phases and its \
+         smoothing by the contact\u{2019}s width, without the ring\u{2019}s own dynamics. *Sum of forces* is \
+         the line in the \
+         vertical force of all rollers, which knows no transfer path. A line counts when it stands 10 dB \
+         above its surroundings.",
     );
     sheet.runs("hypothesis", &runs.iter().collect::<Vec<_>>(), &COLUMNS);
     conclusions(sheet, runs);
@@ -179,7 +192,8 @@ fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
     let silent: Vec<&Finished> = runs.iter().filter(|r| r.numbers().is_some() && off(r).is_none()).collect();
     let sliding = silent.iter().filter(|r| rolling(r).is_some_and(|r| r < ROLLS)).count();
     sheet.say(&format!(
-        "Of {} runs, {} show the line: {inside} have it within one resolution of N_v × spin (the farthest is {} off) and {of_pattern} within \
+        "Of {} runs, {} show the line: {inside} have it within one resolution of N_v × spin (the farthest is \
+         {} off) and {of_pattern} within \
          one resolution of the pattern\u{2019}s line.",
         found.len() + silent.len(),
         found.len(),
@@ -244,7 +258,8 @@ fn load(sheet: &mut Sheet, runs: &[Finished]) {
         (line, range(rolling), resolution)
     {
         sheet.say(&format!(
-            "Load: at {count} of {} loads between 25 and 100 kN the line stands out, between {} and {} Hz, {} % apart, {} than one \
+            "Load: at {count} of {} loads between 25 and 100 kN the line stands out, between {} and {} Hz, \
+             {} % apart, {} than one \
              resolution of {} Hz; the spin of the rollers differs by {} %.",
             loaded.len(),
             number(low, 1),
@@ -263,10 +278,18 @@ fn frequencies(runs: &[Finished]) -> Figure {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().unzip();
     let axis = |label: &str| Axis::si(label, "Hz");
-    Figure::new("frequency", "The roller line follows N_v × spin", axis("N_v × spin, without slip"), axis("Measured"))
-        .with(Series::listed("equal", Colour::Grey, x.clone(), x.clone()))
-        .with(Series::listed("measured, clearest sensor", Colour::Blue, x, y).as_points())
-        .caption("Measured against predicted frequency over facets, speed, load and orientation; the grey line is no fit.")
+    Figure::new(
+        "frequency",
+        "The roller line follows N_v × spin",
+        axis("N_v × spin, without slip"),
+        axis("Measured"),
+    )
+    .with(Series::listed("equal", Colour::Grey, x.clone(), x.clone()))
+    .with(Series::listed("measured, clearest sensor", Colour::Blue, x, y).as_points())
+    .caption(
+        "Measured against predicted frequency over facets, speed, load and orientation; the grey \
+            line is no fit.",
+    )
 }
 
 fn levels(runs: &[Finished]) -> Figure {
@@ -289,5 +312,8 @@ fn levels(runs: &[Finished]) -> Figure {
     .with(Series::listed("equal", Colour::Grey, x.clone(), x.clone()))
     .with(Series::listed("clearest sensor", Colour::Blue, x.clone(), sensor).as_points())
     .with(Series::listed("sum of forces", Colour::Orange, x, force).as_points())
-    .caption("A slope of one means that phases, speed and contact width act as the lumped model says; odd counts, for which it predicts nothing, are left out.")
+    .caption(
+        "A slope of one means that phases, speed and contact width act as the lumped model says; odd \
+        counts, for which it predicts nothing, are left out.",
+    )
 }

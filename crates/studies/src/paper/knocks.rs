@@ -29,7 +29,8 @@ pub(super) fn write(sheet: &mut Sheet, with: &[Finished], without: &[Finished]) 
     }
     sheet.heading("With the defect");
     sheet.say(
-        "The same bearings with the defect, 12 ms, beside those without: whether the line is there as soon as nothing knocks, and \
+        "The same bearings with the defect, 12 ms, beside those without: whether the line is there as soon \
+         as nothing knocks, and \
          whether the rollers roll at all.",
     );
     let cell = |v: Option<f64>, decimals| v.map_or("–".to_owned(), |v| number(v, decimals));

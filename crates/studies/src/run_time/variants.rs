@@ -31,8 +31,8 @@ pub(super) struct Choice {
     pub(super) starts: Vec<Variant>,
 }
 
-/// The scene at another element size under the same contact: stiffness and damping over an area stay, facets and layers are as
-/// many as elements of that size make.
+/// The scene at another element size under the same contact: stiffness and damping over an area stay, facets
+/// and layers are as many as elements of that size make.
 fn sized(size_mm: f64) -> Vec<String> {
     let finer = BASE_MM / size_mm;
     let count = |base: f64| (base * finer).round().max(1.0) as usize;
@@ -54,7 +54,8 @@ fn graded(size_mm: f64) -> Vec<String> {
     set
 }
 
-/// All choices; `starts` of each, and `few` of the reference, whose elements are of `finest` [mm] at the contacts.
+/// All choices; `starts` of each, and `few` of the reference, whose elements are of `finest` [mm] at the
+/// contacts.
 pub(super) fn choices(starts: u16, few: u16, finest: f64) -> Vec<Choice> {
     let owned = |set: &[&str]| set.iter().map(|s| (*s).to_owned()).collect::<Vec<String>>();
     let choice = |curve, name: &str, shows, scene, set: Vec<String>, starts: u16| {
@@ -122,8 +123,8 @@ pub(super) fn choices(starts: u16, few: u16, finest: f64) -> Vec<Choice> {
     all
 }
 
-/// Angle of the first roller in start `k` [°]: 0.01° of the cage apart, to either side in turn, so that more starts keep those
-/// that there are.
+/// Angle of the first roller in start `k` [°]: 0.01° of the cage apart, to either side in turn, so that more
+/// starts keep those that there are.
 fn first_roller_deg(k: u16) -> f64 {
     94.0 + 0.01 * f64::from(k.div_ceil(2)) * if k.is_multiple_of(2) { 1.0 } else { -1.0 }
 }

@@ -70,7 +70,8 @@ pub(super) fn chapter() -> Result<Chapter> {
     }
     Ok(Chapter {
         title: "Shapes, places and units",
-        words: "Free blocks whose nodes start with random velocities, 20 000 steps; and the bar impact again elsewhere and in other \
+        words: "Free blocks whose nodes start with random velocities, 20 000 steps; and the bar impact again \
+            elsewhere and in other \
                 sizes, where it must come out as at home.",
         cases,
         figures: Vec::new(),

@@ -177,8 +177,10 @@ pub(super) fn chapter() -> Result<Chapter> {
     }
     Ok(Chapter {
         title: "Onset of instability",
-        words: "Time steps from 0.5 to 1.5 times the limit 2/ω_max that the program computes for the model (with contact: for its \
-                present stiffness), by bisection: the smallest step at which random noise grows a thousandfold.",
+        words: "Time steps from 0.5 to 1.5 times the limit 2/ω_max that the program computes for the model \
+            (with contact: for its \
+                present stiffness), by bisection: the smallest step at which random noise grows a \
+                thousandfold.",
         cases,
         figures: vec![figure],
     })

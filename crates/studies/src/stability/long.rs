@@ -1,4 +1,5 @@
-//! Long runs: a free spinning roller, vibration without end, a thousand bounces, a long stick; loads that go away.
+//! Long runs: a free spinning roller, vibration without end, a thousand bounces, a long stick; loads that go
+//! away.
 
 use anyhow::Result;
 use stribeck_contact::Method;
@@ -37,9 +38,11 @@ fn spinning(figure: &mut Figure) -> Result<Case> {
         let all = rim.iter().map(|&n| system.position(n)).map(|[x, y]| x.hypot(y));
         all.sum::<f64>() / rim.len() as f64
     };
-    // Momenta are taken per step from the velocities there; the moment about the centre with positions half a step on.
+    // Momenta are taken per step from the velocities there; the moment about the centre with positions half a
+    // step on.
     let spun = |system: &System| angular(system, body);
-    // The mesh's centre of mass lies a few nanometres beside the axis: the roller drifts on a straight line from there.
+    // The mesh's centre of mass lies a few nanometres beside the axis: the roller drifts on a straight line
+    // from there.
     let (start, first) = ([size(&system), spun(&system)], system.motion_of(body));
     let (mut radius_drift, mut spin_drift, mut centre_drift) = (0.0_f64, 0.0_f64, 0.0_f64);
     let mut history = [Vec::new(), Vec::new(), Vec::new()];
@@ -64,7 +67,8 @@ fn spinning(figure: &mut Figure) -> Result<Case> {
     let worst = system.balance().largest_error;
     let right = worst < DRIFT && spin_drift < 1e-9 && radius_drift < 1e-5 && centre_drift < 1e-6;
     let seen = format!(
-        "{:.2} turns; angular momentum kept to {spin_drift:.0e}, its straight line to {centre_drift:.0e} radii, radius to {radius_drift:.0e} (it \
+        "{:.2} turns; angular momentum kept to {spin_drift:.0e}, its straight line to {centre_drift:.0e} \
+         radii, radius to {radius_drift:.0e} (it \
          breathes)",
         spin * system.time() / std::f64::consts::TAU
     );
@@ -128,7 +132,8 @@ fn bouncing() -> Result<Case> {
     let (place, sideways) = (motion.centre, motion.velocity[0].abs() / speed);
     let right = bounces >= 1000 && place[1].abs() < 3.0 * gap && place[0].abs() < radius;
     let seen = format!(
-        "{bounces} bounces in {} steps; still between its walls, {:.1} µm off the middle line, sideways speed {sideways:.0e} of the first",
+        "{bounces} bounces in {} steps; still between its walls, {:.1} µm off the middle line, sideways \
+         speed {sideways:.0e} of the first",
         system.steps(),
         1e6 * place[0]
     );
@@ -157,7 +162,8 @@ fn sticking() -> Result<Case> {
         stop = stop_reason(system.run(800_000, 100, |_, _| ())?);
     }
     let crept = (place(&system) - early).abs();
-    // What a sliding block would have done in that time under the hundredth of its weight that friction leaves over.
+    // What a sliding block would have done in that time under the hundredth of its weight that friction
+    // leaves over.
     let time = 0.8 * system.time();
     let free = 0.5 * 9.81 * slope.sin() * time * time;
     let right = crept < 1e-3 * free;

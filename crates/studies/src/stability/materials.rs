@@ -69,8 +69,10 @@ pub(super) fn chapter() -> Result<Chapter> {
     }
     Ok(Chapter {
         title: "Poisson's ratio",
-        words: "A free block whose nodes start with random velocities, and the static bore of a thick cylinder against Lamé. The \
-                one-point quadrilateral does not lock as ν approaches one half; the time step shrinks with the pressure wave.",
+        words: "A free block whose nodes start with random velocities, and the static bore of a thick \
+            cylinder against Lamé. The \
+                one-point quadrilateral does not lock as ν approaches one half; the time step shrinks with \
+                the pressure wave.",
         cases,
         figures: Vec::new(),
     })

@@ -11,8 +11,8 @@ use crate::{Finished, Flags, Host, Runner, Variant};
 /// The default bearing on a mesh that resolves the defect.
 const LEAN: &str = "fixtures/scenes/lean.ron";
 
-/// Until a millisecond behind the exit of the first roller at 500 rpm, with contact ten times as stiff as by default: that one is
-/// softer than the bearing, so that every case would have this warning.
+/// Until a millisecond behind the exit of the first roller at 500 rpm, with contact ten times as stiff as by
+/// default: that one is softer than the bearing, so that every case would have this warning.
 const BASE: &[&str] = &["solver.duration_ms=6.5", "contact.penalty_scale=0.5"];
 
 /// Right is a mean support within this of load and weight …
@@ -24,7 +24,8 @@ const RATTLING: f64 = 0.1;
 /// … and a roller that crosses the defect in the time that rolling without slip takes, within this share, …
 const CROSSING: f64 = 0.05;
 
-/// … and that unloads and is loaded again within this share of that time of passing the edges, when it carries load.
+/// … and that unloads and is loaded again within this share of that time of passing the edges, when it
+/// carries load.
 const EVENTS: f64 = 0.15;
 
 #[rustfmt::skip]
@@ -87,13 +88,20 @@ pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> Re
     };
     Ok(Chapter {
         title: "Through the defect",
-        words: "The lean scene (0.5 mm elements where bodies roll on each other) with contact ten times as stiff as by default, until the \
-                first roller has left the defect and has rung for a millisecond, with one thing changed. *Right* is: the rollers carry load \
-                and weight within 2 % on average (or outer ring and adapter are moved at less than 0.1 m/s by what they lack), and roller 1 \
-                crosses the defect as it should. It does when it takes the time of rolling without slip within 5 % and the room in its \
-                pocket, and when, where it carries load, its force vanishes and comes back within 15 % of that time of its centre's passing \
-                the edges. Friction drives rollers and a cage holds them: where one of them is missing a roller does slip, and from a short \
-                defect it carries on. There it should cross as it does by the reduced model (`model: reduced(step_us: 1.0)`, THEORY §9), \
+        words: "The lean scene (0.5 mm elements where bodies roll on each other) with contact ten times as \
+            stiff as by default, until the \
+                first roller has left the defect and has rung for a millisecond, with one thing changed. \
+                *Right* is: the rollers carry load \
+                and weight within 2 % on average (or outer ring and adapter are moved at less than 0.1 m/s \
+                by what they lack), and roller 1 \
+                crosses the defect as it should. It does when it takes the time of rolling without slip \
+                within 5 % and the room in its \
+                pocket, and when, where it carries load, its force vanishes and comes back within 15 % of \
+                that time of its centre's passing \
+                the edges. Friction drives rollers and a cage holds them: where one of them is missing a \
+                roller does slip, and from a short \
+                defect it carries on. There it should cross as it does by the reduced model (`model: \
+                reduced(step_us: 1.0)`, THEORY §9), \
                 within the same limits. A case that is not right and has no warning is *undetected*.",
         cases: run_rows(runner, flags, host, (LEAN, BASE), ROWS, &beside)?,
         figures: Vec::new(),

@@ -11,7 +11,8 @@ use crate::{Finished, Flags, Host, Runner, Variant};
 const SCENE: &str = "fixtures/scenes/studies/quick.ron";
 const BASE: &[&str] = &["solver.duration_ms=0.4"];
 
-/// A case in which the rollers carry less or more than this share of what they must, without a word, is wrong.
+/// A case in which the rollers carry less or more than this share of what they must, without a word, is
+/// wrong.
 const SUPPORT: [f64; 2] = [0.7, 1.3];
 
 /// … unless what they lack or have too much gives outer ring and adapter less than this speed [m/s].
@@ -87,7 +88,8 @@ pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> an
     let cases = run_rows(runner, flags, host, (SCENE, BASE), ROWS, &|done, run| Ok(judge(done, run)))?;
     Ok(Chapter {
         title: "Whole bearings",
-        words: "The quick scene (2 mm elements, 24 rollers) for 0.4 ms with one thing changed. *Carried* is the vertical force of \
+        words: "The quick scene (2 mm elements, 24 rollers) for 0.4 ms with one thing changed. *Carried* is \
+            the vertical force of \
                 all rollers over load and weight, on average.",
         cases,
         figures: Vec::new(),
@@ -123,7 +125,8 @@ pub(super) fn run_rows(
     Ok(cases)
 }
 
-/// The account of a run that came to its end; the case of one that did not, refused by the preload or stopped by a guard.
+/// The account of a run that came to its end; the case of one that did not, refused by the preload or stopped
+/// by a guard.
 pub(super) fn ended<'a>(done: &str, run: &'a Finished) -> Result<&'a RunInfo, Case> {
     let Some(info) = &run.info else {
         let why = run.summary.as_ref().err().cloned().unwrap_or_default();
@@ -138,12 +141,13 @@ pub(super) fn ended<'a>(done: &str, run: &'a Finished) -> Result<&'a RunInfo, Ca
     Err(Case { done: done.to_owned(), energy, verdict: Verdict::Stopped, seen })
 }
 
-/// What the rollers carried over what they must [-], on average, and the speed [m/s] that the difference gave outer ring and
-/// adapter.
+/// What the rollers carried over what they must [-], on average, and the speed [m/s] that the difference gave
+/// outer ring and adapter.
 pub(super) fn carried(run: &Finished, info: &RunInfo) -> [f64; 2] {
     let carried = Run::read(&run.folder).ok().map(|r| support(&r));
     let share = carried.map_or(f64::NAN, |n| n / info.expected_support_n);
-    // A force that is not carried, or too much of it, moves outer ring and adapter; a little of that is rattling.
+    // A force that is not carried, or too much of it, moves outer ring and adapter; a little of that is
+    // rattling.
     let mass = (info.expected_support_n - run.scene.written.operation.load_n)
         / run.scene.written.operation.gravity_m_s2;
     let time = info.steps as f64 * info.time_step_s;

@@ -150,8 +150,10 @@ pub(super) fn chapter() -> Result<Chapter> {
     );
     Ok(Chapter {
         title: "Contact stiffness and contrasts",
-        words: "Two bars with held sides meet at 1 m/s (contrasts: at a thousandth of the slower wave). Two equal bars stay in \
-                contact for 2L/c and exchange their velocities; soft contacts take longer by their own swing.",
+        words: "Two bars with held sides meet at 1 m/s (contrasts: at a thousandth of the slower wave). Two \
+            equal bars stay in \
+                contact for 2L/c and exchange their velocities; soft contacts take longer by their own \
+                swing.",
         cases,
         figures: vec![figure],
     })

@@ -62,10 +62,13 @@ pub(super) fn bar_impact(host: &dyn Host) -> Result<Problem> {
     Ok(Problem {
         id: "impact",
         title: "Impact of two bars",
-        words: "Two equal bars with held sides meet at 2 m/s and stay in contact for 2L/c (Johnson, *Contact Mechanics*, 1985, §11.1). \
-                Error of the contact time: the penalty spring adds its own swing, and the front spreads with the third root of the way \
+        words:
+            "Two equal bars with held sides meet at 2 m/s and stay in contact for 2L/c (Johnson, *Contact \
+            Mechanics*, 1985, §11.1). \
+                Error of the contact time: the penalty spring adds its own swing, and the front spreads with \
+                the third root of the way \
                 in cells, so that the order is below one."
-            .into(),
+                .into(),
         work: "element evaluations",
         curves,
     })
@@ -139,9 +142,12 @@ pub(super) fn hertz(host: &dyn Host) -> Result<Problem> {
     Ok(Problem {
         id: "hertz",
         title: "Hertz line contact",
-        words: "A curved block (R = 0.2 m) is pressed on a flat one until the half-width is b = √(4wR/(πE*)) = 1.2 mm (Johnson 1985, §4.2); \
-                b from the second moment of the contact forces. Static; graded meshes are five times finer at the contact."
-            .into(),
+        words:
+            "A curved block (R = 0.2 m) is pressed on a flat one until the half-width is b = √(4wR/(πE*)) \
+            = 1.2 mm (Johnson 1985, §4.2); \
+                b from the second moment of the contact forces. Static; graded meshes are five times finer \
+                at the contact."
+                .into(),
         work: "elements",
         curves,
     })
@@ -206,9 +212,12 @@ pub(super) fn rolling(host: &dyn Host) -> Result<Problem> {
     Ok(Problem {
         id: "rolling",
         title: "From sliding to rolling",
-        words: "A rigid disc of 40 mm is set down at 0.15 m/s without spin and ends rolling at two thirds of that, whatever µ is: about the \
-                contact the angular momentum is kept. A polygon rolls over its corners, which lift it and slow it down."
-            .into(),
+        words:
+            "A rigid disc of 40 mm is set down at 0.15 m/s without spin and ends rolling at two thirds of \
+            that, whatever µ is: about the \
+                contact the angular momentum is kept. A polygon rolls over its corners, which lift it and \
+                slow it down."
+                .into(),
         work: "contact points × steps",
         curves,
     })
@@ -251,7 +260,8 @@ pub(super) fn sliding(host: &dyn Host) -> Result<Problem> {
     Ok(Problem {
         id: "sliding",
         title: "A block slides to a stop",
-        words: "A rigid block starts at 50 mm/s on a floor with µ = 0.2 and stops after v²/(2µg) = 0.64 mm. Coulomb's law holds to \
+        words: "A rigid block starts at 50 mm/s on a floor with µ = 0.2 and stops after v²/(2µg) = 0.64 mm. \
+            Coulomb's law holds to \
                 rounding; what is left is the swing of the contact spring."
             .into(),
         work: "steps",

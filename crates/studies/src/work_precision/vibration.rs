@@ -85,10 +85,14 @@ pub(super) fn ring(host: &dyn Host) -> Result<Problem> {
     Ok(Problem {
         id: "ring",
         title: "Bending mode of a ring",
-        words: "Two lobes of a free ring of radius 100 mm and thickness 4 mm, with 1, 2 and 4 layers of square cells: f = n(n² − 1)/(2πR²) \
-                √(E'I/(ρA(n² + 1))) (Love, *Mathematical Theory of Elasticity*, 1927, §293; the benchmark Code_Aster V2.03.109). Shear and \
-                rotary inertia, which the formula leaves out, lower the true value by some n²(h/R)²/3 = 0.2 %: that is where the good \
-                curves end. One layer of one-point quadrilaterals bends right because its hourglass stiffness is that of bending; full \
+        words: "Two lobes of a free ring of radius 100 mm and thickness 4 mm, with 1, 2 and 4 layers of \
+            square cells: f = n(n² − 1)/(2πR²) \
+                √(E'I/(ρA(n² + 1))) (Love, *Mathematical Theory of Elasticity*, 1927, §293; the benchmark \
+                Code_Aster V2.03.109). Shear and \
+                rotary inertia, which the formula leaves out, lower the true value by some n²(h/R)²/3 = 0.2 \
+                %: that is where the good \
+                curves end. One layer of one-point quadrilaterals bends right because its hourglass \
+                stiffness is that of bending; full \
                 integration and triangles are too stiff."
             .into(),
         work: "element evaluations",
@@ -155,9 +159,12 @@ pub(super) fn cylinder(host: &dyn Host) -> Result<Problem> {
     Ok(Problem {
         id: "cylinder",
         title: "Thick cylinder under pressure",
-        words: "Bore of 50 mm, rim of 100 mm, displacement of the bore: u = (1 + ν) p a²/(E (b² − a²)) [(1 − 2ν) a + b²/a] (Timoshenko and \
-             Goodier, *Theory of Elasticity*, 1970, §28). Static. Near ν = ½ triangles lock and one-point quadrilaterals do not."
-            .into(),
+        words:
+            "Bore of 50 mm, rim of 100 mm, displacement of the bore: u = (1 + ν) p a²/(E (b² − a²)) [(1 − \
+            2ν) a + b²/a] (Timoshenko and \
+             Goodier, *Theory of Elasticity*, 1970, §28). Static. Near ν = ½ triangles lock and one-point \
+             quadrilaterals do not."
+                .into(),
         work: "elements",
         curves,
     })

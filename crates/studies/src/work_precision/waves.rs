@@ -42,8 +42,8 @@ pub(super) fn model(part: &Part) -> Result<Model> {
 /// Longest stable step of a way [s].
 pub(super) fn limit(model: &Model, (_, _, choice, scheme): &Way) -> Result<f64> {
     let d = Dynamics::new(model, &vec![false; model.mesh.x.len()], 1)?;
-    // Full integration has higher frequencies than one point: its shear and bending modes are stiffer, never its
-    // dilatation, which is the highest; a tenth covers distorted cells.
+    // Full integration has higher frequencies than one point: its shear and bending modes are stiffer, never
+    // its dilatation, which is the highest; a tenth covers distorted cells.
     let stiffer = if choice.rule == Rule::Full { 0.9 } else { 1.0 };
     // Viscosity that lags half a step: Ω² + 2ξΩ = 4 with ξ = b, the damping ratio of the highest mode.
     let b = choice.bulk_viscosity;
@@ -51,7 +51,8 @@ pub(super) fn limit(model: &Model, (_, _, choice, scheme): &Way) -> Result<f64> 
     Ok(d.critical_time_step(&[], 0.0).time_step * stiffer * damped * 0.5 * scheme.limit())
 }
 
-/// Takes a model from displacements and velocities at 0 to `time` [s]; positions then, and elements evaluated.
+/// Takes a model from displacements and velocities at 0 to `time` [s]; positions then, and elements
+/// evaluated.
 pub(super) fn travel(
     model: &Model,
     way: &Way,
@@ -126,10 +127,13 @@ pub(super) fn pressure_wave(host: &dyn Host) -> Result<Problem> {
     Ok(Problem {
         id: "pressure",
         title: "Pressure wave",
-        words: "A Gaussian pulse of 10 mm runs 80 mm along a strip with held sides: u = f(x − ct), c² = (λ + 2µ)/ρ (Achenbach, *Wave \
-                Propagation in Elastic Solids*, 1973, §1.3). Error of the displacement (root mean square), time step 0.8 of the limit. \
+        words:
+            "A Gaussian pulse of 10 mm runs 80 mm along a strip with held sides: u = f(x − ct), c² = (λ + \
+            2µ)/ρ (Achenbach, *Wave \
+                Propagation in Elastic Solids*, 1973, §1.3). Error of the displacement (root mean square), \
+                time step 0.8 of the limit. \
                 A *smaller* time step is no better here: the errors of space and time have opposite signs."
-            .into(),
+                .into(),
         work: "element evaluations",
         curves,
     })
@@ -210,8 +214,10 @@ pub(super) fn rayleigh_wave(host: &dyn Host) -> Result<Problem> {
         id: "rayleigh",
         title: "Rayleigh wave",
         words: format!(
-            "A standing wave of 10 mm on a half-plane four wavelengths deep, between two lines of symmetry; after 2.125 periods. Speed \
-             {:.1} m/s from (2 − c²/c_T²)² = 4 √(1 − c²/c_L²) √(1 − c²/c_T²), decay as in Achenbach (1973), §5.11. 10, 20 and 40 \
+            "A standing wave of 10 mm on a half-plane four wavelengths deep, between two lines of symmetry; \
+             after 2.125 periods. Speed \
+             {:.1} m/s from (2 − c²/c_T²)² = 4 √(1 − c²/c_L²) √(1 − c²/c_T²), decay as in Achenbach (1973), \
+             §5.11. 10, 20 and 40 \
              elements a wavelength; error of the displacement (root mean square).",
             Rayleigh::new(0.01).speed
         ),

@@ -68,13 +68,14 @@ impl Trough {
     }
 }
 
-/// Stiffness [Pa/m], friction, thickness [m] of the trough's law; its damping is that of `with_damping(0.1, 1.0)`.
+/// Stiffness [Pa/m], friction, thickness [m] of the trough's law; its damping is that of `with_damping(0.1,
+/// 1.0)`.
 const STIFFNESS: f64 = 1e6;
 const FRICTION: f64 = 0.2;
 const THICKNESS: f64 = 0.02;
 
-/// Contact in the plainest way (THEORY §4.1–4.3): at every step every point looks at every facet. It has no code in common
-/// with the crate.
+/// Contact in the plainest way (THEORY §4.1–4.3): at every step every point looks at every facet. It has no
+/// code in common with the crate.
 #[derive(Default)]
 struct Plain {
     /// Slip [m] and damping force [N] of the step before, point by point.
@@ -98,7 +99,8 @@ impl Plain {
                 let share = (at.x[b] - at.x[a]).hypot(at.y[b] - at.y[a]) / points as f64;
                 let mut places: Vec<[f64; 2]> =
                     (0..points).map(|i| [(i as f64 + 0.5) / points as f64, share]).collect();
-                // A vertex that turns by more than 0.35, and the end of an open surface, has a point of its own.
+                // A vertex that turns by more than 0.35, and the end of an open surface, has a point of its
+                // own.
                 if (closed && TAU / slots.len() as f64 > 0.35) || (!closed && f == 0) {
                     places.push([0.0, 0.5 * share]);
                 }

@@ -1,4 +1,5 @@
-//! The cards of an Abaqus file: a keyword line with its parameters, however many lines it takes, and the data lines below it.
+//! The cards of an Abaqus file: a keyword line with its parameters, however many lines it takes, and the data
+//! lines below it.
 
 /// A keyword line and what follows it.
 #[derive(Debug, Default)]

@@ -6,7 +6,8 @@ const PLANE: [&str; 16] = [
     "STRI", "DS", "S",
 ];
 
-/// Families of elements along lines. Those of trusses, beams and rigid links have their two ends, or three nodes in a row.
+/// Families of elements along lines. Those of trusses, beams and rigid links have their two ends, or three
+/// nodes in a row.
 const LINES: [&str; 16] = [
     "T2D", "T3D", "B2", "B3", "PIPE2", "PIPE3", "R2D2", "RB2D2", "RB3D2", "RAX2", "SAX", "MAX1", "DC1D",
     "AC1D", "FRAME", "ELBOW",

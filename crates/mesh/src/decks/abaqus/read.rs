@@ -323,8 +323,9 @@ impl File {
     }
 }
 
-/// Puts all sets into the mesh, but those with members that are not there: meshio writes such, and who asks for one is told. Those of the assembly have their names, as have those of an instance that no other has, too; others
-/// have that of the instance before theirs.
+/// Puts all sets into the mesh, but those with members that are not there: meshio writes such, and who asks
+/// for one is told. Those of the assembly have their names, as have those of an instance that no other has,
+/// too; others have that of the instance before theirs.
 fn sets(placed: &[Placed], assembly: &[Sets; 2], found: &mut Gathered) {
     let mut made = Vec::new();
     let resolver =

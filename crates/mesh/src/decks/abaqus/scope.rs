@@ -26,7 +26,8 @@ pub(super) enum Member {
 /// Named members with the lines that they stand in.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Sets {
-    /// Names as they first stand in the file, in that order; Abaqus takes capitals and small letters for the same.
+    /// Names as they first stand in the file, in that order; Abaqus takes capitals and small letters for the
+    /// same.
     pub(super) all: Vec<(String, Vec<(Member, usize)>)>,
     places: BTreeMap<String, usize>,
 }

@@ -1,8 +1,8 @@
 //! Gmsh files, read: formats 2.2, 4.0 and 4.1, as text and binary.
 //!
-//! Formats 4 list the points, curves and surfaces of the geometry with the groups that they are in, and elements by these; format 2.2
-//! has the group beside each element, and an element in two groups twice. A group's number is negative where the mesh goes through a
-//! curve backwards.
+//! Formats 4 list the points, curves and surfaces of the geometry with the groups that they are in, and
+//! elements by these; format 2.2 has the group beside each element, and an element in two groups twice. A
+//! group's number is negative where the mesh goes through a curve backwards.
 
 use std::collections::BTreeMap;
 
@@ -91,13 +91,19 @@ impl File<'_> {
             "4.1" => Version::FourOne,
             _ => return Err(fault(line, format!("format {version} is not read: {SAVE_AS}"))),
         };
-        if !["0", "1"].contains(&kind) || !["4", "8"].contains(&size) {
+        // Some programs write the size as a decimal number.
+        let size = match size.parse::<f64>() {
+            Ok(4.0) => Some(4),
+            Ok(8.0) => Some(8),
+            _ => None,
+        };
+        let Some(size) = size.filter(|_| ["0", "1"].contains(&kind)) else {
             return Err(fault(
                 line,
                 format!("`{text}` is no head of a Gmsh file: version, 0 or 1, and 8 belong here"),
             ));
-        }
-        self.source.size = if size == "4" { 4 } else { 8 };
+        };
+        self.source.size = size;
         if kind == "1" {
             self.source.binary = true;
             if self.source.int()? != 1 {
@@ -330,12 +336,14 @@ impl File<'_> {
             Some((0 | 1, nodes)) => Ok(nodes),
             Some((2, nodes)) if kind == TRIANGLE || kind == QUADRILATERAL => Ok(nodes),
             Some((2, nodes)) => Err(self.source.fault(format!(
-                "elements of type {kind} are not read, as they have {nodes} nodes: mesh with elements of first order; triangles (2) and \
+                "elements of type {kind} are not read, as they have {nodes} nodes: mesh with elements of \
+                 first order; triangles (2) and \
                  quadrilaterals (3) are read"
             ))),
-            _ => Err(self
-                .source
-                .fault(format!("elements of type {kind} are not read; triangles (2) and quadrilaterals (3) are"))),
+            _ => Err(self.source.fault(format!(
+                "elements of type {kind} are not read; triangles (2) and quadrilaterals (3) \
+                    are"
+            ))),
         }
     }
 

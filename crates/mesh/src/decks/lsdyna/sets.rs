@@ -150,7 +150,8 @@ impl NodeSets {
         Ok(())
     }
 
-    /// Puts all sets into the mesh, by their titles; those that have none, or one that another has, as `set 7`.
+    /// Puts all sets into the mesh, by their titles; those that have none, or one that another has, as `set
+    /// 7`.
     pub(super) fn gather(self, of_part: &BTreeMap<u64, Vec<u64>>, found: &mut Gathered) {
         let mut taken = BTreeSet::new();
         let mut made = Vec::new();

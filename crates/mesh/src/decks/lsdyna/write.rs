@@ -77,7 +77,8 @@ fn step_cards(out: &mut String, step: &Step, free: usize) {
     for (n, (nodes, rate)) in step.turning.iter().enumerate() {
         let set = free + 2 + n;
         node_set(out, &format!("turning {}", n + 1), set, numbers(nodes));
-        // Degree of freedom 11: nodes that turn about an axis along z, through the offsets of the second line.
+        // Degree of freedom 11: nodes that turn about an axis along z, through the offsets of the second
+        // line.
         let _ = writeln!(out, "*BOUNDARY_PRESCRIBED_MOTION_SET\n{set},11,0,1,{rate:e}\n0.0,0.0");
     }
     *out += "*INITIAL_VELOCITY_NODE\n";

@@ -99,7 +99,8 @@ fn issue_a_short_run_is_not_blamed_on_the_sampling_interval() {
 fn example_another_field_is_proposed_where_the_blamed_one_cannot_help() {
     // Half the bearing with rollers of the same size: the number of rollers must change, no diameter can.
     let problem = only(parse(
-        "(bearing: (outer_race_diameter_mm: 120, inner_race_diameter_mm: 83.96), cage: None, adapter: (width_mm: 90))",
+        "(bearing: (outer_race_diameter_mm: 120, inner_race_diameter_mm: 83.96), cage: None, adapter: \
+         (width_mm: 90))",
     ));
     assert_eq!(problem.field, "bearing.outer_race_diameter_mm");
     assert_eq!(problem.repair.as_deref(), Some("bearing.rollers=17"), "{problem}");

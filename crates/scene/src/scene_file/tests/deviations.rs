@@ -13,7 +13,8 @@ fn dry(defects: &str) -> String {
 fn example_defects_of_every_form_are_read_and_written_again() {
     let text = dry(
         "(on: roller(3), angle_deg: 20, form: spall(length_mm: 4)), (on: inner, form: dent(depth_mm: 0.02)), \
-         (form: profile(points: [(at_mm: -1, depth_um: 0), (at_mm: 0, depth_um: 5), (at_mm: 1, depth_um: 0)])), (form: waviness(order: 9)), \
+         (form: profile(points: [(at_mm: -1, depth_um: 0), (at_mm: 0, depth_um: 5), (at_mm: 1, depth_um: \
+         0)])), (form: waviness(order: 9)), \
          (on: inner, form: roughness(seed: 4)), (on: roller(24), form: diameter(larger_um: 3))",
     );
     let scene = parse(&text).expect("six that a mesh can follow");
@@ -89,7 +90,8 @@ fn refuses_what_no_mesh_can_follow() {
         ),
         ("form: profile(points: [])", "defects[0].form.points", "needs two"),
         (
-            "form: profile(points: [(at_mm: 1, depth_um: 0), (at_mm: 0, depth_um: 2), (at_mm: 4, depth_um: 0)])",
+            "form: profile(points: [(at_mm: 1, depth_um: 0), (at_mm: 0, depth_um: 2), (at_mm: 4, depth_um: \
+             0)])",
             "defects[0].form.points",
             "`defects[0].form.points[1]` lies at 0 mm, not beyond the one before",
         ),

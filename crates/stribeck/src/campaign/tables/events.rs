@@ -1,4 +1,5 @@
-//! The events of all runs: a row for each passage of a roller over a spall, as the summaries of the runs have them.
+//! The events of all runs: a row for each passage of a roller over a spall, as the summaries of the runs have
+//! them.
 
 use std::path::Path;
 

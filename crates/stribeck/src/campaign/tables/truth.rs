@@ -3,8 +3,8 @@
 use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface};
 use stribeck_scene::scene::{ModelScene, Scene};
 
-/// The defects of a scene. A fault strikes once a passage: a spall, a dent, a profile, a rolling element that is missing. Waves,
-/// roughness and other diameters are deviations.
+/// The defects of a scene. A fault strikes once a passage: a spall, a dent, a profile, a rolling element that
+/// is missing. Waves, roughness and other diameters are deviations.
 #[derive(Debug, Clone, PartialEq)]
 pub(in crate::campaign) struct Truth {
     /// Where the faults are, `healthy` where there is none.
@@ -121,7 +121,8 @@ mod tests {
             "film=None",
             "defect=None",
             "defects=[(on: roller(3), angle_deg: 20, form: dent(length_mm: 2.2, depth_mm: 0.04)), \
-             (on: outer, form: waviness(order: 9)), (on: inner, form: spall(length_mm: 4.0)), (on: roller(5), form: missing)]",
+             (on: outer, form: waviness(order: 9)), (on: inner, form: spall(length_mm: 4.0)), (on: \
+             roller(5), form: missing)]",
         ]);
         assert_eq!(found.location, "inner_race+rolling_element+missing_rolling_element");
         assert_eq!((found.form.as_deref(), found.count), (Some("dent+spall+missing"), 3));

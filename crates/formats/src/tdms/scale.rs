@@ -27,7 +27,8 @@ pub(crate) fn count(of: &Properties) -> usize {
     }
 }
 
-/// The law of the last scale; `None` where stored numbers are values, otherwise why the channel cannot be read.
+/// The law of the last scale; `None` where stored numbers are values, otherwise why the channel cannot be
+/// read.
 pub(crate) fn curve(of: &Properties) -> Result<Option<Curve>, String> {
     let scaled = matches!(of.get("NI_Scaling_Status"), Some(Property::Text(status)) if status == "scaled");
     let count = count(of);
@@ -65,7 +66,8 @@ pub(crate) fn curve(of: &Properties) -> Result<Option<Curve>, String> {
             "AdvancedAPI" => {}
             other => {
                 return Err(format!(
-                    "its scale `{other}` is not applied (Linear, Polynomial and Table are): save scaled values"
+                    "its scale `{other}` is not applied (Linear, Polynomial and Table are): save scaled \
+                     values"
                 ));
             }
         }
