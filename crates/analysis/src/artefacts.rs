@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, PeriodCount, Spectrum};
-use stribeck_scene::scene::Scene;
+use stribeck_scene::resolved::ResolvedScene;
 
 use crate::Error;
 use crate::families::FamilyFinding;
@@ -73,7 +73,7 @@ pub struct Seen<'a> {
 /// # Errors
 /// [`Error::Signal`] when the spectrum cannot be searched.
 pub fn ledger(
-    scene: &Scene,
+    scene: &ResolvedScene,
     prediction: &Prediction,
     motion: &KinematicsFinding,
     seen: &Seen<'_>,

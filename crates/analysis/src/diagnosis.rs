@@ -7,7 +7,7 @@ use stribeck_formats::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::resolved::ResolvedScene;
 
 use crate::Error;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
@@ -71,7 +71,7 @@ pub struct Sidebands {
 /// # Errors
 /// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite signal is refused.
 pub fn analysis(
-    scene: &Scene,
+    scene: &ResolvedScene,
     record: &Record<'_>,
     expected: &Kinematics,
     name: &str,
@@ -86,7 +86,7 @@ pub fn analysis(
 /// # Errors
 /// As [`analysis`].
 pub fn analysis_in_noise(
-    scene: &Scene,
+    scene: &ResolvedScene,
     record: &Record<'_>,
     expected: &Kinematics,
     name: &str,
@@ -101,16 +101,16 @@ pub fn analysis_in_noise(
 }
 
 fn judged(
-    scene: &Scene,
+    scene: &ResolvedScene,
     record: &Record<'_>,
     expected: &Kinematics,
     name: &str,
     samples: Vec<f64>,
 ) -> Result<Option<Analysis>, Error> {
-    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(scene), 60.0 * relative_hz(expected));
+    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(&scene.written), 60.0 * relative_hz(expected));
     let machine = Machine {
         speed_rpm: Some(speed_rpm),
-        outer_speed_rpm: Machine::outer_speed_rpm(scene),
+        outer_speed_rpm: Machine::outer_speed_rpm(&scene.written),
         bearing: Some(bearing),
     };
     let channel = Channel::held(name.to_owned(), samples)
@@ -123,8 +123,8 @@ fn judged(
 }
 
 /// The verdict of an `analysis` beside the recorded `motion` and the defects of the scene.
-pub fn of(scene: &Scene, motion: &KinematicsFinding, analysis: &Analysis) -> DiagnosisFinding {
-    let (present, steady) = (scene.faults(), !scene.operation.speed_varies());
+pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis) -> DiagnosisFinding {
+    let (present, steady) = (scene.written.faults(), !scene.written.operation.speed_varies());
     let families = analysis.findings.families.iter().map(|family| {
         let sides = match family.name {
             Defect::Bpfo if motion.outer_ring_hz > 0.0 => Some(("outer ring", motion.outer_ring_hz)),

@@ -16,8 +16,8 @@ use stribeck_dsp::{
     Detrend, Envelope, PeriodCount, PeriodVerdict, Scaling, Spectrum, Welch, WelchOptions, Window,
     means_over_angle,
 };
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
 
@@ -96,17 +96,17 @@ pub struct OrderLine {
 
 impl DutyFinding {
     /// Of a scene and its record; `None` where nothing changes.
-    pub fn of(scene: &Scene, record: &Record<'_>) -> Option<Self> {
+    pub fn of(scene: &ResolvedScene, record: &Record<'_>) -> Option<Self> {
         let duty = scene.varying_duty()?;
         let [from_s, until_s] = record.stretch_s();
         let recorded = record.channel(LOAD).filter(|load| !load.is_empty()).map(|load| {
             load.iter()
                 .fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], n| [least.min(*n), most.max(*n)])
         });
-        let k = Kinematics::new(&scene.bearing, 60.0);
+        let k = Kinematics::new(&scene.written.bearing, 60.0);
         // In space the cage has the outer ring's motion on top, which keeps no proportion to the difference
         // of speeds.
-        let cage = match scene.operation.outer_turns() {
+        let cage = match scene.written.operation.outer_turns() {
             true => "FTF against the outer ring",
             false => order_name(Defect::Ftf),
         };
@@ -149,9 +149,7 @@ impl DutyFinding {
 pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
     let of_run = run.info.expected_support_n;
     let recorded = record.channel(LOAD).and_then(|load| mean(load.iter().copied()));
-    recorded.map_or(of_run, |load_n| {
-        of_run - run.scene.duty().mean_load_n(Geometry::of(&run.scene).duration) + load_n
-    })
+    recorded.map_or(of_run, |load_n| of_run - run.scene.duty.mean_load_n(run.scene.duration) + load_n)
 }
 
 /// Why orders are not those of the shaft; `None` where they are.
@@ -177,9 +175,10 @@ pub struct ShockOrder {
 
 impl ShockOrder {
     /// Without slip; `None` for a scene without a defect.
-    pub fn of(scene: &Scene) -> Option<Self> {
+    pub fn of(scene: &ResolvedScene) -> Option<Self> {
         // At one turn a second hertz are orders.
-        let shocks = Shocks::of(*scene.faults().first()?, &Kinematics::new(&scene.bearing, 60.0));
+        let shocks =
+            Shocks::of(*scene.written.faults().first()?, &Kinematics::new(&scene.written.bearing, 60.0));
         Some(Self { defect: shocks.defect, order: shocks.hz })
     }
 

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use stribeck_scene::ensemble::{Ensemble, folder_name, is_start_of};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::{Run, RunDir};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
@@ -22,7 +23,7 @@ pub use merge::Merged;
 #[derive(Debug)]
 pub struct EnsembleFindings {
     /// The scene of all starts.
-    pub scene: Scene,
+    pub scene: ResolvedScene,
     /// The ensemble as it was requested.
     pub ensemble: Ensemble,
     /// The numbers.
@@ -116,7 +117,7 @@ impl EnsembleFindings {
             ensemble: merged,
             notes,
         };
-        Ok(Self { scene, ensemble, summary, complete })
+        Ok(Self { scene: scene.resolve(), ensemble, summary, complete })
     }
 }
 
@@ -161,8 +162,8 @@ fn look(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> (Sta
         Ok(run) => run,
         Err(why) => return (start.failed(why.to_string()), None),
     };
-    let longer_ms = run.scene.solver.duration_ms - scene.solver.duration_ms;
-    if let Some(differs) = another_scene(&run.scene, scene, longer_ms) {
+    let longer_ms = run.scene.written.solver.duration_ms - scene.solver.duration_ms;
+    if let Some(differs) = another_scene(&run.scene.written, scene, longer_ms) {
         return (start.failed(format!("its scene {differs} that of the ensemble")), None);
     }
     start.take(&run, longer_ms < 0.0);
@@ -222,8 +223,8 @@ impl StartSummary {
 
     /// Fills in the account of a run, which may be shorter than the ensemble asks for.
     fn take(&mut self, run: &Run, shorter: bool) {
-        self.first_roller_deg = Some(run.scene.bearing.first_roller_deg);
-        self.roller_phase_deg = Some(run.scene.mesh.roller_phase_deg);
+        self.first_roller_deg = Some(run.scene.written.bearing.first_roller_deg);
+        self.roller_phase_deg = Some(run.scene.written.mesh.roller_phase_deg);
         self.simulated_ms = Some(1e3 * run.info.interval_s * run.info.samples as f64);
         self.wall_s = Some(run.info.wall_s + run.info.setup_s);
         self.energy_error = Some(run.info.energy.max_relative_error);

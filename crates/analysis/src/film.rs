@@ -37,7 +37,7 @@ impl FilmFinding {
     /// [`Error::Run`] when the trace cannot be read.
     pub fn measure(run: &Run, record: &Record<'_>) -> Result<Option<Self>, Error> {
         let Ok(Some(loaded)) = lubrication::loaded_films(&run.scene) else { return Ok(None) };
-        let rollers: Vec<usize> = run.scene.rollers_in_place().collect();
+        let rollers: Vec<usize> = run.scene.written.rollers_in_place().collect();
         let mut floating = [Vec::new(), Vec::new()];
         let mut largest = [None; 2];
         for few in rollers.chunks(ROLLERS_AT_ONCE) {

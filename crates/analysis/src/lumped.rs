@@ -23,9 +23,9 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_scene::Error;
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::kinematics::{Kinematics, roller_angles_deg};
-use stribeck_scene::scene::{RollerCopies, Scene};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::RollerCopies;
 use stribeck_scene::static_load;
 
 use crate::levels::STANDARD_GRAVITY;
@@ -58,28 +58,27 @@ impl Lumped {
     ///
     /// # Errors
     /// When the scene has no static load distribution.
-    pub fn of(scene: &Scene) -> Result<Self, Error> {
+    pub fn of(scene: &ResolvedScene) -> Result<Self, Error> {
         let load = static_load::at_start(scene)?;
-        let facets = scene.mesh.roller_facets as f64;
-        let geometry = Geometry::of(scene);
-        let radius = geometry.roller_radius;
+        let facets = scene.written.mesh.roller_facets as f64;
+        let radius = scene.roller_radius;
         let facet = TAU * radius / facets;
         let height_m = facet * facet / (2.0 * PI * PI * radius);
         let (mut re, mut im, mut springs, mut arms) = (0.0, 0.0, 0.0, 0.0);
         let mut smoothing = 1.0;
         let largest = load.max_roller_n();
-        let angles = roller_angles_deg(scene);
-        let in_place = scene.rollers_in_place().map(|number| angles[number - 1]);
+        let angles = roller_angles_deg(&scene.written);
+        let in_place = scene.written.rollers_in_place().map(|number| angles[number - 1]);
         for (force, deg) in load.roller_n.iter().zip(in_place) {
             if *force <= 0.0 {
                 continue;
             }
             let angle = deg.to_radians();
-            let phase = match scene.mesh.roller_copies {
+            let phase = match scene.written.mesh.roller_copies {
                 RollerCopies::Translated => facets * angle,
                 RollerCopies::Rotated => 0.0,
             };
-            let kept = average(TAU * half_width(&geometry, *force) / facet);
+            let kept = average(TAU * half_width(scene, *force) / facet);
             if *force == largest {
                 smoothing = kept;
             }
@@ -89,7 +88,7 @@ impl Lumped {
             springs += angle.sin().powi(2);
         }
         let both_contacts = 1.0 + (PI * facets).cos();
-        let frequency_hz = facets * Kinematics::at_mean_speed(scene).roller_spin_hz;
+        let frequency_hz = facets * Kinematics::at_mean_speed(&scene.written).roller_spin_hz;
         let y = re.hypot(im) * both_contacts * height_m / springs;
         Ok(Self {
             frequency_hz,
@@ -110,9 +109,9 @@ impl Lumped {
 /// sounds is a sum over places that repeats whenever a roller takes the place of the next one: lines at the
 /// vertices' rate seen from outside and multiples of BPFO on top, strongest where the rate along the load
 /// zone is lowest (THEORY §5.5).
-pub fn pattern_hz(scene: &Scene, spin_hz: f64, cage_hz: f64) -> f64 {
-    let (facets, rollers) = (scene.mesh.roller_facets as f64, scene.bearing.rollers as f64);
-    match scene.mesh.roller_copies {
+pub fn pattern_hz(scene: &ResolvedScene, spin_hz: f64, cage_hz: f64) -> f64 {
+    let (facets, rollers) = (scene.written.mesh.roller_facets as f64, scene.written.bearing.rollers as f64);
+    match scene.written.mesh.roller_copies {
         RollerCopies::Rotated => facets * spin_hz,
         RollerCopies::Translated => {
             facets * (spin_hz - cage_hz) + (facets / rollers).round() * rollers * cage_hz
@@ -121,11 +120,11 @@ pub fn pattern_hz(scene: &Scene, spin_hz: f64, cage_hz: f64) -> f64 {
 }
 
 /// Half-width of the outer contact [m]: that of Hertz and that of the penalty's own indentation, as squares.
-fn half_width(geometry: &Geometry, force_n: f64) -> f64 {
-    let radius = geometry.outer_contact_radius();
-    let line = force_n / geometry.thickness;
-    let hertz = 4.0 * line * radius / (PI * geometry.material.contact_modulus());
-    let indentation = (0.75 * line / (geometry.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+fn half_width(scene: &ResolvedScene, force_n: f64) -> f64 {
+    let radius = scene.outer_contact_radius();
+    let line = force_n / scene.thickness;
+    let hertz = 4.0 * line * radius / (PI * scene.material.contact_modulus());
+    let indentation = (0.75 * line / (scene.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
     (hertz + 2.0 * radius * indentation).sqrt()
 }
 
@@ -143,6 +142,7 @@ fn average(u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stribeck_scene::scene::Scene;
 
     fn scene(facets: usize, copies: RollerCopies) -> Scene {
         let mut scene = Scene::default();
@@ -170,7 +170,7 @@ mod tests {
         let of = |facets| {
             let mut scene = scene(facets, RollerCopies::Translated);
             scene.operation.load_n = 50_000.0;
-            Lumped::of(&scene).unwrap()
+            Lumped::of(&scene.resolve()).unwrap()
         };
         let (few, many) = (of(56), of(112));
         let couple = 2.0 * 56.0 * few.height_m * few.smoothing.abs();
@@ -184,7 +184,8 @@ mod tests {
     fn example_copies_in_one_orientation_move_the_line_by_a_part_of_bpfo() {
         // Rollers at 41.7 Hz against a cage of 3.75 Hz, BPFO 90 Hz. 112 facets are 4 2/3 a roller: a third of
         // BPFO is missing to five. 120 are five, and copies that turn with the pattern have no phase at all.
-        let at = |facets, copies| pattern_hz(&scene(facets, copies), 41.7, 3.75) - facets as f64 * 41.7;
+        let at =
+            |facets, copies| pattern_hz(&scene(facets, copies).resolve(), 41.7, 3.75) - facets as f64 * 41.7;
         assert!((at(112, RollerCopies::Translated) - 30.0).abs() < 1e-9);
         assert!((at(56, RollerCopies::Translated) + 30.0).abs() < 1e-9);
         assert!(at(120, RollerCopies::Translated).abs() < 1e-9);
@@ -193,7 +194,7 @@ mod tests {
 
     #[test]
     fn example_phases_follow_copies_and_parity() {
-        let of = |facets, copies| Lumped::of(&scene(facets, copies)).unwrap();
+        let of = |facets, copies| Lumped::of(&scene(facets, copies).resolve()).unwrap();
         // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded
         // rollers not all of it), 120 = 5·24 are all in step.
         let (three, all) = (of(112, RollerCopies::Translated), of(120, RollerCopies::Translated));

@@ -6,6 +6,7 @@
 mod model;
 mod signal;
 
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{BearingScene, Scene};
 
@@ -51,14 +52,19 @@ pub fn is_scene_of(scene: &Scene) -> bool {
 
 /// The run behind the rows.
 struct RowInputs<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     mesh: &'a MeshInfo,
     prediction: &'a Prediction,
     summary: &'a Summary,
 }
 
 /// All rows, in the order of the paper. None is blank: a number that this run cannot yield is stated as such.
-pub fn rows(scene: &Scene, mesh: &MeshInfo, prediction: &Prediction, summary: &Summary) -> Vec<PaperRow> {
+pub fn rows(
+    scene: &ResolvedScene,
+    mesh: &MeshInfo,
+    prediction: &Prediction,
+    summary: &Summary,
+) -> Vec<PaperRow> {
     let source = RowInputs { scene, mesh, prediction, summary };
     let mut rows = model::rows(&source);
     rows.extend(signal::rows(&source));

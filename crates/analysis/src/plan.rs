@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::lubrication::{self, LoadedFilm};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{
-    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies, Scene,
+    ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies,
 };
 use stribeck_scene::static_load;
 
@@ -83,29 +83,28 @@ impl Plan {
     ///
     /// # Errors
     /// [`Error::Run`] when the scene has no static load distribution.
-    pub fn of(scene: &Scene, mesh: &MeshFacts) -> Result<Self, Error> {
+    pub fn of(scene: &ResolvedScene, mesh: &MeshFacts) -> Result<Self, Error> {
         let counts = &mesh.counts;
         let prediction = Prediction::of(scene, counts);
         let lumped = Lumped::of(scene)?;
         let kinematics = &prediction.kinematics;
-        let geometry = Geometry::of(scene);
-        let material = &geometry.material;
+        let material = &scene.material;
         let sag = |radius: f64, facets: f64| radius * (1.0 - (PI / facets).cos());
-        let radius = geometry.roller_radius;
+        let radius = scene.roller_radius;
         let load_n = static_load::at_start(scene)?.max_roller_n();
-        let effective = geometry.outer_contact_radius();
+        let effective = scene.outer_contact_radius();
         let half_width_m =
-            (4.0 * load_n / geometry.thickness * effective / (PI * material.contact_modulus())).sqrt();
+            (4.0 * load_n / scene.thickness * effective / (PI * material.contact_modulus())).sqrt();
 
-        let (duration_s, interval_s) = (geometry.duration, geometry.interval);
-        let time_step_s = scene.solver.time_step_factor * mesh.element_time_step_s;
+        let (duration_s, interval_s) = (scene.duration, scene.interval);
+        let time_step_s = scene.written.solver.time_step_factor * mesh.element_time_step_s;
         let per_sample = (interval_s / time_step_s).ceil().max(1.0);
         let shear = (material.shear_modulus() / material.density).sqrt();
         let mut hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
         hz.sort_by(f64::total_cmp);
         let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
         let facets = counts.roller_facets as f64;
-        let families = scene.faults().into_iter().map(|on| Shocks::of(on, kinematics));
+        let families = scene.written.faults().into_iter().map(|on| Shocks::of(on, kinematics));
         let slowest = families.min_by(|a, b| a.hz.total_cmp(&b.hz));
         let slowest = slowest.unwrap_or_else(|| Shocks::of(RollingSurface::Outer, kinematics));
         let mut plan = Self {
@@ -113,8 +112,8 @@ impl Plan {
             lumped,
             sag_m: [
                 sag(radius, facets),
-                sag(geometry.outer_race_radius, counts.outer_facets as f64),
-                sag(geometry.inner_race_radius, counts.inner_facets as f64),
+                sag(scene.outer_race_radius, counts.outer_facets as f64),
+                sag(scene.inner_race_radius, counts.inner_facets as f64),
             ],
             load_n,
             half_width_m,
@@ -123,7 +122,7 @@ impl Plan {
             elements: counts.quads + counts.triangles,
             time_step_s: interval_s / per_sample,
             steps: per_sample * (duration_s / interval_s).round(),
-            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / geometry.element_size,
+            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / scene.element_size,
             resolution_hz: 1.0 / duration_s,
             separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
             envelope: Some(slowest)
@@ -131,8 +130,8 @@ impl Plan {
                 .map(|shocks| (shocks.name(), PeriodCount::ENOUGH / shocks.hz)),
             advice: Vec::new(),
         };
-        plan.advise(scene, &geometry);
-        let support_n = geometry.load;
+        plan.advise(scene);
+        let support_n = scene.load;
         if let Ok(curve) = prediction.static_curve(scene, support_n) {
             let least_n = rolling::least_support_n(scene, &curve, support_n);
             plan.advice.extend(rolling::warnings(support_n, least_n, &KinematicsFinding::default()));
@@ -143,27 +142,27 @@ impl Plan {
 
     /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a
     /// roller with the outer raceway [m] (THEORY §4.2).
-    fn point_step_m(&self, geometry: &Geometry, points_per_facet: usize) -> f64 {
-        let radius = geometry.outer_contact_radius();
-        let load = self.load_n / geometry.thickness;
-        let depth = (0.75 * load / (geometry.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+    fn point_step_m(&self, scene: &ResolvedScene, points_per_facet: usize) -> f64 {
+        let radius = scene.outer_contact_radius();
+        let load = self.load_n / scene.thickness;
+        let depth = (0.75 * load / (scene.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
         (2.0 * depth / radius).sqrt() * self.facet_m / points_per_facet as f64
     }
 
     /// Recommendations from the study of contact noise (docs/results/noise.md).
-    fn advise(&mut self, scene: &Scene, geometry: &Geometry) {
-        let mut advice = self.on_contact(scene, geometry);
+    fn advise(&mut self, scene: &ResolvedScene) {
+        let mut advice = self.on_contact(scene);
         advice.extend(self.on_oil(scene));
-        if scene.contact.surface == ContactSurface::Facet {
-            advice.extend(self.on_facets(scene, geometry));
+        if scene.written.contact.surface == ContactSurface::Facet {
+            advice.extend(self.on_facets(scene));
         }
-        advice.extend(self.on_spectra(geometry));
+        advice.extend(self.on_spectra(scene));
         self.advice = advice;
     }
 
     /// Surface, interpolation, method and onset of the contacts.
-    fn on_contact(&self, scene: &Scene, geometry: &Geometry) -> Vec<String> {
-        let c = &scene.contact;
+    fn on_contact(&self, scene: &ResolvedScene) -> Vec<String> {
+        let c = &scene.written.contact;
         let mut advice = Vec::new();
         if c.surface == ContactSurface::Facet {
             advice.push(
@@ -187,12 +186,12 @@ impl Plan {
                     .into(),
             );
         }
-        let onset_m = ONSET_STEPS * self.point_step_m(geometry, c.points_per_facet);
+        let onset_m = ONSET_STEPS * self.point_step_m(scene, c.points_per_facet);
         let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
-        let audible = points_hz < 0.5 / geometry.interval;
+        let audible = points_hz < 0.5 / scene.interval;
         // The reduced model integrates the penetration exactly, without points.
-        let in_points = scene.model == ModelScene::Full && c.method == ContactMethod::Integrated;
-        if in_points && c.surface != ContactSurface::Facet && audible && geometry.contact_onset < onset_m {
+        let in_points = scene.written.model == ModelScene::Full && c.method == ContactMethod::Integrated;
+        if in_points && c.surface != ContactSurface::Facet && audible && scene.contact_onset < onset_m {
             advice.push(format!(
                 "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz \
                  unless their pressure \
@@ -205,10 +204,12 @@ impl Plan {
     }
 
     /// Damping beside oil films, and thin ones.
-    fn on_oil(&self, scene: &Scene) -> Vec<String> {
+    fn on_oil(&self, scene: &ResolvedScene) -> Vec<String> {
         let Some(films) = &self.films else { return Vec::new() };
         let mut advice = Vec::new();
-        if scene.solver.mass_damping_per_s > 0.0 && scene.solver.damping_frame == DampingFrame::Rolling {
+        if scene.written.solver.mass_damping_per_s > 0.0
+            && scene.written.solver.damping_frame == DampingFrame::Rolling
+        {
             advice.push(
                 "`solver.damping_frame=rigid_motion`, or no mass damping: what damps rollers across \
                 the raceways stands for the oil that `film` computes"
@@ -226,8 +227,8 @@ impl Plan {
     }
 
     /// Number, phase and length of facets that are in contact themselves.
-    fn on_facets(&self, scene: &Scene, geometry: &Geometry) -> Vec<String> {
-        let facets = scene.mesh.roller_facets;
+    fn on_facets(&self, scene: &ResolvedScene) -> Vec<String> {
+        let facets = scene.written.mesh.roller_facets;
         let mut advice = Vec::new();
         if facets.is_multiple_of(2) {
             advice.push(format!(
@@ -236,14 +237,14 @@ impl Plan {
                 facets + 1
             ));
         }
-        if scene.mesh.roller_copies == RollerCopies::Rotated || facets.is_multiple_of(scene.bearing.rollers) {
+        if scene.written.mesh.roller_copies == RollerCopies::Rotated || facets.is_multiple_of(scene.rollers) {
             advice.push(
                 "rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a \
                 count that is no multiple of the rollers is quieter"
                     .into(),
             );
         }
-        if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / geometry.roller_radius {
+        if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.roller_radius {
             advice.push(format!(
                 "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several \
                  times shorter, refinement does not lower the tone",
@@ -255,7 +256,7 @@ impl Plan {
     }
 
     /// The resolution of the spectra in frequency and of their top in space.
-    fn on_spectra(&self, geometry: &Geometry) -> Vec<String> {
+    fn on_spectra(&self, scene: &ResolvedScene) -> Vec<String> {
         let mut advice = Vec::new();
         if self.elements_per_wavelength < 8.0 {
             advice.push(format!(
@@ -264,10 +265,10 @@ impl Plan {
                 self.elements_per_wavelength
             ));
         }
-        if let Some(needed) = self.separating_s.filter(|s| *s > geometry.duration) {
+        if let Some(needed) = self.separating_s.filter(|s| *s > scene.duration) {
             advice.push(format!(
                 "the closest lines merge in {:.0} ms; {:.0} ms separate them",
-                1e3 * geometry.duration,
+                1e3 * scene.duration,
                 1e3 * needed
             ));
         }
@@ -279,6 +280,7 @@ impl Plan {
 mod tests {
     use super::*;
     use stribeck_scene::scene::FilmScene;
+    use stribeck_scene::scene::Scene;
 
     /// The paper's bearing in elements of 2 mm.
     fn facts() -> MeshFacts {
@@ -296,7 +298,8 @@ mod tests {
     /// Ten periods were those of BPFO whatever the defect, and "inf ms" of a bearing at rest.
     #[test]
     fn issue_ten_periods_are_those_of_the_scenes_own_defect() {
-        let envelope = |scene: &Scene| Plan::of(scene, &facts()).expect("a load distribution").envelope;
+        let envelope =
+            |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a load distribution").envelope;
         let mut scene = Scene::default();
         let of = |scene: &Scene| {
             let k = stribeck_scene::kinematics::Kinematics::of(scene);
@@ -325,7 +328,8 @@ mod tests {
         let mut scene = Scene::default();
         scene.mesh.size_mm = 2.0;
         scene.mesh.roller_facets = 112;
-        let of = |scene: &Scene| Plan::of(scene, &facts()).expect("a scene with a load distribution");
+        let of =
+            |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a scene with a load distribution");
         let plan = of(&scene);
         // 3.54 µm of sag and 4671.5 Hz at 112 facets, whatever the rest of the mesh.
         assert!((plan.sag_m[0] - 3.54e-6).abs() < 0.01e-6, "{plan:?}");
@@ -345,7 +349,7 @@ mod tests {
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));
         let reduced = Scene { model: ModelScene::Reduced(Default::default()), ..scene.clone() };
         assert!(of(&reduced).advice.iter().all(|a| !a.contains("onset_um")), "there are no points");
-        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&Geometry::of(&scene), 8);
+        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&scene.resolve(), 8);
         let quiet = of(&scene);
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);
         scene.film = Some(FilmScene { roughness_um: 1.0, ..FilmScene::default() });
@@ -361,7 +365,7 @@ mod tests {
         }
         // THEORY §4.2, on the paper's mesh: the penalty goes with its size.
         scene.mesh.size_mm = 0.5;
-        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&Geometry::of(&scene), 8);
+        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&scene.resolve(), 8);
         assert!((step - 4.1e-6).abs() < 0.1e-6, "{step}");
     }
 }

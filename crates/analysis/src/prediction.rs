@@ -1,10 +1,10 @@
 //! Prediction for a scene from rolling without slip and rigid rings: frequencies, facet lines, passages of
 //! rollers over the defect, and the load distribution.
 
-use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
+use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_scene::run_info::MeshInfo;
-use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies, Scene};
+use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies};
 use stribeck_scene::static_load::{RigidRings, angles_to_load_deg};
 
 use crate::Error;
@@ -24,7 +24,7 @@ pub struct Prediction {
     pub kinematics: Kinematics,
     /// Names and frequencies [Hz] of the fundamental facet-passing lines, from the actual mesh counts.
     pub facet_lines: Vec<(String, f64)>,
-    /// Spalls of raceways, in the order of [`Scene::spalls`].
+    /// Spalls of raceways, in the order of [`Scene::spalls`](stribeck_scene::scene::Scene::spalls).
     pub spalls: Vec<SpallCourse>,
     /// Shocks of the first defect; `None` where the speed changes, so that they have no frequency.
     pub shocks: Option<Shocks>,
@@ -73,19 +73,19 @@ pub struct StaticCurve {
 
 impl Prediction {
     /// Predicts from the resolved scene and the counts of the mesh that was run.
-    pub fn of(scene: &Scene, mesh: &MeshInfo) -> Self {
-        let kinematics = Kinematics::at_mean_speed(scene);
+    pub fn of(scene: &ResolvedScene, mesh: &MeshInfo) -> Self {
+        let kinematics = Kinematics::at_mean_speed(&scene.written);
         let counts = FacetCounts {
             roller: mesh.roller_facets,
-            outer: Geometry::of(scene).facets_around(DefectRing::Outer, mesh.outer_facets),
-            inner: Geometry::of(scene).facets_around(DefectRing::Inner, mesh.inner_facets),
+            outer: scene.facets_around(DefectRing::Outer, mesh.outer_facets),
+            inner: scene.facets_around(DefectRing::Inner, mesh.inner_facets),
         };
         let facet_lines = kinematics.facet_tones(counts).map(|tone| (tone.name.to_owned(), tone.hz)).to_vec();
         let edges = |defect: &DefectScene| {
             // Rollers pass either raceway from opposite sides.
             let (diameter_mm, ahead) = match defect.ring {
-                DefectRing::Outer => (scene.bearing.outer_race_diameter_mm, kinematics.sense()),
-                DefectRing::Inner => (scene.bearing.inner_race_diameter_mm, -kinematics.sense()),
+                DefectRing::Outer => (scene.written.bearing.outer_race_diameter_mm, kinematics.sense()),
+                DefectRing::Inner => (scene.written.bearing.inner_race_diameter_mm, -kinematics.sense()),
             };
             let ahead_deg = ahead * (defect.length_mm / diameter_mm).to_degrees();
             DefectEdges {
@@ -95,11 +95,11 @@ impl Prediction {
             }
         };
         let turns = |defect: &DefectScene| match defect.ring {
-            DefectRing::Outer => scene.operation.outer_turns(),
-            DefectRing::Inner => scene.operation.inner_turns(),
+            DefectRing::Outer => scene.written.operation.outer_turns(),
+            DefectRing::Inner => scene.written.operation.inner_turns(),
         };
         let passages = |defect: &DefectScene| {
-            if scene.operation.speed_varies() {
+            if scene.written.operation.speed_varies() {
                 return over_turns(scene, defect);
             }
             // On the inner raceway the contact is as fast: rollers do not slip.
@@ -107,12 +107,13 @@ impl Prediction {
             // A cage that slips meets a ring that turns earlier. A roller that enters before the end leaves
             // at most one traverse later.
             let early = if turns(defect) { EARLY } else { 0.0 };
-            let until_s = (1.0 + early) * Geometry::of(scene).duration + traverse_s;
-            kinematics.crossings(defect, &roller_angles_deg(scene), until_s)
+            let until_s = (1.0 + early) * scene.duration + traverse_s;
+            kinematics.crossings(defect, &roller_angles_deg(&scene.written), until_s)
         };
         let in_place = |defect: &DefectScene| {
             let mut passages = passages(defect);
-            passages.retain(|passage| scene.rollers_in_place().any(|number| number == passage.roller));
+            passages
+                .retain(|passage| scene.written.rollers_in_place().any(|number| number == passage.roller));
             passages
         };
         let course = |spall: DefectScene| SpallCourse {
@@ -123,11 +124,12 @@ impl Prediction {
         };
         Self {
             facet_lines,
-            spalls: scene.spalls().into_iter().map(course).collect(),
+            spalls: scene.written.spalls().into_iter().map(course).collect(),
             shocks: scene
+                .written
                 .faults()
                 .first()
-                .filter(|_| !scene.operation.speed_varies())
+                .filter(|_| !scene.written.operation.speed_varies())
                 .map(|on| Shocks::of(*on, &kinematics)),
             kinematics,
         }
@@ -164,15 +166,15 @@ impl Prediction {
     }
 
     /// The combs that facets can make: rollers, nodes of the outer and of the inner raceway.
-    pub fn candidates(&self, scene: &Scene, mesh: &MeshInfo) -> Vec<Candidate> {
+    pub fn candidates(&self, scene: &ResolvedScene, mesh: &MeshInfo) -> Vec<Candidate> {
         let vertices = mesh.roller_facets as f64;
         let sources = [
-            match scene.mesh.roller_copies {
+            match scene.written.mesh.roller_copies {
                 RollerCopies::Rotated => Source::RotatedVertices(vertices),
                 RollerCopies::Translated => Source::TranslatedVertices(vertices),
             },
-            Source::OuterNodes(Geometry::of(scene).facets_around(DefectRing::Outer, mesh.outer_facets)),
-            Source::InnerNodes(Geometry::of(scene).facets_around(DefectRing::Inner, mesh.inner_facets)),
+            Source::OuterNodes(scene.facets_around(DefectRing::Outer, mesh.outer_facets)),
+            Source::InnerNodes(scene.facets_around(DefectRing::Inner, mesh.inner_facets)),
         ];
         let named = |((name, _), source): (&(String, f64), Source)| Candidate { name: name.clone(), source };
         self.facet_lines.iter().zip(sources).map(named).collect()
@@ -190,13 +192,13 @@ impl Prediction {
     ///
     /// # Errors
     /// [`Error::Run`] when the rings find no equilibrium.
-    pub fn static_curve(&self, scene: &Scene, support_n: f64) -> Result<StaticCurve, Error> {
-        let rings = RigidRings::new(&Geometry::of(scene));
+    pub fn static_curve(&self, scene: &ResolvedScene, support_n: f64) -> Result<StaticCurve, Error> {
+        let rings = RigidRings::new(scene);
         // The rings see the load from above.
-        let turned_by = scene.load_zone_deg() - 90.0;
-        let start = angles_to_load_deg(scene);
+        let turned_by = scene.written.load_zone_deg() - 90.0;
+        let start = angles_to_load_deg(&scene.written);
         // After a spacing the bearing is the same again, or after a turn where a roller is missing.
-        let rollers = scene.bearing.rollers;
+        let rollers = scene.written.bearing.rollers;
         let alike = if start.len() == rollers { rollers } else { 1 };
         let (period, steps) = (360.0 / alike as f64, CAGE_STEPS * rollers / alike);
         let mut points: Vec<(f64, f64)> = Vec::new();
@@ -255,16 +257,19 @@ fn by_place(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
 
 /// Passages over a defect where a speed changes: they follow the angle of the rings against each other. None
 /// where these turn back on the way.
-fn over_turns(scene: &Scene, defect: &DefectScene) -> Vec<Crossing> {
-    let (duty, until_s) = (scene.duty(), Geometry::of(scene).duration);
+fn over_turns(scene: &ResolvedScene, defect: &DefectScene) -> Vec<Crossing> {
+    let (duty, until_s) = (&scene.duty, scene.duration);
     if !duty.is_one_way(until_s) {
         return Vec::new();
     }
     let all = duty.relative_turns(until_s);
     // At a turn a second times are turns.
     let (rpm, all) = (60.0_f64.copysign(all), all.abs());
-    let mut crossings =
-        Kinematics::new(&scene.bearing, rpm).crossings(defect, &roller_angles_deg(scene), all);
+    let mut crossings = Kinematics::new(&scene.written.bearing, rpm).crossings(
+        defect,
+        &roller_angles_deg(&scene.written),
+        all,
+    );
     crossings.retain_mut(|c| {
         let times = [c.entry_s, c.centre_s, c.exit_s].map(|turns| duty.time_of_turns(turns, until_s));
         let [Some(entry), Some(centre), Some(exit)] = times else { return false };
@@ -279,6 +284,7 @@ mod tests {
     use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface};
 
     use super::*;
+    use stribeck_scene::scene::Scene;
 
     fn mesh(outer_facets: usize, inner_facets: usize) -> MeshInfo {
         MeshInfo { nodes: 0, quads: 0, triangles: 0, roller_facets: 112, outer_facets, inner_facets }
@@ -291,7 +297,7 @@ mod tests {
         // Entries and exits of rollers 1 to 3 computed from Table 1 apart from this program [ms].
         const EXPECTED_MS: [(f64, f64); 3] =
             [(0.839_98, 5.079_51), (11.939_03, 16.178_56), (23.038_08, 27.277_61)];
-        let prediction = Prediction::of(&Scene::default(), &mesh(1257, 1030));
+        let prediction = Prediction::of(&Scene::default().resolve(), &mesh(1257, 1030));
         assert_eq!(prediction.passages().len(), 3);
         for (roller, (found, (entry, exit))) in prediction.passages().iter().zip(EXPECTED_MS).enumerate() {
             assert_eq!(found.roller, roller + 1);
@@ -309,8 +315,8 @@ mod tests {
     fn example_static_curve_has_a_hole_and_relieving_neighbours() {
         let mut scene = Scene::default();
         scene.bearing.thickness_mm = 20.0;
-        let prediction = Prediction::of(&scene, &mesh(1257, 1030));
-        let curve = prediction.static_curve(&scene, 50_000.0).unwrap();
+        let prediction = Prediction::of(&scene.resolve(), &mesh(1257, 1030));
+        let curve = prediction.static_curve(&scene.resolve(), 50_000.0).unwrap();
         assert_eq!(curve.angle_deg.len(), 24 * CAGE_STEPS);
         assert!(curve.angle_deg.is_sorted());
         let at = |deg: f64| curve.force_n[curve.angle_deg.partition_point(|&a| a < deg)];
@@ -332,8 +338,11 @@ mod tests {
             form: FormScene::Missing,
             ..DeviationScene::default()
         };
-        let curve =
-            |scene: &Scene| Prediction::of(scene, &mesh(1257, 1030)).static_curve(scene, 50_000.0).unwrap();
+        let curve = |scene: &Scene| {
+            Prediction::of(&scene.resolve(), &mesh(1257, 1030))
+                .static_curve(&scene.resolve(), 50_000.0)
+                .unwrap()
+        };
         let steepest = |curve: &StaticCurve| {
             curve.force_n.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max)
         };
@@ -346,7 +355,7 @@ mod tests {
     #[test]
     fn example_a_sound_bearing_has_no_passage() {
         let scene = Scene { defect: None, ..Scene::default() };
-        let prediction = Prediction::of(&scene, &mesh(0, 0));
+        let prediction = Prediction::of(&scene.resolve(), &mesh(0, 0));
         assert!(prediction.passages().is_empty() && prediction.standing().is_none());
         assert!((prediction.facet_period_s() - 1.0 / 4672.0).abs() < 1e-6);
     }

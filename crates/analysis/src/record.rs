@@ -168,7 +168,7 @@ impl<'a> Record<'a> {
     pub fn roller_numbers(&self) -> Vec<usize> {
         let names = self.run.trace.names();
         let there = |name: String| names.contains(&name);
-        let in_place = self.run.scene.rollers_in_place();
+        let in_place = self.run.scene.written.rollers_in_place();
         in_place
             .filter(|number| OF_ROLLER.iter().all(|what| there(format!("roller.{number}.{what}"))))
             .collect()
@@ -264,12 +264,12 @@ impl<'a> Record<'a> {
 
     /// Places for rollers in the cage, with those where one is missing.
     pub fn pockets(&self) -> usize {
-        self.run.scene.bearing.rollers
+        self.run.scene.written.bearing.rollers
     }
 
     /// All rollers whose channels are in memory.
     pub fn rollers(&self) -> Vec<Roller<'_>> {
-        self.run.scene.rollers_in_place().filter_map(|number| self.roller(number)).collect()
+        self.run.scene.written.rollers_in_place().filter_map(|number| self.roller(number)).collect()
     }
 }
 

@@ -6,8 +6,7 @@
 
 use std::f64::consts::PI;
 
-use stribeck_scene::geometry::Geometry;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::resolved::ResolvedScene;
 
 /// Frequency [Hz] of the in-plane bending mode with `n` waves around a free ring, n ≥ 2.
 ///
@@ -21,25 +20,23 @@ pub fn bending_mode_hz(n: u32, radius: f64, thickness: f64, modulus: f64, poisso
 
 /// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz]; none of one that does not
 /// deform.
-pub fn outer_ring_modes(scene: &Scene, last: u32) -> Vec<(u32, f64)> {
-    let g = Geometry::of(scene);
-    if g.outer_ring_rigid {
+pub fn outer_ring_modes(scene: &ResolvedScene, last: u32) -> Vec<(u32, f64)> {
+    if scene.outer_ring_rigid {
         return Vec::new();
     }
-    let (thickness, m) = (g.outer_ring_thickness, &g.material);
-    let radius = g.outer_race_radius + 0.5 * thickness;
+    let (thickness, m) = (scene.outer_ring_thickness, &scene.material);
+    let radius = scene.outer_race_radius + 0.5 * thickness;
     let mode = |n| (n, bending_mode_hz(n, radius, thickness, m.youngs_modulus, m.poissons_ratio, m.density));
     (2..=last).map(mode).collect()
 }
 
 /// Wavelength of bending waves in a bar as thick as the outer ring at `frequency_hz`, in elements: the
 /// paper's "elements per wavelength". c_B = √(1.8 c_L h f) with the plate speed c_L.
-pub fn elements_per_wavelength(scene: &Scene, frequency_hz: f64) -> f64 {
-    let g = Geometry::of(scene);
-    let m = &g.material;
+pub fn elements_per_wavelength(scene: &ResolvedScene, frequency_hz: f64) -> f64 {
+    let m = &scene.material;
     let plate = (m.youngs_modulus / (m.density * (1.0 - m.poissons_ratio.powi(2)))).sqrt();
-    let bending = (1.8 * plate * g.outer_ring_thickness * frequency_hz).sqrt();
-    bending / frequency_hz / g.element_size
+    let bending = (1.8 * plate * scene.outer_ring_thickness * frequency_hz).sqrt();
+    bending / frequency_hz / scene.element_size
 }
 
 #[cfg(test)]
@@ -47,20 +44,21 @@ mod tests {
     use stribeck_scene::housing::{HousingScene, RigidHousingScene};
 
     use super::*;
+    use stribeck_scene::scene::Scene;
 
     #[test]
     fn analytic_modes_and_waves_of_the_paper_ring() {
         let scene = Scene::default();
         // Love's formula evaluated by hand for R = 105 mm, h = 10 mm, plane strain [Hz].
         for ((n, hz), expected) in
-            outer_ring_modes(&scene, 5).into_iter().zip([592.0, 1673.0, 3209.0, 5189.0])
+            outer_ring_modes(&scene.resolve(), 5).into_iter().zip([592.0, 1673.0, 3209.0, 5189.0])
         {
             assert!((hz / expected - 1.0).abs() < 1e-3, "n = {n}: {hz}");
         }
         let rigid = Scene { housing: HousingScene::Rigid(RigidHousingScene::default()), ..scene.clone() };
-        assert_eq!(outer_ring_modes(&rigid, 5), []);
+        assert_eq!(outer_ring_modes(&rigid.resolve(), 5), []);
         // The paper says 97.
-        let waves = elements_per_wavelength(&scene, 40_000.0);
+        let waves = elements_per_wavelength(&scene.resolve(), 40_000.0);
         assert!((waves - 97.6).abs() < 0.1, "{waves}");
     }
 }

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use stribeck_scene::deviation::{FormScene, RollingSurface, SpallScene};
-use stribeck_scene::geometry::{Geometry, pocket_half_width};
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::scene::{PocketWalls, Scene};
+use stribeck_scene::resolved::{ResolvedScene, pocket_half_width};
+use stribeck_scene::scene::PocketWalls;
 use stribeck_scene::static_load::RigidRings;
 
 use crate::kinematics::KinematicsFinding;
@@ -19,15 +19,16 @@ const SLIDING: f64 = 0.02;
 /// The support [N] under which one passage of the load zone just spins a roller up from rest, when
 /// `support_n` gives the distribution `curve` (THEORY §5.4): under less, rollers that have lost their spin do
 /// not roll again. `None` when nothing turns or nothing is loaded, infinite without friction.
-pub fn least_support_n(scene: &Scene, curve: &StaticCurve, support_n: f64) -> Option<f64> {
-    let (geometry, motion) = (Geometry::of(scene), Kinematics::at_mean_speed(scene));
-    let radius = geometry.roller_radius;
-    let inertia = 0.5 * PI * geometry.material.density * geometry.thickness * radius.powi(4);
+pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f64) -> Option<f64> {
+    let motion = Kinematics::at_mean_speed(&scene.written);
+    let radius = scene.roller_radius;
+    let inertia = 0.5 * PI * scene.material.density * scene.thickness * radius.powi(4);
     let pairs = curve.angle_deg.windows(2).zip(curve.force_n.windows(2));
     let over_angle: f64 = pairs.map(|(a, q)| 0.5 * (q[0] + q[1]) * (a[1] - a[0]).to_radians()).sum();
     let impulse = over_angle / motion.cage_rad_s.abs();
     // Both contacts push a roller without spin the same way round.
-    let share = 2.0 * scene.contact.friction * radius * impulse / (inertia * motion.roller_rad_s.abs());
+    let share =
+        2.0 * scene.written.contact.friction * radius * impulse / (inertia * motion.roller_rad_s.abs());
     (share.is_finite() && over_angle > 0.0).then(|| support_n / share)
 }
 
@@ -37,23 +38,22 @@ const STOPPED: f64 = 0.5;
 /// The friction that slowly turns a roller over the edge of a `spall` under `force_n` [-], contact as stiff
 /// as the bodies (THEORY §5.4). Where there is less, and its own spin does not carry it over, it slides on
 /// the spall.
-pub fn friction_over_edge(geometry: &Geometry, spall: &SpallScene, force_n: f64) -> f64 {
-    let radius = geometry.roller_radius;
-    let lifted = RigidRings::new(geometry).approach_m(force_n).min(1e-3 * spall.depth_mm);
+pub fn friction_over_edge(scene: &ResolvedScene, spall: &SpallScene, force_n: f64) -> f64 {
+    let radius = scene.roller_radius;
+    let lifted = RigidRings::new(scene).approach_m(force_n).min(1e-3 * spall.depth_mm);
     let half_angle = 0.5e-3 * spall.length_mm / radius;
     0.5 * (2.0 * lifted / radius).sqrt().min(half_angle)
 }
 
 /// Notes on spalls on rollers that the friction of a scene may not turn over their edges, when the fullest
 /// roller carries `force_n`.
-pub fn flats(scene: &Scene, force_n: f64) -> Vec<String> {
-    let geometry = Geometry::of(scene);
-    let spalls = scene.defects.iter().filter_map(|defect| match (defect.on, &defect.form) {
+pub fn flats(scene: &ResolvedScene, force_n: f64) -> Vec<String> {
+    let spalls = scene.written.defects.iter().filter_map(|defect| match (defect.on, &defect.form) {
         (RollingSurface::Roller(roller), FormScene::Spall(spall)) => Some((roller, spall)),
         _ => None,
     });
-    let needed = spalls.map(|(roller, spall)| (roller, friction_over_edge(&geometry, spall, force_n)));
-    let friction = scene.contact.friction;
+    let needed = spalls.map(|(roller, spall)| (roller, friction_over_edge(scene, spall, force_n)));
+    let friction = scene.written.contact.friction;
     needed
         .filter(|(_, needed)| friction < *needed)
         .map(|(roller, needed)| {
@@ -114,8 +114,8 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
 const STRAYS: f64 = 10.0;
 
 /// A note on a cage without radial guidance: `x` and `y` are the positions of its centre [m].
-pub fn straying(scene: &Scene, x: &[f64], y: &[f64]) -> Option<String> {
-    let room_um = scene.cage.as_ref()?.pocket_clearance_um;
+pub fn straying(scene: &ResolvedScene, x: &[f64], y: &[f64]) -> Option<String> {
+    let room_um = scene.written.cage.as_ref()?.pocket_clearance_um;
     let (first_x, first_y) = (x.first()?, y.first()?);
     let far = x.iter().zip(y).map(|(x, y)| (x - first_x).hypot(y - first_y)).fold(0.0, f64::max);
     let far_um = 1e6 * far;
@@ -133,9 +133,8 @@ pub fn straying(scene: &Scene, x: &[f64], y: &[f64]) -> Option<String> {
 }
 
 /// Clearances and guidance of a cage.
-fn why_it_strays(scene: &Scene) -> String {
-    let g = Geometry::of(scene);
-    let corners = g.cage.as_ref().filter(|cage| cage.pocket == PocketWalls::Corners);
+fn why_it_strays(scene: &ResolvedScene) -> String {
+    let corners = scene.cage.as_ref().filter(|cage| cage.pocket == PocketWalls::Corners);
     let Some(cage) = corners else {
         return "straight walls do not hold it across, and rollers bunch. `cage.pocket: corners`, on a cage \
             outside of the pitch circle, \
@@ -143,9 +142,9 @@ fn why_it_strays(scene: &Scene) -> String {
             .to_owned();
     };
     let [inner, outer] = cage.radii();
-    let path = g.path_radius();
-    let wide = 2.0 * pocket_half_width(inner, outer, path, g.roller_radius + cage.pocket_clearance);
-    let (wide_mm, roller_mm) = (1e3 * wide, 2e3 * g.roller_radius);
+    let path = scene.path_radius();
+    let wide = 2.0 * pocket_half_width(inner, outer, path, scene.roller_radius + cage.pocket_clearance);
+    let (wide_mm, roller_mm) = (1e3 * wide, 2e3 * scene.roller_radius);
     if wide_mm < roller_mm {
         return format!(
             "the corners of its pockets, {wide_mm:.2} mm wide, hold rollers of {roller_mm:.2} mm from one \
@@ -173,6 +172,7 @@ mod tests {
     use stribeck_scene::deviation::DeviationScene;
     use stribeck_scene::run_info::MeshInfo;
     use stribeck_scene::scene::CageScene;
+    use stribeck_scene::scene::Scene;
 
     /// By hand: a roller of 6 mm in radius whose raceways approach each other by δ = 16 µm takes ½ √(2 ·
     /// 16/6000) = 0.037 to turn over the edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and
@@ -180,7 +180,7 @@ mod tests {
     #[test]
     fn example_friction_that_turns_a_roller_over_an_edge() {
         let scene = Scene::default();
-        let geometry = Geometry { roller_radius: 6e-3, ..Geometry::of(&scene) };
+        let geometry = ResolvedScene { roller_radius: 6e-3, ..scene.resolve() };
         let rings = RigidRings::new(&geometry);
         let (mut low, mut high): (f64, f64) = (0.0, 1e6);
         for _ in 0..60 {
@@ -206,12 +206,12 @@ mod tests {
         };
         spalled.contact.friction = 0.005;
         assert!(
-            flats(&spalled, 10e3)[0].contains("roller 5 may stop on its spall"),
+            flats(&spalled.resolve(), 10e3)[0].contains("roller 5 may stop on its spall"),
             "{:?}",
-            flats(&spalled, 10e3)
+            flats(&spalled.resolve(), 10e3)
         );
         spalled.contact.friction = 0.2;
-        assert_eq!(flats(&spalled, 10e3), [""; 0]);
+        assert_eq!(flats(&spalled.resolve(), 10e3), [""; 0]);
     }
 
     #[test]
@@ -231,7 +231,8 @@ mod tests {
     fn example_a_cage_that_strays_is_named() {
         // Pockets of 100 µm.
         let scene = Scene::default();
-        let path = |far: f64| straying(&scene, &[1e-3, 1e-3 + 0.6 * far, 1e-3], &[0.0, 0.8 * far, 0.0]);
+        let path =
+            |far: f64| straying(&scene.resolve(), &[1e-3, 1e-3 + 0.6 * far, 1e-3], &[0.0, 0.8 * far, 0.0]);
         assert!(path(0.9e-3).is_none());
         assert!(
             path(1.2e-3)
@@ -247,13 +248,16 @@ mod tests {
                 thickness_mm: 4.0,
                 ..CageScene::default()
             };
-            let said = straying(&Scene { cage: Some(cage), ..scene.clone() }, &[0.0, 0.9], &[0.0, 0.0]);
+            let said =
+                straying(&Scene { cage: Some(cage), ..scene.clone() }.resolve(), &[0.0, 0.9], &[0.0, 0.0]);
             assert!(
                 said.as_ref().is_some_and(|said| said.contains(words) && said.contains("900 mm")),
                 "{said:?}"
             );
         }
-        assert!(straying(&Scene { cage: None, ..scene.clone() }, &[0.0, 1.0], &[0.0, 0.0]).is_none());
+        assert!(
+            straying(&Scene { cage: None, ..scene.clone() }.resolve(), &[0.0, 1.0], &[0.0, 0.0]).is_none()
+        );
     }
 
     /// The paper's bearing by hand: 0.3 N m s² … I = ½ m r² with m = 7850 · π · 9² · 30 mm³ = 59.9 g.
@@ -268,8 +272,8 @@ mod tests {
             outer_facets: 1257,
             inner_facets: 1030,
         };
-        let curve = Prediction::of(&scene, &mesh).static_curve(&scene, 50e3).unwrap();
-        let least_n = least_support_n(&scene, &curve, 50e3).unwrap();
+        let curve = Prediction::of(&scene.resolve(), &mesh).static_curve(&scene.resolve(), 50e3).unwrap();
+        let least_n = least_support_n(&scene.resolve(), &curve, 50e3).unwrap();
         // The spin in space is 2π · 37.96 Hz = 238.5 rad/s, so I ω = 5.79e-4 N m s. A roller's passage gives
         // at most 2 · 0.005 · 9 mm times its load over time. All rollers carry 50 kN along y; by the cosine
         // the mean load of a place times the 24 rollers is 4/π · 50 kN or less, so a turn of 266 ms gives a
@@ -288,6 +292,6 @@ mod tests {
             contact: stribeck_scene::scene::ContactScene { friction: 0.0, ..scene.contact },
             ..scene
         };
-        assert_eq!(least_support_n(&smooth, &curve, 50e3), Some(f64::INFINITY));
+        assert_eq!(least_support_n(&smooth.resolve(), &curve, 50e3), Some(f64::INFINITY));
     }
 }

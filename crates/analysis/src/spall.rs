@@ -20,8 +20,8 @@
 //!
 //! The corner of the edge is taken as stiff as the raceway, which it is not quite (own).
 
-use stribeck_scene::geometry::Geometry;
-use stribeck_scene::scene::{DefectRing, Scene};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::DefectRing;
 use stribeck_scene::static_load::RigidRings;
 
 /// Halvings of the bracket: beyond rounding.
@@ -41,17 +41,16 @@ pub struct Edge {
 
 impl Edge {
     /// Of a spall on the raceway of `ring`.
-    pub fn of(scene: &Scene, ring: DefectRing) -> Self {
-        let g = Geometry::of(scene);
-        let (outer, inner) = (g.outer_contact_radius(), g.inner_contact_radius());
+    pub fn of(scene: &ResolvedScene, ring: DefectRing) -> Self {
+        let (outer, inner) = (scene.outer_contact_radius(), scene.inner_contact_radius());
         Self {
-            rings: RigidRings::new(&g),
+            rings: RigidRings::new(scene),
             radius: match ring {
                 DefectRing::Outer => [outer, inner],
                 DefectRing::Inner => [inner, outer],
             },
-            stiffness: g.penalty_stiffness,
-            thickness: g.thickness,
+            stiffness: scene.penalty_stiffness,
+            thickness: scene.thickness,
         }
     }
 
@@ -106,6 +105,7 @@ impl Edge {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stribeck_scene::scene::Scene;
 
     #[test]
     fn analytic_a_stiff_contact_rolls_over_a_sharp_edge() {
@@ -114,7 +114,7 @@ mod tests {
         let mut scene = Scene::default();
         scene.bearing.thickness_mm = 20.0;
         scene.contact.penalty_scale = 1e4;
-        let edge = Edge::of(&scene, DefectRing::Outer);
+        let edge = Edge::of(&scene.resolve(), DefectRing::Outer);
         let sunk = edge.rings.approach_m(10_400.0) - edge.rings.approach_m(5_200.0);
         let expected = (2.0 * 9.890e-3 * sunk).sqrt();
         let s = edge.half_load_m(10_400.0);
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn analytic_a_strip_cut_in_its_middle_carries_half() {
-        let edge = Edge::of(&Scene::default(), DefectRing::Outer);
+        let edge = Edge::of(&Scene::default().resolve(), DefectRing::Outer);
         let depth = edge.penetration(5e5, edge.radius[0]);
         let half = (2.0 * edge.radius[0] * depth).sqrt();
         assert!((edge.cut_strip(depth, -half) / 5e5 - 1.0).abs() < 1e-9);

@@ -20,14 +20,14 @@ use crate::{error::Error, grading, housing::housing, own_mesh, suspension::suspe
 use stribeck_scene::{
     deviation::Relief,
     duty::Duty,
-    geometry::{CageGeometry, DefectGeometry, Geometry, pocket_half_width},
     housing::HousingScene,
     kinematics::{FacetCounts, Kinematics},
     lubrication,
+    resolved::{CageGeometry, DefectGeometry, ResolvedScene, pocket_half_width},
     run_info::MeshInfo,
     scene::{
         ContactInterpolation, ContactMethod, ContactPasses, ContactSurface, DampedBody, DefectRing,
-        RollerCopies, Scene,
+        RollerCopies,
     },
 };
 
@@ -178,56 +178,51 @@ impl Machine {
     }
 }
 
-/// Angle of the roller in pocket `i` (from 0) at the start [rad].
-pub fn roller_angle(scene: &Scene, i: usize) -> f64 {
-    Geometry::of(scene).roller_angle(i)
-}
-
 impl MeshedParts {
     /// Meshes them. They are the same wherever rollers start.
     ///
     /// # Errors
     /// When a dimension or a count cannot be meshed.
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
-        let (b, g) = (&scene.bearing, Geometry::of(scene));
+    pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
+        let b = &scene.written.bearing;
         let made = |ring: &Annulus, grading: &Option<Grading>| match grading {
             Some(grading) => ring.graded_part(grading),
             None => ring.part(),
         };
 
-        let outer_grading = grading::ring(&scene.mesh, b.outer_ring_thickness_mm, Circle::Inner);
+        let outer_grading = grading::ring(&scene.written.mesh, b.outer_ring_thickness_mm, Circle::Inner);
         let outer = Annulus {
-            inner_radius: g.outer_race_radius,
-            outer_radius: g.outer_race_radius + g.outer_ring_thickness,
-            facets: facets_around(scene, &g, DefectRing::Outer),
-            layers: grading::layers(&scene.mesh, b.outer_ring_thickness_mm),
+            inner_radius: scene.outer_race_radius,
+            outer_radius: scene.outer_race_radius + scene.outer_ring_thickness,
+            facets: facets_around(scene, DefectRing::Outer),
+            layers: grading::layers(&scene.written.mesh, b.outer_ring_thickness_mm),
             start_angle: 0.0,
-            grooves: grooves_in(&g, DefectRing::Outer),
+            grooves: grooves_in(scene, DefectRing::Outer),
         };
-        let outer = match &scene.outer_ring_mesh {
-            Some(own) => own_mesh::ring(own, DefectRing::Outer, &g)?,
+        let outer = match &scene.written.outer_ring_mesh {
+            Some(own) => own_mesh::ring(own, DefectRing::Outer, scene)?,
             None => made(&outer, &outer_grading)?,
         };
 
-        let inner_grading = grading::ring(&scene.mesh, b.inner_ring_thickness_mm, Circle::Outer);
+        let inner_grading = grading::ring(&scene.written.mesh, b.inner_ring_thickness_mm, Circle::Outer);
         let inner = Annulus {
-            inner_radius: g.inner_race_radius - g.inner_ring_thickness,
-            outer_radius: g.inner_race_radius,
-            facets: facets_around(scene, &g, DefectRing::Inner),
-            layers: grading::layers(&scene.mesh, b.inner_ring_thickness_mm),
+            inner_radius: scene.inner_race_radius - scene.inner_ring_thickness,
+            outer_radius: scene.inner_race_radius,
+            facets: facets_around(scene, DefectRing::Inner),
+            layers: grading::layers(&scene.written.mesh, b.inner_ring_thickness_mm),
             start_angle: 0.0,
-            grooves: grooves_in(&g, DefectRing::Inner),
+            grooves: grooves_in(scene, DefectRing::Inner),
         };
-        let inner = match &scene.inner_ring_mesh {
-            Some(own) => own_mesh::ring(own, DefectRing::Inner, &g)?,
+        let inner = match &scene.written.inner_ring_mesh {
+            Some(own) => own_mesh::ring(own, DefectRing::Inner, scene)?,
             None => made(&inner, &inner_grading)?,
         };
 
-        let facets = scene.mesh.roller_facets;
+        let facets = scene.written.mesh.roller_facets;
         let facet_mm = PI * b.roller_diameter_mm / facets as f64;
-        let core = 1e-3 * grading::roller_core_mm(&scene.mesh, facet_mm);
-        let disc = Disc { radius: g.roller_radius, facets, size: core, rotation: 0.0 };
-        let disc = match &scene.mesh.grading {
+        let core = 1e-3 * grading::roller_core_mm(&scene.written.mesh, facet_mm);
+        let disc = Disc { radius: scene.roller_radius, facets, size: core, rotation: 0.0 };
+        let disc = match &scene.written.mesh.grading {
             None => disc.part()?,
             Some(scene) => disc.part_with_layers(grading::roller_layers(scene).min(disc.most_layers()))?,
         };
@@ -240,7 +235,7 @@ impl Assembly {
     ///
     /// # Errors
     /// When a dimension or a count cannot be meshed.
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
+    pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
         Self::of(scene, &MeshedParts::new(scene)?)
     }
 
@@ -248,15 +243,14 @@ impl Assembly {
     ///
     /// # Errors
     /// When the rest cannot be meshed.
-    pub fn of(scene: &Scene, parts: &MeshedParts) -> Result<Self, Error> {
-        let g = Geometry::of(scene);
+    pub fn of(scene: &ResolvedScene, parts: &MeshedParts) -> Result<Self, Error> {
         let mut mesh = Mesh::new();
-        let outer = formed(parts.outer.clone(), "inner", Circle::Inner, g.outer_relief.as_ref())?;
+        let outer = formed(parts.outer.clone(), "inner", Circle::Inner, scene.outer_relief.as_ref())?;
         let (outer_area, outer) = (outer.area(), mesh.add("outer ring", &outer));
-        let inner = formed(parts.inner.clone(), "outer", Circle::Outer, g.inner_relief.as_ref())?;
+        let inner = formed(parts.inner.clone(), "outer", Circle::Outer, scene.inner_relief.as_ref())?;
         let inner = mesh.add("inner ring", &inner);
 
-        let made = housing(scene, &g, &mesh, surface(&outer, "outer"))?;
+        let made = housing(scene, &mesh, surface(&outer, "outer"))?;
         let held = made.map(|made| {
             let placed = mesh.add(made.name, &made.part);
             let named = |name: &str| surface(&placed, name).clone();
@@ -267,18 +261,19 @@ impl Assembly {
         let disc = &parts.disc;
         // Rollers start where they ride on the outer raceway: that is where centrifugal force holds idle
         // ones.
-        let path = g.outer_race_radius - g.roller_radius;
+        let path = scene.outer_race_radius - scene.roller_radius;
         let rollers: Result<Vec<(usize, Placed)>, Error> = scene
+            .written
             .rollers_in_place()
             .map(|number| {
                 let i = number - 1;
-                let angle = roller_angle(scene, i);
-                let turned = match scene.mesh.roller_copies {
-                    RollerCopies::Translated if g.roller_phase == 0.0 => disc.clone(),
-                    RollerCopies::Translated => disc.rotated(g.roller_phase),
-                    RollerCopies::Rotated => disc.rotated(angle + g.roller_phase),
+                let angle = scene.roller_angle(i);
+                let turned = match scene.written.mesh.roller_copies {
+                    RollerCopies::Translated if scene.roller_phase == 0.0 => disc.clone(),
+                    RollerCopies::Translated => disc.rotated(scene.roller_phase),
+                    RollerCopies::Rotated => disc.rotated(angle + scene.roller_phase),
                 };
-                let relief = g.roller_reliefs.iter().find(|(roller, _)| *roller == i);
+                let relief = scene.roller_reliefs.iter().find(|(roller, _)| *roller == i);
                 let turned = formed(turned, "rim", Circle::Outer, relief.map(|(_, relief)| relief))?;
                 let (s, c) = angle.sin_cos();
                 Ok((i, mesh.add(format!("roller {number}"), &turned.translated(path * c, path * s))))
@@ -286,30 +281,34 @@ impl Assembly {
             .collect();
         let rollers = rollers?;
 
-        let cage_mesh = g.cage.as_ref().map(|cage| {
-            let part = cage_part(&g, cage, cage.walls(path, g.roller_radius), path)?;
+        let cage_mesh = scene.cage.as_ref().map(|cage| {
+            let part = cage_part(scene, cage, cage.walls(path, scene.roller_radius), path)?;
             // Walls that reach farther than the cage make it no heavier.
-            let own = cage_part(&g, cage, cage.radii(), path)?;
+            let own = cage_part(scene, cage, cage.radii(), path)?;
             Ok::<_, Error>((mesh.add("cage", &part), own.area() / part.area()))
         });
         let cage_mesh = cage_mesh.transpose()?;
 
-        let steel = Elastic::new(g.material.youngs_modulus, g.material.poissons_ratio, g.material.density)?;
-        let mut model = Model::new(mesh, steel, g.thickness)?;
-        model.hourglass_scale = scene.solver.hourglass_scale;
-        model.gravity = [0.0, -scene.operation.gravity_m_s2];
-        let m = &g.material;
+        let steel = Elastic::new(
+            scene.material.youngs_modulus,
+            scene.material.poissons_ratio,
+            scene.material.density,
+        )?;
+        let mut model = Model::new(mesh, steel, scene.thickness)?;
+        model.hourglass_scale = scene.written.solver.hourglass_scale;
+        model.gravity = [0.0, -scene.written.operation.gravity_m_s2];
+        let m = &scene.material;
         if let Some((cage, lighter)) = &cage_mesh {
             model.behaviour[cage.body] = Behaviour::Rigid;
             model.materials[cage.body] =
                 Elastic::new(m.youngs_modulus, m.poissons_ratio, lighter * m.density)?;
         }
         let cage = cage_mesh.map(|(cage, _)| cage);
-        let kinematics = Kinematics::of(scene);
-        match (&scene.housing, &held) {
+        let kinematics = Kinematics::of(&scene.written);
+        match (&scene.written.housing, &held) {
             (HousingScene::Rigid(housing), _) => {
                 model.behaviour[outer.body] = Behaviour::Turning { rate: kinematics.outer_rad_s };
-                let heavier = 1.0 + housing.mass_kg / (outer_area * g.thickness * m.density);
+                let heavier = 1.0 + housing.mass_kg / (outer_area * scene.thickness * m.density);
                 model.materials[outer.body] =
                     Elastic::new(m.youngs_modulus, m.poissons_ratio, heavier * m.density)?;
             }
@@ -330,11 +329,12 @@ impl Assembly {
             model.motion[n as usize] = Motion::Rotating { centre: [0.0; 2], rate: kinematics.shaft_rad_s };
         }
         let around = |ring: DefectRing, own: bool, raceway: &Surface| {
-            if own { raceway.facets() as f64 } else { g.facets_around(ring, facets_around(scene, &g, ring)) }
+            if own { raceway.facets() as f64 } else { scene.facets_around(ring, facets_around(scene, ring)) }
         };
-        let [own_outer, own_inner] = [&scene.outer_ring_mesh, &scene.inner_ring_mesh].map(Option::is_some);
+        let [own_outer, own_inner] =
+            [&scene.written.outer_ring_mesh, &scene.written.inner_ring_mesh].map(Option::is_some);
         let facets = FacetCounts {
-            roller: scene.mesh.roller_facets,
+            roller: scene.written.mesh.roller_facets,
             outer: around(DefectRing::Outer, own_outer, surface(&outer, "inner")),
             inner: around(DefectRing::Inner, own_inner, surface(&inner, "outer")),
         };
@@ -370,9 +370,8 @@ impl Assembly {
     }
 
     /// Structural damping of the scene's bodies, if there is some.
-    fn structural_damping(&self, scene: &Scene) -> Result<Option<StructuralDamping>, Error> {
-        let (Some(chosen), Some(band)) =
-            (&scene.solver.structural_damping, Geometry::of(scene).structural_damping)
+    fn structural_damping(&self, scene: &ResolvedScene) -> Result<Option<StructuralDamping>, Error> {
+        let (Some(chosen), Some(band)) = (&scene.written.solver.structural_damping, scene.structural_damping)
         else {
             return Ok(None);
         };
@@ -394,9 +393,9 @@ impl Assembly {
 
     /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if
     /// every body had them: an estimate before anything is laid out.
-    pub fn element_time_step_s(&self, scene: &Scene) -> f64 {
+    pub fn element_time_step_s(&self, scene: &ResolvedScene) -> f64 {
         let mesh = &self.model.mesh;
-        let nu = scene.material.poissons_ratio;
+        let nu = scene.written.material.poissons_ratio;
         let corner = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
         let elastic = |n: u32| {
             let mut bodies = mesh.bodies.iter().zip(&self.model.behaviour);
@@ -410,28 +409,27 @@ impl Assembly {
         let damping = self.structural_damping(scene).ok().flatten();
         let stiffer = damping.map_or(1.0, |damping| damping.stiffening(f64::INFINITY));
         let undamped = shortest / (self.steel().dilatational_speed() * stiffer.sqrt());
-        damped_time_step(undamped, Geometry::of(scene).stiffness_damping)
+        damped_time_step(undamped, scene.stiffness_damping)
     }
 
     /// Lays everything out for `threads` workers.
     ///
     /// # Errors
     /// When the solver or contact refuses the model.
-    pub fn machine(&self, scene: &Scene, threads: usize) -> Result<Machine, Error> {
+    pub fn machine(&self, scene: &ResolvedScene, threads: usize) -> Result<Machine, Error> {
         let mut plan = Plan::from(self.model.clone());
-        plan.stiffness_damping = Geometry::of(scene).stiffness_damping;
+        plan.stiffness_damping = scene.stiffness_damping;
         plan.structural_damping = self.structural_damping(scene)?;
         // What bodies roll over is a circle. Nothing travels over the seat, and the cage touches with its
         // corners.
-        let spline = scene.contact.interpolation == ContactInterpolation::Spline;
+        let spline = scene.written.contact.interpolation == ContactInterpolation::Spline;
         plan.surface(OUTER_RACEWAY, surface(&self.outer, "inner").clone())?;
-        let g = Geometry::of(scene);
         plan.smooth(
             OUTER_RACEWAY,
             smoothing(
-                scene.contact.surface,
+                scene.written.contact.surface,
                 [0.0; 2],
-                g.outer_relief.is_none() && scene.outer_ring_mesh.is_none(),
+                scene.outer_relief.is_none() && scene.written.outer_ring_mesh.is_none(),
             ),
             spline,
         )?;
@@ -439,9 +437,9 @@ impl Assembly {
         plan.smooth(
             INNER_RACEWAY,
             smoothing(
-                scene.contact.surface,
+                scene.written.contact.surface,
                 [0.0; 2],
-                g.inner_relief.is_none() && scene.inner_ring_mesh.is_none(),
+                scene.inner_relief.is_none() && scene.written.inner_ring_mesh.is_none(),
             ),
             spline,
         )?;
@@ -464,29 +462,29 @@ impl Assembly {
         for ((i, placed), roller) in self.rollers.iter().zip(&rollers) {
             let centre = [mesh.x[roller.centre as usize], mesh.y[roller.centre as usize]];
             plan.surface(&rim(*i), surface(placed, "rim").clone())?;
-            let round = g.roller_reliefs.iter().all(|(roller, _)| roller != i);
-            plan.smooth(&rim(*i), smoothing(scene.contact.surface, centre, round), spline)?;
+            let round = scene.roller_reliefs.iter().all(|(roller, _)| roller != i);
+            plan.smooth(&rim(*i), smoothing(scene.written.contact.surface, centre, round), spline)?;
         }
         for (i, (_, piece)) in self.cage.iter().flat_map(|c| &c.surfaces).enumerate() {
             plan.surface(&cage_piece(i), piece.clone())?;
         }
         plan.surface(LOADED, self.housing.as_ref().map_or(back, |housing| &housing.loaded).clone())?;
-        let (load_n, [along_x, along_y]) = (scene.operation.load_n, scene.load_direction());
+        let (load_n, [along_x, along_y]) = (scene.written.operation.load_n, scene.written.load_direction());
         plan.load(LOADED, [load_n * along_x, load_n * along_y])?;
-        if scene.duty().load_across_n(0.0).is_some() {
+        if scene.duty.load_across_n(0.0).is_some() {
             let nodes = plan.nodes(LOADED)?;
             let share = load_n / nodes.len() as f64;
             let across = nodes.iter().map(|&n| (n, [-share * along_y, share * along_x]));
             plan.load_nodes(ACROSS, across.collect())?;
         }
-        if let (HousingScene::Springs(springs), Some(housing)) = (&scene.housing, &self.housing) {
+        if let (HousingScene::Springs(springs), Some(housing)) = (&scene.written.housing, &self.housing) {
             suspend(&mut plan, springs, back, mesh.bodies[housing.body].nodes.start as u32)?;
         }
         let pairs = self.touch(&mut plan, scene)?;
         oil(&mut plan, scene, &rollers)?;
         let mut system = plan.build(threads)?;
         if let Some(duty) = scene.varying_duty() {
-            load(&mut system, &duty, load_n, 0.0)?;
+            load(&mut system, duty, load_n, 0.0)?;
         }
         Ok(Machine {
             system,
@@ -497,16 +495,16 @@ impl Assembly {
             cage: self.cage.as_ref().map(|cage| cage.body),
             back: back.nodes.clone(),
             pairs,
-            oiled: scene.film.is_some(),
+            oiled: scene.written.film.is_some(),
         })
     }
 
     /// Lets surfaces touch, in the order of [`Pairs`].
-    fn touch(&self, plan: &mut Plan, scene: &Scene) -> Result<Pairs, Error> {
-        let (c, g) = (&scene.contact, Geometry::of(scene));
-        let base = Law::penalty(g.penalty_stiffness)?;
-        let base = base.with_damping(c.damping_ratio, g.contact_layer_mass)?;
-        let rolling = base.with_friction(c.friction)?.with_onset(g.contact_onset)?;
+    fn touch(&self, plan: &mut Plan, scene: &ResolvedScene) -> Result<Pairs, Error> {
+        let c = &scene.written.contact;
+        let base = Law::penalty(scene.penalty_stiffness)?;
+        let base = base.with_damping(c.damping_ratio, scene.contact_layer_mass)?;
+        let rolling = base.with_friction(c.friction)?.with_onset(scene.contact_onset)?;
         let seat = base.with_friction(c.seat_friction)?;
         let method = match c.method {
             ContactMethod::Collocated => Method::Collocated,
@@ -537,7 +535,7 @@ impl Assembly {
             plan.contact(of_roller(i, OUTER_RACEWAY, "outer raceway"))?;
         }
         if self.cage.is_some() {
-            let pieces = g.rollers;
+            let pieces = scene.rollers;
             for &i in &pockets {
                 for piece in [(i + pieces - 1) % pieces, i] {
                     plan.contact(of_roller(i, &cage_piece(piece), "cage"))?;
@@ -569,9 +567,8 @@ pub fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> Result<
 }
 
 /// Puts oil between every roller and both raceways, the outer one first.
-fn oil(plan: &mut Plan, scene: &Scene, rollers: &[Roller]) -> Result<(), Error> {
-    let g = Geometry::of(scene);
-    let (Some(film), Some(loaded)) = (g.film, lubrication::loaded_films(scene)?) else { return Ok(()) };
+fn oil(plan: &mut Plan, scene: &ResolvedScene, rollers: &[Roller]) -> Result<(), Error> {
+    let (Some(film), Some(loaded)) = (scene.film, lubrication::loaded_films(scene)?) else { return Ok(()) };
     for roller in rollers {
         for (track, loaded) in [OUTER_RACEWAY, INNER_RACEWAY].into_iter().zip(&loaded) {
             plan.film(Film {
@@ -579,7 +576,7 @@ fn oil(plan: &mut Plan, scene: &Scene, rollers: &[Roller]) -> Result<(), Error> 
                 centre: roller.centre,
                 track: track.to_owned(),
                 oil: Oil { viscosity: film.viscosity, least: loaded.least },
-                stiffness: g.penalty_stiffness,
+                stiffness: scene.penalty_stiffness,
                 speed: loaded.speed,
             })?;
         }
@@ -619,16 +616,16 @@ fn surface<'a>(placed: &'a Placed, name: &str) -> &'a Surface {
 }
 
 /// Facets around the raceway of `ring`, before its grooves.
-fn facets_around(scene: &Scene, g: &Geometry, ring: DefectRing) -> usize {
+fn facets_around(scene: &ResolvedScene, ring: DefectRing) -> usize {
     let (chosen, radius) = match ring {
-        DefectRing::Outer => (scene.mesh.outer_facets, g.outer_race_radius),
-        DefectRing::Inner => (scene.mesh.inner_facets, g.inner_race_radius),
+        DefectRing::Outer => (scene.written.mesh.outer_facets, scene.outer_race_radius),
+        DefectRing::Inner => (scene.written.mesh.inner_facets, scene.inner_race_radius),
     };
-    chosen.unwrap_or_else(|| ((TAU * radius / g.element_size).round() as usize).max(8))
+    chosen.unwrap_or_else(|| ((TAU * radius / scene.element_size).round() as usize).max(8))
 }
 
 /// The grooves in the raceway of `ring`.
-fn grooves_in(g: &Geometry, ring: DefectRing) -> Vec<Groove> {
+fn grooves_in(scene: &ResolvedScene, ring: DefectRing) -> Vec<Groove> {
     let circle = match ring {
         DefectRing::Outer => Circle::Inner,
         DefectRing::Inner => Circle::Outer,
@@ -640,15 +637,20 @@ fn grooves_in(g: &Geometry, ring: DefectRing) -> Vec<Groove> {
         slope: d.edge_slope,
         circle,
     };
-    g.grooves_of(ring).map(cut).collect()
+    scene.grooves_of(ring).map(cut).collect()
 }
 
 /// All pieces of the cage as one body whose walls reach between two radii. Surfaces in the order of the
 /// rollers: piece i lies between roller i and the next one counter-clockwise.
-fn cage_part(g: &Geometry, cage: &CageGeometry, [inner, outer]: [f64; 2], path: f64) -> Result<Part, Error> {
-    let reach = g.roller_radius + cage.pocket_clearance;
+fn cage_part(
+    scene: &ResolvedScene,
+    cage: &CageGeometry,
+    [inner, outer]: [f64; 2],
+    path: f64,
+) -> Result<Part, Error> {
+    let reach = scene.roller_radius + cage.pocket_clearance;
     let half_width = pocket_half_width(inner, outer, path, reach);
-    let pieces = g.rollers;
+    let pieces = scene.rollers;
     let gap = 2.0 * (half_width / outer).asin();
     let arc = (TAU / pieces as f64 - gap) * outer;
     let mut joined = Part::default();
@@ -656,8 +658,8 @@ fn cage_part(g: &Geometry, cage: &CageGeometry, [inner, outer]: [f64; 2], path: 
         let piece = ArcBlock {
             inner_radius: inner,
             outer_radius: outer,
-            right_line_angle: g.pocket_angle(i),
-            left_line_angle: g.pocket_angle(i) + TAU / pieces as f64,
+            right_line_angle: scene.pocket_angle(i),
+            left_line_angle: scene.pocket_angle(i) + TAU / pieces as f64,
             half_width,
             rows: ((1e3 * (outer - inner) / CAGE_ELEMENT_MM).round() as usize).max(1),
             columns: ((1e3 * arc / CAGE_ELEMENT_MM).round() as usize).max(1),

@@ -5,9 +5,8 @@ use std::f64::consts::TAU;
 
 use stribeck_mesh::{Annulus, BoredBlock, Mesh, Part, SeatedBlock, Surface};
 use stribeck_scene::{
-    geometry::Geometry,
     housing::{HousingScene, PedestalScene, SpringHousingScene},
-    scene::Scene,
+    resolved::ResolvedScene,
 };
 
 use crate::{error::Error, grading, own_mesh};
@@ -39,36 +38,31 @@ pub(crate) struct Housing {
 ///
 /// # Errors
 /// When it cannot be meshed, or its file says something else.
-pub(crate) fn housing(
-    scene: &Scene,
-    g: &Geometry,
-    mesh: &Mesh,
-    back: &Surface,
-) -> Result<Option<Housing>, Error> {
-    let back = &polygon(scene, g, mesh, back);
-    let made = match &scene.housing {
+pub(crate) fn housing(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Result<Option<Housing>, Error> {
+    let back = &polygon(scene, mesh, back);
+    let made = match &scene.written.housing {
         HousingScene::Adapter => Housing {
             name: "adapter",
-            part: adapter(g, back)?,
+            part: adapter(scene, back)?,
             seat: Some("seat"),
             loaded: "top",
             density: 1.0,
         },
         HousingScene::Pedestal(pedestal) => Housing {
             name: "pedestal",
-            part: pedestal_part(pedestal, g, back)?,
+            part: pedestal_part(pedestal, scene, back)?,
             seat: Some("bore"),
             loaded: "base",
             density: 1.0,
         },
         HousingScene::Mesh(file) => Housing {
             name: "housing",
-            part: own_mesh::housing(file, g)?,
+            part: own_mesh::housing(file, scene)?,
             seat: Some("bore"),
             loaded: "loaded",
             density: 1.0,
         },
-        HousingScene::Springs(springs) => frame(springs, g, back)?,
+        HousingScene::Springs(springs) => frame(springs, scene, back)?,
         HousingScene::Rigid(_) => return Ok(None),
     };
     Ok(Some(made))
@@ -76,12 +70,12 @@ pub(crate) fn housing(
 
 /// What the outer ring sits in: its own polygon, so that both fit facet to facet; around a ring from a file,
 /// which may have notches there, as many facets about its circle.
-fn polygon(scene: &Scene, g: &Geometry, mesh: &Mesh, back: &Surface) -> Vec<[f64; 2]> {
-    if scene.outer_ring_mesh.is_none() {
+fn polygon(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Vec<[f64; 2]> {
+    if scene.written.outer_ring_mesh.is_none() {
         return back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
     }
     let facet = TAU / back.nodes.len() as f64;
-    let radius = (g.outer_race_radius + g.outer_ring_thickness) / (0.5 * facet).cos();
+    let radius = (scene.outer_race_radius + scene.outer_ring_thickness) / (0.5 * facet).cos();
     (0..back.nodes.len())
         .map(|i| (i as f64 * facet).sin_cos())
         .map(|(s, c)| [radius * c, radius * s])
@@ -89,40 +83,40 @@ fn polygon(scene: &Scene, g: &Geometry, mesh: &Mesh, back: &Surface) -> Vec<[f64
 }
 
 /// The adapter. In a graded mesh its seat is the polygon of the outer ring, whose back surface is given.
-fn adapter(g: &Geometry, back: &[[f64; 2]]) -> Result<Part, Error> {
-    let size = g.element_size;
+fn adapter(scene: &ResolvedScene, back: &[[f64; 2]]) -> Result<Part, Error> {
+    let size = scene.element_size;
     let mut adapter = SeatedBlock {
-        width: g.adapter_width,
-        height: g.adapter_height,
-        seat_radius: g.outer_race_radius + g.outer_ring_thickness,
-        columns: ((g.adapter_width / size).round() as usize).max(2),
-        rows: adapter_rows(g, size),
+        width: scene.adapter_width,
+        height: scene.adapter_height,
+        seat_radius: scene.outer_race_radius + scene.outer_ring_thickness,
+        columns: ((scene.adapter_width / size).round() as usize).max(2),
+        rows: adapter_rows(scene, size),
     };
-    let Some(coarse) = g.coarse_size else { return Ok(adapter.part()?) };
+    let Some(coarse) = scene.coarse_size else { return Ok(adapter.part()?) };
     let seat = grading::seat(back, 0.5 * adapter.width, size);
     adapter.columns = seat.len() - 1;
-    adapter.rows = adapter_rows(g, coarse);
+    adapter.rows = adapter_rows(scene, coarse);
     Ok(adapter.part_on(&seat)?)
 }
 
 /// Rows of the adapter: as many as leave no cell much flatter than the wanted size. Columns are shortest at
 /// the crown.
-fn adapter_rows(g: &Geometry, size: f64) -> usize {
-    ((g.adapter_height / (FLATTEST * size)) as usize).max(2)
+fn adapter_rows(scene: &ResolvedScene, size: f64) -> usize {
+    ((scene.adapter_height / (FLATTEST * size)) as usize).max(2)
 }
 
 /// A pedestal whose bore is the polygon of the outer ring.
-fn pedestal_part(pedestal: &PedestalScene, g: &Geometry, back: &[[f64; 2]]) -> Result<Part, Error> {
+fn pedestal_part(pedestal: &PedestalScene, scene: &ResolvedScene, back: &[[f64; 2]]) -> Result<Part, Error> {
     let [width, base, top] = [pedestal.width_mm, pedestal.base_mm, pedestal.top_mm].map(|mm| 1e-3 * mm);
-    let wall = (0.5 * width).min(base).min(top) - (g.outer_race_radius + g.outer_ring_thickness);
-    let size = g.coarse_size.unwrap_or(g.element_size);
+    let wall = (0.5 * width).min(base).min(top) - (scene.outer_race_radius + scene.outer_ring_thickness);
+    let size = scene.coarse_size.unwrap_or(scene.element_size);
     let rows = ((wall / (FLATTEST * size)) as usize).max(2);
     Ok(BoredBlock { bore: back, width, base, top, rows }.part()?)
 }
 
 /// A frame that stands off the ring, of one row of cells.
-fn frame(springs: &SpringHousingScene, g: &Geometry, back: &[[f64; 2]]) -> Result<Housing, Error> {
-    let radius = g.outer_race_radius + g.outer_ring_thickness;
+fn frame(springs: &SpringHousingScene, scene: &ResolvedScene, back: &[[f64; 2]]) -> Result<Housing, Error> {
+    let radius = scene.outer_race_radius + scene.outer_ring_thickness;
     let inner_radius = (1.0 + FRAME_GAP) * radius;
     let ring = Annulus {
         inner_radius,
@@ -133,6 +127,6 @@ fn frame(springs: &SpringHousingScene, g: &Geometry, back: &[[f64; 2]]) -> Resul
         grooves: Vec::new(),
     };
     let part = ring.part()?;
-    let density = springs.mass_kg / (part.area() * g.thickness * g.material.density);
+    let density = springs.mass_kg / (part.area() * scene.thickness * scene.material.density);
     Ok(Housing { name: "frame", part, seat: None, loaded: "outer", density })
 }

@@ -7,9 +7,9 @@ use stribeck_mesh::{
     decks::{Deck, ReadDeck},
 };
 use stribeck_scene::{
-    geometry::Geometry,
     housing::{HousingScene, MeshHousingScene},
     mesh_text,
+    resolved::ResolvedScene,
     ring_mesh::RingMeshScene,
     scene::{DefectRing, Scene},
 };
@@ -164,16 +164,16 @@ impl<'a> OwnMesh<'a> {
 ///
 /// # Errors
 /// [`Error::MeshFile`] for the first that is not.
-pub fn check(scene: &Scene) -> Result<(), Error> {
-    let g = Geometry::of(scene);
-    if let HousingScene::Mesh(mesh) = &scene.housing {
-        housing(mesh, &g)?;
+pub fn check(scene: &ResolvedScene) -> Result<(), Error> {
+    if let HousingScene::Mesh(mesh) = &scene.written.housing {
+        housing(mesh, scene)?;
     }
-    for (mesh, of) in
-        [(&scene.outer_ring_mesh, DefectRing::Outer), (&scene.inner_ring_mesh, DefectRing::Inner)]
-    {
+    for (mesh, of) in [
+        (&scene.written.outer_ring_mesh, DefectRing::Outer),
+        (&scene.written.inner_ring_mesh, DefectRing::Inner),
+    ] {
         if let Some(mesh) = mesh {
-            ring(mesh, of, &g)?;
+            ring(mesh, of, scene)?;
         }
     }
     Ok(())
@@ -199,10 +199,10 @@ pub fn notes(scene: &Scene) -> Vec<String> {
 ///
 /// # Errors
 /// When the file says something else, or does not fit the outer ring.
-pub(crate) fn housing(housing: &MeshHousingScene, g: &Geometry) -> Result<Part, Error> {
+pub(crate) fn housing(housing: &MeshHousingScene, scene: &ResolvedScene) -> Result<Part, Error> {
     let mut own = OwnMesh::read("housing", &housing.file, &housing.text, housing.unit_mm)?;
     let bore = own.closed("bore", &housing.bore, "bore")?;
-    let ring = g.outer_race_radius + g.outer_ring_thickness;
+    let ring = scene.outer_race_radius + scene.outer_ring_thickness;
     if let Some(&off) = own.radii(&bore).iter().find(|radius| (*radius / ring - 1.0).abs() > LOOSE) {
         return own.misses("bore", "the outer ring", [off, ring]);
     }
@@ -216,11 +216,11 @@ pub(crate) fn housing(housing: &MeshHousingScene, g: &Geometry) -> Result<Part, 
 ///
 /// # Errors
 /// When the file says something else, or is no such ring of the bearing.
-pub(crate) fn ring(ring: &RingMeshScene, of: DefectRing, g: &Geometry) -> Result<Part, Error> {
+pub(crate) fn ring(ring: &RingMeshScene, of: DefectRing, scene: &ResolvedScene) -> Result<Part, Error> {
     // Outwards, seen from the rollers: where the ring's material is.
     let (group, outwards, race, thickness) = match of {
-        DefectRing::Outer => ("outer_ring_mesh", 1.0, g.outer_race_radius, g.outer_ring_thickness),
-        DefectRing::Inner => ("inner_ring_mesh", -1.0, g.inner_race_radius, g.inner_ring_thickness),
+        DefectRing::Outer => ("outer_ring_mesh", 1.0, scene.outer_race_radius, scene.outer_ring_thickness),
+        DefectRing::Inner => ("inner_ring_mesh", -1.0, scene.inner_race_radius, scene.inner_ring_thickness),
     };
     let mut own = OwnMesh::read(group, &ring.file, &ring.text, ring.unit_mm)?;
     let raceway = own.closed("raceway", &ring.raceway, "raceway")?;

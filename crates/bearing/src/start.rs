@@ -3,15 +3,8 @@
 use stribeck_solver::damping::{Frame, MassDamping};
 use stribeck_system::{Preload, UndecidedMotion};
 
-use crate::{
-    assembly::{Machine, roller_angle},
-    error::Error,
-};
-use stribeck_scene::{
-    geometry::Geometry,
-    kinematics::Kinematics,
-    scene::{DampingFrame, Scene},
-};
+use crate::{assembly::Machine, error::Error};
+use stribeck_scene::{kinematics::Kinematics, resolved::ResolvedScene, scene::DampingFrame};
 
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;
@@ -46,25 +39,29 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
 ///
 /// # Errors
 /// When there is no equilibrium to be found.
-pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<Option<String>, Error> {
+pub fn preload(
+    machine: &mut Machine,
+    scene: &ResolvedScene,
+    k: &Kinematics,
+) -> Result<Option<String>, Error> {
     let mut undecided = Vec::new();
     // A ring that sits without friction may turn.
     if machine.pairs.seat().is_some() {
         undecided.push(UndecidedMotion { body: machine.outer, along: None, rotation: true });
     }
     for roller in &machine.rollers {
-        let (s, c) = roller_angle(scene, roller.pocket).sin_cos();
+        let (s, c) = scene.roller_angle(roller.pocket).sin_cos();
         undecided.push(UndecidedMotion { body: roller.body, along: Some([-s, c]), rotation: true });
     }
     let mut preload = Preload {
-        load: Some(scene.duty().load_n(0.0).max(1.0)),
+        load: Some(scene.duty.load_n(0.0).max(1.0)),
         undecided,
         acceleration: rolling_acceleration(machine, k),
         ..Preload::default()
     };
     // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between
     // them. Rollers in a wide clearance feel its sides from farther away.
-    let wide = (Geometry::of(scene).clearance / CLEARANCE).max(1.0);
+    let wide = (scene.clearance / CLEARANCE).max(1.0);
     preload.softness.iter_mut().for_each(|softness| *softness *= wide);
     let settled = machine.system.settle(&preload)?;
     Ok(settled.unbalanced.map(|force| {
@@ -72,7 +69,7 @@ pub fn preload(machine: &mut Machine, scene: &Scene, k: &Kinematics) -> Result<O
             "the preload left a force of {force:.2e} N unbalanced, {:.1e} of the load: the start rings a \
              little. A softer \
              `contact.penalty_scale` converges better",
-            force / scene.duty().load_n(0.0)
+            force / scene.duty.load_n(0.0)
         )
     }))
 }
@@ -109,12 +106,12 @@ pub fn launch(machine: &mut Machine, k: &Kinematics) {
 ///
 /// # Errors
 /// When its rate is no damping.
-pub fn damp(scene: &Scene, machine: &mut Machine) -> Result<(), Error> {
-    let rate = scene.solver.mass_damping_per_s;
+pub fn damp(scene: &ResolvedScene, machine: &mut Machine) -> Result<(), Error> {
+    let rate = scene.written.solver.mass_damping_per_s;
     if rate == 0.0 {
         return Ok(());
     }
-    let (standing, rolling) = match scene.solver.damping_frame {
+    let (standing, rolling) = match scene.written.solver.damping_frame {
         DampingFrame::Rolling => (Frame::Rest, Frame::Tangential { centre: [0.0; 2] }),
         DampingFrame::RigidMotion => (Frame::OwnMotion, Frame::OwnMotion),
         DampingFrame::Absolute => (Frame::Rest, Frame::Rest),

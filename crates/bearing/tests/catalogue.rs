@@ -47,7 +47,7 @@ fn example_cylindrical_roller_bearings_of_two_series_are_meshed_and_say_what_is_
     let sizes = scenes.len() / 3;
     let elements = side_by_side(&scenes[..sizes], |scene| {
         let name = &scene.bearing.designation;
-        let assembly = Assembly::new(scene).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let assembly = Assembly::new(&scene.resolve()).unwrap_or_else(|why| panic!("{name}: {why}"));
         assembly.model.mesh.elements()
     });
     for (at, (name, scene)) in names.iter().zip(&scenes).enumerate() {
@@ -82,7 +82,7 @@ fn off_from_rigid_rings(bearing: &str, defects: &str) -> (f64, f64) {
           defects: [{defects}],
           mesh: (roller_facets: 160, grading: ()), contact: (surface: arc, penalty_scale: 10))"
     );
-    let scene = Scene::parse(&text, "here").expect("valid");
+    let scene = Scene::parse(&text, "here").expect("valid").resolve();
     let assembly = Assembly::new(&scene).expect("a mesh");
     let mut machine = assembly.machine(&scene, 1).expect("a machine");
     let warning = preload(&mut machine, &scene, &assembly.kinematics).expect("an equilibrium");

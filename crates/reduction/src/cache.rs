@@ -104,8 +104,9 @@ fn between(scene: &Scene) -> OperationScene {
 /// When it cannot be made. One that cannot be cached is made again next time.
 pub fn reduced_mesh(scene: &Scene, runs: Option<&Path>) -> Result<(ReducedMesh, bool), Error> {
     let reference = reference(scene);
+    let make = || ReducedMesh::new(&reference.resolve());
     let Some(file) = runs.map(|runs| file(runs, &reference.hash())) else {
-        return Ok((ReducedMesh::new(&reference)?, false));
+        return Ok((make()?, false));
     };
     if let Some(found) = read(&file) {
         return Ok((found, true));
@@ -117,7 +118,7 @@ pub fn reduced_mesh(scene: &Scene, runs: Option<&Path>) -> Result<(ReducedMesh, 
     if let Some(found) = locked.as_ref().and_then(|_| read(&file)) {
         return Ok((found, true));
     }
-    let made = ReducedMesh::new(&reference);
+    let made = make();
     if let Some(bytes) = made.as_ref().ok().and_then(|made| postcard::to_extend(made, MAGIC.to_vec()).ok()) {
         let checksum = crc32fast::hash(&bytes[MAGIC.len()..]);
         let _ = write_atomic(&file, &[bytes, checksum.to_le_bytes().to_vec()].concat());

@@ -5,8 +5,7 @@ use std::f64::consts::{PI, TAU};
 
 use stribeck_modal::{OVERLOAD, compliance::Compliance};
 use stribeck_scene::{
-    geometry::{DefectGeometry, Geometry},
-    scene::Scene,
+    resolved::{DefectGeometry, ResolvedScene},
     static_load,
 };
 use stribeck_solver::{Dynamics, statics::Modes, statics::SmallMotions};
@@ -32,7 +31,7 @@ pub(crate) struct Compliances {
 
 /// The size of the local problems.
 struct Size<'a> {
-    g: &'a Geometry,
+    scene: &'a ResolvedScene,
     /// Largest load [N].
     most: f64,
 }
@@ -41,11 +40,11 @@ impl Size<'_> {
     /// Nodes to either side of the middle that a contact may reach, on nodes so far apart [m], at a relative
     /// radius [m].
     fn half_count(&self, radius: f64, spacing: f64) -> usize {
-        let g = self.g;
-        let e_star = g.material.youngs_modulus / (2.0 * (1.0 - g.material.poissons_ratio.powi(2)));
-        let q = self.most / g.thickness;
+        let scene = self.scene;
+        let e_star = scene.material.youngs_modulus / (2.0 * (1.0 - scene.material.poissons_ratio.powi(2)));
+        let q = self.most / scene.thickness;
         let hertz = 4.0 * q * radius / (PI * e_star);
-        let winkler = (1.5 * q * radius / g.penalty_stiffness).powf(2.0 / 3.0);
+        let winkler = (1.5 * q * radius / scene.penalty_stiffness).powf(2.0 / 3.0);
         (1.3 * (hertz + winkler).sqrt() / spacing).ceil() as usize + 2
     }
 }
@@ -59,21 +58,20 @@ struct Patch {
 impl Compliances {
     /// Of a bearing taken apart, beside the vertices of its outer raceway [m].
     pub(crate) fn of(
-        scene: &Scene,
-        g: &Geometry,
+        scene: &ResolvedScene,
         extraction: &Extraction,
         dynamics: &Dynamics,
         structure: &mut Structure,
         raceway: &[[f64; 2]],
     ) -> Result<Self, Error> {
-        let most = OVERLOAD * static_load::at_start(scene).map_or(g.load, |load| load.max_roller_n());
-        let size = Size { g, most: most.clamp(1.0, OVERLOAD * g.load.max(1.0)) };
-        let [ro, ri] = [g.outer_contact_radius(), g.inner_contact_radius()];
-        let beside = beside_grooves(scene, g);
+        let most = OVERLOAD * static_load::at_start(scene).map_or(scene.load, |load| load.max_roller_n());
+        let size = Size { scene, most: most.clamp(1.0, OVERLOAD * scene.load.max(1.0)) };
+        let [ro, ri] = [scene.outer_contact_radius(), scene.inner_contact_radius()];
+        let beside = beside_grooves(scene);
         let outer = outer_patch(&size, extraction, structure, raceway, beside);
         let inner = inner_patch(&size, extraction, dynamics, beside)?;
         let (roller, across) = roller_patch(&size, extraction, dynamics)?;
-        let penalty = g.penalty_stiffness * g.thickness;
+        let penalty = scene.penalty_stiffness * scene.thickness;
         let compliance = |on: &[Vec<f64>], spacing: f64, radius: f64, across: f64| {
             let flexibility = [on, &roller.flexibility[..]];
             let pressed = Pressed { spacing: [spacing, roller.spacing], flexibility, radius, penalty };
@@ -84,24 +82,29 @@ impl Compliances {
             outer: compliance(&outer.flexibility, outer.spacing, ro, across),
             inner: compliance(&inner.flexibility, inner.spacing, ri, across),
             // Only its inertia holds the roller on its other side.
-            wall: compliance(&rigid, roller.spacing, g.roller_radius, 0.0),
+            wall: compliance(&rigid, roller.spacing, scene.roller_radius, 0.0),
         })
     }
 }
 
 /// Angle of a place beside a groove, or between two, that is far from all of them; without grooves that of
 /// the load [rad].
-fn beside_grooves(scene: &Scene, g: &Geometry) -> f64 {
-    let beside_of =
-        |d: &DefectGeometry| d.angle + (0.5 * d.length + 2.0 * g.outer_ring_thickness) / g.outer_race_radius;
+fn beside_grooves(scene: &ResolvedScene) -> f64 {
+    let beside_of = |d: &DefectGeometry| {
+        d.angle + (0.5 * d.length + 2.0 * scene.outer_ring_thickness) / scene.outer_race_radius
+    };
     let room = |at: f64| {
         let apart = |d: &DefectGeometry| (at - d.angle + PI).rem_euclid(TAU) - PI;
-        g.grooves.iter().map(|d| apart(d).abs() - 0.5 * d.length / g.outer_race_radius).fold(PI, f64::min)
+        scene
+            .grooves
+            .iter()
+            .map(|d| apart(d).abs() - 0.5 * d.length / scene.outer_race_radius)
+            .fold(PI, f64::min)
     };
-    let between = g.grooves.windows(2).map(|d| 0.5 * (d[0].angle + d[1].angle));
-    let places = g.grooves.iter().map(beside_of).chain(between);
+    let between = scene.grooves.windows(2).map(|d| 0.5 * (d[0].angle + d[1].angle));
+    let places = scene.grooves.iter().map(beside_of).chain(between);
     let beside = places.max_by(|a, b| room(*a).total_cmp(&room(*b)));
-    beside.unwrap_or(scene.load_zone_deg().to_radians())
+    beside.unwrap_or(scene.written.load_zone_deg().to_radians())
 }
 
 /// The vertex that lies nearest to an angle.
@@ -132,7 +135,7 @@ fn outer_patch(
 ) -> Patch {
     let at = vertex_at(raceway, angle);
     let spacing = facet(raceway, at);
-    let half = size.half_count(size.g.outer_contact_radius(), spacing);
+    let half = size.half_count(size.scene.outer_contact_radius(), spacing);
     let nodes = patch(&extraction.nodes.outer, at, half);
     let outwards = |n| direction(extraction.place(n));
     Patch { flexibility: structure.flexibility(&nodes, &|n| extraction.slot(n), &outwards), spacing }
@@ -154,7 +157,7 @@ fn inner_patch(
         let [x, y] = direction(extraction.place(n));
         [-x, -y]
     };
-    let half = size.half_count(size.g.inner_contact_radius(), spacing);
+    let half = size.half_count(size.scene.inner_contact_radius(), spacing);
     let nodes = patch(&nodes.inner, at, half);
     let flexibility = flexibility(&mut motions, None, &nodes, &|n| extraction.slot(n), &inwards);
     Ok(Patch { flexibility, spacing })
@@ -175,8 +178,8 @@ fn roller_patch(
         let [x, y] = extraction.place(n);
         direction([centre[0] - x, centre[1] - y])
     };
-    let spacing = TAU * size.g.roller_radius / nodes.rim.len() as f64;
-    let widest = size.g.outer_contact_radius().max(size.g.inner_contact_radius());
+    let spacing = TAU * size.scene.roller_radius / nodes.rim.len() as f64;
+    let widest = size.scene.outer_contact_radius().max(size.scene.inner_contact_radius());
     let mut own = patch(&nodes.rim, 0, size.half_count(widest, spacing));
     let middle = own.len();
     // The node on the other side comes last.

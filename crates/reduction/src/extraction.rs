@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use stribeck_bearing::assembly::Machine;
 use stribeck_mesh::Mesh;
-use stribeck_scene::{geometry::Geometry, housing::HousingScene, scene::Scene};
+use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_solver::{
     Dynamics, Force,
     state::{Moment, NodeForces},
@@ -82,10 +82,14 @@ pub(crate) struct Preload {
 
 impl Extraction {
     /// Reads a preloaded machine and takes it apart.
-    pub(crate) fn of(scene: &Scene, mut machine: Machine, mesh: &Mesh) -> Result<(Self, Parts), Error> {
+    pub(crate) fn of(
+        scene: &ResolvedScene,
+        mut machine: Machine,
+        mesh: &Mesh,
+    ) -> Result<(Self, Parts), Error> {
         let contact_forces = machine.system.contact_forces();
         let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
-        let nodes = Nodes::of(&machine, &Geometry::of(scene))?;
+        let nodes = Nodes::of(&machine, scene)?;
         let system = &machine.system;
         let places: Vec<[f64; 2]> = (0..system.node_count() as u32).map(|n| system.position(n)).collect();
         let of_rings = 0..mesh.bodies[machine.rollers[0].body].nodes.start;
@@ -93,7 +97,7 @@ impl Extraction {
             let motion = system.motion_of(body);
             Inertia { mass_and_moment: [motion.mass, motion.inertia], centre: motion.centre }
         };
-        let frame = match scene.housing {
+        let frame = match scene.written.housing {
             HousingScene::Springs(_) => machine.housing.and_then(|body| {
                 let mass = system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
                 Some((mass, system.nodes_of(body).next()?))
@@ -188,7 +192,7 @@ impl Preload {
 }
 
 impl Nodes {
-    fn of(machine: &Machine, g: &Geometry) -> Result<Self, Error> {
+    fn of(machine: &Machine, scene: &ResolvedScene) -> Result<Self, Error> {
         let system = &machine.system;
         let named = |name: &str| system.nodes(name).map_err(stribeck_bearing::error::Error::from);
         // The mesh walks the outer raceway clockwise, with the solid on the left.
@@ -205,7 +209,7 @@ impl Nodes {
             outer_ring: system.nodes_of(machine.outer).collect(),
             inner_ring: system.nodes_of(machine.inner).collect(),
             roller: system.nodes_of(machine.rollers[0].body).collect(),
-            sensors: machine.nodes_on_back(&g.sensor_angles),
+            sensors: machine.nodes_on_back(&scene.sensor_angles),
             back: machine.back.clone(),
         })
     }

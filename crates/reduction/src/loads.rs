@@ -4,7 +4,7 @@ use stribeck_modal::{
     Seat,
     reduction::{Frame, Load},
 };
-use stribeck_scene::{housing::HousingScene, scene::Scene};
+use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_solver::{state::NodeForces, statics::Spring};
 
 use crate::{
@@ -55,8 +55,13 @@ impl Loads {
 
 /// Forces on each mode by a unit velocity of every mode [1/s], row by row, of the dampers beside the springs
 /// of a housing; empty without them.
-pub(crate) fn dampers(scene: &Scene, structure: &Structure, preload: &Preload, padded: usize) -> Vec<f64> {
-    let HousingScene::Springs(housing) = &scene.housing else { return Vec::new() };
+pub(crate) fn dampers(
+    scene: &ResolvedScene,
+    structure: &Structure,
+    preload: &Preload,
+    padded: usize,
+) -> Vec<f64> {
+    let HousingScene::Springs(housing) = &scene.written.housing else { return Vec::new() };
     // Each spring has its damper, in the same proportion.
     let ratio = 1e-6 * housing.damping_n_s_m / housing.stiffness_n_um;
     let mut sums = vec![0.0; padded * padded];

@@ -11,10 +11,10 @@ use stribeck_modal::{
 };
 use stribeck_scene::{
     deviation::Relief,
-    geometry::{Geometry, pocket_half_width},
     kinematics::Kinematics,
     lubrication::loaded_films,
-    scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies, Scene},
+    resolved::{ResolvedScene, pocket_half_width},
+    scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies},
 };
 use stribeck_solver::structural_damping::StructuralDamping;
 use stribeck_surface::Law;
@@ -26,7 +26,7 @@ use crate::{error::Error, seat};
 /// # Errors
 /// When contact's law has impossible numbers, the structural damping cannot be fitted, or films have no
 /// loaded contact to follow from.
-pub fn modal_bearing(scene: &Scene, reduction: Reduction) -> Result<ModalBearing, Error> {
+pub fn modal_bearing(scene: &ResolvedScene, reduction: Reduction) -> Result<ModalBearing, Error> {
     let parameters = parameters(scene, &reduction)?;
     let mut reduction = reduction;
     prepare(&mut reduction, &parameters);
@@ -74,38 +74,44 @@ fn round(table: &mut [f64]) {
     table.iter_mut().for_each(|number| *number = f64::from(*number as f32));
 }
 
-fn parameters(scene: &Scene, reduction: &Reduction) -> Result<Parameters, Error> {
-    let g = Geometry::of(scene);
-    let law = Law::penalty(g.penalty_stiffness)
-        .and_then(|law| law.with_damping(scene.contact.damping_ratio, g.contact_layer_mass))?;
-    let numbers: Vec<usize> = scene.rollers_in_place().map(|number| number - 1).collect();
-    let rollers = rollers(scene, &g, &numbers);
-    let duty = scene.duty();
+fn parameters(scene: &ResolvedScene, reduction: &Reduction) -> Result<Parameters, Error> {
+    let law = Law::penalty(scene.penalty_stiffness)
+        .and_then(|law| law.with_damping(scene.written.contact.damping_ratio, scene.contact_layer_mass))?;
+    let numbers: Vec<usize> = scene.written.rollers_in_place().map(|number| number - 1).collect();
+    let rollers = rollers(scene, &numbers);
     Ok(Parameters {
-        outlines: outlines(scene, &g, reduction, &numbers, &rollers),
-        radii: Radii { outer: g.outer_race_radius, inner: g.inner_race_radius, roller: g.roller_radius },
-        thickness: g.thickness,
+        outlines: outlines(scene, reduction, &numbers, &rollers),
+        radii: Radii {
+            outer: scene.outer_race_radius,
+            inner: scene.inner_race_radius,
+            roller: scene.roller_radius,
+        },
+        thickness: scene.thickness,
         rollers,
-        contact: Contact { stiffness: law.stiffness, damping: law.damping, friction: scene.contact.friction },
-        damping: damping(scene, &g)?,
-        gravity: g.gravity,
-        speeds: speeds(&Kinematics::of(scene)),
-        outer_turns: scene.operation.outer_turns(),
-        load_at_start: duty.load_n(0.0),
-        duty: scene.varying_duty(),
-        seat_friction: scene.contact.seat_friction,
-        pockets: pockets(scene, &g, &numbers),
-        oil: oil(scene, &g)?,
+        contact: Contact {
+            stiffness: law.stiffness,
+            damping: law.damping,
+            friction: scene.written.contact.friction,
+        },
+        damping: damping(scene)?,
+        gravity: scene.gravity,
+        speeds: speeds(&Kinematics::of(&scene.written)),
+        outer_turns: scene.written.operation.outer_turns(),
+        load_at_start: scene.duty.load_n(0.0),
+        duty: scene.varying_duty().cloned(),
+        seat_friction: scene.written.contact.seat_friction,
+        pockets: pockets(scene, &numbers),
+        oil: oil(scene)?,
     })
 }
 
 /// Rollers of these pockets, from 0, at the start.
-fn rollers(scene: &Scene, g: &Geometry, numbers: &[usize]) -> Vec<RollerStart> {
+fn rollers(scene: &ResolvedScene, numbers: &[usize]) -> Vec<RollerStart> {
     let roller = |&number: &usize| {
-        let angle = g.roller_angle(number);
-        let vertex_angle = match scene.mesh.roller_copies {
-            RollerCopies::Translated => g.roller_phase,
-            RollerCopies::Rotated => angle + g.roller_phase,
+        let angle = scene.roller_angle(number);
+        let vertex_angle = match scene.written.mesh.roller_copies {
+            RollerCopies::Translated => scene.roller_phase,
+            RollerCopies::Rotated => angle + scene.roller_phase,
         };
         RollerStart { angle, vertex_angle }
     };
@@ -113,14 +119,13 @@ fn rollers(scene: &Scene, g: &Geometry, numbers: &[usize]) -> Vec<RollerStart> {
 }
 
 fn outlines(
-    scene: &Scene,
-    g: &Geometry,
+    scene: &ResolvedScene,
     reduction: &Reduction,
     numbers: &[usize],
     rollers: &[RollerStart],
 ) -> Outlines {
     let (mut rims, mut rim_of) = (vec![reduction.roller.clone()], vec![0; numbers.len()]);
-    for (of, relief) in &g.roller_reliefs {
+    for (of, relief) in &scene.roller_reliefs {
         let Some(i) = numbers.iter().position(|number| number == of) else { continue };
         rim_of[i] = rims.len() as u32;
         // A rim is seen from its vertex 0.
@@ -128,11 +133,11 @@ fn outlines(
         rims.push(formed(&reduction.roller, Some(&relief), Circle::Outer));
     }
     Outlines {
-        outer: formed(&reduction.outer, g.outer_relief.as_ref(), Circle::Inner),
-        inner: formed(&reduction.inner, g.inner_relief.as_ref(), Circle::Outer),
+        outer: formed(&reduction.outer, scene.outer_relief.as_ref(), Circle::Inner),
+        inner: formed(&reduction.inner, scene.inner_relief.as_ref(), Circle::Outer),
         rims,
         rim_of,
-        arcs: scene.contact.surface != ContactSurface::Facet,
+        arcs: scene.written.contact.surface != ContactSurface::Facet,
     }
 }
 
@@ -146,8 +151,8 @@ fn formed(outline: &[[f64; 2]], relief: Option<&Relief>, circle: Circle) -> Vec<
     vertices
 }
 
-fn damping(scene: &Scene, g: &Geometry) -> Result<Damping, Error> {
-    let branches = match (&scene.solver.structural_damping, g.structural_damping) {
+fn damping(scene: &ResolvedScene) -> Result<Damping, Error> {
+    let branches = match (&scene.written.solver.structural_damping, scene.structural_damping) {
         (Some(chosen), Some(band)) => {
             StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
                 .branches()
@@ -157,16 +162,16 @@ fn damping(scene: &Scene, g: &Geometry) -> Result<Damping, Error> {
         }
         _ => Vec::new(),
     };
-    let frame = match scene.solver.damping_frame {
+    let frame = match scene.written.solver.damping_frame {
         SceneFrame::Rolling => DampingFrame::Rolling,
         SceneFrame::RigidMotion => DampingFrame::RigidMotion,
         SceneFrame::Absolute => DampingFrame::Absolute,
     };
-    let mass = scene.solver.mass_damping_per_s;
+    let mass = scene.written.solver.mass_damping_per_s;
     // As in the full model, mass damping does not act on bodies that move as one piece.
-    let undamped = frame == DampingFrame::RigidMotion || scene.housing.is_rigid();
+    let undamped = frame == DampingFrame::RigidMotion || scene.written.housing.is_rigid();
     let mass_of_modes = if undamped { 0.0 } else { mass };
-    Ok(Damping { mass, mass_of_modes, frame, stiffness: g.stiffness_damping, branches })
+    Ok(Damping { mass, mass_of_modes, frame, stiffness: scene.stiffness_damping, branches })
 }
 
 fn speeds(kinematics: &Kinematics) -> Speeds {
@@ -179,26 +184,26 @@ fn speeds(kinematics: &Kinematics) -> Speeds {
 }
 
 /// Pockets of the cage for rollers of these numbers, from 0.
-fn pockets(scene: &Scene, g: &Geometry, numbers: &[usize]) -> Option<Pockets> {
-    let cage = g.cage.as_ref()?;
-    let path = g.path_radius();
-    let [inner, outer] = cage.walls(path, g.roller_radius);
+fn pockets(scene: &ResolvedScene, numbers: &[usize]) -> Option<Pockets> {
+    let cage = scene.cage.as_ref()?;
+    let path = scene.path_radius();
+    let [inner, outer] = cage.walls(path, scene.roller_radius);
     let rows = (1e3 * (outer - inner) / CAGE_ELEMENT_MM).round().max(1.0);
     Some(Pockets {
         ends: [inner, outer],
         path,
-        half_width: pocket_half_width(inner, outer, path, g.roller_radius + cage.pocket_clearance),
-        angles: numbers.iter().map(|&number| g.pocket_angle(number)).collect(),
+        half_width: pocket_half_width(inner, outer, path, scene.roller_radius + cage.pocket_clearance),
+        angles: numbers.iter().map(|&number| scene.pocket_angle(number)).collect(),
         facet: (outer - inner) / rows,
-        points_per_facet: match scene.contact.method {
-            ContactMethod::Integrated => Some(scene.contact.points_per_facet),
+        points_per_facet: match scene.written.contact.method {
+            ContactMethod::Integrated => Some(scene.written.contact.points_per_facet),
             ContactMethod::Collocated => None,
         },
     })
 }
 
-fn oil(scene: &Scene, g: &Geometry) -> Result<Option<Oil>, Error> {
-    let (Some(oil), Some([outer, inner])) = (g.film, loaded_films(scene)?) else { return Ok(None) };
+fn oil(scene: &ResolvedScene) -> Result<Option<Oil>, Error> {
+    let (Some(oil), Some([outer, inner])) = (scene.film, loaded_films(scene)?) else { return Ok(None) };
     let [outer, inner] = [outer, inner].map(|film| Film { least: film.least, speed: film.speed });
     Ok(Some(Oil { viscosity: oil.viscosity, outer, inner }))
 }

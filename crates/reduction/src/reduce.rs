@@ -9,7 +9,7 @@ use stribeck_bearing::{
 };
 use stribeck_mesh::Mesh;
 use stribeck_modal::{GROUP, Reduction, Seat};
-use stribeck_scene::{geometry::Geometry, scene::Scene};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_system::Parts;
 
 use crate::{
@@ -41,7 +41,7 @@ impl ReducedMesh {
     ///
     /// # Errors
     /// When the scene cannot be meshed or preloaded, or modes are not found.
-    pub fn new(scene: &Scene) -> Result<Self, Error> {
+    pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
         let meshed = MeshedParts::new(scene)?;
         let assembly = Assembly::of(scene, &meshed)?;
         let mut machine = assembly.machine(scene, 1)?;
@@ -55,8 +55,12 @@ impl ReducedMesh {
 }
 
 /// Reduces a machine that has been taken apart at its preload.
-fn reduce(scene: &Scene, mesh: &Mesh, from: &Extraction, parts: &mut Parts) -> Result<Reduction, Error> {
-    let g = Geometry::of(scene);
+fn reduce(
+    scene: &ResolvedScene,
+    mesh: &Mesh,
+    from: &Extraction,
+    parts: &mut Parts,
+) -> Result<Reduction, Error> {
     let count = parts.dynamics.state.x.len();
     let preload = Preload::of(from, parts, mesh);
     let mut structure = Structure::of(scene, from, &preload, &parts.dynamics)?;
@@ -65,10 +69,10 @@ fn reduce(scene: &Scene, mesh: &Mesh, from: &Extraction, parts: &mut Parts) -> R
     let modes = structure.squares().len();
     let padded = modes.next_multiple_of(GROUP);
     let rollers = raceway::roller_forces(from, count);
-    let loads = Loads::of(&structure, &preload, &nodes, springs.as_ref(), &rollers, (g.load, padded));
+    let loads = Loads::of(&structure, &preload, &nodes, springs.as_ref(), &rollers, (scene.load, padded));
     let outer = raceway::without_dents(from, &mut structure, rollers);
     let sensors = sensors(from, &mut structure, &outer, count, padded);
-    let compliances = Compliances::of(scene, &g, from, &parts.dynamics, &mut structure, &outer)?;
+    let compliances = Compliances::of(scene, from, &parts.dynamics, &mut structure, &outer)?;
     let mut squares = vec![0.0; padded];
     squares[..modes].copy_from_slice(structure.squares());
     Ok(Reduction {
@@ -79,7 +83,7 @@ fn reduce(scene: &Scene, mesh: &Mesh, from: &Extraction, parts: &mut Parts) -> R
         outer,
         // As it was meshed: it turns on as a rigid body.
         inner: from.nodes.inner.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect(),
-        roller: round_rim(g.roller_radius, from.nodes.rim.len()),
+        roller: round_rim(scene.roller_radius, from.nodes.rim.len()),
         sensors,
         constant: loads.constant,
         external: loads.external,
@@ -100,7 +104,7 @@ fn reduce(scene: &Scene, mesh: &Mesh, from: &Extraction, parts: &mut Parts) -> R
 
 /// Divides the seat into panels; the modes become those of a seat that holds.
 fn panels(
-    scene: &Scene,
+    scene: &ResolvedScene,
     from: &Extraction,
     preload: &Preload,
     parts: &Parts,
@@ -113,13 +117,13 @@ fn panels(
     let seat = seat::Parts {
         raceway,
         springs: &preload.seat,
-        friction: scene.contact.seat_friction > 0.0,
+        friction: scene.written.contact.seat_friction > 0.0,
         x: &parts.dynamics.state.x,
         y: &parts.dynamics.state.y,
         back: &back,
         sensors: &from.slots(&from.nodes.sensors),
         of_ring: &|slot| on_ring.contains(&slot),
-        thickness: Geometry::of(scene).outer_ring_thickness,
+        thickness: scene.outer_ring_thickness,
     };
     seat::of(structure, &seat)
 }

@@ -1,6 +1,7 @@
 //! Outer ring and housing: in natural modes with their residual flexibility, or as one piece (THEORY §9.1).
 
 use faer::{Accum, Mat, MatMut, MatRef, Par, linalg::matmul::matmul};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::{ModelScene, ReducedScene, Scene};
 use stribeck_solver::{
     Dynamics,
@@ -36,18 +37,18 @@ pub(crate) enum Structure {
 impl Structure {
     /// The modes of outer ring and housing on the springs of a preload.
     pub(crate) fn of(
-        scene: &Scene,
+        scene: &ResolvedScene,
         extraction: &Extraction,
         preload: &Preload,
         dynamics: &Dynamics,
     ) -> Result<Self, Error> {
         let slots = extraction.slots(&extraction.nodes.structure);
-        if scene.housing.is_rigid() {
+        if scene.written.housing.is_rigid() {
             return Ok(Self::Rigid { root_mass: extraction.structure_mass.sqrt(), slots });
         }
         let springs = [&preload.seat[..], &preload.suspension].concat();
         let mut motions = SmallMotions::new(dynamics, &slots, &springs, SHIFT)?;
-        let modes = modes_below(&mut motions, 1e3 * modes_khz(scene))?;
+        let modes = modes_below(&mut motions, 1e3 * modes_khz(&scene.written))?;
         Ok(Self::Elastic { motions: Box::new(motions), modes, slots })
     }
 

@@ -29,7 +29,7 @@ fn analytic_a_ring_on_springs_bounces_in_its_frame() {
     let scene = small(
         "housing: springs(stiffness_n_um: 1, damping_n_s_m: 100, mass_kg: 1.5), operation: (load_n: 100)",
     );
-    let reduction = ReducedMesh::new(&scene).expect("modes").reduction;
+    let reduction = ReducedMesh::new(&scene.resolve()).expect("modes").reduction;
     let ring = reduction.structure_mass - frame;
     let both = 1.0 / ring + 1.0 / frame;
     let lowest: Vec<f64> =
@@ -65,8 +65,8 @@ fn analytic_mass_damping_brakes_no_frame() {
               structural_damping: None))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
-        let mesh = ReducedMesh::new(&scene).expect("modes");
-        modal_bearing(&scene, mesh.reduction).expect("a sound scene")
+        let mesh = ReducedMesh::new(&scene.resolve()).expect("modes");
+        modal_bearing(&scene.resolve(), mesh.reduction).expect("a sound scene")
     };
     let frame = 1.5;
     let bearing = of("springs(stiffness_n_um: 1, damping_n_s_m: 0, mass_kg: 1.5)");

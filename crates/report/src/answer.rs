@@ -40,11 +40,11 @@ fn count(number: usize, noun: &str) -> String {
 
 /// Was the defect seen?
 fn defect(run: &Run, summary: &Summary) -> String {
-    let faults = run.scene.faults();
+    let faults = run.scene.written.faults();
     if faults.is_empty() {
         return sound(run, summary);
     }
-    let (events, spalls) = (&summary.events, run.scene.spalls());
+    let (events, spalls) = (&summary.events, run.scene.written.spalls());
     if spalls.is_empty() {
         let families: Vec<String> = faults.iter().map(|on| family_of(*on)).collect();
         return format!(
@@ -66,7 +66,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
     }
     let entries = events.iter().filter(|e| e.entry_ms.is_some()).count();
     let exits = events.iter().filter(|e| e.exit_ms.is_some()).count();
-    let rollers = run.scene.rollers_in_place().count();
+    let rollers = run.scene.written.rollers_in_place().count();
     let crossed = match events.len() {
         1 => format!("1 roller crosses {it}"),
         times if times > rollers || spalls.len() > 1 => format!("Rollers cross {it} {times} times"),
@@ -92,7 +92,7 @@ fn sound(run: &Run, summary: &Summary) -> String {
             gravities(g)
         )
     });
-    let deviations: Vec<String> = run.scene.defects.iter().map(DeviationScene::spoken).collect();
+    let deviations: Vec<String> = run.scene.written.defects.iter().map(DeviationScene::spoken).collect();
     match deviations.len() {
         0 => format!("Raceways and rollers are sound, so there is none to see.{level}"),
         _ => format!("There is no spall or dent to see, but {}.{level}", deviations.join(", ")),
@@ -159,7 +159,7 @@ fn reads(levels: &PhaseLevels) -> Option<String> {
 
 /// Whether the load acts more along x than along y, so that a_y has little of it.
 fn across_the_load(run: &Run) -> bool {
-    let [x, y] = run.scene.load_direction();
+    let [x, y] = run.scene.written.load_direction();
     x.abs() > y.abs()
 }
 
@@ -288,7 +288,7 @@ fn physics(run: &Run, summary: &Summary) -> String {
     format!(
         "{bursts} forces of the rollers follow from load and geometry.{} {}",
         lines.unwrap_or_default(),
-        if run.scene.housing.is_rigid() {
+        if run.scene.written.housing.is_rigid() {
             "The outer ring is rigid and has no natural frequency of its own."
         } else {
             "No line is booked as a natural frequency of the ring, because a place near one proves nothing."

@@ -40,7 +40,7 @@ pub fn write_ensemble(folder: &Path) -> Result<EnsembleSummary, Error> {
 fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Path) -> Result<Markup, Error> {
     let summary = &findings.summary;
     let (complete, asked) = (summary.count(Ended::Complete), summary.starts.len());
-    let simulated_ms = findings.scene.solver.duration_ms;
+    let simulated_ms = findings.scene.written.solver.duration_ms;
     let first = findings.complete.first().map(|(_, first)| first);
     let of_paper = first.is_some_and(|first| first.of_paper);
     let duty = first.and_then(|first| first.summary.duty.as_ref());
@@ -62,7 +62,7 @@ fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Pa
                     h2 #numbers { "Appendix: the paper beside these starts" }
                     (tables::paper(summary))
                 }
-                (agreement::of_run(&findings.scene, folder))
+                (agreement::of_run(&findings.scene.written, folder))
                 h2 #starts { "Starts" }
                 (tables::starts(summary))
                 h2 #notes { "Notes" }

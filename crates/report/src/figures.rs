@@ -8,8 +8,8 @@ mod motion;
 mod spectra;
 
 use maud::Markup;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::Run;
-use stribeck_scene::scene::Scene;
 
 pub(super) use self::forces::DRAWN as CROSSINGS;
 pub(super) use self::spectra::about_the_tone;
@@ -144,7 +144,7 @@ fn drawn(pictures: Vec<Picture>) -> impl Iterator<Item = Item> {
     pictures.into_iter().map(Item::Picture)
 }
 
-fn load(scene: &Scene, findings: &Findings) -> Vec<Figure> {
+fn load(scene: &ResolvedScene, findings: &Findings) -> Vec<Figure> {
     let dynamic = &findings.distribution;
     if dynamic.mean_n.iter().all(|f| f.is_nan()) {
         return Vec::new();
@@ -173,14 +173,14 @@ fn load(scene: &Scene, findings: &Findings) -> Vec<Figure> {
     .note(format!(
         "Dynamic: mean over all rollers and samples in bins of one degree. Static: rigid rings{}, mean over \
          {} of cage positions{}.{}",
-        if scene.operation.load_varies() { " under the mean load" } else { "" },
-        if scene.rollers_in_place().count() < scene.bearing.rollers {
+        if scene.written.operation.load_varies() { " under the mean load" } else { "" },
+        if scene.written.rollers_in_place().count() < scene.written.bearing.rollers {
             "a whole turn"
         } else {
             "one roller spacing"
         },
         if spalled { "; a roller over the defect is left out" } else { "" },
-        if scene.housing.is_rigid() { "" } else { " An elastic outer ring differs by 10 to 20 %." }
+        if scene.written.housing.is_rigid() { "" } else { " An elastic outer ring differs by 10 to 20 %." }
     ));
     if let Some(curve) = &findings.static_curve {
         let (angle_deg, force_n) = (curve.angle_deg.clone(), curve.force_n.clone());

@@ -6,12 +6,13 @@ use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::words::{kilonewtons, significant};
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::housing::HousingScene;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::ring_mesh::RingMeshScene;
-use stribeck_scene::scene::{DefectRing, Scene};
+use stribeck_scene::scene::DefectRing;
 
 /// The sentence under the title.
-pub(crate) fn lead(scene: &Scene, duty: Option<&DutyFinding>, simulated_ms: f64) -> String {
-    let of_defect = scene.defect.as_ref().map(|d| {
+pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_ms: f64) -> String {
+    let of_defect = scene.written.defect.as_ref().map(|d| {
         let ring = match d.ring {
             DefectRing::Outer => "outer",
             DefectRing::Inner => "inner",
@@ -19,19 +20,19 @@ pub(crate) fn lead(scene: &Scene, duty: Option<&DutyFinding>, simulated_ms: f64)
         format!("a spall of {} × {} mm on the {ring} raceway", d.length_mm, d.depth_mm)
     });
     let all: Vec<String> =
-        of_defect.into_iter().chain(scene.defects.iter().map(DeviationScene::spoken)).collect();
+        of_defect.into_iter().chain(scene.written.defects.iter().map(DeviationScene::spoken)).collect();
     let defect = match all.len() {
         0 => "sound raceways".to_owned(),
         1..=3 => all.join(", "),
         more => format!("{} and {} more deviations", all[..2].join(", "), more - 2),
     };
-    let name = match scene.bearing.designation.as_str() {
+    let name = match scene.written.bearing.designation.as_str() {
         "" => String::new(),
         name => format!("{name}: "),
     };
     format!(
         "{name}{} rollers{} under {} at {}, {defect}; {:.1} ms on record.",
-        scene.rollers_in_place().count(),
+        scene.written.rollers_in_place().count(),
         own_rings(scene) + &housing(scene),
         load(scene, duty),
         speed(scene, duty),
@@ -40,8 +41,8 @@ pub(crate) fn lead(scene: &Scene, duty: Option<&DutyFinding>, simulated_ms: f64)
 }
 
 /// Rings from files, in words.
-fn own_rings(scene: &Scene) -> String {
-    let rings = [("outer", &scene.outer_ring_mesh), ("inner", &scene.inner_ring_mesh)];
+fn own_rings(scene: &ResolvedScene) -> String {
+    let rings = [("outer", &scene.written.outer_ring_mesh), ("inner", &scene.written.inner_ring_mesh)];
     let of_file = |(ring, mesh): (&str, &Option<RingMeshScene>)| {
         let file = Path::new(&mesh.as_ref()?.file).file_stem().unwrap_or_default().display().to_string();
         Some(format!(" with an {ring} ring from a file ({file})"))
@@ -50,8 +51,8 @@ fn own_rings(scene: &Scene) -> String {
 }
 
 /// What holds the outer ring, in words, where it is not the adapter.
-fn housing(scene: &Scene) -> String {
-    match &scene.housing {
+fn housing(scene: &ResolvedScene) -> String {
+    match &scene.written.housing {
         HousingScene::Adapter => String::new(),
         HousingScene::Pedestal(_) => " in a pedestal".to_owned(),
         HousingScene::Mesh(housing) => {
@@ -65,19 +66,19 @@ fn housing(scene: &Scene) -> String {
 }
 
 /// The load in words, with its range on record where it changes.
-fn load(scene: &Scene, duty: Option<&DutyFinding>) -> String {
+fn load(scene: &ResolvedScene, duty: Option<&DutyFinding>) -> String {
     match duty {
         Some(duty) if duty.load_n.0 != duty.load_n.1 => {
             format!("{} to {}", significant(1e-3 * duty.load_n.0, 4), kilonewtons(duty.load_n.1))
         }
-        _ => kilonewtons(scene.operation.load_n),
+        _ => kilonewtons(scene.written.operation.load_n),
     }
 }
 
 /// The speed in words, with its range on record where it changes, and the sense where it is not the usual
 /// one.
-fn speed(scene: &Scene, duty: Option<&DutyFinding>) -> String {
-    let o = &scene.operation;
+fn speed(scene: &ResolvedScene, duty: Option<&DutyFinding>) -> String {
+    let o = &scene.written.operation;
     let [inner, outer] = match duty {
         Some(duty) if o.speed_varies() => [duty.speed_rpm, duty.outer_speed_rpm],
         _ => [(o.speed_rpm, o.speed_rpm), (o.outer_speed_rpm, o.outer_speed_rpm)],

@@ -8,7 +8,6 @@ mod stress;
 use std::path::Path;
 
 use stribeck_scene::frames::{self, Window};
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir};
@@ -87,10 +86,9 @@ fn mesh_of(run: &Run, dir: &RunDir) -> Result<RunMesh, String> {
         );
     }
     // A picture as large as a forged mesh would take all memory.
-    let geometry = Geometry::of(&run.scene);
-    let ring = geometry.outer_race_radius + geometry.outer_ring_thickness;
-    let reach = match &run.scene.housing {
-        HousingScene::Adapter => 2.0 * (ring + geometry.adapter_width + geometry.adapter_height),
+    let ring = run.scene.outer_race_radius + run.scene.outer_ring_thickness;
+    let reach = match &run.scene.written.housing {
+        HousingScene::Adapter => 2.0 * (ring + run.scene.adapter_width + run.scene.adapter_height),
         HousingScene::Pedestal(p) => 2e-3 * (p.width_mm + p.base_mm + p.top_mm),
         HousingScene::Mesh(_) => LARGEST_HOUSING * ring,
         HousingScene::Rigid(_) | HousingScene::Springs(_) => 2.0 * ring,

@@ -73,7 +73,7 @@ fn page(
                 p class="lead" { (lead(&run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
                 (banner(run))
                 (answer::paragraphs(run, summary))
-                (contents(findings.of_paper, run.scene.model != ModelScene::Full, summary.duty.is_some()))
+                (contents(findings.of_paper, run.scene.written.model != ModelScene::Full, summary.duty.is_some()))
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
@@ -87,7 +87,7 @@ fn page(
                     (sections::artefacts(summary))
                     (tables::notch(summary))
                 }
-                (agreement::of_run(&run.scene, run_dir))
+                (agreement::of_run(&run.scene.written, run_dir))
                 @if findings.of_paper { (appendix(summary, figures)?) }
                 (closing(run, summary, scene))
             }

@@ -352,7 +352,7 @@ pub(super) fn diagnosis(summary: &Summary) -> Markup {
 
 /// Length of the defect from the event times, beside the truth.
 pub(super) fn spall(run: &Run, summary: &Summary) -> Markup {
-    let spalls = run.scene.spalls();
+    let spalls = run.scene.written.spalls();
     if spalls.is_empty() {
         return html! { p { "No spall lies on a raceway." } };
     }

@@ -7,7 +7,7 @@
 
 use std::fmt::Arguments;
 
-use stribeck_scene::{duty::Duty, scene::Scene};
+use stribeck_scene::{duty::Duty, resolved::ResolvedScene};
 
 /// The state of a bearing at the end of a sampling interval. Forces are means over the interval.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -61,24 +61,24 @@ pub struct CageSample {
 
 impl Sample {
     /// A sample of zeros with the parts that the scene has.
-    pub fn of(scene: &Scene) -> Self {
+    pub fn of(scene: &ResolvedScene) -> Self {
         let roller = RollerSample {
-            cage: scene.cage.as_ref().map(|_| [0.0; 2]),
-            films: scene.film.as_ref().map(|_| [0.0; 2]),
+            cage: scene.written.cage.as_ref().map(|_| [0.0; 2]),
+            films: scene.written.film.as_ref().map(|_| [0.0; 2]),
             ..RollerSample::default()
         };
         Self {
             time: 0.0,
-            sensors: vec![SensorSample::default(); scene.output.sensors.len()],
-            rollers: vec![roller; scene.rollers_in_place().count()],
-            cage: scene.cage.as_ref().map(|_| CageSample::default()),
-            seat: scene.housing.has_seat().then_some([0.0; 2]),
+            sensors: vec![SensorSample::default(); scene.written.output.sensors.len()],
+            rollers: vec![roller; scene.written.rollers_in_place().count()],
+            cage: scene.written.cage.as_ref().map(|_| CageSample::default()),
+            seat: scene.written.housing.has_seat().then_some([0.0; 2]),
         }
     }
 }
 
 /// Names of the columns of a trace, whatever model made it.
-pub fn names(scene: &Scene) -> Vec<String> {
+pub fn names(scene: &ResolvedScene) -> Vec<String> {
     let mut names = Vec::new();
     Channels::of(scene).visit(&Sample::of(scene), &mut |name, _| names.push(name.to_string()));
     names
@@ -106,13 +106,13 @@ struct ShaftChannels {
 
 impl Channels {
     /// Of a scene.
-    pub fn of(scene: &Scene) -> Self {
-        let o = &scene.operation;
+    pub fn of(scene: &ResolvedScene) -> Self {
+        let o = &scene.written.operation;
         Self {
-            sensors: scene.output.sensors.iter().map(|sensor| sensor.name.clone()).collect(),
-            rollers: scene.rollers_in_place().collect(),
+            sensors: scene.written.output.sensors.iter().map(|sensor| sensor.name.clone()).collect(),
+            rollers: scene.written.rollers_in_place().collect(),
             shaft: ShaftChannels {
-                duty: scene.varying_duty(),
+                duty: scene.varying_duty().cloned(),
                 outer: o.varies() && o.outer_turns(),
                 load: o.load_varies(),
             },

@@ -16,7 +16,7 @@ mod softness;
 
 use std::fmt::{self, Display, Formatter};
 
-use stribeck_scene::{advice, geometry::Geometry, run_info::RunInfo, scene::Scene};
+use stribeck_scene::{advice, resolved::ResolvedScene, run_info::RunInfo};
 
 use softness::Softness;
 
@@ -68,11 +68,11 @@ struct CageRoom {
 }
 
 impl CageRoom {
-    fn of(g: &Geometry) -> Option<Self> {
-        let cage = g.cage.as_ref()?;
-        let inside = cage.outer_radius - cage.thickness - g.inner_race_radius;
-        let room = (g.outer_race_radius - cage.outer_radius).min(inside);
-        let pitch_radius = 0.5 * (g.inner_race_radius + g.outer_race_radius);
+    fn of(scene: &ResolvedScene) -> Option<Self> {
+        let cage = scene.cage.as_ref()?;
+        let inside = cage.outer_radius - cage.thickness - scene.inner_race_radius;
+        let room = (scene.outer_race_radius - cage.outer_radius).min(inside);
+        let pitch_radius = 0.5 * (scene.inner_race_radius + scene.outer_race_radius);
         Some(if room > 0.0 {
             Self { warning: room, stop: (room + cage.thickness).min(pitch_radius) }
         } else {
@@ -83,19 +83,21 @@ impl CageRoom {
 
 impl Guards {
     /// Of a scene; `step_field` is the field that shortens the time step of its model.
-    pub fn new(scene: &Scene, step_field: &'static str) -> Self {
-        let g = Geometry::of(scene);
-        let radius = g.roller_radius;
-        let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(0.0, f64::max);
+    pub fn new(scene: &ResolvedScene, step_field: &'static str) -> Self {
+        let radius = scene.roller_radius;
+        let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(0.0, f64::max);
         let slack = OUT_OF_PLACE * radius;
         Self {
-            numbers: scene.rollers_in_place().collect(),
-            unsupported: 1e-3 * scene.guards.unsupported_warning_ms,
-            element_size: g.element_size,
-            soft: Softness::of(scene, &g),
-            annulus: [g.inner_race_radius + radius - slack, g.outer_race_radius - radius + depth + slack],
-            cage: CageRoom::of(&g),
-            holds_cage: advice::holds_cage(scene),
+            numbers: scene.written.rollers_in_place().collect(),
+            unsupported: 1e-3 * scene.written.guards.unsupported_warning_ms,
+            element_size: scene.element_size,
+            soft: Softness::of(scene),
+            annulus: [
+                scene.inner_race_radius + radius - slack,
+                scene.outer_race_radius - radius + depth + slack,
+            ],
+            cage: CageRoom::of(scene),
+            holds_cage: advice::holds_cage(&scene.written),
             step_field,
         }
     }

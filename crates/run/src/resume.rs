@@ -2,10 +2,9 @@
 
 use serde::{Serialize, de::DeserializeOwned};
 use stribeck_scene::{
-    geometry::Geometry,
+    resolved::ResolvedScene,
     run_dir::RunDir,
     run_info::{RunInfo, Status},
-    scene::Scene,
 };
 
 use crate::{
@@ -15,7 +14,7 @@ use crate::{
 };
 
 /// Hands the run of a checkpoint over to this program.
-pub fn take_over(info: &mut RunInfo, scene: &Scene, host: &Host<'_>) {
+pub fn take_over(info: &mut RunInfo, scene: &ResolvedScene, host: &Host<'_>) {
     if (&info.version, &info.commit) != (&host.version, &host.commit) {
         info.warnings.push(format!(
             "version {} ({}) began this run and version {} ({}) continued it: its bits may differ from those \
@@ -28,7 +27,7 @@ pub fn take_over(info: &mut RunInfo, scene: &Scene, host: &Host<'_>) {
     info.commit.clone_from(&host.commit);
     info.machine.clone_from(&host.machine);
     info.threads = host.threads;
-    info.scene_hash = scene.hash();
+    info.scene_hash = scene.written.hash();
     info.status = Status::Running;
     info.stop_reason = None;
     info.resumed_at_s.push(info.samples as f64 * info.interval_s);
@@ -40,10 +39,10 @@ pub fn take_over(info: &mut RunInfo, scene: &Scene, host: &Host<'_>) {
 /// [`Error::Resume`] when there is nothing to continue or nothing to continue from.
 pub fn read_saved<S: Serialize + DeserializeOwned>(
     dir: &RunDir,
-    scene: &Scene,
+    scene: &ResolvedScene,
 ) -> Result<Checkpoint<S>, Error> {
     let doubt = may_go_on(dir, scene)?;
-    let mut saved = Checkpoint::read(&dir.checkpoint(), &identity(scene))?;
+    let mut saved = Checkpoint::read(&dir.checkpoint(), &identity(&scene.written))?;
     saved.info.steps_planned = check_counts(dir, scene, &saved.info)?;
     saved.info.warnings.extend(doubt);
     Ok(saved)
@@ -51,9 +50,9 @@ pub fn read_saved<S: Serialize + DeserializeOwned>(
 
 /// Steps of the whole run. Steps and samples of a checkpoint must be those of its scene: forged ones could
 /// ask for any number of steps.
-fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<u64, Error> {
+fn check_counts(dir: &RunDir, scene: &ResolvedScene, info: &RunInfo) -> Result<u64, Error> {
     let refused = |reason: String| Err(Error::Resume { path: dir.path().to_owned(), reason });
-    let Geometry { interval, duration, .. } = Geometry::of(scene);
+    let &ResolvedScene { interval, duration, .. } = scene;
     let per_sample = (info.interval_s / info.time_step_s).round();
     let samples = (duration / interval).round().max(1.0);
     let fits = info.interval_s == interval
@@ -74,7 +73,7 @@ fn check_counts(dir: &RunDir, scene: &Scene, info: &RunInfo) -> Result<u64, Erro
              Otherwise start it anew",
             // To the nanosecond, so that it reads as it was written.
             (1e9 * interval * info.samples as f64).round() / 1e6,
-            scene.solver.duration_ms
+            scene.written.solver.duration_ms
         ));
     }
     Ok((samples * per_sample) as u64)
@@ -85,7 +84,7 @@ const MOST_STEPS: f64 = 1e9;
 
 /// Refuses runs that ended by themselves, as far as `run.json` tells; a warning when it does not. Scene and
 /// checkpoint are enough to continue.
-fn may_go_on(dir: &RunDir, scene: &Scene) -> Result<Option<String>, Error> {
+fn may_go_on(dir: &RunDir, scene: &ResolvedScene) -> Result<Option<String>, Error> {
     let info = match dir.read_info() {
         Ok(info) => info,
         Err(error) => return Ok(Some(format!("`run.json` was made anew from the checkpoint: {error}"))),
@@ -94,7 +93,7 @@ fn may_go_on(dir: &RunDir, scene: &Scene) -> Result<Option<String>, Error> {
         Status::Diverged => {
             "it diverged, and the same steps would diverge again. `run.json` says why and what to change"
         }
-        Status::Complete if info.scene_hash == scene.hash() => {
+        Status::Complete if info.scene_hash == scene.written.hash() => {
             "it is complete. A longer one: `--resume` with `--set solver.duration_ms=…`"
         }
         Status::Complete if !dir.checkpoint().exists() => {

@@ -1,9 +1,8 @@
 //! What is known of a run before its first step.
 
 use stribeck_scene::{
-    geometry::Geometry,
+    resolved::ResolvedScene,
     run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status},
-    scene::Scene,
 };
 
 use crate::host::Host;
@@ -33,13 +32,13 @@ pub struct Setup {
 
 impl Setup {
     /// `run.json` before the first step.
-    pub fn info(self, scene: &Scene, host: &Host<'_>) -> RunInfo {
-        let Geometry { interval, duration, .. } = Geometry::of(scene);
+    pub fn info(self, scene: &ResolvedScene, host: &Host<'_>) -> RunInfo {
+        let &ResolvedScene { interval, duration, .. } = scene;
         let samples = (duration / interval).round().max(1.0) as usize;
         RunInfo {
             version: host.version.clone(),
             commit: host.commit.clone(),
-            scene_hash: scene.hash(),
+            scene_hash: scene.written.hash(),
             machine: host.machine.clone(),
             threads: host.threads,
             status: Status::Running,
@@ -68,8 +67,8 @@ impl Setup {
 }
 
 /// Mean force that the rollers carry [N]: the load, and the weight of a mass [kg] that rests on them.
-fn expected_support(scene: &Scene, carried_mass: f64) -> f64 {
-    let load = scene.duty().mean_load_n(Geometry::of(scene).duration);
-    let [_, up] = scene.load_direction();
-    load - up * scene.operation.gravity_m_s2 * carried_mass
+fn expected_support(scene: &ResolvedScene, carried_mass: f64) -> f64 {
+    let load = scene.duty.mean_load_n(scene.duration);
+    let [_, up] = scene.written.load_direction();
+    load - up * scene.written.operation.gravity_m_s2 * carried_mass
 }

@@ -12,9 +12,9 @@ use crate::{
     host::{Host, Progress},
 };
 use stribeck_scene::{
+    resolved::ResolvedScene,
     run_dir::{RunDir, write_atomic},
     run_info::{RunInfo, Status},
-    scene::Scene,
     trace::TraceWriter,
 };
 
@@ -82,8 +82,8 @@ const SAVE_EVERY: usize = 100;
 const SAVE_SHARE: f64 = 0.005;
 
 /// Names of the columns of `energy.npy`.
-fn columns(scene: &Scene) -> Vec<&'static str> {
-    let film = scene.film.is_some().then_some(FILM);
+fn columns(scene: &ResolvedScene) -> Vec<&'static str> {
+    let film = scene.written.film.is_some().then_some(FILM);
     COLUMNS.into_iter().chain(film).collect()
 }
 
@@ -127,12 +127,12 @@ impl<M: Motion> Run<M> {
     ///
     /// # Errors
     /// When the traces cannot be written.
-    pub fn start(scene: &Scene, motion: M, info: RunInfo, dir: &RunDir) -> Result<Self, Error> {
+    pub fn start(scene: &ResolvedScene, motion: M, info: RunInfo, dir: &RunDir) -> Result<Self, Error> {
         Ok(Self {
             trace: TraceWriter::create(dir.trace(), &channels::names(scene))?,
             energy: TraceWriter::create(dir.energy(), &columns(scene))?,
-            oiled: scene.film.is_some(),
-            identity: identity(scene),
+            oiled: scene.written.film.is_some(),
+            identity: identity(&scene.written),
             channels: Channels::of(scene),
             row: Vec::new(),
             info,
@@ -145,13 +145,13 @@ impl<M: Motion> Run<M> {
     ///
     /// # Errors
     /// When the traces cannot be written, or hold fewer samples.
-    pub fn resume(scene: &Scene, motion: M, info: RunInfo, dir: &RunDir) -> Result<Self, Error> {
+    pub fn resume(scene: &ResolvedScene, motion: M, info: RunInfo, dir: &RunDir) -> Result<Self, Error> {
         let rows = info.samples as u64;
         Ok(Self {
             trace: TraceWriter::resume(dir.trace(), &channels::names(scene), rows)?,
             energy: TraceWriter::resume(dir.energy(), &columns(scene), rows)?,
-            oiled: scene.film.is_some(),
-            identity: identity(scene),
+            oiled: scene.written.film.is_some(),
+            identity: identity(&scene.written),
             channels: Channels::of(scene),
             row: Vec::new(),
             info,

@@ -8,8 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::geometry::Geometry;
-use crate::scene::Scene;
+use crate::resolved::ResolvedScene;
 use crate::trace::Trace;
 
 /// Columns of a frame.
@@ -39,12 +38,11 @@ pub struct Frame {
 
 impl Window {
     /// The window of a scene that asks for frames.
-    pub fn of(scene: &Scene) -> Option<Self> {
-        let geometry = Geometry::of(scene);
-        let half = geometry.frame_half_width?;
-        let angle = scene.leading_spall().map_or(FRAC_PI_2, |defect| defect.angle_deg.to_radians());
+    pub fn of(scene: &ResolvedScene) -> Option<Self> {
+        let half = scene.frame_half_width?;
+        let angle = scene.written.leading_spall().map_or(FRAC_PI_2, |defect| defect.angle_deg.to_radians());
         let outward = [angle.cos(), angle.sin()];
-        let centre = outward.map(|c| geometry.path_radius() * c);
+        let centre = outward.map(|c| scene.path_radius() * c);
         Some(Self { centre, outward, half })
     }
 

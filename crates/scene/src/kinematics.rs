@@ -7,7 +7,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::geometry::DefectGeometry;
+use crate::resolved::DefectGeometry;
 use crate::scene::{BearingScene, DefectRing, DefectScene, Scene};
 
 /// Speeds of a bearing whose rollers do not slip.

@@ -6,21 +6,21 @@
 //! # A scene: who turns how fast, who carries how much
 //!
 //! A scene is a text in [RON](https://docs.rs/ron); what it does not say has a default. Numbers carry their
-//! unit in their name there, and are SI in [`Geometry`](geometry::Geometry).
+//! unit in their name there, and are SI in a [`ResolvedScene`](resolved::ResolvedScene).
 //!
 //! ```
-//! use stribeck_scene::geometry::Geometry;
 //! use stribeck_scene::{Scene, kinematics::Kinematics, static_load};
 //!
 //! let text = "(bearing: (rollers: 20), operation: (load_n: 30000, speed_rpm: 1200))";
 //! let scene = Scene::parse(text, "my bearing")?;
-//! assert_eq!(Geometry::of(&scene).rollers, 20);
+//! let resolved = scene.resolve();
+//! assert_eq!(resolved.rollers, 20);
 //!
 //! let kinematics = Kinematics::of(&scene);
 //! println!("rollers pass the outer raceway at {:.1} Hz", kinematics.bpfo_hz);
 //! assert!((kinematics.bpfo_hz - 180.2).abs() < 0.1);
 //!
-//! let load = static_load::at_start(&scene)?;
+//! let load = static_load::at_start(&resolved)?;
 //! println!("{} rollers carry, one {:.0} N", load.loaded_rollers(), load.max_roller_n());
 //! # Ok::<(), stribeck_scene::Error>(())
 //! ```
@@ -43,7 +43,7 @@
 //! | question | module |
 //! |---|---|
 //! | What can a scene say, and what is checked? | [`scene`], [`scene_file`] |
-//! | What is that in SI? | [`geometry`]; surfaces that are not round [`deviation`] |
+//! | What is that in SI? | [`resolved`]; surfaces that are not round [`deviation`] |
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
 //! | How do speed and load go over time? | [`duty`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
@@ -61,7 +61,6 @@ pub mod ensemble;
 pub mod error;
 mod faults;
 pub mod frames;
-pub mod geometry;
 pub mod housing;
 pub mod kinematics;
 mod line_contact;
@@ -70,6 +69,7 @@ pub mod material;
 pub mod mesh_file;
 pub mod mesh_text;
 mod point_contact;
+pub mod resolved;
 pub mod ring_mesh;
 pub mod run_dir;
 pub mod run_info;

@@ -1,6 +1,6 @@
 //! Approach of two raceways that press a roller between them: plane-strain line contacts (THEORY §6.2).
 
-use crate::geometry::Geometry;
+use crate::resolved::ResolvedScene;
 
 /// The two contacts of one roller in series.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,16 +20,19 @@ pub(crate) struct LineContacts {
 
 impl LineContacts {
     /// Of a roller of this bearing.
-    pub(crate) fn of(g: &Geometry) -> Self {
-        let (m, nu) = (&g.material, g.material.poissons_ratio);
+    pub(crate) fn of(scene: &ResolvedScene) -> Self {
+        let (m, nu) = (&scene.material, scene.material.poissons_ratio);
         Self {
             softness: (1.0 - nu * nu) / (std::f64::consts::PI * m.youngs_modulus),
             modulus: m.contact_modulus(),
             poisson: nu,
-            roller: g.roller_radius,
+            roller: scene.roller_radius,
             sides: [
-                (g.outer_contact_radius(), Some(g.outer_ring_thickness).filter(|_| !g.outer_ring_rigid)),
-                (g.inner_contact_radius(), Some(g.inner_ring_thickness)),
+                (
+                    scene.outer_contact_radius(),
+                    Some(scene.outer_ring_thickness).filter(|_| !scene.outer_ring_rigid),
+                ),
+                (scene.inner_contact_radius(), Some(scene.inner_ring_thickness)),
             ],
         }
     }

@@ -2,7 +2,7 @@
 //! that a film keeps (THEORY §4.6). No pressure is computed.
 
 use crate::{
-    duty::LONGEST_RUN_S, error::Error, geometry::Geometry, kinematics::Kinematics, scene::Scene, static_load,
+    duty::LONGEST_RUN_S, error::Error, kinematics::Kinematics, resolved::ResolvedScene, static_load,
 };
 
 /// The film of the most loaded roller on one raceway.
@@ -25,18 +25,17 @@ pub struct LoadedFilm {
 ///
 /// # Errors
 /// When the scene has no static load distribution.
-pub fn loaded_films(scene: &Scene) -> Result<Option<[LoadedFilm; 2]>, Error> {
-    let g = Geometry::of(scene);
-    let Some(film) = g.film else { return Ok(None) };
-    let load = static_load::at_start(scene)?.max_roller_n() / g.thickness;
-    let k = Kinematics::of(scene);
+pub fn loaded_films(scene: &ResolvedScene) -> Result<Option<[LoadedFilm; 2]>, Error> {
+    let Some(film) = scene.film else { return Ok(None) };
+    let load = static_load::at_start(scene)?.max_roller_n() / scene.thickness;
+    let k = Kinematics::of(&scene.written);
     // What sweeps over either surface is the contact: with the cage over the outer raceway, against the shaft
     // over the inner.
     let speeds = [
-        (k.cage_rad_s - k.outer_rad_s).abs() * g.outer_race_radius,
-        (k.shaft_rad_s - k.cage_rad_s).abs() * g.inner_race_radius,
+        (k.cage_rad_s - k.outer_rad_s).abs() * scene.outer_race_radius,
+        (k.shaft_rad_s - k.cage_rad_s).abs() * scene.inner_race_radius,
     ];
-    let modulus = 2.0 * g.material.contact_modulus();
+    let modulus = 2.0 * scene.material.contact_modulus();
     // The least film is that of the slowest moment of the profile, however long the run: it can be made
     // longer.
     let slowest = scene.varying_duty().map_or(1.0, |duty| {
@@ -55,7 +54,7 @@ pub fn loaded_films(scene: &Scene) -> Result<Option<[LoadedFilm; 2]>, Error> {
             least: thickness.max(film.roughness),
         }
     };
-    Ok(Some([of(g.outer_contact_radius(), speeds[0]), of(g.inner_contact_radius(), speeds[1])]))
+    Ok(Some([of(scene.outer_contact_radius(), speeds[0]), of(scene.inner_contact_radius(), speeds[1])]))
 }
 
 /// Least film thickness of a loaded line contact [m]:
@@ -84,7 +83,7 @@ fn least_thickness(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{FilmScene, OperationScene};
+    use crate::scene::{FilmScene, OperationScene, Scene};
 
     /// B. J. Hamrock, S. R. Schmid, B. O. Jacobson, Fundamentals of Fluid Film Lubrication, 2nd ed. 2004, use
     /// the same groups. By hand, for η = 0.04 Pa s, α = 22/GPa, E′ = 228 GPa, R = 11.43 mm, u = 2 m/s and w =
@@ -99,18 +98,20 @@ mod tests {
     #[test]
     fn example_rough_surfaces_are_held_apart_by_their_tips() {
         let film = Some(FilmScene { roughness_um: 0.1, ..FilmScene::default() });
-        let [smooth, _] = loaded_films(&Scene { film, ..Scene::default() }).expect("a load").expect("oil");
+        let [smooth, _] =
+            loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
         assert_eq!(smooth.least, smooth.thickness);
         let film = Some(FilmScene { roughness_um: 2.0, ..FilmScene::default() });
-        let [rough, _] = loaded_films(&Scene { film, ..Scene::default() }).expect("a load").expect("oil");
+        let [rough, _] =
+            loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
         assert!(rough.lambda < 1.0 && (rough.least / 2e-6 - 1.0).abs() < 1e-12, "{rough:?}");
         let still = OperationScene { speed_rpm: 0.0, ..Scene::default().operation };
         let film = Some(FilmScene::default());
-        let [still, _] = loaded_films(&Scene { film, operation: still, ..Scene::default() })
+        let [still, _] = loaded_films(&Scene { film, operation: still, ..Scene::default() }.resolve())
             .expect("a load")
             .expect("oil");
         assert_eq!((still.thickness, still.least), (0.0, 0.3e-6));
         let dry = Scene { film: None, ..Scene::default() };
-        assert_eq!(loaded_films(&dry).expect("a load"), None);
+        assert_eq!(loaded_films(&dry.resolve()).expect("a load"), None);
     }
 }

@@ -5,9 +5,9 @@
 //! ring's thickness (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
 
 use crate::error::Error;
-use crate::geometry::Geometry;
 use crate::kinematics::roller_angles_deg;
 use crate::line_contact::LineContacts;
+use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
 
 /// Unbalanced force, as a part of the load, at which the search ends.
@@ -60,12 +60,11 @@ pub struct RigidRings {
 
 impl RigidRings {
     /// Rings, rollers and material of a scene.
-    pub fn new(geometry: &Geometry) -> Self {
-        let g = geometry;
+    pub fn new(scene: &ResolvedScene) -> Self {
         Self {
-            clearance_m: g.outer_race_radius - g.inner_race_radius - 2.0 * g.roller_radius,
-            length_m: g.thickness,
-            compliance: LineContacts::of(g),
+            clearance_m: scene.outer_race_radius - scene.inner_race_radius - 2.0 * scene.roller_radius,
+            length_m: scene.thickness,
+            compliance: LineContacts::of(scene),
         }
     }
 
@@ -221,9 +220,8 @@ impl Residual {
 /// # Errors
 ///
 /// As [`RigidRings::distribute`].
-pub fn at_start(scene: &Scene) -> Result<StaticLoad, Error> {
-    let rings = RigidRings::new(&Geometry::of(scene));
-    rings.distribute(scene.duty().load_n(0.0), &angles_to_load_deg(scene))
+pub fn at_start(scene: &ResolvedScene) -> Result<StaticLoad, Error> {
+    RigidRings::new(scene).distribute(scene.duty.load_n(0.0), &angles_to_load_deg(&scene.written))
 }
 
 /// Angles of a scene's rollers at the start as seen in a frame whose load comes from above [°], in their
@@ -251,7 +249,7 @@ mod tests {
         for at in without {
             angles.remove(*at);
         }
-        let rings = RigidRings::new(&Geometry::of(&scene));
+        let rings = RigidRings::new(&scene.resolve());
         rings.distribute(50_000.0, &angles).expect("equilibrium")
     }
 
@@ -281,7 +279,7 @@ mod tests {
         // Without clearance and with Q ∝ δ, Q_max = 4 W/Z; line contact stiffens a little: Stribeck's 4.08.
         let scene = Scene::default();
         let bearing = BearingScene { inner_race_diameter_mm: 164.0, first_roller_deg: 90.0, ..scene.bearing };
-        let load = at_start(&Scene { bearing, ..Scene::default() }).expect("equilibrium");
+        let load = at_start(&Scene { bearing, ..Scene::default() }.resolve()).expect("equilibrium");
         let stribeck = load.max_roller_n() * 24.0 / 50_000.0;
         assert!((stribeck - 4.08).abs() < 0.06, "{stribeck}");
     }
@@ -289,7 +287,7 @@ mod tests {
     #[test]
     fn conserves_the_load_in_both_directions() {
         let scene = Scene::default();
-        let load = at_start(&scene).expect("equilibrium");
+        let load = at_start(&scene.resolve()).expect("equilibrium");
         let mut sum = [0.0, 0.0];
         for (force, angle) in load.roller_n.iter().zip(roller_angles_deg(&scene)) {
             sum[0] += force * angle.to_radians().cos();
@@ -313,8 +311,7 @@ mod tests {
                     let scene = Scene::default();
                     let bearing = BearingScene { inner_race_diameter_mm, ..scene.bearing };
                     let housing = if turned % 2 == 0 { scene.housing.clone() } else { rigid.housing.clone() };
-                    let rings =
-                        RigidRings::new(&Geometry::of(&Scene { bearing, housing, ..Scene::default() }));
+                    let rings = RigidRings::new(&Scene { bearing, housing, ..Scene::default() }.resolve());
                     for load_n in (-6..12).map(|power| 10.0_f64.powf(0.5 * f64::from(power))) {
                         let load = rings
                             .distribute(load_n, &angles)
@@ -334,7 +331,7 @@ mod tests {
     #[test]
     fn refuses_bad_loads_and_positions() {
         let scene = Scene::default();
-        let rings = RigidRings::new(&Geometry::of(&scene));
+        let rings = RigidRings::new(&scene.resolve());
         assert!(rings.distribute(0.0, &[60.0, 90.0, 120.0]).is_err());
         assert!(rings.distribute(f64::NAN, &[60.0, 90.0, 120.0]).is_err());
         for fallen in [&[270.0][..], &[30.0, 60.0], &[80.0, 260.1], &[]] {

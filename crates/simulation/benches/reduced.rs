@@ -9,7 +9,6 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use stribeck_reduced::bearing::Bearing;
 use stribeck_reduced::motion::{BearingInMotion, Saved};
 use stribeck_reduction::{cache, dense, modal_bearing};
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::scene::Scene;
 
 /// Steps between two samples.
@@ -29,9 +28,9 @@ fn step(criterion: &mut Criterion) {
     for (name, scene) in [(polygons, scene), arcs] {
         let kept = std::env::temp_dir().join("stribeck-bench");
         let (mesh, _) = cache::reduced_mesh(&scene, Some(&kept)).expect("the scene can be reduced");
-        let interval = Geometry::of(&scene).interval;
+        let scene = scene.resolve();
         let modal = modal_bearing(&scene, mesh.reduction).expect("a sound scene");
-        let bearing = Bearing::new(modal, interval / STEPS as f64).expect("a bearing");
+        let bearing = Bearing::new(modal, scene.interval / STEPS as f64).expect("a bearing");
         let state = bearing.at_start(&dense::solve).expect("an equilibrium");
         let saved = Saved::first(&bearing, state);
         let mut motion = BearingInMotion::new(bearing, saved);

@@ -21,7 +21,7 @@ const TIME_STEP: f64 = 2.5e-7;
 fn main() -> Result<(), Box<dyn Error>> {
     let file = env::args().nth(1).ok_or("which file? `one_step FILE`")?;
     let scene = Scene::parse(SCENE, "one_step")?;
-    let modal = modal_bearing(&scene, ReducedMesh::new(&scene)?.reduction)?;
+    let modal = modal_bearing(&scene.resolve(), ReducedMesh::new(&scene.resolve())?.reduction)?;
     let bearing = Bearing::new(modal.clone(), TIME_STEP)?;
     let before = Saved::first(&bearing, bearing.at_start(&dense::solve)?);
     let mut motion = BearingInMotion::new(bearing, before.clone());

@@ -15,12 +15,7 @@ use stribeck_bearing::{
 use stribeck_run::{
     channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
 };
-use stribeck_scene::{
-    duty::Duty,
-    geometry::Geometry,
-    run_info::RunInfo,
-    scene::{Scene, Start},
-};
+use stribeck_scene::{duty::Duty, resolved::ResolvedScene, run_info::RunInfo, scene::Start};
 use stribeck_system::{Ledger, Snapshot};
 
 use crate::{
@@ -71,8 +66,8 @@ impl Full {
             recorder,
             frames: with.dir.and_then(|dir| Frames::of(scene, dir.frames())),
             guards: Guards::new(scene, &assembly, &machine),
-            duty: scene.varying_duty().map(|duty| (duty, scene.operation.load_n)),
-            outer_turns: scene.operation.outer_turns(),
+            duty: scene.varying_duty().map(|duty| (duty.clone(), scene.written.operation.load_n)),
+            outer_turns: scene.written.operation.outer_turns(),
             assembly,
             machine,
         }
@@ -93,14 +88,14 @@ impl Model for Full {
         let mut full = Self::assemble(with)?;
         with.enter("preload", watch);
         let (scene, Self { assembly, machine }) = (with.scene, &mut full);
-        let preloaded = match scene.solver.start {
+        let preloaded = match scene.written.solver.start {
             Start::Preloaded => preload(machine, scene, &assembly.kinematics)?,
             Start::Sudden => None,
         };
         let critical = machine.system.critical_time_step();
-        let Geometry { interval, .. } = Geometry::of(scene);
+        let interval = scene.interval;
         let steps_per_sample =
-            (interval / (scene.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
+            (interval / (scene.written.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
         let dt = interval / steps_per_sample as f64;
         machine.system.set_time_step(dt, Some(critical))?;
         launch(machine, &assembly.kinematics);
@@ -113,7 +108,7 @@ impl Model for Full {
             reduced: None,
             wall_s: (with.host.wall_s)() - started,
             carried_mass: full.carried_mass(),
-            notes: own_mesh::notes(scene),
+            notes: own_mesh::notes(&scene.written),
             warnings: Vec::from_iter(preloaded),
         };
         Ok((full, setup))
@@ -126,11 +121,11 @@ impl Model for Full {
         Ok(full)
     }
 
-    fn warnings(&self, scene: &Scene, info: &RunInfo) -> Vec<String> {
+    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<String> {
         Guards::before(scene, self.assembly.steel(), info)
     }
 
-    fn mesh_file(&self, _scene: &Scene) -> Result<Vec<u8>, Error> {
+    fn mesh_file(&self, _scene: &ResolvedScene) -> Result<Vec<u8>, Error> {
         Ok(mesh_file(&self.assembly, &|node| self.machine.system.position(node))?)
     }
 

@@ -8,13 +8,13 @@ use stribeck_run::{
     setup::Setup,
     time_loop::Motion,
 };
-use stribeck_scene::{run_dir::RunDir, run_info::RunInfo, scene::Scene};
+use stribeck_scene::{resolved::ResolvedScene, run_dir::RunDir, run_info::RunInfo};
 
 use crate::error::Error;
 
 /// The run of a scene that is being prepared.
 pub(crate) struct Preparation<'a> {
-    pub(crate) scene: &'a Scene,
+    pub(crate) scene: &'a ResolvedScene,
     /// The program, with the threads and ranks that the model makes use of.
     pub(crate) host: &'a Host<'a>,
     /// The folder of the run; none on ranks that write nothing.
@@ -62,13 +62,13 @@ pub(crate) trait Model: Sized {
     fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error>;
 
     /// Warnings before the first step.
-    fn warnings(&self, scene: &Scene, info: &RunInfo) -> Vec<String>;
+    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<String>;
 
     /// Content of `mesh.vtu` at the start.
     ///
     /// # Errors
     /// When the mesh cannot be written as a file.
-    fn mesh_file(&self, scene: &Scene) -> Result<Vec<u8>, Error>;
+    fn mesh_file(&self, scene: &ResolvedScene) -> Result<Vec<u8>, Error>;
 
     /// Sets it in motion.
     fn start(self, with: &Preparation<'_>) -> Self::Motion;

@@ -12,10 +12,10 @@ use stribeck_reduced::{bearing::Bearing, state::State};
 use stribeck_reduction::{ReducedMesh, cache, dense, modal_bearing};
 use stribeck_run::{host::Progress, setup::Setup};
 use stribeck_scene::{
-    geometry::Geometry,
     kinematics::Kinematics,
+    resolved::ResolvedScene,
     run_info::{ReducedInfo, RunInfo},
-    scene::{ContactSurface, ModelScene, ReducedScene, Scene},
+    scene::{ContactSurface, ModelScene, ReducedScene},
 };
 
 use crate::{
@@ -50,7 +50,7 @@ impl Model for Reduced {
     ) -> Result<(Self, Setup), Error> {
         let started = (with.host.wall_s)();
         let (ReducedMesh { reduction, parts, moved, warning }, from_cache) =
-            cache::reduced_mesh(with.scene, with.runs())?;
+            cache::reduced_mesh(&with.scene.written, with.runs())?;
         with.enter("preload", watch);
         let scene = with.scene;
         let summary = ReducedInfo {
@@ -74,20 +74,20 @@ impl Model for Reduced {
             reduced: Some(summary),
             wall_s: (with.host.wall_s)() - started,
             carried_mass,
-            notes: own_mesh::notes(scene),
+            notes: own_mesh::notes(&scene.written),
             warnings,
         };
         Ok((Self { assembly, bearing, moved, start: Some(state) }, setup))
     }
 
     fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error> {
-        let (mesh, _) = cache::reduced_mesh(with.scene, with.runs())?;
+        let (mesh, _) = cache::reduced_mesh(&with.scene.written, with.runs())?;
         let assembly = Assembly::of(with.scene, &mesh.parts)?;
         let bearing = Bearing::new(modal_bearing(with.scene, mesh.reduction)?, info.time_step_s)?;
         Ok(Self { assembly, bearing, moved: mesh.moved, start: None })
     }
 
-    fn warnings(&self, scene: &Scene, info: &RunInfo) -> Vec<String> {
+    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<String> {
         let mut warnings = Guards::before(scene, &self.bearing);
         warnings.extend(fast_facets(scene, &self.assembly, info.time_step_s));
         warnings
@@ -95,15 +95,15 @@ impl Model for Reduced {
 
     /// Rings and housing as the preload of the reduction has left them; rollers and cage, which do not
     /// deform, where they are.
-    fn mesh_file(&self, scene: &Scene) -> Result<Vec<u8>, Error> {
-        let (g, mesh) = (Geometry::of(scene), &self.assembly.model.mesh);
+    fn mesh_file(&self, scene: &ResolvedScene) -> Result<Vec<u8>, Error> {
+        let mesh = &self.assembly.model.mesh;
         let mut moved = self.moved.clone();
         moved.resize(mesh.x.len(), [0.0; 2]);
         let rollers = mesh.bodies.iter().filter(|body| body.name.starts_with("roller "));
         let centres = self.start.iter().flat_map(|state| state.x.iter().zip(&state.y));
-        for ((body, pocket), (x, y)) in rollers.zip(scene.rollers_in_place()).zip(centres) {
-            let path = g.outer_race_radius - g.roller_radius;
-            let (s, c) = g.roller_angle(pocket - 1).sin_cos();
+        for ((body, pocket), (x, y)) in rollers.zip(scene.written.rollers_in_place()).zip(centres) {
+            let path = scene.outer_race_radius - scene.roller_radius;
+            let (s, c) = scene.roller_angle(pocket - 1).sin_cos();
             moved[body.nodes.clone()].fill([x - path * c, y - path * s]);
         }
         Ok(mesh_file(&self.assembly, &|node| {
@@ -126,8 +126,8 @@ impl Model for Reduced {
 }
 
 /// What the scene wants of a reduced model.
-fn wanted(scene: &Scene) -> ReducedScene {
-    match &scene.model {
+fn wanted(scene: &ResolvedScene) -> ReducedScene {
+    match &scene.written.model {
         ModelScene::Reduced(reduced) => reduced.clone(),
         ModelScene::Full => ReducedScene::default(),
     }
@@ -150,15 +150,17 @@ fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option
 
 /// A warning where facets pass their contacts in so few steps that the force between two of them is not
 /// resolved: the energy is then off by an error that grows with the square of the time step [s].
-fn fast_facets(scene: &Scene, assembly: &Assembly, time_step: f64) -> Option<String> {
-    if scene.contact.surface != ContactSurface::Facet {
+fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Option<String> {
+    if scene.written.contact.surface != ContactSurface::Facet {
         return None;
     }
-    let (duty, duration) = (scene.duty(), 1e-3 * scene.solver.duration_ms);
+    let (duty, duration) = (&scene.duty, scene.duration);
     let [inner, outer] = [duty.speed_range_rpm(0.0, duration), duty.outer_speed_range_rpm(0.0, duration)];
     let fastest = inner.into_iter().flat_map(|inner| outer.map(|outer| [inner, outer]));
     let hz = fastest.flat_map(|[inner, outer]| {
-        Kinematics::between(&scene.bearing, inner, outer).facet_tones(assembly.facets).map(|tone| tone.hz)
+        Kinematics::between(&scene.written.bearing, inner, outer)
+            .facet_tones(assembly.facets)
+            .map(|tone| tone.hz)
     });
     let hz = hz.fold(0.0, f64::max);
     let steps = 1.0 / (hz * time_step);
@@ -185,15 +187,19 @@ const STEPS_A_FACET: f64 = 20.0;
 ///
 /// # Errors
 /// When the scene cannot be meshed, preloaded or reduced.
-pub fn steps_in_a_sample(scene: &Scene, runs: Option<&Path>) -> Result<usize, Error> {
-    let (mesh, _) = cache::reduced_mesh(scene, runs)?;
+pub fn steps_in_a_sample(scene: &ResolvedScene, runs: Option<&Path>) -> Result<usize, Error> {
+    let (mesh, _) = cache::reduced_mesh(&scene.written, runs)?;
     Ok(in_steps(scene, &wanted(scene), modal_bearing(scene, mesh.reduction)?)?.1)
 }
 
 /// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there
 /// are in a sample.
-fn in_steps(scene: &Scene, wanted: &ReducedScene, modal: ModalBearing) -> Result<(Bearing, usize), Error> {
-    let interval = Geometry::of(scene).interval;
+fn in_steps(
+    scene: &ResolvedScene,
+    wanted: &ReducedScene,
+    modal: ModalBearing,
+) -> Result<(Bearing, usize), Error> {
+    let interval = scene.interval;
     let steps = steps_per_sample(scene, 1e-6 * wanted.step_us);
     let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
     let most = bearing.critical_time_step();
@@ -206,7 +212,7 @@ fn in_steps(scene: &Scene, wanted: &ReducedScene, modal: ModalBearing) -> Result
 
 /// A whole number of steps, none longer than `longest` [s], and two at least: what a sensor measures beyond
 /// the modes is a difference between two steps of a sample.
-fn steps_per_sample(scene: &Scene, longest: f64) -> usize {
+fn steps_per_sample(scene: &ResolvedScene, longest: f64) -> usize {
     // A quotient of 5.000…1 is no sixth step.
-    (1e-6 * scene.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize
+    (1e-6 * scene.written.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize
 }

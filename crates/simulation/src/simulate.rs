@@ -12,6 +12,7 @@ use stribeck_run::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    resolved::ResolvedScene,
     run_dir::{RunDir, write_atomic},
     run_info::RunInfo,
     scene::{ModelScene, Scene},
@@ -34,8 +35,8 @@ trait Task {
 }
 
 /// Does it with the model that the scene names.
-fn dispatch<T: Task>(scene: &Scene, task: T) -> T::Output {
-    match scene.model {
+fn dispatch<T: Task>(scene: &ResolvedScene, task: T) -> T::Output {
+    match scene.written.model {
         ModelScene::Full => task.with::<Full>(),
         ModelScene::Reduced(_) => task.with::<Reduced>(),
     }
@@ -52,6 +53,7 @@ fn dispatch<T: Task>(scene: &Scene, task: T) -> T::Output {
 /// diverges is not an error: its status and reason are in the returned [`RunInfo`]. A checkpoint that cannot
 /// be written is a warning there.
 pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
+    let scene = &scene.resolve();
     dispatch(scene, Begin { scene, dir, host, watch })
 }
 
@@ -64,8 +66,8 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
 /// [`RunError::Resume`] when there is nothing to continue or nothing to continue from; otherwise as
 /// [`simulate`].
 pub fn resume(dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
-    let scene = Scene::read(dir.scene())?;
-    dispatch(&scene, Continue { scene: &scene, dir, host, watch })
+    let scene = &Scene::read(dir.scene())?.resolve();
+    dispatch(scene, Continue { scene, dir, host, watch })
 }
 
 /// Continues the run in `dir` to another duration, also when it is complete. Its files become those of an
@@ -79,7 +81,8 @@ pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>)
     let mut scene = Scene::read(dir.scene())?;
     scene.solver.duration_ms = duration_ms;
     scene.validate()?;
-    dispatch(&scene, Continue { scene: &scene, dir, host, watch })
+    let scene = &scene.resolve();
+    dispatch(scene, Continue { scene, dir, host, watch })
 }
 
 /// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked
@@ -88,8 +91,8 @@ pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>)
 /// # Errors
 /// As [`resume`].
 pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
-    let scene = Scene::read(dir.scene())?;
-    dispatch(&scene, SavedUntil { scene: &scene, dir })
+    let scene = &Scene::read(dir.scene())?.resolve();
+    dispatch(scene, SavedUntil { scene, dir })
 }
 
 /// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing.
@@ -101,11 +104,12 @@ pub fn follow(host: &Host<'_>) -> Result<(), Error> {
     let Some(ranks) = &host.ranks else { return Ok(()) };
     // The full model alone is shared out.
     let (scene, checkpoint) = called_to::<<Full as Model>::Saved>(&**ranks)?;
-    let mut with = Preparation { scene: &scene, host, dir: None, progress: Progress::begin() };
+    let scene = &scene.resolve();
+    let mut with = Preparation { scene, host, dir: None, progress: Progress::begin() };
     Ok(match checkpoint {
         None => {
             let (full, setup) = Full::prepare(&mut with, &mut |_| ControlFlow::Continue(()))?;
-            Run::follow(full.start(&with), setup.info(&scene, host), host)?;
+            Run::follow(full.start(&with), setup.info(scene, host), host)?;
         }
         Some(Checkpoint { info, motion }) => {
             let full = Full::prepare_again(&mut with, &info)?;
@@ -116,7 +120,7 @@ pub fn follow(host: &Host<'_>) -> Result<(), Error> {
 }
 
 struct Begin<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     dir: &'a RunDir,
     host: &'a Host<'a>,
     watch: Watch<'a>,
@@ -131,11 +135,11 @@ impl Task for Begin<'_> {
         let working = if M::SHARED { host } else { &alone };
         let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
         with.enter("mesh", watch);
-        lead::<M::Saved>(working, scene, None)?;
+        lead::<M::Saved>(working, &scene.written, None)?;
         let (model, setup) = M::prepare(&mut with, watch)?;
         let mut info = setup.info(scene, host);
         info.warnings.extend(model.warnings(scene, &info));
-        dir.start(scene, &info)?;
+        dir.start(&scene.written, &info)?;
         write_atomic(&dir.mesh(), &model.mesh_file(scene)?)?;
         let motion = model.start(&with);
         Ok(Run::start(scene, motion, info, dir)?.finish(dir, working, with.progress, watch)?)
@@ -143,7 +147,7 @@ impl Task for Begin<'_> {
 }
 
 struct Continue<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     dir: &'a RunDir,
     host: &'a Host<'a>,
     watch: Watch<'a>,
@@ -160,7 +164,7 @@ impl Task for Continue<'_> {
         let checkpoint = read_saved::<M::Saved>(dir, scene)?;
         let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
         with.enter("mesh", watch);
-        lead(working, scene, Some(&checkpoint))?;
+        lead(working, &scene.written, Some(&checkpoint))?;
         let Checkpoint { mut info, motion: saved } = checkpoint;
         let model = M::prepare_again(&mut with, &info)?;
         take_over(&mut info, scene, host);
@@ -170,13 +174,13 @@ impl Task for Continue<'_> {
         })?;
         let mut run = Run::resume(scene, motion, info, dir)?;
         run.info.setup_s += (host.wall_s)() - started;
-        dir.go_on(scene, &run.info)?;
+        dir.go_on(&scene.written, &run.info)?;
         Ok(run.finish(dir, working, with.progress, watch)?)
     }
 }
 
 struct SavedUntil<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     dir: &'a RunDir,
 }
 

@@ -8,7 +8,6 @@ use std::ops::ControlFlow;
 use common::{coarse, host};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::{Run, RunDir};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
@@ -38,7 +37,10 @@ const ALL: &str = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 5.3, dept
 
 /// Radii and angles of the nodes of a body's surface about its centre.
 fn polar(scene: &Scene, surface: &str, centre: [f64; 2]) -> Vec<[f64; 2]> {
-    let machine = Assembly::new(scene).expect("it meshes").machine(scene, 1).expect("it is laid out");
+    let machine = Assembly::new(&scene.resolve())
+        .expect("it meshes")
+        .machine(&scene.resolve(), 1)
+        .expect("it is laid out");
     let nodes = machine.system.nodes(surface).expect("a surface of every scene");
     let polar = |n: u32| {
         let [x, y] = machine.system.position(n);
@@ -54,7 +56,7 @@ fn analytic_nodes_lie_as_deep_as_the_scene_says() {
     // Positions of a meshed bearing are known to a few roundings of 0.1 m.
     const ROUNDING: f64 = 1e-15;
     let scene = scene(ALL, 1.0);
-    let g = Geometry::of(&scene);
+    let g = scene.resolve();
     let centre = |i: usize| {
         let (s, c) = g.roller_angle(i).sin_cos();
         [g.path_radius() * c, g.path_radius() * s]
@@ -91,7 +93,10 @@ fn analytic_nodes_lie_as_deep_as_the_scene_says() {
 #[test]
 fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
     let step = |scene: &Scene| {
-        let machine = Assembly::new(scene).expect("it meshes").machine(scene, 1).expect("it is laid out");
+        let machine = Assembly::new(&scene.resolve())
+            .expect("it meshes")
+            .machine(&scene.resolve(), 1)
+            .expect("it is laid out");
         machine.system.critical_time_step()
     };
     let sound = step(&scene("", 1.0));
@@ -131,7 +136,7 @@ fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
 #[test]
 fn example_rectangular_spalls_are_cut_as_the_defect_is() {
     let nodes = |scene: &Scene| {
-        let mesh = Assembly::new(scene).expect("it meshes").model.mesh;
+        let mesh = Assembly::new(&scene.resolve()).expect("it meshes").model.mesh;
         (mesh.x, mesh.y)
     };
     let spall = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 5.0, depth_mm: 0.2, edge: rectangular))";

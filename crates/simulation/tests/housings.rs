@@ -92,7 +92,8 @@ fn example_a_missing_roller_leaves_its_pocket_empty_and_its_load_to_others() {
     assert!((carried / info.expected_support_n - 1.0).abs() < 0.02, "{carried}");
     let outer_hz = Kinematics::of(&scene).bpfo_hz;
     assert!(outer_hz == Kinematics::of(&whole).bpfo_hz, "{outer_hz} Hz");
-    let [most, before] = [&scene, &whole].map(|s| static_load::at_start(s).expect("rests").max_roller_n());
+    let [most, before] =
+        [&scene, &whole].map(|s| static_load::at_start(&s.resolve()).expect("rests").max_roller_n());
     let found = rollers.iter().map(on).fold(0.0, f64::max);
     println!("largest force {found:.0} N, between rigid rings {most:.0}, of all rollers {before:.0}");
     assert!(found > 1.1 * before, "{found} N and {before} N with all rollers");
@@ -184,7 +185,7 @@ fn refuses_a_mesh_that_is_no_housing_of_the_bearing() {
         ("housing.bore=loaded", "is no closed bore"),
         ("housing.unit_mm=1000", "the outer ring: a node lies 26000.000"),
     ] {
-        let said = Assembly::new(&scene(&[MESH, set])).expect_err(set).to_string();
+        let said = Assembly::new(&scene(&[MESH, set]).resolve()).expect_err(set).to_string();
         assert!(said.contains(words) && said.contains("pillow_block.msh"), "{set}: {said}");
     }
 }

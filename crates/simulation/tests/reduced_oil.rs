@@ -8,7 +8,6 @@ use std::{fs, ops::ControlFlow};
 use common::{host, run, trace};
 use stribeck_run::host::Progress;
 use stribeck_scene::{
-    geometry::Geometry,
     lubrication::loaded_films,
     run_dir::RunDir,
     run_info::{RunInfo, Status},
@@ -122,7 +121,7 @@ fn example_films_are_those_of_the_full_model() {
     complete(&scene, &folder, "reduced");
     complete(&Scene { model: ModelScene::Full, ..scene.clone() }, &folder, "full");
     let traces = ["full", "reduced"].map(|name| trace(&folder, name));
-    let least = loaded_films(&scene).expect("a load").expect("oil").map(|film| film.least);
+    let least = loaded_films(&scene.resolve()).expect("a load").expect("oil").map(|film| film.least);
     let forces = |of: &Trace, i: usize, side: &str| -> Vec<f64> {
         let [x, y] = ["x", "y"].map(|c| channel(of, &format!("roller.{i}.{side}_f{c}_n")));
         x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect()
@@ -197,8 +196,8 @@ fn example_films_between_turning_rings() {
     let traces = ["full", "reduced"].map(|name| trace(&folder, name));
     let (mut square, mut count, mut largest) = (0.0, 0, 0.0_f64);
     let mut clearances = [Vec::new(), Vec::new()];
-    let g = Geometry::of(&scene);
-    let [_, least] = loaded_films(&scene).expect("a load").expect("oil").map(|film| film.least);
+    let g = scene.resolve();
+    let [_, least] = loaded_films(&g).expect("a load").expect("oil").map(|film| film.least);
     let mut seen = 0;
     for (i, of) in scene.rollers_in_place().flat_map(|i| traces.iter().map(move |of| (i, of))) {
         let of = |what: &str| channel(of, &format!("roller.{i}.{what}"));

@@ -85,8 +85,8 @@ fn invariant_rollers_that_are_not_looked_at_do_not_touch() {
     const BEFORE: usize = 2000;
     const STEPS: usize = 300;
     let scene = coarse(10.0);
-    let mesh = ReducedMesh::new(&scene).expect("modes");
-    let modal = modal_bearing(&scene, mesh.reduction).expect("a sound scene");
+    let mesh = ReducedMesh::new(&scene.resolve()).expect("modes");
+    let modal = modal_bearing(&scene.resolve(), mesh.reduction).expect("a sound scene");
     let bearing = Bearing::new(modal, 2e-6).expect("a bearing");
     let saved = Saved::first(&bearing, bearing.at_start(&dense::solve).expect("an equilibrium"));
     let mut motion = BearingInMotion::new(bearing.clone(), saved);
@@ -205,7 +205,7 @@ fn issue_a_reduced_run_writes_its_rollers_where_it_starts() {
         assert_eq!(info.reduced.as_ref().map(|kept| kept.from_cache), Some(name == "b"));
         let kept = RunMesh::read(folder.join(name).join("mesh.vtu")).expect("a mesh");
         assert_eq!(kept.reference.len(), info.mesh.nodes);
-        let made = Assembly::new(&scene).expect("a mesh").model.mesh;
+        let made = Assembly::new(&scene.resolve()).expect("a mesh").model.mesh;
         assert!(kept.reference.iter().zip(made.x.iter().zip(&made.y)).all(|([x, y], at)| (x, y) == at));
         for body in made.bodies.iter().filter(|body| body.name.starts_with("roller ")) {
             let mean = |axis: usize| {
@@ -596,7 +596,7 @@ fn analytic_rollers_in_a_rigid_housing() {
         let force = |roller: usize, n: usize| {
             ["x", "y"].map(|c| channel(&trace, &format!("roller.{roller}.outer_f{c}_n"))[n])
         };
-        let theory = static_load::at_start(&scene).expect("an equilibrium");
+        let theory = static_load::at_start(&scene.resolve()).expect("an equilibrium");
         for (i, expected) in theory.roller_n.iter().enumerate() {
             let [x, y] = force(i + 1, 0);
             let off = (x.hypot(y) - expected).abs() / theory.max_roller_n();

@@ -34,13 +34,14 @@ fn notched(more: &str) -> String {
 
 /// Forces on the rollers by outer and inner raceway at the preload [N].
 fn forces(scene: &Scene) -> Vec<[f64; 2]> {
+    let scene = &scene.resolve();
     let assembly = Assembly::new(scene).expect("a mesh");
     let mut machine = assembly.machine(scene, 1).expect("a machine");
     assert_eq!(preload(&mut machine, scene, &assembly.kinematics).expect("an equilibrium"), None);
     let _ = machine.system.contact_forces();
     let all: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
     let pairs = machine.pairs;
-    (0..scene.bearing.rollers).flat_map(|i| [all[pairs.outer(i)], all[pairs.inner(i)]]).collect()
+    (0..scene.rollers).flat_map(|i| [all[pairs.outer(i)], all[pairs.inner(i)]]).collect()
 }
 
 /// A body of a mesh as an Abaqus file, with sets of its nodes between two radii [m].
@@ -74,7 +75,7 @@ fn deck(mesh: &Mesh, name: &str, sets: [(&str, f64); 2]) -> String {
 #[test]
 fn invariant_rings_from_files_carry_as_those_that_are_made() {
     let made = scene(&[]);
-    let mesh = Assembly::new(&made).expect("a mesh").model.mesh;
+    let mesh = Assembly::new(&made.resolve()).expect("a mesh").model.mesh;
     let folder = Scratch::new("rings");
     std::fs::create_dir_all(folder.path()).expect("a folder");
     let b = &made.bearing;
@@ -135,7 +136,7 @@ fn analytic_a_notched_ring_in_a_pedestal_runs_and_carries_its_load() {
 #[test]
 fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
     let plain = scene(&[]);
-    let mesh = Assembly::new(&plain).expect("a mesh").model.mesh;
+    let mesh = Assembly::new(&plain.resolve()).expect("a mesh").model.mesh;
     let race = 0.5e-3 * plain.bearing.outer_race_diameter_mm;
     let back = race + 1e-3 * plain.bearing.outer_ring_thickness_mm;
     let text = deck(&mesh, "outer ring", [("raceway", race), ("fit", back)]);
@@ -156,7 +157,7 @@ fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
         scene(&[ring, "solver.duration_ms=0.02".to_owned()])
     };
     let apart = with("apart.inp", "race");
-    let meshed = |scene: &Scene| Assembly::new(scene).expect("a mesh").model.mesh;
+    let meshed = |scene: &Scene| Assembly::new(&scene.resolve()).expect("a mesh").model.mesh;
     assert_eq!(meshed(&apart), meshed(&with("whole.inp", "raceway")));
     let dir = RunDir::create(folder.join("run")).expect("the folder is new");
     simulate(&apart, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("the scene runs");
@@ -174,7 +175,7 @@ fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
     let mut none = with("apart.inp", "race");
     let ring = none.outer_ring_mesh.as_mut().expect("a ring");
     ring.text = ring.text.replace("\nRaceway\n", "\nNothing\n");
-    let said = Assembly::new(&none).expect_err("no set").to_string();
+    let said = Assembly::new(&none.resolve()).expect_err("no set").to_string();
     assert!(
         said.contains("no set of nodes `race`") && said.contains("there is no set of nodes `Nothing`"),
         "{said}"
@@ -185,7 +186,7 @@ fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
 #[test]
 fn refuses_a_ring_with_bodies_that_hang_on_nothing() {
     let plain = scene(&[]);
-    let mesh = Assembly::new(&plain).expect("a mesh").model.mesh;
+    let mesh = Assembly::new(&plain.resolve()).expect("a mesh").model.mesh;
     let folder = Scratch::create("loose");
     let file = folder.join("whole.inp");
     let body = |name: &str| mesh.bodies.iter().find(|body| body.name == name).expect("a body").nodes.clone();
@@ -201,7 +202,7 @@ fn refuses_a_ring_with_bodies_that_hang_on_nothing() {
     }
     std::fs::write(&file, text).expect("writable");
     let set = format!("outer_ring_mesh=(file: {file:?}, raceway: \"raceway\", fit: \"fit\", unit_mm: 1000)");
-    let said = Assembly::new(&scene(&[set])).expect_err("loose bodies").to_string();
+    let said = Assembly::new(&scene(&[set]).resolve()).expect_err("loose bodies").to_string();
     assert!(
         said.contains("`INNER_RING`, `FRAME`, `ROLLER_1`, `ROLLER_2` and 12 more hang on nothing"),
         "{said}"
@@ -224,7 +225,7 @@ fn refuses_a_mesh_that_is_no_ring_of_the_bearing() {
         ),
         (ring("").replace("outer_ring", "inner_ring"), "its raceway does not fit the one of `bearing`"),
     ] {
-        let said = Assembly::new(&scene(std::slice::from_ref(&set))).expect_err(&set).to_string();
+        let said = Assembly::new(&scene(std::slice::from_ref(&set)).resolve()).expect_err(&set).to_string();
         assert!(said.contains(words) && said.contains("_ring_mesh.file` `"), "{set}: {said}");
     }
 }

@@ -52,7 +52,7 @@ fn assert_same_bits(one: &Run, other: &Run, case: &str) {
 /// Vertical force of the rollers on the outer ring at every sample [N].
 fn support_n(run: &Run) -> Vec<f64> {
     let mut sum = vec![0.0; run.trace.len()];
-    for i in 1..=run.scene.bearing.rollers {
+    for i in 1..=run.scene.written.bearing.rollers {
         for (s, f) in sum.iter_mut().zip(column(run, &format!("roller.{i}.outer_fy_n"))) {
             *s -= f;
         }
@@ -353,8 +353,8 @@ fn example_rollers_start_where_the_scene_puts_them() {
         let [before, after] = [&plain, &moved].map(|scene| {
             let mut scene = scene.clone();
             scene.mesh.roller_copies = copies;
-            let assembly = Assembly::new(&scene).expect("sound");
-            assembly.machine(&scene, 1).expect("sound")
+            let assembly = Assembly::new(&scene.resolve()).expect("sound");
+            assembly.machine(&scene.resolve(), 1).expect("sound")
         });
         for (i, (a, b)) in before.rollers.iter().zip(&after.rollers).enumerate() {
             let [[ax, ay], [bx, by]] = [before.system.position(a.centre), after.system.position(b.centre)];

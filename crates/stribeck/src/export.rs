@@ -14,7 +14,6 @@ use stribeck_mesh::decks::Deck;
 use stribeck_mesh::vtu::{self, Field};
 use stribeck_mesh::{Body, Mesh};
 use stribeck_scene::frames;
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 use stribeck_scene::scene::ModelScene;
@@ -104,7 +103,10 @@ fn provenance(run: &Run) -> Vec<String> {
     let info = &run.info;
     let duration_s = info.interval_s * info.samples as f64;
     vec![
-        format!("{}: Stribeck {} ({}), scene {}", run.scene.name, info.version, info.commit, info.scene_hash),
+        format!(
+            "{}: Stribeck {} ({}), scene {}",
+            run.scene.written.name, info.version, info.commit, info.scene_hash
+        ),
         format!(
             "run {:?}, {} samples at {} Hz, {:.6} s resolve {:.3} Hz",
             info.status,
@@ -233,7 +235,7 @@ struct Stressed {
 fn stressed(dir: &RunDir, run: &Run) -> Result<Vec<Stressed>> {
     let frames = frames::read_all(&dir.frames())?;
     if frames.is_empty() {
-        let wanted = match run.scene.model {
+        let wanted = match run.scene.written.model {
             ModelScene::Full => "`output: (frames: ())`",
             ModelScene::Reduced(_) => {
                 "`model: full` and `output: (frames: ())`, as the reduced model makes none,"
@@ -242,7 +244,7 @@ fn stressed(dir: &RunDir, run: &Run) -> Result<Vec<Stressed>> {
         bail!("`{}` holds no frames; give its scene {wanted} and run it again", dir.path().display());
     }
     let whole = RunMesh::read(dir.mesh())?;
-    let lame = Lame::of(&Geometry::of(&run.scene).material);
+    let lame = Lame::of(&run.scene.material);
     let of_frame = |frame: &frames::Frame| {
         let part = Part::of(&whole, frame);
         let rigid = |n: usize| {

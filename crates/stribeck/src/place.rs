@@ -50,7 +50,7 @@ impl Place {
             );
         }
         // Before a folder is made for it.
-        own_mesh::check(&scene).map_err(|error| match error {
+        own_mesh::check(&scene.resolve()).map_err(|error| match error {
             Error::MeshFile { ref field, .. } => {
                 anyhow!(refused_at(file.as_deref(), overrides, field, error.to_string()))
             }

@@ -40,8 +40,8 @@ const LONG_S: f64 = 3600.0;
 const OIL: f64 = 3.6;
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
-    let scene = place.scene(options.scene.as_deref(), &options.overrides)?;
-    let factor = scene.solver.time_step_factor;
+    let scene = place.scene(options.scene.as_deref(), &options.overrides)?.resolve();
+    let factor = scene.written.solver.time_step_factor;
     ensure!(
         factor <= 1.0,
         "`solver.time_step_factor` is {factor}: steps longer than the critical one diverge. Take a \
@@ -52,7 +52,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         MeshFacts { counts: assembly.mesh_info(), element_time_step_s: assembly.element_time_step_s(&scene) };
     let mut plan = Plan::of(&scene, &mesh)?;
     let [roller, outer, inner] = plan.sag_m.map(|s| 1e6 * s);
-    say!("{}", scene.name);
+    say!("{}", scene.written.name);
     say!("  lines of contact noise, without slip");
     for (name, hz) in &plan.lines {
         say!("    {hz:9.1} Hz  {name}");
@@ -71,7 +71,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         plan.lumped.frequency_hz,
         plan.lumped.smoothing.abs(),
         plan.lumped.phases,
-        if paper::is_scene_of(&scene) { "; docs/results/noise.md has two to five times as much" } else { "" }
+        if paper::is_scene_of(&scene.written) {
+            "; docs/results/noise.md has two to five times as much"
+        } else {
+            ""
+        }
     );
     if let Some([outer, inner]) = plan.films {
         say!(
@@ -83,7 +87,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             inner.lambda
         );
     }
-    let k = &Kinematics::of(&scene);
+    let k = &Kinematics::of(&scene.written);
     say!(
         "  families, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as often), FTF \
          {:.2}, shaft {:.2}",
@@ -93,7 +97,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         k.cage_hz,
         k.shaft_hz
     );
-    match &scene.model {
+    match &scene.written.model {
         ModelScene::Full => {
             let cost = 1e-9 * options.ns_per_element_step * plan.steps * plan.elements as f64;
             say!(
@@ -110,22 +114,26 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             let runs = Some(place.runs()).filter(|runs| runs.is_dir());
             eprintln!("modes …");
             let per_sample = steps_in_a_sample(&scene, runs.as_deref())?;
-            let steps =
-                (per_sample as f64 * 1e3 * scene.solver.duration_ms / scene.output.interval_us).round();
-            let oil = if scene.film.is_some() { OIL } else { 1.0 };
-            let cost =
-                1e-9 * options.ns_per_roller_step * oil * steps * scene.rollers_in_place().count() as f64;
-            let step_us = scene.output.interval_us / per_sample as f64;
+            let steps = (per_sample as f64 * 1e3 * scene.written.solver.duration_ms
+                / scene.written.output.interval_us)
+                .round();
+            let oil = if scene.written.film.is_some() { OIL } else { 1.0 };
+            let cost = 1e-9
+                * options.ns_per_roller_step
+                * oil
+                * steps
+                * scene.written.rollers_in_place().count() as f64;
+            let step_us = scene.written.output.interval_us / per_sample as f64;
             say!(
                 "  reduced model: {steps:.0} steps of {step_us:.3} µs: about {} of processor time at {} ns \
                  per roller-step{}, beside the modes of {} elements",
                 clock(cost),
                 options.ns_per_roller_step,
-                if scene.film.is_some() { " and 3.6 times as much with oil" } else { "" },
+                if scene.written.film.is_some() { " and 3.6 times as much with oil" } else { "" },
                 plan.elements
             );
             if cost > LONG_S {
-                let dampers = match &scene.housing {
+                let dampers = match &scene.written.housing {
                     HousingScene::Springs(springs) if springs.damping_n_s_m > 0.0 => {
                         ", and the dampers of `housing.damping_n_s_m`,"
                     }
@@ -144,7 +152,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             }
         }
     }
-    let samples = 1e3 * scene.solver.duration_ms / scene.output.interval_us;
+    let samples = 1e3 * scene.written.solver.duration_ms / scene.written.output.interval_us;
     say!("  the trace takes {:.3} GB", 8e-9 * samples * channels::names(&scene).len() as f64);
     say!("  {:.1} elements in a Rayleigh wave at half the sampling rate", plan.elements_per_wavelength);
     say!("  the record resolves {:.1} Hz", plan.resolution_hz);

@@ -72,7 +72,7 @@ fn over_angle(folder: &Path, shocks: ShockOrder) -> OverAngle {
         resolution: finding.resolution,
         orders: spectrum.frequencies_hz().to_vec(),
         power: spectrum.values().to_vec(),
-        moved: run.scene.bearing.rollers as f64 * cage / swept(&turns),
+        moved: run.scene.written.bearing.rollers as f64 * cage / swept(&turns),
     }
 }
 

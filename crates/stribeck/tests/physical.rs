@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use stribeck_analysis::stress::{Lame, von_mises};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_bearing::start::preload;
-use stribeck_scene::geometry::Geometry;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
 use stribeck_testing::ledger;
 
@@ -30,7 +30,7 @@ struct Hertz {
 }
 
 impl Hertz {
-    fn new(g: &Geometry, line_load: f64, effective_radius: f64) -> Self {
+    fn new(g: &ResolvedScene, line_load: f64, effective_radius: f64) -> Self {
         let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
         let half_width = (8.0 * line_load * effective_radius / (PI * modulus)).sqrt();
         let approach = line_load / (PI * modulus) * (2.0 * (4.0 * g.roller_radius / half_width).ln() - 1.0);
@@ -61,11 +61,11 @@ fn analytic_contacts_of_the_physical_scene_are_hertzian() {
     // One roller stands in the middle of the load.
     (scene.defect, scene.output.frames) = (None, None);
     scene.bearing.first_roller_deg = 90.0;
-    let assembly = Assembly::new(&scene).expect("a mesh");
-    let mut machine = assembly.machine(&scene, 2).expect("a machine");
-    preload(&mut machine, &scene, &assembly.kinematics).expect("an equilibrium");
+    let g = scene.resolve();
+    let assembly = Assembly::new(&g).expect("a mesh");
+    let mut machine = assembly.machine(&g, 2).expect("a machine");
+    preload(&mut machine, &g, &assembly.kinematics).expect("an equilibrium");
 
-    let g = Geometry::of(&scene);
     let mesh = &assembly.model.mesh;
     let reference = |n: u32| [mesh.x[n as usize], mesh.y[n as usize]];
     let system = &mut machine.system;

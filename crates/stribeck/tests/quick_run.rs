@@ -24,6 +24,7 @@ const LENGTH: f64 = 0.05;
 const PLANNED_STEP: f64 = 0.2;
 
 fn its_plan_holds(scene: &Scene, info: &RunInfo) {
+    let scene = &scene.resolve();
     let assembly = Assembly::new(scene).expect("a sound scene");
     let element_time_step_s = assembly.element_time_step_s(scene);
     let mesh = MeshFacts { counts: assembly.mesh_info(), element_time_step_s };
@@ -36,7 +37,7 @@ fn its_plan_holds(scene: &Scene, info: &RunInfo) {
 /// Bit for bit the mesh that the scene makes: displacements of frames count from it.
 fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
     let read = RunMesh::read(folder.join("mesh.vtu")).expect("a mesh");
-    let made = Assembly::new(scene).expect("a sound scene").model.mesh;
+    let made = Assembly::new(&scene.resolve()).expect("a sound scene").model.mesh;
     let places = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(&x, &y)| [x, y]).collect::<Vec<_>>();
     assert!(read.reference == places(&made.x, &made.y));
     assert!(read.quads == made.quads && read.triangles == made.triangles);

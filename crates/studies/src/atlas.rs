@@ -326,7 +326,7 @@ fn claimed_in_noise(cell: &Cell<'_>) -> Option<Vec<&'static str>> {
     let channel = &run.numbers()?.diagnosis.as_ref()?.channel;
     let read = Run::read(&run.folder).ok()?;
     let record = Record::new(&read).ok()?;
-    let expected = Kinematics::of(&run.scene);
+    let expected = Kinematics::of(&run.scene.written);
     let judged = analysis_in_noise(&run.scene, &record, &expected, channel, NOISE).ok()??;
     Some(judged.findings.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect())
 }

@@ -150,7 +150,7 @@ fn show(sheet: &mut Sheet, family: &str, id: &str, groups: &[Group]) -> Result<(
     let Some(scene) = groups.iter().flat_map(|group| &group.runs).map(|run| &run.scene).next() else {
         return Ok(());
     };
-    for (number, sensor) in scene.output.sensors.iter().map(|sensor| &sensor.name).enumerate() {
+    for (number, sensor) in scene.written.output.sensors.iter().map(|sensor| &sensor.name).enumerate() {
         let impulses: Vec<Impulses> = groups
             .iter()
             .map(|group| (group.name, group.runs.iter().filter_map(|run| impulse(run, number)).collect()))
@@ -275,7 +275,7 @@ fn impulse(run: &Finished, sensor: usize) -> Option<Impulse> {
     run.numbers()?;
     let read = Run::read(&run.folder).ok()?;
     let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages().first()?.exit_s;
-    let (record, name) = (Record::whole(&read).ok()?, &read.scene.output.sensors.get(sensor)?.name);
+    let (record, name) = (Record::whole(&read).ok()?, &read.scene.written.output.sensors.get(sensor)?.name);
     let interval = record.interval_s();
     let all = record.acceleration_g(name, "ay")?;
     let vertical = all.get(impulse_span(record.time_s(), exit_s))?;

@@ -121,7 +121,7 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
     let prediction = Prediction::of(&first.scene, &first.info.mesh);
     let Some(line) = prediction.facet_lines.first() else { return Ok(()) };
     let notch = Filter::new(a.sample_rate_hz(), line.1)?;
-    let sensor = &first.scene.output.sensors[0].name;
+    let sensor = &first.scene.written.output.sensors[0].name;
     let channel = format!("sensor.{sensor}.ay_m_s2");
     let (Some(raw), Some(cured)) = (a.channel(&channel), b.channel(&channel)) else { return Ok(()) };
     let filtered = notch.acceleration(raw)?;
@@ -136,9 +136,9 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
         Axis::plain("Amplitude", "g"),
     );
     for (words, colour, values) in [
-        (first.scene.name.as_str(), Colour::Grey, spectrum(raw, &a)),
+        (first.scene.written.name.as_str(), Colour::Grey, spectrum(raw, &a)),
         ("the same behind a notch", Colour::Orange, spectrum(&filtered, &a)),
-        (last.scene.name.as_str(), Colour::Blue, spectrum(cured, &b)),
+        (last.scene.written.name.as_str(), Colour::Blue, spectrum(cured, &b)),
     ] {
         figure = figure.with(Series::sampled(words, colour, 0.0, 50.0, values));
     }
@@ -155,7 +155,7 @@ fn pictures(sheet: &mut Sheet, id: &str, first: &Run, last: &Run) -> Result<()> 
         Axis::plain("Force", "N"),
     );
     for (record, words, colour) in
-        [(&a, &first.scene.name, Colour::Grey), (&b, &last.scene.name, Colour::Blue)]
+        [(&a, &first.scene.written.name, Colour::Grey), (&b, &last.scene.written.name, Colour::Blue)]
     {
         let Some(roller) = record.roller(2) else { return Ok(()) };
         let from = record.time_s().first().copied().unwrap_or(0.0);
@@ -174,7 +174,7 @@ fn noise_at(run: &Finished, sensor: usize, hz: Option<f64>) -> Option<Noise> {
     let read = Run::read(&run.folder).ok()?;
     let prediction = Prediction::of(&read.scene, &read.info.mesh);
     let passages: Vec<(f64, f64)> = prediction.passages().iter().map(|p| (p.entry_s, p.exit_s)).collect();
-    let name = read.scene.output.sensors.get(sensor)?.name.clone();
+    let name = read.scene.written.output.sensors.get(sensor)?.name.clone();
     let line = prediction.facet_lines.first()?.1;
     measure(&Record::whole(&read).ok()?, &name, &passages, hz.unwrap_or(line))
 }
@@ -186,9 +186,9 @@ fn points_line_g(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
     let record = Record::whole(&read).ok()?;
     let line = Prediction::of(&read.scene, &read.info.mesh).facet_lines.first()?.1;
-    let hz = line * read.scene.contact.points_per_facet as f64;
+    let hz = line * read.scene.written.contact.points_per_facet as f64;
     let rate = record.sample_rate_hz();
-    let name = &read.scene.output.sensors.get(SEAT)?.name;
+    let name = &read.scene.written.output.sensors.get(SEAT)?.name;
     let span = quiet(record.time_s());
     let along = |axis: &str| {
         let signal = record.channel(&format!("sensor.{name}.{axis}_m_s2"))?;

@@ -108,12 +108,12 @@ fn measure(choice: &Choice, finished: &Finished) -> Option<Measured> {
     let first = summary.events.iter().find(|event| event.roller == 1)?;
     let events_ms = first.entry_ms.zip(first.exit_ms).map(|(entry, exit)| [entry, exit]);
     let exit_s = Prediction::of(&run.scene, &run.info.mesh).passages().first()?.exit_s;
-    let sensor = &run.scene.output.sensors.first()?.name;
+    let sensor = &run.scene.written.output.sensors.first()?.name;
     let elements = (info.mesh.quads + info.mesh.triangles) as f64;
     Some(Measured {
         start,
-        seconds: info.loop_cpu_s / run.scene.solver.duration_ms,
-        nanoseconds: (run.scene.model == ModelScene::Full)
+        seconds: info.loop_cpu_s / run.scene.written.solver.duration_ms,
+        nanoseconds: (run.scene.written.model == ModelScene::Full)
             .then(|| 1e9 * info.loop_cpu_s / (info.steps as f64 * elements)),
         force_n,
         events_ms,

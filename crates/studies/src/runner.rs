@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::{Run, RunDir};
 use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Scene;
@@ -70,8 +71,8 @@ pub(crate) struct Finished {
     pub(crate) variant: Variant,
     /// Its folder.
     pub(crate) folder: PathBuf,
-    /// The scene that it stands for.
-    pub(crate) scene: Scene,
+    /// The scene that it stands for, in SI.
+    pub(crate) scene: ResolvedScene,
     /// Its numbers, or why there are none.
     pub(crate) summary: Result<Summary, String>,
     /// What its run says of itself.
@@ -265,5 +266,5 @@ fn finished(planned: &Planned) -> Finished {
         }
         _ => Err(run.info.stop_reason.unwrap_or_else(|| "did not complete".to_owned())),
     });
-    Finished { variant: variant.clone(), folder: folder.clone(), scene: scene.clone(), summary, info }
+    Finished { variant: variant.clone(), folder: folder.clone(), scene: scene.resolve(), summary, info }
 }

@@ -121,7 +121,7 @@ fn scene(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     let base = &inputs.scenes[dice.below(inputs.scenes.len())];
     let (answer, scene) = answered(Scene::parse(&text(base, dice), "generated.ron"))?;
     // Now and then the bodies are made of what was taken, too.
-    if let Some(scene) = scene.filter(|scene| small(scene) && dice.one_in(20))
+    if let Some(scene) = scene.filter(|scene| small(scene) && dice.one_in(20)).map(|scene| scene.resolve())
         && let (_, Some(assembly)) = answered(Assembly::new(&scene))?
     {
         answered(assembly.machine(&scene, 1))?;

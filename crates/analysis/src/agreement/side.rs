@@ -65,7 +65,7 @@ impl Compared {
         if record.len() - from < LEAST_MEANS * width {
             return Err(Error::NoSignal(format!(
                 "the record of `{}` ends {:.2} ms after the start; models are compared from {:.0} ms on",
-                record.run().scene.name,
+                record.run().scene.written.name,
                 1e3 * record.interval_s() * record.len() as f64,
                 1e3 * FROM_S
             )));
@@ -97,7 +97,7 @@ impl Side {
             .map(|r| [compared.smoothed(r.outer_fx), compared.smoothed(r.outer_fy)])
             .collect();
         let sizes = forces.iter().flat_map(|[x, y]| x.iter().zip(y).map(|(x, y)| x.hypot(*y)));
-        let support_n = support(&record, run.scene.load_direction());
+        let support_n = support(&record, run.scene.written.load_direction());
         let support_n = &support_n[compared.from..];
         let mut side = Self {
             largest_n: sizes.fold(0.0, f64::max),
@@ -111,7 +111,7 @@ impl Side {
             powers: Vec::new(),
             summary,
         };
-        for sensor in &run.scene.output.sensors {
+        for sensor in &run.scene.written.output.sensors {
             let component =
                 |name: &str| record.acceleration_g(&sensor.name, name).map(|a| a[compared.from..].to_vec());
             if let (Some(x), Some(y)) = (component("ax"), component("ay")) {

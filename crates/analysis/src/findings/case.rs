@@ -1,7 +1,6 @@
 //! The questions that are put to a record, one function each. [`Findings::of`] asks them in turn.
 
 use stribeck_dsp::PeriodCount;
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
@@ -44,12 +43,12 @@ pub(super) struct Case<'a> {
 impl<'a> Case<'a> {
     pub(super) fn of(record: &'a Record<'a>) -> Self {
         let run = record.run();
-        let operation = &run.scene.operation;
+        let operation = &run.scene.written.operation;
         Self {
             record,
             run,
             prediction: Prediction::of(&run.scene, &run.info.mesh),
-            of_paper: paper::is_scene_of(&run.scene) && !operation.varies(),
+            of_paper: paper::is_scene_of(&run.scene.written) && !operation.varies(),
             steady: !operation.speed_varies(),
         }
     }
@@ -83,7 +82,7 @@ impl<'a> Case<'a> {
             ));
         }
         notes.extend(run.info.notes.iter().cloned());
-        notes.extend(stribeck_scene::catalogue::assumptions(&run.scene.bearing));
+        notes.extend(stribeck_scene::catalogue::assumptions(&run.scene.written.bearing));
         notes
     }
 
@@ -105,7 +104,7 @@ impl<'a> Case<'a> {
     pub(super) fn rollers(&self) -> Result<Rollers<'_>, Error> {
         let (scene, record, prediction) = (&self.run.scene, self.record, &self.prediction);
         let mut turning = Turning::new(record, &prediction.kinematics);
-        let mut carried = Carried::new(record, scene.load_direction(), prediction.facet_period_s());
+        let mut carried = Carried::new(record, scene.written.load_direction(), prediction.facet_period_s());
         let mut passages = Passages::new(scene, record.time_s(), prediction);
         record.each_roller(|roller| {
             let (orbit, outer_normal) = (roller.orbit(), roller.outer_normal());
@@ -272,7 +271,7 @@ impl<'a> Case<'a> {
              the notch among them, are left out. Other frequencies are those at the mean speed"
                 .into(),
         );
-        notes.extend(duty::note(&self.run.scene));
+        notes.extend(duty::note(&self.run.scene.written));
         let spectrum = order_spectrum(self.run, self.record, motion, sensors, duty.as_mut(), notes)?;
         Ok(Orders { duty, spectrum })
     }
@@ -282,7 +281,7 @@ impl<'a> Case<'a> {
         if !self.of_paper {
             return None;
         }
-        let element_size = Geometry::of(&self.run.scene).element_size;
+        let element_size = self.run.scene.element_size;
         let pair = self.prediction.kinematics.paper_noise_hz(element_size);
         CursorReading::of(paper::CURSOR_HZ, self.record.sample_rate_hz(), paper::TONE_HZ, pair)
     }
@@ -297,7 +296,7 @@ impl<'a> Case<'a> {
         let [begin_s, end_s] = record.stretch_s();
         let (run, cursor) = (self.run, self.cursor());
         let mut summary = Summary {
-            scene: run.scene.name.clone(),
+            scene: run.scene.written.name.clone(),
             status: run.info.status,
             mesh: run.info.mesh.clone(),
             run: RunCost::of(&run.info, record.len(), end_s - begin_s),

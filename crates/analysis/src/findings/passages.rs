@@ -4,7 +4,8 @@
 use std::collections::BTreeMap;
 
 use stribeck_scene::kinematics::Crossing;
-use stribeck_scene::scene::{DefectRing, Scene};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::DefectRing;
 
 use super::{CrossingForce, SensorSignal};
 use crate::Error;
@@ -33,7 +34,7 @@ const NOTED: usize = 3;
 /// Passages over all spalls, found roller by roller.
 #[derive(Debug)]
 pub(super) struct Passages<'a> {
-    scene: &'a Scene,
+    scene: &'a ResolvedScene,
     time_s: &'a [f64],
     prediction: &'a Prediction,
     /// By spall: events with their notes, by their place among the spall's passages.
@@ -42,7 +43,7 @@ pub(super) struct Passages<'a> {
 
 impl<'a> Passages<'a> {
     /// Before the first roller of a record that is sampled at `time_s`.
-    pub(super) fn new(scene: &'a Scene, time_s: &'a [f64], prediction: &'a Prediction) -> Self {
+    pub(super) fn new(scene: &'a ResolvedScene, time_s: &'a [f64], prediction: &'a Prediction) -> Self {
         Self { scene, time_s, prediction, seen: vec![BTreeMap::new(); prediction.spalls.len()] }
     }
 
@@ -148,7 +149,7 @@ impl Path {
 /// Events of one roller over one spall that begin within the record, with what was noted of them, by their
 /// place among the spall's passages.
 fn passages_of(
-    scene: &Scene,
+    scene: &ResolvedScene,
     time_s: &[f64],
     prediction: &Prediction,
     course: &SpallCourse,
@@ -161,7 +162,7 @@ fn passages_of(
     let [begin, last] = [time_s.first(), time_s.last()].map(|t| t.copied().unwrap_or(f64::NEG_INFINITY));
     let ring = course.spall.ring;
     let edge = Edge::of(scene, ring);
-    let duty = scene.duty();
+    let duty = &scene.duty;
     let turned_rad = |t: f64| match ring {
         _ if !course.turns => 0.0,
         DefectRing::Inner => duty.shaft_rad(t),
@@ -187,7 +188,7 @@ fn passages_of(
         let near = events::span(time_s, from + late, until + late);
         let (time, roller) = (&time_s[near.clone()], roller.within(near));
         // A shaft whose speed changes has another one at each passage.
-        let speed_m_s = if scene.operation.speed_varies() {
+        let speed_m_s = if scene.written.operation.speed_varies() {
             1e-3 * course.spall.length_mm / traverse
         } else {
             prediction.kinematics.contact_speed_m_s

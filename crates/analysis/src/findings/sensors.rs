@@ -14,7 +14,7 @@ use crate::record::{Record, Roller};
 
 /// Vertical acceleration of the first sensor that was recorded.
 pub(super) fn leading_channel(run: &Run) -> Option<String> {
-    let mut vertical = run.scene.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
+    let mut vertical = run.scene.written.output.sensors.iter().map(|s| format!("sensor.{}.ay_m_s2", s.name));
     vertical.find(|name| run.trace.names().contains(name))
 }
 
@@ -43,7 +43,7 @@ pub(super) fn sensor_signals(
         Some(values)
     };
     let mut signals = Vec::new();
-    for sensor in &run.scene.output.sensors {
+    for sensor in &run.scene.written.output.sensors {
         let Some(raw_g) = acceleration_g(&sensor.name, "ay") else {
             notes.push(format!("sensor `{}` is in the scene but not in the trace", sensor.name));
             continue;

@@ -76,7 +76,7 @@ pub(super) fn filter(
     let predicted = prediction.facet_lines.first().map(|l| l.1).filter(|&hz| hz > 0.0);
     let leading = sensors.first().and_then(|s| tones::dominant(measured, &s.name));
     let tone = leading.or_else(|| tones::clearest(measured));
-    let faceted = run.scene.contact.surface == ContactSurface::Facet;
+    let faceted = run.scene.written.contact.surface == ContactSurface::Facet;
     let by_motion = families.iter().any(|f| f.found || !f.not_told_apart_from.is_empty());
     let centre_hz = match (tone.filter(|_| faceted || by_motion), predicted) {
         (Some(tone), _) => {
@@ -104,7 +104,7 @@ pub(super) fn filter(
                 "no notch: with `contact.surface: {}` no roller goes over edges of facets, and {seen}, so \
                  that a filter there would take \
                  nothing of them away; its figures and numbers are left out",
-                if run.scene.contact.surface == ContactSurface::Arc { "arc" } else { "nagata" },
+                if run.scene.written.contact.surface == ContactSurface::Arc { "arc" } else { "nagata" },
             ));
             return Ok(None);
         }

@@ -17,7 +17,7 @@ pub(super) fn rows(source: &RowInputs<'_>) -> Vec<PaperRow> {
 }
 
 fn table_1(source: &RowInputs<'_>) -> Vec<PaperRow> {
-    let (b, m) = (&source.scene.bearing, &source.scene.material);
+    let (b, m) = (&source.scene.written.bearing, &source.scene.written.material);
     let given = |quantity: &str, paper: f64, ours: f64, unit: &str| {
         number(PART, quantity, paper, Some(ours), unit, GIVEN)
     };
@@ -27,17 +27,17 @@ fn table_1(source: &RowInputs<'_>) -> Vec<PaperRow> {
         given("Inner race diameter D_i", 163.96, b.inner_race_diameter_mm, "mm"),
         given("Inner ring thickness h_i", 10.0, b.inner_ring_thickness_mm, "mm"),
     ];
-    let cage = source.scene.cage.as_ref();
+    let cage = source.scene.written.cage.as_ref();
     let why = "given; it lies outside the pitch circle of 181.98 mm, so the pockets cut it into as many \
         pieces as rollers: one rigid body here";
     rows.push(number(PART, "Cage outer diameter D_c", 196.0, cage.map(|c| c.outer_diameter_mm), "mm", why));
     rows.push(number(PART, "Cage thickness h_c", 4.0, cage.map(|c| c.thickness_mm), "mm", GIVEN));
     rows.push(given("Roller diameter D_r", 18.0, b.roller_diameter_mm, "mm"));
     rows.push(given("Number of rollers N_r", 24.0, b.rollers as f64, ""));
-    let a = &source.scene.adapter;
+    let a = &source.scene.written.adapter;
     rows.push(given("Adapter width w_a", 160.0, a.width_mm, "mm"));
     rows.push(given("Adapter height H_a, central", 40.0, a.height_mm, "mm"));
-    let defect = source.scene.defect.as_ref();
+    let defect = source.scene.written.defect.as_ref();
     let estimated = source.summary.events.iter().find_map(|e| e.spall_mm);
     let why = estimated
         .map_or("given".to_owned(), |mm| format!("given; estimated back from the event times: {mm:.2} mm"));
@@ -53,14 +53,15 @@ fn table_1(source: &RowInputs<'_>) -> Vec<PaperRow> {
 fn discretisation(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let (scene, mesh) = (source.scene, source.mesh);
     let waves = ring::elements_per_wavelength(scene, 40_000.0);
-    let graded = if scene.mesh.grading.is_some() {
+    let graded = if scene.written.mesh.grading.is_some() {
         "given, along the raceways; larger elements elsewhere"
     } else {
         GIVEN
     };
-    let facet_mm = std::f64::consts::PI * scene.bearing.roller_diameter_mm / mesh.roller_facets as f64;
+    let facet_mm =
+        std::f64::consts::PI * scene.written.bearing.roller_diameter_mm / mesh.roller_facets as f64;
     vec![
-        number(PART, "Element size", 0.5, Some(scene.mesh.size_mm), "mm", graded),
+        number(PART, "Element size", 0.5, Some(scene.written.mesh.size_mm), "mm", graded),
         number(
             PART,
             "Elements per bending wavelength at 40 kHz",
@@ -105,15 +106,20 @@ fn discretisation(source: &RowInputs<'_>) -> Vec<PaperRow> {
 
 fn operation(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let scene = source.scene;
-    let (o, c, s) = (&scene.operation, &scene.contact, &scene.solver);
-    let top = scene.defect.as_ref().map_or(90.0, |d| d.angle_deg);
+    let (o, c, s) = (&scene.written.operation, &scene.written.contact, &scene.written.solver);
+    let top = scene.written.defect.as_ref().map_or(90.0, |d| d.angle_deg);
     let given = |quantity: &str, paper: f64, ours: f64, unit: &str| {
         number(PART, quantity, paper, Some(ours), unit, GIVEN)
     };
-    let samples_khz = 1e3 / scene.output.interval_us;
+    let samples_khz = 1e3 / scene.written.output.interval_us;
     vec![
-        given("Offset of the roller left of the defect", 4.0, scene.bearing.first_roller_deg - top, "°"),
-        given("Distance of neighbouring rollers", 15.0, 360.0 / scene.bearing.rollers as f64, "°"),
+        given(
+            "Offset of the roller left of the defect",
+            4.0,
+            scene.written.bearing.first_roller_deg - top,
+            "°",
+        ),
+        given("Distance of neighbouring rollers", 15.0, 360.0 / scene.written.bearing.rollers as f64, "°"),
         number(
             PART,
             "Radial load W",
@@ -124,7 +130,7 @@ fn operation(source: &RowInputs<'_>) -> Vec<PaperRow> {
                 "given, but per nothing: a plane model needs a thickness, {} mm here (5 to 50 mm are \
                  consistent with the \
                  paper's figures)",
-                scene.bearing.thickness_mm
+                scene.written.bearing.thickness_mm
             ),
         ),
         given("Speed of the inner ring", 500.0, o.speed_rpm, "rpm"),
@@ -139,7 +145,7 @@ fn operation(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "2 % of critical, at frequencies that the paper does not name (THEORY §2.6, §2.8)",
         ),
         given("Termination time", 30.0, s.duration_ms, "ms"),
-        given("Output interval", 0.01, 1e-3 * scene.output.interval_us, "ms"),
+        given("Output interval", 0.01, 1e-3 * scene.written.output.interval_us, "ms"),
         given("Sampling rate", 100.0, samples_khz, "kHz"),
     ]
 }

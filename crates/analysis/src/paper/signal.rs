@@ -1,7 +1,5 @@
 //! Results of the paper: frequencies, levels, the notch, the events (its sections 3 to 5).
 
-use stribeck_scene::geometry::Geometry;
-
 use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, RowInputs, TONE_HZ, number, words};
 use crate::summary::PaperRow;
 
@@ -25,7 +23,7 @@ fn motion(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let exits: Vec<f64> = source.summary.events.iter().filter_map(|e| e.exit_ms).collect();
     let spacing_s =
         (exits.len() > 1).then(|| 1e-3 * (exits[exits.len() - 1] - exits[0]) / (exits.len() - 1) as f64);
-    let b = &source.scene.bearing;
+    let b = &source.scene.written.bearing;
     let percent = spacing_s.map(|s| 100.0 * (1.0 / s / k.bpfo_hz - 1.0));
     vec![
         number(
@@ -113,7 +111,7 @@ fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let summary = source.summary;
     let leading = summary.levels.sensor.as_deref().unwrap_or_default();
     let measured = summary.families.iter().filter(|f| f.found).find_map(|f| f.carrier_hz);
-    let (outer, inner) = source.prediction.kinematics.paper_noise_hz(Geometry::of(source.scene).element_size);
+    let (outer, inner) = source.prediction.kinematics.paper_noise_hz(source.scene.element_size);
     let inner_right = source.prediction.facet_lines.iter().find(|l| l.0 == "inner_race_nodes").map(|l| l.1);
     let resolution = summary.spectrum.as_ref();
     let record = resolution.map_or("no spectrum".into(), |s| {

@@ -12,6 +12,7 @@ const FACTOR: f64 = 0.9;
 
 /// The scene in motion.
 pub(crate) fn machine(scene: &Scene, threads: usize) -> (Machine, usize) {
+    let scene = &scene.resolve();
     let assembly = Assembly::new(scene).expect("a scene that can be meshed");
     let elements = assembly.model.mesh.elements();
     let mut machine = assembly.machine(scene, threads).expect("a scene that can be laid out");

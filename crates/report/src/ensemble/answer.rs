@@ -1,7 +1,8 @@
 //! What an engineer reads first: what was chosen, what follows from it, and how much starts scatter.
 
 use maud::{Markup, html};
-use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::ModelScene;
 
 use super::tables::{decimals, mean, shown};
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
@@ -22,14 +23,14 @@ pub(super) fn paragraphs(findings: &EnsembleFindings) -> Markup {
 }
 
 /// What somebody chose, with its value.
-fn calibrated(scene: &Scene, of_paper: bool) -> String {
-    let (contact, solver) = (&scene.contact, &scene.solver);
+fn calibrated(scene: &ResolvedScene, of_paper: bool) -> String {
+    let (contact, solver) = (&scene.written.contact, &scene.written.solver);
     let mut chosen = vec![
-        format!("an out-of-plane thickness of {} mm", scene.bearing.thickness_mm),
+        format!("an out-of-plane thickness of {} mm", scene.written.bearing.thickness_mm),
         format!("a contact stiffness of {} E over the element size", contact.penalty_scale),
         format!("a contact damping of {} % of critical", 100.0 * contact.damping_ratio),
     ];
-    if let ModelScene::Reduced(reduced) = &scene.model {
+    if let ModelScene::Reduced(reduced) = &scene.written.model {
         chosen.push(format!("modes up to {} kHz in steps of {} µs", reduced.modes_khz, reduced.step_us));
     }
     if solver.mass_damping_per_s > 0.0 {
@@ -39,13 +40,13 @@ fn calibrated(scene: &Scene, of_paper: bool) -> String {
         let (from, to) = (damping.from_khz, damping.to_khz);
         chosen.push(format!("a structural damping of {} % from {from} to {to} kHz", damping.ratio_percent));
     }
-    if let Some(film) = &scene.film {
+    if let Some(film) = &scene.written.film {
         chosen.push(format!("oil of {} Pa s", film.viscosity_pa_s));
     }
     if solver.stiffness_damping_ns > 0.0 {
         chosen.push(format!("a stiffness damping of {} ns", solver.stiffness_damping_ns));
     }
-    if let Some(cage) = &scene.cage {
+    if let Some(cage) = &scene.written.cage {
         chosen.push(format!("{} µm of room in the pockets", cage.pocket_clearance_um));
     }
     let last = chosen.pop().unwrap_or_default();

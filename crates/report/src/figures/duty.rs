@@ -18,7 +18,7 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Vec<Figure> {
     let interval_s = record.interval_s();
     let mut figures = Vec::new();
     if let Some(angle) = record.channel("shaft.angle_rad").filter(|angle| angle.len() > 2)
-        && record.run().scene.operation.speed_varies()
+        && record.run().scene.written.operation.speed_varies()
     {
         let rpm = |name: &str, colour: Colour, angle: &[f64]| {
             let rates = angle.windows(2).map(|pair| -60.0 / TAU * (pair[1] - pair[0]) / interval_s);

@@ -113,7 +113,7 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
         100.0 * rms / supported,
         off(low),
         off(high),
-        if record.run().scene.operation.load_varies() { "the load changes and " } else { "" }
+        if record.run().scene.written.operation.load_varies() { "the load changes and " } else { "" }
     ).replace('-', "−"))
     .note("The difference accelerates the outer ring and its housing. Load plus their weight is the dashed \
         line.");

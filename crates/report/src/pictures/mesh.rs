@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use stribeck_scene::geometry::{DefectGeometry, Geometry};
 use stribeck_scene::mesh_file::{Body, RunMesh};
-use stribeck_scene::scene::{DefectRing, Scene};
+use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
+use stribeck_scene::scene::DefectRing;
 
 use super::{View, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
@@ -58,7 +58,7 @@ fn draw(sheet: &mut Sheet, mesh: &RunMesh, view: &View, width: f64, seen: impl F
 }
 
 /// All bodies.
-pub(super) fn whole(scene: &Scene, mesh: &RunMesh) -> Picture {
+pub(super) fn whole(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
     let [[x0, x1], [y0, y1]] = [0, 1].map(|axis| {
         let [low, high] = range(mesh.reference.iter().map(|at| at[axis]));
         [low - 0.004, high + 0.004]
@@ -66,14 +66,13 @@ pub(super) fn whole(scene: &Scene, mesh: &RunMesh) -> Picture {
     let view = View::new([x0, y0], [x1, y1], [0.0, 0.0], WIDTH);
     let mut sheet = Sheet::new(WIDTH, view.height.ceil());
     draw(&mut sheet, mesh, &view, 0.25, |_| true);
-    let g = Geometry::of(scene);
-    let outside = g.outer_race_radius + g.outer_ring_thickness;
+    let outside = scene.outer_race_radius + scene.outer_ring_thickness;
     let holds = mesh.bodies.iter().map(|body| body.name.as_str()).find(|name| HOLDING.contains(name));
     let named = [
         holds.map(|name| (name, [0.0, 0.5 * (y1 - 0.004 + outside)])),
-        Some(("outer ring", [0.0, -0.5 * (outside + g.outer_race_radius)])),
-        Some(("inner ring", [0.0, g.inner_race_radius - 0.5 * g.inner_ring_thickness])),
-        Some(("roller", [g.path_radius(), 0.0])),
+        Some(("outer ring", [0.0, -0.5 * (outside + scene.outer_race_radius)])),
+        Some(("inner ring", [0.0, scene.inner_race_radius - 0.5 * scene.inner_ring_thickness])),
+        Some(("roller", [scene.path_radius(), 0.0])),
     ];
     for (name, at) in named.into_iter().flatten() {
         let at = view.place(at);
@@ -101,14 +100,13 @@ pub(super) fn whole(scene: &Scene, mesh: &RunMesh) -> Picture {
 }
 
 /// Two rollers and the defect between them.
-pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
-    let geometry = Geometry::of(scene);
-    let spall = scene.leading_spall().as_ref().map(DefectGeometry::of);
+pub(super) fn defect(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
+    let spall = scene.written.leading_spall().as_ref().map(DefectGeometry::of);
     let angle = spall.map_or(FRAC_PI_2, |defect| defect.angle);
     let ring = spall.map_or(DefectRing::Outer, |defect| defect.ring);
     let (radius, outwards) = match ring {
-        DefectRing::Outer => (geometry.outer_race_radius, 1.0),
-        DefectRing::Inner => (geometry.inner_race_radius, -1.0),
+        DefectRing::Outer => (scene.outer_race_radius, 1.0),
+        DefectRing::Inner => (scene.inner_race_radius, -1.0),
     };
     let centre = [radius * angle.cos(), radius * angle.sin()];
     let half = [0.014, 0.0075];
@@ -119,7 +117,7 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
     let seen = |p: [f64; 2]| (0..2).all(|c| (low[c]..=high[c]).contains(&p[c]));
     sheet.clipped("defect-window", [0.0, 0.0], [WIDTH, view.height], |sheet| {
         draw(sheet, mesh, &view, 0.8, seen);
-        for (direction, paint) in [(angle, "#000"), (geometry.first_roller_angle, Colour::Red.css())] {
+        for (direction, paint) in [(angle, "#000"), (scene.first_roller_angle, Colour::Red.css())] {
             let ray = [0.8, 1.3]
                 .map(|r: f64| view.place([r * radius * direction.cos(), r * radius * direction.sin()]));
             sheet.path(
@@ -141,7 +139,8 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
             sheet.path(&ring, true, "fill:none;stroke:#b3202c;stroke-width:2");
         }
     });
-    let offset = (scene.bearing.first_roller_deg - angle.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
+    let offset =
+        (scene.written.bearing.first_roller_deg - angle.to_degrees() + 180.0).rem_euclid(360.0) - 180.0;
     let ground = [[WIDTH - 370.0, 8.0], [WIDTH - 8.0, 8.0], [WIDTH - 8.0, 30.0], [WIDTH - 370.0, 30.0]];
     sheet.path(&ground, true, "fill:#fff;fill-opacity:0.9");
     let middle = if spall.is_some() {
@@ -157,7 +156,7 @@ pub(super) fn defect(scene: &Scene, mesh: &RunMesh) -> Picture {
         if spall.is_some() { "The mesh about the defect" } else { "The mesh between the rings" },
         sheet,
     );
-    picture.caption = match &scene.leading_spall() {
+    picture.caption = match &scene.written.leading_spall() {
         Some(d) => format!(
             "The defect, {} mm long and {} mm deep, is made by nodes that are moved {}; no element is left \
              out.",

@@ -1,7 +1,7 @@
 //! The load zone as a polar plot: what each place of the outer raceway carries, at rest and in motion.
 
 use stribeck_scene::housing::HousingScene;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::resolved::ResolvedScene;
 
 use crate::plot::{Anchor, Colour, Picture, Sheet};
 use stribeck_analysis::findings::Findings;
@@ -13,7 +13,7 @@ const RACE: f64 = 90.0;
 const REACH: f64 = 180.0;
 
 /// Static beside dynamic; `None` without recorded rollers.
-pub(super) fn picture(scene: &Scene, findings: &Findings) -> Option<Picture> {
+pub(super) fn picture(scene: &ResolvedScene, findings: &Findings) -> Option<Picture> {
     let dynamic = &findings.distribution;
     let finite = |values: &[f64]| values.iter().copied().filter(|v| v.is_finite()).fold(0.0, f64::max);
     let static_curve = findings.static_curve.as_ref();
@@ -41,7 +41,7 @@ pub(super) fn picture(scene: &Scene, findings: &Findings) -> Option<Picture> {
         kilonewtons(finite(&dynamic.mean_n)),
         at_rest.map_or("–".into(), kilonewtons)
     );
-    let elastic = match &scene.housing {
+    let elastic = match &scene.written.housing {
         HousingScene::Rigid(_) => "",
         HousingScene::Adapter => {
             "; an elastic ring, which bears on the edges of an adapter, spreads the load otherwise"

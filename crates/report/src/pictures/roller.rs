@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
-use stribeck_scene::scene::{ContactSurface, Scene};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::ContactSurface;
 
 use super::{View, mesh, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
@@ -14,9 +14,9 @@ const SIZE: [f64; 2] = [900.0, 440.0];
 const FACETS: usize = 4;
 
 /// The roller to scale, and its rim with heights magnified.
-pub(super) fn picture(scene: &Scene, mesh: &RunMesh) -> Picture {
-    let facets = scene.mesh.roller_facets;
-    let radius = 0.5 * scene.bearing.roller_diameter_mm;
+pub(super) fn picture(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
+    let facets = scene.written.mesh.roller_facets;
+    let radius = 0.5 * scene.written.bearing.roller_diameter_mm;
     let sag_um = 1e3 * radius * (1.0 - (PI / facets as f64).cos());
     let mut sheet = Sheet::new(SIZE[0], SIZE[1]);
     to_scale(&mut sheet, scene, mesh);
@@ -25,7 +25,7 @@ pub(super) fn picture(scene: &Scene, mesh: &RunMesh) -> Picture {
     picture.caption = format!(
         "A roller of {facets} facets looks round, and yet each facet lies {sag_um:.2} µm inside the circle \
          in its middle: {}.",
-        if scene.contact.surface == ContactSurface::Facet {
+        if scene.written.contact.surface == ContactSurface::Facet {
             "that is what the contacts hear"
         } else {
             "contact on arcs takes that away"
@@ -42,14 +42,14 @@ pub(super) fn picture(scene: &Scene, mesh: &RunMesh) -> Picture {
 const WIDTH_PX: f64 = 380.0;
 const HEIGHT_PX: f64 = 120.0;
 
-fn to_scale(sheet: &mut Sheet, scene: &Scene, run_mesh: &RunMesh) {
+fn to_scale(sheet: &mut Sheet, scene: &ResolvedScene, run_mesh: &RunMesh) {
     let Some(body) = run_mesh.bodies.iter().find(|b| b.name.starts_with("roller ")) else { return };
     let place = |n: &u32| run_mesh.reference[*n as usize];
     let centre = [0, 1].map(|axis| {
         let [low, high] = mesh::range(run_mesh.elements_of(body).flatten().map(|n| place(n)[axis]));
         0.5 * (low + high)
     });
-    let reach = 1.1 * Geometry::of(scene).roller_radius;
+    let reach = 1.1 * scene.roller_radius;
     let view = View::new(centre.map(|c| c - reach), centre.map(|c| c + reach), [10.0, 10.0], 400.0);
     sheet.lines(
         mesh::edges(run_mesh, body).into_iter().map(|e| e.map(|n| view.place(place(&n)))),

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
 use stribeck_scene::frames::{Frame, Window};
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::mesh_file::RunMesh;
+use stribeck_scene::resolved::ResolvedScene;
 
 use crate::Error;
 use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};
@@ -50,9 +50,9 @@ struct Hertz {
 const VON_MISES_OF_PRESSURE: f64 = 1.0 / 1.79;
 
 impl Hertz {
-    fn of(geometry: &Geometry, force: f64) -> Self {
-        let (load, modulus) = (force / geometry.thickness, geometry.material.contact_modulus());
-        let half_width = (4.0 * load * geometry.outer_contact_radius() / (PI * modulus)).sqrt();
+    fn of(scene: &ResolvedScene, force: f64) -> Self {
+        let (load, modulus) = (force / scene.thickness, scene.material.contact_modulus());
+        let half_width = (4.0 * load * scene.outer_contact_radius() / (PI * modulus)).sqrt();
         Self { pressure: 2.0 * load / (PI * half_width), half_width }
     }
 
@@ -78,11 +78,11 @@ pub(super) fn pictures(
     window: &Window,
     frames: &[Frame],
 ) -> Result<Vec<Picture>, Error> {
-    let geometry = Geometry::of(&record.run().scene);
-    let lame = Lame::of(&geometry.material);
+    let scene = &record.run().scene;
+    let lame = Lame::of(&scene.material);
     let all: Vec<(f64, Vec<Cell>)> = frames.iter().map(|f| (f.time_s, cells(mesh, f, &lame))).collect();
     let mut pictures = Vec::new();
-    let moments = moments(record, &geometry, findings, window, &all)?;
+    let moments = moments(record, findings, window, &all)?;
     if moments.iter().any(|moment| moment.cells.iter().any(|cell| is_near(moment, cell, window))) {
         pictures.push(still(&moments, window));
     }
@@ -96,12 +96,12 @@ pub(super) fn pictures(
 /// with the highest stress near the trailing edge while the roller climbs out.
 fn moments(
     record: &Record<'_>,
-    geometry: &Geometry,
     findings: &Findings,
     window: &Window,
     all: &[(f64, Vec<Cell>)],
 ) -> Result<Vec<Moment>, Error> {
-    let radius = geometry.outer_race_radius;
+    let scene = &record.run().scene;
+    let radius = scene.outer_race_radius;
     let on_race = |deg: f64| window.place(radius * deg.to_radians().cos(), radius * deg.to_radians().sin());
     let mut moments = Vec::new();
     let number = findings.summary.events.first().map(|event| event.roller);
@@ -126,7 +126,7 @@ fn moments(
                 time_s: *time,
                 cells: cells.clone(),
                 focus,
-                hertz: (force > 0.0).then(|| Hertz::of(geometry, force)),
+                hertz: (force > 0.0).then(|| Hertz::of(scene, force)),
             })
         })
     });

@@ -171,7 +171,7 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
     names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad", "seat.fx_n", "seat.fy_n"].map(str::to_owned));
     let duty = scene.duty();
     names.extend(scene.operation.load_varies().then(|| "adapter.load_n".to_owned()));
-    let (films, oiled) = (loaded_films(scene).expect("a load"), roller_angles_deg(scene));
+    let (films, oiled) = (loaded_films(&scene.resolve()).expect("a load"), roller_angles_deg(scene));
     if films.is_some() {
         for roller in 1..=scene.bearing.rollers {
             names.extend(["outer", "inner"].map(|ring| format!("roller.{roller}.{ring}_film_m")));

@@ -1,8 +1,7 @@
 //! Contact that is softer than the bearing itself.
 
 use stribeck_scene::{
-    geometry::Geometry,
-    scene::Scene,
+    resolved::ResolvedScene,
     static_load::{RigidRings, angles_to_load_deg},
 };
 
@@ -24,13 +23,13 @@ pub(super) struct Softness {
 }
 
 impl Softness {
-    pub(super) fn of(scene: &Scene, g: &Geometry) -> Self {
+    pub(super) fn of(scene: &ResolvedScene) -> Self {
         // Rollers that carry nothing in equilibrium leave the clearance alone.
-        let [_, most] = scene.duty().load_range_n(g.duration);
-        let load = RigidRings::new(g).distribute(most, &angles_to_load_deg(scene));
+        let [_, most] = scene.duty.load_range_n(scene.duration);
+        let load = RigidRings::new(scene).distribute(most, &angles_to_load_deg(&scene.written));
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
-        let depth = scene.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
-        Self { radial_clearance: 0.5 * g.clearance, hertz, depth }
+        let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
+        Self { radial_clearance: 0.5 * scene.clearance, hertz, depth }
     }
 
     /// Penetration above which there is a warning [m].

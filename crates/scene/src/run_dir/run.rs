@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::{ENERGY, RunDir, TRACE};
 use crate::error::Error;
+use crate::resolved::ResolvedScene;
 use crate::run_info::RunInfo;
 use crate::scene::Scene;
 use crate::trace::TraceFile;
@@ -11,8 +12,8 @@ use crate::trace::TraceFile;
 /// A run as the report sees it.
 #[derive(Debug)]
 pub struct Run {
-    /// The complete scene.
-    pub scene: Scene,
+    /// The complete scene, in SI.
+    pub scene: ResolvedScene,
     /// Provenance, sizes and cost.
     pub info: RunInfo,
     /// Sampled channels, on disk.
@@ -42,7 +43,7 @@ impl Run {
     ///
     /// [`Error::OtherScene`].
     pub fn check_scene(&self, path: &Path) -> Result<(), Error> {
-        let (found, expected) = (self.scene.hash(), &self.info.scene_hash);
+        let (found, expected) = (self.scene.written.hash(), &self.info.scene_hash);
         if found == *expected {
             return Ok(());
         }
@@ -58,7 +59,7 @@ impl Run {
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let dir = RunDir::open(path)?;
         Ok(Self {
-            scene: Scene::read(dir.scene())?,
+            scene: Scene::read(dir.scene())?.resolve(),
             info: dir.read_info()?,
             trace: TraceFile::open(dir.trace())?,
             energy: TraceFile::open(dir.energy())?,

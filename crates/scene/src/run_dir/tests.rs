@@ -57,7 +57,7 @@ fn roundtrip_a_run_reads_back_equal() {
     let folder = Scratch::new("equal");
     write_run(folder.path());
     let run = Run::read(folder.path()).expect("complete");
-    assert_eq!(run.scene, Scene::default());
+    assert_eq!(run.scene.written, Scene::default());
     assert_eq!(run.info, info(Status::Complete));
     assert_eq!(run.trace.channel("x").expect("readable"), Some(vec![1.0]));
     assert_eq!(run.energy.len(), 1);

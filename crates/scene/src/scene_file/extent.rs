@@ -415,11 +415,8 @@ fn rotating_load(scene: &Scene) -> Option<Finding> {
         );
         let less = Remedy::new(FORCE, format!("less than {} N", number(load)));
         let more = Remedy::new("operation.load_n", format!("more than {} N", number(rotating.force_n)));
-        let housing = Remedy::new(
-            "housing",
-            "`rigid()`, `springs()` or `pedestal()`, which surround the \
-            ring",
-        );
+        let housing =
+            Remedy::new("housing", "`rigid()`, `springs()` or `pedestal()`, which surround the ring");
         let remedies = vec![
             less.number(round_down(0.2 * load, 2), "a fifth"),
             more.number(5.0 * rotating.force_n, ""),

@@ -6,8 +6,8 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, round_down, round_up};
-use crate::geometry::CageGeometry;
 use crate::housing::HousingScene;
+use crate::resolved::CageGeometry;
 use crate::scene::{CageScene, DefectRing, PocketWalls, Scene};
 
 const OUTER_RACE: &str = "bearing.outer_race_diameter_mm";

@@ -6,7 +6,6 @@
 
 use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
-use crate::geometry::Geometry;
 use crate::housing::{HousingScene, PedestalScene};
 use crate::line_contact::LineContacts;
 use crate::point_contact;
@@ -219,7 +218,7 @@ fn clearance_mm(element: Element, bore_mm: f64) -> f64 {
 /// Length of cylinders [mm] that let the raceways approach each other at the most loaded place as balls would
 /// (THEORY §6.2).
 fn thickness_of_balls(scene: &Scene) -> f64 {
-    let g = Geometry::of(scene);
+    let g = scene.resolve();
     let load = STRIBECK * g.load / g.rollers as f64;
     let groove = 2.0 * point_contact::CONFORMITY * g.roller_radius;
     let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));

@@ -693,9 +693,9 @@ fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
 
 #[test]
 fn invariant_balls_are_cylinders_of_their_own_stiffness() {
-    use crate::{geometry::Geometry, line_contact::LineContacts, point_contact};
+    use crate::{line_contact::LineContacts, point_contact};
     let scene = Scene::parse("(bearing: \"6205\", operation: (load_n: 2000))", "mine").unwrap();
-    let g = Geometry::of(&scene);
+    let g = scene.resolve();
     let load = 4.37 * 2000.0 / 9.0;
     let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
     let ball = |race| point_contact::approach(g.roller_radius, race, 1.04 * g.roller_radius, load, modulus);
@@ -733,7 +733,7 @@ fn refuses_a_bearing_that_nobody_knows() {
 #[test]
 fn example_defects_on_either_ring_with_sloped_edges() {
     let scene = parse("(defect: (ring: inner, edge_slope_deg: 30))").unwrap();
-    let defect = crate::geometry::Geometry::of(&scene).grooves[0];
+    let defect = scene.resolve().grooves[0];
     assert_eq!(defect.ring, crate::scene::DefectRing::Inner);
     assert!((defect.edge_slope.to_degrees() - 30.0).abs() < 1e-12);
     for (text, field) in [

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use stribeck_scene::frames::{COLUMNS, Window};
-use stribeck_scene::scene::Scene;
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::trace::TraceWriter;
 
 use stribeck_bearing::assembly::{Assembly, Machine};
@@ -22,10 +22,10 @@ pub(super) struct Frames {
 
 impl Frames {
     /// What a scene asks for; `None` when it asks for nothing.
-    pub(super) fn of(scene: &Scene, folder: PathBuf) -> Option<Self> {
-        let wanted = scene.output.frames.as_ref()?;
+    pub(super) fn of(scene: &ResolvedScene, folder: PathBuf) -> Option<Self> {
+        let wanted = scene.written.output.frames.as_ref()?;
         // Of the numbers as written: a quotient of seconds may fall short of a whole number of samples.
-        let samples = |us: f64| us / scene.output.interval_us;
+        let samples = |us: f64| us / scene.written.output.interval_us;
         Some(Self {
             folder,
             first: samples(1e3 * wanted.from_ms).ceil().max(1.0) as usize,

@@ -15,11 +15,7 @@
 
 use stribeck_bearing::assembly::{Assembly, Machine};
 use stribeck_run::guards::{self, OUT_OF_PLACE, Placed, When};
-use stribeck_scene::{
-    geometry::Geometry,
-    run_info::RunInfo,
-    scene::{GuardsScene, Scene},
-};
+use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_solver::Elastic;
 use stribeck_system::{Limits, Scale, System, Words};
 
@@ -41,19 +37,19 @@ pub(super) struct Guards {
 }
 
 impl Guards {
-    pub(super) fn new(scene: &Scene, assembly: &Assembly, machine: &Machine) -> Self {
+    pub(super) fn new(scene: &ResolvedScene, assembly: &Assembly, machine: &Machine) -> Self {
         let mesh = &assembly.model.mesh;
         let height = |body: usize| mean(mesh.y[mesh.bodies[body].nodes.clone()].iter().copied());
         Self {
             shared: guards::Guards::new(scene, "`solver.time_step_factor`"),
             placed: Placed { centres: vec![[0.0; 2]; machine.rollers.len()], ..Placed::default() },
-            seat: OUT_OF_PLACE * Geometry::of(scene).roller_radius,
+            seat: OUT_OF_PLACE * scene.roller_radius,
             housing_height: machine.housing.map(|housing| height(housing) - height(machine.outer)),
         }
     }
 
     /// Warnings before the first step.
-    pub(super) fn before(scene: &Scene, steel: &Elastic, info: &RunInfo) -> Vec<String> {
+    pub(super) fn before(scene: &ResolvedScene, steel: &Elastic, info: &RunInfo) -> Vec<String> {
         let mut warnings = Vec::new();
         let (step, critical) = (info.time_step_s, info.critical_time_step_s);
         if step > critical {
@@ -65,8 +61,9 @@ impl Guards {
                 step / critical
             ));
         }
-        let facet = std::f64::consts::PI * scene.bearing.roller_diameter_mm / scene.mesh.roller_facets as f64;
-        let size = 1e-3 * scene.mesh.size_mm.min(facet);
+        let facet = std::f64::consts::PI * scene.written.bearing.roller_diameter_mm
+            / scene.written.mesh.roller_facets as f64;
+        let size = 1e-3 * scene.written.mesh.size_mm.min(facet);
         // A regular mesh of squares of side a has ω = (2/a) √((λ + 2µ)/ρ) at most for plane waves along a
         // row.
         let square = size / steel.dilatational_speed();
@@ -142,7 +139,7 @@ impl Guards {
 }
 
 /// Sets what the system watches, and what its messages call the fields of the scene.
-pub(super) fn arm(scene: &Scene, system: &mut System) {
+pub(super) fn arm(scene: &ResolvedScene, system: &mut System) {
     let GuardsScene {
         energy_warning_percent,
         energy_stop_percent,
@@ -151,7 +148,7 @@ pub(super) fn arm(scene: &Scene, system: &mut System) {
         penetration_stop_percent,
         area_stop_percent,
         unsupported_warning_ms: _,
-    } = scene.guards;
+    } = scene.written.guards;
     system.limits = Limits {
         // All that turns would hide what matters.
         energy_scale: Scale::StrainEnergy,
@@ -161,7 +158,7 @@ pub(super) fn arm(scene: &Scene, system: &mut System) {
         penetration_warning_percent,
         penetration_stop_percent,
         area_stop_percent,
-        element_size: Some(Geometry::of(scene).element_size),
+        element_size: Some(scene.element_size),
         elements_every: LOOK_EVERY,
     };
     system.words = Words {

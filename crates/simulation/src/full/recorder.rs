@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::assembly::Machine;
 use stribeck_run::channels::{CageSample, RollerSample, Sample, SensorSample};
-use stribeck_scene::{geometry::Geometry, scene::Scene};
+use stribeck_scene::resolved::ResolvedScene;
 
 /// Sums between samples, and the sample made of them.
 #[derive(Debug)]
@@ -34,8 +34,8 @@ pub(super) struct Memory {
 }
 
 impl Recorder {
-    pub(super) fn new(scene: &Scene, machine: &Machine) -> Self {
-        let sensors = machine.nodes_on_back(&Geometry::of(scene).sensor_angles);
+    pub(super) fn new(scene: &ResolvedScene, machine: &Machine) -> Self {
+        let sensors = machine.nodes_on_back(&scene.sensor_angles);
         let rollers = machine.rollers.len();
         let memory = Memory {
             at_sample: sensors.iter().map(|&n| velocity(machine, n)).collect(),
@@ -47,7 +47,7 @@ impl Recorder {
     }
 
     /// A recorder that continues; `None` when the memory is that of another machine.
-    pub(super) fn resume(scene: &Scene, machine: &Machine, memory: Memory) -> Option<Self> {
+    pub(super) fn resume(scene: &ResolvedScene, machine: &Machine, memory: Memory) -> Option<Self> {
         let nodes = machine.system.node_count();
         let fits = memory.sensors.iter().all(|&n| (n as usize) < nodes)
             && memory.at_sample.len() == memory.sensors.len()
@@ -55,7 +55,7 @@ impl Recorder {
         fits.then(|| Self::with(scene, memory, machine))
     }
 
-    fn with(scene: &Scene, memory: Memory, machine: &Machine) -> Self {
+    fn with(scene: &ResolvedScene, memory: Memory, machine: &Machine) -> Self {
         Self {
             before_step: vec![[0.0; 2]; memory.sensors.len()],
             memory,

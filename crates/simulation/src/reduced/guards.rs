@@ -3,11 +3,7 @@
 
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
 use stribeck_run::guards::{self, Placed, When};
-use stribeck_scene::{
-    geometry::Geometry,
-    run_info::RunInfo,
-    scene::{GuardsScene, Scene},
-};
+use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_system::Ledger;
 
 /// Imbalance of a run's ledger, and what it is compared with.
@@ -83,19 +79,18 @@ pub(super) struct Guards {
 }
 
 impl Guards {
-    pub(super) fn new(scene: &Scene) -> Self {
-        let g = Geometry::of(scene);
+    pub(super) fn new(scene: &ResolvedScene) -> Self {
         Self {
             shared: guards::Guards::new(scene, "`model.step_us`"),
-            limits: scene.guards.clone(),
-            element_size: g.element_size,
-            roller_radius: g.roller_radius,
+            limits: scene.written.guards.clone(),
+            element_size: scene.element_size,
+            roller_radius: scene.roller_radius,
             placed: Placed::default(),
         }
     }
 
     /// Warnings before the first step.
-    pub(super) fn before(scene: &Scene, bearing: &Bearing) -> Vec<String> {
+    pub(super) fn before(scene: &ResolvedScene, bearing: &Bearing) -> Vec<String> {
         let mut warnings = Vec::new();
         let modes = bearing.reduction.modes;
         if bearing.has_seat() && modes < FEW_MODES {
@@ -105,7 +100,7 @@ impl Guards {
                  start or gain energy with steps of any length. Take a larger `model.modes_khz`"
             ));
         }
-        if scene.output.frames.is_some() {
+        if scene.written.output.frames.is_some() {
             warnings.push(
                 "no pictures of the stress: the reduced model has no elements beside its modes. `model: \
                  full` has them"

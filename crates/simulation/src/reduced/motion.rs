@@ -9,7 +9,7 @@ use stribeck_run::{
     error::Error,
     time_loop::Motion,
 };
-use stribeck_scene::{run_info::RunInfo, scene::Scene};
+use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo};
 use stribeck_system::{Balance, Ledger, Scale};
 
 use super::guards::{Guards, LedgerError};
@@ -33,13 +33,13 @@ pub struct Saved {
 
 impl ReducedMotion {
     /// Before its first step.
-    pub fn start(scene: &Scene, bearing: Bearing, state: stribeck_reduced::state::State) -> Self {
+    pub fn start(scene: &ResolvedScene, bearing: Bearing, state: stribeck_reduced::state::State) -> Self {
         let saved = stribeck_reduced::motion::Saved::first(&bearing, state);
         Self::go_on(scene, bearing, Saved { bearing: saved, balance: Balance::default() })
     }
 
     /// From a checkpoint of this bearing.
-    pub(crate) fn go_on(scene: &Scene, bearing: Bearing, saved: Saved) -> Self {
+    pub(crate) fn go_on(scene: &ResolvedScene, bearing: Bearing, saved: Saved) -> Self {
         Self {
             bearing: BearingInMotion::new(bearing, saved.bearing),
             balance: saved.balance,

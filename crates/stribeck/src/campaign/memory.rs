@@ -1,6 +1,5 @@
 //! How many runs fit into memory side by side.
 
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::scene::Scene;
 
 /// Of a model [GB]: 100 000 elements with the factors of their preload, or the modes of as many.
@@ -16,7 +15,7 @@ const OF_FLOATING: f64 = 2.0;
 
 /// What the run of a scene takes [GB], while it runs or when its numbers are made.
 pub(super) fn need_gb(scene: &Scene) -> f64 {
-    let g = Geometry::of(scene);
+    let g = scene.resolve();
     let floating = if scene.film.is_some() { OF_FLOATING * g.rollers as f64 } else { 0.0 };
     let channels = CHANNELS + OF_SENSOR * scene.output.sensors.len() as f64 + floating;
     MODEL_GB + 8e-9 * channels * g.duration / g.interval

@@ -6,11 +6,11 @@ use anyhow::{Result, bail};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Body, Mesh};
-use stribeck_scene::geometry::Geometry;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::mesh_file::{self, RunMesh};
+use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
-use stribeck_scene::scene::{MaterialScene, Scene};
+use stribeck_scene::scene::MaterialScene;
 
 use super::provenance;
 
@@ -47,8 +47,8 @@ pub(super) fn write(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Resul
 
 /// What the scene says of the bodies of its mesh. The cage touches nothing here: its pockets are walls of the
 /// scene, not of the mesh.
-fn model<'a>(scene: &Scene, mesh: &'a Mesh) -> Model<'a> {
-    let MaterialScene { youngs_modulus_gpa, poissons_ratio, density_kg_m3 } = scene.material;
+fn model<'a>(scene: &ResolvedScene, mesh: &'a Mesh) -> Model<'a> {
+    let MaterialScene { youngs_modulus_gpa, poissons_ratio, density_kg_m3 } = scene.written.material;
     let named = |name: &str| mesh.bodies.iter().position(|body| body.name == name);
     let (outer, inner) = (named("outer ring"), named("inner ring"));
     let mut contacts = Vec::new();
@@ -59,22 +59,22 @@ fn model<'a>(scene: &Scene, mesh: &'a Mesh) -> Model<'a> {
     };
     for (body, _) in mesh.bodies.iter().enumerate().filter(|(_, body)| body.name.starts_with("roller ")) {
         for raceway in [outer.map(|ring| (ring, Side::Inside)), inner.map(|ring| (ring, Side::Outside))] {
-            touch([Some((body, Side::Outside)), raceway], scene.contact.friction);
+            touch([Some((body, Side::Outside)), raceway], scene.written.contact.friction);
         }
     }
     // An adapter has its seat on its outer boundary, a block about the ring in its bore.
     let blocks = [("adapter", Side::Outside), ("pedestal", Side::Inside), ("housing", Side::Inside)];
     for (block, side) in blocks {
         let seat = named(block).map(|block| (block, side));
-        touch([outer.map(|ring| (ring, Side::Outside)), seat], scene.contact.seat_friction);
+        touch([outer.map(|ring| (ring, Side::Outside)), seat], scene.written.contact.seat_friction);
     }
-    let held = matches!(scene.housing, HousingScene::Rigid(_));
+    let held = matches!(scene.written.housing, HousingScene::Rigid(_));
     Model {
         mesh,
         youngs_modulus: 1e9 * youngs_modulus_gpa,
         poissons_ratio,
         density: density_kg_m3,
-        thickness: Geometry::of(scene).thickness,
+        thickness: scene.thickness,
         rigid: named("cage").into_iter().chain(outer.filter(|_| held)).collect(),
         contacts,
         step: None,
@@ -85,7 +85,7 @@ fn model<'a>(scene: &Scene, mesh: &'a Mesh) -> Model<'a> {
 ///
 /// # Errors
 /// When this program meshes another model than that of the run.
-fn step(scene: &Scene, mesh: &Mesh) -> Result<Step> {
+fn step(scene: &ResolvedScene, mesh: &Mesh) -> Result<Step> {
     let assembly = Assembly::new(scene)?;
     let (own, k) = (&assembly.model.mesh, &assembly.kinematics);
     if (&own.x, &own.y) != (&mesh.x, &mesh.y) {
@@ -95,15 +95,15 @@ fn step(scene: &Scene, mesh: &Mesh) -> Result<Step> {
              has the mesh alone"
         );
     }
-    let (g, duty) = (Geometry::of(scene), scene.duty());
+    let duty = &scene.duty;
     let guided = assembly.guided();
     let mut velocity = vec![[0.0; 2]; mesh.x.len()];
     for body in &mesh.bodies {
         let roller = body.name.strip_prefix("roller ").and_then(|number| number.parse::<usize>().ok());
         let (centre, rate, orbit) = match (body.name.as_str(), roller) {
             (_, Some(number)) => {
-                let (s, c) = g.roller_angle(number - 1).sin_cos();
-                let path = g.outer_race_radius - g.roller_radius;
+                let (s, c) = scene.roller_angle(number - 1).sin_cos();
+                let path = scene.outer_race_radius - scene.roller_radius;
                 ([path * c, path * s], k.roller_rad_s, k.cage_rad_s)
             }
             ("inner ring", _) => ([0.0; 2], k.shaft_rad_s, 0.0),
@@ -116,13 +116,13 @@ fn step(scene: &Scene, mesh: &Mesh) -> Result<Step> {
             velocity[n] = [-orbit * centre[1] - rate * ry, orbit * centre[0] + rate * rx];
         }
     }
-    let [x, y] = scene.load_direction();
+    let [x, y] = scene.written.load_direction();
     let load = duty.load_n(0.0);
     // Guides hold what takes the load; a body without one takes it all around.
     let loaded = if guided.is_empty() { all_around(mesh) } else { guided.clone() };
     Ok(Step {
-        duration: 1e-3 * scene.solver.duration_ms,
-        gravity: [0.0, -scene.operation.gravity_m_s2],
+        duration: 1e-3 * scene.written.solver.duration_ms,
+        gravity: [0.0, -scene.written.operation.gravity_m_s2],
         load: (loaded, [load * x, load * y]),
         guided,
         turning: vec![(assembly.turned_by_the_shaft(), k.shaft_rad_s)],
@@ -141,23 +141,26 @@ fn all_around(mesh: &Mesh) -> Vec<u32> {
 }
 
 /// What of a scene a deck does not have.
-fn left_out(scene: &Scene) -> Vec<String> {
-    let o = &scene.operation;
+fn left_out(scene: &ResolvedScene) -> Vec<String> {
+    let o = &scene.written.operation;
     let profiles = o.speed_profile.is_some() || o.outer_speed_profile.is_some() || o.load_profile.is_some();
     let all = [
         (true, "the preload: the load is there from the start, and the bodies are free of stress"),
-        (scene.cage.is_some(), "contact of the rollers with the cage"),
+        (scene.written.cage.is_some(), "contact of the rollers with the cage"),
         (profiles, "profiles of speed and load: they stay as they are at the start"),
         (o.rotating_load.is_some(), "the load that turns with the shaft"),
-        (scene.film.is_some(), "oil films"),
-        (scene.solver.structural_damping.is_some(), "structural damping"),
-        (scene.solver.mass_damping_per_s > 0.0, "mass damping"),
-        (scene.solver.stiffness_damping_ns > 0.0, "stiffness damping"),
+        (scene.written.film.is_some(), "oil films"),
+        (scene.written.solver.structural_damping.is_some(), "structural damping"),
+        (scene.written.solver.mass_damping_per_s > 0.0, "mass damping"),
+        (scene.written.solver.stiffness_damping_ns > 0.0, "stiffness damping"),
         (
-            matches!(scene.housing, HousingScene::Springs(_)),
+            matches!(scene.written.housing, HousingScene::Springs(_)),
             "the springs and dampers of the housing, which hold the ring",
         ),
-        (matches!(scene.housing, HousingScene::Rigid(_)), "the mass of the housing beyond that of the ring"),
+        (
+            matches!(scene.written.housing, HousingScene::Rigid(_)),
+            "the mass of the housing beyond that of the ring",
+        ),
     ];
     all.into_iter().filter(|(there, _)| *there).map(|(_, what)| what.to_owned()).collect()
 }

@@ -117,8 +117,8 @@ pub(super) fn write(sheet: &mut Sheet, runs: &[Finished]) -> Result<()> {
     }
     let swept = |name: &str| -> Vec<(f64, &Finished)> {
         let value = |run: &Finished| match name {
-            "thickness" => run.scene.bearing.thickness_mm,
-            _ => run.scene.contact.penalty_scale,
+            "thickness" => run.scene.written.bearing.thickness_mm,
+            _ => run.scene.written.contact.penalty_scale,
         };
         let of_sweep = |run: &&Finished| {
             run.variant.name.starts_with(&format!("base-{name}-")) || run.variant.name == "base-default"
@@ -172,10 +172,13 @@ fn verdict(sheet: &mut Sheet, runs: &[&Finished]) {
 
 /// What dissipation at high frequencies does and costs.
 fn dissipation(sheet: &mut Sheet, runs: &[&Finished]) {
-    let damped =
-        |run: &&&Finished| run.scene.solver.stiffness_damping_ns > 0.0 || run.variant.name == "base-default";
+    let damped = |run: &&&Finished| {
+        run.scene.written.solver.stiffness_damping_ns > 0.0 || run.variant.name == "base-default"
+    };
     let mut rows: Vec<&Finished> = runs.iter().filter(damped).copied().collect();
-    rows.sort_by(|a, b| a.scene.solver.stiffness_damping_ns.total_cmp(&b.scene.solver.stiffness_damping_ns));
+    rows.sort_by(|a, b| {
+        a.scene.written.solver.stiffness_damping_ns.total_cmp(&b.scene.written.solver.stiffness_damping_ns)
+    });
     if rows.len() < 2 {
         return;
     }
@@ -193,11 +196,11 @@ fn dissipation(sheet: &mut Sheet, runs: &[&Finished]) {
 }
 
 const DISSIPATION: [Column; 8] = [
-    Column { name: "β ns", decimals: 0, of: |run| Some(run.scene.solver.stiffness_damping_ns) },
+    Column { name: "β ns", decimals: 0, of: |run| Some(run.scene.written.solver.stiffness_damping_ns) },
     Column {
         name: "ζ at 50 kHz %",
         decimals: 2,
-        of: |run| Some(PI * 5e4 * 1e-7 * run.scene.solver.stiffness_damping_ns),
+        of: |run| Some(PI * 5e4 * 1e-7 * run.scene.written.solver.stiffness_damping_ns),
     },
     Column { name: "time step ns", decimals: 1, of: |run| run.info.as_ref().map(|i| 1e9 * i.time_step_s) },
     Column { name: "instant g", decimals: 0, of: instant_g },
@@ -218,7 +221,7 @@ fn instant_g(run: &Finished) -> Option<f64> {
     let record = Record::whole(&read).ok()?;
     let from = record.time_s().partition_point(|&t| t < 7e-3);
     let until = record.time_s().partition_point(|&t| t < 11.4e-3);
-    let all = record.acceleration_g(&run.scene.output.sensors.first()?.name, "ay_instant")?;
+    let all = record.acceleration_g(&run.scene.written.output.sensors.first()?.name, "ay_instant")?;
     let quiet = all.get(from..until)?;
     Some((quiet.iter().map(|a| a * a).sum::<f64>() / quiet.len() as f64).sqrt())
 }

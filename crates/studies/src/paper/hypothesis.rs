@@ -58,7 +58,7 @@ const FACETS: [&str; 5] = ["56", "112", "113", "120", "224"];
 const LOADS_KN: [u32; 4] = [25, 35, 70, 100];
 
 const COLUMNS: [Column; 14] = [
-    Column { name: "N_v", decimals: 0, of: |run| Some(run.scene.mesh.roller_facets as f64) },
+    Column { name: "N_v", decimals: 0, of: |run| Some(run.scene.written.mesh.roller_facets as f64) },
     Column { name: "N_v × spin Hz", decimals: 0, of: |run| lumped(run).map(|l| l.frequency_hz) },
     Column { name: "friction to roll", decimals: 4, of: |run| lumped(run).map(|l| l.friction_to_roll) },
     Column { name: "rolling", decimals: 3, of: rolling },
@@ -86,7 +86,7 @@ pub(super) fn above(run: &Finished) -> Option<f64> {
 }
 
 fn clearest(run: &Finished) -> Option<Line> {
-    let sensors = run.scene.output.sensors.iter();
+    let sensors = run.scene.written.output.sensors.iter();
     sensors.filter_map(|s| peak_at(run, &s.name)).max_by(|a, b| a.above_db.total_cmp(&b.above_db))
 }
 
@@ -142,7 +142,7 @@ fn force_line(run: &Finished) -> Option<f64> {
     let read = Run::read(&run.folder).ok()?;
     let record = Record::whole(&read).ok()?;
     signal::amplitude(
-        &support(&record, run.scene.load_direction()),
+        &support(&record, run.scene.written.load_direction()),
         record.sample_rate_hz(),
         lumped(run)?.frequency_hz,
     )

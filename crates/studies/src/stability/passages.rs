@@ -120,8 +120,8 @@ fn judge(done: &str, run: &Finished, reduced: Option<Passage>) -> Case {
     };
     let [share, gained] = carried(run, info);
     let supported = (share - 1.0).abs() < SUPPORT || gained < RATTLING;
-    let room = run.scene.cage.as_ref().map_or(0.0, |cage| 1e-3 * cage.pocket_clearance_um)
-        / run.scene.defect.as_ref().map_or(f64::INFINITY, |defect| defect.length_mm);
+    let room = run.scene.written.cage.as_ref().map_or(0.0, |cage| 1e-3 * cage.pocket_clearance_um)
+        / run.scene.written.defect.as_ref().map_or(f64::INFINITY, |defect| defect.length_mm);
     let passed = passage(run);
     let rolls = passed.is_none_or(|p| p.is_right(room));
     let right =
@@ -130,7 +130,7 @@ fn judge(done: &str, run: &Finished, reduced: Option<Passage>) -> Case {
     if let (false, Some(other)) = (rolls, reduced) {
         words += &format!("; by the reduced model it {}", other.course());
     }
-    let size_um = 1e3 * run.scene.mesh.size_mm;
+    let size_um = 1e3 * run.scene.written.mesh.size_mm;
     let seen = format!(
         "carried {share:.3}; {words}; contact sinks in by {:.1} µm",
         size_um * info.guards.penetration_share

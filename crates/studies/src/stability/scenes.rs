@@ -148,7 +148,8 @@ pub(super) fn carried(run: &Finished, info: &RunInfo) -> [f64; 2] {
     let share = carried.map_or(f64::NAN, |n| n / info.expected_support_n);
     // A force that is not carried, or too much of it, moves outer ring and adapter; a little of that is
     // rattling.
-    let mass = (info.expected_support_n - run.scene.operation.load_n) / run.scene.operation.gravity_m_s2;
+    let mass = (info.expected_support_n - run.scene.written.operation.load_n)
+        / run.scene.written.operation.gravity_m_s2;
     let time = info.steps as f64 * info.time_step_s;
     [share, (share - 1.0).abs() * info.expected_support_n * time / mass]
 }
@@ -180,7 +181,7 @@ pub(super) fn concluded(done: &str, info: &RunInfo, right: bool, mut seen: Strin
 /// Mean vertical force of the rollers on the outer ring [N].
 fn support(run: &Run) -> f64 {
     let mut sum = 0.0;
-    for i in 1..=run.scene.bearing.rollers {
+    for i in 1..=run.scene.written.bearing.rollers {
         let force = run.trace.channel(&format!("roller.{i}.outer_fy_n")).ok().flatten();
         sum -= force.map_or(f64::NAN, |f| f.iter().sum());
     }

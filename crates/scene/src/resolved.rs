@@ -1,24 +1,36 @@
-//! A scene in SI units: the one place where what a user writes in millimetres, degrees and gigapascals
-//! becomes what the program computes with.
+//! A scene in SI units: the one place where the millimetres, degrees and gigapascals of a file are converted
+//! into the numbers that the program computes with.
 //!
-//! Where a bit of a result may hang on the rounding of a quotient, it is taken of the numbers as written
-//! instead: the ratios of diameters in [`kinematics`](crate::kinematics), the samples at which frames are
-//! written.
+//! A scene is resolved once, where it enters: when a run begins or continues, when its folder is read, by a
+//! command that plans or exports. From there on a [`ResolvedScene`] is passed.
+//!
+//! Where the rounding of a quotient may change a bit of a result, the numbers as written are used instead:
+//! the ratios of diameters in [`kinematics`](crate::kinematics), the samples at which frames are written.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::contact_formula::ContactNumbers;
 use crate::deviation::{Relief, RollingSurface};
+use crate::duty::Duty;
 use crate::faults::rolling_circle;
 use crate::material::Material;
 use crate::scene::{
     CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
 };
 
-/// Dimensions, material, mesh, load and times of a scene. Lengths are [m], angles [rad], counter-clockwise
-/// from the x axis.
+/// A scene in SI: dimensions, material, mesh, contact, load and times, and beside them the scene as written
+/// for what has no unit to convert. Lengths are [m], angles [rad], counter-clockwise from the x axis.
+///
+/// ```
+/// let scene = stribeck_scene::Scene::default().resolve();
+/// assert_eq!((scene.roller_radius, scene.written.bearing.roller_diameter_mm), (9e-3, 18.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Geometry {
+pub struct ResolvedScene {
+    /// The scene as written: names, choices and counts.
+    pub written: Scene,
+    /// Speeds and load over time.
+    pub duty: Duty,
     /// Radius of the outer raceway [m].
     pub outer_race_radius: f64,
     /// Radial thickness of the outer ring [m].
@@ -142,7 +154,19 @@ pub struct FilmGeometry {
     pub roughness: f64,
 }
 
-impl Geometry {
+impl Scene {
+    /// The scene in SI.
+    pub fn resolve(&self) -> ResolvedScene {
+        ResolvedScene::of(self)
+    }
+}
+
+impl ResolvedScene {
+    /// Speeds and load over time where one of them varies.
+    pub fn varying_duty(&self) -> Option<&Duty> {
+        self.written.operation.varies().then_some(&self.duty)
+    }
+
     /// The grooves in the raceway of this ring.
     pub fn grooves_of(&self, ring: DefectRing) -> impl Iterator<Item = &DefectGeometry> {
         self.grooves.iter().filter(move |groove| groove.ring == ring)
@@ -165,8 +189,7 @@ impl Geometry {
         (rest / free).max(0.0)
     }
 
-    /// The scene in SI.
-    pub fn of(scene: &Scene) -> Self {
+    fn of(scene: &Scene) -> Self {
         let b = &scene.bearing;
         let material = Material::of(&scene.material);
         let element_size = 1e-3 * scene.mesh.size_mm;
@@ -178,6 +201,8 @@ impl Geometry {
         let of_roller = |i: usize| Some((i, relief(RollingSurface::Roller(i + 1))?));
         let clearance_mm = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
         Self {
+            written: scene.clone(),
+            duty: scene.duty(),
             outer_race_radius: 0.5e-3 * b.outer_race_diameter_mm,
             outer_ring_thickness: 1e-3 * b.outer_ring_thickness_mm,
             outer_ring_rigid: scene.housing.is_rigid(),
@@ -330,7 +355,7 @@ mod tests {
     #[test]
     fn analytic_the_papers_bearing_in_si() {
         let scene = Scene::default();
-        let g = Geometry::of(&scene);
+        let g = scene.resolve();
         let defect = g.grooves[0];
         for (ours, theirs) in [
             (g.outer_race_radius, 0.1),
@@ -357,11 +382,12 @@ mod tests {
         let mut moved = scene.clone();
         moved.cage.iter_mut().for_each(|cage| cage.roller_offsets_um = vec![91.0; 24]);
         moved.mesh.roller_phase_deg = 90.0;
-        let m = Geometry::of(&moved);
+        let m = moved.resolve();
         // 91 µm on a path of 91 mm are a milliradian.
         assert!((m.roller_angle(5) - g.roller_angle(5) - 1e-3).abs() < 1e-12);
         assert_eq!((m.pocket_angle(5), m.roller_phase), (g.pocket_angle(5), 0.25 * TAU));
         let bare = Scene { cage: None, defect: None, ..scene };
-        assert!(Geometry::of(&bare).cage.is_none() && Geometry::of(&bare).grooves.is_empty());
+        let bare = bare.resolve();
+        assert!(bare.cage.is_none() && bare.grooves.is_empty());
     }
 }
