@@ -363,7 +363,7 @@ fn issue_a_wrong_rate_in_a_file_can_be_overruled() {
     let output = stribeck(desk.path(), &words);
     assert!(!output.status.success() && said(&output).contains("`--force-rate`"), "{}", said(&output));
     let output = stribeck(desk.path(), &[&words[..], &["--force-rate"]].concat());
-    says(&output, &["a defect of the outer raceway (BPFO at 143", "the file says 12800 Hz"]);
+    says(&output, &["a defect of the outer raceway (BPFO at 142.9", "the file says 12800 Hz"]);
 }
 
 #[test]

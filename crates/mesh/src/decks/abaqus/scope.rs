@@ -119,14 +119,17 @@ pub(super) enum Of {
     Elements,
 }
 
+/// A set that is known: the offset of its scope, whether it is one of nodes, and its name in capitals.
+type SetKey = (Option<u64>, bool, String);
+
 /// Finds out what sets hold, in numbers of the mesh.
 pub(super) struct Resolver<'a> {
     pub(super) placed: &'a [Placed],
     /// Sets of the assembly: of nodes, of elements.
     pub(super) assembly: [&'a Sets; 2],
     pub(super) found: &'a Gathered,
-    /// Sets that are known: the offset of their scope, whether of nodes, and their name in capitals.
-    pub(super) known: RefCell<BTreeMap<(Option<u64>, bool, String), Vec<u64>>>,
+    /// Sets that are known, with what they hold.
+    pub(super) known: RefCell<BTreeMap<SetKey, Vec<u64>>>,
 }
 
 impl Resolver<'_> {
