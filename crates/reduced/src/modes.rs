@@ -204,6 +204,10 @@ impl Structure {
     }
 
     /// Modes move in a step of `dt` [s] under the forces `push`, with `load` beyond that of the preload.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "what a step reads and what it changes, each borrowed by itself"
+    )]
     #[inline(always)]
     pub(crate) fn advance<S: Simd>(
         &self,
