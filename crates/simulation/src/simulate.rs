@@ -106,7 +106,7 @@ pub fn follow(host: &Host<'_>) -> Result<(), Error> {
     let (scene, checkpoint) = called_to::<<Full as Model>::Saved>(&**ranks)?;
     let scene = &scene.resolve();
     let mut with = Preparation { scene, host, dir: None, progress: Progress::begin() };
-    Ok(match checkpoint {
+    match checkpoint {
         None => {
             let (full, setup) = Full::prepare(&mut with, &mut |_| ControlFlow::Continue(()))?;
             Run::follow(full.start(&with), setup.info(scene, host), host)?;
@@ -116,7 +116,8 @@ pub fn follow(host: &Host<'_>) -> Result<(), Error> {
             let motion = full.go_on(&with, &info, motion).map_err(|Misfit(what)| RunError::Ranks(what))?;
             Run::follow(motion, info, host)?;
         }
-    })
+    }
+    Ok(())
 }
 
 struct Begin<'a> {
