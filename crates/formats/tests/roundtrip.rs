@@ -123,7 +123,7 @@ fn peer_other_programs_read_what_is_written() {
 
 #[test]
 fn peer_files_of_other_programs_are_read() {
-    // npTDMS 1.10.0, scipy.io 1.17.1, soundfile 0.14.0, asammdf 8.8.28 and h5py 3.16.0 write what the formats
+    // npTDMS 1.13.0, scipy.io 1.17.1, soundfile 0.14.0, asammdf 8.8.28 and h5py 3.16.0 write what the formats
     // allow and we do not: other types, byte orders, structs, segments, chunks.
     let folder = Scratch::create("formats-theirs");
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/write_signals.py");

@@ -12,7 +12,6 @@ use stribeck::host;
 use stribeck::{Command, Place};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
-use stribeck_analysis::report as page;
 use stribeck_report as page;
 use stribeck_run::host::Progress;
 use stribeck_scene::run_dir::{Run, RunDir};
