@@ -2,7 +2,7 @@
 //! knows them.
 //!
 //! A model fills a [`Sample`]; [`Channels`] turns it into a row of `trace.npy`. Adding a channel that follows
-//! from a sample is one line in [`Channels::visit`]; one that a model must provide is a field of [`Sample`]
+//! from a sample is one line in `Channels::visit`; one that a model must provide is a field of [`Sample`]
 //! besides.
 
 use std::fmt::Arguments;
