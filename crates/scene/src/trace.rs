@@ -1,7 +1,7 @@
 //! Sampled channels on disk: `trace.npy` and `energy.npy`, NumPy structured arrays of little-endian f64.
 //!
 //! One record a sample, one named field a channel, so `numpy.load("trace.npy")["sensor.side.ay_m_s2"]` is a
-//! time history, whatever the number of channels ([`header`], [`archive`]). Names end in their unit. The
+//! time history, whatever the number of channels (`header.rs`, `archive.rs`). Names end in their unit. The
 //! files hold nothing but the samples: equal runs write equal bytes.
 
 mod archive;
