@@ -139,7 +139,6 @@ impl Channels {
             channel(format_args!("roller.{number}.x_m"), roller.centre[0]);
             channel(format_args!("roller.{number}.y_m"), roller.centre[1]);
             channel(format_args!("roller.{number}.spin_rad"), roller.spin);
-            channel(format_args!("roller.{number}.radius_m"), roller.centre[0].hypot(roller.centre[1]));
             channel(format_args!("roller.{number}.outer_fx_n"), roller.outer[0]);
             channel(format_args!("roller.{number}.outer_fy_n"), roller.outer[1]);
             channel(format_args!("roller.{number}.inner_fx_n"), roller.inner[0]);
