@@ -43,7 +43,7 @@ const CHECKS: &[Check] = &[
     ("commands in the documents exist", documents::check_commands),
     ("scenes in the documents can be run", documents::check_scenes),
     ("the guide lists the fields that scenes have", crate::fields::check),
-    ("no line of code is longer than 110 columns", lines::check),
+    ("no comment or text is longer than 110 columns", lines::check),
     ("tests have a prefix, and a source where they need one", test_names::check),
     ("crates can be published", packages::check),
     ("VALIDATION says what the tests say", validation::check),

@@ -96,8 +96,8 @@ fn correlation(a: &[f64], b: &[f64], below_hz: f64, rate_hz: f64) -> Option<f64>
     (first * second > 0.0).then(|| 0.5 * (both - first - second) / (first * second).sqrt())
 }
 
-/// Statistic of correlations, with the interval of Fisher's z = artanh r, which leaves no correlation above one.
-/// Source: R. A. Fisher, On the "probable error" of a coefficient of correlation deduced from a small
+/// Statistic of correlations, with the interval of Fisher's z = artanh r, which leaves no correlation above
+/// one. Source: R. A. Fisher, On the "probable error" of a coefficient of correlation deduced from a small
 /// sample, Metron 1 (1921) 3–32.
 fn of_correlations(values: &[f64], of: usize) -> Option<Statistic> {
     /// Beyond it z is not finite.
