@@ -212,7 +212,7 @@ fn issue_a_cage_that_leaves_the_bearing_ends_the_run() {
     let info = run(&scene, &folder, "run", 1);
     let why = info.stop_reason.unwrap_or_default();
     assert!(
-        info.status == Status::Diverged && why.contains("the cage has left the bearing"),
+        info.status == Status::Diverged && why.contains("the cage has cut through a ring"),
         "{:?}: {why}",
         info.status
     );
