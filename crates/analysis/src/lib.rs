@@ -8,7 +8,7 @@
 //! use stribeck_analysis::{findings::Findings, record::Record};
 //! use stribeck_scene::run_dir::Run;
 //!
-//! let run = Run::read("runs/singh2014".as_ref())?;
+//! let run = Run::read("runs/singh2014")?;
 //! let summary = Findings::of(&Record::whole(&run)?)?.summary;
 //! for tone in summary.tones.iter().filter(|tone| tone.level_g.is_some()) {
 //!     println!("{}: {} no. {} at {:?} Hz", tone.sensor, tone.name, tone.harmonic, tone.measured_hz);

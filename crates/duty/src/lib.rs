@@ -13,7 +13,7 @@
 //!     along: [0.0, -1.0],
 //!     guided: false,
 //! };
-//! assert_eq!(duty.speed_rpm(0.02), 1000.0);
+//! assert!((duty.speed_rpm(0.02) - 1000.0).abs() < 1e-9);
 //! assert!((duty.relative_turns(0.03) - (0.01 * 500.0 + 0.02 * 1000.0) / 60.0).abs() < 1e-12);
 //! ```
 //!
