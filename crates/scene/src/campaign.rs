@@ -25,12 +25,13 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::dice::Dice;
+use crate::document::unreadable;
 use crate::ensemble::start;
 use crate::run_dir::Keep;
 use crate::scene::Scene;
 use crate::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
 use design::Variants;
-use refusal::File;
+use refusal::{CAMPAIGN, File};
 
 /// Most runs of a campaign.
 pub const MOST_RUNS: usize = 1_000_000;
@@ -135,13 +136,14 @@ impl Campaign {
     /// here: its variant says why.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|e| refusal::unreadable(&shown, &e))?;
+        let text =
+            std::fs::read_to_string(path).map_err(|e| unreadable(&shown, &CAMPAIGN, refusal::FILE, &e))?;
         Self::parse(without_mark(&text), &shown, path.parent().unwrap_or(Path::new("")))
     }
 
     fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
-        let place = File::new(name, text);
-        let file: Text = dialect::dialect().from_str(text).map_err(|e| place.no_campaign(&e))?;
+        let place = File::new(name, text, &CAMPAIGN);
+        let file: Text = dialect::dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
             return refuse(
