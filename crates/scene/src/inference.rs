@@ -14,16 +14,19 @@
 //!             ["solver.mass_damping_per_s=5000", "solver.structural_damping=None"],
 //!             ["solver.mass_damping_per_s=0"],
 //!         ]),
+//!         (name: "sensor", readings: ["side", "top"]),
 //!     ],
 //!     targets: [
 //!         (name: "exits", of: "levels.impulse_g", value: 180, tolerance: 18, log: true),
+//!         (name: "gaps", of: "levels.sensors[sensor={sensor}].gap_g", value: 50, tolerance: 5, log: true),
 //!         (name: "event #2", of: "count(events.floor_n)", value: 3),
 //!     ],
 //!     budget: (runs: 600),
 //! )
 //! ```
 //!
-//! Each unknown has a prior; each target a number, or a curve, of `summary.json`. What is simulated, and what
+//! Each unknown has a prior; each target a number, or a curve, of `summary.json`. `readings` are no part of the
+//! scene: they say which of several items of every run is the one that was seen, as `{sensor}` in a path. What is simulated, and what
 //! follows from it, is not decided here.
 
 mod quantity;
@@ -101,6 +104,8 @@ struct UnknownText {
     values: Vec<Box<RawValue>>,
     #[serde(default)]
     sets: Vec<Vec<String>>,
+    #[serde(default)]
+    readings: Vec<String>,
 }
 
 #[derive(Debug, Clone, Deserialize)]
@@ -187,6 +192,8 @@ pub enum Values {
     Listed(Vec<String>),
     /// One of several lists of `field=value`, all equally likely.
     Sets(Vec<Vec<String>>),
+    /// One of several items of every run's summary, all equally likely.
+    Readings(Vec<String>),
 }
 
 /// A number, or a curve, that was seen.
@@ -237,7 +244,7 @@ impl Unknown {
             Values::Range { .. } | Values::Normal { .. } => {
                 format!("{}", format!("{value:.6e}").parse::<f64>().unwrap_or(value))
             }
-            Values::Listed(values) => values[choice(value, values.len())].clone(),
+            Values::Listed(values) | Values::Readings(values) => values[choice(value, values.len())].clone(),
             Values::Sets(sets) => sets[choice(value, sets.len())].join(" "),
         }
     }
@@ -246,6 +253,7 @@ impl Unknown {
     fn arguments(&self, value: f64) -> Vec<String> {
         match &self.values {
             Values::Sets(sets) => sets[choice(value, sets.len())].clone(),
+            Values::Readings(_) => Vec::new(),
             _ => vec![format!("{}={}", self.name, self.written(value))],
         }
     }
@@ -253,7 +261,7 @@ impl Unknown {
     /// How many choices there are; `None` for a number.
     pub fn choices(&self) -> Option<usize> {
         match &self.values {
-            Values::Listed(values) => Some(values.len()),
+            Values::Listed(values) | Values::Readings(values) => Some(values.len()),
             Values::Sets(sets) => Some(sets.len()),
             _ => None,
         }
@@ -292,7 +300,7 @@ impl Inference {
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
         let unknowns = unknowns(&file.unknowns, &place)?;
-        let targets = targets(&file.targets, &place)?;
+        let targets = targets(&file.targets, &unknowns, &place)?;
         let budget = budget(file.budget, unknowns.len(), file.starts, &place)?;
         let inference = Self {
             name: file.name,
@@ -357,7 +365,7 @@ impl Values {
             Self::Range { from, to, log: false } => 0.5 * (from + to),
             Self::Range { from, to, log: true } => (from * to).sqrt(),
             Self::Normal { mean, from, to, .. } => mean.clamp(*from, *to),
-            Self::Listed(_) | Self::Sets(_) => 0.0,
+            Self::Listed(_) | Self::Sets(_) | Self::Readings(_) => 0.0,
         }
     }
 
@@ -367,6 +375,7 @@ impl Values {
             Self::Range { from, to, .. } | Self::Normal { from, to, .. } => vec![*from, *to],
             Self::Listed(values) => (0..values.len()).map(|n| n as f64).collect(),
             Self::Sets(sets) => (0..sets.len()).map(|n| n as f64).collect(),
+            Self::Readings(_) => Vec::new(),
         }
     }
 }
@@ -380,13 +389,13 @@ fn unknowns(texts: &[UnknownText], place: &File<'_>) -> Result<Vec<Unknown>, Sce
     for (n, text) in texts.iter().enumerate() {
         let at = format!("unknowns[{n}]");
         let name = if text.field.is_empty() { &text.name } else { &text.field };
-        if text.sets.is_empty() {
+        if text.sets.is_empty() && text.readings.is_empty() {
             if let Some(problem) = scene_file::unknown_field(&text.field) {
                 return Err(place.shown(problem, &format!("{at}.field")));
             }
         } else if text.name.is_empty() {
             return Err(
-                place.refuse(&at, "a choice of `sets` has a `name`, by which it is reported".to_owned())
+                place.refuse(&at, "a choice of `sets` or `readings` has a `name`, by which it is reported".to_owned())
             );
         }
         if unknowns.iter().any(|before| before.name == *name) {
@@ -401,22 +410,21 @@ fn unknowns(texts: &[UnknownText], place: &File<'_>) -> Result<Vec<Unknown>, Sce
 impl UnknownText {
     fn prior(&self) -> Result<Values, String> {
         let listed: Vec<String> = self.values.iter().map(|value| value.get_ron().trim().to_owned()).collect();
-        let kinds = [
-            !listed.is_empty(),
-            !self.sets.is_empty(),
-            self.from.is_some() || self.to.is_some() || self.mean.is_some(),
-        ];
-        if kinds.iter().filter(|kind| **kind).count() != 1 {
-            return Err("takes one of `values: […]`, `sets: [[…], …]`, and `from` and `to`".to_owned());
+        let choices = [listed.len(), self.sets.len(), self.readings.len()];
+        let range = self.from.is_some() || self.to.is_some() || self.mean.is_some();
+        if choices.iter().filter(|count| **count > 0).count() + usize::from(range) != 1 {
+            return Err(
+                "takes one of `values: […]`, `sets: [[…], …]`, `readings: […]`, and `from` and `to`".to_owned()
+            );
         }
-        if kinds[0] || kinds[1] {
-            return if listed.len().max(self.sets.len()) < 2 {
-                Err("has one choice, which is no unknown: `set: [\"field=value\"]` gives it".to_owned())
-            } else if kinds[0] {
-                Ok(Values::Listed(listed))
-            } else {
-                Ok(Values::Sets(self.sets.clone()))
-            };
+        match choices {
+            [0, 0, 0] => {}
+            [1, 0, 0] | [0, 1, 0] | [0, 0, 1] => {
+                return Err("has one choice, which is no unknown: `set: [\"field=value\"]` gives it".to_owned());
+            }
+            [_, 0, 0] => return Ok(Values::Listed(listed)),
+            [0, _, 0] => return Ok(Values::Sets(self.sets.clone())),
+            _ => return Ok(Values::Readings(self.readings.clone())),
         }
         let (Some(from), Some(to)) = (self.from, self.to) else {
             return Err("has one end; a prior has `from` and `to`".to_owned());
@@ -437,7 +445,7 @@ impl UnknownText {
     }
 }
 
-fn targets(texts: &[TargetText], place: &File<'_>) -> Result<Vec<Target>, SceneError> {
+fn targets(texts: &[TargetText], unknowns: &[Unknown], place: &File<'_>) -> Result<Vec<Target>, SceneError> {
     if texts.is_empty() || texts.len() > MOST_TARGETS {
         let why = format!("`targets` has {} items; it is 1 to {MOST_TARGETS}", texts.len());
         return Err(place.refuse("targets", why));
@@ -446,6 +454,13 @@ fn targets(texts: &[TargetText], place: &File<'_>) -> Result<Vec<Target>, SceneE
     for (n, text) in texts.iter().enumerate() {
         let at = format!("targets[{n}]");
         let of = Quantity::parse(&text.of).map_err(|why| place.refuse(&format!("{at}.of"), why))?;
+        let readings = |unknown: &&Unknown| matches!(unknown.values, Values::Readings(_));
+        if let Some(lost) = of.placeholders().into_iter().find(|name| {
+            !unknowns.iter().filter(readings).any(|unknown| unknown.name == *name)
+        }) {
+            let why = format!("`{}` asks for `{{{lost}}}`, and no unknown of `readings` has that name", text.of);
+            return Err(place.refuse(&format!("{at}.of"), why));
+        }
         let name = if text.name.is_empty() { text.of.clone() } else { text.name.clone() };
         if targets.iter().any(|before| before.name == name) {
             return Err(place.refuse(&at, format!("`{name}` is named twice: a target has one value")));

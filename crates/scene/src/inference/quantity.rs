@@ -5,6 +5,7 @@
 //! tones[name=roller_vertices,harmonic=5].prominence_db
 //! levels.sensors[2].gap_g
 //! count(events.floor_n)
+//! levels.sensors[sensor={sensor}].gap_g
 //! ```
 //!
 //! A list is entered at one item, by number from 0 or by what stands in it; or by all items, which are taken
@@ -93,6 +94,29 @@ impl Quantity {
             )
         })?;
         Ok(Self { text: text.to_owned(), take, steps })
+    }
+
+    /// Names in braces: what an unknown's readings are put for.
+    pub fn placeholders(&self) -> Vec<&str> {
+        let conditions = self.steps.iter().flat_map(|step| match &step.item {
+            Item::Where(conditions) => conditions.as_slice(),
+            _ => &[],
+        });
+        conditions.filter_map(|(_, value)| placeholder(value)).collect()
+    }
+
+    /// The same with the reading of an unknown in the place of its name.
+    #[must_use]
+    pub fn with(&self, name: &str, reading: &str) -> Self {
+        let mut with = self.clone();
+        for step in &mut with.steps {
+            if let Item::Where(conditions) = &mut step.item {
+                for (_, value) in conditions.iter_mut().filter(|(_, value)| placeholder(value) == Some(name)) {
+                    reading.clone_into(value);
+                }
+            }
+        }
+        with
     }
 
     /// The number of this summary; `None` where there is none.
@@ -197,6 +221,10 @@ fn conditions(text: &str) -> Option<Vec<(String, String)>> {
         Some((name.trim().to_owned(), value.trim().trim_matches('"').to_owned()))
     };
     text.split(',').map(one).collect()
+}
+
+fn placeholder(value: &str) -> Option<&str> {
+    value.strip_prefix('{')?.strip_suffix('}')
 }
 
 /// All values at the end of a path; those of lists that are not entered at one item in turn.

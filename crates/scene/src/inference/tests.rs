@@ -40,6 +40,7 @@ fn refuses_what_cannot_be_inferred_with_its_line() {
         (text("(field: \"operation.load_n\", values: [1])", TARGET, ""), "one choice"),
         (text(UNKNOWN, "(of: \"sum(levels.impulse_g)\", value: 1)", ""), "it is one of count"),
         (text(UNKNOWN, "(of: \"levels..impulse_g\", value: 1)", ""), "no path of summary.json"),
+        (text(UNKNOWN, "(of: \"levels.sensors[sensor={s}].gap_g\", value: 1)", ""), "asks for `{s}`"),
         (text(UNKNOWN, "(of: \"levels.impulse_g\")", ""), "takes one of `value`"),
         (text(UNKNOWN, "(of: \"levels.impulse_g\", value: 1, tolerance: -1)", ""), "0 or more"),
         (text(UNKNOWN, TARGET, ", budget: (runs: 3)"), "1 unknowns take 4 scenes at least"),
@@ -85,6 +86,8 @@ fn example_quantities_name_numbers_of_a_summary() {
     for (path, value) in expected {
         assert_eq!(number(path), value, "{path}");
     }
+    let gap = Quantity::parse("tones[name={tone},harmonic=1].hz").unwrap();
+    assert_eq!((gap.placeholders(), gap.with("tone", "cage").number(&summary)), (vec!["tone"], Some(3.0)));
     assert_eq!(Quantity::parse("curve").unwrap().curve(&summary), Some(vec![1.0, 2.0, 3.0]));
     let known = |path: &str| Quantity::parse(path).unwrap().is_known(&summary);
     assert!(known("tones[name=other].hz") && known("levels.gap_g") && !known("levels.lost_g"));

@@ -8,7 +8,7 @@ use stribeck_analysis::summary::Event;
 use stribeck_formats::parquet::{Column, Values, Writer};
 
 use super::Row;
-use crate::campaign::summary_of;
+use crate::many_runs::summary_of;
 
 /// Rows that are written at a time: of many short runs, or of one long one and what came before it.
 const GROUP: usize = 1 << 16;
