@@ -9,7 +9,7 @@ const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a
 /// paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 24] = [
+const LAYERS: [(&str, &[&str]); 25] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -19,6 +19,7 @@ const LAYERS: [(&str, &[&str]); 24] = [
     ("film", &["surface"]),
     ("contact", &["film", "mesh", "simd", "solver", "surface"]),
     ("duty", &[]),
+    ("infer", &[]),
     ("scene", &["duty"]),
     ("system", &["contact", "mesh", "solver"]),
     ("bearing", &["contact", "mesh", "scene", "solver", "system"]),

@@ -1,0 +1,214 @@
+//! Simulation-based calibration: do intervals hold the truths that they should (Talts and others, *Validating Bayesian
+//! inference algorithms with simulation-based calibration*, arXiv 1804.06788)?
+
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::{
+    design,
+    emulator::Emulator,
+    error::Error,
+    interval::{rank, weighted_moments},
+    likelihood::{Likelihood, Predictions},
+    posterior::{self, Posterior, PosteriorOptions},
+    prior::{Prior, snapped},
+    random::{Random, normal_quantile},
+    runs::Target,
+};
+
+/// Points of the prior that all truths share; a posterior that too few of them describe is sought by itself.
+const POOL: usize = 8192;
+
+/// So many of the pool must count.
+const ENOUGH: f64 = 200.0;
+
+/// Bins of rank histograms.
+pub const BINS: usize = 10;
+
+/// A point, and what one run there gave.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Truth {
+    /// In the unit cube.
+    pub point: Vec<f64>,
+    /// As in a row of [`crate::Runs`].
+    pub outputs: Vec<Option<f64>>,
+}
+
+/// A share of truths, with the interval in which it would lie over many more (Wilson, 95 %).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Share {
+    /// Share of the truths.
+    pub share: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}
+
+/// How one field comes out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FieldCalibration {
+    /// Share of truths within the central 50 % interval.
+    pub coverage_50: Share,
+    /// Share of truths within the central 90 % interval.
+    pub coverage_90: Share,
+    /// How many truths have their rank among the draws in each tenth.
+    pub ranks: [usize; BINS],
+    /// χ² of that histogram against an even one.
+    pub chi_squared: f64,
+    /// Probability of a χ² as large where ranks are even.
+    pub p_value: f64,
+    /// Mean standard deviation of the posterior over that of the prior: 1 where the outputs tell nothing.
+    pub width: f64,
+}
+
+/// Whether an inference can be trusted, field by field.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// Number of truths.
+    pub truths: usize,
+    /// In the order of the coordinates.
+    pub fields: Vec<FieldCalibration>,
+}
+
+/// What one truth gave: rank of each coordinate, and its posterior standard deviation.
+struct Answer {
+    ranks: Vec<f64>,
+    deviations: Vec<f64>,
+}
+
+impl Calibration {
+    /// Infers every truth from its own outputs. `columns` are those that count, each with its tolerance.
+    ///
+    /// # Errors
+    /// When there are no truths, their shapes do not fit, or a target cannot be asked for.
+    pub fn of(
+        emulator: &Emulator,
+        priors: &[Prior],
+        truths: &[Truth],
+        columns: &[(usize, f64)],
+        options: PosteriorOptions,
+    ) -> Result<Self, Error> {
+        posterior::check(emulator, priors)?;
+        if truths.is_empty() {
+            let expected = "1 at least; 200 for 90 % intervals to ±5 %";
+            return Err(Error::Option { option: "truths", value: 0.0, expected });
+        }
+        let points: Vec<Vec<f64>> = truths.iter().map(|truth| truth.point.clone()).collect();
+        emulator.check(&points)?;
+        let pool: Vec<Vec<f64>> = design::points(options.seed ^ 0xca11, priors.len(), 0..POOL)
+            .iter()
+            .map(|point| snapped(priors, point))
+            .collect();
+        let pool = Pool::new(emulator, columns, pool);
+        let mut random = Random::stream(options.seed, 2);
+        let mut answers = Vec::with_capacity(truths.len());
+        for (number, truth) in truths.iter().enumerate() {
+            let targets = targets(truth, columns, number)?;
+            let options = PosteriorOptions { seed: options.seed.wrapping_add(number as u64), ..options };
+            answers.push(pool.answer(emulator, priors, truth, &targets, options, &mut random)?);
+        }
+        let prior: Vec<f64> = (0..priors.len())
+            .map(|field| {
+                let column: Vec<f64> = pool.points.iter().map(|point| point[field]).collect();
+                weighted_moments(&column, &vec![1.0 / POOL as f64; POOL])[1]
+            })
+            .collect();
+        let field = |field: usize| {
+            let ranks: Vec<f64> = answers.iter().map(|answer| answer.ranks[field]).collect();
+            let width = answers.iter().map(|answer| answer.deviations[field]).sum::<f64>();
+            FieldCalibration::of(&ranks, width / (truths.len() as f64 * prior[field].max(1e-12)))
+        };
+        Ok(Self { truths: truths.len(), fields: (0..priors.len()).map(field).collect() })
+    }
+}
+
+fn targets(truth: &Truth, columns: &[(usize, f64)], number: usize) -> Result<Vec<Target>, Error> {
+    let target = |&(output, tolerance): &(usize, f64)| match truth.outputs.get(output) {
+        Some(&value) => Ok(Target { output, value, tolerance }),
+        None => {
+            let found = truth.outputs.len();
+            Err(Error::Shape { what: "outputs of truth", number, found, expected: output + 1 })
+        }
+    };
+    columns.iter().map(target).collect()
+}
+
+/// Points of the prior whose predictions are known once for all truths.
+struct Pool {
+    points: Vec<Vec<f64>>,
+    predictions: Predictions,
+}
+
+impl Pool {
+    fn new(emulator: &Emulator, columns: &[(usize, f64)], points: Vec<Vec<f64>>) -> Self {
+        let outputs: Vec<usize> = columns.iter().map(|column| column.0).collect();
+        Self { predictions: Predictions::of(emulator, &outputs, &points), points }
+    }
+
+    fn answer(
+        &self,
+        emulator: &Emulator,
+        priors: &[Prior],
+        truth: &Truth,
+        targets: &[Target],
+        options: PosteriorOptions,
+        random: &mut Random,
+    ) -> Result<Answer, Error> {
+        let likelihood = Likelihood::new(emulator, targets)?;
+        let logs = likelihood.at_predicted(&self.predictions);
+        let (weights, _) = posterior::weights(&logs, 1.0);
+        let enough = posterior::effective(&weights) >= ENOUGH;
+        let (points, weights) = if enough {
+            (self.points.clone(), weights)
+        } else {
+            let found = Posterior::of(emulator, priors, targets, options)?;
+            let even = vec![1.0 / found.draws.len() as f64; found.draws.len()];
+            (found.draws, even)
+        };
+        let mut answer = Answer { ranks: Vec::new(), deviations: Vec::new() };
+        for field in 0..priors.len() {
+            let column: Vec<f64> = points.iter().map(|point| point[field]).collect();
+            answer.ranks.push(rank(truth.point[field], &column, &weights, random.share()));
+            answer.deviations.push(weighted_moments(&column, &weights)[1]);
+        }
+        Ok(answer)
+    }
+}
+
+impl FieldCalibration {
+    /// From ranks of truths among their draws, 0 … 1.
+    pub fn of(ranks: &[f64], width: f64) -> Self {
+        let within = |share: f64| {
+            let half = 0.5 * (1.0 - share);
+            let held = ranks.iter().filter(|&&rank| rank >= half && rank <= 1.0 - half).count();
+            Share::of(held, ranks.len())
+        };
+        let mut histogram = [0; BINS];
+        for rank in ranks {
+            histogram[((rank * BINS as f64) as usize).min(BINS - 1)] += 1;
+        }
+        let even = ranks.len() as f64 / BINS as f64;
+        let chi_squared: f64 = histogram.iter().map(|&n| (n as f64 - even).powi(2) / even).sum();
+        let p_value = ChiSquared::new(BINS as f64 - 1.0).map_or(f64::NAN, |chi| chi.sf(chi_squared));
+        Self {
+            coverage_50: within(0.5),
+            coverage_90: within(0.9),
+            ranks: histogram,
+            chi_squared,
+            p_value,
+            width,
+        }
+    }
+}
+
+impl Share {
+    /// `held` of `all`, with Wilson's interval of 95 % (J. American Statistical Association 22, 1927).
+    pub fn of(held: usize, all: usize) -> Self {
+        let (n, z) = (all as f64, normal_quantile(0.975));
+        let share = held as f64 / n;
+        let middle = (share + z * z / (2.0 * n)) / (1.0 + z * z / n);
+        let half = z / (1.0 + z * z / n) * (share * (1.0 - share) / n + z * z / (4.0 * n * n)).sqrt();
+        Self { share, low: (middle - half).max(0.0), high: (middle + half).min(1.0) }
+    }
+}

@@ -1,0 +1,83 @@
+//! How likely it is that a run yields an output at all: a Gaussian process on zeros and ones, whose cross-validated
+//! predictions are turned into probabilities by a logistic curve (Rasmussen and Williams, §6.5; Platt 1999).
+
+use super::{
+    hyper::{Hyper, Sample},
+    regression::Regression,
+};
+use crate::error::Error;
+
+/// Steps of Newton's method for the two numbers of the logistic curve.
+const STEPS: usize = 30;
+
+/// The probability that an output exists.
+#[derive(Debug, Clone)]
+pub(super) struct Existence {
+    function: Option<Regression>,
+    offset: f64,
+    slope: f64,
+    /// As far as so many runs can tell, it is no nearer to 0 or 1.
+    least: f64,
+}
+
+impl Existence {
+    /// From how many of the runs at each point have it.
+    pub(super) fn fit(points: &[Vec<f64>], have: &[f64], runs: &[f64]) -> Result<Self, Error> {
+        let (some, all): (f64, f64) = (have.iter().sum(), runs.iter().sum());
+        let least = 0.5 / (all + 1.0);
+        let share = (some + 0.5) / (all + 1.0);
+        if some == 0.0 || some == all {
+            return Ok(Self { function: None, offset: logit(share), slope: 0.0, least });
+        }
+        let deviation = (share * (1.0 - share)).sqrt();
+        let values: Vec<f64> = have.iter().zip(runs).map(|(h, n)| (h / n - share) / deviation).collect();
+        let factors: Vec<f64> = runs.iter().map(|n| 1.0 / n).collect();
+        let linear = points.len() > points[0].len() + 2;
+        let sample = Sample { points, values: &values, factors: &factors, linear };
+        let (function, left_out) = Regression::fit(&sample, &Hyper::fit(&sample, None))?;
+        let means: Vec<f64> = left_out.iter().map(|point| point.mean).collect();
+        let [offset, slope] = logistic(&means, have, runs, logit(share));
+        Ok(Self { function: Some(function), offset, slope, least })
+    }
+
+    /// At points.
+    pub(super) fn predict(&self, points: &[Vec<f64>]) -> Vec<f64> {
+        let probability = |x: f64| {
+            (1.0 / (1.0 + (-self.offset - self.slope * x).exp())).clamp(self.least, 1.0 - self.least)
+        };
+        match &self.function {
+            None => vec![probability(0.0); points.len()],
+            Some(function) => function.predict(points).iter().map(|[mean, _]| probability(*mean)).collect(),
+        }
+    }
+}
+
+fn logit(share: f64) -> f64 {
+    (share / (1.0 - share)).ln()
+}
+
+/// Offset and slope of the most likely logistic curve, with a weak prior (standard deviations 5) that keeps it finite
+/// where the two kinds are separate.
+fn logistic(means: &[f64], have: &[f64], runs: &[f64], start: f64) -> [f64; 2] {
+    let mut at = [start, 1.0];
+    for _ in 0..STEPS {
+        let mut gradient = [-at[0] / 25.0, -at[1] / 25.0];
+        let [mut aa, mut ab, mut bb] = [1.0 / 25.0, 0.0, 1.0 / 25.0];
+        for ((x, h), n) in means.iter().zip(have).zip(runs) {
+            let p = 1.0 / (1.0 + (-at[0] - at[1] * x).exp());
+            let weight = n * p * (1.0 - p);
+            gradient[0] += h - n * p;
+            gradient[1] += (h - n * p) * x;
+            aa += weight;
+            ab += weight * x;
+            bb += weight * x * x;
+        }
+        let determinant = aa * bb - ab * ab;
+        let step = [
+            (bb * gradient[0] - ab * gradient[1]) / determinant,
+            (aa * gradient[1] - ab * gradient[0]) / determinant,
+        ];
+        at = [at[0] + step[0].clamp(-2.0, 2.0), at[1] + step[1].clamp(-2.0, 2.0)];
+    }
+    at
+}
