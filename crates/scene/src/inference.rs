@@ -394,9 +394,10 @@ fn unknowns(texts: &[UnknownText], place: &File<'_>) -> Result<Vec<Unknown>, Sce
                 return Err(place.shown(problem, &format!("{at}.field")));
             }
         } else if text.name.is_empty() {
-            return Err(
-                place.refuse(&at, "a choice of `sets` or `readings` has a `name`, by which it is reported".to_owned())
-            );
+            return Err(place.refuse(
+                &at,
+                "a choice of `sets` or `readings` has a `name`, by which it is reported".to_owned(),
+            ));
         }
         if unknowns.iter().any(|before| before.name == *name) {
             return Err(place.refuse(&at, format!("`{name}` is named twice: an unknown has one prior")));
@@ -413,14 +414,15 @@ impl UnknownText {
         let choices = [listed.len(), self.sets.len(), self.readings.len()];
         let range = self.from.is_some() || self.to.is_some() || self.mean.is_some();
         if choices.iter().filter(|count| **count > 0).count() + usize::from(range) != 1 {
-            return Err(
-                "takes one of `values: […]`, `sets: [[…], …]`, `readings: […]`, and `from` and `to`".to_owned()
-            );
+            return Err("takes one of `values: […]`, `sets: [[…], …]`, `readings: […]`, and `from` and `to`"
+                .to_owned());
         }
         match choices {
             [0, 0, 0] => {}
             [1, 0, 0] | [0, 1, 0] | [0, 0, 1] => {
-                return Err("has one choice, which is no unknown: `set: [\"field=value\"]` gives it".to_owned());
+                return Err(
+                    "has one choice, which is no unknown: `set: [\"field=value\"]` gives it".to_owned()
+                );
             }
             [_, 0, 0] => return Ok(Values::Listed(listed)),
             [0, _, 0] => return Ok(Values::Sets(self.sets.clone())),
@@ -455,10 +457,13 @@ fn targets(texts: &[TargetText], unknowns: &[Unknown], place: &File<'_>) -> Resu
         let at = format!("targets[{n}]");
         let of = Quantity::parse(&text.of).map_err(|why| place.refuse(&format!("{at}.of"), why))?;
         let readings = |unknown: &&Unknown| matches!(unknown.values, Values::Readings(_));
-        if let Some(lost) = of.placeholders().into_iter().find(|name| {
-            !unknowns.iter().filter(readings).any(|unknown| unknown.name == *name)
-        }) {
-            let why = format!("`{}` asks for `{{{lost}}}`, and no unknown of `readings` has that name", text.of);
+        if let Some(lost) = of
+            .placeholders()
+            .into_iter()
+            .find(|name| !unknowns.iter().filter(readings).any(|unknown| unknown.name == *name))
+        {
+            let why =
+                format!("`{}` asks for `{{{lost}}}`, and no unknown of `readings` has that name", text.of);
             return Err(place.refuse(&format!("{at}.of"), why));
         }
         let name = if text.name.is_empty() { text.of.clone() } else { text.name.clone() };

@@ -93,7 +93,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     check_folder(&out, &[FILE])?;
     enter(&out, &inference)?;
     let interrupt = Interrupt::listen()?;
-    let study = Study { options, inference: &inference, rounds: Rounds::new(&inference, out.clone()), interrupt: &interrupt };
+    let study = Study {
+        options,
+        inference: &inference,
+        rounds: Rounds::new(&inference, out.clone()),
+        interrupt: &interrupt,
+    };
     let Some(known) = study.carry_out()? else {
         eprintln!("the same command goes on");
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
@@ -173,7 +178,17 @@ impl Study<'_> {
             None => None,
         };
         let priors = rounds.priors().to_vec();
-        Ok(Some(Known { inference, priors, scenes: points.len(), rounds: number - 1, table, emulator, posterior, check, truths }))
+        Ok(Some(Known {
+            inference,
+            priors,
+            scenes: points.len(),
+            rounds: number - 1,
+            table,
+            emulator,
+            posterior,
+            check,
+            truths,
+        }))
     }
 
     /// Points that fill the prior evenly.
@@ -200,7 +215,8 @@ impl Study<'_> {
     /// Runs a round to its end; false when Ctrl-C was pressed.
     fn make(&self, round: Round, points: &[Point]) -> Result<bool> {
         let Self { options, inference, rounds, interrupt } = self;
-        let mine = |number: usize| options.shard.is_none_or(|Shard { part, of }| (number - 1) % of == part - 1);
+        let mine =
+            |number: usize| options.shard.is_none_or(|Shard { part, of }| (number - 1) % of == part - 1);
         let wanted = || Rounds::wanted(points).filter(|wanted| mine(wanted.number));
         let due = rounds.runs().due(Keep::Numbers, wanted(), interrupt)?;
         let share = Share { jobs: options.jobs, threads: options.threads, memory_gb: options.memory_gb };
@@ -237,14 +253,16 @@ impl Study<'_> {
     /// Refuses targets that no run has, as soon as a run has ended.
     fn check_targets(&self, points: &[Point]) -> Result<()> {
         for wanted in Rounds::wanted(points) {
-            if let (Ok(scene), Stage::Done) = (wanted.scene, self.rounds.runs().stage(Keep::Numbers, wanted)?) {
+            if let (Ok(scene), Stage::Done) = (wanted.scene, self.rounds.runs().stage(Keep::Numbers, wanted)?)
+            {
                 return outputs::check(self.inference, &summary_of(&self.rounds.runs().run(scene))?);
             }
         }
-        let why = Rounds::wanted(points).find_map(|wanted| match self.rounds.runs().stage(Keep::Numbers, wanted) {
-            Ok(Stage::Refused(why) | Stage::Failed(why)) => Some(why),
-            _ => None,
-        });
+        let why =
+            Rounds::wanted(points).find_map(|wanted| match self.rounds.runs().stage(Keep::Numbers, wanted) {
+                Ok(Stage::Refused(why) | Stage::Failed(why)) => Some(why),
+                _ => None,
+            });
         bail!("no scene of the first round could be run. The first: {}", why.unwrap_or_default())
     }
 
@@ -258,7 +276,8 @@ impl Study<'_> {
             Some(points) => points,
             None => {
                 let step = (posterior.draws.len() / count).max(1);
-                let draws: Vec<Vec<f64>> = posterior.draws.iter().step_by(step).take(count).cloned().collect();
+                let draws: Vec<Vec<f64>> =
+                    posterior.draws.iter().step_by(step).take(count).cloned().collect();
                 self.rounds.plan(Round::Check, &draws)?
             }
         };

@@ -31,10 +31,11 @@ from pathlib import Path
 from typing import Any, Callable
 
 from . import _ron, _stribeck, dsp
-from ._program import Campaign, campaign, command, export, validate
+from ._program import Campaign, Inference, campaign, command, export, infer, validate
 
 __all__ = [
     "Campaign",
+    "Inference",
     "Run",
     "analyse",
     "campaign",
@@ -42,6 +43,7 @@ __all__ = [
     "defect_orders",
     "dsp",
     "export",
+    "infer",
     "load",
     "run",
     "scene",

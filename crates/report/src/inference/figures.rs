@@ -20,7 +20,8 @@ pub(super) fn marginals(answer: &Answer) -> Picture {
         panel(&mut sheet, field, at, [PANEL[0] - 24.0, PANEL[1] - 62.0]);
     }
     let mut picture = Picture::new("marginals", "What each unknown can have been", sheet);
-    picture.caption = "Blue: probability after the targets. Grey line: before. Bar below: the 90 % interval.".to_owned();
+    picture.caption =
+        "Blue: probability after the targets. Grey line: before. Bar below: the 90 % interval.".to_owned();
     picture
 }
 
@@ -33,14 +34,23 @@ fn panel(sheet: &mut Sheet, field: &FieldFound, [x, y]: [f64; 2], [width, height
         let tall = height * share / top;
         let left = x + n as f64 * bar;
         sheet.path(
-            &[[left, y + height], [left, y + height - tall], [left + bar - 0.5, y + height - tall], [left + bar - 0.5, y + height]],
+            &[
+                [left, y + height],
+                [left, y + height - tall],
+                [left + bar - 0.5, y + height - tall],
+                [left + bar - 0.5, y + height],
+            ],
             true,
             &format!("fill:{};fill-opacity:0.75;stroke:none", Colour::Blue.css()),
         );
     }
     let even = y + height - height / (count as f64 * top);
     sheet.path(&[[x, even], [x + width, even]], false, &format!("fill:none;stroke:{GREY};stroke-width:1"));
-    sheet.path(&[[x, y + height], [x + width, y + height]], false, &format!("fill:none;stroke:{TEXT};stroke-width:1"));
+    sheet.path(
+        &[[x, y + height], [x + width, y + height]],
+        false,
+        &format!("fill:none;stroke:{TEXT};stroke-width:1"),
+    );
     match (field.ends, field.interval_90) {
         (Some([from, to]), Some([low, high])) => {
             sheet.text([x, y + height + 24.0], 11.0, Anchor::Start, GREY, &short(from));
@@ -61,7 +71,13 @@ fn panel(sheet: &mut Sheet, field: &FieldFound, [x, y]: [f64; 2], [width, height
             for (n, choice) in field.choices.iter().enumerate().filter(|_| count <= 8) {
                 let middle = x + (n as f64 + 0.5) * bar;
                 let most = ((bar / 6.0) as usize).max(3);
-                sheet.text([middle, y + height + 14.0 + 10.0 * (n % 2) as f64], 10.0, Anchor::Middle, TEXT, &cut(&choice.value, most * 2));
+                sheet.text(
+                    [middle, y + height + 14.0 + 10.0 * (n % 2) as f64],
+                    10.0,
+                    Anchor::Middle,
+                    TEXT,
+                    &cut(&choice.value, most * 2),
+                );
             }
             if let (true, [first, .., last]) = (count > 8, &field.choices[..]) {
                 sheet.text([x, y + height + 14.0], 10.0, Anchor::Start, TEXT, &first.value);
@@ -77,7 +93,11 @@ fn share_of(field: &FieldFound, value: f64, from: f64, to: f64) -> f64 {
 
 /// The beginning of a text.
 fn cut(text: &str, most: usize) -> String {
-    if text.chars().count() <= most { text.to_owned() } else { text.chars().take(most - 1).chain(['…']).collect() }
+    if text.chars().count() <= most {
+        text.to_owned()
+    } else {
+        text.chars().take(most - 1).chain(['…']).collect()
+    }
 }
 
 /// Draws over every pair of unknowns.
@@ -109,11 +129,20 @@ pub(super) fn pairs(answer: &Answer) -> Picture {
                 let r = answer.pairs[row][column];
                 for (n, draw) in answer.shown.iter().enumerate() {
                     let place = |field: usize| spread(&answer.fields[field], draw[field], n);
-                    let at = [corner[0] + 2.0 + (cell - 7.0) * place(column), corner[1] + cell - 5.0 - (cell - 7.0) * place(row)];
+                    let at = [
+                        corner[0] + 2.0 + (cell - 7.0) * place(column),
+                        corner[1] + cell - 5.0 - (cell - 7.0) * place(row),
+                    ];
                     sheet.circle(at, 1.1, &format!("fill:{};fill-opacity:0.35", Colour::Blue.css()));
                 }
                 if r.abs() >= 0.3 {
-                    sheet.text([corner[0] + cell - 7.0, corner[1] + 12.0], 10.0, Anchor::End, TEXT, &format!("{r:+.1}"));
+                    sheet.text(
+                        [corner[0] + cell - 7.0, corner[1] + 12.0],
+                        10.0,
+                        Anchor::End,
+                        TEXT,
+                        &format!("{r:+.1}"),
+                    );
                 }
             }
         }
@@ -158,17 +187,27 @@ pub(super) fn targets(answer: &Answer) -> Picture {
             left + width * ((scaled(value) - scaled(low)) / (scaled(high) - scaled(low))).clamp(-0.02, 1.02)
         };
         if let Some([a, b, c, d, e]) = target.predicted {
-            let paint = |wide: f64| format!("fill:none;stroke:{};stroke-opacity:0.55;stroke-width:{wide}", Colour::Blue.css());
+            let paint = |wide: f64| {
+                format!("fill:none;stroke:{};stroke-opacity:0.55;stroke-width:{wide}", Colour::Blue.css())
+            };
             sheet.path(&[[place(a), y], [place(e), y]], false, &paint(3.0));
             sheet.path(&[[place(b), y], [place(d), y]], false, &paint(9.0));
-            sheet.path(&[[place(c), y - 6.0], [place(c), y + 6.0]], false, &format!("fill:none;stroke:{TEXT};stroke-width:1.5"));
+            sheet.path(
+                &[[place(c), y - 6.0], [place(c), y + 6.0]],
+                false,
+                &format!("fill:none;stroke:{TEXT};stroke-width:1.5"),
+            );
         }
         for value in &target.run_values {
             sheet.circle([place(*value), y + 9.0], 2.0, &format!("fill:{}", Colour::Orange.css()));
         }
         if let Some(value) = target.value {
             let x = place(value);
-            sheet.path(&[[x, y - 10.0], [x, y + 13.0]], false, &format!("fill:none;stroke:{};stroke-width:2", Colour::Red.css()));
+            sheet.path(
+                &[[x, y - 10.0], [x, y + 13.0]],
+                false,
+                &format!("fill:none;stroke:{};stroke-width:2", Colour::Red.css()),
+            );
             sheet.text([left + width + 16.0, y + 4.0], 11.0, Anchor::Start, Colour::Red.css(), &short(value));
         }
     }
@@ -184,7 +223,8 @@ fn span(target: &TargetFound) -> Option<(f64, f64)> {
     if target.predicted.is_none() && target.run_values.is_empty() {
         return None;
     }
-    let (low, high) = (all.iter().copied().fold(f64::MAX, f64::min), all.iter().copied().fold(f64::MIN, f64::max));
+    let (low, high) =
+        (all.iter().copied().fold(f64::MAX, f64::min), all.iter().copied().fold(f64::MIN, f64::max));
     if target.logarithmic {
         Some((low / 1.1, high * 1.1))
     } else {
@@ -197,16 +237,27 @@ fn span(target: &TargetFound) -> Option<(f64, f64)> {
 pub(super) fn pulls(answer: &Answer) -> Picture {
     let (left, top, wide, line) = (220.0, 110.0, 52.0, 24.0);
     let columns = answer.fields.len();
-    let mut sheet = Sheet::new(left + wide * columns as f64 + 20.0, top + line * answer.targets.len() as f64 + 10.0);
+    let mut sheet =
+        Sheet::new(left + wide * columns as f64 + 20.0, top + line * answer.targets.len() as f64 + 10.0);
     for (column, field) in answer.fields.iter().enumerate() {
         let y = top - 8.0 - 14.0 * (column % 6) as f64;
-        sheet.text([left + wide * (column as f64 + 0.5), y], 11.0, Anchor::Middle, TEXT, &cut(last(&field.name), 22));
+        sheet.text(
+            [left + wide * (column as f64 + 0.5), y],
+            11.0,
+            Anchor::Middle,
+            TEXT,
+            &cut(last(&field.name), 22),
+        );
     }
     for (row, target) in answer.targets.iter().enumerate() {
         let y = top + line * row as f64;
         sheet.text([left - 8.0, y + 15.0], 12.0, Anchor::End, TEXT, &cut(&target.name, 34));
         for (column, field) in answer.fields.iter().enumerate() {
-            let Some(pull) = answer.pulls.iter().find(|pull| pull.target == target.name && pull.field == field.name) else { continue };
+            let Some(pull) =
+                answer.pulls.iter().find(|pull| pull.target == target.name && pull.field == field.name)
+            else {
+                continue;
+            };
             let x = left + wide * column as f64;
             let strength = (pull.divergence / 0.5).sqrt().min(1.0);
             let colour = if pull.shift >= 0.0 { Colour::Red.css() } else { Colour::Blue.css() };
@@ -216,7 +267,13 @@ pub(super) fn pulls(answer: &Answer) -> Picture {
                 &format!("fill:{colour};fill-opacity:{strength:.3};stroke:#ddd;stroke-width:0.5"),
             );
             if pull.shift.abs() >= 0.2 {
-                sheet.text([x + 0.5 * wide, y + 15.0], 10.0, Anchor::Middle, TEXT, &format!("{:+.1}", pull.shift).replace('-', "−"));
+                sheet.text(
+                    [x + 0.5 * wide, y + 15.0],
+                    10.0,
+                    Anchor::Middle,
+                    TEXT,
+                    &format!("{:+.1}", pull.shift).replace('-', "−"),
+                );
             }
         }
     }
@@ -240,7 +297,12 @@ pub(super) fn ranks(fields: &[FieldCalibrated]) -> Picture {
         let top = field.ranks.iter().copied().max().unwrap_or(1).max((even + room).ceil() as usize) as f64;
         let level = |count: f64| y + height * (1.0 - count / top);
         sheet.path(
-            &[[x, level((even - room).max(0.0))], [x + width, level((even - room).max(0.0))], [x + width, level(even + room)], [x, level(even + room)]],
+            &[
+                [x, level((even - room).max(0.0))],
+                [x + width, level((even - room).max(0.0))],
+                [x + width, level(even + room)],
+                [x, level(even + room)],
+            ],
             true,
             "fill:#ddd;stroke:none",
         );
@@ -248,7 +310,12 @@ pub(super) fn ranks(fields: &[FieldCalibrated]) -> Picture {
         for (m, &count) in field.ranks.iter().enumerate() {
             let left = x + m as f64 * bar;
             sheet.path(
-                &[[left, y + height], [left, level(count as f64)], [left + bar - 1.0, level(count as f64)], [left + bar - 1.0, y + height]],
+                &[
+                    [left, y + height],
+                    [left, level(count as f64)],
+                    [left + bar - 1.0, level(count as f64)],
+                    [left + bar - 1.0, y + height],
+                ],
                 true,
                 &format!("fill:{};fill-opacity:0.6;stroke:none", Colour::Blue.css()),
             );

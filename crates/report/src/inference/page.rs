@@ -145,7 +145,8 @@ fn reach(answer: &Answer) -> Markup {
 }
 
 fn trust(answer: &Answer) -> Markup {
-    let percent = |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    let percent =
+        |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     html! {
         p { (format!("The draws of the posterior count for {:.0} independent ones. Outputs are emulated by Gaussian processes; each point is predicted from the others:", answer.effective_draws)) }
         div class="scroll" {

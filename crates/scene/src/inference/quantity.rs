@@ -111,7 +111,8 @@ impl Quantity {
         let mut with = self.clone();
         for step in &mut with.steps {
             if let Item::Where(conditions) = &mut step.item {
-                for (_, value) in conditions.iter_mut().filter(|(_, value)| placeholder(value) == Some(name)) {
+                for (_, value) in conditions.iter_mut().filter(|(_, value)| placeholder(value) == Some(name))
+                {
                     reading.clone_into(value);
                 }
             }

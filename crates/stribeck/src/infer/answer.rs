@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::Result;
 use stribeck_formats::parquet::{Column, Values as Cells, write_table};
 use stribeck_infer::{
-    Calibration, Conflict, Emulator, NextOptions, Posterior, PosteriorOptions, Predictive, Prior, Truth, expected_gain,
-    interval, next, pulls, quantile,
+    Calibration, Conflict, Emulator, NextOptions, Posterior, PosteriorOptions, Predictive, Prior, Truth,
+    expected_gain, interval, next, pulls, quantile,
 };
 use stribeck_report::inference::{
     Answer, Choice, Excluded, FieldCalibrated, FieldFound, Pulled, Quality, TargetFound,
@@ -163,7 +163,8 @@ fn pairs(posterior: &Posterior) -> Vec<Vec<f64>> {
     let moments: Vec<[f64; 2]> = (0..columns.len()).map(|field| posterior.moments(field)).collect();
     let one = |a: usize, b: usize| {
         let [[mean_a, sd_a], [mean_b, sd_b]] = [moments[a], moments[b]];
-        let product = columns[a].iter().zip(&columns[b]).map(|(x, y)| (x - mean_a) * (y - mean_b)).sum::<f64>();
+        let product =
+            columns[a].iter().zip(&columns[b]).map(|(x, y)| (x - mean_a) * (y - mean_b)).sum::<f64>();
         let spread = sd_a * sd_b * columns[a].len() as f64;
         if spread > 0.0 { (product / spread).clamp(-1.0, 1.0) } else { 0.0 }
     };
@@ -211,7 +212,8 @@ fn target_found(known: &Known<'_>, number: usize, predictive: &Predictive) -> Ta
 fn written(known: &Known<'_>, point: &[f64]) -> Vec<[String; 2]> {
     let of = |((unknown, prior), &share): ((&Unknown, &Prior), &f64)| {
         let value = prior.quantile(share);
-        let short = if unknown.choices().is_some() { value } else { format!("{value:.3e}").parse().unwrap_or(value) };
+        let short =
+            if unknown.choices().is_some() { value } else { format!("{value:.3e}").parse().unwrap_or(value) };
         [unknown.name.clone(), unknown.written(short)]
     };
     known.inference.unknowns.iter().zip(&known.priors).zip(point).map(of).collect()
@@ -247,7 +249,8 @@ pub(super) fn write_draws(path: &Path, known: &Known<'_>) -> Result<()> {
         .iter()
         .enumerate()
         .map(|(field, unknown)| {
-            let values = known.posterior.column(field).into_iter().map(|share| known.priors[field].quantile(share));
+            let values =
+                known.posterior.column(field).into_iter().map(|share| known.priors[field].quantile(share));
             let values = if unknown.choices().is_some() {
                 Cells::Text(values.map(|value| Some(unknown.written(value))).collect())
             } else {
@@ -283,9 +286,18 @@ pub(super) fn tell(answer: &Answer) {
         }
     }
     for target in answer.out_of_reach() {
-        say!("no scene of the prior makes `{}`: the nearest is {:+.1} standard deviations off", target.name, target.best_alone);
+        say!(
+            "no scene of the prior makes `{}`: the nearest is {:+.1} standard deviations off",
+            target.name,
+            target.best_alone
+        );
     }
     for pair in &answer.excluded {
-        say!("`{}` and `{}` exclude one another: {:.1} standard deviations at best", pair.targets[0], pair.targets[1], pair.deviations);
+        say!(
+            "`{}` and `{}` exclude one another: {:.1} standard deviations at best",
+            pair.targets[0],
+            pair.targets[1],
+            pair.deviations
+        );
     }
 }

@@ -132,7 +132,10 @@ fn readings(inference: &Inference, shares: &[f64], most: usize) -> Vec<(Vec<f64>
             let quantities = quantities.iter().map(|of| of.with(&unknown.name, &readings[number])).collect();
             (shares, quantities)
         };
-        all = all.iter().flat_map(|before| (0..taken).map(move |k| with(before, k)).collect::<Vec<_>>()).collect();
+        all = all
+            .iter()
+            .flat_map(|before| (0..taken).map(move |k| with(before, k)).collect::<Vec<_>>())
+            .collect();
     }
     all
 }
@@ -140,7 +143,9 @@ fn readings(inference: &Inference, shares: &[f64], most: usize) -> Vec<(Vec<f64>
 fn found(inference: &Inference, quantities: &[Quantity], summary: &Value) -> Vec<Found> {
     let one = |(target, of): (&stribeck_scene::inference::Target, &Quantity)| match &target.seen {
         // On a logarithmic scale nothing is no number.
-        Seen::Value(_) | Seen::Nothing => Found::Number(of.number(summary).filter(|value| !target.log || *value > 0.0)),
+        Seen::Value(_) | Seen::Nothing => {
+            Found::Number(of.number(summary).filter(|value| !target.log || *value > 0.0))
+        }
         Seen::Curve(curve) => Found::Curve(of.curve(summary).filter(|found| found.len() == curve.len())),
     };
     inference.targets.iter().zip(quantities).map(one).collect()
@@ -225,7 +230,10 @@ fn shapes<'a>(name: &str, found: impl Iterator<Item = &'a Found>, length: usize)
         })
         .collect();
     if curves.len() < 3 {
-        bail!("target `{name}`: {} runs have a curve of {length} numbers; 3 at least are needed", curves.len());
+        bail!(
+            "target `{name}`: {} runs have a curve of {length} numbers; 3 at least are needed",
+            curves.len()
+        );
     }
     Ok(Curves::fit(&curves, KEPT, MOST_COMPONENTS)?)
 }

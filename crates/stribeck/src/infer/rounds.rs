@@ -59,7 +59,9 @@ pub(super) fn prior(unknown: &Unknown) -> Prior {
         Values::Range { from, to, log: false } => Prior::Uniform { from: *from, to: *to },
         Values::Range { from, to, log: true } => Prior::LogUniform { from: *from, to: *to },
         Values::Normal { mean, sd, from, to } => Prior::Normal { mean: *mean, sd: *sd, from: *from, to: *to },
-        Values::Listed(_) | Values::Sets(_) | Values::Readings(_) => Prior::Choices(unknown.choices().unwrap_or(1)),
+        Values::Listed(_) | Values::Sets(_) | Values::Readings(_) => {
+            Prior::Choices(unknown.choices().unwrap_or(1))
+        }
     }
 }
 
@@ -95,7 +97,8 @@ impl<'a> Rounds<'a> {
         let Ok(text) = std::fs::read_to_string(&path) else { return Ok(None) };
         let unknowns = self.inference.unknowns.len();
         let line = |(number, line): (usize, &str)| {
-            let shares: Vec<f64> = line.split(',').map_while(|cell| cell.trim().parse().ok()).take(unknowns).collect();
+            let shares: Vec<f64> =
+                line.split(',').map_while(|cell| cell.trim().parse().ok()).take(unknowns).collect();
             ensure!(
                 shares.len() == unknowns && shares.iter().all(|share| (0.0..=1.0).contains(share)),
                 "`{}`, line {}: {unknowns} shares from 0 to 1 are expected; delete the file to plan the round anew",
@@ -117,7 +120,12 @@ impl<'a> Rounds<'a> {
         for shares in shares {
             let numbers: Vec<String> = shares.iter().map(ToString::to_string).collect();
             let values = self.values(shares);
-            let written = self.inference.unknowns.iter().zip(&values).map(|(unknown, &value)| quoted(&unknown.written(value)));
+            let written = self
+                .inference
+                .unknowns
+                .iter()
+                .zip(&values)
+                .map(|(unknown, &value)| quoted(&unknown.written(value)));
             writeln!(text, "{},{}", numbers.join(","), written.collect::<Vec<_>>().join(","))?;
         }
         path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
@@ -134,15 +142,18 @@ impl<'a> Rounds<'a> {
     /// has one.
     fn point(&self, round: Round, number: usize, shares: Vec<f64>) -> Point {
         let starts = if round == Round::Truths { 1 } else { self.inference.starts };
-        let scenes = self.inference.scene(&self.values(&shares)).map_err(|why| why.to_string()).map(|scene| {
-            let seed = match round {
-                Round::Number(round) => 1000 * round,
-                Round::Check => 1_000_000,
-                Round::Truths => 2_000_000,
-            };
-            let seed = self.inference.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ ((seed as u64) << 32) ^ number as u64;
-            (1..=starts).map(|number| start(&scene, seed, number)).collect()
-        });
+        let scenes =
+            self.inference.scene(&self.values(&shares)).map_err(|why| why.to_string()).map(|scene| {
+                let seed = match round {
+                    Round::Number(round) => 1000 * round,
+                    Round::Check => 1_000_000,
+                    Round::Truths => 2_000_000,
+                };
+                let seed = self.inference.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15)
+                    ^ ((seed as u64) << 32)
+                    ^ number as u64;
+                (1..=starts).map(|number| start(&scene, seed, number)).collect()
+            });
         Point { shares, scenes }
     }
 
