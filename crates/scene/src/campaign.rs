@@ -197,7 +197,7 @@ impl Campaign {
             let set: Vec<String> = file.set.iter().cloned().chain(assigned).collect();
             let scene = match &base {
                 Some(path) => Scene::read_with(path, &set),
-                None => Scene::default().with_overrides(&set),
+                None => Scene::singh2014().with_overrides(&set),
             };
             if scene.is_err() {
                 for (index, problem) in scene_file::unreadable_values(base.as_deref(), &set) {

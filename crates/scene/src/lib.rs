@@ -70,6 +70,7 @@ pub mod lubrication;
 pub mod material;
 pub mod mesh_file;
 pub mod mesh_text;
+pub mod paper;
 mod point_contact;
 pub mod resolved;
 pub mod ring_mesh;

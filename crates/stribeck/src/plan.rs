@@ -20,7 +20,7 @@ use crate::place::Place;
 /// Flags of `plan`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Scene file [default: the bearing of the paper, as in fixtures/scenes/singh2014.ron]
+    /// Scene file [default: the run of the paper, fixtures/scenes/singh2014.ron]
     scene: Option<PathBuf>,
     /// Overrides a field of the scene, for example --set mesh.size_mm=1.0; may be repeated
     #[arg(long = "set", value_name = "FIELD=VALUE")]

@@ -57,6 +57,8 @@ pub(super) fn columns(events: &[Found<'_>]) -> Vec<Column> {
         let finite = |event: &Event| of(event).filter(|number| number.is_finite());
         column(name, Values::Number(events.iter().map(|(_, event)| finite(event)).collect()))
     }));
+    let by = |(_, event): &Found<'_>| event.floor_by.map(|by| by.name().to_owned());
+    columns.push(column("floor_by", Values::Text(events.iter().map(by).collect())));
     columns
 }
 
