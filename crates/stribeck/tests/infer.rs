@@ -42,7 +42,8 @@ fn draws(folder: &Path) -> Vec<u8> {
 fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
     let desk = Scratch::create("infer-truth");
     let set = QUICK.lines().filter_map(|line| line.trim().strip_prefix('"')?.strip_suffix("\","));
-    let set: Vec<String> = set.filter(|line| line.contains('=')).map(|line| line.replace("\\\"", "\"")).collect();
+    let set: Vec<String> =
+        set.filter(|line| line.contains('=')).map(|line| line.replace("\\\"", "\"")).collect();
     let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
     command.current_dir(desk.path()).args(["simulate", "--out=truth"]).stdin(Stdio::null());
     set.iter().for_each(|field| drop(command.args(["--set", field])));
@@ -77,7 +78,8 @@ fn example_load_and_length_are_found_from_a_run_with_both() {
     says(&done, &["defect.length_mm", "operation.load_n", "report: A/report.html"]);
     let answer = answer(&desk.join("A"));
     for (field, truth, most) in [("defect.length_mm", 4.1, 0.6), ("operation.load_n", 700.0, 0.8)] {
-        let found = answer["fields"].as_array().expect("a list").iter().find(|f| f["name"] == field).expect(field);
+        let found =
+            answer["fields"].as_array().expect("a list").iter().find(|f| f["name"] == field).expect(field);
         let interval: Vec<f64> = serde_json::from_value(found["interval_90"].clone()).expect("an interval");
         // Twice as wide as the 90 % interval, so that a sound inference misses it once in a thousand.
         let (middle, half) = (0.5 * (interval[0] + interval[1]), interval[1] - interval[0]);
@@ -107,7 +109,8 @@ fn example_load_and_length_are_found_from_a_run_with_both() {
 
 #[test]
 fn survives_kills_and_any_split_with_the_draws_of_an_unbroken_inference() {
-    let desk = desk("infer-kills", &QUICK.replace("runs: 48, first: 12, round: 6", "runs: 28, first: 9, round: 5"));
+    let desk =
+        desk("infer-kills", &QUICK.replace("runs: 48, first: 12, round: 6", "runs: 28, first: 9, round: 5"));
     let whole = run(&desk, &["--out=A", "--jobs=2", "--threads=2"]);
     assert!(whole.status.success(), "{}", said(&whole));
     let mut noise = Noise::new(5);
@@ -126,7 +129,9 @@ fn survives_kills_and_any_split_with_the_draws_of_an_unbroken_inference() {
     assert_eq!(draws(&desk.join("A")), draws(&desk.join("B")));
     // Two parts at once, in a folder that is not there yet.
     let parts: Vec<_> = ["--shard=1/2", "--shard=2/2"]
-        .map(|part| infer(&desk, &["--out=C", part, "--jobs=1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn())
+        .map(|part| {
+            infer(&desk, &["--out=C", part, "--jobs=1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
+        })
         .into_iter()
         .map(|child| child.expect("it starts"))
         .collect();
@@ -142,7 +147,14 @@ fn refuses_what_no_run_has_and_another_folder() {
     let desk = desk("infer-lost", &lost);
     let done = run(&desk, &["--out=A"]);
     assert!(!done.status.success());
-    says(&done, &["target `exits`", "`levels.impuls_g` is no number of summary.json", "nearest is `levels.impulse_g`"]);
+    says(
+        &done,
+        &[
+            "target `exits`",
+            "`levels.impuls_g` is no number of summary.json",
+            "nearest is `levels.impulse_g`",
+        ],
+    );
     fs::write(desk.join("targets.ron"), QUICK).expect("it can be written");
     let done = run(&desk, &["--out=A"]);
     assert!(!done.status.success());
