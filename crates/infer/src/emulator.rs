@@ -351,7 +351,7 @@ impl Value {
         let mut standardised = Vec::new();
         let mut unexplained = 0.0;
         for (i, those) in members.iter().enumerate() {
-            let scale = (fit.left_out[i].variance + fit.noise * fit.scatter.factors[i]).sqrt();
+            let scale = (fit.left_out[i].variance + fit.noise * fit.scatter.left_out[i]).sqrt();
             for &row in those {
                 let residual = of_row[row].unwrap_or_default() - fit.left_out[i].mean;
                 unexplained += residual * residual;

@@ -12,8 +12,9 @@ use crate::{
     runs::Target,
 };
 
-/// Draws are reweighted if so many of them still count; otherwise the posterior is sought anew.
-const ENOUGH: f64 = 100.0;
+/// Draws are reweighted if so large a share of them still counts; otherwise the posterior is sought anew, since draws
+/// that lie within a narrow posterior know nothing of the tails of a wide one.
+const ENOUGH: f64 = 0.3;
 
 /// What one target does to one field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -55,7 +56,7 @@ pub fn pulls(
             .collect();
         let (weights, _) = posterior::weights(&change, 1.0);
         let rerun;
-        let (draws, weights) = if posterior::effective(&weights) >= ENOUGH {
+        let (draws, weights) = if posterior::effective(&weights) >= ENOUGH * even.len() as f64 {
             (posterior, weights)
         } else {
             let rest = targets.iter().enumerate().filter(|(i, _)| *i != target);

@@ -10,10 +10,16 @@ use crate::error::Error;
 /// Steps of Newton's method for the two numbers of the logistic curve.
 const STEPS: usize = 30;
 
+/// Predictions of the regression nearer to 0 or 1 than this count as this near; the logistic curve may be surer.
+const SURE: f64 = 0.02;
+
 /// The probability that an output exists.
 #[derive(Debug, Clone)]
 pub(super) struct Existence {
     function: Option<Regression>,
+    /// Mean and standard deviation of the zeros and ones.
+    share: f64,
+    deviation: f64,
     offset: f64,
     slope: f64,
     /// As far as so many runs can tell, it is no nearer to 0 or 1.
@@ -27,7 +33,8 @@ impl Existence {
         let least = 0.5 / (all + 1.0);
         let share = (some + 0.5) / (all + 1.0);
         if some == 0.0 || some == all {
-            return Ok(Self { function: None, offset: logit(share), slope: 0.0, least });
+            let none = Self { function: None, share, deviation: 0.0, offset: 0.0, slope: 1.0, least };
+            return Ok(none);
         }
         let deviation = (share * (1.0 - share)).sqrt();
         let values: Vec<f64> = have.iter().zip(runs).map(|(h, n)| (h / n - share) / deviation).collect();
@@ -35,31 +42,35 @@ impl Existence {
         let linear = points.len() > points[0].len() + 2;
         let sample = Sample { points, values: &values, factors: &factors, linear };
         let (function, left_out) = Regression::fit(&sample, &Hyper::fit(&sample, None))?;
-        let means: Vec<f64> = left_out.iter().map(|point| point.mean).collect();
-        let [offset, slope] = logistic(&means, have, runs, logit(share));
-        Ok(Self { function: Some(function), offset, slope, least })
+        let means: Vec<f64> =
+            left_out.iter().map(|point| logit(share + deviation * point.mean)).collect();
+        let [offset, slope] = logistic(&means, have, runs);
+        Ok(Self { function: Some(function), share, deviation, offset, slope, least })
     }
 
     /// At points.
     pub(super) fn predict(&self, points: &[Vec<f64>]) -> Vec<f64> {
-        let probability = |x: f64| {
-            (1.0 / (1.0 + (-self.offset - self.slope * x).exp())).clamp(self.least, 1.0 - self.least)
+        let probability = |mean: f64| {
+            let x = self.offset + self.slope * logit(self.share + self.deviation * mean);
+            (1.0 / (1.0 + (-x).exp())).clamp(self.least, 1.0 - self.least)
         };
         match &self.function {
-            None => vec![probability(0.0); points.len()],
+            None => vec![self.share; points.len()],
             Some(function) => function.predict(points).iter().map(|[mean, _]| probability(*mean)).collect(),
         }
     }
 }
 
+/// Logarithm of the odds. A regression on zeros and ones may leave 0 … 1 a little; it is held within `SURE` of the ends.
 fn logit(share: f64) -> f64 {
+    let share = share.clamp(SURE, 1.0 - SURE);
     (share / (1.0 - share)).ln()
 }
 
 /// Offset and slope of the most likely logistic curve, with a weak prior (standard deviations 5) that keeps it finite
 /// where the two kinds are separate.
-fn logistic(means: &[f64], have: &[f64], runs: &[f64], start: f64) -> [f64; 2] {
-    let mut at = [start, 1.0];
+fn logistic(means: &[f64], have: &[f64], runs: &[f64]) -> [f64; 2] {
+    let mut at = [0.0, 1.0];
     for _ in 0..STEPS {
         let mut gradient = [-at[0] / 25.0, -at[1] / 25.0];
         let [mut aa, mut ab, mut bb] = [1.0 / 25.0, 0.0, 1.0 / 25.0];

@@ -33,12 +33,14 @@ pub(super) struct Scatter {
     pub(super) function: Option<Regression>,
     /// At the points of the sample: variance of one run in units of the even noise.
     pub(super) factors: Vec<f64>,
+    /// The same, each as the other points predict it.
+    pub(super) left_out: Vec<f64>,
 }
 
 impl Scatter {
     /// The same everywhere.
     pub(super) fn even(points: usize) -> Self {
-        Self { function: None, factors: vec![1.0; points] }
+        Self { function: None, factors: vec![1.0; points], left_out: vec![1.0; points] }
     }
 
     /// From the residuals of a fit with `noise × factors` as the variance of a run.
@@ -66,17 +68,23 @@ impl Scatter {
         let hyper = Hyper::fit(&first, None);
         let hyper = Hyper { noise: 1.0, ..hyper };
         let mut function = None;
+        let mut others = Vec::new();
         for _ in 0..PASSES {
             let pairs: Vec<[f64; 2]> = (0..n).map(|i| residual(i, logarithms[i].exp())).collect();
             let values: Vec<f64> = (0..n).map(|i| logarithms[i] + pairs[i][0].min(LARGEST) - 1.0).collect();
             let weights: Vec<f64> = pairs.iter().map(|pair| 2.0 / pair[1].max(0.05)).collect();
             let working = Sample { points: sample.points, values: &values, factors: &weights, linear: false };
-            let (regression, _) = Regression::fit(&working, &hyper)?;
+            let (regression, left_out) = Regression::fit(&working, &hyper)?;
             let fitted = regression.predict(sample.points);
             logarithms = fitted.iter().map(|[mean, _]| mean.clamp(-12.0, 12.0)).collect();
+            others = left_out;
             function = Some(regression);
         }
-        Ok(Self { function, factors: logarithms.iter().map(|x| x.exp()).collect() })
+        Ok(Self {
+            function,
+            factors: logarithms.iter().map(|x| x.exp()).collect(),
+            left_out: others.iter().map(|point| point.mean.clamp(-12.0, 12.0).exp()).collect(),
+        })
     }
 }
 

@@ -1,0 +1,10 @@
+//! Answers with a closed form, and synthetic simulators whose truths are known.
+
+mod calibrated;
+mod design;
+mod gaussian_process;
+mod modes;
+mod posterior_linear;
+mod refusals;
+mod simulator;
+mod targets;
