@@ -6,22 +6,32 @@
 //! levels.sensors[2].gap_g
 //! count(events.floor_n)
 //! levels.sensors[sensor={sensor}].gap_g
+//! count(events.floor_n > 100)
 //! ```
 //!
 //! A list is entered at one item, by number from 0 or by what stands in it; or by all items, which are taken
 //! together as `count`, `share` (of items that have the number), `mean`, `median`, `min`, `max` or `first`
-//! says. A number that is `null`, and an item that is not there, is missing.
+//! says. A number that is `null`, and an item that is not there, is missing. Behind a bound, `> 100` or `< 60`, a
+//! number beyond it is one that is missing to `count` and `share`, and yes or no, 1 or 0, by itself.
 
 use std::fmt;
 
 use serde_json::Value;
 
 /// Which number of `summary.json`, by its path.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Quantity {
     text: String,
     take: Take,
     steps: Vec<Step>,
+    bound: Option<Bound>,
+}
+
+/// On which side of a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Bound {
+    Above(f64),
+    Below(f64),
 }
 
 /// How the numbers of several items become one.
@@ -87,13 +97,19 @@ impl Quantity {
                 (*take, path.trim())
             }
         };
+        let (path, bound) = bound(path)?;
+        if bound.is_some() && !matches!(take, Take::One | Take::Count | Take::Share) {
+            return Err(format!(
+                "`{text}` has a bound, which `count` and `share` know, or a number by itself"
+            ));
+        }
         let steps = steps(path).ok_or_else(|| {
             format!(
                 "`{text}` is no path of summary.json, such as `levels.impulse_g`, \
                  `tones[name=roller_vertices,harmonic=5].level_g` or `count(events.floor_n)`"
             )
         })?;
-        Ok(Self { text: text.to_owned(), take, steps })
+        Ok(Self { text: text.to_owned(), take, steps, bound })
     }
 
     /// Names in braces: what an unknown's readings are put for.
@@ -123,7 +139,11 @@ impl Quantity {
     /// The number of this summary; `None` where there is none.
     pub fn number(&self, summary: &Value) -> Option<f64> {
         let found = follow(summary, &self.steps);
-        let numbers: Vec<f64> = found.iter().filter_map(|value| number(value)).collect();
+        let mut numbers: Vec<f64> = found.iter().filter_map(|value| number(value)).collect();
+        if let (Take::One, Some(bound), [number]) = (self.take, self.bound, &numbers[..]) {
+            return Some(f64::from(bound.holds(*number)));
+        }
+        numbers.retain(|number| self.bound.is_none_or(|bound| bound.holds(*number)));
         let all = || numbers.iter().copied();
         match self.take {
             Take::One => (numbers.len() == 1).then(|| numbers[0]),
@@ -185,6 +205,23 @@ pub fn names(summary: &Value) -> Vec<String> {
     all.sort();
     all.dedup();
     all
+}
+
+impl Bound {
+    fn holds(self, number: f64) -> bool {
+        match self {
+            Self::Above(limit) => number > limit,
+            Self::Below(limit) => number < limit,
+        }
+    }
+}
+
+/// A path, and the bound behind it.
+fn bound(text: &str) -> Result<(&str, Option<Bound>), String> {
+    let Some(at) = text.find(['>', '<']) else { return Ok((text, None)) };
+    let (path, limit) = (text[..at].trim(), text[at + 1..].trim());
+    let limit = limit.parse().map_err(|_| format!("`{text}` has the bound `{limit}`, which is no number"))?;
+    Ok((path, Some(if text[at..].starts_with('>') { Bound::Above(limit) } else { Bound::Below(limit) })))
 }
 
 fn steps(path: &str) -> Option<Vec<Step>> {
