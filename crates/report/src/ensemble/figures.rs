@@ -2,6 +2,7 @@
 
 use super::super::figures::{Item, about_the_tone, mark};
 use super::strips;
+use crate::paper::PaperCase;
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 use stribeck_analysis::ensemble::{EnsembleFindings, Merged};
 use stribeck_analysis::findings::Findings;
@@ -25,6 +26,8 @@ pub(super) struct Figures {
     pub(super) acceleration: Vec<Item>,
     pub(super) spectra: Vec<Item>,
     pub(super) forces: Vec<Item>,
+    /// Those of the paper, in its order.
+    pub(super) paper: Vec<Item>,
 }
 
 impl Figures {
@@ -39,16 +42,24 @@ impl Figures {
                 .into_iter()
                 .chain(charts(forces(findings)))
                 .collect(),
+            paper: paper_case(findings).map_or(Vec::new(), |case| case.figures()),
         }
     }
 
     pub(super) fn all(&self) -> impl Iterator<Item = &Item> {
-        [&self.levels, &self.acceleration, &self.spectra, &self.forces].into_iter().flatten()
+        [&self.paper, &self.levels, &self.acceleration, &self.spectra, &self.forces].into_iter().flatten()
     }
 }
 
+/// The paper beside all complete starts, of which the typical one is drawn.
+pub(super) fn paper_case(findings: &EnsembleFindings) -> Option<PaperCase<'_>> {
+    let (number, drawn) = typical(findings)?;
+    let starts = findings.complete.iter().map(|(_, start)| start).collect();
+    PaperCase::of_starts(&findings.scene.written, starts, (*number, drawn))
+}
+
 /// Curves of equal length as the edges of a band that holds most of them, point by point.
-fn band(curves: &[&[f64]]) -> [Vec<f64>; 2] {
+pub(crate) fn band(curves: &[&[f64]]) -> [Vec<f64>; 2] {
     let length = curves.iter().map(|curve| curve.len()).min().unwrap_or(0);
     let mut edges = BAND.map(|_| Vec::with_capacity(length));
     let mut column = Vec::with_capacity(curves.len());
