@@ -15,7 +15,6 @@ use crate::lead::lead;
 use crate::page::{head, json, section, sentence, write_figures};
 use crate::{Error, agreement};
 use figures::Figures;
-pub(crate) use figures::band;
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
 
 /// Writes the report of the ensemble in `folder` into that folder and returns its numbers.

@@ -14,7 +14,6 @@ use stribeck_scene::run_dir::Run;
 pub(super) use self::forces::{DRAWN as CROSSINGS, crossings as crossing_figures};
 pub(super) use self::spectra::{about_the_tone, density};
 use super::course;
-use super::paper::PaperCase;
 use super::pictures::Pictures;
 use crate::Error;
 use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
@@ -76,20 +75,13 @@ pub(super) struct Figures {
     pub(super) bearing: Vec<Item>,
     pub(super) stress: Vec<Item>,
     pub(super) energy: Vec<Item>,
-    /// Those of the paper, in its order.
+    /// Those that only the paper's argument needs.
     pub(super) paper: Vec<Item>,
 }
 
 impl Figures {
     pub(super) fn of(record: &Record<'_>, findings: &Findings, pictures: Pictures) -> Result<Self, Error> {
-        let of_paper = PaperCase::of_run(&record.run().scene.written, findings);
-        let mut paper = of_paper.map_or(Vec::new(), |case| case.figures());
-        if findings.of_paper {
-            // Its Fig. 5 follows its Fig. 3.
-            let third = paper.iter().position(|item| item.id() == "paper-6").unwrap_or(paper.len());
-            let behind = paper.split_off(third);
-            paper.extend(charts(beating::figures()).chain(behind));
-        }
+        let paper = if findings.of_paper { charts(beating::figures()).collect() } else { Vec::new() };
         Ok(Self {
             acceleration: charts(acceleration::raw(findings))
                 .chain(charts(acceleration::others(record, findings)?))

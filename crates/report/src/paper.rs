@@ -58,9 +58,15 @@ impl<'a> PaperCase<'a> {
         Some(Self { starts, drawn, number, levels, sensor, beside: paper::beside(&numbers) })
     }
 
-    /// The paper's figures 2, 3, 6, 7 and 8 with ours in them, in its order.
-    pub(crate) fn figures(&self) -> Vec<Item> {
-        figures::all(self).into_iter().map(|figure| Item::Chart(Box::new(figure))).collect()
+    /// The paper's figures 2, 3, 6, 7 and 8 with ours in them, in its order, and its figure 5 among them,
+    /// which is drawn without a run.
+    pub(crate) fn figures(&self, fifth: Vec<Item>) -> Vec<Item> {
+        let chart = |figure| Item::Chart(Box::new(figure));
+        let mut all: Vec<Item> = figures::all(self).into_iter().map(chart).collect();
+        let sixth = all.iter().position(|item| item.id() == "paper-6").unwrap_or(all.len());
+        let behind = all.split_off(sixth);
+        all.extend(fifth.into_iter().chain(behind));
+        all
     }
 
     /// The section of the page: what differs, the numbers, the `figures`, and `more` folded up behind them.
@@ -87,7 +93,7 @@ impl<'a> PaperCase<'a> {
             if self.starts.len() > 1 { "starts scatter" } else { "one start is granted to scatter" };
         if differing.is_empty() {
             return format!(
-                "None of the {all} numbers of the paper\u{2019}s figures differs from ours by more than {scatter}."
+                "None of the {all} numbers of its figures differs from ours by more than {scatter}."
             );
         }
         format!(
@@ -143,16 +149,16 @@ impl<'a> PaperCase<'a> {
                 self.starts.len()
             )
         } else {
-            "A single run does not know how much starts scatter: levels are granted 30 %, the notch 2 dB, the \
-             tone 10 Hz. `--starts 12` measures it."
+            "A single run does not know how much starts scatter: levels are granted 30 %, the notch 2 dB, \
+             the tone 10 Hz. `--starts 12` measures it."
                 .to_owned()
         };
         format!(
-            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its sensor is \
-             a node on the outer ring; ours is “{}” at {:.0}°, whose a_y is the more radial one ({radial:.0} % of \
-             the outward direction). Impulses and levels are peaks by the rules of THEORY §7.4. {scatter} The \
-             paper prints neither thickness, contact stiffness, cage pockets, damping nor the place of its sensor, \
-             so a level that agrees is no test of this model.",
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its sensor \
+             is a node on the outer ring; ours is “{}” at {:.0}°, whose a_y is the more radial one \
+             ({radial:.0} % of the outward direction). Impulses and levels are peaks by the rules of THEORY §7.4. {scatter} \
+             The paper prints neither thickness, contact stiffness, cage pockets, damping nor the place of its \
+             sensor, so a level that agrees is no test of this model.",
             self.levels.sensor, self.levels.angle_deg
         )
     }

@@ -46,7 +46,10 @@ pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Erro
     let pictures = Pictures::of(&record, &findings, run_dir)?;
     findings.summary.notes.append(&mut pictures.notes.clone());
     write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
-    let figures = Figures::of(&record, &findings, pictures)?;
+    let mut figures = Figures::of(&record, &findings, pictures)?;
+    if let Some(case) = PaperCase::of_run(&run.scene.written, &findings) {
+        figures.paper = case.figures(figures.paper);
+    }
     let all: Vec<&Item> = figures.all().collect();
     write_figures(&all, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.

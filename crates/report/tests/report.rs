@@ -381,8 +381,8 @@ fn example_every_number_of_the_paper_has_a_row_without_a_blank() {
     assert_eq!(ours("Elements per bending wavelength at 40 kHz"), "97.59");
 }
 
-/// The sensors have 1, 1.4, 0.7 and 2 times the paper's impulse; the one at the bottom is the most radial outside
-/// the seat, and its levels are twice the paper's.
+/// The sensors have 1, 1.4, 0.7 and 2 times the paper's impulse; the one at the bottom is the most radial
+/// outside the seat, and its levels are twice the paper's.
 #[test]
 fn example_the_paper_is_answered_figure_by_figure() {
     let (folder, summary) = whole("figures");

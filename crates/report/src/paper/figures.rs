@@ -2,10 +2,10 @@
 
 use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper::{BETWEEN_G, CURSOR_HZ, FILTERED_G, IMPULSE_G, TONE_HZ};
+use stribeck_analysis::statistic::band;
 use stribeck_dsp::Spectrum;
 
 use super::{PaperCase, number, ours, printed};
-use crate::ensemble::band;
 use crate::figures::{crossing_figures, density, mark, sampled, transient};
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 
