@@ -154,11 +154,11 @@ impl<'a> PaperCase<'a> {
                 .to_owned()
         };
         format!(
-            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its sensor \
-             is a node on the outer ring; ours is “{}” at {:.0}°, whose a_y is the more radial one \
-             ({radial:.0} % of the outward direction). Impulses and levels are peaks by the rules of THEORY §7.4. {scatter} \
-             The paper prints neither thickness, contact stiffness, cage pockets, damping nor the place of its \
-             sensor, so a level that agrees is no test of this model.",
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its \
+             sensor is a node on the outer ring; ours is “{}” at {:.0}°, whose a_y is the more radial one \
+             ({radial:.0} % of the outward direction). Impulses and levels are peaks by the rules of \
+             THEORY §7.4. {scatter} The paper prints neither thickness, contact stiffness, cage pockets, \
+             damping nor the place of its sensor, so a level that agrees is no test of this model.",
             self.levels.sensor, self.levels.angle_deg
         )
     }
