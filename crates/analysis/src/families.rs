@@ -347,7 +347,8 @@ fn finding(
                 ", no more than a comb of any other place".to_owned()
             };
             format!(
-                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller forces{beside}{why}",
+                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller \
+                 forces{beside}{why}",
                 100.0 * trial.explained,
                 100.0 * trial.explained_forces
             )

@@ -175,8 +175,8 @@ mod tests {
 
     #[test]
     fn analytic_a_roller_that_lies_on_the_floor_does_not_strike_it() {
-        // By hand: 0.0599 kg · (23.585² · 0.091 + 9.81) m/s² = 3.62 N. A load that is applied suddenly is felt
-        // twice (S. Timoshenko, Strength of Materials, part I, 1955).
+        // By hand: 0.0599 kg · (23.585² · 0.091 + 9.81) m/s² = 3.62 N. A load that is applied suddenly is
+        // felt twice (S. Timoshenko, Strength of Materials, part I, 1955).
         let samples = force(0.0);
         let least_n = over(&samples, None).least_n(&(200..400));
         assert!((least_n - 2.0 * 3.62).abs() < 0.02, "{least_n}");

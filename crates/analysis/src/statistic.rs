@@ -85,8 +85,8 @@ impl Statistic {
         })
     }
 
-    /// How far from the mean a further start lies at most with [`CONFIDENCE`]: t s √(1 + 1/n); `None` of a single
-    /// start. Source: Hahn and Meeker, *Statistical Intervals*, 1991, §4.7.
+    /// How far from the mean a further start lies at most with [`CONFIDENCE`]: t s √(1 + 1/n); `None` of a
+    /// single start. Source: Hahn and Meeker, *Statistical Intervals*, 1991, §4.7.
     pub fn of_a_further_one(&self) -> Option<f64> {
         let n = self.count as f64;
         Some(students_t(self.count.checked_sub(1)?.max(1)) * self.deviation? * (1.0 + 1.0 / n).sqrt())
@@ -124,6 +124,26 @@ pub fn quantile(sorted: &[f64], part: f64) -> f64 {
     let below = place.floor() as usize;
     let above = (below + 1).min(sorted.len() - 1);
     sorted[below] + (place - below as f64) * (sorted[above] - sorted[below])
+}
+
+/// Part of the curves below and above a band.
+const BAND: [f64; 2] = [0.1, 0.9];
+
+/// Curves as the edges of a band that holds 80 % of them, point by point, as long as the shortest; values
+/// that are not finite do not count.
+pub fn band(curves: &[&[f64]]) -> [Vec<f64>; 2] {
+    let length = curves.iter().map(|curve| curve.len()).min().unwrap_or(0);
+    let mut edges = BAND.map(|_| Vec::with_capacity(length));
+    let mut column = Vec::with_capacity(curves.len());
+    for n in 0..length {
+        column.clear();
+        column.extend(curves.iter().map(|curve| curve[n]).filter(|v| v.is_finite()));
+        column.sort_by(f64::total_cmp);
+        for (edge, part) in edges.iter_mut().zip(BAND) {
+            edge.push(if column.is_empty() { f64::NAN } else { quantile(&column, part) });
+        }
+    }
+    edges
 }
 
 #[cfg(test)]

@@ -42,7 +42,7 @@ fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Pa
     let (complete, asked) = (summary.count(Ended::Complete), summary.starts.len());
     let simulated_ms = findings.scene.written.solver.duration_ms;
     let first = findings.complete.first().map(|(_, first)| first);
-    let of_paper = first.is_some_and(|first| first.of_paper);
+    let paper = figures::paper_case(findings);
     let duty = first.and_then(|first| first.summary.duty.as_ref());
     Ok(html! {
         (DOCTYPE)
@@ -53,15 +53,12 @@ fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Pa
                 p class="lead" { (lead(&findings.scene, duty, simulated_ms)) }
                 @if complete < asked { (banner(summary, complete)) }
                 (answer::paragraphs(findings))
-                (contents(of_paper))
+                (contents(paper.is_some()))
+                @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
                 (section("levels", "Levels", tables::main(summary), &figures.levels, tables::sensors(summary), "No start is complete.")?)
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, html! {}, "No sensor was recorded.")?)
                 (section("spectra", "Spectrum", tables::families(summary), &figures.spectra, html! {}, "The records are too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(findings), &figures.forces, html! {}, "No roller crosses a defect.")?)
-                @if of_paper {
-                    h2 #numbers { "Appendix: the paper beside these starts" }
-                    (tables::paper(summary))
-                }
                 (agreement::of_run(&findings.scene.written, folder))
                 h2 #starts { "Starts" }
                 (tables::starts(summary))
@@ -77,6 +74,16 @@ fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Pa
             }
         }
     })
+}
+
+/// Every number of the paper's text, folded up.
+fn all_numbers(summary: &EnsembleSummary) -> Markup {
+    html! {
+        details {
+            summary { "Each number of the paper, and ours" }
+            (tables::paper(summary))
+        }
+    }
 }
 
 fn banner(summary: &EnsembleSummary, complete: usize) -> Markup {
@@ -104,11 +111,11 @@ fn banner(summary: &EnsembleSummary, complete: usize) -> Markup {
 fn contents(of_paper: bool) -> Markup {
     let entries = [
         ("summary", "Summary"),
+        ("numbers", "The paper"),
         ("levels", "Levels"),
         ("acceleration", "Acceleration"),
         ("spectra", "Spectrum"),
         ("forces", "Forces and events"),
-        ("numbers", "Appendix: the paper"),
         ("starts", "Starts"),
         ("notes", "Notes"),
         ("provenance", "Provenance"),

@@ -11,8 +11,8 @@ use maud::Markup;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::Run;
 
-pub(super) use self::forces::DRAWN as CROSSINGS;
-pub(super) use self::spectra::about_the_tone;
+pub(super) use self::forces::{DRAWN as CROSSINGS, crossings as crossing_figures};
+pub(super) use self::spectra::{about_the_tone, density};
 use super::course;
 use super::pictures::Pictures;
 use crate::Error;

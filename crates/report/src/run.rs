@@ -17,6 +17,7 @@ use stribeck_scene::scene::ModelScene;
 use crate::figures::{self, Figures, Item};
 use crate::lead::lead;
 use crate::page::{head, json, section, sentence, write_figures};
+use crate::paper::PaperCase;
 use crate::pictures::Pictures;
 use crate::{Error, agreement, answer, sections, tables};
 
@@ -45,7 +46,10 @@ pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Erro
     let pictures = Pictures::of(&record, &findings, run_dir)?;
     findings.summary.notes.append(&mut pictures.notes.clone());
     write_atomic(&run_dir.join("summary.json"), json(&findings.summary)?.as_bytes())?;
-    let figures = Figures::of(&record, &findings, pictures)?;
+    let mut figures = Figures::of(&record, &findings, pictures)?;
+    if let Some(case) = PaperCase::of_run(&run.scene.written, &findings) {
+        figures.paper = case.figures(figures.paper);
+    }
     let all: Vec<&Item> = figures.all().collect();
     write_figures(&all, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.
@@ -64,6 +68,7 @@ fn page(
 ) -> Result<Markup, Error> {
     let summary = &findings.summary;
     let family = findings.prediction.shocks.map_or(Defect::Bpfo.name(), Shocks::name);
+    let paper = PaperCase::of_run(&run.scene.written, findings);
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
@@ -73,7 +78,8 @@ fn page(
                 p class="lead" { (lead(&run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
                 (banner(run))
                 (answer::paragraphs(run, summary))
-                (contents(findings.of_paper, run.scene.written.model != ModelScene::Full, summary.duty.is_some()))
+                (contents(paper.is_some(), run.scene.written.model != ModelScene::Full, summary.duty.is_some()))
+                @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
@@ -88,7 +94,6 @@ fn page(
                     (tables::notch(summary))
                 }
                 (agreement::of_run(&run.scene.written, run_dir))
-                @if findings.of_paper { (appendix(summary, figures)?) }
                 (closing(run, summary, scene))
             }
         }
@@ -98,6 +103,7 @@ fn page(
 fn contents(of_paper: bool, reduced: bool, varies: bool) -> Markup {
     let entries = [
         ("summary", "Summary"),
+        ("numbers", "The paper"),
         ("acceleration", "Acceleration"),
         ("duty", "Speed and load"),
         ("spectra", "Spectrum"),
@@ -107,7 +113,6 @@ fn contents(of_paper: bool, reduced: bool, varies: bool) -> Markup {
         ("energy", "Energy"),
         ("artefacts", "All lines"),
         ("model", "The full model"),
-        ("numbers", "Appendix: the paper"),
         ("notes", "Notes"),
         ("provenance", "Provenance"),
     ];
@@ -120,23 +125,15 @@ fn contents(of_paper: bool, reduced: bool, varies: bool) -> Markup {
     html! { nav aria-label="Contents" { @for (id, name) in shown { a href={ "#" (id) } { (name) } } } }
 }
 
-/// The paper's numbers and the figures that only it needs, for a scene of its dimensions.
-fn appendix(summary: &Summary, figures: &Figures) -> Result<Markup, Error> {
-    let drawn = figures.paper.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! {
-        h2 #numbers { "Appendix: the paper beside this run" }
-        p class="hint" {
-            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It \
-             prints neither thickness, cage \
-             pockets, damping nor the place of its sensor, so its levels are no test of this model."
-        }
+/// Every number of the paper's text, folded up.
+fn all_numbers(summary: &Summary) -> Markup {
+    html! {
         details {
             summary { "Each number of the paper, and ours" }
             (sections::paper(summary))
             (sections::readings(summary))
         }
-        @for figure in drawn { (figure) }
-    })
+    }
 }
 
 /// Says loudly when a run did not complete.

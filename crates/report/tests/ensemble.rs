@@ -79,17 +79,20 @@ fn example_the_page_says_first_what_is_chosen_and_how_much_starts_scatter() {
         "Predicted.",
         "Scatter of starts.",
         "Events.",
+        "The paper, figure by figure",
+        "Ours, mean ± 95 %",
         "id=\"levels\"",
         "Mean ± 95 %",
         "id=\"spectra\"",
         "id=\"forces\"",
-        "Appendix: the paper beside these starts",
         "start-004",
         "Seed",
     ];
     let places = order.map(place);
     assert!(places.is_sorted(), "{places:?}");
-    for figure in ["levels", "acceleration", "spectrum", "spectrum-zoom", "events", "force-1"] {
+    for figure in
+        ["levels", "acceleration", "spectrum", "spectrum-zoom", "events", "force-1", "paper-2", "paper-8c"]
+    {
         for form in ["svg", "png"] {
             let file = folder.0.join("figures").join(format!("{figure}.{form}"));
             assert!(file.exists(), "{} is missing", file.display());

@@ -8,7 +8,8 @@ pub const SINGH2014_RON: &str = include_str!("singh2014.ron");
 impl Scene {
     /// The bearing of Singh et al., Inter-Noise 2014, as `fixtures/scenes/singh2014.ron` spells it out.
     ///
-    /// [`Scene::default`] is the same bearing in oil, and has no value that is inferred from the paper's figures.
+    /// [`Scene::default`] is the same bearing in oil, without any value that is inferred from the paper's
+    /// figures.
     pub fn singh2014() -> Self {
         Self::parse(SINGH2014_RON, "singh2014.ron").expect("a scene that a test reads")
     }
@@ -30,7 +31,8 @@ mod tests {
         assert!(scene.validate().is_ok());
     }
 
-    /// Whatever is chosen for what the paper leaves open, what it gives is given: Table 1, load, speed, defect.
+    /// Whatever is chosen for what the paper leaves open, what it gives is given: Table 1, load, speed,
+    /// defect.
     #[test]
     fn invariant_the_paper_s_run_has_what_the_paper_gives() {
         let (paper, oiled) = (Scene::singh2014(), Scene::default());

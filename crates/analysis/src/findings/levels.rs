@@ -1,18 +1,39 @@
 //! Levels about and between the passages of rollers, and the lines of the facets, sensor by sensor: each as
 //! if it were the only one of the scene.
 
+use std::ops::Range;
+
 use super::SensorSignal;
 use crate::Error;
 use crate::filtering::Filter;
-use crate::levels::{self, Phase, Visit};
+use crate::levels::{self, Phase, SignalLevel, Visit};
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
 use crate::tones::{self, NearestLine, PredictedLine};
 
 /// Multiple of the facet tone that the paper sees beside it.
 const FIFTH: f64 = 5.0;
 
-/// Levels at every sensor; fills in the impulse of each event at the leading one.
-/// `tone` is that of the rollers' vertices.
+/// Parts of a record.
+struct Spans<'a> {
+    time: &'a [f64],
+    /// Phase of every sample.
+    phases: Vec<Phase>,
+    /// About the exits.
+    impulses: Vec<Range<usize>>,
+    /// Gaps between the events.
+    quiet: Vec<Range<usize>>,
+}
+
+/// Levels of one sensor.
+struct Heard {
+    impulse: Option<SignalLevel>,
+    between: Option<SignalLevel>,
+    /// In the gaps behind the notch, its transient left out.
+    filtered: Option<SignalLevel>,
+}
+
+/// Levels at every sensor; fills in the impulse of each event at the leading one. `tone` is that of the
+/// rollers' vertices.
 ///
 /// # Errors
 /// [`Error::Signal`] when a density cannot be searched.
@@ -23,65 +44,95 @@ pub(super) fn level_finding(
     filter: Option<&Filter>,
     notes: &mut Vec<String>,
 ) -> Result<LevelsFinding, Error> {
-    let visits: Vec<Visit> = events.iter().map(Event::visit).collect();
-    let phases = levels::phases(time, &visits);
-    let start = time.first().copied().unwrap_or(0.0);
-    let settled = |notch: Option<&Filter>| start + notch.map_or(0.0, Filter::transient_s);
-    let exits: Vec<f64> = events.iter().filter_map(Event::left_ms).map(|t| 1e-3 * t).collect();
-    let impulses: Vec<_> = exits.iter().map(|&t| levels::impulse_span(time, t)).collect();
-    let quiet = levels::gap_spans(time, &phases, start);
-
+    let spans = Spans::of(time, events);
     let mut finding = LevelsFinding::default();
     for (number, sensor) in sensors.iter().enumerate() {
-        let impulse = levels::level(&sensor.raw_g, &impulses);
-        let between = levels::level(&sensor.raw_g, &quiet);
-        let quiet_settled = levels::gap_spans(time, &phases, settled(sensor.notch.as_ref()));
-        let filtered = levels::level(&sensor.filtered_g, &quiet_settled);
-        let [fundamental, fifth] = facet_lines(sensor, tone)?;
+        let heard = spans.heard(sensor);
         if number == 0 {
-            finding.sensor = Some(sensor.name.clone());
-            finding.phases = by_phase(&sensor.raw_g, &phases);
-            finding.impulse_g = impulse.map(|l| l.peak);
-            finding.impulse_filtered_g = levels::level(&sensor.filtered_g, &impulses).map(|l| l.peak);
-            finding.between_g = between.map(|l| l.peak);
-            finding.between_p99_g = between.map(|l| l.p99);
-            finding.between_rms_g = between.map(|l| l.rms);
-            finding.between_filtered_g = filtered.map(|l| l.peak);
-            finding.between_filtered_p99_g = filtered.map(|l| l.p99);
-            finding.between_filtered_rms_g = filtered.map(|l| l.rms);
+            finding = spans.leading(sensor, &heard);
             for event in events.iter_mut() {
                 let span = event.left_ms().map(|t| levels::impulse_span(time, 1e-3 * t));
                 event.impulse_g = span.and_then(|s| levels::level(&sensor.raw_g, &[s])).map(|l| l.peak);
             }
         }
-        finding.sensors.push(SensorLevels {
+        finding.sensors.push(spans.of_sensor(sensor, &heard, facet_lines(sensor, tone)?));
+    }
+    if let Some(filter) = filter.filter(|_| !sensors.is_empty() && finding.between_filtered_g.is_none()) {
+        notes.push(format!(
+            "no filtered level between events: after the notch's transient of {:.2} ms no sample is free of \
+             events",
+            1e3 * filter.transient_s()
+        ));
+    }
+    Ok(finding)
+}
+
+impl<'a> Spans<'a> {
+    fn of(time: &'a [f64], events: &[Event]) -> Self {
+        let visits: Vec<Visit> = events.iter().map(Event::visit).collect();
+        let phases = levels::phases(time, &visits);
+        let exits = events.iter().filter_map(Event::left_ms).map(|t| 1e-3 * t);
+        let impulses = exits.map(|t| levels::impulse_span(time, t)).collect();
+        let quiet = levels::gap_spans(time, &phases, time.first().copied().unwrap_or(0.0));
+        Self { time, phases, impulses, quiet }
+    }
+
+    fn heard(&self, sensor: &SensorSignal) -> Heard {
+        let start = self.time.first().copied().unwrap_or(0.0);
+        let settled = start + sensor.notch.as_ref().map_or(0.0, Filter::transient_s);
+        let quiet_settled = levels::gap_spans(self.time, &self.phases, settled);
+        Heard {
+            impulse: levels::level(&sensor.raw_g, &self.impulses),
+            between: levels::level(&sensor.raw_g, &self.quiet),
+            filtered: levels::level(&sensor.filtered_g, &quiet_settled),
+        }
+    }
+
+    /// What is said of the leading sensor alone.
+    fn leading(&self, sensor: &SensorSignal, heard: &Heard) -> LevelsFinding {
+        let Heard { impulse, between, filtered } = heard;
+        LevelsFinding {
+            sensor: Some(sensor.name.clone()),
+            phases: by_phase(&sensor.raw_g, &self.phases),
+            impulse_g: impulse.map(|l| l.peak),
+            impulse_filtered_g: levels::level(&sensor.filtered_g, &self.impulses).map(|l| l.peak),
+            between_g: between.map(|l| l.peak),
+            between_p99_g: between.map(|l| l.p99),
+            between_rms_g: between.map(|l| l.rms),
+            between_filtered_g: filtered.map(|l| l.peak),
+            between_filtered_p99_g: filtered.map(|l| l.p99),
+            between_filtered_rms_g: filtered.map(|l| l.rms),
+            sensors: Vec::new(),
+        }
+    }
+
+    fn of_sensor(
+        &self,
+        sensor: &SensorSignal,
+        heard: &Heard,
+        [tone, fifth]: [NearestLine; 2],
+    ) -> SensorLevels {
+        let Heard { impulse, between, filtered } = heard;
+        SensorLevels {
             sensor: sensor.name.clone(),
             angle_deg: sensor.angle_deg,
-            phases: by_phase(&sensor.raw_g, &phases),
-            components: components(sensor, &phases),
+            phases: by_phase(&sensor.raw_g, &self.phases),
+            components: components(sensor, &self.phases),
             impulse_g: impulse.map(|l| l.peak),
             between_g: between.map(|l| l.peak),
             between_rms_g: between.map(|l| l.rms),
             between_filtered_g: filtered.map(|l| l.peak),
             between_filtered_rms_g: filtered.map(|l| l.rms),
-            tone_hz: fundamental.hz,
-            tone_g: fundamental.level_g,
-            tone_db: fundamental.above_db,
+            tone_hz: tone.hz,
+            tone_g: tone.level_g,
+            tone_db: tone.above_db,
             fifth_hz: fifth.hz,
             fifth_g: fifth.level_g,
             fifth_db: fifth.above_db,
             notch_hz: sensor.notch.map(|notch| notch.centre_hz()),
             notch_db: sensor.notch.and_then(|notch| notch.attenuation_db(&sensor.raw_g, &sensor.filtered_g)),
-        });
+        }
     }
-    if filter.is_some() && !sensors.is_empty() && finding.between_filtered_g.is_none() {
-        notes.push(format!(
-            "no filtered level between events: after the notch's transient of {:.2} ms no sample is free of \
-             events",
-            1e3 * (settled(filter) - start)
-        ));
-    }
-    Ok(finding)
 }
 
 /// The line of the rollers' vertices at a sensor that is nearest to where the recorded motion puts it, and

@@ -75,8 +75,8 @@ fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let name = sensor.map_or("none", |sensor| sensor.sensor.as_str());
     let why = |what: &str| {
         format!(
-            "{what}; sensor “{name}”, whose a_y is the most radial. The paper states neither thickness, contact stiffness, damping nor \
-             the place of its sensor: docs/results/paper.md says what each does"
+            "{what}; sensor “{name}”, whose a_y is the most radial. The paper states neither thickness, \
+             contact stiffness, damping nor the place of its sensor: docs/results/paper.md says what each does"
         )
     };
     vec![

@@ -2,17 +2,16 @@
 
 use super::super::figures::{Item, about_the_tone, mark};
 use super::strips;
+use crate::paper::PaperCase;
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 use stribeck_analysis::ensemble::{EnsembleFindings, Merged};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::paper;
-use stribeck_analysis::statistic::quantile;
+use stribeck_analysis::statistic::band;
 use stribeck_analysis::summary::Event;
 
 /// How far below its highest value a spectrum is drawn [dB].
 const DEPTH_DB: f64 = 120.0;
-/// Part of the starts below and above a band.
-const BAND: [f64; 2] = [0.1, 0.9];
 /// Most rollers whose forces are drawn.
 const ROLLERS: usize = 3;
 /// Time before the entry and after the exit that is drawn of a force [s].
@@ -25,6 +24,8 @@ pub(super) struct Figures {
     pub(super) acceleration: Vec<Item>,
     pub(super) spectra: Vec<Item>,
     pub(super) forces: Vec<Item>,
+    /// Those of the paper, in its order.
+    pub(super) paper: Vec<Item>,
 }
 
 impl Figures {
@@ -39,28 +40,20 @@ impl Figures {
                 .into_iter()
                 .chain(charts(forces(findings)))
                 .collect(),
+            paper: paper_case(findings).map_or(Vec::new(), |case| case.figures(Vec::new())),
         }
     }
 
     pub(super) fn all(&self) -> impl Iterator<Item = &Item> {
-        [&self.levels, &self.acceleration, &self.spectra, &self.forces].into_iter().flatten()
+        [&self.paper, &self.levels, &self.acceleration, &self.spectra, &self.forces].into_iter().flatten()
     }
 }
 
-/// Curves of equal length as the edges of a band that holds most of them, point by point.
-fn band(curves: &[&[f64]]) -> [Vec<f64>; 2] {
-    let length = curves.iter().map(|curve| curve.len()).min().unwrap_or(0);
-    let mut edges = BAND.map(|_| Vec::with_capacity(length));
-    let mut column = Vec::with_capacity(curves.len());
-    for n in 0..length {
-        column.clear();
-        column.extend(curves.iter().map(|curve| curve[n]).filter(|v| v.is_finite()));
-        column.sort_by(f64::total_cmp);
-        for (edge, part) in edges.iter_mut().zip(BAND) {
-            edge.push(if column.is_empty() { f64::NAN } else { quantile(&column, part) });
-        }
-    }
-    edges
+/// The paper beside all complete starts, of which the typical one is drawn.
+pub(super) fn paper_case(findings: &EnsembleFindings) -> Option<PaperCase<'_>> {
+    let (number, drawn) = typical(findings)?;
+    let starts = findings.complete.iter().map(|(_, start)| start).collect();
+    PaperCase::of_starts(&findings.scene.written, starts, (*number, drawn))
 }
 
 /// Mean of curves, point by point.

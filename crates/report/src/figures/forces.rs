@@ -16,7 +16,7 @@ const MOST_GAIN: f64 = 10.0;
 const LONG_SPACINGS: f64 = 6.0;
 
 /// Force of the raceway on each roller that crosses its spall.
-pub(super) fn crossings(findings: &Findings) -> Vec<Figure> {
+pub(in super::super) fn crossings(findings: &Findings) -> Vec<Figure> {
     let crossings = findings.crossings.iter().zip(&findings.summary.events);
     crossings.enumerate().map(|(at, (crossing, event))| force(findings, crossing, event, at)).collect()
 }

@@ -255,7 +255,7 @@ fn over_frequency(id: &str, title: &str, (from, to): (f64, f64)) -> Figure {
 }
 
 /// A spectrum in decibels, cut [`DEPTH_DB`] below its highest value.
-fn density(name: &str, colour: Colour, spectrum: &Spectrum) -> Series {
+pub(in super::super) fn density(name: &str, colour: Colour, spectrum: &Spectrum) -> Series {
     decibels(name, colour, spectrum, spectrum.values().len())
 }
 

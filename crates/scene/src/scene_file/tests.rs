@@ -102,8 +102,8 @@ fn example_a_later_field_changes_the_hash_only_where_it_is_used() {
     const FIRST: &str = "d300e82243b85717";
     let hash = |pocket: &str, film: &str, structural: &str, more: &str| {
         let scene = format!(
-            "(name: \"singh2014\", mesh: (roller_copies: translated), cage: (pocket: {pocket}), film: {film}, solver: \
-             (time_step_factor: 0.95, \
+            "(name: \"singh2014\", mesh: (roller_copies: translated), cage: (pocket: {pocket}), film: \
+             {film}, solver: (time_step_factor: 0.95, \
              mass_damping_per_s: 5000.0, structural_damping: {structural}, {more}))"
         );
         parse(&scene).expect("valid").hash()

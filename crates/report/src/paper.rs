@@ -1,0 +1,199 @@
+//! The paper, figure by figure: its numbers beside those of a run or of many starts, what differs first, and
+//! its figures drawn anew over its axes.
+
+mod figures;
+
+use maud::{Markup, html};
+use stribeck_analysis::findings::{Findings, SensorSignal};
+use stribeck_analysis::paper::{self, Beside};
+use stribeck_analysis::summary::SensorLevels;
+use stribeck_analysis::words::significant;
+use stribeck_scene::scene::Scene;
+
+use crate::Error;
+use crate::figures::Item;
+use crate::tables::cell;
+
+/// A run of the paper's bearing, or many starts of it of which one is drawn.
+pub(crate) struct PaperCase<'a> {
+    /// All starts; of a single run that one.
+    starts: Vec<&'a Findings>,
+    /// The start that is drawn, and its number where there are several.
+    drawn: &'a Findings,
+    number: Option<usize>,
+    /// The sensor whose a_y is shown, in the drawn start.
+    levels: &'a SensorLevels,
+    sensor: &'a SensorSignal,
+    beside: Vec<Beside>,
+}
+
+impl<'a> PaperCase<'a> {
+    /// Of a single run; `None` for another bearing than the paper's, or without a sensor.
+    pub(crate) fn of_run(scene: &'a Scene, findings: &'a Findings) -> Option<Self> {
+        Self::new(scene, vec![findings], findings, None)
+    }
+
+    /// Of many starts, of which number `number` is drawn.
+    pub(crate) fn of_starts(
+        scene: &'a Scene,
+        starts: Vec<&'a Findings>,
+        (number, drawn): (usize, &'a Findings),
+    ) -> Option<Self> {
+        Self::new(scene, starts, drawn, Some(number))
+    }
+
+    fn new(
+        scene: &'a Scene,
+        starts: Vec<&'a Findings>,
+        drawn: &'a Findings,
+        number: Option<usize>,
+    ) -> Option<Self> {
+        let levels = paper::sensor(scene, &drawn.summary.levels.sensors).filter(|_| drawn.of_paper)?;
+        let sensor = drawn.sensors.iter().find(|sensor| sensor.name == levels.sensor)?;
+        let of_start = |start: &&Findings| {
+            let here = start.summary.levels.sensors.iter().find(|other| other.sensor == levels.sensor)?;
+            Some(paper::shown(&start.summary, here))
+        };
+        let numbers: Vec<_> = starts.iter().filter_map(of_start).collect();
+        Some(Self { starts, drawn, number, levels, sensor, beside: paper::beside(&numbers) })
+    }
+
+    /// The paper's figures 2, 3, 6, 7 and 8 with ours in them, in its order, and its figure 5 among them,
+    /// which is drawn without a run.
+    pub(crate) fn figures(&self, fifth: Vec<Item>) -> Vec<Item> {
+        let chart = |figure| Item::Chart(Box::new(figure));
+        let mut all: Vec<Item> = figures::all(self).into_iter().map(chart).collect();
+        let sixth = all.iter().position(|item| item.id() == "paper-6").unwrap_or(all.len());
+        let behind = all.split_off(sixth);
+        all.extend(fifth.into_iter().chain(behind));
+        all
+    }
+
+    /// The section of the page: what differs, the numbers, the `figures`, and `more` folded up behind them.
+    pub(crate) fn section(&self, figures: &[Item], more: Markup) -> Result<Markup, Error> {
+        let drawn = figures.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
+        Ok(html! {
+            h2 #numbers { "The paper, figure by figure" }
+            p { (self.verdict()) }
+            (self.table())
+            p class="hint" { (self.about()) }
+            @for figure in drawn { (figure) }
+            (more)
+        })
+    }
+
+    /// What differs by more than the scatter, the farthest first, then what does not.
+    fn verdict(&self) -> String {
+        let mut off: Vec<&Beside> = self.beside.iter().filter(|b| b.differs()).collect();
+        off.sort_by(|a, b| b.distance().total_cmp(&a.distance()));
+        let differing: Vec<String> =
+            off.iter().map(|b| format!("{} (Fig. {})", told(b), b.shown.figure)).collect();
+        let (all, alike) = (self.beside.len(), self.beside.len() - off.len());
+        let scatter =
+            if self.starts.len() > 1 { "starts scatter" } else { "one start is granted to scatter" };
+        if differing.is_empty() {
+            return format!(
+                "None of the {all} numbers of its figures differs from ours by more than {scatter}."
+            );
+        }
+        format!(
+            "Different by more than {scatter}: {}. The other {alike} of {all} numbers agree.",
+            differing.join("; ")
+        )
+    }
+
+    /// Paper and ours, in the order of the figures.
+    fn table(&self) -> Markup {
+        let several = self.starts.len() > 1;
+        let mut last = "";
+        let rows: Vec<(bool, &Beside)> = self
+            .beside
+            .iter()
+            .map(|b| (std::mem::replace(&mut last, b.shown.figure) != b.shown.figure, b))
+            .collect();
+        html! {
+            div class="scroll" {
+                table class="numbers" {
+                    thead {
+                        tr {
+                            th { "Figure" } th { "What it shows" } th class="n" { "Paper" }
+                            th class="n" { @if several { "Ours, mean ± 95 %" } @else { "Ours" } }
+                            @if several { th class="n" { "Single starts" } }
+                            th { "Beyond the scatter" }
+                        }
+                    }
+                    tbody {
+                        @for (first, b) in rows {
+                            tr {
+                                td { @if first { (b.shown.figure) } }
+                                td { (b.shown.quantity) }
+                                td class="n" { (printed(b)) }
+                                (cell(ours(b)))
+                                @if several { (cell(b.ours.map(|s| format!("{} to {}", number(s.least), number(s.most))))) }
+                                td { @if b.differs() { strong { "differs" } } @else { "agrees" } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Where the numbers are from, and how far to trust the comparison.
+    fn about(&self) -> String {
+        let radial = 100.0 * self.levels.angle_deg.to_radians().sin().abs();
+        let scatter = if self.starts.len() > 1 {
+            format!(
+                "The paper is one start: its number differs where it lies farther from the mean of {} starts \
+                 than a further one would in 95 % of cases.",
+                self.starts.len()
+            )
+        } else {
+            "A single run does not know how much starts scatter: levels are granted 30 %, the notch 2 dB, \
+             the tone 10 Hz. `--starts 12` measures it."
+                .to_owned()
+        };
+        format!(
+            "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. Its \
+             sensor is a node on the outer ring; ours is “{}” at {:.0}°, whose a_y is the more radial one \
+             ({radial:.0} % of the outward direction). Impulses and levels are peaks by the rules of \
+             THEORY §7.4. {scatter} The paper prints neither thickness, contact stiffness, cage pockets, \
+             damping nor the place of its sensor, so a level that agrees is no test of this model.",
+            self.levels.sensor, self.levels.angle_deg
+        )
+    }
+}
+
+/// A number with three digits, or as many as a frequency needs.
+fn number(value: f64) -> String {
+    if value.abs() >= 1000.0 { format!("{value:.0}") } else { significant(value, 3) }.replace('-', "−")
+}
+
+/// The paper's number as it prints it.
+fn printed(b: &Beside) -> String {
+    let shown = &b.shown;
+    let about = if matches!(shown.unit, "ms" | "kHz") { "≈ " } else { "" };
+    match shown.unit {
+        _ if shown.at_least => "indicated".to_owned(),
+        "g" => format!("± {} g", number(shown.paper)),
+        unit => format!("{about}{} {unit}", number(shown.paper)),
+    }
+}
+
+/// Ours with the interval of its mean; a count out of all passages; `None` where no start has one.
+fn ours(b: &Beside) -> Option<String> {
+    let ours = b.ours?;
+    let interval = ours.high.map_or(String::new(), |high| format!(" ± {}", significant(high - ours.mean, 2)));
+    let missing = if ours.count < b.of { format!(", in {} of {}", ours.count, b.of) } else { String::new() };
+    Some(format!("{}{interval} {}{missing}", number(ours.mean), b.shown.unit))
+}
+
+/// A difference in a sentence.
+fn told(b: &Beside) -> String {
+    let quantity = b.shown.quantity[..1].to_lowercase() + &b.shown.quantity[1..];
+    match ours(b) {
+        Some(ours) if b.shown.at_least => format!("{quantity}: {ours}"),
+        Some(ours) => format!("{quantity} {ours} instead of {}", printed(b).trim_start_matches("≈ ")),
+        None => format!("{quantity}, {} in the paper, is not found", printed(b)),
+    }
+}
