@@ -5,7 +5,7 @@
 
 use faer::{
     Mat, Par, Side,
-    linalg::{solvers::Solve, triangular_solve::solve_lower_triangular_in_place},
+    linalg::{solvers::Solve, triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place}},
 };
 
 use super::{
@@ -33,6 +33,8 @@ pub(super) struct Regression {
     precision_factor: Mat<f64>,
     /// Mean of the weights.
     weights: Mat<f64>,
+    /// The same for covariances with the base in place of features.
+    base_weights: Mat<f64>,
 }
 
 /// Of each point of a sample, what the other points predict.
@@ -63,6 +65,7 @@ impl Regression {
             base_factor,
             precision_factor: Mat::zeros(0, 0),
             weights: Mat::zeros(0, 0),
+            base_weights: Mat::zeros(0, 0),
         };
         let (features, rest) = fitted.features(sample.points);
         let (size, n) = (features.nrows(), sample.points.len());
@@ -75,6 +78,9 @@ impl Regression {
         let factor = precision.llt(Side::Lower).map_err(|_| why)?;
         fitted.weights = factor.solve(&weighted * Mat::from_fn(n, 1, |i, _| sample.values[i]));
         fitted.precision_factor = factor.L().to_owned();
+        fitted.base_weights = fitted.weights.subrows(terms, fitted.base.len()).to_owned();
+        let upper = fitted.base_factor.transpose();
+        solve_upper_triangular_in_place(upper, fitted.base_weights.as_mut(), Par::Seq);
         let left_out = fitted.left_out(sample.values, &noise, features, &rest);
         Ok((fitted, left_out))
     }
@@ -103,6 +109,17 @@ impl Regression {
         let terms = trends.first().map_or(0, Vec::len);
         let at = |i: usize, j: usize| if i < terms { trends[j][i] } else { smooth[(i - terms, j)] };
         (Mat::from_fn(terms + self.base.len(), points.len(), at), rest)
+    }
+
+    /// Mean of the function at points, which takes a fraction of the time of [`Self::predict`].
+    pub(super) fn means(&self, points: &[Vec<f64>]) -> Vec<f64> {
+        let scaled: Vec<Vec<f64>> = points.iter().map(|point| self.kernel.scale(point)).collect();
+        let smooth = self.kernel.matrix(&self.base, &scaled).transpose() * &self.base_weights;
+        let one = |(j, point): (usize, &Vec<f64>)| {
+            let terms = trend(point, self.linear).into_iter().enumerate();
+            smooth[(j, 0)] + terms.map(|(i, term)| term * self.weights[(i, 0)]).sum::<f64>()
+        };
+        points.iter().enumerate().map(one).collect()
     }
 
     /// Mean and variance of the function at points.
