@@ -104,27 +104,6 @@ pub fn pick(time_s: &[f64], force_n: &[f64], passage: &Passage) -> Picked {
     picked
 }
 
-/// A roller that touches the floor presses on it with this part of its load at least.
-const LEAST_IMPACT: f64 = 0.05;
-
-impl Picked {
-    /// When the roller strikes the floor [s] and how hard [N]: its largest force while its centre is at least
-    /// `reach_s` away from either edge, the time within which the edges keep a roller off the floor. `None`
-    /// when it does not touch the floor.
-    pub fn floor_impact(
-        &self,
-        time_s: &[f64],
-        force_n: &[f64],
-        passage: &Passage,
-        reach_s: f64,
-    ) -> Option<(f64, f64)> {
-        let level = self.level_n?;
-        let inside = span(time_s, passage.entry_s + reach_s, passage.exit_s - reach_s);
-        let at = inside.max_by(|&a, &b| force_n[a].total_cmp(&force_n[b]))?;
-        (force_n[at] > LEAST_IMPACT * level).then(|| (time_s[at], force_n[at]))
-    }
-}
-
 /// Times [s] at which a body rotating from `angle` [rad] (unwrapped, one a sample) passes `edge` [rad],
 /// modulo a turn.
 pub fn crossings(time_s: &[f64], angle: &[f64], edge: f64) -> Vec<f64> {

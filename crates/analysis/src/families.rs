@@ -337,10 +337,17 @@ fn finding(
                 cases.iter().filter(|c| c.verdict != Verdict::Open).map(Case::spoken).collect();
             let beside =
                 if found.is_empty() { String::new() } else { format!(" beside {}", found.join(" and ")) };
+            let why = if *lead >= LEAST_LEAD {
+                let off = finding.offset_resolutions.unwrap_or(f64::NAN).abs();
+                format!(
+                    ". It leads combs of any other place, but fits best {off:.2} resolutions from where the \
+                     recorded motion puts it; half a resolution counts"
+                )
+            } else {
+                ", no more than a comb of any other place".to_owned()
+            };
             format!(
-                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller forces{beside}, \
-                 no more than a comb \
-                 of any other place",
+                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller forces{beside}{why}",
                 100.0 * trial.explained,
                 100.0 * trial.explained_forces
             )

@@ -89,16 +89,23 @@ impl Filter {
         self.notch.filter_from_first(signal).map_err(Error::Signal)
     }
 
+    /// Drop of the density at the centre [dB] from `raw` to `filtered`, its filtered form: Hann window, whole
+    /// record, transient included. `None` for a record of less than eight periods.
+    pub fn attenuation_db(&self, raw: &[f64], filtered: &[f64]) -> Option<f64> {
+        self.drop_db(Window::Hann, raw, filtered)
+    }
+
+    /// The same with any window.
+    fn drop_db(&self, window: Window, raw: &[f64], filtered: &[f64]) -> Option<f64> {
+        let level_db = |signal| at_centre(self.notch.sample_rate_hz(), self.centre_hz(), window, signal);
+        Some(level_db(raw)? - level_db(filtered)?)
+    }
+
     /// Effect of the notch on `raw`, whose filtered form is `filtered`; whether it is a record of the paper's
     /// scene.
     pub fn finding(&self, raw: &[f64], filtered: &[f64], of_paper: bool) -> NotchFinding {
         let rate = self.notch.sample_rate_hz();
-        let drop = |window, from: usize| {
-            let (a, b) = (raw.get(from..)?, filtered.get(from..)?);
-            Some(
-                at_centre(rate, self.centre_hz(), window, a)? - at_centre(rate, self.centre_hz(), window, b)?,
-            )
-        };
+        let drop = |window, from: usize| self.drop_db(window, raw.get(from..)?, filtered.get(from..)?);
         let taken = |notch: &Notch| {
             let db = notch.magnitude_db(PAPER_BEAT_HZ).ok().filter(|_| of_paper)?;
             Some(-db).filter(|db| db.is_finite())

@@ -2,6 +2,7 @@
 
 mod answers;
 mod case;
+mod levels;
 mod passages;
 mod sensors;
 mod spectra;
@@ -84,6 +85,8 @@ pub struct SensorSignal {
     pub raw_g: Vec<f64>,
     /// a_x, mean over each interval; empty when it was not recorded.
     pub across_g: Vec<f64>,
+    /// The notch at this sensor's facet tone; where it has none, at that of the record.
+    pub notch: Option<Filter>,
     /// Behind the notch; empty when there is none.
     pub filtered_g: Vec<f64>,
     /// Density of `raw_g`.
@@ -145,7 +148,7 @@ impl Findings {
         let mesh = case.mesh_lines(&motion, &sensors, &mut notes)?;
         let filter = case.notch(&mesh, &mut sensors, &mut notes)?;
         let at_rest = case.at_rest(&mut notes);
-        let crossings = case.crossings(passages, &at_rest, &sensors, filter.as_ref(), &mut notes)?;
+        let crossings = case.crossings(passages, &at_rest, (&sensors, &mesh), filter.as_ref(), &mut notes)?;
         let load = case.load(&carried, &at_rest, &motion, &mut notes);
         let spectrum = case.spectrum(&sensors)?;
         let artefacts = case.artefacts(&mesh, &motion, &sensors, &spectrum)?;

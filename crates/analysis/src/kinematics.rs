@@ -253,6 +253,7 @@ mod tests {
             outer_fy: &none,
             inner_fx: &none,
             inner_fy: &none,
+            films: None,
         };
         let turning = || Turning {
             time_s: Cow::Borrowed(&time),

@@ -23,7 +23,7 @@
 //! | What does a run hold, and what does geometry predict? | [`record`], [`prediction`], [`plan`] |
 //! | How do speed and load change, and at which orders does a defect stand? | [`duty`] |
 //! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
-//! | When does a roller unload and strike, how long is the defect? | [`events`], [`spall`] |
+//! | When does a roller unload and strike, how long is the defect? | [`events`], [`floor`], [`spall`] |
 //! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
 //! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
@@ -67,6 +67,7 @@ pub mod events;
 pub mod families;
 pub mod film;
 pub mod filtering;
+pub mod floor;
 pub mod kinematics;
 pub mod levels;
 pub mod load;

@@ -3,6 +3,7 @@
 //! The paper: "Numerical noise generation in modelled bearing vibration signals", Inter-Noise 2014. Its
 //! numbers are written here once, as it prints them.
 
+mod figures;
 mod model;
 mod signal;
 
@@ -10,8 +11,9 @@ use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{BearingScene, Scene};
 
+pub use self::figures::{Beside, Shown, beside, sensor, shown};
 use crate::prediction::Prediction;
-use crate::summary::{PaperRow, Summary};
+use crate::summary::{PaperRow, SensorLevels, Summary};
 
 /// The paper's dominant line [Hz].
 pub const TONE_HZ: f64 = 4671.0;
@@ -56,6 +58,8 @@ struct RowInputs<'a> {
     mesh: &'a MeshInfo,
     prediction: &'a Prediction,
     summary: &'a Summary,
+    /// The sensor whose a_y is set beside the paper's.
+    sensor: Option<&'a SensorLevels>,
 }
 
 /// All rows, in the order of the paper. None is blank: a number that this run cannot yield is stated as such.
@@ -65,7 +69,8 @@ pub fn rows(
     prediction: &Prediction,
     summary: &Summary,
 ) -> Vec<PaperRow> {
-    let source = RowInputs { scene, mesh, prediction, summary };
+    let sensor = sensor(&scene.written, &summary.levels.sensors);
+    let source = RowInputs { scene, mesh, prediction, summary, sensor };
     let mut rows = model::rows(&source);
     rows.extend(signal::rows(&source));
     rows

@@ -22,6 +22,9 @@ const LONGEST: usize = 1 << 21;
 const OF_ROLLER: [&str; 7] =
     ["x_m", "y_m", "spin_rad", "outer_fx_n", "outer_fy_n", "inner_fx_n", "inner_fy_n"];
 
+/// Channels of a roller that are there where the bearing has oil.
+const OIL_OF_ROLLER: [&str; 2] = ["outer_film_m", "inner_film_m"];
+
 /// A run's samples, up to the last one before any channel stops being finite. Some channels are in memory,
 /// the others on disk.
 #[derive(Debug)]
@@ -56,6 +59,8 @@ pub struct Roller<'a> {
     pub inner_fx: &'a [f64],
     /// Force of the inner raceway, y [N].
     pub inner_fy: &'a [f64],
+    /// Thickness of the oil on the outer and on the inner raceway [m]; `None` for a dry bearing.
+    pub films: Option<[&'a [f64]; 2]>,
 }
 
 /// Angle of the shaft against the outer ring [rad], of the angles of both.
@@ -68,7 +73,8 @@ pub fn against<'a>(shaft: &'a [f64], outer: Option<&[f64]>) -> Cow<'a, [f64]> {
 
 /// Whether a channel is one of these rollers'.
 fn of_rollers(numbers: &[usize]) -> impl Fn(&str) -> bool {
-    let name = |number| OF_ROLLER.map(|what| format!("roller.{number}.{what}"));
+    let of_one = OF_ROLLER.iter().chain(&OIL_OF_ROLLER);
+    let name = |number| of_one.clone().map(move |what| format!("roller.{number}.{what}"));
     let names: Vec<String> = numbers.iter().flat_map(name).collect();
     move |name| names.iter().any(|wanted| wanted == name)
 }
@@ -157,7 +163,7 @@ impl<'a> Record<'a> {
     /// # Errors
     /// As [`Record::new`].
     pub fn each_roller(&self, mut visit: impl FnMut(&Roller<'_>)) -> Result<(), Error> {
-        let of_one = 8 * OF_ROLLER.len() * self.len.max(1);
+        let of_one = 8 * (OF_ROLLER.len() + OIL_OF_ROLLER.len()) * self.len.max(1);
         for numbers in self.roller_numbers().chunks((ROLLERS_AT_ONCE_BYTES / of_one).max(1)) {
             self.with_rollers(numbers, 0..self.len)?.rollers().iter().for_each(&mut visit);
         }
@@ -250,6 +256,8 @@ impl<'a> Record<'a> {
     pub fn roller(&self, number: usize) -> Option<Roller<'_>> {
         let [x, y, spin, outer_fx, outer_fy, inner_fx, inner_fy] =
             OF_ROLLER.map(|what| self.channel(&format!("roller.{number}.{what}")));
+        let [outer_film, inner_film] =
+            OIL_OF_ROLLER.map(|what| self.channel(&format!("roller.{number}.{what}")));
         Some(Roller {
             number,
             x: x?,
@@ -259,6 +267,7 @@ impl<'a> Record<'a> {
             outer_fy: outer_fy?,
             inner_fx: inner_fx?,
             inner_fy: inner_fy?,
+            films: outer_film.zip(inner_film).map(<[&[f64]; 2]>::from),
         })
     }
 
@@ -286,6 +295,7 @@ impl<'a> Roller<'a> {
             outer_fy: part(self.outer_fy),
             inner_fx: part(self.inner_fx),
             inner_fy: part(self.inner_fy),
+            films: self.films.map(|films| films.map(part)),
         }
     }
 
@@ -316,6 +326,15 @@ impl<'a> Roller<'a> {
             DefectRing::Outer => self.outer_normal(),
             DefectRing::Inner => self.inner_normal(),
         }
+    }
+
+    /// Thickness of the oil on the raceway of a ring [m]; `None` for a dry bearing.
+    pub fn film(&self, ring: DefectRing) -> Option<&'a [f64]> {
+        let [outer, inner] = self.films?;
+        Some(match ring {
+            DefectRing::Outer => outer,
+            DefectRing::Inner => inner,
+        })
     }
 
     /// Normal force between roller and outer raceway [N], compression positive.
@@ -358,6 +377,7 @@ mod tests {
             outer_fy: &fy,
             inner_fx: &fx,
             inner_fy: &fy,
+            films: None,
         };
         // More than three turns without a jump.
         assert!(roller.orbit().iter().zip(&angle).all(|(found, a)| (found - a).abs() < 1e-12));

@@ -85,6 +85,13 @@ impl Statistic {
         })
     }
 
+    /// How far from the mean a further start lies at most with [`CONFIDENCE`]: t s √(1 + 1/n); `None` of a single
+    /// start. Source: Hahn and Meeker, *Statistical Intervals*, 1991, §4.7.
+    pub fn of_a_further_one(&self) -> Option<f64> {
+        let n = self.count as f64;
+        Some(students_t(self.count.checked_sub(1)?.max(1)) * self.deviation? * (1.0 + 1.0 / n).sqrt())
+    }
+
     /// How many starts it takes for a mean that is known to this `part` of itself, by the scatter seen so
     /// far; `None` without a scatter, or when it takes more than [`MOST_STARTS`].
     pub fn starts_for(&self, part: f64) -> Option<usize> {

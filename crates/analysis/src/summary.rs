@@ -13,6 +13,7 @@ use crate::enveloping::EnvelopeFinding;
 use crate::families::FamilyFinding;
 use crate::film::FilmFinding;
 use crate::filtering::NotchFinding;
+use crate::floor::FloorContact;
 use crate::kinematics::KinematicsFinding;
 use crate::load::LoadFinding;
 use crate::reading::CursorReading;
@@ -178,6 +179,9 @@ pub struct Event {
     pub floor_ms: Option<f64>,
     /// Its force then [N].
     pub floor_n: Option<f64>,
+    /// Whether the surfaces touch or oil stops the roller before they do.
+    #[serde(default)]
+    pub floor_by: Option<FloorContact>,
     /// When the roller carries most for a neighbour in the defect [ms] (event #3).
     pub compensation_ms: Option<f64>,
     /// Its force then [N], a running median as wide as that of the events.
@@ -258,7 +262,7 @@ pub struct LevelsFinding {
 }
 
 /// Levels at one sensor [g].
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SensorLevels {
     /// Sensor.
     pub sensor: String,
@@ -275,10 +279,35 @@ pub struct SensorLevels {
     pub between_g: Option<f64>,
     /// Root mean square in the gaps.
     pub between_rms_g: Option<f64>,
-    /// Largest |a_y| in the gaps behind the notch, its transient left out.
+    /// Largest |a_y| in the gaps behind the sensor's notch, its transient left out.
     pub between_filtered_g: Option<f64>,
     /// Root mean square in the gaps behind the notch.
     pub between_filtered_rms_g: Option<f64>,
+    /// Line of a_y that is nearest to the rollers' vertices times their recorded spin [Hz]; `None` where none
+    /// stands 10 dB above its surroundings within 0.5 % or the width of a line.
+    #[serde(default)]
+    pub tone_hz: Option<f64>,
+    /// Its peak amplitude [g].
+    #[serde(default)]
+    pub tone_g: Option<f64>,
+    /// How far it stands above the median of its surroundings [dB]; without a line, the highest peak there.
+    #[serde(default)]
+    pub tone_db: Option<f64>,
+    /// The line nearest to its fifth harmonic [Hz], as `tone_hz`.
+    #[serde(default)]
+    pub fifth_hz: Option<f64>,
+    /// Its peak amplitude [g].
+    #[serde(default)]
+    pub fifth_g: Option<f64>,
+    /// As `tone_db`.
+    #[serde(default)]
+    pub fifth_db: Option<f64>,
+    /// Centre of this sensor's notch [Hz]: its own dominant facet tone; without one, that of the record.
+    #[serde(default)]
+    pub notch_hz: Option<f64>,
+    /// Drop of the density there [dB]: Hann window, whole record, transient included.
+    #[serde(default)]
+    pub notch_db: Option<f64>,
 }
 
 /// Resolution of the spectra.

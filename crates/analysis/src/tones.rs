@@ -53,6 +53,8 @@ pub const REACH: f64 = 0.005;
 pub const LEAST_PROMINENCE_DB: f64 = 10.0;
 /// Half width of the band that counts as the surroundings of a line, in widths of a line at −6 dB.
 const SURROUNDINGS_WIDTHS: f64 = 12.0;
+/// The highest side lobe of Hann's window is 31 dB below its main lobe (F. J. Harris, Proc. IEEE 66 (1978)).
+const SIDE_LOBES_DB: f64 = 30.0;
 /// Half width that is excluded about a line when its surroundings are judged, in widths at −6 dB.
 const EXCLUDED_WIDTHS: f64 = 1.5;
 
@@ -131,6 +133,53 @@ pub fn measure(sensor: &str, lines: &[PredictedLine], spectrum: &Spectrum) -> Re
         }
     }
     Ok(tones)
+}
+
+/// The line of a spectrum that is nearest to a frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NearestLine {
+    /// Its frequency [Hz]; `None` where no peak within reach stands [`LEAST_PROMINENCE_DB`] above its
+    /// surroundings.
+    pub hz: Option<f64>,
+    /// Its peak amplitude [g].
+    pub level_g: Option<f64>,
+    /// How far it stands above the median of its surroundings [dB]; without a line, the highest peak within
+    /// reach.
+    pub above_db: Option<f64>,
+}
+
+/// The line of `spectrum`, a density [g²/Hz], that is nearest to `expected_hz`, whatever makes it: within
+/// [`REACH`], or within the width of a line at −6 dB where that is more. Peaks that are as far below the
+/// highest one as the side lobes of its window are none of their own.
+///
+/// # Errors
+/// [`Error::Signal`] when the spectrum cannot be searched.
+pub fn nearest(spectrum: &Spectrum, expected_hz: f64) -> Result<NearestLine, Error> {
+    let grid_hz = spectrum.resolution().grid_hz;
+    let reach = (REACH * expected_hz).max(spectrum.resolution().width_6db_hz);
+    let last_hz = 0.5 * spectrum.sample_rate_hz() - grid_hz;
+    let bins = ((expected_hz - reach) / grid_hz).ceil().max(1.0) as usize
+        ..=((expected_hz + reach).min(last_hz) / grid_hz).floor().max(0.0) as usize;
+    let values = spectrum.values();
+    let is_peak = |bin: &usize| values[*bin] >= values[bin - 1] && values[*bin] > values[bin + 1];
+    let peak = |bin: usize| spectrum.peak((bin as f64 - 0.5) * grid_hz, (bin as f64 + 0.5) * grid_hz).ok();
+    let peaks: Vec<Peak> = bins.filter(is_peak).filter_map(peak).collect();
+    let Some(highest) = peaks.iter().max_by(|a, b| a.level_db.total_cmp(&b.level_db)) else {
+        return Ok(NearestLine::default());
+    };
+    // Lobes of a line out of reach may be within it.
+    let [from, to] = [expected_hz - 2.0 * reach, expected_hz + 2.0 * reach].map(|hz| hz.clamp(0.0, last_hz));
+    let about_db = spectrum.peak(from, to).map_or(highest.level_db, |peak| peak.level_db);
+    let above_db = |peak: &Peak| prominence_db(spectrum, peak, (peak.frequency_hz, peak.frequency_hz));
+    let is_line = |peak: &&Peak| {
+        peak.level_db > about_db - SIDE_LOBES_DB && above_db(peak).is_some_and(|db| db >= LEAST_PROMINENCE_DB)
+    };
+    let off = |peak: &Peak| (peak.frequency_hz - expected_hz).abs();
+    let Some(found) = peaks.iter().filter(is_line).min_by(|a, b| off(a).total_cmp(&off(b))) else {
+        return Ok(NearestLine { above_db: above_db(highest), ..NearestLine::default() });
+    };
+    let line = spectrum.sinusoid(found).map_err(Error::Signal)?;
+    Ok(NearestLine { hz: Some(line.frequency_hz), level_g: Some(line.amplitude), above_db: above_db(found) })
 }
 
 /// Level of a peak above the median on both sides of its group, the group itself left out.
@@ -246,6 +295,32 @@ mod tests {
         lines[0].from_motion_hz = Some(4674.5);
         let found = measure("side", &lines, &spectrum_of(&signal)).unwrap()[0].measured_hz;
         assert!((found.unwrap() - 4674.0).abs() < 0.5, "{found:?}");
+    }
+
+    /// 36 g at 4775 Hz, 104 Hz away and out of reach, 12 g at 4655 Hz, and 4 g at five times the latter, in
+    /// noise of ±10 g.
+    #[test]
+    fn example_the_nearest_line_beside_a_stronger_one() {
+        let line = |hz: f64, t: f64| (std::f64::consts::TAU * hz * t).sin();
+        let noise = tone_in_noise(3000);
+        let signal: Vec<f64> = (0..3000)
+            .map(|n| (n as f64 / SAMPLE_RATE_HZ, noise[n] - 40.0 * line(4674.0, n as f64 / SAMPLE_RATE_HZ)))
+            .map(|(t, rest)| 36.0 * line(4775.0, t) + 12.0 * line(4655.0, t) + 4.0 * line(23_275.0, t) + rest)
+            .collect();
+        let spectrum = spectrum_of(&signal);
+        let found = nearest(&spectrum, 4671.0).unwrap();
+        // Noise of 0.0007 g²/Hz under 50 Hz moves a frequency by a few hertz and 12 g by some tenths.
+        assert!((found.hz.unwrap() - 4655.0).abs() < 5.0, "{found:?}");
+        assert!((found.level_g.unwrap() - 12.0).abs() < 1.0, "{found:?}");
+        assert!(found.above_db.unwrap() > 20.0, "{found:?}");
+        let fifth = nearest(&spectrum, 5.0 * 4655.0).unwrap();
+        assert!((fifth.hz.unwrap() - 23_275.0).abs() < 10.0 && fifth.above_db.unwrap() > 10.0, "{fifth:?}");
+        // Nothing stands out elsewhere; how far the highest peak stands out is told all the same.
+        let none = nearest(&spectrum, 11_000.0).unwrap();
+        assert!(none.hz.is_none() && none.above_db.is_some_and(|db| db < 10.0), "{none:?}");
+        let silence = spectrum_of(&vec![0.0; 3000]);
+        assert_eq!(nearest(&silence, 4671.0).unwrap(), NearestLine::default());
+        assert_eq!(nearest(&spectrum, 90_000.0).unwrap(), NearestLine::default());
     }
 
     #[test]

@@ -152,7 +152,7 @@ fn now_ns() -> f64 {
 fn main() {
     let given = std::env::args().skip(1).find(|a| a.ends_with(".ron"));
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let file = given.map_or_else(|| root.join("fixtures/scenes/singh2014.ron"), |file| root.join(file));
+    let file = given.map_or_else(|| root.join("fixtures/scenes/oiled_steel.ron"), |file| root.join(file));
     let scene = Scene::read(&file).expect("a scene");
     let mut all: Vec<Moving> = variants(&scene).into_iter().map(Moving::new).collect();
     for _ in 0..ROUNDS {

@@ -46,76 +46,12 @@ pub fn open(path: &Path) -> Result<Recording> {
                 } else {
                     let sort = if half(0) == EXTENSIBLE { half(24) } else { half(0) };
                     let rate = u32::from(half(4)) | u32::from(half(6)) << 16;
-                    format = Some((sort, half(2), rate, half(14)));
+                    format = Some(Format { sort, channels: half(2), rate, bits: half(14) });
                 }
             }
             b"data" => {
-                let (sort, channels, rate, bits) =
-                    format.ok_or_else(|| damaged("the samples come before their format"))?;
-                let (kind, factor) = match (sort, bits) {
-                    (PCM, 8) => (Kind::U8, 1.0 / 128.0),
-                    (PCM, 16) => (Kind::I16, 1.0 / 32_768.0),
-                    (PCM, 24) => (Kind::I24, 1.0 / 8_388_608.0),
-                    (PCM, 32) => (Kind::I32, 1.0 / 2_147_483_648.0),
-                    (FLOAT, 32) => (Kind::F32, 1.0),
-                    (FLOAT, 64) => (Kind::F64, 1.0),
-                    _ => {
-                        let what = format!("sound of format {sort} with {bits} bits");
-                        let advice = "save it as PCM or floating point";
-                        return Err(Error::Unsupported {
-                            path: path.to_owned(),
-                            format: FORMAT,
-                            what,
-                            advice,
-                        });
-                    }
-                };
-                if channels == 0 || rate == 0 {
-                    return Err(damaged("it has no channels or no sample rate"));
-                }
-                // A recorder that streams, or was cut off, leaves 0 or the largest number where the size
-                // would be.
-                let there = size - at - 8;
-                let unsaid = length == 0 || length == u64::from(u32::MAX) && long_data.is_none_or(|n| n == 0);
-                let promised = match long_data {
-                    _ if unsaid => there,
-                    Some(long) if length == u64::from(u32::MAX) => long,
-                    _ => length,
-                };
-                let held = promised.min(there);
-                let mut notes = Vec::new();
-                if unsaid && there > 0 {
-                    notes.push(format!(
-                        "its header does not say how many samples there are: all {there} \
-                        bytes to its end are taken"
-                    ));
-                } else if held < promised {
-                    notes.push(format!(
-                        "its header promises {promised} bytes of samples, and {held} are there"
-                    ));
-                }
-                // Eight bits have no sign: 128 is silence.
-                let curve = (kind == Kind::U8).then(|| Curve::linear(-1.0, 1.0));
-                let stride = usize::from(channels) * kind.bytes();
-                let all = (0..usize::from(channels)).map(|n| {
-                    let start = at + 8 + (n * kind.bytes()) as u64;
-                    let strided = Strided {
-                        path: path.to_owned(),
-                        start,
-                        stride,
-                        number: Number::little(kind),
-                        factor,
-                    };
-                    Channel::strided((n + 1).to_string(), held / stride as u64, strided)
-                        .at_rate(Some(f64::from(rate)))
-                        .along(curve.clone())
-                });
-                return Ok(Recording {
-                    path: path.to_owned(),
-                    format: FORMAT,
-                    channels: all.collect(),
-                    notes,
-                });
+                let format = format.ok_or_else(|| damaged("the samples come before their format"))?;
+                return samples(path, format, Data { at: at + 8, there: size - at - 8, length, long_data });
             }
             _ => {}
         }
@@ -132,6 +68,81 @@ pub fn open(path: &Path) -> Result<Recording> {
         }
     }
     Err(damaged("it ends before its samples"))
+}
+
+/// What the piece `fmt` says.
+#[derive(Debug, Clone, Copy)]
+struct Format {
+    sort: u16,
+    channels: u16,
+    rate: u32,
+    bits: u16,
+}
+
+/// Where the piece `data` begins, how many bytes are there, and how many its header and that of a long file promise.
+#[derive(Debug, Clone, Copy)]
+struct Data {
+    at: u64,
+    there: u64,
+    length: u64,
+    long_data: Option<u64>,
+}
+
+/// The channels of the piece `data`.
+fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
+    let Format { sort, channels, rate, bits } = format;
+    let (kind, factor) = match (sort, bits) {
+        (PCM, 8) => (Kind::U8, 1.0 / 128.0),
+        (PCM, 16) => (Kind::I16, 1.0 / 32_768.0),
+        (PCM, 24) => (Kind::I24, 1.0 / 8_388_608.0),
+        (PCM, 32) => (Kind::I32, 1.0 / 2_147_483_648.0),
+        (FLOAT, 32) => (Kind::F32, 1.0),
+        (FLOAT, 64) => (Kind::F64, 1.0),
+        _ => {
+            let what = format!("sound of format {sort} with {bits} bits");
+            let advice = "save it as PCM or floating point";
+            return Err(Error::Unsupported { path: path.to_owned(), format: FORMAT, what, advice });
+        }
+    };
+    if channels == 0 || rate == 0 {
+        return Err(Error::damaged(path, FORMAT, "it has no channels or no sample rate"));
+    }
+    let (held, notes) = data.held();
+    // Eight bits have no sign: 128 is silence.
+    let curve = (kind == Kind::U8).then(|| Curve::linear(-1.0, 1.0));
+    let stride = usize::from(channels) * kind.bytes();
+    let all = (0..usize::from(channels)).map(|n| {
+        let start = data.at + (n * kind.bytes()) as u64;
+        let strided = Strided { path: path.to_owned(), start, stride, number: Number::little(kind), factor };
+        Channel::strided((n + 1).to_string(), held / stride as u64, strided)
+            .at_rate(Some(f64::from(rate)))
+            .along(curve.clone())
+    });
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels: all.collect(), notes })
+}
+
+impl Data {
+    /// Bytes of samples, and what is to be said of them. A recorder that streams, or was cut off, leaves 0 or
+    /// the largest number where the size would be.
+    fn held(self) -> (u64, Vec<String>) {
+        let Self { there, length, long_data, .. } = self;
+        let unsaid = length == 0 || length == u64::from(u32::MAX) && long_data.is_none_or(|n| n == 0);
+        let promised = match long_data {
+            _ if unsaid => there,
+            Some(long) if length == u64::from(u32::MAX) => long,
+            _ => length,
+        };
+        let held = promised.min(there);
+        let mut notes = Vec::new();
+        if unsaid && there > 0 {
+            notes.push(format!(
+                "its header does not say how many samples there are: all {there} bytes to its end are taken"
+            ));
+        } else if held < promised {
+            notes.push(format!("its header promises {promised} bytes of samples, and {held} are there"));
+        }
+        (held, notes)
+    }
 }
 
 /// Writes channels of one length and rate as 64-bit floats, in their own unit; `notes` goes into the comment.

@@ -99,17 +99,21 @@ fn ended(watch: Watch, dir: &RunDir, done: anyhow::Result<RunInfo>) -> PyResult<
     Ok(dir.path().to_owned())
 }
 
-fn read_scene(file: Option<&Path>, overrides: &[String]) -> anyhow::Result<Scene> {
-    Place::here().scene(file, overrides)
+/// What Python asks for: a file, fields that replace its own, and whether it is fields alone, without a file.
+type Asked = (Option<PathBuf>, Vec<String>, bool);
+
+/// A scene from a file, from fields alone, or without either the paper's run.
+fn read_scene((file, overrides, of_fields): &Asked) -> anyhow::Result<Scene> {
+    let place = Place::here();
+    if *of_fields { place.scene_of_fields(overrides) } else { place.scene(file.as_deref(), overrides) }
 }
 
 /// Simulates; returns the folder of the run.
 #[pyfunction]
-#[pyo3(signature = (scene, overrides, out, overwrite, threads, progress))]
+#[pyo3(signature = (asked, out, overwrite, threads, progress))]
 pub(crate) fn simulate(
     py: Python<'_>,
-    scene: Option<PathBuf>,
-    overrides: Vec<String>,
+    asked: Asked,
     out: Option<PathBuf>,
     overwrite: bool,
     threads: Option<usize>,
@@ -118,7 +122,7 @@ pub(crate) fn simulate(
     let mut watch = Watch::new(progress);
     let (dir, done) = py
         .detach(|| -> anyhow::Result<_> {
-            let scene = read_scene(scene.as_deref(), &overrides)?;
+            let scene = read_scene(&asked)?;
             let folder = out.clone().unwrap_or_else(|| Place::here().runs().join(&scene.name));
             let dir = match (overwrite, &out) {
                 (true, _) => RunDir::replace(&folder)?,
@@ -163,9 +167,9 @@ pub(crate) fn resume(
 
 /// A scene with every default, as RON, and its hash.
 #[pyfunction]
-pub(crate) fn scene(file: Option<PathBuf>, overrides: Vec<String>) -> PyResult<(String, String)> {
+pub(crate) fn scene(asked: Asked) -> PyResult<(String, String)> {
     let read = || -> anyhow::Result<(String, String)> {
-        let scene = read_scene(file.as_deref(), &overrides)?;
+        let scene = read_scene(&asked)?;
         Ok((scene.to_ron(), scene.hash()))
     };
     read().map_err(|why| raise(&why))

@@ -17,6 +17,7 @@
 //! | a run, or a stretch of it | [`write()`], [`write_between`] | `report.html`, `summary.json`, `figures/` |
 //! | many starts of a scene | [`write_ensemble`] | `report.html`, `summary.json`, `figures/` |
 //! | the reduced model beside the full one | [`write_agreement`] | `report.html`, `validation.json` |
+//! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
 //!
@@ -37,6 +38,7 @@ mod tables;
 
 mod agreement;
 mod ensemble;
+pub mod inference;
 mod measured;
 mod run;
 mod trend;

@@ -4,7 +4,8 @@ use maud::{Markup, html};
 use stribeck_scene::run_info::RunInfo;
 
 use stribeck_analysis::film::FilmFinding;
-use stribeck_analysis::summary::{PhaseLevels, Summary};
+use stribeck_analysis::floor::FloorContact;
+use stribeck_analysis::summary::{Event, PhaseLevels, Summary};
 use stribeck_analysis::words::{level, significant};
 
 /// Measured events of every passage.
@@ -14,6 +15,10 @@ pub(super) fn events(summary: &Summary) -> Markup {
     }
     let ms = |t: Option<f64>| t.map(|t| format!("{t:.2}"));
     let kilo = |n: Option<f64>| n.map(|n| format!("{:.2}", 1e-3 * n));
+    let floor = |event: &Event| {
+        let by = |by: FloorContact| format!(", {}", by.name());
+        event.floor_n.map(|n| format!("{n:.0}{}", event.floor_by.map_or(String::new(), by)))
+    };
     let several = summary.events.iter().any(|event| event.spall > 1);
     let table = html! {
         div class="scroll" {
@@ -22,7 +27,7 @@ pub(super) fn events(summary: &Summary) -> Markup {
                     tr {
                         @if several { th { "Spall" } }
                         th { "Roller" } th class="n" { "Load before kN" } th class="n" { "#1 unloads ms" } th class="n" { "no slip ms" }
-                        th class="n" { "#2 floor ms" } th class="n" { "floor kN" }
+                        th class="n" { "#2 floor ms" } th class="n" { "floor N" }
                         th class="n" { "#3 neighbour in the defect ms" } th class="n" { "carries kN" }
                         th class="n" { "#4 loaded ms" } th class="n" { "no slip ms" } th class="n" { "Impulse g" }
                     }
@@ -36,7 +41,7 @@ pub(super) fn events(summary: &Summary) -> Markup {
                             (cell(ms(event.entry_ms)))
                             td class="n" { (format!("{:.2}", event.expected_entry_ms)) }
                             (cell(ms(event.floor_ms)))
-                            (cell(kilo(event.floor_n)))
+                            (cell(floor(event)))
                             (cell(ms(event.compensation_ms)))
                             (cell(kilo(event.compensation_n)))
                             (cell(ms(event.exit_ms)))

@@ -25,12 +25,13 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::dice::Dice;
+use crate::document::unreadable;
 use crate::ensemble::start;
 use crate::run_dir::Keep;
 use crate::scene::Scene;
 use crate::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
-use design::Variants;
-use refusal::File;
+use design::{Rows, Variants};
+use refusal::{CAMPAIGN, File};
 
 /// Most runs of a campaign.
 pub const MOST_RUNS: usize = 1_000_000;
@@ -135,13 +136,14 @@ impl Campaign {
     /// here: its variant says why.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|e| refusal::unreadable(&shown, &e))?;
+        let text =
+            std::fs::read_to_string(path).map_err(|e| unreadable(&shown, &CAMPAIGN, refusal::FILE, &e))?;
         Self::parse(without_mark(&text), &shown, path.parent().unwrap_or(Path::new("")))
     }
 
     fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
-        let place = File::new(name, text);
-        let file: Text = dialect::dialect().from_str(text).map_err(|e| place.no_campaign(&e))?;
+        let place = File::new(name, text, &CAMPAIGN);
+        let file: Text = dialect::dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
             return refuse(
@@ -166,87 +168,104 @@ impl Campaign {
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
         let rows = file.variants.rows(file.seed, folder).map_err(|no| place.refuse(&no.at, no.why))?;
-        for (column, (field, _)) in rows.fields.iter().enumerate() {
-            if let Some(problem) = scene_file::unknown_field(field) {
-                return Err(place.field(problem, &rows, column));
-            }
-            if rows.fields[..column].iter().any(|(before, _)| before == field) {
-                let why = format!(
-                    "`{field}` is named twice: a field varies in one way, and is one column of the tables"
-                );
-                return Err(place.field(
-                    Problem::new(why, Place::Unwritten { file: String::new() }),
-                    &rows,
-                    column,
-                ));
-            }
-        }
+        check_fields(&rows, &place)?;
         let count = rows.values.len() * file.starts;
         if count == 0 || count > MOST_RUNS {
             return refuse("variants", format!("make {count} runs; 1 to {MOST_RUNS} are possible"));
         }
-        let mut runs = Vec::with_capacity(count);
-        let mut unreadable: Vec<Problem> = Vec::new();
-        let mut rows_to_look_at = MOST_LOOKED_AT;
-        // What is wrong with every variant so far, outside of what varies.
-        let mut common: Option<Vec<Problem>> = None;
-        for (row, values) in rows.values.iter().enumerate() {
-            let assigned = (0..values.len()).map(|column| rows.argument(row, column));
-            let set: Vec<String> = file.set.iter().cloned().chain(assigned).collect();
-            let scene = match &base {
-                Some(path) => Scene::read_with(path, &set),
-                None => Scene::default().with_overrides(&set),
-            };
-            if scene.is_err() {
-                for (index, problem) in scene_file::unreadable_values(base.as_deref(), &set) {
-                    let Some(column) = index.checked_sub(file.set.len()) else { continue };
-                    let problem = place.value(problem, &rows, row, column);
-                    if unreadable.iter().all(|other| other.place != problem.place) {
-                        unreadable.push(problem);
-                    }
-                }
-            }
-            if !unreadable.is_empty() {
-                rows_to_look_at -= 1;
-                if unreadable.len() >= MOST_PROBLEMS || rows_to_look_at == 0 {
-                    break;
-                }
-                continue;
-            }
-            let outside = scene.as_ref().err().map_or_else(Vec::new, |why| place.outside(why, &rows, row));
-            match &mut common {
-                None => common = Some(outside),
-                Some(common) => common.retain(|problem| outside.contains(problem)),
-            }
-            // By the scene, however its values are written: equal scenes are in one part and have the same
-            // starts, others have not.
-            let drawn = scene.as_ref().map_or_else(|_| fold(values), nameless);
-            let scene = scene.map_err(|why| place.of_variant(&why, &rows, row).to_string());
-            let split = split_of(&file.split, file.seed, drawn);
-            for number in 1..=file.starts {
-                let started = |scene: &Scene| {
-                    if file.starts == 1 { scene.clone() } else { start(scene, file.seed ^ drawn, number) }
-                };
-                runs.push(Variant {
-                    number: runs.len() + 1,
-                    variant: row + 1,
-                    start: number,
-                    values: values.clone(),
-                    split,
-                    scene: scene.as_ref().map(started).map_err(Clone::clone),
-                });
-            }
-        }
-        if !unreadable.is_empty() {
-            unreadable.sort_by_key(Problem::line_and_column);
-            return Err(SceneError::new(unreadable));
-        }
-        if let Some(common) = common.filter(|common| !common.is_empty()) {
-            return Err(place.of_base(SceneError::new(common)));
-        }
+        let runs = variants(&file, base.as_deref(), &rows, &place)?;
         let fields = rows.fields.into_iter().map(|(field, _)| field).collect();
         Ok(Self { name: file.name, text: text.to_owned(), fields, runs, seed: file.seed, keep: file.keep })
     }
+}
+
+/// Fields that no scene has, or that vary twice.
+fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
+    for (column, (field, _)) in rows.fields.iter().enumerate() {
+        if let Some(problem) = scene_file::unknown_field(field) {
+            return Err(place.field(problem, rows, column));
+        }
+        if rows.fields[..column].iter().any(|(before, _)| before == field) {
+            let why = format!(
+                "`{field}` is named twice: a field varies in one way, and is one column of the tables"
+            );
+            return Err(place.field(
+                Problem::new(why, Place::Unwritten { file: String::new() }),
+                &rows,
+                column,
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The runs of all variants. A scene that cannot be is no error: its run says why.
+fn variants(
+    file: &Text,
+    base: Option<&Path>,
+    rows: &Rows,
+    place: &File<'_>,
+) -> Result<Vec<Variant>, SceneError> {
+    let mut runs = Vec::with_capacity(rows.values.len() * file.starts);
+    let mut unreadable: Vec<Problem> = Vec::new();
+    let mut rows_to_look_at = MOST_LOOKED_AT;
+    // What is wrong with every variant so far, outside of what varies.
+    let mut common: Option<Vec<Problem>> = None;
+    for (row, values) in rows.values.iter().enumerate() {
+        let assigned = (0..values.len()).map(|column| rows.argument(row, column));
+        let set: Vec<String> = file.set.iter().cloned().chain(assigned).collect();
+        let scene = match base {
+            Some(path) => Scene::read_with(path, &set),
+            None => Scene::singh2014().with_overrides(&set),
+        };
+        if scene.is_err() {
+            for (index, problem) in scene_file::unreadable_values(base, &set) {
+                let Some(column) = index.checked_sub(file.set.len()) else { continue };
+                let problem = place.value(problem, rows, row, column);
+                if unreadable.iter().all(|other| other.place != problem.place) {
+                    unreadable.push(problem);
+                }
+            }
+        }
+        if !unreadable.is_empty() {
+            rows_to_look_at -= 1;
+            if unreadable.len() >= MOST_PROBLEMS || rows_to_look_at == 0 {
+                break;
+            }
+            continue;
+        }
+        let outside = scene.as_ref().err().map_or_else(Vec::new, |why| place.outside(why, rows, row));
+        match &mut common {
+            None => common = Some(outside),
+            Some(common) => common.retain(|problem| outside.contains(problem)),
+        }
+        // By the scene, however its values are written: equal scenes are in one part and have the same
+        // starts, others have not.
+        let drawn = scene.as_ref().map_or_else(|_| fold(values), nameless);
+        let scene = scene.map_err(|why| place.of_variant(&why, rows, row).to_string());
+        let split = split_of(&file.split, file.seed, drawn);
+        for number in 1..=file.starts {
+            let started = |scene: &Scene| {
+                if file.starts == 1 { scene.clone() } else { start(scene, file.seed ^ drawn, number) }
+            };
+            runs.push(Variant {
+                number: runs.len() + 1,
+                variant: row + 1,
+                start: number,
+                values: values.clone(),
+                split,
+                scene: scene.as_ref().map(started).map_err(Clone::clone),
+            });
+        }
+    }
+    if !unreadable.is_empty() {
+        unreadable.sort_by_key(Problem::line_and_column);
+        return Err(SceneError::new(unreadable));
+    }
+    if let Some(common) = common.filter(|common| !common.is_empty()) {
+        return Err(place.of_base(SceneError::new(common)));
+    }
+    Ok(runs)
 }
 
 /// The hash of a scene without its name, as a number.

@@ -132,7 +132,7 @@ mod tests {
         }
         let other = Scene::default().with_overrides(&["operation.load_n=40000"]).expect("valid");
         assert!(!is_start_of(&of(1, 1), &other));
-        assert_eq!(of(1, 12).name, "singh2014-start-012");
+        assert_eq!(of(1, 12).name, "oiled_steel-start-012");
         let long = Scene { name: "x".repeat(MAX_NAME), ..Scene::default() };
         assert!(start(&long, 1, 1000).validate().is_ok());
         let turned = Scene::default().with_overrides(&["bearing.first_roller_deg=360"]).expect("valid");

@@ -8,7 +8,8 @@ pub use crate::deviation::DeviationScene;
 pub use crate::housing::HousingScene;
 pub use crate::ring_mesh::RingMeshScene;
 
-/// A complete scene. `()` in a file is the paper's bearing; every field has a default.
+/// A complete scene. Every field has a default; `()` in a file is the paper's bearing in oil, as
+/// `fixtures/scenes/oiled_steel.ron` spells it out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Scene {
@@ -578,7 +579,7 @@ impl GradingScene {
 impl Default for Scene {
     fn default() -> Self {
         Self {
-            name: "singh2014".into(),
+            name: "oiled_steel".into(),
             model: ModelScene::Full,
             bearing: BearingScene::default(),
             cage: Some(CageScene::default()),

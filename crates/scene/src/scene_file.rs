@@ -133,7 +133,7 @@ pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<R
         .collect()
 }
 
-/// What is wrong with `field` of the scene file at `path`, or of the default scene, under `overrides`:
+/// What is wrong with `field` of the scene file at `path`, or of the paper's scene, under `overrides`:
 /// `message`, shown where the field was written. For what is found in a sound scene later, as in the meshes
 /// that it names.
 pub fn refused_at<S: AsRef<str>>(
@@ -147,7 +147,7 @@ pub fn refused_at<S: AsRef<str>>(
     let text = without_mark(&text);
     let set = match understand(text, &file, overrides) {
         Ok((_, set)) if path.is_some() => set,
-        _ => overrides::apply(Scene::default(), overrides).map_or_else(|_| Vec::new(), |(_, set)| set),
+        _ => overrides::apply(Scene::singh2014(), overrides).map_or_else(|_| Vec::new(), |(_, set)| set),
     };
     let mut problem = Problem::new(message, Origin::in_file(&file, text, set).place(field));
     field.clone_into(&mut problem.field);
@@ -194,7 +194,7 @@ fn understand<S: AsRef<str>>(
     overrides::apply(scene, overrides)
 }
 
-/// Whether the scene file at `path`, or the default scene, can be read with `overrides`. What further
+/// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. What further
 /// overrides may repair is not looked at: numbers outside their range, bodies that cannot exist, tables that
 /// are not there.
 pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
@@ -202,7 +202,7 @@ pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> R
         Some(path) => {
             understand(without_mark(&load(path)?), &path.display().to_string(), overrides).map(drop)
         }
-        None => overrides::apply(Scene::default(), overrides).map(drop),
+        None => overrides::apply(Scene::singh2014(), overrides).map(drop),
     }
 }
 
@@ -217,7 +217,7 @@ pub(crate) fn unreadable_values<S: AsRef<str>>(
             let nothing: &[&str] = &[];
             Ok(understand(without_mark(&text), &path.display().to_string(), nothing)?.0)
         }),
-        None => Ok(Scene::default()),
+        None => Ok(Scene::singh2014()),
     };
     scene.map_or_else(|_| Vec::new(), |scene| overrides::unreadable_values(scene, overrides))
 }

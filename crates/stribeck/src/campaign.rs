@@ -6,28 +6,23 @@
 //! same.
 
 mod datasheet;
-mod emit;
-mod memory;
 mod tables;
 
-use std::collections::HashSet;
 use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::findings::Findings;
-use stribeck_analysis::record::Record;
-use stribeck_scene::Error;
+use anyhow::{Context, Result, ensure};
 use stribeck_scene::campaign::{Campaign, Variant};
-use stribeck_scene::run_dir::{Keep, Run, RunDir, State, check_folder, write_atomic};
+use stribeck_scene::run_dir::check_folder;
 use stribeck_scene::scene::Scene;
 
+use crate::emit::{self, MOST_PARTS, Part};
 use crate::interrupt::{self, Interrupt};
+use crate::many_runs::{ManyRuns, Share, Stage, Wanted};
 use crate::out::say;
 use crate::place::{Place, shown};
-use crate::side_by_side::{Due, Jobs, Shop};
 use crate::simulate::{jobs, threads};
 
 /// Flags of `campaign`.
@@ -65,17 +60,17 @@ pub struct Options {
 
 /// One part of the runs.
 #[derive(Debug, Clone, Copy)]
-struct Shard {
-    part: usize,
-    of: usize,
+pub(crate) struct Shard {
+    pub(crate) part: usize,
+    pub(crate) of: usize,
 }
 
-fn gigabytes(text: &str) -> Result<f64, String> {
+pub(crate) fn gigabytes(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|gb: &f64| gb.is_finite() && *gb > 0.0);
     number.ok_or_else(|| "not a positive number of gigabytes, such as 8".to_owned())
 }
 
-fn shard(text: &str) -> Result<Shard, String> {
+pub(crate) fn shard(text: &str) -> Result<Shard, String> {
     let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
     match numbers {
         Some((part, of)) if part >= 1 && part <= of => Ok(Shard { part, of }),
@@ -93,39 +88,26 @@ const SCENES: &str = "scenes.txt";
 const MARKS: [&str; 2] = [TURN, "runs.parquet"];
 
 /// Where the things of a campaign are.
-struct Folder(PathBuf);
+struct Folder(ManyRuns);
 
 impl Folder {
-    /// The folder of a run: by its scene, so that equal scenes are run once.
-    fn run(&self, scene: &Scene) -> PathBuf {
-        self.0.join("runs").join(scene.hash())
-    }
-
-    /// Why a run cannot be made, if somebody has tried.
-    fn failure(&self, scene: &Scene) -> PathBuf {
-        self.0.join("failed").join(format!("{}.txt", scene.hash()))
-    }
-
-    /// Writes down why a run cannot be made.
-    fn keep_failure(&self, scene: &Scene, why: &str) -> Result<()> {
-        let path = self.failure(scene);
-        path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-        Ok(write_atomic(&path, why.as_bytes())?)
-    }
-
     fn file(&self) -> PathBuf {
-        self.0.join("campaign.ron")
+        self.path().join("campaign.ron")
     }
 
     /// Hashes of the scenes of all runs, by which a table or a scene file that was changed is known.
     fn scenes(&self) -> PathBuf {
-        self.0.join(SCENES)
+        self.path().join(SCENES)
+    }
+
+    fn path(&self) -> &Path {
+        &self.0.0
     }
 
     /// Waits until no other part writes the files of the campaign itself, for as long as what is returned
     /// lives, and removes what a part that was killed has left half written.
     fn take_turn(&self) -> Result<File> {
-        let path = self.0.join(TURN);
+        let path = self.path().join(TURN);
         let lock = || {
             let file = File::options().write(true).create(true).truncate(false).open(&path)?;
             match file.lock() {
@@ -141,7 +123,7 @@ impl Folder {
     }
 
     fn remove_left_overs(&self) {
-        for entry in std::fs::read_dir(&self.0).into_iter().flatten().flatten() {
+        for entry in std::fs::read_dir(self.path()).into_iter().flatten().flatten() {
             if tables::is_half_written(&entry.file_name()) {
                 std::fs::remove_file(entry.path()).ok();
             }
@@ -149,34 +131,10 @@ impl Folder {
     }
 }
 
-/// How far one run has come.
-enum Stage {
-    /// Its scene cannot be, or its run could not be made: the reason.
-    Refused(String),
-    Failed(String),
-    /// At its end, but its numbers are not made, or more lies there than is to be kept.
-    Ended,
-    /// At its end; it may have diverged.
-    Done,
-    /// To be run or continued.
-    Due,
-}
-
-fn stage(folder: &Folder, keep: Keep, variant: &Variant) -> Result<Stage> {
-    let scene = match &variant.scene {
-        Ok(scene) => scene,
-        Err(why) => return Ok(Stage::Refused(why.clone())),
-    };
-    if let Ok(why) = std::fs::read_to_string(folder.failure(scene)) {
-        return Ok(Stage::Failed(why));
+impl<'a> From<&'a Variant> for Wanted<'a> {
+    fn from(variant: &'a Variant) -> Self {
+        Self { number: variant.number, scene: variant.scene.as_ref().map_err(String::as_str) }
     }
-    let path = folder.run(scene);
-    Ok(match State::of(&path, scene) {
-        State::Done if is_settled(&path, keep)? => Stage::Done,
-        State::Done => Stage::Ended,
-        State::Other => bail!("`{}` holds a run of another scene: move it away", shown(&path)),
-        State::New | State::Begun => Stage::Due,
-    })
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
@@ -184,66 +142,35 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let campaign = Campaign::read(&file)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&campaign.name));
     if let Some(engine) = options.emit {
-        let part = emit::Part::of(options, campaign.runs.len());
-        say!("{}", emit::script(engine, &file, &out, part)?.trim_end());
+        // As many threads as it may have, or one a job, and one part a run up to some.
+        let parts = u32::try_from(campaign.runs.len()).unwrap_or(MOST_PARTS).min(MOST_PARTS);
+        let part = Part {
+            of: options.shards.unwrap_or(parts),
+            jobs: options.jobs,
+            threads: options.threads.or(options.jobs).unwrap_or(1),
+            memory_gb: options.memory_gb,
+        };
+        say!("{}", emit::script(engine, "campaign", &file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
-    let folder = Folder(out);
-    check_folder(&folder.0, &MARKS)?;
+    let folder = Folder(ManyRuns(out));
+    check_folder(folder.path(), &MARKS)?;
     enter(&folder, &campaign)?;
     let interrupt = Interrupt::listen()?;
     let mine = |variant: &&Variant| {
         options.shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1)
     };
-    let mut due = Vec::new();
-    // Equal scenes are run once.
-    let mut seen = HashSet::new();
-    for variant in campaign.runs.iter().filter(mine) {
-        let Ok(scene) = &variant.scene else { continue };
-        match stage(&folder, campaign.keep, variant)? {
-            Stage::Due => {
-                let (number, scene, folder) = (variant.number, scene.clone(), folder.run(scene));
-                if seen.insert(folder.clone()) {
-                    due.push(Due { number, scene, folder });
-                }
-            }
-            // What a kill has left; it may free the space that others need.
-            Stage::Ended if !interrupt.is_pressed() => {
-                if let Err(why) = settle(&folder.run(scene), campaign.keep) {
-                    eprintln!("warning: {why:#}");
-                }
-            }
-            _ => {}
-        }
-    }
-    let limit_gb = options.memory_gb.or_else(memory::free_gb).unwrap_or(f64::INFINITY);
-    let need_gb = due.iter().map(|due| memory::need_gb(&due.scene)).fold(0.0, f64::max);
-    if need_gb > limit_gb {
-        eprintln!("warning: a run may take {need_gb:.1} GB, and there are {limit_gb:.1} GB for it");
-    }
-    let fitting = ((limit_gb / need_gb) as usize).max(1);
-    let jobs = Jobs::of(options.jobs, options.threads, due.len().min(fitting));
-    eprintln!(
-        "{}: {} runs, {} of them to be run here, {} → {}",
-        campaign.name,
-        campaign.runs.len(),
-        due.len(),
-        jobs.shown(),
-        shown(&folder.0)
-    );
-    let shop = Shop::new("run", &due, jobs, &interrupt);
-    shop.run(&|due, error| {
-        let kept = match error {
-            Some(error) => folder.keep_failure(&due.scene, &error.to_string()),
-            // By every job for its own run; the tables only gather.
-            None if matches!(State::of(&due.folder, &due.scene), State::Done) => {
-                settle(&due.folder, campaign.keep)
-            }
-            None => Ok(()),
-        };
-        if let Err(why) = kept {
-            shop.say(&format!("warning: {why}"));
-        }
+    let due = folder.0.due(campaign.keep, campaign.runs.iter().filter(mine).map(Wanted::from), &interrupt)?;
+    let share = Share { jobs: options.jobs, threads: options.threads, memory_gb: options.memory_gb };
+    folder.0.make(campaign.keep, &due, share, &interrupt, &|jobs| {
+        eprintln!(
+            "{}: {} runs, {} of them to be run here, {} → {}",
+            campaign.name,
+            campaign.runs.len(),
+            due.len(),
+            jobs.shown(),
+            shown(folder.path())
+        );
     });
     conclude(&folder, &campaign, &interrupt, mine)
 }
@@ -262,7 +189,7 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
             *there == campaign.text,
             "`{}` holds another campaign, or an earlier text of this one: give a folder with `--out`, or \
              compare `{}`",
-            shown(&folder.0),
+            shown(folder.path()),
             shown(&path)
         );
         // Folders of earlier versions have no such list.
@@ -273,13 +200,14 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
                 "`{}` holds runs of other scenes, beginning with run {}: the table or the scene that this \
                  campaign names was changed \
                  since. Give a folder with `--out`, or put it back",
-                shown(&folder.0),
+                shown(folder.path()),
                 same + 1
             );
             return Ok(());
         }
     }
-    std::fs::create_dir_all(&folder.0).with_context(|| format!("cannot make `{}`", shown(&folder.0)))?;
+    std::fs::create_dir_all(folder.path())
+        .with_context(|| format!("cannot make `{}`", shown(folder.path())))?;
     let _turn = folder.take_turn()?;
     replace(&folder.scenes(), &scenes)?;
     if there.is_none() {
@@ -305,7 +233,7 @@ fn conclude(
     let mut stages = Vec::with_capacity(campaign.runs.len());
     let (mut left, mut left_here) = (0, 0);
     for variant in &campaign.runs {
-        let stage = stage(folder, campaign.keep, variant)?;
+        let stage = folder.0.stage(campaign.keep, variant.into())?;
         let due = matches!(stage, Stage::Due | Stage::Ended);
         left += usize::from(due);
         left_here += usize::from(due && mine(&variant));
@@ -329,7 +257,7 @@ fn conclude(
     let rows = tables::rows(folder, campaign, &stages)?;
     let turn = folder.take_turn()?;
     let written = tables::write(folder, campaign, &rows)?;
-    replace(&folder.0.join("DATASHEET.md"), &datasheet::text(campaign, &rows, &written))?;
+    replace(&folder.path().join("DATASHEET.md"), &datasheet::text(campaign, &rows, &written))?;
     drop(turn);
     let complete = rows.iter().filter(|row| row.is_complete()).count();
     for row in rows.iter().filter(|row| !row.is_complete()).take(3) {
@@ -338,55 +266,6 @@ fn conclude(
         let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed: {allowed}"));
         eprintln!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
     }
-    say!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.0.join(tables::RUNS)));
+    say!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.path().join(tables::RUNS)));
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
-}
-
-/// Whether a run that has come to its end has its numbers and no more than is to be kept. Where all is kept,
-/// numbers can be made at any time.
-fn is_settled(path: &Path, keep: Keep) -> Result<bool> {
-    let dir = RunDir::open(path)?;
-    Ok(keep == Keep::All || dir.summary().exists() && dir.keeps_only(keep))
-}
-
-/// Makes the numbers of a run that has come to its end, and removes what is not to be kept.
-fn settle(path: &Path, keep: Keep) -> Result<()> {
-    // Nobody else reads what is being removed.
-    let dir = match RunDir::reopen(path) {
-        Err(Error::FolderInUse { .. }) => return Ok(()),
-        dir => dir?,
-    };
-    if read_summary(&dir).is_none() {
-        write_summary(&dir)?;
-    }
-    Ok(dir.keep_only(keep)?)
-}
-
-/// The summary of a run that has come to its end; it is made when it is not there.
-fn summary_of(path: &Path) -> Result<serde_json::Value> {
-    if let Some(there) = read_summary(&RunDir::open(path)?) {
-        return Ok(there);
-    }
-    match RunDir::reopen(path) {
-        // Another part makes the same one.
-        Err(Error::FolderInUse { .. }) => Ok(serde_json::from_str(&summarise(path)?)?),
-        dir => write_summary(&dir?),
-    }
-}
-
-fn read_summary(dir: &RunDir) -> Option<serde_json::Value> {
-    serde_json::from_slice(&std::fs::read(dir.summary()).ok()?).ok()
-}
-
-/// Makes the summary of a run whose folder is locked, so that nothing stays beside it when this one is
-/// killed: the next one writes by the same name.
-fn write_summary(dir: &RunDir) -> Result<serde_json::Value> {
-    let text = summarise(dir.path())?;
-    write_atomic(&dir.summary(), text.as_bytes())?;
-    Ok(serde_json::from_str(&text)?)
-}
-
-fn summarise(path: &Path) -> Result<String> {
-    let findings = Findings::of(&Record::new(&Run::read(path)?)?)?;
-    Ok(serde_json::to_string_pretty(&findings.summary)? + "\n")
 }

@@ -11,7 +11,11 @@ mod analyse;
 mod bearings;
 mod board;
 mod campaign;
+mod emit;
 mod export;
+mod infer;
+mod many_runs;
+mod memory;
 mod out;
 mod plan;
 mod ranks;
@@ -34,6 +38,8 @@ pub enum Command {
     Report(report::Options),
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and goes on
     Campaign(campaign::Options),
+    /// Infers unknown fields of a scene from numbers that were seen: what they can have been, what they cannot
+    Infer(infer::Options),
     /// Runs a scene by the full and by the reduced model, and says how far apart they are
     Validate(validate::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
@@ -57,6 +63,7 @@ impl Command {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Campaign(options) => campaign::run(options, place),
+            Self::Infer(options) => infer::run(options, place),
             Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),
             Self::Bearings(options) => bearings::run(options),

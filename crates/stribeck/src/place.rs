@@ -27,7 +27,7 @@ impl Place {
         Self { program, root }
     }
 
-    /// The scene in a file under `overrides`; without a file the bearing of the paper.
+    /// The scene in a file under `overrides`; without a file the paper's run.
     ///
     /// # Errors
     /// What is wrong with it, or with the meshes that it names, with line and field.
@@ -35,7 +35,7 @@ impl Place {
         let file = file.map(|file| self.locate(file));
         let scene = match &file {
             Some(file) => Scene::read_with(file, overrides)?,
-            None => Scene::default().with_overrides(overrides)?,
+            None => Scene::singh2014().with_overrides(overrides)?,
         };
         let replaced = file.as_deref().map_or(Vec::new(), |file| replaced_by_bearing(file, overrides));
         if let (Some(file), false) = (&file, replaced.is_empty()) {
@@ -49,10 +49,22 @@ impl Place {
                 file.display()
             );
         }
-        // Before a folder is made for it.
+        Self::with_sound_meshes(scene, file.as_deref(), overrides)
+    }
+
+    /// The scene that fields are without a file around them: the defaults under `overrides`.
+    ///
+    /// # Errors
+    /// As [`Place::scene`].
+    pub fn scene_of_fields(&self, overrides: &[String]) -> Result<Scene> {
+        Self::with_sound_meshes(Scene::default().with_overrides(overrides)?, None, overrides)
+    }
+
+    /// A scene whose meshes can be read, before a folder is made for it.
+    fn with_sound_meshes(scene: Scene, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
         own_mesh::check(&scene.resolve()).map_err(|error| match error {
             Error::MeshFile { ref field, .. } => {
-                anyhow!(refused_at(file.as_deref(), overrides, field, error.to_string()))
+                anyhow!(refused_at(file, overrides, field, error.to_string()))
             }
             other => anyhow!(other),
         })?;

@@ -26,7 +26,7 @@ use crate::ranks::Processes;
 /// Flags of `simulate`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Scene file [default: the bearing of the paper, as in fixtures/scenes/singh2014.ron]
+    /// Scene file [default: the run of the paper, fixtures/scenes/singh2014.ron]
     scene: Option<PathBuf>,
     /// Folder of the run [default: runs/NAME, the name of the scene; runs/NAME-2 … when there is a run
     /// already]

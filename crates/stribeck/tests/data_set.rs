@@ -116,6 +116,7 @@ fn example_the_tables_hold_the_truth_and_every_event() {
         "missing leaves its pocket empty",
         "| `fault_depth_mm` | mm |",
         "| `level_n` | N |",
+        "| `floor_by` |",
         "| sampling rate | 50000 Hz |",
     ] {
         assert!(sheet.contains(words), "`{words}` is not in\n{sheet}");

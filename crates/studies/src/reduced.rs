@@ -99,7 +99,7 @@ const CASES: &[Case] = &[
     Case {
         name: "oil",
         what: "oil, 2 % of structural damping",
-        scene: "fixtures/scenes/singh2014.ron",
+        scene: "fixtures/scenes/oiled_steel.ron",
         set: &[GRADED, "model=reduced(modes_khz: 30.0)"],
         starts: 16,
         models: &[AT_2_US],

@@ -74,7 +74,7 @@ pub(crate) struct Inputs {
 impl Inputs {
     /// Takes scenes from the repository and makes a run to damage, broken off after two samples.
     pub(crate) fn new(folder: &Path) -> Result<Self> {
-        let scenes = ["singh2014", "lean", "quick", "ramp", "pitted"].map(|name| {
+        let scenes = ["singh2014", "oiled_steel", "lean", "quick", "ramp", "pitted"].map(|name| {
             let path = workspace::root().join(format!("fixtures/scenes/{name}.ron"));
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
         });

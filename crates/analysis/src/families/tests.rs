@@ -229,3 +229,18 @@ fn example_a_short_record_is_not_judged() {
     let nobody = Motion { rollers: Vec::new(), ..silent(SAMPLES, 0.0) };
     assert_eq!(found(&judged(&CANDIDATES, &(nobody, Vec::new()))), [""; 0]);
 }
+
+/// Of 99 facets it was said that their comb explains no more than one of any other place, beside a lead of 0.50:
+/// it fitted best 0.55 resolutions off.
+#[test]
+fn issue_a_comb_that_leads_off_its_place_is_told_with_its_distance() {
+    let sound = Sound { detuned_hz: 22.0, ..Sound::of(CANDIDATES[0].1) };
+    let families = judged(&CANDIDATES[..1], &sounding(silent(SAMPLES, 0.0), &[sound], 1.0, 5));
+    let [vertices] = &families[..] else { panic!("{families:#?}") };
+    assert!(!vertices.found && vertices.lead.is_some_and(|lead| lead >= LEAST_LEAD), "{vertices:#?}");
+    let off = vertices.offset_resolutions.unwrap().abs();
+    assert!(off > 0.5 && off < 1.0, "{vertices:#?}");
+    let told = format!("fits best {off:.2} resolutions from where the recorded motion puts it");
+    assert!(vertices.verdict.contains(&told), "{vertices:#?}");
+    assert!(!vertices.verdict.contains("no more than"), "{vertices:#?}");
+}

@@ -5,7 +5,8 @@ use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::Status;
 
 use super::answers::{Answers, AtRest, Crossings, LeadingSpectrum, MeshLines, Orders, Rollers};
-use super::passages::{Passages, level_finding, start_up_end_s};
+use super::levels::{level_finding, start_up_end_s};
+use super::passages::Passages;
 use super::sensors::{leading_channel, sensor_signals, tracks_and_channels};
 use super::spectra::{
     Enveloped, envelope, filter, filter_sensors, fine_density, measured_tones, order_spectrum,
@@ -28,6 +29,9 @@ use crate::ring;
 use crate::rolling;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones;
+
+/// The facet line of the rollers.
+const ROLLER_VERTICES: &str = "roller_vertices";
 
 /// A record, and what geometry and speed predict of it.
 pub(super) struct Case<'a> {
@@ -167,7 +171,7 @@ impl<'a> Case<'a> {
         let filter =
             filter(self.run, self.record, &self.prediction, sensors, (&mesh.tones, &mesh.families), notes)?;
         if let Some(filter) = &filter {
-            filter_sensors(filter, self.record, sensors)?;
+            filter_sensors(filter, &mesh.tones, self.record, sensors)?;
         }
         Ok(filter)
     }
@@ -185,13 +189,14 @@ impl<'a> Case<'a> {
         &self,
         passages: Passages<'_>,
         at_rest: &AtRest,
-        sensors: &[SensorSignal],
+        (sensors, mesh): (&[SensorSignal], &MeshLines),
         filter: Option<&Filter>,
         notes: &mut Vec<String>,
     ) -> Result<Crossings, Error> {
         let fullest_n = at_rest.curve.as_ref().map_or(0.0, |curve| curve.largest_sound_n);
         let mut events = passages.events(self.record, fullest_n, notes)?;
-        let levels = level_finding(self.record.time_s(), sensors, &mut events, filter, notes);
+        let tone = mesh.lines.iter().find(|line| line.name == ROLLER_VERTICES && line.harmonic == 1);
+        let levels = level_finding(self.record.time_s(), (sensors, tone), &mut events, filter, notes)?;
         if !sensors.is_empty() && levels.impulse_g.is_none() && !self.prediction.spalls.is_empty() {
             notes.push("no impulse level: no roller leaves a spall under load within the record".into());
         }

@@ -1,21 +1,22 @@
-//! What happens when rollers cross the defect: events, levels about and between them, and the forces
-//! themselves.
+//! What happens when rollers cross the defect: events, and the forces themselves.
 
 use std::collections::BTreeMap;
 
 use stribeck_scene::kinematics::Crossing;
+use stribeck_scene::lubrication;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::DefectRing;
 
-use super::{CrossingForce, SensorSignal};
+use super::CrossingForce;
 use crate::Error;
 use crate::events::{self, Passage};
 use crate::filtering::Filter;
-use crate::levels::{self, Phase, Visit};
+use crate::floor::{FloorFilm, OverFloor, Strike};
+use crate::levels::Visit;
 use crate::prediction::{DefectEdges, Prediction, SpallCourse};
 use crate::record::{Record, Roller};
 use crate::spall::Edge;
-use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
+use crate::summary::Event;
 
 /// Passages of rollers that carry less than this part of the largest load are left out: they lie outside the
 /// load zone.
@@ -34,23 +35,72 @@ const NOTED: usize = 3;
 /// Passages over all spalls, found roller by roller.
 #[derive(Debug)]
 pub(super) struct Passages<'a> {
-    scene: &'a ResolvedScene,
+    bearing: Oiled<'a>,
     time_s: &'a [f64],
     prediction: &'a Prediction,
     /// By spall: events with their notes, by their place among the spall's passages.
     seen: Vec<BTreeMap<usize, (Event, Vec<String>)>>,
 }
 
+/// A bearing with what its oil keeps between surfaces.
+#[derive(Debug, Clone, Copy)]
+struct Oiled<'a> {
+    scene: &'a ResolvedScene,
+    /// Thickness below which no film on the outer and on the inner raceway falls [m]; `None` without oil.
+    least_film_m: Option<[f64; 2]>,
+}
+
+impl<'a> Oiled<'a> {
+    fn of(scene: &'a ResolvedScene) -> Self {
+        let films = lubrication::loaded_films(scene).ok().flatten();
+        Self { scene, least_film_m: films.map(|films| films.map(|film| film.least)) }
+    }
+
+    /// The touch of the floor by a roller that the edges cannot carry between two times [s].
+    fn strike(
+        &self,
+        time_s: &[f64],
+        orbit_rad: &[f64],
+        roller: &Roller<'_>,
+        (ring, force_n): (DefectRing, &[f64]),
+        between_s: [f64; 2],
+    ) -> Option<Strike> {
+        let scene = self.scene;
+        let least_m = self.least_film_m.map(|[outer, inner]| match ring {
+            DefectRing::Outer => outer,
+            DefectRing::Inner => inner,
+        });
+        let film =
+            roller.film(ring).zip(least_m).map(|(thickness_m, least_m)| FloorFilm { thickness_m, least_m });
+        let section = std::f64::consts::PI * scene.roller_radius * scene.roller_radius;
+        let over = OverFloor {
+            time_s,
+            orbit_rad,
+            force_n,
+            film,
+            mass_kg: scene.material.density * section * scene.thickness,
+            path_radius_m: scene.path_radius(),
+            gravity_m_s2: scene.gravity,
+        };
+        over.strike(between_s)
+    }
+}
+
 impl<'a> Passages<'a> {
     /// Before the first roller of a record that is sampled at `time_s`.
     pub(super) fn new(scene: &'a ResolvedScene, time_s: &'a [f64], prediction: &'a Prediction) -> Self {
-        Self { scene, time_s, prediction, seen: vec![BTreeMap::new(); prediction.spalls.len()] }
+        Self {
+            bearing: Oiled::of(scene),
+            time_s,
+            prediction,
+            seen: vec![BTreeMap::new(); prediction.spalls.len()],
+        }
     }
 
     /// One roller more, with its orbital angle [rad].
     pub(super) fn add(&mut self, roller: &Roller<'_>, orbit: &[f64]) {
         for (course, seen) in self.prediction.spalls.iter().zip(&mut self.seen) {
-            seen.extend(passages_of(self.scene, self.time_s, self.prediction, course, roller, orbit));
+            seen.extend(passages_of(self.bearing, self.time_s, self.prediction, course, roller, orbit));
         }
     }
 
@@ -149,7 +199,7 @@ impl Path {
 /// Events of one roller over one spall that begin within the record, with what was noted of them, by their
 /// place among the spall's passages.
 fn passages_of(
-    scene: &ResolvedScene,
+    bearing: Oiled<'_>,
     time_s: &[f64],
     prediction: &Prediction,
     course: &SpallCourse,
@@ -160,7 +210,7 @@ fn passages_of(
         course.passages.iter().enumerate().filter(|(_, passage)| passage.roller == roller.number).collect();
     let [(_, first), ..] = &passages[..] else { return Vec::new() };
     let [begin, last] = [time_s.first(), time_s.last()].map(|t| t.copied().unwrap_or(f64::NEG_INFINITY));
-    let ring = course.spall.ring;
+    let (scene, ring) = (bearing.scene, course.spall.ring);
     let edge = Edge::of(scene, ring);
     let duty = &scene.duty;
     let turned_rad = |t: f64| match ring {
@@ -186,7 +236,7 @@ fn passages_of(
         // A long record is looked at about the passage alone.
         let [from, until] = [passage.entry_s - ABOUT * traverse, passage.exit_s + ABOUT * traverse];
         let near = events::span(time_s, from + late, until + late);
-        let (time, roller) = (&time_s[near.clone()], roller.within(near));
+        let (time, orbit, roller) = (&time_s[near.clone()], &orbit[near.clone()], roller.within(near));
         // A shaft whose speed changes has another one at each passage.
         let speed_m_s = if scene.written.operation.speed_varies() {
             1e-3 * course.spall.length_mm / traverse
@@ -205,9 +255,12 @@ fn passages_of(
         event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
         event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
         event.level_n = picked.level_n;
-        let floor = picked.floor_impact(time, &normal, &seen, floor_s);
-        event.floor_ms = floor.map(|(at_s, _)| 1e3 * at_s);
-        event.floor_n = floor.map(|(_, force_n)| force_n);
+        // Edges are where the roller passes them, not where it would without slip.
+        let between = [found[0].unwrap_or(seen.entry_s) + floor_s, found[1].unwrap_or(seen.exit_s) - floor_s];
+        let floor = bearing.strike(time, orbit, &roller, (ring, &normal), between);
+        event.floor_ms = floor.map(|strike| 1e3 * strike.at_s);
+        event.floor_n = floor.map(|strike| strike.force_n);
+        event.floor_by = floor.map(|strike| strike.by);
         let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
         let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
         event.spall_mm = run_s.zip(picked.level_n).map(length);
@@ -308,103 +361,6 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
     Ok(())
 }
 
-/// Levels at every sensor; fills in the impulse of each event at the leading one.
-pub(super) fn level_finding(
-    time: &[f64],
-    sensors: &[SensorSignal],
-    events: &mut [Event],
-    filter: Option<&Filter>,
-    notes: &mut Vec<String>,
-) -> LevelsFinding {
-    let visits: Vec<Visit> = events.iter().map(Event::visit).collect();
-    let phases = levels::phases(time, &visits);
-    let start = time.first().copied().unwrap_or(0.0);
-    let settled = start + filter.map_or(0.0, Filter::transient_s);
-    let exits: Vec<f64> = events.iter().filter_map(Event::left_ms).map(|t| 1e-3 * t).collect();
-    let impulses: Vec<_> = exits.iter().map(|&t| levels::impulse_span(time, t)).collect();
-    let quiet = levels::gap_spans(time, &phases, start);
-    let quiet_settled = levels::gap_spans(time, &phases, settled);
-
-    let mut finding = LevelsFinding::default();
-    for (number, sensor) in sensors.iter().enumerate() {
-        let impulse = levels::level(&sensor.raw_g, &impulses);
-        let between = levels::level(&sensor.raw_g, &quiet);
-        let filtered = levels::level(&sensor.filtered_g, &quiet_settled);
-        if number == 0 {
-            finding.sensor = Some(sensor.name.clone());
-            finding.phases = by_phase(&sensor.raw_g, &phases);
-            finding.impulse_g = impulse.map(|l| l.peak);
-            finding.impulse_filtered_g = levels::level(&sensor.filtered_g, &impulses).map(|l| l.peak);
-            finding.between_g = between.map(|l| l.peak);
-            finding.between_p99_g = between.map(|l| l.p99);
-            finding.between_rms_g = between.map(|l| l.rms);
-            finding.between_filtered_g = filtered.map(|l| l.peak);
-            finding.between_filtered_p99_g = filtered.map(|l| l.p99);
-            finding.between_filtered_rms_g = filtered.map(|l| l.rms);
-            for event in events.iter_mut() {
-                let span = event.left_ms().map(|t| levels::impulse_span(time, 1e-3 * t));
-                event.impulse_g = span.and_then(|s| levels::level(&sensor.raw_g, &[s])).map(|l| l.peak);
-            }
-        }
-        finding.sensors.push(SensorLevels {
-            sensor: sensor.name.clone(),
-            angle_deg: sensor.angle_deg,
-            phases: by_phase(&sensor.raw_g, &phases),
-            components: components(sensor, &phases),
-            impulse_g: impulse.map(|l| l.peak),
-            between_g: between.map(|l| l.peak),
-            between_rms_g: between.map(|l| l.rms),
-            between_filtered_g: filtered.map(|l| l.peak),
-            between_filtered_rms_g: filtered.map(|l| l.rms),
-        });
-    }
-    if filter.is_some() && !sensors.is_empty() && finding.between_filtered_g.is_none() {
-        notes.push(format!(
-            "no filtered level between events: after the notch's transient of {:.2} ms no sample is free of \
-             events",
-            1e3 * (settled - start)
-        ));
-    }
-    finding
-}
-
-/// When the start-up is over [s].
-pub(super) fn start_up_end_s(time: &[f64], events: &[Event]) -> f64 {
-    let visits: Vec<Visit> = events.iter().map(Event::visit).collect();
-    let first = levels::phases(time, &visits).iter().position(|p| *p != Phase::StartUp);
-    first.or(time.len().checked_sub(1)).map_or(0.0, |n| time[n])
-}
-
-/// Peak and root mean square of every phase.
-fn by_phase(signal: &[f64], phases: &[Phase]) -> PhaseLevels {
-    let of = |phase| {
-        levels::phase_level(signal, phases, phase).map_or((None, None), |l| (Some(l.peak), Some(l.rms)))
-    };
-    let [start, entry, defect, exit, gap] =
-        [Phase::StartUp, Phase::Entry, Phase::Defect, Phase::Exit, Phase::Gap].map(of);
-    PhaseLevels {
-        start_g: start.0,
-        start_rms_g: start.1,
-        entry_g: entry.0,
-        entry_rms_g: entry.1,
-        defect_g: defect.0,
-        defect_rms_g: defect.1,
-        exit_g: exit.0,
-        exit_rms_g: exit.1,
-        gap_g: gap.0,
-        gap_rms_g: gap.1,
-    }
-}
-
-/// Levels along and across the radius at the sensor's place.
-fn components(sensor: &SensorSignal, phases: &[Phase]) -> Vec<ComponentLevels> {
-    let turned = [("radial", sensor.radial_g()), ("tangential", sensor.tangential_g())];
-    let level = |(component, signal): (&str, Option<Vec<f64>>)| {
-        Some(ComponentLevels { component: component.into(), phases: by_phase(&signal?, phases) })
-    };
-    turned.into_iter().filter_map(level).collect()
-}
-
 /// Forces over the whole record of the rollers that cross a spall first, in the first `most` passages.
 pub(super) fn crossing_forces(
     record: &Record<'_>,
@@ -446,6 +402,7 @@ impl Event {
             impulse_g: None,
             floor_ms: None,
             floor_n: None,
+            floor_by: None,
             compensation_ms: None,
             compensation_n: None,
             compensation_gain: None,

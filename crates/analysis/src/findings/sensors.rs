@@ -54,6 +54,7 @@ pub(super) fn sensor_signals(
             angle_deg: sensor.angle_deg,
             across_g: acceleration_g(&sensor.name, "ax").unwrap_or_default(),
             raw_g,
+            notch: None,
             filtered_g: Vec::new(),
             raw_density,
             filtered_density: None,

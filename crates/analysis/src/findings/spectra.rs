@@ -127,18 +127,26 @@ pub(super) fn filter(
     Filter::new(record.sample_rate_hz(), centre_hz).map(Some)
 }
 
+/// Puts every sensor behind a notch at its own dominant facet tone, as if it were the only one; where it has
+/// none, behind that of the record.
 pub(super) fn filter_sensors(
-    filter: &Filter,
+    common: &Filter,
+    measured: &[Tone],
     record: &Record<'_>,
     sensors: &mut [SensorSignal],
 ) -> Result<(), Error> {
+    let rate_hz = record.sample_rate_hz();
+    let mut welch = None;
+    if record.len() >= SHORTEST_SPECTRUM {
+        welch = Some(Welch::for_grid(rate_hz, record.len(), GRID_HZ).map_err(Error::Signal)?);
+    }
     for sensor in sensors {
+        let own_hz = tones::dominant(measured, &sensor.name).and_then(|tone| tone.measured_hz);
+        let filter = own_hz.map_or(Ok(*common), |hz| Filter::new(rate_hz, hz))?;
         sensor.filtered_g = filter.acceleration(&sensor.raw_g)?;
-        if record.len() >= SHORTEST_SPECTRUM {
-            let mut welch =
-                Welch::for_grid(record.sample_rate_hz(), record.len(), GRID_HZ).map_err(Error::Signal)?;
-            sensor.filtered_density = Some(welch.estimate(&sensor.filtered_g).map_err(Error::Signal)?);
-        }
+        sensor.notch = Some(filter);
+        let density = welch.as_mut().map(|welch| welch.estimate(&sensor.filtered_g));
+        sensor.filtered_density = density.transpose().map_err(Error::Signal)?;
     }
     Ok(())
 }

@@ -127,9 +127,8 @@ fn operation(source: &RowInputs<'_>) -> Vec<PaperRow> {
             Some(1e-3 * o.load_n),
             "kN",
             &format!(
-                "given, but per nothing: a plane model needs a thickness, {} mm here (5 to 50 mm are \
-                 consistent with the \
-                 paper's figures)",
+                "given, but per nothing: a plane model needs a thickness, {} mm here. Below some millimetres no \
+                 roller unloads in the defect; nothing bounds it from above",
                 scene.written.bearing.thickness_mm
             ),
         ),

@@ -1,7 +1,7 @@
 //! Results of the paper: frequencies, levels, the notch, the events (its sections 3 to 5).
 
 use super::{BETWEEN_G, CURSOR_HZ, EQUATION_2_HZ, FILTERED_G, IMPULSE_G, RowInputs, TONE_HZ, number, words};
-use crate::summary::PaperRow;
+use crate::summary::{Event, PaperRow};
 
 const MOTION: &str = "Kinematics";
 const NOISE: &str = "Noise";
@@ -71,11 +71,11 @@ fn motion(source: &RowInputs<'_>) -> Vec<PaperRow> {
 }
 
 fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
-    let levels = &source.summary.levels;
-    let sensor = levels.sensor.as_deref().unwrap_or("none");
+    let sensor = source.sensor;
+    let name = sensor.map_or("none", |sensor| sensor.sensor.as_str());
     let why = |what: &str| {
         format!(
-            "{what}; sensor “{sensor}”. The paper states neither thickness, contact stiffness, damping nor \
+            "{what}; sensor “{name}”, whose a_y is the most radial. The paper states neither thickness, contact stiffness, damping nor \
              the place of its sensor: docs/results/paper.md says what each does"
         )
     };
@@ -84,7 +84,7 @@ fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
             NOISE,
             "Impulses, peak",
             IMPULSE_G,
-            levels.impulse_g,
+            sensor.and_then(|sensor| sensor.impulse_g),
             "g",
             &why("largest within 1 ms of an exit"),
         ),
@@ -92,7 +92,7 @@ fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
             NOISE,
             "Between impulses, peak",
             BETWEEN_G,
-            levels.between_g,
+            sensor.and_then(|sensor| sensor.between_g),
             "g",
             &why("largest away from events"),
         ),
@@ -100,7 +100,7 @@ fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
             NOISE,
             "Between impulses, notched, peak",
             FILTERED_G,
-            levels.between_filtered_g,
+            sensor.and_then(|sensor| sensor.between_filtered_g),
             "g",
             &why("the same behind the notch"),
         ),
@@ -109,20 +109,15 @@ fn levels(source: &RowInputs<'_>) -> Vec<PaperRow> {
 
 fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let summary = source.summary;
-    let leading = summary.levels.sensor.as_deref().unwrap_or_default();
-    let measured = summary.families.iter().filter(|f| f.found).find_map(|f| f.carrier_hz);
+    let measured = source.sensor.and_then(|sensor| sensor.tone_hz);
+    let carrier = summary.families.iter().filter(|f| f.found).find_map(|f| f.carrier_hz);
     let (outer, inner) = source.prediction.kinematics.paper_noise_hz(source.scene.element_size);
     let inner_right = source.prediction.facet_lines.iter().find(|l| l.0 == "inner_race_nodes").map(|l| l.1);
     let resolution = summary.spectrum.as_ref();
     let record = resolution.map_or("no spectrum".into(), |s| {
         format!("{:.1} Hz, drawn every {:.1} Hz", s.resolution_hz, s.grid_hz)
     });
-    let claimed = summary.families.iter().any(|f| f.found && f.name == "roller_vertices");
-    let fifth = summary
-        .tones
-        .iter()
-        .find(|t| claimed && t.sensor == leading && t.harmonic == 5 && t.name == "roller_vertices")
-        .and_then(|t| t.measured_hz);
+    let fifth = source.sensor.and_then(|sensor| sensor.fifth_hz);
     let off = measured.map(|hz| 100.0 * (1.0 - hz / EQUATION_2_HZ.0));
     let slip = summary.kinematics.cage_hz.map(|hz| 100.0 * (1.0 - hz / summary.kinematics.expected_cage_hz));
     vec![
@@ -142,10 +137,12 @@ fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
             measured,
             "Hz",
             &format!(
-                "{} vertices × {:.3} Hz of spin, without any slip: {:.1} Hz",
+                "{} vertices × {:.3} Hz of spin, without any slip: {:.1} Hz. The carrier of the facet \
+                 lines by all sensors and forces: {}",
                 source.mesh.roller_facets,
                 source.prediction.kinematics.roller_spin_hz,
-                source.prediction.facet_lines.first().map_or(0.0, |l| l.1)
+                source.prediction.facet_lines.first().map_or(0.0, |l| l.1),
+                carrier.map_or("none is found".into(), |hz| format!("{hz:.1} Hz"))
             ),
         ),
         words(
@@ -154,8 +151,8 @@ fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "23 kHz",
             fifth.map_or("not found".into(), |hz| format!("{:.2} kHz", 1e-3 * hz)),
             "–",
-            "\"approximately\" in the paper; ours counts when it stands 10 dB above its surroundings and its \
-             family is found",
+            "\"approximately\" in the paper; ours counts when it stands 10 dB above its \
+             surroundings",
         )
         .telling(fifth.map(|hz| 1e-3 * hz), "kHz"),
         number(
@@ -303,7 +300,8 @@ fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let db = |v: Option<f64>| v.map_or("–".into(), |v| format!("{v:.1}"));
     let four = notch.map_or("no notch".into(), |n| {
         format!(
-            "Hann {} / {} dB, boxcar {} / {} dB with / without the filter's transient; a clean tone gives 29 \
+            "Hann window, whole record. Of the leading sensor: Hann {} / {} dB, boxcar {} / {} dB with / \
+             without the filter's transient; a clean tone gives 29 \
              dB (boxcar) and 56 dB (Hann)",
             db(n.attenuation_db),
             db(n.attenuation_settled_db),
@@ -326,11 +324,11 @@ fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
             NOTCH,
             "Centre",
             TONE_HZ,
-            notch.map(|n| n.centre_hz),
+            source.sensor.and_then(|sensor| sensor.notch_hz),
             "Hz",
-            "placed on the tone that this run shows",
+            "placed on the tone of the same sensor",
         ),
-        number(NOTCH, "Taken from the tone", 25.0, notch.and_then(|n| n.attenuation_db), "dB", &four),
+        number(NOTCH, "Taken from the tone", 25.0, source.sensor.and_then(|s| s.notch_db), "dB", &four),
         number(
             NOTCH,
             "Taken at 4545 Hz",
@@ -371,6 +369,18 @@ fn events(source: &RowInputs<'_>) -> Vec<PaperRow> {
         "",
         "those that enter within the record",
     )];
+    let struck = events.iter().filter(|event| event.floor_ms.is_some()).count();
+    rows.push(
+        words(
+            EVENTS,
+            "Rollers that strike its floor, event #2",
+            "indicated in Fig. 8",
+            format!("{struck} of {}", events.len()),
+            "–",
+            "with more than twice their centrifugal force and weight (THEORY §7.4)",
+        )
+        .telling(Some(struck as f64), ""),
+    );
     for (event, paper) in events.iter().zip(papers) {
         let ms = |t: Option<f64>| t.map_or("–".into(), |t| format!("{t:.2}"));
         let impulse = words(
@@ -389,7 +399,7 @@ fn events(source: &RowInputs<'_>) -> Vec<PaperRow> {
             format!(
                 "#1 {} ms, #2 {}, #3 {}, #4 {} ms",
                 ms(event.entry_ms),
-                event.floor_ms.map_or("no touch of the floor".into(), |t| format!("{t:.2} ms")),
+                floor(event),
                 event.compensation_ms.map_or("no neighbour in the defect".into(), |t| {
                     format!("{t:.2} ms (+{:.0} %)", 100.0 * (event.compensation_gain.unwrap_or(1.0) - 1.0))
                 }),
@@ -401,4 +411,12 @@ fn events(source: &RowInputs<'_>) -> Vec<PaperRow> {
         ));
     }
     rows
+}
+
+/// When and how a roller strikes the floor.
+fn floor(event: &Event) -> String {
+    let touch = event.floor_ms.zip(event.floor_n).zip(event.floor_by);
+    touch.map_or("no touch of the floor".into(), |((at_ms, force_n), by)| {
+        format!("{at_ms:.2} ms ({force_n:.0} N {})", by.in_words())
+    })
 }

@@ -42,8 +42,7 @@ impl Existence {
         let linear = points.len() > points[0].len() + 2;
         let sample = Sample { points, values: &values, factors: &factors, linear };
         let (function, left_out) = Regression::fit(&sample, &Hyper::fit(&sample, None))?;
-        let means: Vec<f64> =
-            left_out.iter().map(|point| logit(share + deviation * point.mean)).collect();
+        let means: Vec<f64> = left_out.iter().map(|point| logit(share + deviation * point.mean)).collect();
         let [offset, slope] = logistic(&means, have, runs);
         Ok(Self { function: Some(function), share, deviation, offset, slope, least })
     }

@@ -31,10 +31,11 @@ from pathlib import Path
 from typing import Any, Callable
 
 from . import _ron, _stribeck, dsp
-from ._program import Campaign, campaign, command, export, validate
+from ._program import Campaign, Inference, campaign, command, export, infer, validate
 
 __all__ = [
     "Campaign",
+    "Inference",
     "Run",
     "analyse",
     "campaign",
@@ -42,6 +43,7 @@ __all__ = [
     "defect_orders",
     "dsp",
     "export",
+    "infer",
     "load",
     "run",
     "scene",
@@ -52,8 +54,8 @@ __version__ = _stribeck.__version__
 Progress = Callable[[str, float, float], None]
 
 
-def _asked(scene: Any, fields: Mapping[str, Any] | None, duration_ms: float | None) -> tuple[Path | None, list[str]]:
-    """The file of a scene, and what is changed in it."""
+def _asked(scene: Any, fields: Mapping[str, Any] | None, duration_ms: float | None) -> tuple[Path | None, list[str], bool]:
+    """The file of a scene, what is changed in it, and whether it is fields alone, without a file."""
     file = None
     changed: list[str] = []
     if isinstance(scene, Mapping):
@@ -64,7 +66,7 @@ def _asked(scene: Any, fields: Mapping[str, Any] | None, duration_ms: float | No
         changed += _ron.overrides(fields)
     if duration_ms is not None:
         changed.append(f"solver.duration_ms={duration_ms}")
-    return file, changed
+    return file, changed, isinstance(scene, Mapping)
 
 
 class Run:
@@ -161,10 +163,11 @@ def run(
 ) -> Run:
     """Simulates a scene and returns the run.
 
-    scene: a scene file, or fields that differ from the paper's bearing, as nested dicts
+    scene: a scene file, or fields that differ from the defaults, the paper's bearing in oil, as nested dicts
         (``{"operation": {"load_n": 30e3}}``) or with dots (``{"operation.load_n": 30e3}``). A word of a scene that has fields of its
         own is a dict of one key (``{"model": {"reduced": {"modes_khz": 30}}}``), a list is given whole
         (``{"defects": [{"on": "outer", "form": {"spall": {"length_mm": 4, "depth_mm": 0.05}}}]}``).
+        Without either the paper's run, ``singh2014.ron``.
     fields: more fields, over those of a file.
     duration_ms: simulated time [ms].
     out: folder of the run; without it ``runs/NAME``, numbered where there is one already.
@@ -175,9 +178,8 @@ def run(
     Ctrl-C ends the run in good order: what was computed is kept, and ``Run(folder).resume()`` goes on.
     A mistake in the scene is a ValueError that names line, field and range.
     """
-    file, changed = _asked(scene, fields, duration_ms)
     folder = Path(out) if out is not None else None
-    return Run(_stribeck.simulate(file, changed, folder, overwrite, threads, progress))
+    return Run(_stribeck.simulate(_asked(scene, fields, duration_ms), folder, overwrite, threads, progress))
 
 
 def load(folder: str | os.PathLike[str]) -> Run:
@@ -192,7 +194,7 @@ def scene(
     scene: str | os.PathLike[str] | Mapping[str, Any] | None = None, fields: Mapping[str, Any] | None = None
 ) -> str:
     """A scene with every default written out, as RON."""
-    return _stribeck.scene(*_asked(scene, fields, None))[0]
+    return _stribeck.scene(_asked(scene, fields, None))[0]
 
 
 def analyse(

@@ -244,7 +244,7 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
                 thead {
                     tr {
                         th { "Roller" } th class="n" { "#1 unloads" } th class="n" { "off ms" } th class="n" { "#2 floor" } th class="n" { "at ms" }
-                        th class="n" { "kN" } th class="n" { "#3 neighbour" } th class="n" { "gain" } th class="n" { "#4 loaded" }
+                        th class="n" { "N" } th class="n" { "#3 neighbour" } th class="n" { "gain" } th class="n" { "#4 loaded" }
                         th class="n" { "off ms" } th class="n" { "Impulse g" }
                     }
                 }
@@ -256,7 +256,7 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
                             (cell(off(event, Event::entry_off_ms)))
                             td class="n" { (count(event, "floor_ms")) "/" (of) }
                             (cell(event.number("floor_ms").map(|s| mean(s, 1.0, 2))))
-                            (cell(event.number("floor_n").map(|s| mean(s, 1e-3, 2))))
+                            (cell(event.number("floor_n").map(|s| mean(s, 1.0, 0))))
                             td class="n" { (count(event, "compensation_ms")) "/" (of) }
                             (cell(event.number("compensation_gain").map(|s| mean(s, 1.0, 2))))
                             td class="n" { (count(event, "exit_ms")) "/" (of) }

@@ -60,8 +60,9 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         }
     }
     let time = |ms: Option<f64>| ms.map_or("not at all".into(), |t| format!("at {t:.2} ms"));
-    let floor = event.floor_ms.zip(event.floor_n).map_or("does not touch the floor (#2)".into(), |(t, n)| {
-        format!("strikes the floor at {t:.2} ms with {n:.0} N (#2)")
+    let touch = event.floor_ms.zip(event.floor_n).zip(event.floor_by);
+    let floor = touch.map_or("does not touch the floor (#2)".into(), |((t, n), by)| {
+        format!("strikes the floor at {t:.2} ms with {n:.0} N {} (#2)", by.in_words())
     });
     let help = event.compensation_gain.zip(event.compensation_n).map_or(String::new(), |(gain, force_n)| {
         // Over next to nothing a share says nothing.

@@ -18,7 +18,8 @@ use stribeck_scene::run_dir::{Keep, RunDir};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
 
-use super::{Folder, Stage, summary_of};
+use super::Folder;
+use crate::many_runs::{Stage, summary_of};
 pub(super) use truth::{Truth, model};
 
 /// Names of the tables.
@@ -80,7 +81,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
         };
         match (stage, &variant.scene) {
             (Stage::Done, Ok(scene)) => {
-                let path = folder.run(scene);
+                let path = folder.0.run(scene);
                 let info = RunDir::open(&path)?.read_info()?;
                 if info.status == Status::Diverged {
                     (row.status, row.reason) = ("diverged", info.stop_reason);
@@ -126,13 +127,13 @@ pub(super) fn write(folder: &Folder, campaign: &Campaign, rows: &[Row]) -> Resul
     ];
     let names = |columns: Vec<Column>| columns.into_iter().map(|column| column.name).collect();
     let columns = columns(campaign, rows);
-    replace(&folder.0.join(RUNS), |path| Ok(write_table(path, &columns, &notes)?))?;
-    replace(&folder.0.join(EVENTS), |path| events::write(path, rows, &notes))?;
+    replace(&folder.path().join(RUNS), |path| Ok(write_table(path, &columns, &notes)?))?;
+    replace(&folder.path().join(EVENTS), |path| events::write(path, rows, &notes))?;
     let mut written =
         Written { runs: names(columns), events: names(events::columns(&[])), signals: Vec::new() };
     if campaign.keep != Keep::Numbers {
         let signals = signals::names(rows)?;
-        replace(&folder.0.join(SIGNALS), |path| signals::write(path, rows, &signals, &notes))?;
+        replace(&folder.path().join(SIGNALS), |path| signals::write(path, rows, &signals, &notes))?;
         written.signals = signals::columns(&signals);
     }
     Ok(written)

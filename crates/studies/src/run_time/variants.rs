@@ -4,7 +4,7 @@ use crate::Variant;
 
 /// The default bearing, graded and with elements of one size.
 const LEAN: &str = "fixtures/scenes/lean.ron";
-const UNIFORM: &str = "fixtures/scenes/singh2014.ron";
+const UNIFORM: &str = "fixtures/scenes/oiled_steel.ron";
 
 /// Until a millisecond behind the last start's exit.
 const SHORT: [&str; 2] = ["solver.duration_ms=6.5", "output.frames=None"];

@@ -8,7 +8,7 @@ use stribeck_analysis::summary::Event;
 use stribeck_formats::parquet::{Column, Values, Writer};
 
 use super::Row;
-use crate::campaign::summary_of;
+use crate::many_runs::summary_of;
 
 /// Rows that are written at a time: of many short runs, or of one long one and what came before it.
 const GROUP: usize = 1 << 16;
@@ -57,6 +57,8 @@ pub(super) fn columns(events: &[Found<'_>]) -> Vec<Column> {
         let finite = |event: &Event| of(event).filter(|number| number.is_finite());
         column(name, Values::Number(events.iter().map(|(_, event)| finite(event)).collect()))
     }));
+    let by = |(_, event): &Found<'_>| event.floor_by.map(|by| by.name().to_owned());
+    columns.push(column("floor_by", Values::Text(events.iter().map(by).collect())));
     columns
 }
 

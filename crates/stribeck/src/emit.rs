@@ -1,4 +1,4 @@
-//! Scripts that have an existing engine run the parts of a campaign.
+//! Scripts that have an existing engine run the parts of a campaign or of an inference.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 
 /// Engines that a script can be written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Engine {
+pub(crate) enum Engine {
     /// A job array of Slurm, for `sbatch`
     Slurm,
     /// An array of HyperQueue, for a shell beside its server
@@ -15,40 +15,28 @@ pub(super) enum Engine {
 
 /// What a part is told.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Part {
-    pub(super) of: u32,
-    pub(super) jobs: Option<usize>,
-    pub(super) threads: usize,
-    pub(super) memory_gb: Option<f64>,
+pub(crate) struct Part {
+    pub(crate) of: u32,
+    pub(crate) jobs: Option<usize>,
+    pub(crate) threads: usize,
+    pub(crate) memory_gb: Option<f64>,
 }
 
-impl Part {
-    /// As many threads as it may have, or one a job, and one part a run up to some.
-    pub(super) fn of(options: &super::Options, runs: usize) -> Self {
-        Self {
-            of: options.shards.unwrap_or(MOST_PARTS.min(u32::try_from(runs).unwrap_or(MOST_PARTS))),
-            jobs: options.jobs,
-            threads: options.threads.or(options.jobs).unwrap_or(1),
-            memory_gb: options.memory_gb,
-        }
-    }
-}
+/// Parts of a command for which nobody has said how many.
+pub(crate) const MOST_PARTS: u32 = 16;
 
-/// Parts of a campaign for which nobody has said how many.
-const MOST_PARTS: u32 = 16;
-
-/// The script. It may be submitted again after any loss: what is done is not done twice. A part that ends
+/// The script that runs `command`. It may be submitted again after any loss: what is done is not done twice. A part that ends
 /// before others leaves the tables to them and has done its work; so an engine that reports a failure has one
 /// to report.
-pub(super) fn script(engine: Engine, file: &Path, out: &Path, part: Part) -> Result<String> {
+pub(crate) fn script(engine: Engine, command: &str, file: &Path, out: &Path, part: Part) -> Result<String> {
     let absolute = |path: &Path| -> Result<PathBuf> {
         std::path::absolute(path).with_context(|| format!("`{}` has no absolute path", path.display()))
     };
     let Part { of, jobs, threads, memory_gb } = part;
     let program = std::env::current_exe().context("the program does not know its own path")?;
-    let command = |number: &str| -> Result<String> {
+    let line = |number: &str| -> Result<String> {
         Ok(format!(
-            "{} campaign {} --out {} --shard {number}/{of}{} --threads {threads}{}",
+            "{} {command} {} --out {} --shard {number}/{of}{} --threads {threads}{}",
             quoted(&program),
             quoted(&absolute(file)?),
             quoted(&absolute(out)?),
@@ -64,13 +52,13 @@ pub(super) fn script(engine: Engine, file: &Path, out: &Path, part: Part) -> Res
             "#!/bin/sh\n#SBATCH --job-name=stribeck\n#SBATCH --array=1-{of}\n#SBATCH \
              --cpus-per-task={threads}\n{memory}#SBATCH --requeue\n\
              # Submit with `sbatch`; once more after a loss. The last part that ends makes the tables.\n{}\n",
-            command("$SLURM_ARRAY_TASK_ID")?
+            line("$SLURM_ARRAY_TASK_ID")?
         ),
         Engine::Hq => format!(
             "#!/bin/sh\n# Run it where `hq` finds its server; once more after a loss. The last part that \
              ends makes the tables.\n\
              hq submit --array=1-{of} --cpus={threads} --crash-limit=unlimited --wait -- sh -c '{}'\n",
-            command("$HQ_TASK_ID")?.replace('\'', "'\\''")
+            line("$HQ_TASK_ID")?.replace('\'', "'\\''")
         ),
     })
 }

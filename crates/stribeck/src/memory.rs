@@ -14,7 +14,7 @@ const OF_SENSOR: f64 = 4.0;
 const OF_FLOATING: f64 = 2.0;
 
 /// What the run of a scene takes [GB], while it runs or when its numbers are made.
-pub(super) fn need_gb(scene: &Scene) -> f64 {
+pub(crate) fn need_gb(scene: &Scene) -> f64 {
     let g = scene.resolve();
     let floating = if scene.film.is_some() { OF_FLOATING * g.rollers as f64 } else { 0.0 };
     let channels = CHANNELS + OF_SENSOR * scene.output.sensors.len() as f64 + floating;
@@ -23,7 +23,7 @@ pub(super) fn need_gb(scene: &Scene) -> f64 {
 
 /// What programs may still take, and this one where it has a limit of its own [GB]; `None` where the system
 /// does not tell.
-pub(super) fn free_gb() -> Option<f64> {
+pub(crate) fn free_gb() -> Option<f64> {
     let about = std::fs::read_to_string("/proc/meminfo").ok();
     let available = about.and_then(|about| {
         let line = about.lines().find(|line| line.starts_with("MemAvailable:"))?;

@@ -1,0 +1,219 @@
+//! What the paper's figures show in numbers, beside ours: in their order, with the scatter of starts.
+//!
+//! The paper is one start, so its number *differs* where it lies farther from the mean of our starts than a
+//! further start would in 95 % of cases, plus what its print leaves open. A single run does not know its
+//! scatter; then that of [`Shown::scatter`] is taken, about twice what ensembles of the paper's bearing have.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use stribeck_scene::housing::HousingScene;
+use stribeck_scene::scene::Scene;
+
+use super::{BETWEEN_G, FILTERED_G, IMPULSE_G, TONE_HZ};
+use crate::statistic::Statistic;
+use crate::summary::{SensorLevels, Summary};
+
+/// The paper's impulses in its Fig. 2 [ms], read to half a millisecond.
+const IMPULSES_MS: [f64; 3] = [5.0, 16.5, 28.0];
+/// Scatter of a peak level from start to start that a single run is granted [-].
+const OF_A_LEVEL: f64 = 0.3;
+
+/// A number that a figure of the paper shows, and ours of one run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Shown {
+    /// Number of the figure.
+    pub figure: &'static str,
+    /// What it shows.
+    pub quantity: String,
+    /// Unit of all numbers.
+    pub unit: &'static str,
+    /// The paper's.
+    pub paper: f64,
+    /// How far off it may be read.
+    pub read: f64,
+    /// Deviation of one start that is granted where it is not known.
+    pub scatter: f64,
+    /// More is no difference: the paper says that it happens, not how often.
+    pub at_least: bool,
+    /// Ours; `None` where the run has none.
+    pub ours: Option<f64>,
+}
+
+/// A number of the paper beside those of one run or of many starts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Beside {
+    /// The number, without ours.
+    pub shown: Shown,
+    /// Over the starts; of a single run its number alone. `None` where no start has one.
+    pub ours: Option<Statistic>,
+    /// Starts.
+    pub of: usize,
+}
+
+/// The sensor whose a_y is set beside the paper's: the leading one where that is more radial than tangential,
+/// otherwise the most radial one that does not lie in the seat of the adapter, whose contact chatters.
+///
+/// The paper's a_y holds the tone, which facets drive along the radius, so that its node lies near the
+/// vertical axis.
+pub fn sensor<'a>(scene: &Scene, sensors: &'a [SensorLevels]) -> Option<&'a SensorLevels> {
+    let share = |sensor: &SensorLevels| sensor.angle_deg.to_radians().sin().abs();
+    let seated = |sensor: &SensorLevels| {
+        let b = &scene.bearing;
+        let outside_mm = 0.5 * b.outer_race_diameter_mm + b.outer_ring_thickness_mm;
+        let half = (0.5 * scene.adapter.width_mm / outside_mm).min(1.0).asin();
+        let from_top = (sensor.angle_deg - 90.0).to_radians();
+        scene.housing == HousingScene::Adapter && from_top.sin().atan2(from_top.cos()).abs() <= half
+    };
+    if let Some(leading) = sensors.first().filter(|sensor| share(sensor) > FRAC_1_SQRT_2) {
+        return Some(leading);
+    }
+    let most = |seats: bool| {
+        let candidates = sensors.iter().filter(|sensor| seats || !seated(sensor));
+        // Of equal ones the first.
+        candidates.rev().max_by(|a, b| share(a).total_cmp(&share(b)))
+    };
+    most(false).filter(|sensor| share(sensor) > FRAC_1_SQRT_2).or_else(|| most(true))
+}
+
+/// Numbers of the paper's figures 2, 3, 6, 7 and 8 with those of one run at a sensor.
+pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
+    let number = |figure, quantity: &str, unit, paper, read, scatter, ours| Shown {
+        figure,
+        quantity: quantity.into(),
+        unit,
+        paper,
+        read,
+        scatter,
+        at_least: false,
+        ours,
+    };
+    let level = |figure, quantity: &str, paper: f64, ours| {
+        number(figure, quantity, "g", paper, 0.05 * paper, OF_A_LEVEL * paper, ours)
+    };
+    let mut all = vec![
+        level("2", "Impulses, peak", IMPULSE_G, sensor.impulse_g),
+        level("2", "Between the impulses, peak", BETWEEN_G, sensor.between_g),
+    ];
+    let events = &summary.events;
+    for (at, paper_ms) in IMPULSES_MS.into_iter().enumerate() {
+        let quantity = format!("Impulse {}", at + 1);
+        let ours = events.get(at).and_then(|event| event.left_ms());
+        all.push(number("2", &quantity, "ms", paper_ms, 0.5, 0.1, ours));
+    }
+    let khz = |hz: Option<f64>| hz.map(|hz| 1e-3 * hz);
+    all.extend([
+        number("3", "Fundamental tone", "Hz", TONE_HZ, 3.0, 10.0, sensor.tone_hz),
+        number("3", "Its fifth harmonic", "kHz", 23.0, 0.5, 0.1, khz(sensor.fifth_hz)),
+        level("6", "Between the impulses, notched, peak", FILTERED_G, sensor.between_filtered_g),
+        number("7", "Taken from the tone by the notch", "dB", 25.0, 0.5, 2.0, sensor.notch_db),
+    ]);
+    let of_filter = summary.notch.as_ref().and_then(|notch| notch.paper_4545_db);
+    all.push(number("7", "Taken at 4545 Hz by the paper\u{2019}s notch", "dB", 4.0, 0.5, 0.0, of_filter));
+    let seen = |has: fn(&crate::summary::Event) -> bool| {
+        (!events.is_empty()).then(|| events.iter().filter(|event| has(event)).count() as f64)
+    };
+    let happens = |quantity: &str, ours| Shown {
+        at_least: true,
+        ..number("8", quantity, "passages", 1.0, 0.0, 0.0, ours)
+    };
+    all.extend([
+        happens("#1, the roller unloads", seen(|e| e.entry_ms.is_some())),
+        happens("#2, the roller strikes the floor", seen(|e| e.floor_ms.is_some())),
+        happens("#3, it carries for a neighbour", seen(|e| e.compensation_ms.is_some())),
+        happens("#4, it is loaded again", seen(|e| e.exit_ms.is_some())),
+    ]);
+    all
+}
+
+/// The paper's numbers beside those of `starts`, in the order of the figures.
+pub fn beside(starts: &[Vec<Shown>]) -> Vec<Beside> {
+    let Some(first) = starts.first() else { return Vec::new() };
+    let one = |(at, shown): (usize, &Shown)| {
+        let ours: Vec<f64> = starts.iter().filter_map(|start| start.get(at)?.ours).collect();
+        Beside {
+            shown: Shown { ours: None, ..shown.clone() },
+            ours: Statistic::of(&ours, starts.len()),
+            of: starts.len(),
+        }
+    };
+    first.iter().enumerate().map(one).collect()
+}
+
+impl Beside {
+    /// Whether the paper's number differs from ours by more than the scatter of starts and its own print; a
+    /// number that most starts lack differs.
+    pub fn differs(&self) -> bool {
+        let Some(ours) = self.ours.filter(|s| 2 * s.count > self.of) else { return true };
+        let shown = &self.shown;
+        if shown.at_least {
+            return ours.mean < 0.5 * shown.paper;
+        }
+        let granted = ours.of_a_further_one().unwrap_or(shown.scatter);
+        (ours.mean - shown.paper).abs() > granted + shown.read
+    }
+
+    /// How far the means are apart, in what separates no difference from one [-]; infinite where ours is
+    /// missing. Orders what differs.
+    pub fn distance(&self) -> f64 {
+        let Some(ours) = self.ours.filter(|s| 2 * s.count > self.of) else { return f64::INFINITY };
+        let granted = ours.of_a_further_one().unwrap_or(self.shown.scatter) + self.shown.read;
+        (ours.mean - self.shown.paper).abs() / granted.max(f64::MIN_POSITIVE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stribeck_scene::scene::AdapterScene;
+
+    fn at(name: &str, angle_deg: f64) -> SensorLevels {
+        SensorLevels { sensor: name.into(), angle_deg, ..SensorLevels::default() }
+    }
+
+    /// The report showed a_y of the sensor at the side, which is tangential, and no tone stood in it.
+    #[test]
+    fn issue_the_paper_s_sensor_is_one_whose_a_y_is_radial() {
+        let scene = Scene::default();
+        let chosen = |sensors: &[SensorLevels]| sensor(&scene, sensors).map(|s| s.sensor.clone());
+        let usual = [at("side", 0.0), at("shoulder", 22.0), at("seat", 90.0), at("bottom", 270.0)];
+        assert_eq!(chosen(&usual), Some("bottom".into()));
+        // Whoever puts a radial one first has chosen.
+        assert_eq!(chosen(&[at("over", 60.0), at("bottom", 270.0)]), Some("over".into()));
+        assert_eq!(chosen(&[at("side", 180.0), at("near", 240.0), at("other", 300.0)]), Some("near".into()));
+        // Under the seat rather than none, and a tangential one where there is no other.
+        assert_eq!(chosen(&[at("side", 0.0), at("seat", 80.0)]), Some("seat".into()));
+        assert_eq!(chosen(&[at("side", 0.0)]), Some("side".into()));
+        assert_eq!(chosen(&[]), None);
+        // Without an adapter there is no seat.
+        let narrow = Scene { adapter: AdapterScene { width_mm: 20.0, ..scene.adapter }, ..Scene::default() };
+        assert_eq!(sensor(&narrow, &usual).map(|s| s.angle_deg), Some(90.0));
+    }
+
+    fn of(paper: f64, ours: &[Option<f64>]) -> Beside {
+        let shown = |ours: &Option<f64>| Shown {
+            figure: "2",
+            quantity: "Impulses, peak".into(),
+            unit: "g",
+            paper,
+            read: 5.0,
+            scatter: 30.0,
+            at_least: false,
+            ours: *ours,
+        };
+        beside(&ours.iter().map(|ours| vec![shown(ours)]).collect::<Vec<_>>()).remove(0)
+    }
+
+    #[test]
+    fn example_a_number_differs_beyond_the_scatter_of_starts() {
+        // One run is granted 30 g, and 5 g of the print.
+        assert!(!of(180.0, &[Some(214.0)]).differs() && of(180.0, &[Some(216.0)]).differs());
+        // Three starts, 200 ± 10: by hand, a further one is within 4.303 · 10 · √(4/3) = 49.7 g of the mean.
+        let starts = [Some(190.0), Some(200.0), Some(210.0)];
+        assert!(!of(146.0, &starts).differs() && of(145.0, &starts).differs());
+        assert!((of(145.0, &starts).distance() - 55.0 / 54.7).abs() < 1e-2);
+        // Most starts must have it.
+        assert!(of(200.0, &[Some(200.0), None, None]).differs() && of(200.0, &[None]).differs());
+        assert_eq!(of(200.0, &[None]).distance(), f64::INFINITY);
+        assert_eq!(beside(&[]), []);
+    }
+}

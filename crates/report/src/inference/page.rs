@@ -1,0 +1,190 @@
+//! The page and its tables.
+
+use maud::{DOCTYPE, Markup, html};
+
+use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, TargetFound, figures};
+use crate::Error;
+use crate::page::head;
+
+pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
+    let [priors, pairs, targets, pulls] = [
+        figures::marginals(answer),
+        figures::pairs(answer),
+        figures::targets(answer),
+        figures::pulls(answer),
+    ]
+    .map(|picture| picture.to_html());
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&answer.name))
+            body {
+                h1 { (answer.name) }
+                p class="lead" { (lead(answer)) }
+                h2 #unknowns { "Unknowns" }
+                div class="scroll" { (unknowns(&answer.fields)) }
+                (priors?)
+                (pairs?)
+                h2 #targets { "Targets, and what such scenes make" }
+                div class="scroll" { (targets_table(answer)) }
+                (targets?)
+                h2 #reach { "What no scene makes" }
+                (reach(answer))
+                h2 #pulls { "Which target tells what" }
+                (pulls?)
+                h2 #trust { "How far to believe it" }
+                (trust(answer))
+                @if let Some(calibration) = &answer.calibration { (calibrated(calibration)?) }
+            }
+        }
+    })
+}
+
+fn lead(answer: &Answer) -> String {
+    let Answer { scenes, starts, rounds, fields, targets, .. } = answer;
+    let lost = answer.out_of_reach().count();
+    let reach = match (lost, answer.excluded.len()) {
+        (0, 0) => "Some scene of the prior makes every target.".to_owned(),
+        (0, pairs) => format!("Each target is made by some scene, {pairs} pairs of them not by one."),
+        (lost, _) => format!("{lost} of the targets are made by no scene of the prior."),
+    };
+    let told = fields.iter().filter(|field| field.width_of_prior < 0.5).count();
+    format!(
+        "{} unknowns, {} targets; {scenes} scenes with {starts} start{} each in {rounds} rounds. {reach} {told} of the \
+         unknowns are known to within half of their prior.",
+        fields.len(),
+        targets.len(),
+        if *starts == 1 { "" } else { "s" }
+    )
+}
+
+/// A number with four significant digits.
+pub(super) fn short(value: f64) -> String {
+    let digits = if value == 0.0 { 0 } else { 3 - value.abs().log10().floor().clamp(-6.0, 3.0) as i32 };
+    format!("{value:.*}", digits.max(0) as usize).replace('-', "−")
+}
+
+fn between([low, high]: [f64; 2]) -> String {
+    format!("{} … {}", short(low), short(high))
+}
+
+fn unknowns(fields: &[FieldFound]) -> Markup {
+    html! {
+        table {
+            tr { th { "Unknown" } th { "Prior" } th { "Median, or choices" } th { "50 %" } th { "90 %" } th { "Width, of the prior" } th { "After one more round" } th { "After any number" } }
+            @for field in fields {
+                tr {
+                    td { (field.name) }
+                    td { (field.prior) }
+                    @match field.median {
+                        Some(median) => td { (short(median)) },
+                        None => td { @for choice in &field.choices { div { (format!("{:.0} %  {}", 100.0 * choice.probability, choice.value)) } } },
+                    }
+                    td { (field.interval_50.map_or_else(String::new, between)) }
+                    td { (field.interval_90.map_or_else(String::new, between)) }
+                    td { (format!("{:.0} %", 100.0 * field.width_of_prior)) }
+                    td { (format!("× {:.2}", field.expected_narrowing)) }
+                    td { (format!("× {:.2}", field.least_narrowing)) }
+                }
+            }
+        }
+    }
+}
+
+fn targets_table(answer: &Answer) -> Markup {
+    let seen = |target: &TargetFound| match target.value {
+        Some(value) => format!("{} ± {}", short(value), short(target.tolerance)),
+        None => "none".to_owned(),
+    };
+    html! {
+        table {
+            tr { th { "Target" } th { "Seen" } th { "Emulated: median, 90 %" } th { "Has it" } th { "Run at draws: median, 90 %" } th { "Have it" } th { "Below the target" } th { "Off at best: alone, with all" } }
+            @for target in &answer.targets {
+                tr {
+                    td title=(target.of) { (target.name) }
+                    td { (seen(target)) }
+                    td { (target.predicted.map_or_else(String::new, |q| format!("{}, {}", short(q[2]), between([q[0], q[4]])))) }
+                    td { (format!("{:.0} %", 100.0 * target.exists)) }
+                    td {
+                        @if let Some(median) = target.run_median {
+                            (short(median)) (target.run_interval_90.map_or_else(String::new, |interval| format!(", {}", between(interval))))
+                        }
+                    }
+                    td { @if target.runs > 0 { (format!("{} of {}", target.runs_that_have_it, target.runs)) } }
+                    td { (target.below_target.map_or_else(String::new, |share| format!("{:.0} %", 100.0 * share))) }
+                    td { (format!("{:+.1}, {:+.1} σ", target.best_alone, target.best_together)) }
+                }
+            }
+        }
+        p { "“Off at best” is how far a target lies from the prediction at the point of the prior that comes nearest, in standard deviations of scatter, tolerance and the emulator's doubt. A target seen below 5 % or above 95 % of emulated runs is one that the other targets speak against." }
+    }
+}
+
+fn scene(values: &[[String; 2]]) -> Markup {
+    html! { code { (values.iter().map(|[name, value]| format!("{name}={value}")).collect::<Vec<_>>().join("  ")) } }
+}
+
+fn reach(answer: &Answer) -> Markup {
+    html! {
+        ul {
+            @for target in answer.out_of_reach() {
+                li { (target.name) ": the nearest scene is " (format!("{:+.1}", target.best_alone)) " standard deviations off." }
+            }
+            @for pair in &answer.excluded {
+                li {
+                    (pair.targets[0]) " and " (pair.targets[1]) ": each can be met, both at once are missed by "
+                    (format!("{:.1}", pair.deviations)) " standard deviations at best, at " (scene(&pair.best))
+                }
+            }
+            @if answer.out_of_reach().next().is_none() && answer.excluded.is_empty() {
+                li { "Every target, and every pair of them, is made by some scene within " (format!("{OUT_OF_REACH}")) " standard deviations." }
+            }
+        }
+        p { "Nearest to all targets at once: " (scene(&answer.best_together)) }
+    }
+}
+
+fn trust(answer: &Answer) -> Markup {
+    let percent =
+        |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
+    html! {
+        p { (format!("The draws of the posterior count for {:.0} independent ones. Outputs are emulated by Gaussian processes; each point is predicted from the others:", answer.effective_draws)) }
+        div class="scroll" {
+            table {
+                tr { th { "Output" } th { "Runs that have it" } th { "Variance that is predicted" } th { "Runs in their 90 % interval" } th { "Scatter of starts" } }
+                @for quality in &answer.quality {
+                    tr {
+                        td { (quality.output) }
+                        td { (format!("{:.0} %", 100.0 * quality.exists)) }
+                        td { (percent(quality.r_squared)) }
+                        td { (percent(quality.coverage_90)) }
+                        td { (quality.scatter.map_or_else(|| "–".to_owned(), short)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn calibrated(fields: &[FieldCalibrated]) -> Result<Markup, Error> {
+    let share = |[share, low, high]: [f64; 3]| {
+        format!("{:.0} % ({:.0} … {:.0})", 100.0 * share, 100.0 * low, 100.0 * high)
+    };
+    let ranks = figures::ranks(fields).to_html()?;
+    Ok(html! {
+        h2 #calibration { "Calibration" }
+        p { (format!("{} scenes were drawn from the prior, run, and inferred from their own numbers. A 90 % interval is one if it holds the truth in 90 % of them.", fields.first().map_or(0, |field| field.truths))) }
+        div class="scroll" {
+            table {
+                tr { th { "Unknown" } th { "In the 50 % interval" } th { "In the 90 % interval" } th { "Ranks even, p" } th { "Width, of the prior" } }
+                @for field in fields {
+                    tr {
+                        td { (field.name) } td { (share(field.held_50)) } td { (share(field.held_90)) }
+                        td { (format!("{:.3}", field.p_value)) } td { (format!("{:.0} %", 100.0 * field.width_of_prior)) }
+                    }
+                }
+            }
+        }
+        (ranks)
+    })
+}

@@ -1,0 +1,160 @@
+//! A file that makes scenes, such as that of a campaign: its text, where its fields stand, and what is wrong
+//! with it, said as of scenes: with line, field, what is allowed and what to try.
+
+use ron::error::SpannedError;
+
+use crate::scene_file::outline::{Entry, Outline};
+use crate::scene_file::problem::{Place, Problem, SceneError, offset, place_in_file};
+use crate::scene_file::wording::{list, shown};
+use crate::scene_file::{self, suggest};
+
+/// What is particular to one kind of file.
+pub(crate) struct Kind {
+    /// What such a file is, in words: `a campaign`.
+    pub(crate) noun: &'static str,
+    /// What it may hold, and a file to look at.
+    pub(crate) example: &'static str,
+    /// The part of it whose type has this name.
+    pub(crate) part: fn(Option<&str>) -> &'static str,
+    /// What to try where a field without default lacks, by the type that lacks it.
+    pub(crate) lacking: fn(Option<&str>) -> Option<&'static str>,
+    /// What to do with a field of a scene that stands in the wrong place.
+    pub(crate) for_fields_of_scenes: &'static str,
+    /// How large a whole number in the field of this name may be; `None` for other fields.
+    pub(crate) most: fn(&str) -> Option<u64>,
+}
+
+/// The text of a file, and where its fields stand.
+pub(crate) struct File<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) text: &'a str,
+    pub(crate) outline: Outline,
+    kind: &'static Kind,
+}
+
+/// A file that the system does not give.
+pub(crate) fn unreadable(name: &str, kind: &Kind, example: &str, error: &std::io::Error) -> SceneError {
+    let place = Place::Unwritten { file: name.to_owned() };
+    let noun = kind.noun;
+    let mut problem = Problem::new(format!("cannot read `{name}` as {noun}: {error}"), place);
+    problem.suggestion = format!("name the file of {noun}, such as {example}");
+    problem.into()
+}
+
+impl<'a> File<'a> {
+    pub(crate) fn new(name: &'a str, text: &'a str, kind: &'static Kind) -> Self {
+        Self { name, text, outline: Outline::of(text), kind }
+    }
+
+    /// The value at a path; the whole file where it is not written.
+    pub(crate) fn place(&self, path: &str) -> Place {
+        match self.outline.get(path) {
+            Some(entry) => place_in_file(self.name, self.text, entry.value.clone()),
+            None => Place::Unwritten { file: self.name.to_owned() },
+        }
+    }
+
+    /// Refuses the value at a path.
+    pub(crate) fn refuse(&self, path: &str, why: String) -> SceneError {
+        let mut problem = Problem::new(why, self.place(path));
+        path.clone_into(&mut problem.field);
+        problem.into()
+    }
+
+    /// A problem of the value at a path.
+    pub(crate) fn shown(&self, mut problem: Problem, path: &str) -> SceneError {
+        problem.place = self.place(path);
+        problem.into()
+    }
+
+    /// The scene that all others are made from; what is wrong with an item of `set` is shown there.
+    pub(crate) fn of_base(&self, error: SceneError) -> SceneError {
+        SceneError::new(error.problems().iter().cloned().map(|problem| self.in_set(problem)).collect())
+    }
+
+    /// The same problem in the item of `set` that is to blame.
+    pub(crate) fn in_set(&self, mut problem: Problem) -> Problem {
+        if let Place::CommandLine { argument, .. } = &problem.place {
+            let items = self.outline.entries.iter().filter(|entry| entry.path.starts_with("set["));
+            let item = items
+                .map(|entry| &entry.value)
+                .find(|at| self.text[(*at).clone()].trim_matches('"') == argument.as_str());
+            problem.place = match item {
+                Some(at) => place_in_file(self.name, self.text, at.clone()),
+                None => self.place("set"),
+            };
+            problem.suggestion = problem.suggestion.replacen("--set ", "", 1);
+        }
+        problem
+    }
+
+    /// A text that is no such file.
+    pub(crate) fn not_understood(&self, error: &SpannedError) -> SceneError {
+        use ron::Error as E;
+        let start = offset(self.text, error.span.start.line, error.span.start.col);
+        let end = offset(self.text, error.span.end.line, error.span.end.col).max(start);
+        let mut range = start..end;
+        let mut problem = Problem::new("", self.place(""));
+        match &error.code {
+            E::NoSuchStructField { expected, found, outer } => {
+                let named = self.outline.entries.iter().map(|entry| &entry.key);
+                let named = named.filter(|key| self.text[(*key).clone()] == **found && key.end <= end + 1);
+                range = named.max_by_key(|key| key.start).cloned().unwrap_or(range);
+                problem.field.clone_from(found);
+                problem.message =
+                    format!("unknown field `{}` in {}", shown(found), (self.kind.part)(outer.as_deref()));
+                problem.allowed = list(expected);
+                problem.suggestion = match suggest::nearest(found, expected) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None if scene_file::unknown_field(found).is_none() => {
+                        self.kind.for_fields_of_scenes.replace("{}", found)
+                    }
+                    None => String::new(),
+                };
+            }
+            E::NoSuchEnumVariant { expected, found, .. } => {
+                problem.field = self.outline.at(start).map_or_else(String::new, |entry| entry.path.clone());
+                problem.message =
+                    format!("`{}` is `{}`, which is not one of its words", problem.field, shown(found));
+                problem.allowed = list(expected);
+                if let Some(near) = suggest::nearest(found, expected) {
+                    problem.suggestion = format!("did you mean `{near}`?");
+                }
+            }
+            E::MissingStructField { field, outer } => {
+                problem.field = (*field).to_owned();
+                problem.message =
+                    format!("{} lacks `{field}`, which has no default", (self.kind.part)(outer.as_deref()));
+                let lacking = (self.kind.lacking)(outer.as_deref()).unwrap_or(self.kind.example);
+                problem.suggestion = lacking.replace("{field}", field);
+            }
+            E::DuplicateStructField { field, .. } => {
+                problem.field = (*field).to_owned();
+                problem.message = format!("field `{field}` is given twice");
+                problem.suggestion = "keep one of the two".to_owned();
+            }
+            code => match self.no_whole_number(start) {
+                Some((entry, most)) => {
+                    problem.field = entry.path.clone();
+                    let value = shown(&self.text[entry.value.clone()]);
+                    problem.message = format!("`{}` is `{value}`", entry.path);
+                    problem.allowed = format!("a whole number, at most {most}");
+                    range = entry.value.clone();
+                }
+                None => {
+                    problem.message = format!("the file of {} cannot be read: {code}", self.kind.noun);
+                    self.kind.example.clone_into(&mut problem.suggestion);
+                }
+            },
+        }
+        problem.place = place_in_file(self.name, self.text, range);
+        problem.into()
+    }
+
+    /// The number at a byte of the text that is to be a whole one and is not, and how large it may be.
+    fn no_whole_number(&self, at: usize) -> Option<(&Entry, u64)> {
+        let entry = self.outline.at(at)?;
+        let most = (self.kind.most)(entry.path.rsplit('.').next()?)?;
+        self.text[entry.value.clone()].parse::<u64>().is_err().then_some((entry, most))
+    }
+}

@@ -1,0 +1,301 @@
+//! `stribeck infer`: which scenes could have made the numbers that somebody saw.
+//!
+//! Rounds of runs of a scene whose unknowns are drawn, first evenly over their priors, then where the posterior
+//! is; then runs at draws of the posterior, and the answer. All that was run lies in the folder, so the same
+//! command starts and goes on, parts of it may run anywhere, and the answer comes out the same.
+
+mod answer;
+mod outputs;
+mod rounds;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail, ensure};
+use stribeck_infer::{Emulator, NextOptions, Posterior, PosteriorOptions, next, snapped, sobol};
+use stribeck_report::inference::write_inference;
+use stribeck_scene::inference::Inference;
+use stribeck_scene::run_dir::{Keep, check_folder, write_atomic};
+
+use crate::campaign::{Shard, gigabytes, shard};
+use crate::interrupt::{self, Interrupt};
+use crate::many_runs::{Share, Stage, summary_of};
+use crate::out::say;
+use crate::place::{Place, shown};
+use crate::simulate::{jobs, threads};
+use answer::Known;
+use outputs::{Row, Table};
+use rounds::{Point, Round, Rounds};
+
+/// Flags of `infer`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// File with unknowns and targets, such as fixtures/infer/quick.ron
+    file: PathBuf,
+    /// Folder of the inference [default: runs/NAME, the name of the inference]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Runs that go side by side [default: as many as cores]
+    #[arg(long, value_name = "N", value_parser = jobs)]
+    jobs: Option<usize>,
+    /// Worker threads of all runs together [default: all cores]; the answer does not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
+    threads: Option<usize>,
+    /// Most memory that runs side by side may take together [GB] [default: what the system has free]
+    #[arg(long, value_name = "G", value_parser = gigabytes)]
+    memory_gb: Option<f64>,
+    /// Runs only part I of N of each round, for several machines that share the folder; each waits until the
+    /// others have done theirs
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    shard: Option<Shard>,
+    /// Runs nothing: prints the script that has an engine run the inference in parts: `> job.sh`
+    #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
+    emit: Option<crate::emit::Engine>,
+    /// Parts of an emitted script [default: 16]
+    #[arg(long, value_name = "N", requires = "emit", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    shards: Option<u32>,
+    /// Draws N scenes from the prior, runs each, infers it from its own numbers, and says how often the
+    /// intervals hold the truth
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(20..=10_000))]
+    calibrate: Option<u32>,
+}
+
+/// Draws of the posterior that are reported.
+const DRAWS: usize = 4000;
+
+/// Draws of a posterior from which the next round is chosen.
+const DRAWS_OF_ROUND: usize = 1000;
+
+/// Share of a round's scenes that fill the prior, against regions that the emulator does not know of.
+const FILLING: f64 = 0.25;
+
+/// Between two looks at what other parts have done.
+const LOOK: Duration = Duration::from_secs(2);
+
+/// The folder of an inference is known by its file.
+const FILE: &str = "inference.ron";
+
+pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let file = place.locate(&options.file);
+    let inference = Inference::read(&file)?;
+    let out = options.out.clone().unwrap_or_else(|| place.runs().join(&inference.name));
+    if let Some(engine) = options.emit {
+        let part = crate::emit::Part {
+            of: options.shards.unwrap_or(crate::emit::MOST_PARTS),
+            jobs: options.jobs,
+            threads: options.threads.or(options.jobs).unwrap_or(1),
+            memory_gb: options.memory_gb,
+        };
+        say!("{}", crate::emit::script(engine, "infer", &file, &out, part)?.trim_end());
+        return Ok(ExitCode::SUCCESS);
+    }
+    check_folder(&out, &[FILE])?;
+    enter(&out, &inference)?;
+    let interrupt = Interrupt::listen()?;
+    let study = Study {
+        options,
+        inference: &inference,
+        rounds: Rounds::new(&inference, out.clone()),
+        interrupt: &interrupt,
+    };
+    let Some(known) = study.carry_out()? else {
+        eprintln!("the same command goes on");
+        return Ok(ExitCode::from(interrupt::EXIT_CODE));
+    };
+    let answer = answer::of(&known)?;
+    answer::write_draws(&out.join("posterior.parquet"), &known)?;
+    write_inference(&out, &answer)?;
+    answer::tell(&answer);
+    say!("report: {}", shown(&out.join("report.html")));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Makes the folder, or finds the same inference in it.
+fn enter(out: &std::path::Path, inference: &Inference) -> Result<()> {
+    let path = out.join(FILE);
+    match std::fs::read_to_string(&path) {
+        Ok(there) => ensure!(
+            there == inference.text,
+            "`{}` holds another inference, or an earlier text of this one: give a folder with `--out`, or \
+             compare `{}`",
+            shown(out),
+            shown(&path)
+        ),
+        Err(_) => {
+            std::fs::create_dir_all(out).with_context(|| format!("cannot make `{}`", shown(out)))?;
+            write_atomic(&path, inference.text.as_bytes())?;
+        }
+    }
+    Ok(())
+}
+
+/// An inference under way.
+struct Study<'a> {
+    options: &'a Options,
+    inference: &'a Inference,
+    rounds: Rounds<'a>,
+    interrupt: &'a Interrupt,
+}
+
+impl Study<'_> {
+    /// Runs what is left; `None` when Ctrl-C was pressed.
+    fn carry_out(&self) -> Result<Option<Known<'_>>> {
+        let Self { inference, rounds, .. } = self;
+        let budget = inference.budget;
+        let scenes = budget.runs / inference.starts;
+        let (mut points, mut rows) = (Vec::<Point>::new(), Vec::<Row>::new());
+        let mut number = 1;
+        while points.len() < scenes {
+            let round = Round::Number(number);
+            let planned = match rounds.read(round)? {
+                Some(planned) => planned,
+                None if number == 1 => rounds.plan(round, &self.first(budget.first, 0)?)?,
+                None => {
+                    let count = budget.round.min(scenes - points.len());
+                    rounds.plan(round, &self.following(&rows, number, count)?)?
+                }
+            };
+            if !self.make(round, &planned)? {
+                return Ok(None);
+            }
+            if number == 1 {
+                self.check_targets(&planned)?;
+            }
+            rows.extend(outputs::rows(inference, rounds, &planned)?);
+            points.extend(planned);
+            number += 1;
+        }
+        let table = Table::of(inference, &rows)?;
+        let emulator = Emulator::fit(&table.runs, &table.outputs, inference.seed)?;
+        let posterior = self.posterior(&emulator, &table, DRAWS)?;
+        let Some(check) = self.check(&posterior)? else { return Ok(None) };
+        let truths = match self.options.calibrate {
+            Some(count) => match self.truths(count as usize)? {
+                Some(truths) => Some(truths),
+                None => return Ok(None),
+            },
+            None => None,
+        };
+        let priors = rounds.priors().to_vec();
+        Ok(Some(Known {
+            inference,
+            priors,
+            scenes: points.len(),
+            rounds: number - 1,
+            table,
+            emulator,
+            posterior,
+            check,
+            truths,
+        }))
+    }
+
+    /// Points that fill the prior evenly.
+    fn first(&self, count: usize, from: usize) -> Result<Vec<Vec<f64>>> {
+        let points = sobol(self.inference.seed, self.inference.unknowns.len(), from, count)?;
+        Ok(points.iter().map(|point| snapped(self.rounds.priors(), point)).collect())
+    }
+
+    /// Points of a later round, from what is known so far.
+    fn following(&self, rows: &[Row], number: usize, count: usize) -> Result<Vec<Vec<f64>>> {
+        let table = Table::of(self.inference, rows)?;
+        let emulator = Emulator::fit(&table.runs, &table.outputs, self.inference.seed)?;
+        let posterior = self.posterior(&emulator, &table, DRAWS_OF_ROUND)?;
+        let filled = (number - 2) * (FILLING * self.inference.budget.round as f64).round() as usize;
+        let options = NextOptions { count, filling: FILLING, filled, seed: self.inference.seed };
+        Ok(next(&emulator, self.rounds.priors(), &table.targets, &posterior, options)?)
+    }
+
+    fn posterior(&self, emulator: &Emulator, table: &Table, draws: usize) -> Result<Posterior> {
+        let options = PosteriorOptions { draws, seed: self.inference.seed };
+        Ok(Posterior::of(emulator, self.rounds.priors(), &table.targets, options)?)
+    }
+
+    /// Runs a round to its end; false when Ctrl-C was pressed.
+    fn make(&self, round: Round, points: &[Point]) -> Result<bool> {
+        let Self { options, inference, rounds, interrupt } = self;
+        let mine =
+            |number: usize| options.shard.is_none_or(|Shard { part, of }| (number - 1) % of == part - 1);
+        let wanted = || Rounds::wanted(points).filter(|wanted| mine(wanted.number));
+        let due = rounds.runs().due(Keep::Numbers, wanted(), interrupt)?;
+        let share = Share { jobs: options.jobs, threads: options.threads, memory_gb: options.memory_gb };
+        if !due.is_empty() {
+            rounds.runs().make(Keep::Numbers, &due, share, interrupt, &|jobs| {
+                let round = round.shown();
+                eprintln!("{}, {round}: {} runs to be made, {}", inference.name, due.len(), jobs.shown());
+            });
+        }
+        let mut told = false;
+        loop {
+            let left = rounds.left(points)?;
+            if left == 0 {
+                break;
+            }
+            if interrupt.is_pressed() {
+                eprintln!("{}: {left} runs are not at their end", round.shown());
+                return Ok(false);
+            }
+            ensure!(options.shard.is_some(), "{left} runs of {} cannot be made: see above", round.shown());
+            if !told {
+                eprintln!("{}: waits for {left} runs of other parts", round.shown());
+                told = true;
+            }
+            std::thread::sleep(LOOK);
+        }
+        // Each reduction serves the starts of one scene, and none is asked for again.
+        if options.shard.is_none() {
+            std::fs::remove_dir_all(rounds.runs().0.join("runs").join(".reduced")).ok();
+        }
+        Ok(true)
+    }
+
+    /// Refuses targets that no run has, as soon as a run has ended.
+    fn check_targets(&self, points: &[Point]) -> Result<()> {
+        for wanted in Rounds::wanted(points) {
+            if let (Ok(scene), Stage::Done) = (wanted.scene, self.rounds.runs().stage(Keep::Numbers, wanted)?)
+            {
+                return outputs::check(self.inference, &summary_of(&self.rounds.runs().run(scene))?);
+            }
+        }
+        let why =
+            Rounds::wanted(points).find_map(|wanted| match self.rounds.runs().stage(Keep::Numbers, wanted) {
+                Ok(Stage::Refused(why) | Stage::Failed(why)) => Some(why),
+                _ => None,
+            });
+        bail!("no scene of the first round could be run. The first: {}", why.unwrap_or_default())
+    }
+
+    /// Runs draws of the posterior.
+    fn check(&self, posterior: &Posterior) -> Result<Option<Vec<Row>>> {
+        let count = self.inference.budget.check;
+        if count == 0 {
+            return Ok(Some(Vec::new()));
+        }
+        let points = match self.rounds.read(Round::Check)? {
+            Some(points) => points,
+            None => {
+                let step = (posterior.draws.len() / count).max(1);
+                let draws: Vec<Vec<f64>> =
+                    posterior.draws.iter().step_by(step).take(count).cloned().collect();
+                self.rounds.plan(Round::Check, &draws)?
+            }
+        };
+        if !self.make(Round::Check, &points)? {
+            return Ok(None);
+        }
+        outputs::rows_of_readings(self.inference, &self.rounds, &points, 1).map(Some)
+    }
+
+    /// Runs scenes drawn from the prior, beyond the points that the first round has used.
+    fn truths(&self, count: usize) -> Result<Option<Vec<Row>>> {
+        let points = match self.rounds.read(Round::Truths)? {
+            Some(points) if points.len() >= count => points,
+            _ => self.rounds.plan(Round::Truths, &self.first(count, 1 << 14)?)?,
+        };
+        if !self.make(Round::Truths, &points)? {
+            return Ok(None);
+        }
+        outputs::rows_of_readings(self.inference, &self.rounds, &points, 1).map(Some)
+    }
+}

@@ -1,0 +1,199 @@
+//! Runs of many scenes in one folder, each below `runs/` by the hash of its scene, so that equal scenes are
+//! run once and whoever asks for a scene again finds its run.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Result, bail};
+use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
+use stribeck_scene::Error;
+use stribeck_scene::run_dir::{Keep, Run, RunDir, State, write_atomic};
+use stribeck_scene::scene::Scene;
+
+use crate::interrupt::Interrupt;
+use crate::memory;
+use crate::place::shown;
+use crate::side_by_side::{Due, Jobs, Shop};
+
+/// The folder that holds the runs.
+#[derive(Debug, Clone)]
+pub(crate) struct ManyRuns(pub(crate) PathBuf);
+
+/// A scene that is to be run, with the number by which the user knows it, or why it cannot be.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Wanted<'a> {
+    pub(crate) number: usize,
+    pub(crate) scene: Result<&'a Scene, &'a str>,
+}
+
+/// How far one run has come.
+pub(crate) enum Stage {
+    /// Its scene cannot be, or its run could not be made: the reason.
+    Refused(String),
+    Failed(String),
+    /// At its end, but its numbers are not made, or more lies there than is to be kept.
+    Ended,
+    /// At its end; it may have diverged.
+    Done,
+    /// To be run or continued.
+    Due,
+}
+
+/// How much of the machine the runs may take.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Share {
+    pub(crate) jobs: Option<usize>,
+    pub(crate) threads: Option<usize>,
+    pub(crate) memory_gb: Option<f64>,
+}
+
+impl ManyRuns {
+    /// The folder of a run: by its scene, so that equal scenes are run once.
+    pub(crate) fn run(&self, scene: &Scene) -> PathBuf {
+        self.0.join("runs").join(scene.hash())
+    }
+
+    /// Why a run cannot be made, if somebody has tried.
+    fn failure(&self, scene: &Scene) -> PathBuf {
+        self.0.join("failed").join(format!("{}.txt", scene.hash()))
+    }
+
+    /// Writes down why a run cannot be made.
+    fn keep_failure(&self, scene: &Scene, why: &str) -> Result<()> {
+        let path = self.failure(scene);
+        path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+        Ok(write_atomic(&path, why.as_bytes())?)
+    }
+
+    /// How far the run of a scene has come.
+    pub(crate) fn stage(&self, keep: Keep, wanted: Wanted<'_>) -> Result<Stage> {
+        let scene = match wanted.scene {
+            Ok(scene) => scene,
+            Err(why) => return Ok(Stage::Refused(why.to_owned())),
+        };
+        if let Ok(why) = std::fs::read_to_string(self.failure(scene)) {
+            return Ok(Stage::Failed(why));
+        }
+        let path = self.run(scene);
+        Ok(match State::of(&path, scene) {
+            State::Done if is_settled(&path, keep)? => Stage::Done,
+            State::Done => Stage::Ended,
+            State::Other => bail!("`{}` holds a run of another scene: move it away", shown(&path)),
+            State::New | State::Begun => Stage::Due,
+        })
+    }
+
+    /// What is to be run of these; of runs that ended when the program was killed the numbers are made.
+    pub(crate) fn due<'a>(
+        &self,
+        keep: Keep,
+        wanted: impl Iterator<Item = Wanted<'a>>,
+        interrupt: &Interrupt,
+    ) -> Result<Vec<Due>> {
+        let mut due = Vec::new();
+        // Equal scenes are run once.
+        let mut seen = HashSet::new();
+        for wanted in wanted {
+            let Ok(scene) = wanted.scene else { continue };
+            match self.stage(keep, wanted)? {
+                Stage::Due => {
+                    let (number, scene, folder) = (wanted.number, scene.clone(), self.run(scene));
+                    if seen.insert(folder.clone()) {
+                        due.push(Due { number, scene, folder });
+                    }
+                }
+                // What a kill has left; it may free the space that others need.
+                Stage::Ended if !interrupt.is_pressed() => {
+                    if let Err(why) = settle(&self.run(scene), keep) {
+                        eprintln!("warning: {why:#}");
+                    }
+                }
+                _ => {}
+            }
+        }
+        Ok(due)
+    }
+
+    /// Runs what is due. `say` is told first how many go at a time.
+    pub(crate) fn make(
+        &self,
+        keep: Keep,
+        due: &[Due],
+        share: Share,
+        interrupt: &Interrupt,
+        say: &dyn Fn(Jobs),
+    ) {
+        let limit_gb = share.memory_gb.or_else(memory::free_gb).unwrap_or(f64::INFINITY);
+        let need_gb = due.iter().map(|due| memory::need_gb(&due.scene)).fold(0.0, f64::max);
+        if need_gb > limit_gb {
+            eprintln!("warning: a run may take {need_gb:.1} GB, and there are {limit_gb:.1} GB for it");
+        }
+        let fitting = ((limit_gb / need_gb) as usize).max(1);
+        let jobs = Jobs::of(share.jobs, share.threads, due.len().min(fitting));
+        say(jobs);
+        let shop = Shop::new("run", due, jobs, interrupt);
+        shop.run(&|due, error| {
+            let kept = match error {
+                Some(error) => self.keep_failure(&due.scene, &error.to_string()),
+                // By every job for its own run; what is made of all only gathers.
+                None if matches!(State::of(&due.folder, &due.scene), State::Done) => {
+                    settle(&due.folder, keep)
+                }
+                None => Ok(()),
+            };
+            if let Err(why) = kept {
+                shop.say(&format!("warning: {why}"));
+            }
+        });
+    }
+}
+
+/// Whether a run that has come to its end has its numbers and no more than is to be kept. Where all is kept,
+/// numbers can be made at any time.
+fn is_settled(path: &Path, keep: Keep) -> Result<bool> {
+    let dir = RunDir::open(path)?;
+    Ok(keep == Keep::All || dir.summary().exists() && dir.keeps_only(keep))
+}
+
+/// Makes the numbers of a run that has come to its end, and removes what is not to be kept.
+fn settle(path: &Path, keep: Keep) -> Result<()> {
+    // Nobody else reads what is being removed.
+    let dir = match RunDir::reopen(path) {
+        Err(Error::FolderInUse { .. }) => return Ok(()),
+        dir => dir?,
+    };
+    if read_summary(&dir).is_none() {
+        write_summary(&dir)?;
+    }
+    Ok(dir.keep_only(keep)?)
+}
+
+/// The summary of a run that has come to its end; it is made when it is not there.
+pub(crate) fn summary_of(path: &Path) -> Result<serde_json::Value> {
+    if let Some(there) = read_summary(&RunDir::open(path)?) {
+        return Ok(there);
+    }
+    match RunDir::reopen(path) {
+        // Another part makes the same one.
+        Err(Error::FolderInUse { .. }) => Ok(serde_json::from_str(&summarise(path)?)?),
+        dir => write_summary(&dir?),
+    }
+}
+
+fn read_summary(dir: &RunDir) -> Option<serde_json::Value> {
+    serde_json::from_slice(&std::fs::read(dir.summary()).ok()?).ok()
+}
+
+/// Makes the summary of a run whose folder is locked, so that nothing stays beside it when this one is
+/// killed: the next one writes by the same name.
+fn write_summary(dir: &RunDir) -> Result<serde_json::Value> {
+    let text = summarise(dir.path())?;
+    write_atomic(&dir.summary(), text.as_bytes())?;
+    Ok(serde_json::from_str(&text)?)
+}
+
+fn summarise(path: &Path) -> Result<String> {
+    let findings = Findings::of(&Record::new(&Run::read(path)?)?)?;
+    Ok(serde_json::to_string_pretty(&findings.summary)? + "\n")
+}
