@@ -49,9 +49,11 @@ impl Curves {
         let singular = svd.S().column_vector();
         let squares: Vec<f64> = (0..singular.nrows()).map(|i| singular[i] * singular[i]).collect();
         let total: f64 = squares.iter().sum();
+        // What rounding leaves of equal curves is no shape.
+        let rounding = 1e-28 * n as f64 * mean.iter().map(|m| m * m).sum::<f64>() + 1e-24 * total;
         let mut kept = 0.0;
         let mut count = 0;
-        while count < squares.len().min(most) && kept < share * total && squares[count] > 1e-24 * total {
+        while count < squares.len().min(most) && kept < share * total && squares[count] > rounding {
             kept += squares[count];
             count += 1;
         }

@@ -224,9 +224,9 @@ impl Emulator {
     /// An output at points, on its scale; none where it is not emulated.
     pub(crate) fn scaled(&self, output: usize, points: &[Vec<f64>]) -> Option<Vec<Scaled>> {
         let value = self.columns[output].value.as_ref()?;
-        let logarithms = value.scatter.as_ref().map(|function| function.predict(points));
+        let logarithms = value.scatter.as_ref().map(|function| function.means(points));
         let one = |(j, [mean, variance]): (usize, [f64; 2])| {
-            let factor = logarithms.as_ref().map_or(1.0, |all| all[j][0].clamp(-12.0, 12.0).exp());
+            let factor = logarithms.as_ref().map_or(1.0, |all| all[j].clamp(-12.0, 12.0).exp());
             let unit = value.spread * value.tails.scale;
             Scaled {
                 mean: value.centre + value.spread * mean,

@@ -26,7 +26,7 @@ const FIRST: usize = 4;
 const KEPT: f64 = 0.5;
 
 /// Least and most sweeps of a stage, and of the last.
-const SWEEPS: [[usize; 2]; 2] = [[2, 8], [4, 20]];
+const SWEEPS: [[usize; 2]; 2] = [[2, 4], [4, 12]];
 
 /// A stage ends when no coordinate's correlation with its start is above this; the last stage at the second.
 const FORGOTTEN: [f64; 2] = [0.5, 0.15];

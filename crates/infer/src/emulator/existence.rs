@@ -55,7 +55,7 @@ impl Existence {
         };
         match &self.function {
             None => vec![self.share; points.len()],
-            Some(function) => function.predict(points).iter().map(|[mean, _]| probability(*mean)).collect(),
+            Some(function) => function.means(points).into_iter().map(probability).collect(),
         }
     }
 }

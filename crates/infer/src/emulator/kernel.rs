@@ -36,7 +36,18 @@ impl Kernel {
 
     /// Covariances of scaled points: a row for each of `a`, a column for each of `b`.
     pub(super) fn matrix(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> Mat<f64> {
-        Mat::from_fn(a.len(), b.len(), |i, j| self.between(&a[i], &b[j]))
+        // Coordinate by coordinate, so that a column of distances is summed in vectors.
+        let coordinates: Vec<Vec<f64>> =
+            (0..self.rates.len()).map(|k| a.iter().map(|point| point[k]).collect()).collect();
+        let mut matrix = Mat::<f64>::zeros(a.len(), b.len());
+        for (j, to) in b.iter().enumerate() {
+            let column = matrix.col_as_slice_mut(j);
+            for (coordinate, at) in coordinates.iter().zip(to) {
+                column.iter_mut().zip(coordinate).for_each(|(sum, x)| *sum += (x - at) * (x - at));
+            }
+            column.iter_mut().for_each(|sum| *sum = self.variance * matern(*sum).0);
+        }
+        matrix
     }
 }
 

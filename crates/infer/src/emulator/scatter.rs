@@ -75,8 +75,7 @@ impl Scatter {
             let weights: Vec<f64> = pairs.iter().map(|pair| 2.0 / pair[1].max(0.05)).collect();
             let working = Sample { points: sample.points, values: &values, factors: &weights, linear: false };
             let (regression, left_out) = Regression::fit(&working, &hyper)?;
-            let fitted = regression.predict(sample.points);
-            logarithms = fitted.iter().map(|[mean, _]| mean.clamp(-12.0, 12.0)).collect();
+            logarithms = regression.means(sample.points).iter().map(|mean| mean.clamp(-12.0, 12.0)).collect();
             others = left_out;
             function = Some(regression);
         }

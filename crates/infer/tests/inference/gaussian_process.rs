@@ -66,23 +66,26 @@ fn example_scatter_existence_and_correlation_are_found() {
     assert!(emulator.correlation(6, 7) > 0.6 && emulator.correlation(1, 2).abs() < 0.2);
 }
 
-/// Conformal intervals of 90 % hold 86 to 94 % of 400 fresh runs: four standard deviations of that share are 6 %.
+/// Conformal intervals of 90 % on 1000 fresh runs. The share of a single output has a standard deviation of 2.8 %, nearly
+/// all from the 128 points that the width of intervals follows from; the mean over outputs less.
 #[test]
 fn example_intervals_hold_the_runs_that_they_should() {
     let emulator = Emulator::fit(&runs(6, 128, 2), &columns(), 0).unwrap();
-    let fresh = truths(60, 400, 1.0);
-    for output in 0..OUTPUTS {
+    let fresh = truths(60, 1000, 1.0);
+    let share = |output: usize| {
         let mut held = [0.0; 2];
         for truth in &fresh {
             let Some(value) = truth.outputs[output] else { continue };
             let [low, high] = emulator.interval(&truth.point, output, 0.9).unwrap().unwrap();
             held[usize::from(value >= low && value <= high)] += 1.0;
         }
-        let share = held[1] / (held[0] + held[1]);
-        assert!((0.84..=0.96).contains(&share), "output {output}: {share}");
-        let said = &emulator.quality()[output];
-        assert!((0.84..=0.96).contains(&said.coverage_90), "{said:?}");
-    }
+        held[1] / (held[0] + held[1])
+    };
+    let shares: Vec<f64> = (0..OUTPUTS).map(share).collect();
+    assert!(shares.iter().all(|share| (0.82..=0.98).contains(share)), "{shares:?}");
+    let mean = shares.iter().sum::<f64>() / OUTPUTS as f64;
+    assert!((0.87..=0.93).contains(&mean), "{shares:?}");
+    assert!(emulator.quality().iter().all(|said| (0.84..=0.96).contains(&said.coverage_90)));
 }
 
 /// The same runs give the same emulator, whatever the machine does meanwhile.
