@@ -56,7 +56,8 @@ pub struct Beside {
 /// The paper's a_y holds the tone, which facets drive along the radius, so that its node lies near the
 /// vertical axis.
 pub fn sensor<'a>(scene: &Scene, sensors: &'a [SensorLevels]) -> Option<&'a SensorLevels> {
-    let share = |sensor: &SensorLevels| sensor.angle_deg.to_radians().sin().abs();
+    // Places that mirror each other are alike to rounding.
+    let share = |sensor: &SensorLevels| (1e9 * sensor.angle_deg.to_radians().sin().abs()).round() * 1e-9;
     let seated = |sensor: &SensorLevels| {
         let b = &scene.bearing;
         let outside_mm = 0.5 * b.outer_race_diameter_mm + b.outer_ring_thickness_mm;
