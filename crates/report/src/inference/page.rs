@@ -68,6 +68,26 @@ fn between([low, high]: [f64; 2]) -> String {
     format!("{} … {}", short(low), short(high))
 }
 
+/// Choices that the table shows of an unknown, the likeliest first.
+const SHOWN: usize = 5;
+
+/// The likeliest choices of an unknown, a line each, and how many others there are.
+fn likeliest(field: &FieldFound) -> Vec<String> {
+    let mut choices: Vec<_> = field.choices.iter().collect();
+    choices.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let rest = &choices[SHOWN.min(choices.len())..];
+    let mut lines: Vec<String> = choices
+        .iter()
+        .take(SHOWN)
+        .map(|choice| format!("{:.0} %  {}", 100.0 * choice.probability, choice.value))
+        .collect();
+    if !rest.is_empty() {
+        let sum: f64 = rest.iter().map(|choice| choice.probability).sum();
+        lines.push(format!("{:.0} %  {} others", 100.0 * sum, rest.len()));
+    }
+    lines
+}
+
 fn unknowns(fields: &[FieldFound]) -> Markup {
     html! {
         table {
@@ -78,7 +98,7 @@ fn unknowns(fields: &[FieldFound]) -> Markup {
                     td { (field.prior) }
                     @match field.median {
                         Some(median) => td { (short(median)) },
-                        None => td { @for choice in &field.choices { div { (format!("{:.0} %  {}", 100.0 * choice.probability, choice.value)) } } },
+                        None => td { @for line in likeliest(field) { div { (line) } } },
                     }
                     td { (field.interval_50.map_or_else(String::new, between)) }
                     td { (field.interval_90.map_or_else(String::new, between)) }
