@@ -515,6 +515,12 @@ impl Family {
         self.p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)
     }
 
+    /// Height of the family's comb above the background [dB]: that of the fourth highest of five harmonics, by
+    /// which families are compared; −∞ where none was looked for.
+    pub fn score_db(&self) -> f64 {
+        self.height_db
+    }
+
     /// The probability of a false alarm in words. Far beyond any test of the noise only a bound is given.
     pub fn false_alarm(&self) -> String {
         if self.p_value < 1e-9 { "< 1e-9".to_owned() } else { format!("{:.1e}", self.p_value) }
