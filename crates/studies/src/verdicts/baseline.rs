@@ -45,7 +45,10 @@ fn scores(record: &Labelled, (low_hz, high_hz): (f64, f64)) -> Option<Scores> {
     let spectrum = Whitened::new(&band.values, band.grid_hz, band.segments).ok()?;
     let orders = record.bearing.orders().ok()?;
     let shaft_hz = record.speed_rpm / 60.0;
-    Some([orders.bpfo, orders.bpfi, 2.0 * orders.bsf, orders.ftf].map(|order| height(&spectrum, order * shaft_hz)))
+    Some(
+        [orders.bpfo, orders.bpfi, 2.0 * orders.bsf, orders.ftf]
+            .map(|order| height(&spectrum, order * shaft_hz)),
+    )
 }
 
 /// Mean height of the lines of a comb [dB], at its best within slip.

@@ -33,6 +33,8 @@ pub(super) struct Labelled {
     pub(super) bearing: CatalogueBearing,
     /// Length of the defect along the raceway [mm].
     pub(super) length_mm: Option<f64>,
+    /// Radial load, as it is taken to be [N].
+    pub(super) load_n: Option<(f64, f64)>,
     pub(super) samples: Vec<f64>,
 }
 
@@ -54,6 +56,8 @@ const NUMBERED: [(&str, Option<Defect>, Option<f64>); 5] = [
     ("131", Some(Defect::Bpfo), Some(0.1778)),
     ("210", Some(Defect::Bpfi), Some(0.5334)),
 ];
+/// The load of HIT-SM, which its authors do not give and the lengths of the outer raceways suit [N].
+pub(super) const HIT_LOAD_N: (f64, f64) = (50.0, 150.0);
 /// Raceway diameters of a 6205 [mm]: outer, inner.
 const RACEWAYS_6205: [f64; 2] = [46.98, 31.10];
 
@@ -63,9 +67,13 @@ const RACEWAYS_6205: [f64; 2] = [46.98, 31.10];
 /// When a file cannot be read, or none is there.
 pub(super) fn read(folder: &Path) -> Result<Vec<Labelled>> {
     let mut records = Vec::new();
-    for (within, of) in
-        [("hit-sm", hit as Reader), ("cwru", cwru), ("cwru-more", cwru_more), ("uestc", uestc), ("mfpt", mfpt)]
-    {
+    for (within, of) in [
+        ("hit-sm", hit as Reader),
+        ("cwru", cwru),
+        ("cwru-more", cwru_more),
+        ("uestc", uestc),
+        ("mfpt", mfpt),
+    ] {
         for file in files(&folder.join(within))? {
             let stem = file.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
             let recording = Recording::open(&file).with_context(|| file.display().to_string())?;
@@ -124,6 +132,7 @@ fn labelled(
         speed_rpm,
         bearing: CatalogueBearing::parse(bearing).map_err(anyhow::Error::msg)?,
         length_mm: None,
+        load_n: (set == HIT).then_some(HIT_LOAD_N),
         samples: channel.read()?,
     })
 }
@@ -158,7 +167,9 @@ fn cwru_rpm(stem: &str, recording: &Recording) -> Result<f64> {
         return channel.read()?.first().copied().context("its RPM is empty");
     }
     let load = stem.rsplit('_').next().and_then(|load| load.parse::<usize>().ok());
-    load.and_then(|load| CWRU_RPM.get(load)).copied().context("neither its name nor its contents give a speed")
+    load.and_then(|load| CWRU_RPM.get(load))
+        .copied()
+        .context("neither its name nor its contents give a speed")
 }
 
 /// Both ends of a CWRU record whose defect, if any, is at `end`.
@@ -172,7 +183,8 @@ fn both_ends(
     let rpm = cwru_rpm(stem, recording)?;
     let mut both = Vec::new();
     for (of, set) in [("DE", DRIVE_END), ("FE", FAN_END)] {
-        let Some(channel) = recording.channels.iter().find(|c| c.name.ends_with(&format!("{of}_time"))) else {
+        let Some(channel) = recording.channels.iter().find(|c| c.name.ends_with(&format!("{of}_time")))
+        else {
             continue;
         };
         let here = end == Some(of);

@@ -77,11 +77,8 @@ impl Outcome {
         let holds = |name: &Defect| Some(*name) == truth;
         // One claim with two names is right with either.
         let one = self.claimed.len() == 1 || self.claimed.iter().skip(1).all(|name| self.or.contains(name));
-        let right = if one {
-            self.claimed.iter().chain(&self.or).any(holds)
-        } else {
-            self.claimed.iter().all(holds)
-        };
+        let right =
+            if one { self.claimed.iter().chain(&self.or).any(holds) } else { self.claimed.iter().all(holds) };
         if right { Standing::Right } else { Standing::Wrong }
     }
 }
@@ -104,7 +101,12 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         Change::Bits(bits) => round(&mut samples, bits),
         Change::Reversed => samples.reverse(),
     }
-    let machine = Machine { speed_rpm: Some(speed_rpm), bearing: Some(bearing), ..Machine::default() };
+    let machine = Machine {
+        speed_rpm: Some(speed_rpm),
+        bearing: Some(bearing),
+        load_n: record.load_n,
+        ..Machine::default()
+    };
     let analysis = Analysis::of(&Channel::held(record.name.clone(), samples), rate_hz, &machine).ok()?;
     let families = &analysis.findings.families;
     let of = |value: fn(&stribeck_analysis::measured::Family) -> f64, none: f64| {
