@@ -112,6 +112,8 @@ fn judged(
         speed_rpm: Some(speed_rpm),
         outer_speed_rpm: Machine::outer_speed_rpm(&scene.written),
         bearing: Some(bearing),
+        speed_is_exact: true,
+        ..Machine::default()
     };
     let channel = Channel::held(name.to_owned(), samples)
         .in_unit(Some(AccelerationUnit::MetrePerSecondSquared.symbol().to_owned()));

@@ -34,13 +34,18 @@ pub mod alarm;
 mod angular;
 mod course;
 mod enhanced;
+mod halves;
 mod length;
+mod own;
 mod pass;
 mod passage;
+mod pressed;
 pub mod ridge;
 mod screening;
 mod second;
+mod shaft;
 pub mod tacho;
+mod unexplained;
 mod unit;
 mod unrelated;
 mod velocity;
@@ -58,6 +63,7 @@ pub use course::Course;
 pub use enhanced::Enhanced;
 use pass::Pass;
 pub use screening::Health;
+pub use unexplained::Unexplained;
 pub use unit::AccelerationUnit;
 use velocity::VelocityLevel;
 pub(crate) use verdict::sidebands_seen;
@@ -72,6 +78,12 @@ pub struct Machine {
     pub outer_speed_rpm: f64,
     /// Its bearing.
     pub bearing: Option<CatalogueBearing>,
+    /// The speed is measured, or that of a run: the lines of the shaft do not correct it.
+    pub speed_is_exact: bool,
+    /// Radial load, least and most [N]; `None` for what such bearings usually carry.
+    pub load_n: Option<(f64, f64)>,
+    /// Radial internal clearance in operation, least and most [µm]; `None` for none.
+    pub clearance_um: Option<(f64, f64)>,
 }
 
 impl Machine {
@@ -99,8 +111,11 @@ pub struct MeasuredFindings {
     pub samples: u64,
     /// Length of the record [s].
     pub duration_s: f64,
-    /// Speed of the shaft [1/min].
+    /// Speed of the shaft that was taken [1/min].
     pub speed_rpm: Option<f64>,
+    /// The speed that was given, where the lines of the shaft correct it [1/min].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_given_rpm: Option<f64>,
     /// The bearing, in words.
     pub bearing: Option<String>,
     /// Resolution of the envelope spectra: one over the length of a segment [Hz].
@@ -113,6 +128,9 @@ pub struct MeasuredFindings {
     pub velocity_mm_s: Option<f64>,
     /// The defect families; none without speed and bearing.
     pub families: Vec<Family>,
+    /// A comb that knocks, is no family's of this bearing, and stands higher than all that are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unexplained: Option<Unexplained>,
     /// The conclusion in one sentence.
     pub verdict: String,
     /// Length of a spall [mm].
@@ -208,12 +226,33 @@ impl Analysis {
         drop(envelopes);
         let resolution_hz = rate_hz / segment as f64;
         let (record_s, segment_s) = (screening.count() as f64 / rate_hz, segment as f64 / rate_hz);
-        let mut judged = verdict::judge(&bands, machine, record_s, segment_s);
+        let shaft = shaft_by_lines(&kept, rate_hz, machine);
+        let corrected = shaft.filter(|shaft| {
+            let given_hz = machine.speed_rpm.map_or(f64::NAN, |rpm| rpm / 60.0);
+            !machine.speed_is_exact && shaft.corrects(given_hz)
+        });
+        let given_rpm = machine.speed_rpm;
+        if let (Some(shaft), Some(rpm)) = (corrected, given_rpm) {
+            notes.push(format!(
+                "the lines of the shaft stand at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were \
+                 given, and are taken",
+                60.0 * shaft.hz,
+                60.0 * shaft.uncertainty_hz,
+                100.0 * (60.0 * shaft.hz / rpm - 1.0)
+            ));
+        }
+        let machine = &Machine {
+            speed_rpm: corrected.map_or(machine.speed_rpm, |shaft| Some(60.0 * shaft.hz)),
+            ..machine.clone()
+        };
+        let speed_is_told = shaft.is_some_and(|shaft| shaft.is_told());
+        let mut judged = verdict::judge(&bands, machine, speed_is_told, record_s, segment_s);
         let mut over = Vec::new();
         if let Some(first) = &judged.first {
             over = over_period(channel, rate_hz, segment, first.comb_hz)?;
             second::tell(&mut judged.families, first, bands.first(), &over);
         }
+        one_half_only(&mut judged.families, &kept, rate_hz)?;
         judged.conclude(&bands);
         notes.extend(judged.notes.iter().cloned());
         let (spall_mm, why) = length::estimate(&kept, rate_hz, machine, &judged.families)?;
@@ -227,12 +266,14 @@ impl Analysis {
                 samples: screening.count(),
                 duration_s: screening.count() as f64 / rate_hz,
                 speed_rpm: machine.speed_rpm,
+                speed_given_rpm: corrected.and(given_rpm),
                 bearing: machine.bearing.as_ref().map(|b| format!("{}: {b}", b.name)),
                 resolution_hz,
                 segments,
                 health,
                 velocity_mm_s: velocity.as_ref().and_then(VelocityLevel::finish),
                 families: judged.families,
+                unexplained: judged.unexplained,
                 verdict: judged.verdict,
                 spall_mm,
                 notes,
@@ -252,6 +293,29 @@ impl Analysis {
         let bands = if family.over.is_some() { &self.over } else { &self.bands };
         bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
     }
+}
+
+/// The shaft by its lines, where a speed is given and the outer ring stands still.
+fn shaft_by_lines(samples: &[f64], rate_hz: f64, machine: &Machine) -> Option<shaft::Shaft> {
+    let rpm = machine.speed_rpm.filter(|rpm| *rpm > 0.0 && machine.outer_speed_rpm == 0.0)?;
+    samples.iter().all(|x| x.is_finite()).then_some(())?;
+    shaft::near(samples, rate_hz, rpm / 60.0)
+}
+
+/// Withdraws claims of families that stand in one half of the record only, but for those that no chance makes.
+fn one_half_only(families: &mut [Family], samples: &[f64], rate_hz: f64) -> Result<(), Error> {
+    let asked = |f: &&mut Family| f.claimed && f.over.is_none() && f.noise_p_value >= halves::CERTAIN;
+    for family in families.iter_mut().filter(asked) {
+        let (Some(band_hz), Some(hz)) = (family.band_hz, family.measured_hz) else { continue };
+        let comb_hz = family.name.shocks_per_period() * hz;
+        let finite = samples.iter().all(|x| x.is_finite());
+        if finite && !halves::agree(samples, rate_hz, band_hz, comb_hz)? {
+            family.claimed = false;
+            family.not_told_apart_from = None;
+            family.reason = "it stands in one half of the record only".to_owned().into();
+        }
+    }
+    Ok(())
 }
 
 /// Highest frequency of the enhanced envelope spectrum [Hz].

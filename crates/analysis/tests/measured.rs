@@ -127,22 +127,65 @@ fn example_a_second_defect_is_told_from_the_sidebands_of_the_first() {
 #[test]
 fn issue_sidebands_near_the_places_of_other_families_are_no_defects() {
     // In a 6203 the lower sidebands of BPFI, 1 and 2 turns of the shaft away, lie near twice BSF and BPFO,
-    // and in 0.8 s within a line or two: an inner raceway's record was said to show all three.
-    let (shaft_hz, samples) = (25.0, 10_240);
-    let inner = knocks(4.968 * shaft_hz, samples, under_the_load(shaft_hz));
-    let signal = inner.iter().zip(coloured(7, samples)).map(|(a, b)| 4.0 * a + b).collect();
-    let bearing = CatalogueBearing::parse("6203").ok();
-    let machine = Machine { speed_rpm: Some(60.0 * shaft_hz), bearing, ..Machine::default() };
-    let findings = Analysis::of(&Channel::held("test", signal), RATE_HZ, &machine).unwrap().findings;
-    assert_eq!(claimed(&findings), ["BPFI"], "{findings:#?}");
+    // and in 0.8 s within a line or two: an inner raceway's record was said to show all three. BPFI itself is
+    // 0.8 Hz from five turns of the shaft, which 0.8 s do not resolve and 5 s do.
+    let shaft_hz = 25.0;
+    let findings = |samples: usize| {
+        let inner = knocks(4.968 * shaft_hz, samples, under_the_load(shaft_hz));
+        let signal = inner.iter().zip(coloured(7, samples)).map(|(a, b)| 4.0 * a + b).collect();
+        let bearing = CatalogueBearing::parse("6203").ok();
+        let machine = Machine { speed_rpm: Some(60.0 * shaft_hz), bearing, ..Machine::default() };
+        Analysis::of(&Channel::held("test", signal), RATE_HZ, &machine).unwrap().findings
+    };
+    let (short, long) = (findings(10_240), findings(SAMPLES));
+    assert!(claimed(&short).is_empty(), "{short:#?}");
+    assert_eq!(claimed(&long), ["BPFI"], "{long:#?}");
+}
+
+#[test]
+fn issue_a_speed_that_is_four_per_cent_off_is_corrected_by_the_lines_of_the_shaft() {
+    // A rig ran 4 % off its nominal speed: BPFO plus two turns of the shaft lay at BPFI, and was claimed.
+    let true_hz = 25.0;
+    let outer = knocks(3.585 * true_hz, 2 * SAMPLES, |t| 1.0 + 0.5 * (TAU * true_hz * t).cos());
+    let unbalance = |n: usize| {
+        let turn = TAU * true_hz * n as f64 / RATE_HZ;
+        (1..=4).map(|h| (f64::from(h) * turn).cos()).sum::<f64>()
+    };
+    let noise = coloured(5, 2 * SAMPLES);
+    let signal: Vec<f64> =
+        outer.iter().zip(noise).enumerate().map(|(n, (a, b))| a + b + unbalance(n)).collect();
+    let findings = analysed(signal, 0.96 * 60.0 * true_hz);
+    assert_eq!(claimed(&findings), ["BPFO"], "{findings:#?}");
+    assert!((findings.speed_rpm.unwrap() - 60.0 * true_hz).abs() < 1.0, "{findings:#?}");
+    assert!(findings.speed_given_rpm == Some(0.96 * 60.0 * true_hz));
+    assert!(
+        findings.notes.iter().any(|n| n.contains("from the 1440.0 rpm that were given")),
+        "{findings:#?}"
+    );
+}
+
+#[test]
+fn issue_a_comb_that_is_no_family_is_named_and_nothing_weaker_is_claimed() {
+    // The bearing that was given is not the one that runs: 4.3 times the shaft is none of its families.
+    let shaft_hz = 20.0;
+    let signal: Vec<f64> = knocks(4.3 * shaft_hz, SAMPLES, |_| 1.0)
+        .iter()
+        .zip(knocks(3.585 * shaft_hz, SAMPLES, |_| 0.3))
+        .zip(coloured(5, SAMPLES))
+        .map(|((a, b), c)| a + b + c)
+        .collect();
+    let findings = analysed(signal, 60.0 * shaft_hz);
+    assert!(claimed(&findings).is_empty(), "{findings:#?}");
+    let other = findings.unexplained.unwrap_or_else(|| panic!("{findings:#?}"));
+    assert!((other.order - 4.3).abs() < 0.01 && findings.verdict.contains("times the shaft, which is no"));
 }
 
 /// Knocks about the middle of each turn of a cage, at times [s] from it that `spread` draws from a number
 /// from −1 to 1 for each of them, five in a turn.
-fn passages(cage_hz: f64, spread: impl Fn(usize, [f64; 2]) -> f64) -> Vec<f64> {
+fn passages(cage_hz: f64, samples: usize, spread: impl Fn(usize, [f64; 2]) -> f64) -> Vec<f64> {
     let mut noise = Noise::new(17);
-    let mut signal = coloured(6, SAMPLES);
-    for turn in 0..(cage_hz * SAMPLES as f64 / RATE_HZ) as usize {
+    let mut signal = coloured(6, samples);
+    for turn in 0..(cage_hz * samples as f64 / RATE_HZ) as usize {
         let of_the_turn = noise.uniform();
         for knock in 0..5 {
             let at = (turn as f64 + 0.5) / cage_hz + spread(knock, [of_the_turn, noise.uniform()]);
@@ -161,15 +204,19 @@ fn example_an_element_that_loses_its_spin_beyond_the_load_is_told_from_the_cage(
     let shaft_hz = 20.0;
     let (cage_hz, knocks_hz) = (0.398 * shaft_hz, 2.0 * 2.357 * shaft_hz);
     // Half a spin apart, from a phase that every turn draws anew.
-    let element = passages(cage_hz, |knock, [turn, _]| (knock as f64 - 2.0 + 0.5 * turn) / knocks_hz);
+    let element =
+        passages(cage_hz, SAMPLES, |knock, [turn, _]| (knock as f64 - 2.0 + 0.5 * turn) / knocks_hz);
     let findings = analysed(element, 60.0 * shaft_hz);
     assert_eq!(claimed(&findings), ["BSF"], "{findings:#?}");
     let family = findings.families.iter().find(|f| f.name == Defect::Bsf).unwrap();
     assert!(family.in_passages && (family.measured_hz.unwrap() / (0.5 * knocks_hz) - 1.0).abs() < 0.01);
     assert!(findings.verdict.contains("a defect of a rolling element"), "{}", findings.verdict);
     // As many as close together, without a rhythm.
-    let cage = passages(cage_hz, |_, [_, knock]| 2.0 * knock / knocks_hz);
-    assert_eq!(claimed(&analysed(cage, 60.0 * shaft_hz)), ["FTF"]);
+    let cage = passages(cage_hz, 4 * SAMPLES, |_, [_, knock]| 2.0 * knock / knocks_hz);
+    let findings = analysed(cage, 60.0 * shaft_hz);
+    assert_eq!(claimed(&findings), ["FTF"], "{findings:#?}");
+    // One element that loses its spin altogether would do the same.
+    assert!(findings.verdict.contains("of the cage or of one rolling element"), "{}", findings.verdict);
 }
 
 /// Load and sensor stand in space: beside a shaft at rest the cage of a bearing whose outer ring turns goes
@@ -209,8 +256,10 @@ fn edges(hz: f64, apart_s: f64, decay_s: f64) -> Vec<f64> {
     let mut signal: Vec<f64> = (0..4 * SAMPLES).map(|_| 0.3 * gaussian(&mut noise)).collect();
     for k in 1..(hz * 4.9) as u32 {
         let at = (f64::from(k) + 0.01 * noise.uniform()) / hz;
-        let later = (apart_s > 0.0).then_some((at + apart_s, 4.0, 13_000.0));
-        for (start, strength, ring_hz) in [Some((at, 6.0, 9_000.0)), later].into_iter().flatten() {
+        let rings = [(at, 6.0, 9_000.0), (at, 3.0, 14_000.0)];
+        let later = rings.map(|(at, strength, hz)| (at + apart_s, 0.7 * strength, hz));
+        let all = rings.into_iter().chain(later.into_iter().filter(|_| apart_s > 0.0));
+        for (start, strength, ring_hz) in all {
             let first = (start * FAST_HZ).ceil() as usize;
             for (n, x) in signal.iter_mut().enumerate().skip(first).take((5.0 * decay_s * FAST_HZ) as usize) {
                 let since = n as f64 / FAST_HZ - start;
@@ -230,16 +279,21 @@ fn example_a_second_event_gives_a_length_and_the_longer_one_that_it_may_mean() {
     };
     let found = of(2.5e-3);
     let spall = found.spall_mm.unwrap_or_else(|| panic!("{:?}", found.notes));
-    // 2.94 mm, to a few samples of 23 µm.
-    assert!((spall.value - 2.94).abs() < 0.1 && spall.high == 2.0 * spall.value, "{spall:?}");
+    // 2.94 mm, to a few samples of 23 µm, and the 0.42 mm over which 100 N press a ball together.
+    assert!((spall.value - 3.36).abs() < 0.1 && spall.low < 3.2 && spall.high > 3.5, "{spall:?}");
     assert!(
-        found.notes.iter().any(|n| n.contains("16.4 mm") && n.contains("One of 13.")),
+        found.notes.iter().any(|n| n.contains("16.4 mm") && n.contains("one of 13.")),
         "{:?}",
         found.notes
     );
+    // A load that is known narrows it.
+    let known = Machine { load_n: Some((50.0, 150.0)), ..machine(1200.0) };
+    let channel = Channel::held("test", edges(71.7, 2.5e-3, 0.2e-3));
+    let narrower = Analysis::of(&channel, 4.0 * RATE_HZ, &known).unwrap().findings.spall_mm.unwrap();
+    assert!(narrower.high - narrower.low < 0.6 * (spall.high - spall.low), "{narrower:?} {spall:?}");
     // A spall of 13.9 mm: its exit and the next element's entry are 2.5 mm apart.
     let longer = of(1.0 / 71.7 - 2.1e-3);
-    let note = |n: &String| n.contains("One of 13.9 mm") || n.contains("One of 14.0 mm");
+    let note = |n: &String| n.contains("one of 14.3 mm") || n.contains("one of 14.4 mm");
     assert!(longer.notes.iter().any(note), "{:?} {:?}", longer.spall_mm, longer.notes);
 }
 
@@ -401,8 +455,8 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
         errors.len(),
         100.0 * median
     );
-    // One record of eighteen claims no defect, and so has no length.
-    assert!(errors.len() >= 17 && median <= 0.2 && covered >= 16, "{errors:?} {covered}");
+    // In one record of eighteen the bands do not agree on a second event.
+    assert!(errors.len() >= 17 && median <= 0.1 && covered >= 17, "{errors:?} {covered}");
     assert!(unordered.is_empty(), "{unordered:?}");
     assert!(hits[0] >= 8 && hits[1] >= 7, "{hits:?}");
 }

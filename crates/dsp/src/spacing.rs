@@ -39,8 +39,9 @@ pub enum EventSpacing {
     Unknown,
 }
 
-/// Lower ends of the two bands over half the sample rate; both reach to its end.
-const BANDS: [f64; 2] = [0.02, 0.25];
+/// Ends of the bands over half the sample rate. They share nothing, so that ringing which makes a peak in one
+/// cannot confirm itself in another.
+const BANDS: [(f64, f64); 2] = [(0.25, 0.5), (0.5, 1.0)];
 /// Length over which correlations are smoothed [s]: events are no sharper.
 const SMOOTHED_S: f64 = 0.3e-3;
 /// The envelope is cut off above this quantile, so that a few loud events do not decide.
@@ -84,33 +85,65 @@ pub fn event_spacing(
     }
     let lags = ((shortest_s * sample_rate_hz).ceil() as usize).max(2)..(longest_s * sample_rate_hz) as usize;
     check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
-    let bands = BANDS.map(|from| correlation(signal, from, sample_rate_hz, lags.end));
+    let bands = BANDS.map(|band| correlation(signal, band, sample_rate_hz, lags.end));
     let found = bands.each_ref().map(|band| peak(band, lags.clone()));
-    Ok(match found {
-        [Some(wide), Some(high)] if wide.1.max(high.1) >= LEAST && (high.0 / wide.0 - 1.0).abs() < AGREED => {
-            EventSpacing::Pairs(Spacing { lag_s: wide.0 / sample_rate_hz, correlation: wide.1 })
+    Ok(match agreed(&bands, &found, &lags) {
+        Some((lag, correlation)) => EventSpacing::Pairs(Spacing { lag_s: lag / sample_rate_hz, correlation }),
+        None if found.iter().flatten().all(|peak| peak.1 < LEAST) => {
+            // A band in which no event stands above the noise says nothing.
+            let heard = bands.iter().filter(|band| shows_events(band, sample_rate_hz));
+            let clear = heard.map(|band| clear_from(band, &lags)).try_fold(0, |most, n| Some(n?.max(most)));
+            match clear {
+                None | Some(0) => EventSpacing::Unknown,
+                Some(n) => EventSpacing::Alone { clear_from_s: n as f64 / sample_rate_hz },
+            }
         }
-        _ if found.iter().flatten().all(|peak| peak.1 < LEAST) => {
-            let clear = bands
-                .iter()
-                .map(|band| clear_from(band, &lags, sample_rate_hz))
-                .try_fold(0, |most, n| Some(n?.max(most)));
-            clear.map_or(EventSpacing::Unknown, |n| EventSpacing::Alone {
-                clear_from_s: n as f64 / sample_rate_hz,
-            })
-        }
-        _ => EventSpacing::Unknown,
+        None => EventSpacing::Unknown,
     })
+}
+
+/// Lag and correlation on which the bands agree, each by how well it shows: one has a peak of its own, and the
+/// other one at the same lag, which no other of its peaks makes small.
+fn agreed(
+    bands: &[Vec<f64>; 2],
+    found: &[Option<(f64, f64)>; 2],
+    lags: &std::ops::Range<usize>,
+) -> Option<(f64, f64)> {
+    let shown = |n: usize| found[n].filter(|peak| peak.1 >= LEAST);
+    let [at, other] = match (shown(0), shown(1)) {
+        (Some(low), Some(high)) if low.1 > high.1 => [0, 1],
+        (_, Some(_)) => [1, 0],
+        (Some(_), None) => [0, 1],
+        (None, None) => return None,
+    };
+    let (lag, height) = shown(at)?;
+    let near = ((1.0 - AGREED) * lag) as usize..((1.0 + AGREED) * lag).ceil() as usize + 1;
+    let (there, confirmed) = peaks(&bands[other], &near).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let highest = peaks(&bands[other], lags).map(|peak| peak.1).fold(0.0, f64::max);
+    (confirmed >= CONFIRMS && confirmed >= SECOND * highest)
+        .then(|| ((lag * height + there as f64 * confirmed) / (height + confirmed), height))
+}
+
+/// Places and heights of all peaks among `lags`.
+fn peaks<'a>(
+    values: &'a [f64],
+    lags: &std::ops::Range<usize>,
+) -> impl Iterator<Item = (usize, f64)> + use<'a> {
+    let end = lags.end.min(values.len() - 1);
+    let rises = |n: &usize| values[*n] > values[n - 1] && values[*n] >= values[n + 1];
+    (lags.start.max(1)..end).filter(rises).map(|n| (n, values[n]))
+}
+
+/// Whether single events stand above the noise of a band: noise is correlated with itself within the smoothing
+/// only.
+fn shows_events(values: &[f64], sample_rate_hz: f64) -> bool {
+    let beyond = values.get(smoothing(sample_rate_hz) + BEYOND);
+    values[0] * WEAKEST / (1.0 + WEAKEST * WEAKEST) >= LEAST && beyond.is_some_and(|b| *b >= RINGS)
 }
 
 /// The lag from which on a second event would have shown, where there is none; `None` where one might have
 /// been missed. Two events of energies 1 and a correlate with a/(1 + a²) of what each does with itself.
-fn clear_from(values: &[f64], lags: &std::ops::Range<usize>, sample_rate_hz: f64) -> Option<usize> {
-    // Noise is correlated with itself within the smoothing, and only there.
-    let beyond = values.get(smoothing(sample_rate_hz) + BEYOND)?;
-    if values[0] * WEAKEST / (1.0 + WEAKEST * WEAKEST) < LEAST || *beyond < RINGS {
-        return None;
-    }
+fn clear_from(values: &[f64], lags: &std::ops::Range<usize>) -> Option<usize> {
     let last = (0..lags.end).rev().find(|n| values[*n] >= LEAST)?;
     let clear = (last + 1).max(lags.start);
     ((clear as f64) < CLEAR * lags.end as f64).then_some(clear)
@@ -121,15 +154,15 @@ fn smoothing(sample_rate_hz: f64) -> usize {
     ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1)
 }
 
-/// Correlation of the squared envelope of the pre-whitened signal above a frequency, smoothed, for lags up to
-/// `longest`.
-fn correlation(signal: &[f64], from: f64, sample_rate_hz: f64, longest: usize) -> Vec<f64> {
+/// Correlation of the squared envelope of the pre-whitened signal in a band, over half the sample rate,
+/// smoothed, for lags up to `longest`.
+fn correlation(signal: &[f64], (from, to): (f64, f64), sample_rate_hz: f64, longest: usize) -> Vec<f64> {
     let count = signal.len();
     let mut planner = FftPlanner::new();
     let (forward, inverse) = (planner.plan_fft_forward(count), planner.plan_fft_inverse(count));
     let mut lines: Vec<Complex<f64>> = signal.iter().map(|x| Complex::new(*x, 0.0)).collect();
     forward.process(&mut lines);
-    let kept = (0.5 * from * count as f64) as usize..count / 2;
+    let kept = (0.5 * from * count as f64) as usize..(0.5 * to * count as f64) as usize;
     for (n, line) in lines.iter_mut().enumerate() {
         let magnitude = line.norm();
         *line = if kept.contains(&n) && magnitude > 0.0 { *line / magnitude } else { Complex::default() };
@@ -158,8 +191,7 @@ fn correlation(signal: &[f64], from: f64, sample_rate_hz: f64, longest: usize) -
 
 /// The place of the highest peak, between samples, and its height, when it is one and no other comes near it.
 fn peak(values: &[f64], lags: std::ops::Range<usize>) -> Option<(f64, f64)> {
-    let rises = |n: usize| values[n] > values[n - 1] && values[n] >= values[n + 1];
-    let peaks: Vec<usize> = (lags.start..lags.end.min(values.len() - 1)).filter(|n| rises(*n)).collect();
+    let peaks: Vec<usize> = peaks(values, &lags).map(|peak| peak.0).collect();
     let best = *peaks.iter().max_by(|a, b| values[**a].total_cmp(&values[**b]))?;
     let apart = |n: &&usize| (**n as f64 / best as f64 - 1.0).abs() > SAME;
     let second = peaks.iter().filter(apart).map(|n| values[*n]).fold(0.0, f64::max);
@@ -187,14 +219,16 @@ mod tests {
         }
     }
 
-    /// Pairs of bursts `apart_s` from one another that die away with `decay_s`, 60 times a second and never
-    /// quite on time, in noise.
+    /// Pairs of bursts `apart_s` from one another that ring at two frequencies and die away with `decay_s`, 60
+    /// times a second and never quite on time, in noise.
     fn pairs(apart_s: f64, decay_s: f64) -> Vec<f64> {
         let mut uniform = uniform(11);
         let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();
         for k in 1..170 {
             let at = (f64::from(k) + 0.02 * uniform()) / 60.0;
-            for (start, strength, hz) in [(at, 3.0, 9_000.0), (at + apart_s, 5.0, 12_000.0)] {
+            let rings = [(at, 3.0, 9_000.0), (at, 2.0, 13_000.0)];
+            let again = rings.map(|(at, strength, hz)| (at + apart_s, 1.5 * strength, hz));
+            for (start, strength, hz) in rings.into_iter().chain(again) {
                 let first = (start * RATE_HZ).ceil() as usize;
                 for n in first..(first + 80).min(signal.len()) {
                     let since = n as f64 / RATE_HZ - start;

@@ -51,6 +51,13 @@ pub struct Options {
     /// Pulses of the tachometer a turn, such as the teeth of its wheel
     #[arg(long, value_name = "N", default_value_t = 1, requires = "tacho", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pulses_per_turn: u32,
+    /// Radial load of the bearing [N], a number or a range such as 50..150: how far it presses an element
+    /// together belongs to the length of a spall [default: 0.2 to 10 % of the static rating]
+    #[arg(long, value_name = "RANGE", value_parser = range)]
+    load_n: Option<(f64, f64)>,
+    /// Radial internal clearance in operation [µm], a number or a range [default: 0]
+    #[arg(long, value_name = "RANGE", value_parser = range)]
+    clearance_um: Option<(f64, f64)>,
     /// What a sample is multiplied by, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
@@ -99,6 +106,19 @@ impl Speed {
             }
         }
     }
+}
+
+/// A number that is not negative, or a range of them.
+fn range(text: &str) -> Result<(f64, f64), String> {
+    let number = |text: &str| {
+        let number = text.trim().parse::<f64>().ok().filter(|x| x.is_finite() && *x >= 0.0);
+        number.ok_or_else(|| format!("`{text}` is no number of 0 or more, and no range such as 50..150"))
+    };
+    let (low, high) = match text.split_once("..") {
+        None => (number(text)?, number(text)?),
+        Some((low, high)) => (number(low)?, number(high)?),
+    };
+    if low > high { Err(format!("`{text}`: a range must ascend, as 50..150 does")) } else { Ok((low, high)) }
 }
 
 fn scale(text: &str) -> Result<f64, String> {
@@ -442,7 +462,12 @@ fn machine(
         None
     };
     let outer_speed_rpm = scene.map_or(0.0, Machine::outer_speed_rpm);
-    Ok((Machine { speed_rpm, outer_speed_rpm, bearing }, pulses))
+    // A measured speed, or that of a run, needs no correction.
+    let nominal =
+        matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.is_some());
+    let speed_is_exact = scene.is_some() || options.tacho.is_some() || !nominal;
+    let (load_n, clearance_um) = (options.load_n, options.clearance_um);
+    Ok((Machine { speed_rpm, outer_speed_rpm, bearing, speed_is_exact, load_n, clearance_um }, pulses))
 }
 
 fn default_folder(file: &Path) -> PathBuf {
@@ -467,13 +492,21 @@ fn print(analysis: &Analysis) {
         );
     }
     if let Some(spall) = findings.spall_mm {
-        let known = if spall.low > 0.0 { "" } else { " if entry and exit both knock" };
-        say!(
-            "  spall: {:.2} mm long{known}, 90 % between {:.2} and {:.2} mm",
-            spall.value,
-            spall.low,
-            spall.high
-        );
+        if spall.low > 0.0 {
+            say!(
+                "  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm",
+                spall.value,
+                spall.low,
+                spall.high
+            );
+        } else {
+            // One knock a passage bounds the length and does not tell it.
+            say!(
+                "  spall: shorter than {:.2} mm if entry and exit both knock, else up to {:.1} mm",
+                2.0 * spall.value,
+                spall.high
+            );
+        }
     }
     for note in &findings.notes {
         say!("  note: {note}");

@@ -27,6 +27,7 @@ mod runner;
 mod spalls;
 mod stability;
 mod table;
+mod verdicts;
 mod work_precision;
 
 use anyhow::Result;
@@ -68,6 +69,8 @@ pub enum Study {
     Reduced(reduced::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
+    /// Measured records of known state through the verdict of `analyse`, beside plainer methods
+    Verdicts(verdicts::Options),
 }
 
 impl Study {
@@ -91,6 +94,7 @@ impl Study {
             Self::Spalls(options) => spalls::run(options, host),
             Self::Reduced(options) => reduced::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
+            Self::Verdicts(options) => verdicts::run(options, host),
         }
     }
 }

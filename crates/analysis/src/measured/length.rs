@@ -1,10 +1,12 @@
-//! How long a spall is, from the time between the events at its edges (THEORY §7.9).
+//! How long a spall is, from the time between the events at its edges and what the element is pressed together
+//! (THEORY §7.9).
 
 use std::f64::consts::PI;
 
 use stribeck_dsp::{EventSpacing, event_spacing};
 use stribeck_scene::catalogue::CatalogueBearing;
 
+use super::pressed::Loading;
 use super::{Defect, Family, Interval, Machine};
 use crate::Error;
 
@@ -13,8 +15,8 @@ const SHORTEST_S: f64 = 0.4e-3;
 /// Longest spall over the distance of two rolling elements: with a longer one the next element enters before
 /// one leaves.
 const LONGEST: f64 = 0.45;
-/// Ends of the interval over v Δt.
-const RANGE: (f64, f64) = (0.95, 2.0);
+/// A second event that is missed is nearer to the first than this part of what would have shown.
+const MISSED: f64 = 2.0;
 
 /// The length [mm], or none; and a note on its limits.
 pub(super) fn estimate(
@@ -41,17 +43,25 @@ pub(super) fn estimate(
     Ok(match found {
         Ok(EventSpacing::Pairs(spacing)) => {
             let run = speed * spacing.lag_s;
+            let (loading, is_given) = Loading::of(bearing, machine.load_n, machine.clearance_um);
+            let (pressed, least, most) = loading.pressed_mm(bearing, family.name);
+            let advice =
+                if is_given { "" } else { "; `--load-n` with a narrower range narrows the interval" };
             let why = format!(
-                "the length of the spall holds for one shorter than half of the {apart:.1} mm between two \
-                 elements. One of {:.1} mm or a \
-                 little more, whose exit and the entry of the next element are as far apart, would knock in \
-                 the same rhythm",
-                apart - run
+                "the length of the spall is the {run:.2} mm that the contact runs between two events and the \
+                 {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in a \
+                 rigid housing presses the element together{advice}. It holds for a spall shorter than half of \
+                 the {apart:.1} mm between two elements: one of {:.1} mm, whose exit and the entry of the next \
+                 element are as far apart, would knock in the same rhythm",
+                loading.load_n.0,
+                loading.load_n.1,
+                apart - run + pressed
             );
-            (Some(Interval { value: run, low: RANGE.0 * run, high: RANGE.1 * run }), Some(why))
+            let length = Interval { value: run + pressed, low: run + least, high: run + most };
+            (Some(length), Some(why))
         }
         Ok(EventSpacing::Alone { clear_from_s }) => {
-            let both = RANGE.1 * speed * clear_from_s;
+            let both = MISSED * speed * clear_from_s;
             let why = format!(
                 "no second event follows each knock: if entry and exit both knock, the spall is shorter than \
                  {both:.2} mm, and the value given is \

@@ -45,11 +45,13 @@ pub(super) fn tell(
     let family = &mut families[second.at];
     family.measured_hz = Some(second.comb.fundamental_hz / family.name.shocks_per_period());
     family.level_db = Some(decibel(second.comb.ratios[0]));
-    family.p_value = second.p_value;
+    family.noise_p_value = second.p_value;
     family.rank = Some(0.0);
     family.depth = Some(second.depth);
+    family.depth_band_hz = Some(second.band_hz);
     family.band_hz = Some(second.band_hz);
     family.over = Some(name);
+    family.calibrate();
     family.claimed = true;
     family.reason = Reason::Decided(format!(
         "with the mean course in a period of {name} divided out of the power its lines stand, no unrelated \
@@ -97,7 +99,7 @@ fn beside(
     let told = depth >= KNOCK
         && own
         && remains < comb.height
-        && rank(&comb, comb_hz, spectrum, Some(first.comb_hz)) == Some(0.0);
+        && rank(&comb, comb_hz, spectrum, Some(first.comb_hz), None) == Some(0.0);
     told.then_some(Beside {
         at,
         p_value: comb.p_value * searched,

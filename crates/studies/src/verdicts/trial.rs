@@ -1,0 +1,144 @@
+//! What is done to a record before it is judged, and what becomes of it.
+
+use stribeck_analysis::measured::{Analysis, Defect, Interval, Machine};
+use stribeck_dsp::resample_poly;
+use stribeck_formats::Channel;
+use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::dice::Dice;
+
+use super::records::Labelled;
+
+/// A change to a record, or to what is said of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Change {
+    None,
+    /// The speed that is given over the true one.
+    Speed(f64),
+    /// A bearing that is none of the rigs'.
+    Bearing(&'static str),
+    /// Only the first seconds [s].
+    First(f64),
+    /// Half of the sample rate.
+    HalfRate,
+    /// White noise of this rms over that of the record.
+    Noise(f64),
+    /// Bits of the converter, whose range is the record's.
+    Bits(u32),
+    /// From the end to the beginning.
+    Reversed,
+}
+
+/// All changes, with their names and whether claims about them may be right.
+pub(super) const CHANGES: [(&str, Change); 13] = [
+    ("as it is", Change::None),
+    ("speed −1.5 %", Change::Speed(0.985)),
+    ("speed +1.5 %", Change::Speed(1.015)),
+    ("speed −4 %", Change::Speed(0.96)),
+    ("speed +4 %", Change::Speed(1.04)),
+    ("speed × 2", Change::Speed(2.0)),
+    ("another bearing", Change::Bearing("6305")),
+    ("first 1 s", Change::First(1.0)),
+    ("first 0.5 s", Change::First(0.5)),
+    ("half the sample rate", Change::HalfRate),
+    ("noise of the same rms", Change::Noise(1.0)),
+    ("8 bits", Change::Bits(8)),
+    ("reversed in time", Change::Reversed),
+];
+
+/// What `analyse` says of a record.
+#[derive(Debug, Clone)]
+pub(super) struct Outcome {
+    /// Families that are claimed; a second name for one claim in `or`.
+    pub(super) claimed: Vec<Defect>,
+    /// Families that a claim names as possible beside the first one.
+    pub(super) or: Vec<Defect>,
+    /// Score of each family [dB].
+    pub(super) scores: [f64; 4],
+    /// The family of the highest score.
+    pub(super) choice: Defect,
+    pub(super) p_values: [f64; 4],
+    pub(super) spall_mm: Option<Interval>,
+    pub(super) verdict: String,
+}
+
+/// How an outcome stands to the truth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Standing {
+    Right,
+    Wrong,
+    Silent,
+}
+
+impl Outcome {
+    pub(super) fn standing(&self, truth: Option<Defect>) -> Standing {
+        if self.claimed.is_empty() {
+            return Standing::Silent;
+        }
+        let holds = |name: &Defect| Some(*name) == truth;
+        // One claim with two names is right with either.
+        let one = self.claimed.len() == 1 || self.claimed.iter().skip(1).all(|name| self.or.contains(name));
+        let right =
+            if one { self.claimed.iter().chain(&self.or).any(holds) } else { self.claimed.iter().all(holds) };
+        if right { Standing::Right } else { Standing::Wrong }
+    }
+}
+
+/// Judges a record after a change; `None` where it is refused.
+pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
+    let (mut rate_hz, mut speed_rpm, mut bearing) =
+        (record.rate_hz, record.speed_rpm, record.bearing.clone());
+    let mut samples = record.samples.clone();
+    match change {
+        Change::None => {}
+        Change::Speed(factor) => speed_rpm *= factor,
+        Change::Bearing(name) => bearing = CatalogueBearing::parse(name).ok()?,
+        Change::First(s) => samples.truncate((s * rate_hz) as usize),
+        Change::HalfRate => {
+            samples = resample_poly(&samples, 1, 2).ok()?;
+            rate_hz *= 0.5;
+        }
+        Change::Noise(share) => add_noise(&mut samples, share),
+        Change::Bits(bits) => round(&mut samples, bits),
+        Change::Reversed => samples.reverse(),
+    }
+    let machine = Machine {
+        speed_rpm: Some(speed_rpm),
+        bearing: Some(bearing),
+        load_n: record.load_n,
+        ..Machine::default()
+    };
+    let analysis = Analysis::of(&Channel::held(record.name.clone(), samples), rate_hz, &machine).ok()?;
+    let families = &analysis.findings.families;
+    let of = |value: fn(&stribeck_analysis::measured::Family) -> f64, none: f64| {
+        Defect::ALL.map(|name| families.iter().find(|f| f.name == name).map_or(none, value))
+    };
+    let scores = of(|f| f.score_db(), f64::NEG_INFINITY);
+    let best = (0..4).max_by(|a, b| scores[*a].total_cmp(&scores[*b])).unwrap_or(0);
+    let claims = families.iter().filter(|f| f.claimed);
+    Some(Outcome {
+        claimed: claims.clone().map(|f| f.name).collect(),
+        or: claims.filter_map(|f| f.not_told_apart_from).collect(),
+        scores,
+        choice: Defect::ALL[best],
+        p_values: of(|f| f.p_value, 1.0),
+        spall_mm: analysis.findings.spall_mm,
+        verdict: analysis.findings.verdict,
+    })
+}
+
+/// Adds normal noise, whose rms is `share` of the record's.
+fn add_noise(samples: &mut [f64], share: f64) {
+    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
+    let power = samples.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / samples.len() as f64;
+    let mut dice = Dice::new(samples.len() as u64);
+    // The sum of twelve even numbers has the variance of one.
+    let mut normal = || (0..12).map(|_| dice.share()).sum::<f64>() - 6.0;
+    samples.iter_mut().for_each(|x| *x += share * power.sqrt() * normal());
+}
+
+/// Rounds to the steps of a converter.
+fn round(samples: &mut [f64], bits: u32) {
+    let largest = samples.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let step = largest / f64::from(1_u32 << (bits - 1));
+    samples.iter_mut().for_each(|x| *x = (*x / step).round() * step);
+}
