@@ -1,6 +1,7 @@
 //! What happens when rollers cross the defect: events, and the forces themselves.
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 
 use stribeck_scene::kinematics::Crossing;
 use stribeck_scene::lubrication;
@@ -243,7 +244,11 @@ fn passages_of(
         } else {
             prediction.kinematics.contact_speed_m_s
         };
-        let floor_s = edge.floor_m(1e-3 * course.spall.depth_mm) / speed_m_s;
+        let race_radius = match ring {
+            DefectRing::Outer => scene.outer_race_radius,
+            DefectRing::Inner => scene.inner_race_radius,
+        };
+        let reach_rad = edge.floor_m(1e-3 * course.spall.depth_mm) / race_radius;
         let seen = Passage {
             entry_s: passage.entry_s + late,
             exit_s: passage.exit_s + late,
@@ -255,9 +260,17 @@ fn passages_of(
         event.entry_ms = picked.entry_s.map(|t| 1e3 * t);
         event.exit_ms = picked.exit_s.map(|t| 1e3 * t);
         event.level_n = picked.level_n;
-        // Edges are where the roller passes them, not where it would without slip.
-        let between = [found[0].unwrap_or(seen.entry_s) + floor_s, found[1].unwrap_or(seen.exit_s) - floor_s];
-        let floor = bearing.strike(time, orbit, &roller, (ring, &normal), between);
+        // Where the roller is counts: one that strikes an edge is slower than one that rolls.
+        let edges = course.edges;
+        let half_rad = 0.5 * (edges.leading_deg - edges.trailing_deg).abs().to_radians() - reach_rad;
+        let over_floor = |n: &usize| {
+            let off = orbit[*n] - turned_rad(time[*n]) - edges.middle_deg.to_radians();
+            (off - TAU * (off / TAU).round()).abs() < half_rad
+        };
+        let inside: Vec<usize> = events::span(time, seen.entry_s, seen.exit_s).filter(over_floor).collect();
+        let between = inside.first().zip(inside.last()).map(|(first, last)| [time[*first], time[*last]]);
+        let floor =
+            between.and_then(|between| bearing.strike(time, orbit, &roller, (ring, &normal), between));
         event.floor_ms = floor.map(|strike| 1e3 * strike.at_s);
         event.floor_n = floor.map(|strike| strike.force_n);
         event.floor_by = floor.map(|strike| strike.by);
