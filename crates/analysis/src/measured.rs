@@ -25,8 +25,8 @@
 //!     ..Machine::default()
 //! };
 //! let analysis = Analysis::of(&Channel::held("housing", samples), rate_hz, &machine)?;
-//! let claimed: Vec<Defect> = analysis.findings.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
-//! assert_eq!(claimed, [Defect::Bpfo]);
+//! let claimed: Vec<Defect> = analysis.findings.families.iter().filter(|f| f.claimed).map(|f|
+//! f.name).collect(); assert_eq!(claimed, [Defect::Bpfo]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -36,6 +36,7 @@ mod course;
 mod enhanced;
 mod halves;
 mod length;
+mod limits;
 mod own;
 mod pass;
 mod passage;
@@ -302,7 +303,8 @@ fn shaft_by_lines(samples: &[f64], rate_hz: f64, machine: &Machine) -> Option<sh
     shaft::near(samples, rate_hz, rpm / 60.0)
 }
 
-/// Withdraws claims of families that stand in one half of the record only, but for those that no chance makes.
+/// Withdraws claims of families that stand in one half of the record only, but for those that no chance
+/// makes.
 fn one_half_only(families: &mut [Family], samples: &[f64], rate_hz: f64) -> Result<(), Error> {
     let asked = |f: &&mut Family| f.claimed && f.over.is_none() && f.noise_p_value >= halves::CERTAIN;
     for family in families.iter_mut().filter(asked) {

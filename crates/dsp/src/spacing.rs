@@ -102,8 +102,8 @@ pub fn event_spacing(
     })
 }
 
-/// Lag and correlation on which the bands agree, each by how well it shows: one has a peak of its own, and the
-/// other one at the same lag, which no other of its peaks makes small.
+/// Lag and correlation on which the bands agree, each by how well it shows: one has a peak of its own, and
+/// the other one at the same lag, which no other of its peaks makes small.
 fn agreed(
     bands: &[Vec<f64>; 2],
     found: &[Option<(f64, f64)>; 2],
@@ -134,8 +134,8 @@ fn peaks<'a>(
     (lags.start.max(1)..end).filter(rises).map(|n| (n, values[n]))
 }
 
-/// Whether single events stand above the noise of a band: noise is correlated with itself within the smoothing
-/// only.
+/// Whether single events stand above the noise of a band: noise is correlated with itself within the
+/// smoothing only.
 fn shows_events(values: &[f64], sample_rate_hz: f64) -> bool {
     let beyond = values.get(smoothing(sample_rate_hz) + BEYOND);
     values[0] * WEAKEST / (1.0 + WEAKEST * WEAKEST) >= LEAST && beyond.is_some_and(|b| *b >= RINGS)
@@ -219,8 +219,8 @@ mod tests {
         }
     }
 
-    /// Pairs of bursts `apart_s` from one another that ring at two frequencies and die away with `decay_s`, 60
-    /// times a second and never quite on time, in noise.
+    /// Pairs of bursts `apart_s` from one another that ring at two frequencies and die away with `decay_s`,
+    /// 60 times a second and never quite on time, in noise.
     fn pairs(apart_s: f64, decay_s: f64) -> Vec<f64> {
         let mut uniform = uniform(11);
         let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();

@@ -32,7 +32,7 @@ const LAYERS: [(&str, &[&str]); 25] = [
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
     ("report", &["analysis", "dsp", "scene"]),
-    ("studies", &["analysis", "contact", "mesh", "report", "scene", "solver", "system"]),
+    ("studies", &["analysis", "contact", "dsp", "formats", "mesh", "report", "scene", "solver", "system"]),
     (
         "stribeck",
         &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "report", "run", "scene", "simulation"],

@@ -6,7 +6,7 @@
 use stribeck_dsp::{BandEnvelopes, CombTest, Whitened};
 
 use super::HIGHEST_HZ;
-use super::verdict::ALPHA;
+use super::limits::ALPHA;
 use crate::Error;
 
 /// A family this far from noise stands in both halves, or in one so high that no chance makes it.

@@ -1,5 +1,5 @@
-//! How long a spall is, from the time between the events at its edges and what the element is pressed together
-//! (THEORY §7.9).
+//! How long a spall is, from the time between the events at its edges and what the element is pressed
+//! together (THEORY §7.9).
 
 use std::f64::consts::PI;
 
@@ -49,10 +49,10 @@ pub(super) fn estimate(
                 if is_given { "" } else { "; `--load-n` with a narrower range narrows the interval" };
             let why = format!(
                 "the length of the spall is the {run:.2} mm that the contact runs between two events and the \
-                 {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in a \
-                 rigid housing presses the element together{advice}. It holds for a spall shorter than half of \
-                 the {apart:.1} mm between two elements: one of {:.1} mm, whose exit and the entry of the next \
-                 element are as far apart, would knock in the same rhythm",
+                 {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N \
+                 in a rigid housing presses the element together{advice}. It holds for a spall shorter than \
+                 half of the {apart:.1} mm between two elements: one of {:.1} mm, whose exit and the entry \
+                 of the next element are as far apart, would knock in the same rhythm",
                 loading.load_n.0,
                 loading.load_n.1,
                 apart - run + pressed

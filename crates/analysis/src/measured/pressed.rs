@@ -21,8 +21,8 @@ use super::Defect;
 
 /// Load of a bearing over its static rating, where none is given.
 const USUAL: (f64, f64) = (2e-3, 0.1);
-/// The model's own error, as parts of D: a housing that bends makes it longer, an element that has not settled
-/// shorter. By the simulated spalls of docs/results/spalls.md and the outer raceways of HIT-SM.
+/// The model's own error, as parts of D: a housing that bends makes it longer, an element that has not
+/// settled shorter. By the simulated spalls of docs/results/spalls.md and the outer raceways of HIT-SM.
 const MODEL: (f64, f64) = (0.5, 1.5);
 /// Factors of ISO 76 for the static rating: of deep-groove balls, and of rollers [N/mm²].
 const STATIC_BALL: f64 = 13.0;
@@ -94,8 +94,8 @@ fn effective_radius_mm(bearing: &CatalogueBearing, raceway: Defect) -> f64 {
     }
 }
 
-/// Approach of both rings at the most loaded place, where the element there carries nothing and its neighbours
-/// all of the load [mm].
+/// Approach of both rings at the most loaded place, where the element there carries nothing and its
+/// neighbours all of the load [mm].
 fn approach_mm(bearing: &CatalogueBearing, load_n: f64, clearance_um: f64) -> f64 {
     let play = 0.5e-3 * clearance_um;
     let z = elements(bearing);

@@ -7,8 +7,9 @@
 
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
+use super::limits::{ALPHA, KNOCK, decibel};
 use super::unrelated::SLIP;
-use super::verdict::{ALPHA, Family, First, KNOCK, MODULATED, decibel, rank, sidebands_seen};
+use super::verdict::{Family, First, MODULATED, rank, sidebands_seen};
 use super::{Defect, Reason};
 
 /// Where a family knocks most over the period of the first.

@@ -6,8 +6,8 @@
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
+use super::limits::{ALPHA, KNOCK, decibel};
 use super::own::OwnLines;
-use super::verdict::{ALPHA, KNOCK, decibel};
 
 /// The highest comb that nothing in the bearing accounts for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

@@ -9,15 +9,16 @@
 //! 3. Is it a knock? Sound bearings modulate noise a little as their elements pass under the load. The power
 //!    of a band must swing by 60 % of its mean.
 //!
-//! The highest that passes is claimed; `second.rs` looks for a second defect beside it. Multiples of the shaft
-//! and of the cage are nobody's defect (`own.rs`), and where a comb that is no family's stands higher than all
-//! that are, nothing weaker is claimed (`unexplained.rs`).
+//! The highest that passes is claimed; `second.rs` looks for a second defect beside it. Multiples of the
+//! shaft and of the cage are nobody's defect (`own.rs`), and where a comb that is no family's stands higher
+//! than all that are, nothing weaker is claimed (`unexplained.rs`).
 
 use std::fmt;
 
 use serde::{Serialize, Serializer};
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
+use super::limits::{ALPHA, KNOCK, decibel};
 use super::own::OwnLines;
 use super::unexplained::{self, Known, Unexplained};
 use super::unrelated::{SLIP, is_the_same, unrelated_hz};
@@ -43,8 +44,8 @@ pub struct Family {
     pub noise_p_value: f64,
     /// Part of unrelated combs in the same spectrum that stand as high.
     pub rank: Option<f64>,
-    /// How deep the power is modulated in the band where it is deepest, of those in which the family stands: 0
-    /// not at all, 1 to zero, 2 short knocks. That of a rolling element counts its sidebands of the cage.
+    /// How deep the power is modulated in the band where it is deepest, of those in which the family stands:
+    /// 0 not at all, 1 to zero, 2 short knocks. That of a rolling element counts its sidebands of the cage.
     pub depth: Option<f64>,
     /// That band [Hz].
     pub depth_band_hz: Option<(f64, f64)>,
@@ -123,13 +124,8 @@ pub(super) struct First {
     pub(super) resolution_hz: f64,
 }
 
-/// Largest probability of a false alarm at which a family is there.
-pub(super) const ALPHA: f64 = 1e-3;
 /// Largest part of unrelated combs that may stand as high.
 const MOST_AS_HIGH: f64 = 0.1;
-/// Least modulation of the power of a band that is called a knock: of 6205s on two rigs the deepest of sound
-/// ones is 0.37 and the shallowest of damaged raceways that show is 1.04 (docs/results/verdicts.md).
-pub(super) const KNOCK: f64 = 0.6;
 /// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
 /// same records.
 const SOUND_DEPTHS: f64 = 11.4;
@@ -142,7 +138,8 @@ const SKID: (f64, f64) = (SLIP, 0.06);
 
 /// The families, of which one at most is claimed; [`Verdicts::conclude`] says the rest.
 ///
-/// `speed_is_told`: the lines of the shaft stand at the speed of `machine`, so that only slip can move a family.
+/// `speed_is_told`: the lines of the shaft stand at the speed of `machine`, so that only slip can move a
+/// family.
 pub(super) fn judge(
     bands: &[BandEnvelope],
     machine: &Machine,
@@ -355,8 +352,8 @@ fn look(
     (family, Some(Standing { band: n, comb, comb_hz, times, searched }))
 }
 
-/// The depth of a family in the band where it is deepest, of those in which its comb stands; that of a rolling
-/// element with its sidebands of the cage.
+/// The depth of a family in the band where it is deepest, of those in which its comb stands; that of a
+/// rolling element with its sidebands of the cage.
 fn deepen(family: &mut Family, standing: &Standing, bands: &[(&BandEnvelope, Whitened)], cage_hz: f64) {
     let hz = standing.comb.fundamental_hz;
     for (band, spectrum) in bands {
@@ -414,8 +411,8 @@ fn too_narrow(comb_hz: f64, any: bool) -> String {
 }
 
 /// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be
-/// tried. Those of the `first` family [Hz], of the machine itself (`own`) and sidebands of this one are none of
-/// them, and one that is found from several sides is one.
+/// tried. Those of the `first` family [Hz], of the machine itself (`own`) and sidebands of this one are none
+/// of them, and one that is found from several sides is one.
 pub(super) fn rank(
     comb: &Comb,
     comb_hz: f64,
@@ -698,8 +695,8 @@ impl Family {
         self.noise_p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)
     }
 
-    /// Height of the family's comb above the background [dB]: that of the fourth highest of five harmonics, by
-    /// which families are compared; −∞ where none was looked for.
+    /// Height of the family's comb above the background [dB]: that of the fourth highest of five harmonics,
+    /// by which families are compared; −∞ where none was looked for.
     pub fn score_db(&self) -> f64 {
         self.height_db
     }
@@ -741,10 +738,6 @@ impl Family {
 /// A probability in words: one that is 1 says no more than that.
 fn probability(p: f64) -> String {
     if p >= 0.1 { format!("{p:.1}") } else { format!("{p:.3}") }
-}
-
-pub(super) fn decibel(power: f64) -> f64 {
-    10.0 * power.max(1e-30).log10()
 }
 
 #[cfg(test)]
