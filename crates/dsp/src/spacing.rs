@@ -87,7 +87,7 @@ pub fn event_spacing(
     check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
     let bands = BANDS.map(|band| correlation(signal, band, sample_rate_hz, lags.end));
     let found = bands.each_ref().map(|band| peak(band, lags.clone()));
-    Ok(match agreed(&bands, &found, &lags) {
+    Ok(match agreed(&found) {
         Some((lag, correlation)) => EventSpacing::Pairs(Spacing { lag_s: lag / sample_rate_hz, correlation }),
         None if found.iter().flatten().all(|peak| peak.1 < LEAST) => {
             // A band in which no event stands above the noise says nothing.
@@ -102,26 +102,13 @@ pub fn event_spacing(
     })
 }
 
-/// Lag and correlation on which the bands agree, each by how well it shows: one has a peak of its own, and
-/// the other one at the same lag, which no other of its peaks makes small.
-fn agreed(
-    bands: &[Vec<f64>; 2],
-    found: &[Option<(f64, f64)>; 2],
-    lags: &std::ops::Range<usize>,
-) -> Option<(f64, f64)> {
-    let shown = |n: usize| found[n].filter(|peak| peak.1 >= LEAST);
-    let [at, other] = match (shown(0), shown(1)) {
-        (Some(low), Some(high)) if low.1 > high.1 => [0, 1],
-        (_, Some(_)) => [1, 0],
-        (Some(_), None) => [0, 1],
-        (None, None) => return None,
-    };
-    let (lag, height) = shown(at)?;
-    let near = ((1.0 - AGREED) * lag) as usize..((1.0 + AGREED) * lag).ceil() as usize + 1;
-    let (there, confirmed) = peaks(&bands[other], &near).max_by(|a, b| a.1.total_cmp(&b.1))?;
-    let highest = peaks(&bands[other], lags).map(|peak| peak.1).fold(0.0, f64::max);
-    (confirmed >= CONFIRMS && confirmed >= SECOND * highest)
-        .then(|| ((lag * height + there as f64 * confirmed) / (height + confirmed), height))
+/// Lag and correlation on which both bands agree, each by how well it shows: either has one peak of its own,
+/// and one of them is sure of it.
+fn agreed(found: &[Option<(f64, f64)>; 2]) -> Option<(f64, f64)> {
+    let [Some(low), Some(high)] = *found else { return None };
+    let same = (high.0 / low.0 - 1.0).abs() < AGREED;
+    (same && low.1.max(high.1) >= LEAST)
+        .then(|| ((low.0 * low.1 + high.0 * high.1) / (low.1 + high.1), low.1.max(high.1)))
 }
 
 /// Places and heights of all peaks among `lags`.
