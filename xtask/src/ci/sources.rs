@@ -7,8 +7,7 @@ use anyhow::{Context, Result};
 use super::layers;
 
 /// Crates that must be of use outside bearings.
-const GENERAL: [&str; 9] =
-    ["mesh", "simd", "solver", "mpi", "contact", "system", "dsp", "formats", "infer"];
+const GENERAL: [&str; 9] = ["mesh", "simd", "solver", "mpi", "contact", "system", "dsp", "formats", "infer"];
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
 
