@@ -1,5 +1,5 @@
-//! Simulation-based calibration: do intervals hold the truths that they should (Talts and others, *Validating Bayesian
-//! inference algorithms with simulation-based calibration*, arXiv 1804.06788)?
+//! Simulation-based calibration: do intervals hold the truths that they should (Talts and others, *Validating
+//! Bayesian inference algorithms with simulation-based calibration*, arXiv 1804.06788)?
 
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -19,7 +19,8 @@ const POOL: usize = 8192;
 /// Tries to better the best point of a target, a pair, or all, in rounds of so many points.
 const ROUNDS: [usize; 2] = [16, 48];
 
-/// A target is out of reach where no point brings it within as many standard deviations: 1 % of runs lie further off.
+/// A target is out of reach where no point brings it within as many standard deviations: 1 % of runs lie
+/// further off.
 pub const LIMIT: f64 = 2.576;
 
 /// How near a point of the prior comes to one target, whatever it does to the others.
@@ -29,9 +30,9 @@ pub struct Reach {
     pub target: usize,
     /// The best point.
     pub point: Vec<f64>,
-    /// How far the target lies from the prediction there, in standard deviations of scatter, tolerance and the
-    /// emulator's uncertainty: positive where the target is larger. Of a target that asks whether an output exists, the
-    /// normal deviate of the probability that it is as asked.
+    /// How far the target lies from the prediction there, in standard deviations of scatter, tolerance and
+    /// the emulator's uncertainty: positive where the target is larger. Of a target that asks whether an
+    /// output exists, the normal deviate of the probability that it is as asked.
     pub deviations: f64,
     /// Median prediction there, in the output's unit; NaN where existence alone is asked.
     pub prediction: f64,
@@ -149,8 +150,8 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The point where the worst of some targets lies least off, and how far: the best of the pool, then the best of
-    /// points around it, nearer and nearer.
+    /// The point where the worst of some targets lies least off, and how far: the best of the pool, then the
+    /// best of points around it, nearer and nearer.
     fn best(&mut self, targets: &[usize]) -> (Vec<f64>, f64) {
         let worst = |miss: &[f64]| targets.iter().map(|&target| miss[target]).fold(0.0, f64::max);
         let scores = self.misses.iter().map(|miss| worst(miss)).enumerate();

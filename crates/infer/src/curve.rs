@@ -21,11 +21,12 @@ pub struct Curves {
 }
 
 impl Curves {
-    /// Of curves with as many samples each: as many shapes as keep `share` of their variance (above 0, at most 1), at
-    /// most `most`.
+    /// Of curves with as many samples each: as many shapes as keep `share` of their variance (above 0, at
+    /// most 1), at most `most`.
     ///
     /// # Errors
-    /// When there are fewer than two curves, they differ in length, a number is not finite, or the share is out of range.
+    /// When there are fewer than two curves, they differ in length, a number is not finite, or the share is
+    /// out of range.
     pub fn fit(curves: &[Vec<f64>], share: f64, most: usize) -> Result<Self, Error> {
         let n = curves.len();
         if n < 2 {
@@ -91,8 +92,8 @@ impl Curves {
         Ok(curve)
     }
 
-    /// Root mean square of what the shapes leave out of a curve: where it is far above `left_out`, the curve is none of
-    /// the kind that they were made from.
+    /// Root mean square of what the shapes leave out of a curve: where it is far above `left_out`, the curve
+    /// is none of the kind that they were made from.
     ///
     /// # Errors
     /// When the curve has another number of samples.
@@ -102,8 +103,8 @@ impl Curves {
         Ok((sum / curve.len().max(1) as f64).sqrt())
     }
 
-    /// Standard deviation of a score, given that of single samples whose errors are independent: the shapes have unit
-    /// length, so it is the same.
+    /// Standard deviation of a score, given that of single samples whose errors are independent: the shapes
+    /// have unit length, so it is the same.
     pub fn tolerance(&self, of_samples: f64) -> f64 {
         of_samples
     }

@@ -8,9 +8,9 @@ pub const MOST_POINTS: usize = 1 << 16;
 /// The most dimensions.
 pub const MOST_DIMENSIONS: usize = 256;
 
-/// Points of an Owen-scrambled Sobol sequence in the unit cube: `count` of them from `from_index` on, so that a
-/// design can be extended later without loss of its evenness. The sequence is evenest where counts are powers
-/// of two.
+/// Points of an Owen-scrambled Sobol sequence in the unit cube: `count` of them from `from_index` on, so that
+/// a design can be extended later without loss of its evenness. The sequence is evenest where counts are
+/// powers of two.
 ///
 /// # Errors
 /// Where the sequence ends before the last point, or has fewer dimensions.

@@ -1,5 +1,5 @@
-//! Outputs as functions of the point, learned from runs: a Gaussian process each, with the scatter of runs, the
-//! probability that the output exists, and the correlation of what is left.
+//! Outputs as functions of the point, learned from runs: a Gaussian process each, with the scatter of runs,
+//! the probability that the output exists, and the correlation of what is left.
 
 mod correlation;
 mod existence;
@@ -37,8 +37,8 @@ pub struct Emulator {
     correlations: Mat<f64>,
 }
 
-/// What one output is at one point, in the output's unit. Where it is emulated on a logarithmic scale, `mean` is its
-/// median, and the deviations are those of the logarithm times the mean.
+/// What one output is at one point, in the output's unit. Where it is emulated on a logarithmic scale, `mean`
+/// is its median, and the deviations are those of the logarithm times the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// Probability that a run there yields it.
@@ -60,8 +60,8 @@ pub struct Quality {
     pub runs: usize,
     /// Share of runs that yield it.
     pub exists: f64,
-    /// Share of the variance of runs that the other points predict, on the output's scale: 1 where runs follow a smooth
-    /// function without scatter, 0 where the point tells nothing. NaN without an emulator.
+    /// Share of the variance of runs that the other points predict, on the output's scale: 1 where runs
+    /// follow a smooth function without scatter, 0 where the point tells nothing. NaN without an emulator.
     pub r_squared: f64,
     /// Share of runs within the 90 % interval of their prediction.
     pub coverage_90: f64,
@@ -116,11 +116,12 @@ struct Grouped<'a> {
 }
 
 impl Emulator {
-    /// Learns every output from runs. The seed is there for a later choice of method; the fit of today draws nothing.
+    /// Learns every output from runs. The seed is there for a later choice of method; the fit of today draws
+    /// nothing.
     ///
     /// # Errors
-    /// When rows and columns do not fit together, a number is out of its range, or there are fewer different points
-    /// than dimensions + 2.
+    /// When rows and columns do not fit together, a number is out of its range, or there are fewer different
+    /// points than dimensions + 2.
     pub fn fit(runs: &Runs, outputs: &[Output], _seed: u64) -> Result<Self, Error> {
         runs.check(outputs)?;
         let grouped = Grouped { runs, groups: runs.groups() };
@@ -181,12 +182,13 @@ impl Emulator {
         Ok(rows)
     }
 
-    /// The interval around the prediction that holds `share` (above 0, below 1) of runs at a point, in the output's
-    /// unit: as wide as it had to be for the runs themselves, each predicted from the others (a conformal interval).
-    /// None where the output is not emulated.
+    /// The interval around the prediction that holds `share` (above 0, below 1) of runs at a point, in the
+    /// output's unit: as wide as it had to be for the runs themselves, each predicted from the others (a
+    /// conformal interval). None where the output is not emulated.
     ///
     /// # Errors
-    /// When the point has other dimensions or lies outside, there is no such output, or the share is out of range.
+    /// When the point has other dimensions or lies outside, there is no such output, or the share is out of
+    /// range.
     pub fn interval(&self, point: &[f64], output: usize, share: f64) -> Result<Option<[f64; 2]>, Error> {
         let points = [point.to_vec()];
         self.check(&points)?;
@@ -237,8 +239,8 @@ impl Emulator {
         Some(value.regression.predict(points).into_iter().enumerate().map(one).collect())
     }
 
-    /// The share of the mean's uncertainty that is left at points after runs at further ones, one start each. None
-    /// where the output is not emulated.
+    /// The share of the mean's uncertainty that is left at points after runs at further ones, one start each.
+    /// None where the output is not emulated.
     pub(crate) fn left_after(
         &self,
         output: usize,

@@ -6,8 +6,8 @@ pub fn interval(values: &[f64], share: f64) -> [f64; 2] {
     [quantile(values, half), quantile(values, 1.0 - half)]
 }
 
-/// The value with a share (0 … 1) of the others below it, between neighbours linear (Hyndman and Fan's definition 7); NaN
-/// without values.
+/// The value with a share (0 … 1) of the others below it, between neighbours linear (Hyndman and Fan's
+/// definition 7); NaN without values.
 pub fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -32,8 +32,8 @@ pub(crate) fn weighted_moments(values: &[f64], weights: &[f64]) -> [f64; 2] {
     [mean, variance.sqrt()]
 }
 
-/// The share of draws below the truth, each with its weight (of sum 1); of those equal to it, the share `between`
-/// (0 … 1), which is drawn uniformly where ranks are compared over many truths.
+/// The share of draws below the truth, each with its weight (of sum 1); of those equal to it, the share
+/// `between` (0 … 1), which is drawn uniformly where ranks are compared over many truths.
 pub fn rank(truth: f64, draws: &[f64], weights: &[f64], between: f64) -> f64 {
     let one = |(x, w): (&f64, &f64)| match x.total_cmp(&truth) {
         std::cmp::Ordering::Less => *w,

@@ -1,10 +1,11 @@
-//! Bayesian inference of a simulation's inputs from its outputs: which points of the unit cube make the numbers that
-//! were measured, how sure that is, and which numbers no point makes.
+//! Bayesian inference of a simulation's inputs from its outputs: which points of the unit cube make the
+//! numbers that were measured, how sure that is, and which numbers no point makes.
 //!
-//! The crate knows nothing of the simulation. It is given runs, a row each: a point of the unit cube and what the run
-//! there yielded. It learns every output as a function of the point, with the scatter of starts ([`Emulator`]), and
-//! draws from the posterior of points given targets ([`Posterior`]). Priors turn coordinates into values ([`Prior`]).
-//! Everything follows from seeds: the same runs give the same answer on any number of threads.
+//! The crate knows nothing of the simulation. It is given runs, a row each: a point of the unit cube and what
+//! the run there yielded. It learns every output as a function of the point, with the scatter of starts
+//! ([`Emulator`]), and draws from the posterior of points given targets ([`Posterior`]). Priors turn
+//! coordinates into values ([`Prior`]). Everything follows from seeds: the same runs give the same answer on
+//! any number of threads.
 //!
 //! # Where to look
 //!
@@ -12,7 +13,8 @@
 //! |---|---|
 //! | Where shall the first runs be? | [`sobol`] |
 //! | Where shall the next be, and what would they tell? | [`next`], [`expected_gain`] |
-//! | What does a run at a point give? | [`Emulator::predict`], [`Emulator::interval`], [`Emulator::quality`] |
+//! | What does a run at a point give? | [`Emulator::predict`], [`Emulator::interval`] |
+//! | How good are these predictions? | [`Emulator::quality`] |
 //! | Which points make the targets? | [`Posterior::of`] |
 //! | Which target moves which field? | [`pulls`] |
 //! | Do runs at these points make the targets? | [`Predictive::of`] |

@@ -1,5 +1,5 @@
-//! How likely targets are at a point: Student's t for each output about its prediction, joined by the correlation of
-//! their residuals (a Gaussian copula), times the probabilities that they exist, or do not.
+//! How likely targets are at a point: Student's t for each output about its prediction, joined by the
+//! correlation of their residuals (a Gaussian copula), times the probabilities that they exist, or do not.
 
 use crate::{
     emulator::{Emulator, Scaled, Tails},
@@ -161,15 +161,16 @@ impl<'a> Likelihood<'a> {
         sum
     }
 
-    /// How many scales of scatter and tolerance a target lies from the prediction, as a normal deviate, and none where
-    /// only its existence is asked.
+    /// How many scales of scatter and tolerance a target lies from the prediction, as a normal deviate, and
+    /// none where only its existence is asked.
     pub(crate) fn deviate(&self, target: usize, seen: &Seen) -> Option<f64> {
         let asked = &self.asked[target];
         let tails = asked.value.and(asked.tails)?;
         Some(tails.normal(seen.residual / seen.scales(asked.tolerance)[1]))
     }
 
-    /// How far one standard deviation of the emulator's mean moves the logarithm of the likelihood, over all targets.
+    /// How far one standard deviation of the emulator's mean moves the logarithm of the likelihood, over all
+    /// targets.
     pub(crate) fn doubt(&self, seen: &[Seen]) -> f64 {
         let one = |(asked, seen): (&Asked, &Seen)| {
             let Some(tails) = asked.value.and(asked.tails) else { return 0.0 };
@@ -212,9 +213,9 @@ impl<'a> Likelihood<'a> {
 }
 
 impl Emulator {
-    /// Logarithm of the joint density of targets at a point, each on the scale of its output: with the scatter of a
-    /// start, the emulator's own uncertainty and the targets' tolerances. Several targets of one output count as so
-    /// many runs of their own.
+    /// Logarithm of the joint density of targets at a point, each on the scale of its output: with the
+    /// scatter of a start, the emulator's own uncertainty and the targets' tolerances. Several targets of one
+    /// output count as so many runs of their own.
     ///
     /// # Errors
     /// When a target cannot be asked for, or the point has other dimensions or lies outside.

@@ -22,8 +22,8 @@ const CANDIDATES: usize = 400;
 pub struct NextOptions {
     /// Number of points.
     pub count: usize,
-    /// Share of them that fill the prior evenly whatever the posterior says, 0 … 1, against regions that the emulator
-    /// does not know of.
+    /// Share of them that fill the prior evenly whatever the posterior says, 0 … 1, against regions that the
+    /// emulator does not know of.
     pub filling: f64,
     /// Points of the filling sequence that earlier calls with this seed have used.
     pub filled: usize,
@@ -31,12 +31,12 @@ pub struct NextOptions {
     pub seed: u64,
 }
 
-/// Points of the next runs: draws of the posterior where the emulator's doubt moves the likelihood most, each counting
-/// the ones chosen before it as known, and points that fill the prior.
+/// Points of the next runs: draws of the posterior where the emulator's doubt moves the likelihood most, each
+/// counting the ones chosen before it as known, and points that fill the prior.
 ///
 /// # Errors
-/// When priors do not match the emulator, a target cannot be asked for, `filling` is out of range, or the filling
-/// sequence ends.
+/// When priors do not match the emulator, a target cannot be asked for, `filling` is out of range, or the
+/// filling sequence ends.
 pub fn next(
     emulator: &Emulator,
     priors: &[Prior],
@@ -79,12 +79,13 @@ pub struct Gain {
     pub deviation: f64,
     /// What is expected after the runs: at most `deviation`, within the error of reweighting.
     pub after: f64,
-    /// What is expected where the emulator has no doubt left: the scatter of starts and the targets' tolerances remain.
+    /// What is expected where the emulator has no doubt left: the scatter of starts and the targets'
+    /// tolerances remain.
     pub limit: f64,
 }
 
-/// How much runs at further points are expected to narrow each field. To first order: the emulator's mean is taken to be
-/// right, and its uncertainty becomes what it will be after those runs; draws are reweighted.
+/// How much runs at further points are expected to narrow each field. To first order: the emulator's mean is
+/// taken to be right, and its uncertainty becomes what it will be after those runs; draws are reweighted.
 ///
 /// # Errors
 /// When priors or points do not match the emulator, or a target cannot be asked for.

@@ -1,7 +1,8 @@
-//! The posterior of points, given targets: tempered sequential Monte Carlo (Del Moral, Doucet and Jasra, *Sequential
-//! Monte Carlo samplers*, J. Royal Statistical Society B 68, 2006), which starts from the whole prior, so that regions
-//! far apart keep their weights, and moves draws by differences of others (ter Braak, *A Markov chain Monte Carlo
-//! version of the genetic algorithm Differential Evolution*, Statistics and Computing 16, 2006).
+//! The posterior of points, given targets: tempered sequential Monte Carlo (Del Moral, Doucet and Jasra,
+//! *Sequential Monte Carlo samplers*, J. Royal Statistical Society B 68, 2006), which starts from the whole
+//! prior, so that regions far apart keep their weights, and moves draws by differences of others (ter Braak,
+//! *A Markov chain Monte Carlo version of the genetic algorithm Differential Evolution*, Statistics and
+//! Computing 16, 2006).
 
 mod moves;
 
@@ -69,8 +70,8 @@ impl Posterior {
     /// Of the point, given priors of its coordinates and targets.
     ///
     /// # Errors
-    /// When priors do not match the emulator's dimensions or are impossible, a target cannot be asked for, or the number
-    /// of draws is out of range.
+    /// When priors do not match the emulator's dimensions or are impossible, a target cannot be asked for, or
+    /// the number of draws is out of range.
     pub fn of(
         emulator: &Emulator,
         priors: &[Prior],
@@ -86,8 +87,8 @@ impl Posterior {
         Ok(sample(&likelihood, priors, options))
     }
 
-    /// The central interval of a coordinate that holds a share (0 … 1) of the draws. [`Prior::quantile`] turns its ends
-    /// into values.
+    /// The central interval of a coordinate that holds a share (0 … 1) of the draws. [`Prior::quantile`]
+    /// turns its ends into values.
     pub fn interval(&self, field: usize, share: f64) -> [f64; 2] {
         interval(&self.column(field), share)
     }

@@ -17,8 +17,8 @@ pub struct Predictive {
     pub values: Vec<f64>,
     /// The values below which 5, 25, 50, 75 and 95 % of them lie.
     pub quantiles: [f64; 5],
-    /// Share of runs below the target's value, its tolerance included: 0.05 to 0.95 where they agree. None without a
-    /// target, or with one that must be missing.
+    /// Share of runs below the target's value, its tolerance included: 0.05 to 0.95 where they agree. None
+    /// without a target, or with one that must be missing.
     pub below_target: Option<f64>,
 }
 

@@ -113,8 +113,8 @@ impl Prior {
         }
     }
 
-    /// The share that a run at this one has: the middle of its cell for choices, unchanged otherwise. Points that
-    /// an emulator is fitted to are snapped, so that equal choices have equal coordinates.
+    /// The share that a run at this one has: the middle of its cell for choices, unchanged otherwise. Points
+    /// that an emulator is fitted to are snapped, so that equal choices have equal coordinates.
     pub fn snap(&self, share: f64) -> f64 {
         match *self {
             Self::Choices(n) => (choice(n, share) as f64 + 0.5) / n as f64,

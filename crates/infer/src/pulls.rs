@@ -12,8 +12,8 @@ use crate::{
     runs::Target,
 };
 
-/// Draws are reweighted if so large a share of them still counts; otherwise the posterior is sought anew, since draws
-/// that lie within a narrow posterior know nothing of the tails of a wide one.
+/// Draws are reweighted if so large a share of them still counts; otherwise the posterior is sought anew,
+/// since draws that lie within a narrow posterior know nothing of the tails of a wide one.
 const ENOUGH: f64 = 0.3;
 
 /// What one target does to one field.
@@ -23,8 +23,8 @@ pub struct Pull {
     pub target: usize,
     /// Number of the coordinate.
     pub field: usize,
-    /// How far the target moves the mean of the coordinate, in standard deviations of the posterior with all targets:
-    /// positive where it pulls to larger values.
+    /// How far the target moves the mean of the coordinate, in standard deviations of the posterior with all
+    /// targets: positive where it pulls to larger values.
     pub shift: f64,
     /// Variance with the target over the variance without: below 1 where it narrows the field.
     pub variance_ratio: f64,

@@ -7,10 +7,11 @@ use crate::error::Error;
 /// Runs of a simulation, a row each. Several starts of one scene are rows with equal points.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Runs {
-    /// Where each run lies in the unit cube (`[run][dimension]`, 0 … 1; choices in the middle of their cells).
+    /// Where each run lies in the unit cube (`[run][dimension]`, 0 … 1; choices in the middle of their
+    /// cells).
     pub points: Vec<Vec<f64>>,
-    /// What it gave (`[run][output]`, each in its own unit); none where a run does not yield the quantity, such as
-    /// a tone that is not found.
+    /// What it gave (`[run][output]`, each in its own unit); none where a run does not yield the quantity,
+    /// such as a tone that is not found.
     pub outputs: Vec<Vec<Option<f64>>>,
 }
 
@@ -41,8 +42,8 @@ pub struct Target {
     pub output: usize,
     /// Its value, in the output's unit; none if the quantity must be missing.
     pub value: Option<f64>,
-    /// Standard deviation of the value itself, in the output's unit, beside the scatter of runs. 0 if it was made
-    /// by a run of the same simulation.
+    /// Standard deviation of the value itself, in the output's unit, beside the scatter of runs. 0 if it was
+    /// made by a run of the same simulation.
     pub tolerance: f64,
 }
 

@@ -2,9 +2,10 @@
 
 use faer::{Mat, Side};
 
-/// Correlations of columns of normal deviates, none where a run has no output, shrunk towards none by as much as their
-/// own uncertainty asks for (Schäfer and Strimmer, *A shrinkage approach to large-scale covariance matrix estimation*,
-/// Statistical Applications in Genetics and Molecular Biology 4, 2005, target D), and further until positive definite.
+/// Correlations of columns of normal deviates, none where a run has no output, shrunk towards none by as much
+/// as their own uncertainty asks for (Schäfer and Strimmer, *A shrinkage approach to large-scale covariance
+/// matrix estimation*, Statistical Applications in Genetics and Molecular Biology 4, 2005, target D), and
+/// further until positive definite.
 pub(super) fn correlations(columns: &[Vec<Option<f64>>]) -> Mat<f64> {
     let n = columns.len();
     let mut matrix = Mat::<f64>::identity(n, n);

@@ -1,5 +1,6 @@
-//! How likely it is that a run yields an output at all: a Gaussian process on zeros and ones, whose cross-validated
-//! predictions are turned into probabilities by a logistic curve (Rasmussen and Williams, §6.5; Platt 1999).
+//! How likely it is that a run yields an output at all: a Gaussian process on zeros and ones, whose
+//! cross-validated predictions are turned into probabilities by a logistic curve (Rasmussen and Williams,
+//! §6.5; Platt 1999).
 
 use super::{
     hyper::{Hyper, Sample},
@@ -10,7 +11,8 @@ use crate::error::Error;
 /// Steps of Newton's method for the two numbers of the logistic curve.
 const STEPS: usize = 30;
 
-/// Predictions of the regression nearer to 0 or 1 than this count as this near; the logistic curve may be surer.
+/// Predictions of the regression nearer to 0 or 1 than this count as this near; the logistic curve may be
+/// surer.
 const SURE: f64 = 0.02;
 
 /// The probability that an output exists.
@@ -60,14 +62,15 @@ impl Existence {
     }
 }
 
-/// Logarithm of the odds. A regression on zeros and ones may leave 0 … 1 a little; it is held within `SURE` of the ends.
+/// Logarithm of the odds. A regression on zeros and ones may leave 0 … 1 a little; it is held within `SURE`
+/// of the ends.
 fn logit(share: f64) -> f64 {
     let share = share.clamp(SURE, 1.0 - SURE);
     (share / (1.0 - share)).ln()
 }
 
-/// Offset and slope of the most likely logistic curve, with a weak prior (standard deviations 5) that keeps it finite
-/// where the two kinds are separate.
+/// Offset and slope of the most likely logistic curve, with a weak prior (standard deviations 5) that keeps
+/// it finite where the two kinds are separate.
 fn logistic(means: &[f64], have: &[f64], runs: &[f64]) -> [f64; 2] {
     let mut at = [0.0, 1.0];
     for _ in 0..STEPS {

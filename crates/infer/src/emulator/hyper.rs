@@ -90,7 +90,8 @@ impl Search {
         Self { squares, trend, values: pick(sample.values), factors: pick(sample.factors), dimensions }
     }
 
-    /// Logarithm of the posterior density, and its gradient; none where the covariance is not positive definite.
+    /// Logarithm of the posterior density, and its gradient; none where the covariance is not positive
+    /// definite.
     fn density(&self, at: &[f64]) -> Option<(f64, Vec<f64>)> {
         let (n, d) = (self.values.len(), self.dimensions);
         let inverse_squares: Vec<f64> = at[..d].iter().map(|length| (-2.0 * length).exp()).collect();
@@ -132,8 +133,8 @@ impl Search {
         Some(self.with_prior(at, value, gradient))
     }
 
-    /// Logarithm of the marginal likelihood, and α αᵀ − K⁻¹, whose product with ∂K is twice its change (Rasmussen and
-    /// Williams, eq. 5.9).
+    /// Logarithm of the marginal likelihood, and α αᵀ − K⁻¹, whose product with ∂K is twice its change
+    /// (Rasmussen and Williams, eq. 5.9).
     fn likelihood(&self, covariance: &Mat<f64>) -> Option<(f64, Mat<f64>)> {
         use faer::linalg::solvers::DenseSolveCore;
         let n = self.values.len();
@@ -147,8 +148,9 @@ impl Search {
         value.is_finite().then(|| (value, &alpha * alpha.transpose() - &inverse))
     }
 
-    /// Adds the prior: length scales of the order of √dimensions, within a factor of six either way (Hvarfner, Hellsten
-    /// and Nardi, *Vanilla Bayesian optimization performs great in high dimensions*, ICML 2024, §5).
+    /// Adds the prior: length scales of the order of √dimensions, within a factor of six either way
+    /// (Hvarfner, Hellsten and Nardi, *Vanilla Bayesian optimization performs great in high dimensions*, ICML
+    /// 2024, §5).
     fn with_prior(&self, at: &[f64], mut value: f64, mut gradient: Vec<f64>) -> (f64, Vec<f64>) {
         let d = self.dimensions;
         let means = [2_f64.sqrt() + 0.5 * (d as f64).ln(), 0.0, -4.0];
@@ -162,7 +164,8 @@ impl Search {
         (value, gradient)
     }
 
-    /// Climbs by BFGS with halved steps (Nocedal and Wright, *Numerical Optimization*, 2006, alg. 6.1), within bounds.
+    /// Climbs by BFGS with halved steps (Nocedal and Wright, *Numerical Optimization*, 2006, alg. 6.1),
+    /// within bounds.
     fn climb(&self, start: Vec<f64>) -> (Vec<f64>, f64) {
         let d = self.dimensions;
         let bounds = |i: usize| BOUNDS[(i + 1).saturating_sub(d)];

@@ -1,5 +1,5 @@
-//! Covariance of a smooth function of a point: Matérn 5/2 with a length scale per dimension (Rasmussen and Williams,
-//! *Gaussian Processes for Machine Learning*, 2006, eq. 4.17 and §5.1).
+//! Covariance of a smooth function of a point: Matérn 5/2 with a length scale per dimension (Rasmussen and
+//! Williams, *Gaussian Processes for Machine Learning*, 2006, eq. 4.17 and §5.1).
 
 use faer::Mat;
 
@@ -51,12 +51,13 @@ impl Kernel {
     }
 }
 
-/// Terms of the trend at a point: a constant and, where `linear`, one slope a dimension, scaled so that each has
-/// unit variance over the cube.
+/// Terms of the trend at a point: a constant and, where `linear`, one slope a dimension, scaled so that each
+/// has unit variance over the cube.
 pub(super) fn trend(point: &[f64], linear: bool) -> Vec<f64> {
     let slopes = point.iter().map(|x| 12_f64.sqrt() * (x - 0.5));
     std::iter::once(1.0).chain(slopes.take(if linear { point.len() } else { 0 })).collect()
 }
 
-/// Prior variance of the terms of a trend, in units of the output's variance: wide enough to tie down nothing.
+/// Prior variance of the terms of a trend, in units of the output's variance: wide enough to tie down
+/// nothing.
 pub(super) const TREND_VARIANCE: f64 = 100.0;

@@ -1,7 +1,7 @@
-//! A Gaussian process, through a base of chosen points: exact where every point is chosen, an approximation that
-//! costs no more than the square of their number where there are many (Quiñonero-Candela and Rasmussen, *A unifying
-//! view of sparse approximate Gaussian process regression*, J. Machine Learning Research 6, 2005, §5; the variance
-//! that the base does not carry is added to the prediction's).
+//! A Gaussian process, through a base of chosen points: exact where every point is chosen, an approximation
+//! that costs no more than the square of their number where there are many (Quiñonero-Candela and Rasmussen,
+//! *A unifying view of sparse approximate Gaussian process regression*, J. Machine Learning Research 6, 2005,
+//! §5; the variance that the base does not carry is added to the prediction's).
 
 use faer::{
     Mat, Par, Side,
@@ -133,8 +133,8 @@ impl Regression {
         (0..points.len()).map(|j| [means[(j, 0)], squared_column(&features, j) + rest[j]]).collect()
     }
 
-    /// Covariance of the function between points, as it is known after all runs: a row for each of `a`, a column for
-    /// each of `b`.
+    /// Covariance of the function between points, as it is known after all runs: a row for each of `a`, a
+    /// column for each of `b`.
     pub(super) fn covariance(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> Mat<f64> {
         let halves = [a, b].map(|points| {
             let (mut features, _) = self.features(points);
@@ -149,8 +149,8 @@ impl Regression {
         prior - left_smooth.transpose() * right_smooth + left.transpose() * right
     }
 
-    /// The share of the function's standard deviation that is left at points after values at further ones, each with its
-    /// own variance.
+    /// The share of the function's standard deviation that is left at points after values at further ones,
+    /// each with its own variance.
     pub(super) fn left_after(&self, points: &[Vec<f64>], further: &[Vec<f64>], noise: &[f64]) -> Vec<f64> {
         let now = self.predict(points);
         let mut among = self.covariance(further, further);
@@ -172,8 +172,8 @@ fn squared_column(matrix: &Mat<f64>, column: usize) -> f64 {
     matrix.col(column).squared_norm_l2()
 }
 
-/// Points of the base: one after the other where the ones before leave the largest variance (a pivoted Cholesky
-/// factorisation), until they leave less than `enough` anywhere.
+/// Points of the base: one after the other where the ones before leave the largest variance (a pivoted
+/// Cholesky factorisation), until they leave less than `enough` anywhere.
 fn choose(kernel: &Kernel, scaled: &[Vec<f64>], enough: f64) -> Vec<Vec<f64>> {
     let n = scaled.len();
     let mut left = vec![kernel.variance; n];
@@ -222,8 +222,8 @@ mod tests {
         Regression::fit(&sample, &hyper).unwrap()
     }
 
-    /// Three points, with the inverse of their covariance K by cofactors: mean kᵀ K⁻¹ y and variance k₀ − kᵀ K⁻¹ k
-    /// (Rasmussen and Williams, *Gaussian Processes for Machine Learning*, 2006, eq. 2.23 and 2.24).
+    /// Three points, with the inverse of their covariance K by cofactors: mean kᵀ K⁻¹ y and variance k₀ − kᵀ
+    /// K⁻¹ k (Rasmussen and Williams, *Gaussian Processes for Machine Learning*, 2006, eq. 2.23 and 2.24).
     #[test]
     fn analytic_mean_and_variance_of_three_points() {
         let factors = [1.0, 0.5, 2.0];

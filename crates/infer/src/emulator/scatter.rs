@@ -1,6 +1,7 @@
-//! How the scatter of runs changes over the cube: a second Gaussian process, on the logarithm of the variance of the
-//! first one's residuals (Kersting and others, *Most likely heteroscedastic Gaussian process regression*, ICML 2007),
-//! with the weights of Gamma regression, since a mean of squares is Gamma distributed.
+//! How the scatter of runs changes over the cube: a second Gaussian process, on the logarithm of the variance
+//! of the first one's residuals (Kersting and others, *Most likely heteroscedastic Gaussian process
+//! regression*, ICML 2007), with the weights of Gamma regression, since a mean of squares is Gamma
+//! distributed.
 
 use super::{
     hyper::{Hyper, Sample},
@@ -87,8 +88,8 @@ impl Scatter {
     }
 }
 
-/// Mean squared residual at a point in units of its variance, and the degrees of freedom that it stands on. The part
-/// of the residual that the function's own uncertainty explains counts for less.
+/// Mean squared residual at a point in units of its variance, and the degrees of freedom that it stands on.
+/// The part of the residual that the function's own uncertainty explains counts for less.
 fn relative(
     sample: &Sample,
     spreads: &[Spread],

@@ -1,5 +1,5 @@
-//! The distribution of an output about its prediction: Student's t, whose scale and degrees of freedom are those of
-//! the cross-validated residuals.
+//! The distribution of an output about its prediction: Student's t, whose scale and degrees of freedom are
+//! those of the cross-validated residuals.
 
 use statrs::{
     distribution::{ContinuousCDF, StudentsT},
@@ -22,8 +22,9 @@ pub(crate) struct Tails {
 }
 
 impl Tails {
-    /// Of residuals in units of their predicted standard deviations: most likely, with the prior that the prediction is
-    /// right within a factor of about 1.3 and that tails are normal unless a likelihood ratio of e² says otherwise.
+    /// Of residuals in units of their predicted standard deviations: most likely, with the prior that the
+    /// prediction is right within a factor of about 1.3 and that tails are normal unless a likelihood ratio
+    /// of e² says otherwise.
     pub(super) fn fit(residuals: &[f64]) -> Self {
         let mut best = (f64::NEG_INFINITY, Self::of(1.0, f64::INFINITY));
         for freedom in FREEDOMS {

@@ -2,8 +2,8 @@
 
 use crate::random::Random;
 
-/// Shares of the kinds of moves: along a difference of two others, along a whole difference (from one region to
-/// another), the rest draws single coordinates anew from the prior.
+/// Shares of the kinds of moves: along a difference of two others, along a whole difference (from one region
+/// to another), the rest draws single coordinates anew from the prior.
 const KINDS: [f64; 2] = [0.65, 0.15];
 
 /// Steps along differences are to be accepted as often as this.
@@ -49,8 +49,8 @@ impl Population {
         }
     }
 
-    /// Proposes one move to every draw; each half moves by differences of the other, which stays meanwhile (Goodman and
-    /// Weare's split ensemble). Returns the share of moves accepted.
+    /// Proposes one move to every draw; each half moves by differences of the other, which stays meanwhile
+    /// (Goodman and Weare's split ensemble). Returns the share of moves accepted.
     pub(super) fn sweep(
         &mut self,
         inverse_temperature: f64,

@@ -1,4 +1,5 @@
-//! Simulation-based calibration of the whole chain on a simulator whose truths are known: runs, emulator, posterior.
+//! Simulation-based calibration of the whole chain on a simulator whose truths are known: runs, emulator,
+//! posterior.
 
 use crate::simulator::{FIELDS, IDLE, OUTPUTS, PRIORS, columns, runs, truths};
 use stribeck_infer::{Calibration, Emulator, PosteriorOptions};
@@ -12,8 +13,8 @@ fn calibration(times: f64) -> Calibration {
     Calibration::of(&emulator, &PRIORS, &truths(80, TRUTHS, times), &all, OPTIONS).unwrap()
 }
 
-/// 90 % intervals hold 85 to 95 % of the truths of every field, ranks are even, and the field without influence keeps
-/// its prior while the others are learned.
+/// 90 % intervals hold 85 to 95 % of the truths of every field, ranks are even, and the field without
+/// influence keeps its prior while the others are learned.
 #[test]
 fn example_intervals_hold_the_truths_that_they_should() {
     let calibration = calibration(1.0);

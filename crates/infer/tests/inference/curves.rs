@@ -12,8 +12,9 @@ fn curve(a: f64, b: f64) -> Vec<f64> {
     (0..SAMPLES).map(|k| 2.0 + a * at(k).sin() + b * (2.0 * at(k)).cos()).collect()
 }
 
-/// A sine of unit amplitude has the norm √(n/2) over whole periods, and sine and cosine are orthogonal: with amplitudes
-/// ±2 and ±1 the variances of the scores are 4 n/2 and n/2 (Jolliffe, *Principal Component Analysis*, 2002, §1.1).
+/// A sine of unit amplitude has the norm √(n/2) over whole periods, and sine and cosine are orthogonal: with
+/// amplitudes ±2 and ±1 the variances of the scores are 4 n/2 and n/2 (Jolliffe, *Principal Component
+/// Analysis*, 2002, §1.1).
 #[test]
 fn analytic_two_shapes_and_their_variances() {
     let curves = [(2.0, 1.0), (2.0, -1.0), (-2.0, 1.0), (-2.0, -1.0)].map(|(a, b)| curve(a, b));

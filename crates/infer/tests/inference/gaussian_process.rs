@@ -16,7 +16,8 @@ fn example_a_linear_function_is_met_exactly() {
     let emulator = Emulator::fit(&Runs { points, outputs }, &linear(&["y"]), 0).unwrap();
     for x in sobol(2, 3, 0, 50).unwrap() {
         let at = emulator.predict(&x).unwrap()[0];
-        // The output's standard deviation is 0.6; a noise of 1e-8 of its variance is the least that is assumed.
+        // The output's standard deviation is 0.6; a noise of 1e-8 of its variance is the least that is
+        // assumed.
         assert!((at.mean - f(&x)).abs() < 1e-4, "{} instead of {}", at.mean, f(&x));
         assert!(at.sd_of_mean < 1e-3 && at.scatter < 1e-3, "{at:?}");
     }
@@ -32,8 +33,8 @@ fn example_a_constant_output_stays_constant() {
     assert!((at.mean - 7.5).abs() < 1e-9 && at.sd_of_mean < 1e-9 && at.scatter < 1e-9, "{at:?}");
 }
 
-/// Scatter that grows fourfold with one field, existence that grows with another, and residuals of two outputs that
-/// share 80 % of their variance.
+/// Scatter that grows fourfold with one field, existence that grows with another, and residuals of two
+/// outputs that share 80 % of their variance.
 #[test]
 fn example_scatter_existence_and_correlation_are_found() {
     let emulator = Emulator::fit(&runs(5, 200, 2), &columns(), 0).unwrap();
@@ -66,8 +67,9 @@ fn example_scatter_existence_and_correlation_are_found() {
     assert!(emulator.correlation(6, 7) > 0.6 && emulator.correlation(1, 2).abs() < 0.2);
 }
 
-/// Conformal intervals of 90 % on 1000 fresh runs. The share of a single output has a standard deviation of 2.8 %, nearly
-/// all from the 128 points that the width of intervals follows from; the mean over outputs less.
+/// Conformal intervals of 90 % on 1000 fresh runs. The share of a single output has a standard deviation of
+/// 2.8 %, nearly all from the 128 points that the width of intervals follows from; the mean over outputs
+/// less.
 #[test]
 fn example_intervals_hold_the_runs_that_they_should() {
     let emulator = Emulator::fit(&runs(6, 128, 2), &columns(), 0).unwrap();

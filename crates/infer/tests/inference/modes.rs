@@ -9,8 +9,8 @@ fn functions(x: &[f64]) -> [f64; 3] {
     [4.0 * (x[0] - 0.5) * (x[0] - 0.5), x[0], x[1] + x[2]]
 }
 
-/// y₀ = 4 (x₀ − ½)² = 0.36 ± 0.03 holds at 0.2 and at 0.8, with nothing between; y₁ = x₀ = 0.46 ± 0.5 prefers the first
-/// a little, and y₂ ties two other fields. Weights of the regions by quadrature over x₀.
+/// y₀ = 4 (x₀ − ½)² = 0.36 ± 0.03 holds at 0.2 and at 0.8, with nothing between; y₁ = x₀ = 0.46 ± 0.5 prefers
+/// the first a little, and y₂ ties two other fields. Weights of the regions by quadrature over x₀.
 #[test]
 fn example_both_regions_are_found_with_their_weights() {
     let points = sobol(1, DIMENSIONS, 0, 128).unwrap();

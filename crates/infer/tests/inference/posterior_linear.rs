@@ -1,5 +1,6 @@
-//! Two outputs, linear in two of three fields, known with normal errors: the posterior is normal with the covariance
-//! (Aᵀ S⁻¹ A)⁻¹ as long as the cube's faces are far away (Gelman and others, *Bayesian Data Analysis*, 2013, §14.3).
+//! Two outputs, linear in two of three fields, known with normal errors: the posterior is normal with the
+//! covariance (Aᵀ S⁻¹ A)⁻¹ as long as the cube's faces are far away (Gelman and others, *Bayesian Data
+//! Analysis*, 2013, §14.3).
 //!
 //! ```text
 //! y₀ = x₀ + x₁          ± 0.05, observed 1.0        A = ⎡1  1⎤    det A = −3
@@ -63,8 +64,8 @@ fn analytic_without_a_target_a_field_widens_along_the_other() {
     let posterior = Posterior::of(&emulator, &PRIORS, &targets, options).unwrap();
     let pulls = pulls(&emulator, &PRIORS, &targets, &posterior, options).unwrap();
     assert_eq!(pulls.len(), 6);
-    // Without y₀, points with x₀ − 2 x₁ = −0.5 remain: x₁ is even between 0.25 and 0.75, x₀ = 2 x₁ − 0.5 is even in
-    // the unit interval; variances 1/48 and 1/12.
+    // Without y₀, points with x₀ − 2 x₁ = −0.5 remain: x₁ is even between 0.25 and 0.75, x₀ = 2 x₁ − 0.5 is
+    // even in the unit interval; variances 1/48 and 1/12.
     let pull = pulls.iter().find(|pull| pull.target == 0 && pull.field == 0).unwrap();
     let with = (4.0 * ERRORS[0].powi(2) + ERRORS[1].powi(2)) / 9.0;
     assert!((pull.variance_ratio * (1.0 / 12.0) / with - 1.0).abs() < 0.15, "{pull:?}");

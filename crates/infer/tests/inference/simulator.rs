@@ -1,4 +1,5 @@
-//! A simulator with six fields, eight outputs and scatter that depends on the point; its last field does nothing.
+//! A simulator with six fields, eight outputs and scatter that depends on the point; its last field does
+//! nothing.
 
 use stribeck_infer::{Output, Prior, Runs, Scale, Truth, sobol};
 use stribeck_testing::Noise;
@@ -21,13 +22,14 @@ pub(crate) fn columns() -> Vec<Output> {
     (0..OUTPUTS).map(|i| Output { name: format!("y{i}"), scale: scale(i) }).collect()
 }
 
-/// Standard deviation of starts at a point, but for a factor that each output has: it grows with the second field.
+/// Standard deviation of starts at a point, but for a factor that each output has: it grows with the second
+/// field.
 pub(crate) fn scatter(x: &[f64]) -> f64 {
     0.05 + 0.15 * x[1]
 }
 
-/// One start at a point, with `times` the scatter. The last two outputs err together; the fifth is missing more often
-/// the smaller the first field is.
+/// One start at a point, with `times` the scatter. The last two outputs err together; the fifth is missing
+/// more often the smaller the first field is.
 pub(crate) fn run(x: &[f64], times: f64, noise: &mut Noise) -> Vec<Option<f64>> {
     // The sum of twelve numbers with variance 1/3, halved: normal but for its far tails.
     let mut normal = || 0.5 * (0..12).map(|_| noise.uniform()).sum::<f64>();
