@@ -475,8 +475,8 @@ pub(super) fn bounds(sheet: &mut Sheet) {
          BPFI of a 6203, and stand higher than the families where the pit is outside the load zone (3 and 12 \
          o\u{2019}clock). A forced choice takes BPFI or nothing there, as the plain envelope does.\n\
          - **Drive end of CWRU.** The outer raceways of 0.36 mm at 6 o\u{2019}clock and the inner ones of \
-         0.71 mm show their family with less than a third of the depth of a knock; nothing separates them \
-         from a sound bearing of the same rig.\n\
+         0.71 mm show their family with less than half of the depth of a knock, as \
+         sound ones of the same rig do.\n\
          - **`p_value`.** Its tail rests on 108 families of sound bearings; below 1e-3 it extrapolates.\n\
          - **Lengths.** The load of HIT-SM is assumed. D goes with the root of the approach, so that a \
          factor of two in load moves a spall of 2 mm by 0.1 mm; the housing is not in it. A second event \
