@@ -46,7 +46,9 @@ fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
         set.filter(|line| line.contains('=')).map(|line| line.replace("\\\"", "\"")).collect();
     let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));
     command.current_dir(desk.path()).args(["simulate", "--out=truth"]).stdin(Stdio::null());
-    set.iter().for_each(|field| drop(command.args(["--set", field])));
+    for field in &set {
+        command.args(["--set", field]);
+    }
     command.args([format!("--set=defect.length_mm={length_mm}"), format!("--set=operation.load_n={load_n}")]);
     let done = command.output().expect("it starts");
     assert!(done.status.success(), "{}", said(&done));
