@@ -25,6 +25,7 @@ struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
+#[expect(clippy::large_enum_variant, reason = "one command is parsed a run")]
 enum Command {
     #[command(flatten)]
     Program(stribeck::Command),

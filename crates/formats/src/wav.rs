@@ -79,7 +79,8 @@ struct Format {
     bits: u16,
 }
 
-/// Where the piece `data` begins, how many bytes are there, and how many its header and that of a long file promise.
+/// Where the piece `data` begins, how many bytes are there, and how many its header and that of a long file
+/// promise.
 #[derive(Debug, Clone, Copy)]
 struct Data {
     at: u64,

@@ -12,8 +12,8 @@ use stribeck_scene::run_dir::write_atomic;
 use crate::Error;
 use crate::page::json;
 
-/// A target further off than this, in standard deviations, at the best point of the prior is made by none: 1 % of
-/// runs lie further off.
+/// A target further off than this, in standard deviations, at the best point of the prior is made by none: 1
+/// % of runs lie further off.
 const OUT_OF_REACH: f64 = 2.576;
 
 /// Contents of `inference.json`.
@@ -77,8 +77,8 @@ pub struct FieldFound {
     pub interval_50: Option<[f64; 2]>,
     /// Central 90 % interval.
     pub interval_90: Option<[f64; 2]>,
-    /// Width of the 90 % interval over that of the prior; of choices the entropy over that of the prior. 1 where
-    /// nothing was told.
+    /// Width of the 90 % interval over that of the prior; of choices the entropy over that of the prior. 1
+    /// where nothing was told.
     pub width_of_prior: f64,
     /// Probability by equal parts of the prior, or by choice.
     pub bars: Vec<f64>,
@@ -128,8 +128,8 @@ pub struct TargetFound {
     pub run_interval_90: Option<[f64; 2]>,
     /// All of their values.
     pub run_values: Vec<f64>,
-    /// Standard deviations by which the best point of the prior for this target alone misses it; above 0 where
-    /// the target is larger.
+    /// Standard deviations by which the best point of the prior for this target alone misses it; above 0
+    /// where the target is larger.
     pub best_alone: f64,
     /// The same at the point that does best for all targets.
     pub best_together: f64,
@@ -198,6 +198,12 @@ impl Answer {
     pub fn out_of_reach(&self) -> impl Iterator<Item = &TargetFound> {
         self.targets.iter().filter(|target| target.best_alone.abs() > OUT_OF_REACH)
     }
+}
+
+/// A number with four significant digits.
+fn short(value: f64) -> String {
+    let digits = if value == 0.0 { 0 } else { 3 - value.abs().log10().floor().clamp(-6.0, 3.0) as i32 };
+    format!("{value:.*}", digits.max(0) as usize).replace('-', "−")
 }
 
 /// Writes `inference.json` and `report.html` into `folder`, which must be there.

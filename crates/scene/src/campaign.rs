@@ -191,7 +191,7 @@ fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
             );
             return Err(place.field(
                 Problem::new(why, Place::Unwritten { file: String::new() }),
-                &rows,
+                rows,
                 column,
             ));
         }

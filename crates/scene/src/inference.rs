@@ -25,9 +25,9 @@
 //! )
 //! ```
 //!
-//! Each unknown has a prior; each target a number, or a curve, of `summary.json`. `readings` are no part of the
-//! scene: they say which of several items of every run is the one that was seen, as `{sensor}` in a path. What is simulated, and what
-//! follows from it, is not decided here.
+//! Each unknown has a prior; each target a number, or a curve, of `summary.json`. `readings` are no part of
+//! the scene: they say which of several items of every run is the one that was seen, as `{sensor}` in a path.
+//! What is simulated, and what follows from it, is not decided here.
 
 mod quantity;
 mod refusal;

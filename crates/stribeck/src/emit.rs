@@ -25,9 +25,9 @@ pub(crate) struct Part {
 /// Parts of a command for which nobody has said how many.
 pub(crate) const MOST_PARTS: u32 = 16;
 
-/// The script that runs `command`. It may be submitted again after any loss: what is done is not done twice. A part that ends
-/// before others leaves the tables to them and has done its work; so an engine that reports a failure has one
-/// to report.
+/// The script that runs `command`. It may be submitted again after any loss: what is done is not done twice.
+/// A part that ends before others leaves the tables to them and has done its work; so an engine that reports
+/// a failure has one to report.
 pub(crate) fn script(engine: Engine, command: &str, file: &Path, out: &Path, part: Part) -> Result<String> {
     let absolute = |path: &Path| -> Result<PathBuf> {
         std::path::absolute(path).with_context(|| format!("`{}` has no absolute path", path.display()))

@@ -1,8 +1,8 @@
 //! `stribeck infer`: which scenes could have made the numbers that somebody saw.
 //!
-//! Rounds of runs of a scene whose unknowns are drawn, first evenly over their priors, then where the posterior
-//! is; then runs at draws of the posterior, and the answer. All that was run lies in the folder, so the same
-//! command starts and goes on, parts of it may run anywhere, and the answer comes out the same.
+//! Rounds of runs of a scene whose unknowns are drawn, first evenly over their priors, then where the
+//! posterior is; then runs at draws of the posterior, and the answer. All that was run lies in the folder, so
+//! the same command starts and goes on, parts of it may run anywhere, and the answer comes out the same.
 
 mod answer;
 mod outputs;

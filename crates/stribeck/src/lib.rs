@@ -38,7 +38,8 @@ pub enum Command {
     Report(report::Options),
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and goes on
     Campaign(campaign::Options),
-    /// Infers unknown fields of a scene from numbers that were seen: what they can have been, what they cannot
+    /// Infers unknown fields of a scene from numbers that were seen: what they can have been, what they
+    /// cannot
     Infer(infer::Options),
     /// Runs a scene by the full and by the reduced model, and says how far apart they are
     Validate(validate::Options),

@@ -35,7 +35,19 @@ const LAYERS: [(&str, &[&str]); 25] = [
     ("studies", &["analysis", "contact", "dsp", "formats", "mesh", "report", "scene", "solver", "system"]),
     (
         "stribeck",
-        &["analysis", "bearing", "dsp", "formats", "mesh", "mpi", "report", "run", "scene", "simulation"],
+        &[
+            "analysis",
+            "bearing",
+            "dsp",
+            "formats",
+            "infer",
+            "mesh",
+            "mpi",
+            "report",
+            "run",
+            "scene",
+            "simulation",
+        ],
     ),
     ("python", &["analysis", "dsp", "formats", "report", "run", "scene", "simulation"]),
 ];

@@ -26,9 +26,9 @@ fn roundtrip_shares_and_values() {
     }
 }
 
-/// The middle of a logarithmic range is the geometric mean; half of a normal distribution that is cut off at
-/// −1 standard deviations and at 4.5 lies below its mean plus 0.2 standard deviations (Φ(−1) = 0.158655,
-/// Φ(4.5) = 0.999997; their mean 0.579326 is Φ(0.200174)).
+/// Abramowitz and Stegun 1964, table 26.1. The middle of a logarithmic range is the geometric mean; half of a
+/// normal distribution that is cut off at −1 standard deviations and at 4.5 lies below its mean plus 0.2
+/// standard deviations (Φ(−1) = 0.158655, Φ(4.5) = 0.999997; their mean 0.579326 is Φ(0.200174)).
 #[test]
 fn analytic_medians() {
     assert!((PRIORS[1].quantile(0.5) - 1.0).abs() < 1e-12);

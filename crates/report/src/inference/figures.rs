@@ -1,7 +1,6 @@
 //! The pictures: distributions of unknowns, pairs of them, targets, pulls, ranks.
 
-use super::page::short;
-use super::{Answer, FieldCalibrated, FieldFound, TargetFound};
+use super::{Answer, FieldCalibrated, FieldFound, TargetFound, short};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
 
 const TEXT: &str = "#333";
@@ -151,7 +150,10 @@ pub(super) fn pairs(answer: &Answer) -> Picture {
         sheet.text([x, y], 11.0, Anchor::Middle, TEXT, &name);
     }
     let mut picture = Picture::new("pairs", "Pairs of unknowns", sheet);
-    picture.caption = "Draws of the posterior, each axis from one end of the prior to the other. A number is the correlation where it is 0.3 or more: only together are the two known.".to_owned();
+    picture.caption =
+        "Draws of the posterior, each axis from one end of the prior to the other. A number is \
+        the correlation where it is 0.3 or more: only together are the two known."
+            .to_owned();
     picture.dense = true;
     picture
 }
@@ -212,7 +214,10 @@ pub(super) fn targets(answer: &Answer) -> Picture {
         }
     }
     let mut picture = Picture::new("predictive", "Targets and what scenes of the posterior make", sheet);
-    picture.caption = "Red: what was seen. Blue: 90 % and half of the emulated runs, and their median. Orange: runs at draws of the posterior. Each line has its own scale, by factors where differences count by their ratio.".to_owned();
+    picture.caption = "Red: what was seen. Blue: 90 % and half of the emulated runs, and their median. \
+        Orange: runs at draws of the posterior. Each line has its own scale, by factors where differences \
+        count by their ratio."
+        .to_owned();
     picture
 }
 
@@ -278,7 +283,9 @@ pub(super) fn pulls(answer: &Answer) -> Picture {
         }
     }
     let mut picture = Picture::new("pulls", "How each target moves each unknown", sheet);
-    picture.caption = "Number: shift of the unknown's mean by that target, in standard deviations of the posterior. Red: to larger values, blue: to smaller ones; the stronger, the more it tells.".to_owned();
+    picture.caption = "Number: shift of the unknown's mean by that target, in standard deviations of the \
+        posterior. Red: to larger values, blue: to smaller ones; the stronger, the more it tells."
+        .to_owned();
     picture
 }
 
@@ -322,6 +329,8 @@ pub(super) fn ranks(fields: &[FieldCalibrated]) -> Picture {
         }
     }
     let mut picture = Picture::new("ranks", "Ranks of truths in their posteriors", sheet);
-    picture.caption = "Even where intervals mean what they say: 95 % of bars end in the grey band. Heaps at both ends: intervals are too narrow; in the middle: too wide.".to_owned();
+    picture.caption = "Even where intervals mean what they say: 95 % of bars end in the grey band. Heaps at \
+        both ends: intervals are too narrow; in the middle: too wide."
+        .to_owned();
     picture
 }

@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, html};
 
-use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, TargetFound, figures};
+use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, TargetFound, figures, short};
 use crate::Error;
 use crate::page::head;
 
@@ -50,18 +50,13 @@ fn lead(answer: &Answer) -> String {
     };
     let told = fields.iter().filter(|field| field.width_of_prior < 0.5).count();
     format!(
-        "{} unknowns, {} targets; {scenes} scenes with {starts} start{} each in {rounds} rounds. {reach} {told} of the \
+        "{} unknowns, {} targets; {scenes} scenes with {starts} start{} each in {rounds} rounds. {reach} \
+         {told} of the \
          unknowns are known to within half of their prior.",
         fields.len(),
         targets.len(),
         if *starts == 1 { "" } else { "s" }
     )
-}
-
-/// A number with four significant digits.
-pub(super) fn short(value: f64) -> String {
-    let digits = if value == 0.0 { 0 } else { 3 - value.abs().log10().floor().clamp(-6.0, 3.0) as i32 };
-    format!("{value:.*}", digits.max(0) as usize).replace('-', "−")
 }
 
 fn between([low, high]: [f64; 2]) -> String {
@@ -136,7 +131,9 @@ fn targets_table(answer: &Answer) -> Markup {
                 }
             }
         }
-        p { "“Off at best” is how far a target lies from the prediction at the point of the prior that comes nearest, in standard deviations of scatter, tolerance and the emulator's doubt. A target seen below 5 % or above 95 % of emulated runs is one that the other targets speak against." }
+        p { "“Off at best” is how far a target lies from the prediction at the point of the prior that comes \
+            nearest, in standard deviations of scatter, tolerance and the emulator's doubt. A target seen \
+            below 5 % or above 95 % of emulated runs is one that the other targets speak against." }
     }
 }
 
@@ -152,12 +149,14 @@ fn reach(answer: &Answer) -> Markup {
             }
             @for pair in &answer.excluded {
                 li {
-                    (pair.targets[0]) " and " (pair.targets[1]) ": each can be met, both at once are missed by "
+                    (pair.targets[0]) " and " (pair.targets[1]) ": each can be met, both at once are missed \
+                        by "
                     (format!("{:.1}", pair.deviations)) " standard deviations at best, at " (scene(&pair.best))
                 }
             }
             @if answer.out_of_reach().next().is_none() && answer.excluded.is_empty() {
-                li { "Every target, and every pair of them, is made by some scene within " (format!("{OUT_OF_REACH}")) " standard deviations." }
+                li { "Every target, and every pair of them, is made by some scene \
+                    within " (format!("{OUT_OF_REACH}")) " standard deviations." }
             }
         }
         p { "Nearest to all targets at once: " (scene(&answer.best_together)) }
@@ -168,7 +167,8 @@ fn trust(answer: &Answer) -> Markup {
     let percent =
         |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     html! {
-        p { (format!("The draws of the posterior count for {:.0} independent ones. Outputs are emulated by Gaussian processes; each point is predicted from the others:", answer.effective_draws)) }
+        p { (format!("The draws of the posterior count for {:.0} independent ones. Outputs are emulated by \
+            Gaussian processes; each point is predicted from the others:", answer.effective_draws)) }
         div class="scroll" {
             table {
                 tr { th { "Output" } th { "Runs that have it" } th { "Variance that is predicted" } th { "Runs in their 90 % interval" } th { "Scatter of starts" } }
@@ -193,7 +193,11 @@ fn calibrated(fields: &[FieldCalibrated]) -> Result<Markup, Error> {
     let ranks = figures::ranks(fields).to_html()?;
     Ok(html! {
         h2 #calibration { "Calibration" }
-        p { (format!("{} scenes were drawn from the prior, run, and inferred from their own numbers. A 90 % interval is one if it holds the truth in 90 % of them.", fields.first().map_or(0, |field| field.truths))) }
+        p { (format!(
+            "{} scenes were drawn from the prior, run, and inferred from their own numbers. A 90 % \
+             interval is one if it holds the truth in 90 % of them.",
+            fields.first().map_or(0, |field| field.truths)
+        )) }
         div class="scroll" {
             table {
                 tr { th { "Unknown" } th { "In the 50 % interval" } th { "In the 90 % interval" } th { "Ranks even, p" } th { "Width, of the prior" } }

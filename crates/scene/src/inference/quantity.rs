@@ -11,8 +11,8 @@
 //!
 //! A list is entered at one item, by number from 0 or by what stands in it; or by all items, which are taken
 //! together as `count`, `share` (of items that have the number), `mean`, `median`, `min`, `max` or `first`
-//! says. A number that is `null`, and an item that is not there, is missing. Behind a bound, `> 100` or `< 60`, a
-//! number beyond it is one that is missing to `count` and `share`, and yes or no, 1 or 0, by itself.
+//! says. A number that is `null`, and an item that is not there, is missing. Behind a bound, `> 100` or `<
+//! 60`, a number beyond it is one that is missing to `count` and `share`, and yes or no, 1 or 0, by itself.
 
 use std::fmt;
 

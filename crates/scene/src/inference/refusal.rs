@@ -6,11 +6,13 @@ use crate::document::Kind;
 /// The file of an inference.
 pub(super) const INFERENCE: Kind = Kind {
     noun: "an inference",
-    example: "an inference has `name`, `unknowns` and `targets`, and may have `scene`, `set`, `seed`, `starts` \
+    example: "an inference has `name`, `unknowns` and `targets`, and may have `scene`, `set`, `seed`, \
+        `starts` \
               and `budget`; fixtures/infer/quick.ron is one",
     part,
     lacking,
-    for_fields_of_scenes: "a field of the scene stands in `set: [\"{}=…\"]`, or in `unknowns` where it is not \
+    for_fields_of_scenes: "a field of the scene stands in `set: [\"{}=…\"]`, or in `unknowns` where it is \
+        not \
                            known",
     most,
 };

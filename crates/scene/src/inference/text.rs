@@ -235,7 +235,8 @@ pub(super) fn budget(
     let first = text.first.unwrap_or((12 * unknowns).max(scenes / 3).min(scenes));
     if first < fewest || first > scenes {
         let why = format!(
-            "`budget.first` is {first}; it is {fewest} to {scenes}: {FEWEST_BY_UNKNOWN} scenes an unknown, and no \
+            "`budget.first` is {first}; it is {fewest} to {scenes}: {FEWEST_BY_UNKNOWN} scenes an unknown, \
+             and no \
              more than all"
         );
         return Err(place.refuse("budget.first", why));

@@ -241,7 +241,8 @@ fn calibration(known: &Known<'_>, truths: &[Row]) -> Result<Vec<FieldCalibrated>
         .collect())
 }
 
-/// `posterior.parquet`: a row for each draw, a column for each unknown in its unit, choices as they are written.
+/// `posterior.parquet`: a row for each draw, a column for each unknown in its unit, choices as they are
+/// written.
 pub(super) fn write_draws(path: &Path, known: &Known<'_>) -> Result<()> {
     let mut columns: Vec<Column> = known
         .inference

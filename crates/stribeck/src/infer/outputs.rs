@@ -45,8 +45,8 @@ pub(super) enum Found {
     Curve(Option<Vec<f64>>),
 }
 
-/// The rows of these scenes' runs, by several readings of each where an unknown has readings. Scenes that cannot
-/// be and runs that failed are rows without numbers.
+/// The rows of these scenes' runs, by several readings of each where an unknown has readings. Scenes that
+/// cannot be and runs that failed are rows without numbers.
 pub(super) fn rows(inference: &Inference, rounds: &Rounds<'_>, points: &[Point]) -> Result<Vec<Row>> {
     rows_of_readings(inference, rounds, points, READINGS)
 }

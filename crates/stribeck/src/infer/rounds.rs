@@ -101,7 +101,8 @@ impl<'a> Rounds<'a> {
                 line.split(',').map_while(|cell| cell.trim().parse().ok()).take(unknowns).collect();
             ensure!(
                 shares.len() == unknowns && shares.iter().all(|share| (0.0..=1.0).contains(share)),
-                "`{}`, line {}: {unknowns} shares from 0 to 1 are expected; delete the file to plan the round anew",
+                "`{}`, line {}: {unknowns} shares from 0 to 1 are expected; delete the file to plan the \
+                 round anew",
                 shown(&path),
                 number + 1
             );

@@ -200,7 +200,8 @@ pub(super) fn choices(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]
          *area* under the ROC curve is over all families of all records, sound ones too: the probability \
          that a family of a damaged part scores higher than one of a part that is not.",
     );
-    let methods: [(&str, fn(&Judged) -> Option<Scores>); 3] = [
+    type Method = (&'static str, fn(&Judged) -> Option<Scores>);
+    let methods: [Method; 3] = [
         ("verdict", |j| j.outcome.as_ref().map(|o| o.scores)),
         ("plain envelope", |j| j.fixed),
         ("kurtogram", |j| j.kurtogram),
