@@ -104,7 +104,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
     let answer = answer::of(&known)?;
-    answer::write_draws(&out.join("posterior.parquet"), &known)?;
+    // Beside it first: parts that end at the same time write the same bytes.
+    let (draws, beside) =
+        (out.join("posterior.parquet"), out.join(format!("posterior.{}.new", std::process::id())));
+    answer::write_draws(&beside, &known)?;
+    std::fs::rename(&beside, &draws).with_context(|| format!("cannot write `{}`", shown(&draws)))?;
     write_inference(&out, &answer)?;
     answer::tell(&answer);
     say!("report: {}", shown(&out.join("report.html")));

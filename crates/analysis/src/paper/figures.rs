@@ -185,9 +185,11 @@ mod tests {
         assert_eq!(chosen(&[at("side", 0.0), at("seat", 80.0)]), Some("seat".into()));
         assert_eq!(chosen(&[at("side", 0.0)]), Some("side".into()));
         assert_eq!(chosen(&[]), None);
-        // Without an adapter there is no seat.
+        // Beside a narrow adapter there is no seat.
+        let beside = [at("side", 0.0), at("top", 80.0), at("low", 300.0)];
+        assert_eq!(chosen(&beside), Some("low".into()));
         let narrow = Scene { adapter: AdapterScene { width_mm: 20.0, ..scene.adapter }, ..Scene::default() };
-        assert_eq!(sensor(&narrow, &usual).map(|s| s.angle_deg), Some(90.0));
+        assert_eq!(sensor(&narrow, &beside).map(|s| s.angle_deg), Some(80.0));
     }
 
     fn of(paper: f64, ours: &[Option<f64>]) -> Beside {
