@@ -612,10 +612,10 @@ fn example_the_page_begins_with_the_answer() {
         "The defect. ",
         "The mesh. ",
         "How far to trust it. ",
+        "id=\"numbers\"",
         "id=\"acceleration\"",
         "id=\"spectrum\"",
         "id=\"force-1\"",
-        "id=\"numbers\"",
     ]
     .map(|what| page.find(what).unwrap_or_else(|| panic!("{what} is not in the page")));
     assert!(places.is_sorted(), "{places:?}");
