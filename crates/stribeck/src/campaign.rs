@@ -23,7 +23,6 @@ use crate::interrupt::{self, Interrupt};
 use crate::many_runs::{ManyRuns, Share, Stage, Wanted};
 use crate::out::say;
 use crate::place::{Place, shown};
-use crate::simulate::{jobs, threads};
 
 /// Flags of `campaign`.
 #[derive(Debug, clap::Args)]
@@ -33,16 +32,8 @@ pub struct Options {
     /// Folder of the campaign [default: runs/NAME, the name of the campaign]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Runs that go side by side [default: as many as cores]
-    #[arg(long, value_name = "N", value_parser = jobs)]
-    jobs: Option<usize>,
-    /// Worker threads of all runs together [default: all cores]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = threads)]
-    threads: Option<usize>,
-    /// Most memory that runs side by side may take together [GB]; fewer go at a time where records are long
-    /// [default: what the system has free]
-    #[arg(long, value_name = "G", value_parser = gigabytes)]
-    memory_gb: Option<f64>,
+    #[command(flatten)]
+    share: Share,
     /// Goes on with what is there, which the command does anyway: for scripts that say so
     #[arg(long)]
     resume: bool,
@@ -63,11 +54,6 @@ pub struct Options {
 pub(crate) struct Shard {
     pub(crate) part: usize,
     pub(crate) of: usize,
-}
-
-pub(crate) fn gigabytes(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|gb: &f64| gb.is_finite() && *gb > 0.0);
-    number.ok_or_else(|| "not a positive number of gigabytes, such as 8".to_owned())
 }
 
 pub(crate) fn shard(text: &str) -> Result<Shard, String> {
@@ -142,14 +128,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let campaign = Campaign::read(&file)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&campaign.name));
     if let Some(engine) = options.emit {
-        // As many threads as it may have, or one a job, and one part a run up to some.
+        // One part a run, up to some.
         let parts = u32::try_from(campaign.runs.len()).unwrap_or(MOST_PARTS).min(MOST_PARTS);
-        let part = Part {
-            of: options.shards.unwrap_or(parts),
-            jobs: options.jobs,
-            threads: options.threads.or(options.jobs).unwrap_or(1),
-            memory_gb: options.memory_gb,
-        };
+        let part = Part::new(options.shards.unwrap_or(parts), options.share);
         say!("{}", emit::script(engine, "campaign", &file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
@@ -161,8 +142,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         options.shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1)
     };
     let due = folder.0.due(campaign.keep, campaign.runs.iter().filter(mine).map(Wanted::from), &interrupt)?;
-    let share = Share { jobs: options.jobs, threads: options.threads, memory_gb: options.memory_gb };
-    folder.0.make(campaign.keep, &due, share, &interrupt, &|jobs| {
+    folder.0.make(campaign.keep, &due, options.share, &interrupt, &|jobs| {
         eprintln!(
             "{}: {} runs, {} of them to be run here, {} → {}",
             campaign.name,

@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 
+use crate::many_runs::Share;
+
 /// Engines that a script can be written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub(crate) enum Engine {
@@ -20,6 +22,14 @@ pub(crate) struct Part {
     pub(crate) jobs: Option<usize>,
     pub(crate) threads: usize,
     pub(crate) memory_gb: Option<f64>,
+}
+
+impl Part {
+    /// One of so many, with as many threads as it may have, or one a job.
+    pub(crate) fn new(of: u32, share: Share) -> Self {
+        let Share { jobs, threads, memory_gb } = share;
+        Self { of, jobs, threads: threads.or(jobs).unwrap_or(1), memory_gb }
+    }
 }
 
 /// Parts of a command for which nobody has said how many.

@@ -18,12 +18,11 @@ use stribeck_report::inference::write_inference;
 use stribeck_scene::inference::Inference;
 use stribeck_scene::run_dir::{Keep, check_folder, write_atomic};
 
-use crate::campaign::{Shard, gigabytes, shard};
+use crate::campaign::{Shard, shard};
 use crate::interrupt::{self, Interrupt};
 use crate::many_runs::{Share, Stage, summary_of};
 use crate::out::say;
 use crate::place::{Place, shown};
-use crate::simulate::{jobs, threads};
 use answer::Known;
 use outputs::{Row, Table};
 use rounds::{Point, Round, Rounds};
@@ -36,15 +35,8 @@ pub struct Options {
     /// Folder of the inference [default: runs/NAME, the name of the inference]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Runs that go side by side [default: as many as cores]
-    #[arg(long, value_name = "N", value_parser = jobs)]
-    jobs: Option<usize>,
-    /// Worker threads of all runs together [default: all cores]; the answer does not depend on it
-    #[arg(long, value_name = "N", value_parser = threads)]
-    threads: Option<usize>,
-    /// Most memory that runs side by side may take together [GB] [default: what the system has free]
-    #[arg(long, value_name = "G", value_parser = gigabytes)]
-    memory_gb: Option<f64>,
+    #[command(flatten)]
+    share: Share,
     /// Runs only part I of N of each round, for several machines that share the folder; each waits until the
     /// others have done theirs
     #[arg(long, value_name = "I/N", value_parser = shard)]
@@ -81,12 +73,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let inference = Inference::read(&file)?;
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&inference.name));
     if let Some(engine) = options.emit {
-        let part = crate::emit::Part {
-            of: options.shards.unwrap_or(crate::emit::MOST_PARTS),
-            jobs: options.jobs,
-            threads: options.threads.or(options.jobs).unwrap_or(1),
-            memory_gb: options.memory_gb,
-        };
+        let part = crate::emit::Part::new(options.shards.unwrap_or(crate::emit::MOST_PARTS), options.share);
         say!("{}", crate::emit::script(engine, "infer", &file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
@@ -223,9 +210,8 @@ impl Study<'_> {
             |number: usize| options.shard.is_none_or(|Shard { part, of }| (number - 1) % of == part - 1);
         let wanted = || Rounds::wanted(points).filter(|wanted| mine(wanted.number));
         let due = rounds.runs().due(Keep::Numbers, wanted(), interrupt)?;
-        let share = Share { jobs: options.jobs, threads: options.threads, memory_gb: options.memory_gb };
         if !due.is_empty() {
-            rounds.runs().make(Keep::Numbers, &due, share, interrupt, &|jobs| {
+            rounds.runs().make(Keep::Numbers, &due, options.share, interrupt, &|jobs| {
                 let round = round.shown();
                 eprintln!("{}, {round}: {} runs to be made, {}", inference.name, due.len(), jobs.shown());
             });

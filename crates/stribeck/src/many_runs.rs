@@ -15,6 +15,7 @@ use crate::interrupt::Interrupt;
 use crate::memory;
 use crate::place::shown;
 use crate::side_by_side::{Due, Jobs, Shop};
+use crate::simulate::{jobs, threads};
 
 /// The folder that holds the runs.
 #[derive(Debug, Clone)]
@@ -40,12 +41,24 @@ pub(crate) enum Stage {
     Due,
 }
 
-/// How much of the machine the runs may take.
-#[derive(Debug, Clone, Copy)]
+/// How much of the machine the runs may take, as flags of their command.
+#[derive(Debug, Clone, Copy, clap::Args)]
 pub(crate) struct Share {
+    /// Runs that go side by side [default: as many as cores]
+    #[arg(long, value_name = "N", value_parser = jobs)]
     pub(crate) jobs: Option<usize>,
+    /// Worker threads of all runs together [default: all cores]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<usize>,
+    /// Most memory that runs side by side may take together [GB]; fewer go at a time where records are long
+    /// [default: what the system has free]
+    #[arg(long, value_name = "G", value_parser = gigabytes)]
     pub(crate) memory_gb: Option<f64>,
+}
+
+fn gigabytes(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|gb: &f64| gb.is_finite() && *gb > 0.0);
+    number.ok_or_else(|| "not a positive number of gigabytes, such as 8".to_owned())
 }
 
 impl ManyRuns {
