@@ -171,7 +171,7 @@ impl Engine {
         self.mean = mean_shape(&bearing);
         self.motion = BearingInMotion::new(bearing, start);
         self.steps_per_sample = steps;
-        (self.first, self.most_stored) = (None, 0.0);
+        (self.first, self.most_stored, self.energies) = (None, 0.0, Energies::default());
     }
 
     /// Takes so many samples, which are then in [`samples`](Self::samples).

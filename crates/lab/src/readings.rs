@@ -14,7 +14,7 @@ pub const PER_SAMPLE: usize = 10;
 pub const BEFORE_ROLLERS: usize = 18;
 
 /// Numbers of a roller in a picture: centre, x and y [m]; angle by which it has turned [rad]; force of the outer
-/// raceway, x and y [N]; of the inner one [N]; of the cage [N]; films on both [m], zero without oil.
+/// raceway, x and y [N]; of the inner one and of the cage likewise; films on both [m], zero without oil.
 pub const PER_ROLLER: usize = 11;
 
 /// Appends a sample.
@@ -45,12 +45,15 @@ pub(crate) fn picture(motion: &BearingInMotion, energies: &Energies, imbalance: 
     } = *energies;
     to.extend([kinetic, strain, contact, friction, damping, contact_damping, film, external, drive, imbalance]);
     to.push(motion.bearing().time_step);
+    // Forces are means over an interval, and there is none before the first step.
+    let moved = energies.time > 0.0;
+    let known = |force: [f64; 2]| if moved { force } else { [0.0; 2] };
     for roller in motion.rollers() {
         to.extend(roller.centre);
         to.push(roller.spin);
-        to.extend(roller.outer);
-        to.extend(roller.inner);
-        to.extend(roller.cage);
+        to.extend(known(roller.outer));
+        to.extend(known(roller.inner));
+        to.extend(known(roller.cage));
         to.extend(roller.films.unwrap_or_default());
     }
 }
