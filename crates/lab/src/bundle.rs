@@ -35,14 +35,20 @@ const BETWEEN_SENSORS_DEG: usize = 15;
 const CHECKED_S: f64 = 0.01;
 const CHECKS: usize = 100;
 
+/// Of these, so many are the beginning of a stretch that the page steps from the program's own state.
+const STATES: usize = 10;
+
 /// What the page holds of a scene.
 pub(crate) struct Bundled {
     /// Its numbers.
     pub(crate) content: Content,
     /// What the scripts read.
     pub(crate) facts: Value,
-    /// Forces on all rollers at [`CHECKS`] places of the first milliseconds, as the program computes them.
+    /// Forces on all rollers at [`CHECKS`] places of the first milliseconds, as the program computes them, after
+    /// the samples from one to the next.
     pub(crate) reference: Vec<f64>,
+    /// States of that run from which the page goes on, [`STATES`] in all, as bytes.
+    pub(crate) states: Vec<Vec<u8>>,
 }
 
 /// The scene as it runs in a page: in modes, without pictures, with sensors all around the ring after its own.
@@ -76,19 +82,30 @@ pub(crate) fn bundle(written: &Scene, runs: Option<&Path>) -> Result<Bundled, Er
     let handles = handles(&resolved, &modal.parameters, spall.as_ref(), [time_step, rates.oil.viscosity]);
     let reduction = &modal.reduction;
     let facts = facts(&scene, &resolved, reduction, &handles, time_step);
-    let mut motion = BearingInMotion::new(bearing, start.clone());
-    let samples = (CHECKED_S / resolved.interval).round() as usize;
-    let every = (samples / CHECKS).max(1);
-    let mut reference = vec![every as f64];
-    for sample in 1..=every * CHECKS {
-        motion.interval(steps_per_sample);
-        if sample % every == 0 {
-            reference.extend(motion.rollers().flat_map(|roller| [roller.outer, roller.inner].concat()));
-        }
-    }
+    let (reference, states) = reference(&resolved, steps_per_sample, BearingInMotion::new(bearing, start.clone()))?;
     let content =
         Content { modal, interval: resolved.interval, steps_per_sample, start, handles, spall, rates };
-    Ok(Bundled { content, facts, reference })
+    Ok(Bundled { content, facts, reference, states })
+}
+
+/// The first milliseconds of a run: its forces, and states of it.
+fn reference(
+    scene: &ResolvedScene,
+    steps_per_sample: usize,
+    mut motion: BearingInMotion,
+) -> Result<(Vec<f64>, Vec<Vec<u8>>), Error> {
+    let every = ((CHECKED_S / scene.interval).round() as usize / CHECKS).max(1);
+    let (mut reference, mut states) = (vec![every as f64], Vec::new());
+    for check in 0..CHECKS {
+        if check % (CHECKS / STATES) == 0 {
+            states.push(postcard::to_stdvec(&motion.saved().state)?);
+        }
+        (0..every).for_each(|_| {
+            motion.interval(steps_per_sample);
+        });
+        reference.extend(motion.rollers().flat_map(|roller| [roller.outer, roller.inner].concat()));
+    }
+    Ok((reference, states))
 }
 
 /// The spall with steep walls, which the mesh has.

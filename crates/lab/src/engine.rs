@@ -117,6 +117,21 @@ impl Engine {
         Ok(())
     }
 
+    /// Goes on from a state of a run of the scene.
+    ///
+    /// # Errors
+    /// When the bytes are no state of this bearing.
+    pub fn go_on_from(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let state = postcard::from_bytes(bytes)?;
+        let saved = Saved::first(self.motion.bearing(), state);
+        if !saved.fits(self.motion.bearing()) {
+            return Err(Error::Content(postcard::Error::DeserializeBadEncoding));
+        }
+        let bearing = self.motion.bearing().clone();
+        self.take(bearing, self.steps_per_sample, saved);
+        Ok(())
+    }
+
     /// Goes on with the handles that were asked for.
     fn go_on(&mut self) -> Result<(), Error> {
         let only_watched = (0..HANDLES.len()).all(|n| n == at::ROLLER || self.asked[n] == self.now[n]);

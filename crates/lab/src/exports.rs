@@ -61,6 +61,15 @@ pub(crate) extern "C" fn lab_open() -> u32 {
     })
 }
 
+/// Goes on from the state whose bytes were written there.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn lab_go_on_from() -> u32 {
+    with(|lab| {
+        let bytes = std::mem::take(&mut lab.input);
+        lab.engine.as_mut().map_or(Ok(u32::MAX), |engine| engine.go_on_from(&bytes).map(|()| 0))
+    })
+}
+
 /// Asks for a value of a handle.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_ask(handle: usize, value: f64) -> u32 {

@@ -56,15 +56,18 @@ pub fn is_module(bytes: &[u8]) -> bool {
 pub fn page(scenes: &[Scene], module: &[u8], runs: Option<&Path>, command: &str) -> Result<Page, Error> {
     let bundled: Vec<Bundled> =
         scenes.iter().map(|scene| bundle::bundle(scene, runs)).collect::<Result<_, _>>()?;
-    let packed = |b: &Bundled| Ok([pack(&b.content.to_bytes()?), pack(&bytes(&b.reference))]);
-    let packed: Vec<[String; 2]> = bundled.iter().map(packed).collect::<Result<_, Error>>()?;
+    let packed = |b: &Bundled| {
+        Ok([pack(&b.content.to_bytes()?), pack(&bytes(&b.reference)), pack(&in_row(&b.states))])
+    };
+    let packed: Vec<[String; 3]> = bundled.iter().map(packed).collect::<Result<_, Error>>()?;
     let module = pack(module);
     let facts: Vec<_> = bundled.iter().map(|b| &b.facts).collect();
     let facts = json!({ "bearings": facts, "command": command, "version": env!("CARGO_PKG_VERSION") });
     let mut data = element("facts", "application/json", &facts.to_string().replace("</", "<\\/"));
-    for (n, [content, reference]) in packed.iter().enumerate() {
+    for (n, [content, reference, states]) in packed.iter().enumerate() {
         data += &element(&format!("bearing-{n}"), "text/plain", content);
         data += &element(&format!("reference-{n}"), "text/plain", reference);
+        data += &element(&format!("states-{n}"), "text/plain", states);
     }
     data += &element("module", "text/plain", &module);
     data += &element("engine", "text/plain", &plain(ENGINE));
@@ -101,6 +104,11 @@ fn element(id: &str, kind: &str, text: &str) -> String {
 
 fn bytes(numbers: &[f64]) -> Vec<u8> {
     numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+/// One after the other, each behind its length.
+fn in_row(parts: &[Vec<u8>]) -> Vec<u8> {
+    parts.iter().flat_map(|part| [&(part.len() as u32).to_le_bytes()[..], part].concat()).collect()
 }
 
 /// Compressed and as text: browsers undo both.

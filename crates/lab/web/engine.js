@@ -7,11 +7,13 @@ export class Bearing {
     [this.perSample, this.beforeRollers, this.perRoller] = [0, 1, 2].map((n) => this.x.lab_layout(n));
   }
 
-  open(bytes) {
+  give(bytes) {
     const at = this.x.lab_input(bytes.length);
     new Uint8Array(this.x.memory.buffer, at, bytes.length).set(bytes);
-    this.sure(this.x.lab_open());
   }
+
+  open(bytes) { this.give(bytes); this.sure(this.x.lab_open()); }
+  goOnFrom(bytes) { this.give(bytes); this.sure(this.x.lab_go_on_from()); }
 
   // What a call said, or the reason why it failed.
   sure(code) {
@@ -94,27 +96,26 @@ export function serve(post, now, later) {
     schedule();
   }
 
-  // The first milliseconds of the scene once more, beside those of the program.
-  function check(reference) {
-    const other = fresh();
-    other.open(content);
+  // The first milliseconds of the scene once more, beside those of the program: in one piece, and from states of
+  // the program's run, because every strike makes a difference of rounding larger.
+  function check(reference, states) {
     const every = reference[0], forces = reference.subarray(1), began = now();
-    const perCheck = other.forces().length, checks = forces.length / perCheck;
-    let largest = 0, off = 0, when = 0;
-    const course = [];
+    const alone = fresh(), guided = fresh();
+    alone.open(content);
+    guided.open(content);
+    const perCheck = alone.forces().length, checks = forces.length / perCheck, pieces = states.length;
+    const told = { alone: 0, guided: 0, largest: 0, close: 0 };
+    const worst = (here, n) => here.reduce((off, force, i) => Math.max(off, Math.abs(force - forces[n * perCheck + i])), 0);
+    for (const force of forces) told.largest = Math.max(told.largest, Math.abs(force));
     for (let n = 0; n < checks; n += 1) {
-      other.run(every);
-      const here = other.forces();
-      let worst = 0;
-      for (let i = 0; i < perCheck; i += 1) {
-        const there = forces[n * perCheck + i];
-        largest = Math.max(largest, Math.abs(there));
-        worst = Math.max(worst, Math.abs(here[i] - there));
-      }
-      course.push(worst);
-      if (worst > off) { off = worst; when = (n + 1) * every * interval; }
+      if (n % (checks / pieces) === 0) guided.goOnFrom(states[n / (checks / pieces)]);
+      alone.run(every);
+      guided.run(every);
+      told.guided = Math.max(told.guided, worst(guided.forces(), n));
+      told.alone = Math.max(told.alone, worst(alone.forces(), n));
+      if (told.alone < 1e-9 * told.largest) told.close = (n + 1) * every * interval;
     }
-    return { kind: "checked", off, largest, when, course, until: checks * every * interval, took: now() - began };
+    return { kind: "checked", ...told, pieces, until: checks * every * interval, took: now() - began };
   }
 
   const tasks = {
@@ -138,7 +139,7 @@ export function serve(post, now, later) {
     restart() { bearing.sure(bearing.x.lab_restart()); since = 0; still({ anew: true }); },
     run({ on, slow }) { running = on; pace = slow; since = 0; },
     read() { unread -= 1; },
-    check({ reference }) { post(check(reference)); },
+    check({ reference, states }) { post(check(reference, states)); },
   };
 
   return (message) => {

@@ -70,7 +70,7 @@ export class Plot {
     c.setTransform(ratio, 0, 0, ratio, 0, 0);
     c.clearRect(0, 0, wide, high);
     c.font = "11px system-ui, sans-serif";
-    Object.assign(this, { left: 52, right: wide - 8, top: 16, bottom: high - 30 });
+    Object.assign(this, { left: 52, right: wide - 18, top: 16, bottom: high - 30 });
     const [x0, x1] = this.seen(), [y0, y1] = this.yRange || this.fitted(x0, x1);
     const fy = this.log ? Math.log10 : (v) => v, [f0, f1] = [fy(y0), fy(y1)];
     const px = (v) => this.left + (v - x0) / (x1 - x0) * (this.right - this.left);

@@ -10,7 +10,7 @@ export const PRESETS = [
   },
   {
     id: "facets", name: "Fig. 4: facets", roller: true,
-    set: (scene) => ({ ...scene, arcs: 0, facets: Math.max(8, Math.round(scene.facets / 8) * 4) }), notch: false, view: "spectrum",
+    set: (scene) => ({ ...scene, arcs: 0, facets: Math.max(8, Math.round(0.1875 * scene.facets) * 4) }), notch: false, view: "spectrum",
     words: (f, h) => `A roller of ${h.facets} facets turns ${shown(f.spin, "Hz")} against the cage, so that its corners pass the raceway ${h.facets} × ${f.spin.toFixed(2)} Hz = ${shown(f.facets, "Hz")}: the line with that mark. `
       + "Change the number of facets or the speed, and the line goes with it, while lines of the ring stay where they are.",
   },
