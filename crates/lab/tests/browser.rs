@@ -23,7 +23,10 @@ const MODULE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../target/lab/stri
 /// What is asked of the page while it runs, in words of its own: `lab`, and fields by their names.
 const TOOLS: &str = r#"
   const lab = window.stribeckLab, wait = (ms) => new Promise((done) => setTimeout(done, ms));
-  const until = async (what) => { for (let n = 0; n < 4000 && !what(); n += 1) await wait(20); };
+  const until = async (what) => {
+    for (let n = 0; n < 2500 && !what(); n += 1) await wait(20);
+    if (!what()) throw new Error(`in vain: ${what}; the page says “${document.getElementById("trouble").textContent}”`);
+  };
   const set = (id, value) => { const field = document.getElementById(id); field.value = value; field.dispatchEvent(new Event("change")); };
   const text = (id) => document.getElementById(id).textContent;
   await until(() => (lab && lab.ready) || !document.getElementById("trouble").hidden);
@@ -32,7 +35,7 @@ const TOOLS: &str = r#"
 /// The paper's bearing, coarse.
 fn coarse() -> Scene {
     let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
-    scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 5.0 });
+    scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 2.0 });
     scene.mesh.size_mm = 2.0;
     scene.mesh.roller_facets = 88;
     scene.contact.penalty_scale = 0.2;
@@ -98,7 +101,7 @@ fn example_the_page_runs_and_its_numbers_are_right() {
       await until(() => lab.handles.load === 30000);
       const loadedAt = lab.picture.time;
       set("handle-spallAngle", "100");
-      await until(() => lab.handles.spallAngle === 100 && lab.picture.time > 0.08);
+      await until(() => lab.handles.spallAngle === 100 && lab.picture.time > 0.05);
       await wait(900);
       const moved = lab.balance;
       set("handle-load", "nonsense");
@@ -139,7 +142,7 @@ fn example_presets_are_links_and_arcs_take_the_tone_away() {
       const facets = lab.spectra.tone.level, words = text("words"), alone = !lab.engine.worker;
       const hz = Number(/= ([\d.]+) kHz/.exec(words)[1]) * 1000, f = lab.handles.facets;
       location.hash = "arcs";
-      await until(() => lab.handles.arcs === 1 && lab.picture.time > 0.1 && lab.record.count > 9000);
+      await until(() => lab.handles.arcs === 1 && lab.picture.time > 0.08 && lab.record.count > 7000);
       await wait(900);
       lab.handles.arcs = 0;
       await until(() => lab.spectra.tone && lab.spectra.tone.level !== facets);
@@ -173,6 +176,7 @@ fn refuses_a_browser_without_web_assembly() {
     let folder = Scratch::create("lab-without");
     let html = page_of(&coarse(), &module).replacen("<head>", "<head><script>delete window.WebAssembly</script>", 1);
     let file = written(&folder, "lab.html", &html);
-    let said = asked(&browser, &folder, &format!("file://{}", file.display()), "return text('trouble');");
+    let address = format!("file://{}", file.display());
+    let said = asked(&browser, &folder, &address, "return text('trouble');");
     assert!(said.as_str().is_some_and(|words| words.contains("runs no WebAssembly")), "{said}");
 }
