@@ -139,20 +139,19 @@ fn example_presets_are_links_and_arcs_take_the_tone_away() {
     let file = written(&folder, "lab.html", &page_of(&coarse(), &module));
     let script = r#"
       await until(() => lab.picture.time > 0.1 && lab.spectra.tone);
-      const facets = lab.spectra.tone.level, words = text("words"), alone = !lab.engine.worker;
+      const facets = lab.spectra.corners.level, words = text("words"), alone = !lab.engine.worker;
       const hz = Number(/= ([\d.]+) kHz/.exec(words)[1]) * 1000, f = lab.handles.facets;
       location.hash = "arcs";
       await until(() => lab.handles.arcs === 1 && lab.picture.time > 0.08 && lab.record.count > 7000);
       await wait(900);
-      lab.handles.arcs = 0;
-      await until(() => lab.spectra.tone && lab.spectra.tone.level !== facets);
-      await wait(900);
-      return { facets, arcs: lab.spectra.tone.level, hz, f, alone, trouble: text("trouble") };
+      const arcs = lab.spectra.corners.level;
+      return { facets, arcs, tone: lab.spectra.tone, hz, f, alone, trouble: text("trouble") };
     "#;
     let said = asked(&browser, &folder, &format!("file://{}?alone#facets", file.display()), script);
     assert_eq!((&said["trouble"], &said["alone"]), (&Value::from(""), &Value::from(true)), "{said}");
     // 68 facets at 41.7 Hz.
     assert!((number(&said, "hz") - 41.7 * number(&said, "f")).abs() < 30.0, "{said}");
+    assert_eq!(said["tone"], Value::Null, "{said}");
     assert!(number(&said, "arcs") < 0.3 * number(&said, "facets"), "{said}");
 }
 

@@ -298,6 +298,9 @@ function drawSpectra() {
   $("tone").textContent = lab.handles.arcs ? "Arcs have no corners: no line is expected where facets would pass."
     : line ? `Corners of rollers pass at ${shown(f.facets, "Hz")}; the highest line there stands at ${shown(line.hz, "Hz")}, ${shown(line.level, "g")}, ${line.above.toFixed(0)} dB above its surroundings.` : "";
   lab.spectra.tone = line;
+  // Where corners would pass, also where there are none.
+  const corners = lab.handles.facets * f.spin;
+  lab.spectra.corners = corners < 0.5 * rate ? lineNear(s, corners, Math.max(3 * s.step, 0.005 * corners)) : null;
   const [low, high] = [1000 * Number($("low").value), 1000 * Number($("high").value)];
   const e = envelope(signal, rate, low, Math.min(high, 0.49 * rate));
   const es = spectrum(e, rate, e.length), end = Math.max(6 * f.bpfo, 40 * es.step);

@@ -104,8 +104,11 @@ fn tab_address(host: &str) -> String {
     while started.elapsed() < PATIENCE {
         let mut stream = TcpStream::connect(host).expect("the browser listens");
         write!(stream, "GET /json HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").expect("sent");
-        let mut text = String::new();
-        stream.read_to_string(&mut text).ok();
+        // The browser keeps the connection open: what has come after a while is all.
+        stream.set_read_timeout(Some(Duration::from_millis(300))).expect("a time limit");
+        let mut bytes = Vec::new();
+        stream.read_to_end(&mut bytes).ok();
+        let text = String::from_utf8_lossy(&bytes);
         let list = text.find("\r\n\r\n").and_then(|at| serde_json::from_str::<Value>(text[at..].trim()).ok());
         let page = list.as_ref().and_then(|list| list.as_array()?.iter().find(|tab| tab["type"] == "page"));
         if let Some(address) = page.and_then(|page| page["webSocketDebuggerUrl"].as_str()) {
