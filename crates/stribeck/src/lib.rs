@@ -11,6 +11,7 @@ mod analyse;
 mod bearings;
 mod board;
 mod campaign;
+mod compare;
 mod emit;
 mod export;
 mod infer;
@@ -50,6 +51,8 @@ pub enum Command {
     Bearings(bearings::Options),
     /// Says what a measured record shows: which defects, how sure, and what it cannot say
     Analyse(analyse::Options),
+    /// Sets runs, ensembles and measured records beside each other: what was changed, what changed with it
+    Compare(compare::Options),
     /// Writes the signals or the stress frames of a run in a format of other programs
     Export(export::Options),
 }
@@ -69,6 +72,7 @@ impl Command {
             Self::Plan(options) => plan::run(options, place),
             Self::Bearings(options) => bearings::run(options),
             Self::Analyse(options) => analyse::run(options, place),
+            Self::Compare(options) => compare::run(options, place),
             Self::Export(options) => export::run(options, place),
         }
     }
