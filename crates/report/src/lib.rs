@@ -18,6 +18,7 @@
 //! | many starts of a scene | [`write_ensemble`] | `report.html`, `summary.json`, `figures/` |
 //! | the reduced model beside the full one | [`write_agreement`] | `report.html`, `validation.json` |
 //! | runs, ensembles and records beside each other | [`write_comparison`] | `report.html`, `compare.json` |
+//! | a campaign | [`write_campaign`] | `index.html` |
 //! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
@@ -29,6 +30,7 @@ pub mod plot;
 mod page;
 
 mod lead;
+mod sound;
 
 mod answer;
 mod course;
@@ -39,6 +41,7 @@ mod sections;
 mod tables;
 
 mod agreement;
+mod campaign;
 mod comparison;
 mod ensemble;
 pub mod inference;
@@ -49,6 +52,7 @@ mod trend;
 mod error;
 
 pub use agreement::write_agreement;
+pub use campaign::{CampaignIndex, CampaignRun, write_campaign};
 pub use comparison::{MOST_COMPARED, answer as comparison_in_words, difference, mean, write_comparison};
 pub use ensemble::write_ensemble;
 pub use error::Error;

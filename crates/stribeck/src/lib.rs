@@ -23,6 +23,7 @@ mod ranks;
 mod report;
 mod side_by_side;
 mod simulate;
+mod sweep;
 mod validate;
 
 use std::process::ExitCode;
@@ -39,6 +40,8 @@ pub enum Command {
     Report(report::Options),
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and goes on
     Campaign(campaign::Options),
+    /// Runs a scene with several values of some fields, each with every other: a campaign in one line
+    Sweep(sweep::Options),
     /// Infers unknown fields of a scene from numbers that were seen: what they can have been, what they
     /// cannot
     Infer(infer::Options),
@@ -67,6 +70,7 @@ impl Command {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Campaign(options) => campaign::run(options, place),
+            Self::Sweep(options) => sweep::run(options, place),
             Self::Infer(options) => infer::run(options, place),
             Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),

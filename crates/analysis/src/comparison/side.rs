@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde::Serialize;
 use serde_json::Value;
-use stribeck_dsp::{BandEnvelope, statistics};
+use stribeck_dsp::BandEnvelope;
 use stribeck_formats::Channel;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
@@ -21,6 +21,7 @@ use crate::levels::STANDARD_GRAVITY;
 use crate::load::Distribution;
 use crate::measured::{AccelerationUnit, Analysis, Family, Machine};
 use crate::record::Record;
+use crate::summary::RecordLevels;
 
 /// Samples that are kept of a trace, for a picture.
 const SHOWN: usize = 1 << 16;
@@ -121,14 +122,8 @@ pub struct Shape {
 }
 
 impl Shape {
-    fn of(signal: &[f64]) -> Option<Self> {
-        let mean = statistics::mean(signal).ok()?;
-        let centred: Vec<f64> = signal.iter().map(|x| x - mean).collect();
-        Some(Self {
-            rms: statistics::rms(&centred).ok()?,
-            peak: statistics::peak(&centred).ok()?,
-            kurtosis: statistics::kurtosis(&centred).ok()?,
-        })
+    fn of(levels: RecordLevels) -> Self {
+        Self { rms: levels.rms_g, peak: levels.peak_g, kurtosis: levels.kurtosis }
     }
 }
 
@@ -153,7 +148,7 @@ impl Member {
     /// The signal of a run at its sensor number `sensor`, with the run's numbers.
     fn of_findings(scene: &ResolvedScene, findings: Findings, sensor: usize) -> Result<Self, Error> {
         let SensorSignal { name, raw_g, raw_density, .. } = &findings.sensors[sensor];
-        let shape = Shape::of(raw_g);
+        let shape = RecordLevels::of(raw_g).map(Shape::of);
         let (start, step) = (findings.start_s, findings.interval_s);
         let analysis = judged(scene, &channel_name(name), raw_g, 1.0 / step)?;
         let density = match (&analysis, raw_density) {
