@@ -22,6 +22,8 @@ use stribeck::Place;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    loudness: stribeck::Loudness,
 }
 
 #[derive(Debug, Subcommand)]
@@ -42,7 +44,9 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    stribeck::conclude(match Cli::parse().command {
+    let cli = Cli::parse();
+    cli.loudness.apply();
+    stribeck::conclude(match cli.command {
         Command::Program(command) => command.run(&Place::repository("cargo xtask", workspace::root())),
         Command::Study(options) => study::run(&options),
         Command::Compare(options) => compare::run(&options),

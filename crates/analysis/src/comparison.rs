@@ -124,9 +124,8 @@ impl Side {
     /// Envelope spectrum of the band nearest to `band_hz`, mean over the signals, with the band's ends [Hz];
     /// `None` where no signal is long enough.
     pub fn envelope(&self, band_hz: (f64, f64)) -> Option<(Sampled, (f64, f64))> {
-        let distance = |b: &BandEnvelope| {
-            (b.low_hz / band_hz.0).ln().abs() + (b.high_hz / band_hz.1).ln().abs()
-        };
+        let distance =
+            |b: &BandEnvelope| (b.low_hz / band_hz.0).ln().abs() + (b.high_hz / band_hz.1).ln().abs();
         let nearest = |member: &'_ Member| {
             let place = (0..member.bands.len())
                 .min_by(|a, b| distance(&member.bands[*a]).total_cmp(&distance(&member.bands[*b])));

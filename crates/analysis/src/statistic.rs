@@ -217,7 +217,10 @@ mod tests {
         let (low, high) = (of(&[0.0, 1.0, 2.0]), of(&[10.0, 11.0, 12.0]));
         let [from, to] = high.less(&low).expect("both scatter");
         let half = 2.776 * (2.0_f64 / 3.0).sqrt();
-        assert!((from - (10.0 - half)).abs() < PRINTED && (to - (10.0 + half)).abs() < PRINTED, "{from} {to}");
+        assert!(
+            (from - (10.0 - half)).abs() < PRINTED && (to - (10.0 + half)).abs() < PRINTED,
+            "{from} {to}"
+        );
         let [from, to] = of(&[5.0]).less(&low).expect("one scatters");
         let half = 4.303 * (4.0_f64 / 3.0).sqrt();
         assert!((from - (4.0 - half)).abs() < PRINTED && (to - (4.0 + half)).abs() < PRINTED, "{from} {to}");

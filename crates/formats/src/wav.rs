@@ -250,9 +250,8 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     }
     let count = u16::try_from(channels.len()).map_err(|_| misfit(format!("{} channels", channels.len())))?;
     let format = Format { sort: FLOAT, channels: count, rate: rate as u32, bits: 64 };
-    let head = format
-        .head(rows, notes)
-        .ok_or_else(|| misfit("more than 4 GiB of samples; use npz".to_owned()))?;
+    let head =
+        format.head(rows, notes).ok_or_else(|| misfit("more than 4 GiB of samples; use npz".to_owned()))?;
     let io = |e| Error::write(path, e);
     let mut file = BufWriter::new(File::create(path).map_err(io)?);
     file.write_all(&head).map_err(io)?;

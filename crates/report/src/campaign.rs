@@ -187,7 +187,9 @@ impl Abscissa {
             let all = values(index, field);
             let place = |run: &CampaignRun| {
                 let value = run.values.get(at).map(String::as_str);
-                value.and_then(|value| all.iter().position(|v| *v == value)).map_or(f64::NAN, |n| n as f64 + 1.0)
+                value
+                    .and_then(|value| all.iter().position(|v| *v == value))
+                    .map_or(f64::NAN, |n| n as f64 + 1.0)
             };
             let words: Vec<String> =
                 all.iter().enumerate().map(|(n, value)| format!("{} is {value}", n + 1)).collect();
@@ -262,9 +264,9 @@ fn figure(
     // Lines lie behind the dots.
     figure.series = lines.into_iter().chain(dots).collect();
     let starts = index.runs.iter().any(|run| run.start > 1);
-    let (least, most) = known.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (_, _, y)| {
-        (least.min(*y), most.max(*y))
-    });
+    let (least, most) = known
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (_, _, y)| (least.min(*y), most.max(*y)));
     let dots = if starts { "A dot for every start." } else { "A dot for every run." };
     Some(
         figure

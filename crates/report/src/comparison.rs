@@ -119,9 +119,9 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
     };
     let known: Vec<&Row> =
         comparison.rows.iter().filter(|row| row.against_first.iter().any(Option::is_some)).collect();
-    let scatter = known.iter().any(|row| {
-        row.against_first.iter().flatten().any(|contrast| contrast.verdict != Verdict::Unknown)
-    });
+    let scatter = known
+        .iter()
+        .any(|row| row.against_first.iter().flatten().any(|contrast| contrast.verdict != Verdict::Unknown));
     let differ: Vec<&&Row> = known.iter().filter(|row| row.differs()).collect();
     let follows = if known.is_empty() {
         "They have no number in common.".to_owned()
@@ -291,8 +291,7 @@ pub fn difference(contrast: &Contrast) -> String {
         if value > 0.0 { format!("+{text}") } else { text.replace('-', "−") }
     };
     let part = contrast.percent.filter(|p| p.abs() < 1e4).map(|p| format!(" ({} %)", signed(p)));
-    let interval = contrast.low.zip(contrast.high).map(|(low, high)| {
-        format!(" [{} to {}]", signed(low), signed(high))
-    });
+    let interval =
+        contrast.low.zip(contrast.high).map(|(low, high)| format!(" [{} to {}]", signed(low), signed(high)));
     format!("{}{}{}", signed(contrast.difference), part.unwrap_or_default(), interval.unwrap_or_default())
 }

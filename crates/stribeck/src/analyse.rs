@@ -16,7 +16,7 @@ use stribeck_scene::run_dir::{RunDir, check_folder, write_atomic};
 use stribeck_scene::scene::Scene;
 
 use crate::causes;
-use crate::out::say;
+use crate::out::{say, tell};
 use crate::place::{Place, shown};
 
 /// Flags of `analyse`.
@@ -40,6 +40,9 @@ pub struct Options {
     /// -analysis]
     #[arg(long)]
     out: Option<PathBuf>,
+    /// Writes the findings to standard output as JSON: those of one record, or a list of several
+    #[arg(long)]
+    json: bool,
 }
 
 /// How records are read, and what is known of their machine, as flags of every command that takes some.
@@ -146,6 +149,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
         let analysis = analyse(file, &out, options, place)?;
+        if options.json {
+            say!("{}", serde_json::to_string_pretty(&analysis.findings)?);
+            return Ok(ExitCode::SUCCESS);
+        }
         print(&analysis);
         for limit in &options.alarms {
             match limit.judge(&analysis.findings) {
@@ -172,7 +179,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
         };
         let file = file.display().to_string();
-        say!("{file}: {}", findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict));
+        let verdict = findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict);
+        if !options.json {
+            say!("{file}: {verdict}");
+        }
         entries.push(TrendEntry { file, folder, findings, error, alarms: Vec::new() });
     }
     let limits = limits(options, &entries);
@@ -180,18 +190,22 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let mut records = entries.iter().filter_map(|e| e.findings.as_ref()).peekable();
         let why = records.peek().map(|first| limit.quantity.missing(first));
         if let (Some(why), false) = (why, records.any(|f| limit.judge(f).is_some())) {
-            eprintln!("note: no record has a level for the limit of {}: {why}", limit.quantity.name());
+            tell!("note: no record has a level for the limit of {}: {why}", limit.quantity.name());
         }
     }
     for entry in &mut entries {
         let Some(findings) = &entry.findings else { continue };
         entry.alarms = limits.iter().filter_map(|limit| limit.judge(findings)).collect();
-        for judged in entry.alarms.iter().filter(|judged| judged.state != State::Good) {
+        for judged in entry.alarms.iter().filter(|judged| judged.state != State::Good && !options.json) {
             say!("{}: {}", entry.file, passed(judged));
         }
     }
     write_trend(&out, &entries, &limits)?;
-    say!("side by side: {}", shown(&out.join("trend.html")));
+    if options.json {
+        say!("{}", serde_json::to_string_pretty(&entries)?);
+    } else {
+        say!("side by side: {}", shown(&out.join("trend.html")));
+    }
     let failed = entries.iter().filter(|entry| entry.findings.is_none()).count();
     ensure!(failed == 0, "{failed} of {} records could not be analysed", entries.len());
     Ok(ExitCode::SUCCESS)
@@ -371,7 +385,7 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
         );
     };
     if found.is_none() && signals.iter().filter(|c| c.len == longest).count() > 1 {
-        eprintln!("note: channel `{}`; there are {}", channel.name, recording.names());
+        tell!("note: channel `{}`; there are {}", channel.name, recording.names());
     }
     Ok(channel)
 }

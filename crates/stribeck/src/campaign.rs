@@ -22,7 +22,7 @@ use stribeck_scene::scene::Scene;
 use crate::emit::{self, MOST_PARTS, Part};
 use crate::interrupt::{self, Interrupt};
 use crate::many_runs::{ManyRuns, Share, Stage, Wanted};
-use crate::out::say;
+use crate::out::{alert, say, tell};
 use crate::place::{Place, shown};
 use tables::{Row, Written};
 
@@ -158,7 +158,7 @@ pub(crate) fn carry_out(
         |variant: &&Variant| shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1);
     let due = folder.0.due(campaign.keep, campaign.runs.iter().filter(mine).map(Wanted::from), &interrupt)?;
     folder.0.make(campaign.keep, &due, share, &interrupt, &|jobs| {
-        eprintln!(
+        tell!(
             "{}: {} runs, {} of them to be run here, {} → {}",
             campaign.name,
             campaign.runs.len(),
@@ -237,13 +237,13 @@ fn conclude(
     if left > 0 {
         let all = campaign.runs.len();
         if left_here == 0 {
-            eprintln!(
+            tell!(
                 "this part is done; {left} of {all} runs of others are not at their end. Whichever part ends \
                  last makes the tables"
             );
             return Ok(ExitCode::SUCCESS);
         }
-        eprintln!(
+        tell!(
             "{left} of {all} runs are not at their end or without their numbers; the same command goes on. \
              Tables are made when all are"
         );
@@ -260,7 +260,7 @@ fn conclude(
         let why = row.reason.as_deref().unwrap_or_default();
         let allowed = why.lines().find_map(|line| line.trim_start().strip_prefix("= allowed: "));
         let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed: {allowed}"));
-        eprintln!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
+        alert!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
     }
     say!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.path().join(tables::RUNS)));
     say!("page: {}", shown(&folder.path().join(INDEX)));

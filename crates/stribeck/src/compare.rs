@@ -11,7 +11,7 @@ use stribeck_report::{MOST_COMPARED, comparison_in_words, difference, mean, writ
 use stribeck_scene::run_dir::{RunDir, check_folder};
 
 use crate::analyse::{Reading, Speed, examine};
-use crate::out::say;
+use crate::out::{say, tell};
 use crate::place::{Place, shown};
 
 /// Flags of `compare`.
@@ -54,7 +54,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let reading = completed(&options.reading, &sides);
     for ((asked, label), side) in options.sides.iter().zip(&labels).zip(&mut sides) {
         if side.is_none() {
-            eprintln!("{label} …");
+            tell!("{label} …");
             let examined = examine(asked, &reading.0, place);
             let analysis = examined.with_context(|| format!("`{}` cannot be compared", asked.display()))?;
             let mut record = Side::of_record(label, &analysis);
@@ -102,9 +102,8 @@ fn folder(asked: &Path, place: &Place) -> Result<Option<PathBuf>> {
 fn known(place: &Place) -> String {
     const MOST: usize = 8;
     let entries = std::fs::read_dir(place.runs()).into_iter().flatten().flatten();
-    let runs = entries.filter(|entry| {
-        RunDir::is_ensemble(entry.path()) || entry.path().join("run.json").exists()
-    });
+    let runs =
+        entries.filter(|entry| RunDir::is_ensemble(entry.path()) || entry.path().join("run.json").exists());
     let names: BTreeSet<String> =
         runs.map(|entry| format!("`{}`", entry.file_name().to_string_lossy())).collect();
     let more = names.len().saturating_sub(MOST);
@@ -115,7 +114,7 @@ fn known(place: &Place) -> String {
 /// The side of a run or ensemble. Beside records, a channel that only they have is theirs, and the run's is
 /// its leading sensor.
 fn of_folder(label: &str, folder: &Path, channel: Option<&str>, mixed: bool) -> Result<Side> {
-    eprintln!("{label} …");
+    tell!("{label} …");
     let side = match Side::of_folder(label, folder, channel) {
         Err(AnalysisError::NoSignal(_)) if mixed && channel.is_some() => Side::of_folder(label, folder, None),
         side => side,
@@ -189,8 +188,7 @@ fn print(comparison: &Comparison) {
         say!("{line}");
     }
     for field in &comparison.fields {
-        let values: Vec<&str> =
-            field.values.iter().map(|value| value.as_deref().unwrap_or("–")).collect();
+        let values: Vec<&str> = field.values.iter().map(|value| value.as_deref().unwrap_or("–")).collect();
         say!("  {:<36} {}", field.field, values.join("  |  "));
     }
     for row in &comparison.rows {
@@ -225,6 +223,9 @@ mod tests {
         assert_eq!(of(&["a/x.csv", "b/y.csv"]), ["x", "y"]);
         assert_eq!(of(&["a/x.csv", "b/x.csv", "y.mat"]), ["a/x.csv", "b/x.csv", "y"]);
         assert_eq!(of(&["x.csv", "x.csv"]), ["x.csv (1)", "x.csv (2)"]);
-        assert_eq!(default_folder(&of(&["a/x.csv", "b/x.csv", "y.mat"])), PathBuf::from("a-x.csv-and-b-x.csv-and-1-more-compared"));
+        assert_eq!(
+            default_folder(&of(&["a/x.csv", "b/x.csv", "y.mat"])),
+            PathBuf::from("a-x.csv-and-b-x.csv-and-1-more-compared")
+        );
     }
 }

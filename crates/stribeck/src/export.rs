@@ -19,7 +19,7 @@ use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 use stribeck_scene::scene::ModelScene;
 
-use crate::out::say;
+use crate::out::{caution, say};
 use crate::place::{Place, shown};
 
 /// Flags of `export`.
@@ -88,7 +88,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let dir = RunDir::open(&folder)?;
     let run = Run::read(dir.path())?;
     for missing in run.damage() {
-        eprintln!("warning: {missing}");
+        caution!("{missing}");
     }
     for (flag, given) in [("--rate-hz", options.rate_hz.is_some()), ("--slow", options.slow.is_some())] {
         if given && (options.to != Format::Wav || options.sensor.is_some()) {

@@ -9,7 +9,7 @@ use stribeck_scene::run_dir::Keep;
 
 use crate::campaign::{CAMPAIGN, SCENES, carry_out};
 use crate::many_runs::Share;
-use crate::out::say;
+use crate::out::{say, tell};
 use crate::place::{Place, shown};
 
 /// Flags of `sweep`.
@@ -77,7 +77,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             place.program
         );
     };
-    let twice = assigned.iter().enumerate().find(|(at, a)| assigned[..*at].iter().any(|b| b.field == a.field));
+    let twice =
+        assigned.iter().enumerate().find(|(at, a)| assigned[..*at].iter().any(|b| b.field == a.field));
     if let Some((_, twice)) = twice {
         bail!("`{0}` is set twice: give all its values at once, `--set {0}=V1,V2,…`", twice.field);
     }
@@ -97,7 +98,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         say!("{}", text.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
-    eprintln!(
+    tell!(
         "{} of {}{}: {} runs",
         first.values.len(),
         first.field,
@@ -149,7 +150,8 @@ fn text(
     if let Some(base) = base {
         text += &format!("    scene: {:?},\n", relative(base, out)?.display().to_string());
     }
-    let common: Vec<String> = fixed.iter().map(|a| format!("{:?}", format!("{}={}", a.field, a.values[0]))).collect();
+    let common: Vec<String> =
+        fixed.iter().map(|a| format!("{:?}", format!("{}={}", a.field, a.values[0]))).collect();
     if !common.is_empty() {
         text += &format!("    set: [{}],\n", common.join(", "));
     }
@@ -241,7 +243,10 @@ impl Assigned {
             if field.is_empty() { "the field is" } else { "a value is" }
         );
         if let Some(at) = (1..values.len()).find(|at| values[..*at].contains(&values[*at])) {
-            bail!("`--set {text}`: the value {} stands there twice; each is run once, give it once", values[at]);
+            bail!(
+                "`--set {text}`: the value {} stands there twice; each is run once, give it once",
+                values[at]
+            );
         }
         Ok(Self { field, values })
     }
@@ -306,15 +311,21 @@ mod tests {
 
     #[test]
     fn example_a_scene_is_found_from_its_folder() {
-        assert_eq!(relative(Path::new("/a/b/x.ron"), Path::new("/a/b/runs/y")).unwrap(), Path::new("../../x.ron"));
+        assert_eq!(
+            relative(Path::new("/a/b/x.ron"), Path::new("/a/b/runs/y")).unwrap(),
+            Path::new("../../x.ron")
+        );
         assert_eq!(relative(Path::new("/a/x.ron"), Path::new("/b/y")).unwrap(), Path::new("/a/x.ron"));
     }
 
     #[test]
     fn refuses_what_is_no_sweep() {
-        for (text, says) in
-            [("load", "has no `=`"), ("=1,2", "the field is empty"), ("a=1,,2", "a value is empty"), ("a=1,2,1", "twice")]
-        {
+        for (text, says) in [
+            ("load", "has no `=`"),
+            ("=1,2", "the field is empty"),
+            ("a=1,,2", "a value is empty"),
+            ("a=1,2,1", "twice"),
+        ] {
             let why = Assigned::parse(text).expect_err(text).to_string();
             assert!(why.contains(says), "{why}");
         }

@@ -31,10 +31,7 @@ fn compare(path: &str, values: &[Option<&Value>], found: &mut Vec<FieldDifferenc
     }
     if !known.iter().all(|value| value.is_object()) {
         let words = |value: &Option<&Value>| value.map(as_written);
-        found.push(FieldDifference {
-            field: path.to_owned(),
-            values: values.iter().map(words).collect(),
-        });
+        found.push(FieldDifference { field: path.to_owned(), values: values.iter().map(words).collect() });
         return;
     }
     let mut names: Vec<&String> = known.iter().filter_map(|v| v.as_object()).flat_map(|o| o.keys()).collect();
@@ -85,7 +82,9 @@ mod tests {
         let defect = found[0].values[0].as_deref().expect("of a scene");
         assert!(defect.starts_with('(') && defect.contains("length_mm: 4"), "{defect}");
         assert_eq!(found[0].values[2].as_deref(), Some("None"));
-        assert!(differences(&[Some(&first), Some(&Scene { name: "x".to_owned(), ..first.clone() })]).is_empty());
+        assert!(
+            differences(&[Some(&first), Some(&Scene { name: "x".to_owned(), ..first.clone() })]).is_empty()
+        );
         assert!(differences(&[Some(&first), None]).is_empty());
     }
 }

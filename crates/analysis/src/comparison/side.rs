@@ -160,11 +160,8 @@ impl Member {
             }),
             (None, None) => None,
         };
-        let beginning = |values: &[f64]| Sampled {
-            start,
-            step,
-            values: values[..values.len().min(SHOWN)].to_vec(),
-        };
+        let beginning =
+            |values: &[f64]| Sampled { start, step, values: values[..values.len().min(SHOWN)].to_vec() };
         let (velocity_mm_s, families, verdict, bands) = match analysis {
             Some(Analysis { findings: f, bands, .. }) => {
                 (f.velocity_mm_s, f.families, Some(f.verdict), bands)
@@ -225,7 +222,9 @@ fn sensor(findings: &Findings, asked: Option<&str>) -> Result<usize, Error> {
     let found = names.iter().position(|name| asked.is_none_or(|asked| name.contains(asked)));
     found.ok_or_else(|| {
         Error::NoSignal(match (names.is_empty(), asked) {
-            (true, _) | (_, None) => "the run recorded no sensor; give its scene an `output.sensors`".to_owned(),
+            (true, _) | (_, None) => {
+                "the run recorded no sensor; give its scene an `output.sensors`".to_owned()
+            }
             (false, Some(asked)) => {
                 format!("no sensor channel contains `{asked}`; the run has `{}`", names.join("`, `"))
             }
@@ -290,9 +289,8 @@ impl Side {
             unit: AccelerationUnit::Gravity.symbol().to_owned(),
             rate_hz,
             duration_s,
-            shaft_hz: steady.then(|| {
-                (written.operation.speed_rpm - written.operation.outer_speed_rpm).abs() / 60.0
-            }),
+            shaft_hz: steady
+                .then(|| (written.operation.speed_rpm - written.operation.outer_speed_rpm).abs() / 60.0),
             bearing: Some(if designation.is_empty() {
                 format!("{} rollers", written.bearing.rollers)
             } else {

@@ -56,12 +56,17 @@ fn traces(sides: &[(&Side, Colour)], one_unit: bool) -> Option<Figure> {
         side.members.first().map_or(0.0, |m| m.trace.start + m.trace.step * m.trace.values.len() as f64)
     };
     let shortest_s = sides.iter().map(|(side, _)| end_s(side)).fold(f64::INFINITY, f64::min);
-    let mut figure = Figure::new("trace", "Signals over time", Axis::si("Time", "s").over(0.0, shortest_s), axis)
-        .caption("From the beginning of each; the loudest lies behind the others.")
-        .note(
-            "Of several starts the first is drawn. Records and runs begin at their own moment: equal times \
+    let mut figure = Figure::new(
+        "trace",
+        "Signals over time",
+        Axis::si("Time", "s").over(0.0, shortest_s),
+        axis,
+    )
+    .caption("From the beginning of each; the loudest lies behind the others.")
+    .note(
+        "Of several starts the first is drawn. Records and runs begin at their own moment: equal times \
              are not equal places of the shaft. A click on a name in the legend hides its curve.",
-        );
+    );
     for (side, member, colour) in loudest_first(sides) {
         let factor = if one_unit { 1.0 } else { member.shape.map_or(1.0, |shape| 1.0 / shape.rms) };
         figure = figure.with(sampled(&side.label, colour, &member.trace, |x| factor * x));
@@ -99,8 +104,7 @@ fn spectra(sides: &[(&Side, Colour)], one_unit: bool) -> Vec<Figure> {
             }
             figure = figure.with(sampled(&side.label, *colour, density, decibel_of(density)));
         }
-        let resolutions =
-            densities.iter().map(|(side, _, d)| format!("{} {:.2} Hz", side.label, d.step));
+        let resolutions = densities.iter().map(|(side, _, d)| format!("{} {:.2} Hz", side.label, d.step));
         figure.note(format!(
             "Welch\u{2019}s average, Hann window; of several starts the mean of the powers, with the middle \
              80 % of them shaded. Distance of the lines: {}. A line stands lower where the distance is larger.",
@@ -174,22 +178,20 @@ fn envelopes(comparison: &Comparison, sides: &[(&Side, Colour)]) -> Option<Figur
     }
     figure.marks = marks(sides, unit_of);
     let claimed = |side: &Side| {
-        let claimed = Defect::ALL.into_iter().filter(|d| {
-            side.members.iter().any(|member| member.claimed().any(|family| family.name == *d))
-        });
+        let claimed = Defect::ALL
+            .into_iter()
+            .filter(|d| side.members.iter().any(|member| member.claimed().any(|family| family.name == *d)));
         let names: Vec<&str> = claimed.map(Defect::name).collect();
         if names.is_empty() { "none".to_owned() } else { names.join(" and ") }
     };
     let each = sides.iter().map(|(side, _)| format!("{} {}", side.label, claimed(side)));
-    Some(
-        figure
-            .caption(format!("Claimed as defects: {}.", each.collect::<Vec<_>>().join(", ")))
-            .note(format!(
-                "Dashed: where the families are expected without slip. Bands: {}.{}",
-                bands.join("; "),
-                if orders { " The speeds differ, so frequencies are divided by that of the shaft." } else { "" }
-            )),
-    )
+    Some(figure.caption(format!("Claimed as defects: {}.", each.collect::<Vec<_>>().join(", "))).note(
+        format!(
+            "Dashed: where the families are expected without slip. Bands: {}.{}",
+            bands.join("; "),
+            if orders { " The speeds differ, so frequencies are divided by that of the shaft." } else { "" }
+        ),
+    ))
 }
 
 /// Expected families: of the first side, and of those of others that stand elsewhere.
@@ -237,8 +239,12 @@ fn distribution(sides: &[(&Side, Colour)]) -> Option<Figure> {
 
 /// Force of all rollers on the outer ring.
 fn support(sides: &[(&Side, Colour)]) -> Option<Figure> {
-    let mut figure =
-        Figure::new("support", "Force of all rollers on the outer ring", Axis::si("Time", "s"), Axis::si("Force", "N"));
+    let mut figure = Figure::new(
+        "support",
+        "Force of all rollers on the outer ring",
+        Axis::si("Time", "s"),
+        Axis::si("Force", "N"),
+    );
     for (side, member, colour) in loudest_first(sides) {
         if !member.support_n.values.is_empty() {
             figure = figure.with(sampled(&side.label, colour, &member.support_n, |x| x));

@@ -9,6 +9,7 @@ use stribeck_formats::{Channel, Recording, wav};
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 
 use super::{Options, provenance, sensor};
+use crate::out::tell;
 
 /// Samples a second that a sound card plays [Hz].
 const RATES_HZ: [u32; 2] = [44_100, 48_000];
@@ -40,7 +41,7 @@ pub(super) fn write(dir: &RunDir, run: &Run, options: &Options, path: &Path) -> 
     let sound = Sound::of(&samples, rate_hz, played_hz, slow)
         .with_context(|| format!("channel `{}` makes no sound", channel.name))?;
     if sound.duration_s() < CLICK_S {
-        eprintln!(
+        tell!(
             "note: {:.3} s of sound are a click; `--slow {:.0}` makes a second of them, `solver.duration_ms` a \
              longer record",
             sound.duration_s(),
@@ -55,7 +56,8 @@ pub(super) fn write(dir: &RunDir, run: &Run, options: &Options, path: &Path) -> 
         super::unit(&channel.name).unwrap_or_default()
     ));
     let samples = sound.samples.iter().map(|x| f64::from(*x) / 32_768.0).collect();
-    let bytes = pcm(sound.rate_hz, Whole::Of16, &[samples], &notes).context("the sound is longer than 4 GiB")?;
+    let bytes =
+        pcm(sound.rate_hz, Whole::Of16, &[samples], &notes).context("the sound is longer than 4 GiB")?;
     write_atomic(path, &bytes)?;
     Ok(path.to_owned())
 }
@@ -75,7 +77,7 @@ fn pick<'a>(recording: &'a Recording, asked: &[String]) -> Result<&'a Channel> {
         [one] => Ok(one),
         [first, ..] => {
             if !asked.is_empty() {
-                eprintln!("note: a sound is one channel: `{}` of {} that were named", first.name, found.len());
+                tell!("note: a sound is one channel: `{}` of {} that were named", first.name, found.len());
             }
             Ok(first)
         }
