@@ -113,11 +113,11 @@ fn page(index: &CampaignIndex) -> Result<Markup, Error> {
                     h2 { "Over " code { (field) } }
                     @if figures.is_empty() { p { "No run has a number that could be drawn." } }
                     // One field at a time; the others are a click away.
-                    @if place == 0 { @for figure in figures { (figure) } }
+                    @if place == 0 { div class="pairs-of-figures" { @for figure in figures { (figure) } } }
                     @else if !figures.is_empty() {
                         details {
                             summary { (format!("{} figures", figures.len())) }
-                            @for figure in figures { (figure) }
+                            div class="pairs-of-figures" { @for figure in figures { (figure) } }
                         }
                     }
                 }

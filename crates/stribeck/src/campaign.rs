@@ -77,7 +77,7 @@ const INDEX: &str = "index.html";
 
 /// The folder of a campaign is known by the former from the first moment of its first part on, and by the
 /// latter when it is done.
-const MARKS: [&str; 2] = [TURN, "runs.parquet"];
+pub(crate) const MARKS: [&str; 2] = [TURN, "runs.parquet"];
 
 /// Where the things of a campaign are.
 struct Folder(ManyRuns);

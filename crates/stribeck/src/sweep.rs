@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::campaign::Campaign;
-use stribeck_scene::run_dir::Keep;
+use stribeck_scene::run_dir::{Keep, check_folder};
 
-use crate::campaign::{CAMPAIGN, SCENES, carry_out};
+use crate::campaign::{CAMPAIGN, MARKS, SCENES, carry_out};
 use crate::many_runs::Share;
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
@@ -89,15 +89,21 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
          design: `sobol` and `latin_hypercube` fill many fields with few runs"
     );
     let scene = read_each(options, place, &swept, &fixed)?;
-    let name = name(&scene, &swept);
+    // Another bearing brings its own name.
+    let stem = options.scene.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
+    let of_bearing = swept.iter().any(|a| a.field == "bearing");
+    let name = name(stem.filter(|_| of_bearing).as_deref().unwrap_or(&scene), &swept);
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&name));
     let base = options.scene.as_deref().map(|scene| place.locate(scene));
-    let text = text(options, &name, base.as_deref(), &out, (&swept, &fixed))?;
-    let campaign = Campaign::parse(&text, &shown(&out.join(CAMPAIGN)), &out)?;
     if options.print {
+        // To be sent to a file in the working folder.
+        let text = text(options, &name, base.as_deref(), Path::new("."), (&swept, &fixed))?;
+        Campaign::parse(&text, CAMPAIGN, Path::new(""))?;
         say!("{}", text.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
+    let text = text(options, &name, base.as_deref(), &out, (&swept, &fixed))?;
+    let campaign = parse(&text, &out)?;
     tell!(
         "{} of {}{}: {} runs",
         first.values.len(),
@@ -107,6 +113,17 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     );
     make_way(&out)?;
     carry_out(&campaign, out, options.share, None)
+}
+
+/// The campaign of a text in the folder that it is for, which is made: paths lead through it.
+fn parse(text: &str, out: &Path) -> Result<Campaign> {
+    check_folder(out, &MARKS)?;
+    std::fs::create_dir_all(out).with_context(|| format!("cannot make `{}`", shown(out)))?;
+    Campaign::parse(text, &shown(&out.join(CAMPAIGN)), out).map_err(|why| {
+        // Only where nothing lies in it.
+        std::fs::remove_dir(out).ok();
+        why.into()
+    })
 }
 
 /// Reads the scene under each value of each field by itself, so that what is wrong is said in the words of
