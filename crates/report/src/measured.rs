@@ -59,7 +59,7 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                         td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
                     }
                 }
-                (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz))
+                (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz, findings.unit.as_deref().unwrap_or("")))
                 @for figure in figures { (figure) }
                 (course)
                 h2 #notes { "Notes" }

@@ -23,14 +23,14 @@ const SPEEDS: [(f64, &str); 4] = [(1.0, "1×"), (0.5, "½×"), (0.25, "¼×"), (
 pub(crate) fn of_run(findings: &Findings) -> Markup {
     match findings.sensors.first() {
         Some(sensor) => {
-            player(&format!("a_y at sensor “{}”", sensor.name), &sensor.raw_g, 1.0 / findings.interval_s)
+            player(&format!("a_y at sensor “{}”", sensor.name), &sensor.raw_g, 1.0 / findings.interval_s, "g")
         }
         None => html! {},
     }
 }
 
 /// A player for the beginning of a signal, called `name`; nothing for a constant one.
-pub(crate) fn player(name: &str, signal: &[f64], rate_hz: f64) -> Markup {
+pub(crate) fn player(name: &str, signal: &[f64], rate_hz: f64, unit: &str) -> Markup {
     let length_s = signal.len() as f64 / rate_hz;
     let slow = SLOWER.into_iter().find(|slow| slow * length_s >= SHORTEST_S).unwrap_or(1000.0);
     let kept = ((LONGEST_S / slow * rate_hz) as usize).clamp(1, signal.len().max(1));
@@ -61,9 +61,8 @@ pub(crate) fn player(name: &str, signal: &[f64], rate_hz: f64) -> Markup {
             }
             p class="note" {
                 (format!(
-                    "As loud as 16 bits hold: full scale is {} times the unit of the signal. Slower speeds lower \
-                     the pitch with it.",
-                    significant(sound.full_scale, 3)
+                    "As loud as 16 bits hold: full scale is {}. Slower speeds lower the pitch with it.",
+                    format!("{} {unit}", significant(sound.full_scale, 3)).trim_end()
                 ))
             }
             script { (PreEscaped(include_str!("../assets/sound.js"))) }
@@ -78,11 +77,11 @@ mod tests {
     #[test]
     fn example_a_short_record_is_slowed_and_a_constant_one_is_not_played() {
         let signal: Vec<f64> = (0..6_000).map(|n| f64::from(n % 50)).collect();
-        let page = player("a signal", &signal, 100_000.0).into_string();
+        let page = player("a signal", &signal, 100_000.0, "g").into_string();
         assert!(page.contains("played 10 times slower") && page.contains("data:audio/wav;base64,UklGR"));
-        let page = player("a signal", &signal, 6_000.0).into_string();
+        let page = player("a signal", &signal, 6_000.0, "").into_string();
         assert!(!page.contains("times slower") && page.contains("1 s"));
-        assert!(player("a signal", &[1.0; 6_000], 6_000.0).into_string().is_empty());
-        assert!(player("a signal", &[], 6_000.0).into_string().is_empty());
+        assert!(player("a signal", &[1.0; 6_000], 6_000.0, "").into_string().is_empty());
+        assert!(player("a signal", &[], 6_000.0, "").into_string().is_empty());
     }
 }

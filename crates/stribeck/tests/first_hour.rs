@@ -189,7 +189,7 @@ fn refuses_what_is_no_sweep() {
         &["no field `operation.lod_n`", "did you mean `operation.load_n`"],
     );
     refuses(&["--set=operation.load_n=3000,x"], &["which is not a number"]);
-    refuses(&["--set=defect.length_mm=2,40000"], &["longer than the whole raceway"]);
+    refuses(&["--set=defect.length_mm=2,4000"], &["longer than the whole raceway"]);
     refuses(&["--set=operation.load_n=1,2", "--set=operation.load_n=3,4"], &["is set twice"]);
     refuses(&["--set=operation.load_n 1,2"], &["has no `=`"]);
     assert!(!desk.0.join("runs").exists(), "a refused sweep left a folder");
