@@ -34,8 +34,8 @@ const MARK: &str = "compare.json";
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     ensure!(
         options.sides.len() <= MOST_COMPARED,
-        "{} sides were given, and the curves of {MOST_COMPARED} stay apart at most: compare fewer, or see the \
-         course of many records by `{} analyse`",
+        "{} sides were given, and the curves of {MOST_COMPARED} stay apart at most: compare fewer, or see \
+         the course of many records by `{} analyse`",
         options.sides.len(),
         place.program
     );

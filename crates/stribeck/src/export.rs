@@ -93,8 +93,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     for (flag, given) in [("--rate-hz", options.rate_hz.is_some()), ("--slow", options.slow.is_some())] {
         if given && (options.to != Format::Wav || options.sensor.is_some()) {
             bail!(
-                "`{flag}` is for a sound to listen to: use it with `--to wav` and without `--sensor`, whose own \
-                 `rate_hz` is the rate of a recorder"
+                "`{flag}` is for a sound to listen to: use it with `--to wav` and without `--sensor`, whose \
+                 own `rate_hz` is the rate of a recorder"
             );
         }
     }

@@ -204,48 +204,42 @@ fn name(answers: &Answers) -> String {
     }
 }
 
+/// A scene with comments, and marks where the answers go.
+const SCENE: &str = include_str!("new/scene.ron");
+
 /// The scene with its comments.
 fn text(name: &str, answers: &Answers) -> String {
     let Answers { bearing, load_n, speed_rpm, defect, duration_s } = answers;
-    let (duration_ms, words) = (
-        1e3 * duration_s,
-        match defect {
-            Where::None => "sound".to_owned(),
-            Where::Roller => "with a spall on a rolling element".to_owned(),
-            ring => format!("with a spall on the {} raceway", ring.word()),
-        },
-    );
-    let defect = match defect {
-        Where::None => {
-            "    // A sound bearing. A spall: defect: (ring: outer, length_mm: 2, depth_mm: 0.1).\n    \
-                        defect: None,\n"
-                .to_owned()
-        }
-        Where::Roller => {
-            "    // How long a spall is along the surface, and how deep.\n    defect: None,\n    \
-                          defects: [(on: roller(1), form: spall(length_mm: 2, depth_mm: 0.1))],\n"
-                .to_owned()
-        }
-        ring => format!(
-            "    // How long the spall is along the raceway, and how deep. It lies under the load.\n    defect: \
-             (ring: {}, length_mm: 2, depth_mm: 0.1),\n",
-            ring.word()
+    let (state, comment, fields) = match defect {
+        Where::None => (
+            "sound",
+            "A sound bearing. A spall would be: (ring: outer, length_mm: 2, depth_mm: 0.1).",
+            "defect: None,".to_owned(),
+        ),
+        Where::Roller => (
+            "with a spall on a rolling element",
+            "How long the spall is along the surface, and how deep.",
+            "defect: None,\n    defects: [(on: roller(1), form: spall(length_mm: 2, depth_mm: 0.1))],"
+                .to_owned(),
+        ),
+        Where::Outer | Where::Inner => (
+            if *defect == Where::Outer {
+                "with a spall on the outer raceway"
+            } else {
+                "with a spall on the inner raceway"
+            },
+            "How long the spall is along the raceway, and how deep.",
+            format!("defect: (ring: {}, length_mm: 2, depth_mm: 0.1),", defect.word()),
         ),
     };
-    format!(
-        "// {bearing} {words}, by the reduced model. Run it with\n//     stribeck simulate {name}.ron\n// and see \
-         before what to expect of it with `stribeck plan {name}.ron`. Every field of a scene can stand here; \
-         what\n// is left out follows from the bearing. The guide's page \"Every field of a scene\" lists them.\n(\n    \
-         name: {name:?},\n    // All dimensions come from the catalogue: `stribeck bearings \
-         \"{bearing}\"` says where from.\n    bearing: {bearing:?},\n    operation: (\n        // Radial, \
-         downwards.\n        load_n: {load_n:?},\n        // The inner ring turns.\n        speed_rpm: \
-         {speed_rpm:?},\n    ),\n{defect}    // Ring and housing in their natural modes below a frequency; `full` \
-         is the finite element model, a thousand times\n    // slower: give it a shorter record then.\n    model: \
-         reduced(modes_khz: 30),\n    // Dry, with mass damping across the track that keeps idle rollers \
-         quiet in the place of oil. Without this line\n    // there is oil, and a run takes four times as \
-         long.\n    film: None,\n    solver: (\n        duration_ms: {duration_ms:?},\n        \
-         mass_damping_per_s: 5000,\n        structural_damping: None,\n    ),\n)\n"
-    )
+    SCENE
+        .replace("<defect>", &format!("    // {comment}\n    {fields}"))
+        .replace("<state>", state)
+        .replace("<file>", name)
+        .replace("<bearing>", bearing)
+        .replace("<load>", &format!("{load_n:?}"))
+        .replace("<speed>", &format!("{speed_rpm:?}"))
+        .replace("<duration>", &format!("{:?}", 1e3 * duration_s))
 }
 
 #[cfg(test)]

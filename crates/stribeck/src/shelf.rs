@@ -105,7 +105,8 @@ pub(crate) fn find(asked: &Path, place: &Place) -> Result<Item> {
     }
     if path.exists() {
         bail!(
-            "`{}` holds no run, and nothing that was made of runs: it is left alone. `{} list` shows what there is",
+            "`{}` holds no run, and nothing that was made of runs: it is left alone. `{} list` shows what \
+             there is",
             shown(&path),
             place.program
         );

@@ -72,6 +72,25 @@ fn json(output: &Output) -> serde_json::Value {
     serde_json::from_slice(&output.stdout).unwrap_or_else(|why| panic!("{why}: {}", said(output)))
 }
 
+/// The scene that the README begins with, shorter: its spall is claimed at BPFO, and the page of the record
+/// plays it.
+#[test]
+fn example_the_first_look_shows_its_spall() {
+    let desk = Desk::new("first-look");
+    let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/first_look.ron");
+    desk.succeeds(&["simulate", scene, "-q", "--no-report", "--set=solver.duration_ms=400"]);
+    let found = json(&desk.succeeds(&["analyse", "first_look", "--json"]));
+    let claimed: Vec<&str> = found["families"]
+        .as_array()
+        .expect("families")
+        .iter()
+        .filter(|family| family["claimed"] == true)
+        .filter_map(|family| family["name"].as_str())
+        .collect();
+    assert_eq!(claimed, ["BPFO"]);
+    assert!(desk.text("first_look-analysis/report.html").contains("How it sounds"));
+}
+
 #[test]
 fn example_runs_and_an_ensemble_beside_each_other() {
     let desk = Desk::with_scene("compare");

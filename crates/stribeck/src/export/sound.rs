@@ -42,8 +42,8 @@ pub(super) fn write(dir: &RunDir, run: &Run, options: &Options, path: &Path) -> 
         .with_context(|| format!("channel `{}` makes no sound", channel.name))?;
     if sound.duration_s() < CLICK_S {
         tell!(
-            "note: {:.3} s of sound are a click; `--slow {:.0}` makes a second of them, `solver.duration_ms` a \
-             longer record",
+            "note: {:.3} s of sound are a click; `--slow {:.0}` makes a second of them, `solver.duration_ms` \
+             a longer record",
             sound.duration_s(),
             (slow / sound.duration_s()).clamp(2.0, SLOWEST)
         );
