@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
+use serde_json::{Value, json};
 use stribeck_scene::catalogue::{self, CatalogueBearing};
 
 use crate::out::say;
@@ -12,12 +13,25 @@ use crate::out::say;
 pub struct Options {
     /// A bearing by name, or by name and numbers as in "NU 205, elements=13" [default: all that have a name]
     name: Option<String>,
+    /// Writes them as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 /// What to do where a name is not known.
 const NUMBERS: &str = "give its numbers, `\"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
+    if options.json {
+        let found = match &options.name {
+            Some(name) => {
+                as_json(&CatalogueBearing::parse_or_advise(name, NUMBERS).map_err(|why| anyhow!(why))?)
+            }
+            None => catalogue::all().iter().map(as_json).collect(),
+        };
+        say!("{}", serde_json::to_string_pretty(&found)?);
+        return Ok(ExitCode::SUCCESS);
+    }
     match &options.name {
         Some(name) => one(&CatalogueBearing::parse_or_advise(name, NUMBERS).map_err(|why| anyhow!(why))?),
         None => {
@@ -45,6 +59,27 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Frequencies of defects in multiples of the shaft's, `null` where the number of elements is not known.
+fn as_json(bearing: &CatalogueBearing) -> Value {
+    let [diameter_mm, pitch_mm] = bearing.shown_mm();
+    let orders = bearing.orders().ok();
+    json!({
+        "name": bearing.name,
+        "elements": bearing.elements,
+        "diameter_mm": diameter_mm,
+        "pitch_mm": pitch_mm,
+        "angle_deg": bearing.angle_deg,
+        "bore_mm": bearing.boundary.map(|b| b.bore_mm),
+        "outside_mm": bearing.boundary.map(|b| b.outside_mm),
+        "width_mm": bearing.boundary.map(|b| b.width_mm),
+        "bpfo": orders.as_ref().map(|o| o.bpfo),
+        "bpfi": orders.as_ref().map(|o| o.bpfi),
+        "bsf": orders.as_ref().map(|o| o.bsf),
+        "ftf": orders.as_ref().map(|o| o.ftf),
+        "source": bearing.source,
+    })
 }
 
 fn row(bearing: &CatalogueBearing) -> String {
