@@ -7,7 +7,7 @@
 use std::f64::consts::PI;
 use std::fmt;
 
-use crate::scene::{BearingScene, Scene};
+use crate::scene::{Assumed, BearingScene, Scene};
 
 /// Shapes of rolling elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -146,9 +146,12 @@ fn names() -> String {
     format!("{}, or {} with {}", others.join(", "), FLANGES.join(", "), sizes.join(", "))
 }
 
-/// What a scene of a bearing in the catalogue rests on that no catalogue prints; nothing for a scene of the
-/// user's own numbers.
+/// What a scene rests on that nobody gave: what no catalogue prints of a bearing of the catalogue, and what
+/// the fields of one's own bearing left out.
 pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
+    if !bearing.assumed.is_empty() {
+        return bearing.assumed.iter().map(|what| assumption(*what, bearing)).collect();
+    }
     let Some(known) = all().into_iter().find(|known| known.name == bearing.designation) else {
         return Vec::new();
     };
@@ -182,9 +185,94 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     notes
 }
 
+/// What was assumed of a bearing of one's own, in words.
+fn assumption(what: Assumed, b: &BearingScene) -> String {
+    let mm = |mm: f64| (1e4 * mm).round() / 1e4;
+    match what {
+        Assumed::Clearance => format!(
+            "nobody gave the clearance of this bearing: {:.0} µm are assumed, the middle of the normal group (ISO \
+             5753-1), between raceways of {} and {} mm and rollers of {} mm",
+            1e3 * (b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm),
+            mm(b.outer_race_diameter_mm),
+            mm(b.inner_race_diameter_mm),
+            mm(b.roller_diameter_mm)
+        ),
+        Assumed::Pitch => format!(
+            "nobody gave the pitch diameter of this bearing: {} mm are assumed, half-way between bore and outside \
+             diameter, which is right to some 2 %",
+            mm(0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm))
+        ),
+        Assumed::OuterRing => format!(
+            "nobody gave `outside_mm` or the thickness of the outer ring: {} mm are assumed, 0.4 of a roller",
+            mm(b.outer_ring_thickness_mm)
+        ),
+        Assumed::InnerRing => format!(
+            "nobody gave `bore_mm` or the thickness of the inner ring: {} mm are assumed, 0.4 of a roller",
+            mm(b.inner_ring_thickness_mm)
+        ),
+        Assumed::Rollers => format!(
+            "nobody gave the number of rollers: {} are assumed, with a fifth of the pitch circle free, and all \
+             frequencies of defects but that of the cage follow it",
+            b.rollers
+        ),
+        Assumed::Length => format!(
+            "nobody gave the length of the rollers, `thickness_mm`: {} mm are assumed, 0.6 of `width_mm` or, \
+             without it, a roller's diameter",
+            mm(b.thickness_mm)
+        ),
+    }
+}
+
 /// Circumference of the pitch circle over the rolling elements side by side, where their number is not known:
 /// cages of E design leave about a quarter.
 const SPACING: f64 = 1.25;
+
+/// As many rolling elements as cages usually hold.
+pub(crate) fn usual_elements(pitch_mm: f64, diameter_mm: f64) -> usize {
+    (PI * pitch_mm / (SPACING * diameter_mm)).round() as usize
+}
+
+/// Diametral clearance [mm] of a bearing with this bore [mm]: the middle of the normal group, ISO 5753-1:2009.
+pub(crate) fn normal_clearance_mm(element: Element, bore_mm: f64) -> f64 {
+    // Largest bore [mm], clearance [µm].
+    const BALL: [(f64, f64); 9] = [
+        (10.0, 7.5),
+        (18.0, 10.5),
+        (30.0, 12.5),
+        (40.0, 13.0),
+        (50.0, 14.5),
+        (65.0, 18.0),
+        (80.0, 20.0),
+        (100.0, 24.0),
+        (120.0, 28.0),
+    ];
+    const ROLLER: [(f64, f64); 16] = [
+        (30.0, 32.5),
+        (40.0, 37.5),
+        (50.0, 45.0),
+        (65.0, 55.0),
+        (80.0, 57.5),
+        (100.0, 67.5),
+        (120.0, 70.0),
+        (140.0, 82.5),
+        (160.0, 95.0),
+        (180.0, 100.0),
+        (200.0, 117.5),
+        (225.0, 135.0),
+        (250.0, 142.5),
+        (280.0, 160.0),
+        (315.0, 167.5),
+        (355.0, 185.0),
+    ];
+    let of = |table: &[(f64, f64)]| {
+        let found = table.iter().find(|(largest, _)| bore_mm <= *largest).or(table.last());
+        1e-3 * found.map_or(0.0, |(_, um)| *um)
+    };
+    match element {
+        Element::Ball => of(&BALL),
+        Element::Roller => of(&ROLLER),
+    }
+}
 
 impl CatalogueBearing {
     /// Diameter of a rolling element and of the pitch circle as they are read [mm]: to the micrometre, which
@@ -195,7 +283,7 @@ impl CatalogueBearing {
 
     /// As many rolling elements as cages usually hold.
     pub(crate) fn usual_elements(&self) -> usize {
-        (PI * self.pitch_mm / (SPACING * self.diameter_mm)).round() as usize
+        usual_elements(self.pitch_mm, self.diameter_mm)
     }
 
     /// The most that find room on the pitch circle.

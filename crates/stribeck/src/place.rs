@@ -5,6 +5,7 @@ use std::time::SystemTime;
 
 use anyhow::{Context, Result, anyhow, bail};
 use stribeck_bearing::{error::Error, own_mesh};
+use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
 
@@ -68,6 +69,11 @@ impl Place {
             }
             other => anyhow!(other),
         })?;
+        // Of a bearing of the catalogue the report says it.
+        let own = Some(&scene.bearing).filter(|bearing| !bearing.assumed.is_empty());
+        for note in own.into_iter().flat_map(catalogue::assumptions) {
+            eprintln!("note: {note}");
+        }
         Ok(scene)
     }
 

@@ -5,7 +5,7 @@ use super::outline::Outline;
 use crate::deviation::DeviationScene;
 use crate::housing::HousingScene;
 use crate::scene::{
-    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, RingMeshScene,
+    Assumed, FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, RingMeshScene,
     RotatingLoadScene, Scene, StructuralDampingScene,
 };
 
@@ -64,6 +64,11 @@ impl Schema {
         // Not written by default.
         (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (0.5, 0.5);
         scene.bearing.clearance_change_um = 0.5;
+        scene.bearing.pitch_mm = Some(181.98);
+        scene.bearing.bore_mm = Some(143.96);
+        scene.bearing.outside_mm = Some(220.0);
+        scene.bearing.width_mm = Some(50.0);
+        scene.bearing.assumed = vec![Assumed::Clearance];
         let of_housing = |housing| {
             scene.operation.outer_speed_profile.clone_from(&scene.operation.speed_profile);
             let complete = Complete::of(&Scene { housing, ..scene.clone() });
