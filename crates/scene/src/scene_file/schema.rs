@@ -22,6 +22,10 @@ const OPTIONAL_GROUPS: [&str; 9] = [
     "inner_ring_mesh",
 ];
 
+/// Fields that describe another bearing than the default one.
+const OF_ANOTHER: [&str; 4] =
+    ["bearing.pitch_mm", "bearing.bore_mm", "bearing.outside_mm", "bearing.width_mm"];
+
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
     /// A scene with everything, and one for each further form of the housing: a field is looked for in their
@@ -134,7 +138,8 @@ impl Schema {
 
     /// The default of `path` where it is one word, text or number of its own.
     pub(crate) fn plain_default(&self, path: &str) -> Option<&str> {
-        self.default_of(path).filter(|default| !default.contains(['(', '[']) && !path.contains('['))
+        let has_one = !path.contains('[') && !OF_ANOTHER.contains(&path);
+        self.default_of(path).filter(|default| has_one && !default.contains(['(', '[']))
     }
 
     /// Names valid directly inside `section` (empty: the root).

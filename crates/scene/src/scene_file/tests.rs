@@ -3,6 +3,7 @@
 mod blame;
 mod deviations;
 mod formats;
+mod own;
 
 use proptest::prelude::*;
 use stribeck_testing::Scratch;

@@ -73,8 +73,8 @@ fn example_dimensions_of_one_bearing_in_any_form() {
             (other.inner_race_diameter_mm, one.inner_race_diameter_mm),
             (other.roller_diameter_mm, one.roller_diameter_mm),
         ] {
-            // Half the clearance at most, by which raceways of the two forms differ.
-            assert!((a - b).abs() < 0.023, "{fields}: {a} {b}");
+            // The clearance at most, which is taken from rollers or raceways.
+            assert!((a - b).abs() < 0.046, "{fields}: {a} {b}");
         }
     }
     let pitch = of("rollers: 17, roller_diameter_mm: 11, bore_mm: 50, outside_mm: 90");
