@@ -120,7 +120,9 @@ impl Place {
         let written = |path: &Path| -> Option<SystemTime> {
             files.iter().filter_map(|name| path.join(name).metadata().ok()?.modified().ok()).max()
         };
-        let runs = entries.flatten().filter_map(|entry| Some((written(&entry.path())?, entry.path())));
+        // A plan that was killed may have left what it tried.
+        let entries = entries.flatten().filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'));
+        let runs = entries.filter_map(|entry| Some((written(&entry.path())?, entry.path())));
         match runs.max() {
             Some((_, path)) => Ok(path),
             None => bail!("no runs in `{}`: {advice}", folder.display()),
