@@ -40,14 +40,13 @@ impl Loads {
         let w = largest_n / scene.thickness;
         let pressure = |radius: f64| (w * scene.material.contact_modulus() / (PI * radius)).sqrt();
         let [_, most] = scene.duty.load_range_n(scene.duration);
-        let turning = scene.written.operation.rotating_load.as_ref().map_or(0.0, |load| load.force_n);
         Ok(Self {
             clearance_m: scene.clearance,
             largest_n,
             loaded: shared.loaded_rollers(),
             pressure_pa: [pressure(scene.outer_contact_radius()), pressure(scene.inner_contact_radius())],
             static_rating_n: load_rating::static_rating_n(&scene.written),
-            load_n: most.max(scene.load) + turning,
+            load_n: most.max(scene.load),
         })
     }
 
