@@ -9,8 +9,12 @@ use stribeck_scene::{run_info::Status, scene::Scene};
 use stribeck_testing::Scratch;
 
 /// Elements as a test can afford them, in proportion to the rollers, with contact as stiff as they are.
-const COARSE: [&str; 4] =
-    ["mesh.roller_facets=48", "mesh.grading=(fine_layers: 1)", "contact.penalty_scale=0.3", "output.frames=None"];
+const COARSE: [&str; 4] = [
+    "mesh.roller_facets=48",
+    "mesh.grading=(fine_layers: 1)",
+    "contact.penalty_scale=0.3",
+    "output.frames=None",
+];
 
 fn files() -> Vec<PathBuf> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/own");

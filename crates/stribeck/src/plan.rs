@@ -78,7 +78,9 @@ fn loads(plan: &Plan) {
         loads.loaded,
         loads.largest_n
     );
-    say!("  Hertz pressure of its line contacts: {outer:.0} MPa at the outer, {inner:.0} MPa at the inner raceway");
+    say!(
+        "  Hertz pressure of its line contacts: {outer:.0} MPa at the outer, {inner:.0} MPa at the inner raceway"
+    );
     say!(
         "  static safety s₀ = C₀/P₀ = {:.1}, with C₀ = {:.1} kN by ISO 76 from these dimensions",
         loads.static_safety(),
@@ -88,8 +90,9 @@ fn loads(plan: &Plan) {
 
 /// What the run takes.
 fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
-    let steps = (trial.info.steps_planned as f64 * scene.duration / trial.info.simulated_s.max(f64::MIN_POSITIVE))
-        .round();
+    let steps = (trial.info.steps_planned as f64 * scene.duration
+        / trial.info.simulated_s.max(f64::MIN_POSITIVE))
+    .round();
     let what = match &trial.info.reduced {
         Some(reduced) => format!("{} modes of {} elements", reduced.modes, plan.elements),
         None => format!("{} elements", plan.elements),

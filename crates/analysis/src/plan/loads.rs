@@ -171,7 +171,9 @@ mod tests {
         let bearing = "rollers: 17, roller_diameter_mm: 11, inner_race_diameter_mm: 59.5, bore_mm: 50, \
                        outside_mm: 90, width_mm: 23";
         let scene = |cage: &str| {
-            of(&format!("(bearing: ({bearing}), {cage} model: reduced(), film: None, solver: (duration_ms: 1000))"))
+            of(&format!(
+                "(bearing: ({bearing}), {cage} model: reduced(), film: None, solver: (duration_ms: 1000))"
+            ))
         };
         let (_, dangers) = scene("cage: (outer_diameter_mm: 74.5, thickness_mm: 4, pocket: straight),");
         assert!(dangers.len() == 1 && dangers[0].contains("no corner"), "{dangers:?}");

@@ -159,7 +159,10 @@ mod tests {
             ("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, elements: 99)]", "is no bearing"),
             ("[(name: \"-\", diameter_mm: 9, pitch_mm: 68)]", "is no bearing"),
             ("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, bore_mm: 50)]", "all three"),
-            ("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, bore_mm: 60, outside_mm: 90, width_mm: 9)]", "rings"),
+            (
+                "[(name: \"x\", diameter_mm: 9, pitch_mm: 68, bore_mm: 60, outside_mm: 90, width_mm: 9)]",
+                "rings",
+            ),
         ] {
             let why = of(text).unwrap_err();
             assert!(why.contains(words) && why.contains(NAME), "{text}: {why}");

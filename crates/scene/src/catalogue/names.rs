@@ -4,7 +4,8 @@ use super::{CatalogueBearing, tables};
 
 /// Makers whose names may stand glued to a designation.
 const MAKERS: [&str; 14] = [
-    "SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "TIMKEN", "NACHI", "REXNORD", "ZKL", "ZWZ", "HRB", "LDK",
+    "SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "TIMKEN", "NACHI", "REXNORD", "ZKL", "ZWZ", "HRB",
+    "LDK",
 ];
 
 /// Letters and digits alone, in capitals.
@@ -14,7 +15,11 @@ pub(super) fn plain(text: &str) -> String {
 
 /// The bearing among `known` whose name, letters and digits alone, is that of `name` or begins it. Of several
 /// it is the one with the longest name, and of these the first.
-pub(super) fn find(name: &str, known: Vec<CatalogueBearing>, advice: &str) -> Result<CatalogueBearing, String> {
+pub(super) fn find(
+    name: &str,
+    known: Vec<CatalogueBearing>,
+    advice: &str,
+) -> Result<CatalogueBearing, String> {
     // A maker may stand before: `Rexnord ZA-2115`, `SKF6205`.
     let behind_maker = name.split_once(' ').filter(|(maker, _)| maker.chars().all(char::is_alphabetic));
     let mut asked: Vec<String> =
@@ -24,7 +29,8 @@ pub(super) fn find(name: &str, known: Vec<CatalogueBearing>, advice: &str) -> Re
     for asked in &asked {
         let fitting = known.iter().filter(|bearing| fits(asked, bearing));
         let longest = |best: Option<&CatalogueBearing>| best.map_or(0, |bearing| bearing.name.len());
-        let found = fitting.fold(None, |best, next| if next.name.len() > longest(best) { Some(next) } else { best });
+        let found =
+            fitting.fold(None, |best, next| if next.name.len() > longest(best) { Some(next) } else { best });
         if let Some(found) = found {
             return Ok(found.clone());
         }
@@ -43,7 +49,7 @@ fn fits(asked: &str, bearing: &CatalogueBearing) -> bool {
         let mut letters = rest.chars();
         match letters.next() {
             _ if own.is_empty() => false,
-            Some('2') if own.starts_with(|c: char| c.is_ascii_digit()) => {
+            Some('2') if !own.starts_with('N') => {
                 letters.next().is_some_and(|c| c.is_ascii_alphabetic())
             }
             Some('0'..='9') => own.starts_with('U') && rest.len() == 2,
@@ -90,7 +96,8 @@ pub(super) fn beginning_with(text: &str, known: Vec<CatalogueBearing>) -> Vec<Ca
     let begins = |name: &str| match name.strip_prefix(asked.as_str()) {
         // `N` are the bearings of that kind, not those that begin with NU.
         Some(rest) => {
-            let whole = |c: char| !c.is_ascii_alphabetic() || !asked.ends_with(|c: char| c.is_ascii_alphabetic());
+            let whole =
+                |c: char| !c.is_ascii_alphabetic() || !asked.ends_with(|c: char| c.is_ascii_alphabetic());
             rest.chars().next().is_none_or(whole)
         }
         None => false,

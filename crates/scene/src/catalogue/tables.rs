@@ -13,19 +13,17 @@ const SINGH: &str = "S. Singh et al., Numerical noise generation in modelled bea
 const CWRU: &str = "Case Western Reserve University Bearing Data Center, bearing information";
 const IMS: &str = "J. Lee et al., Bearing data set, IMS, University of Cincinnati, 2007";
 const XJTU: &str = "B. Wang et al., IEEE Trans. Reliab. 69 (2020) 401–412, table II";
-const MFPT: &str = "E. Bechhoefer, MFPT bearing fault data set, 2013: 8 rolling elements of 0.235 in, pitch 1.245 in";
+const MFPT: &str =
+    "E. Bechhoefer, MFPT bearing fault data set, 2013: 8 rolling elements of 0.235 in, pitch 1.245 in";
 const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design, makers' catalogues: d = (E \
     − F)/2, pitch (E + F)/2";
-pub(super) const PROPORTION: &str =
-    "bore, outside and width by ISO 15; no catalogue known here prints raceways: F and \
+pub(super) const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints raceways: F and \
     E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + F)/2";
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
-pub(super) const BALL_RULE: &str =
-    "bore, outside and width by ISO 15; balls by rule: pitch (bore + outside)/2, diameter 0.3 (outside − bore). \
+pub(super) const BALL_RULE: &str = "bore, outside and width by ISO 15; balls by rule: pitch (bore + outside)/2, diameter 0.3 (outside − bore). \
     Of six bearings whose balls are known the rule is off by 6 % at most in diameter and by 1.5 % in pitch";
-pub(super) const INSERT_RULE: &str =
-    "bore and outside of UC inserts by ISO 9628; balls by the rule of deep groove bearings of the same outside \
+pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628; balls by the rule of deep groove bearings of the same outside \
     diameter (pitch (bore + outside)/2, diameter 0.3 (outside − bore)), which is off by 6 % at most in the \
     diameter of six known ones";
 
@@ -263,10 +261,11 @@ pub(super) fn names() -> String {
     )
 }
 
-fn of_row((name, element, elements, diameter_mm, pitch_mm, angle_deg, boundary, source): Row) -> CatalogueBearing {
+fn of_row(
+    (name, element, elements, diameter_mm, pitch_mm, angle_deg, boundary, source): Row,
+) -> CatalogueBearing {
     let (name, source) = (name.to_owned(), source.to_owned());
-    let boundary =
-        boundary.map(|[bore_mm, outside_mm, width_mm]| Boundary { bore_mm, outside_mm, width_mm });
+    let boundary = boundary.map(|[bore_mm, outside_mm, width_mm]| Boundary { bore_mm, outside_mm, width_mm });
     CatalogueBearing { name, element, elements, diameter_mm, pitch_mm, angle_deg, boundary, source }
 }
 

@@ -147,7 +147,8 @@ fn described_twice(scene: &Scene) -> Option<Finding> {
         ("outside_mm", b.outside_mm, b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm),
         ("width_mm", b.width_mm, b.thickness_mm / ROLLER_LENGTH),
     ];
-    let differs = |(_, given, is): &(_, Option<f64>, f64)| given.is_some_and(|mm| (mm - is).abs() > 0.01 * pitch);
+    let differs =
+        |(_, given, is): &(_, Option<f64>, f64)| given.is_some_and(|mm| (mm - is).abs() > 0.01 * pitch);
     let (name, given, is) = all.into_iter().find(differs)?;
     let field = format!("bearing.{name}");
     let message = format!(

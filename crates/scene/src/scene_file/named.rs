@@ -13,6 +13,7 @@ use crate::scene::{
     BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, ReducedScene,
     Scene,
 };
+use crate::static_load;
 
 /// Length of a roller over the width of its ring, between flanges.
 pub(super) const ROLLER_LENGTH: f64 = 0.6;
@@ -193,6 +194,30 @@ pub(super) fn modes(scene: &mut Scene, given: &[String]) {
     {
         let khz = ReducedScene::default().modes_khz / across.sqrt();
         reduced.modes_khz = to_digits(2, khz.clamp(2.0, 300.0));
+    }
+}
+
+/// A penetration under the largest static force that is so many times smaller than what guards warn of stays
+/// below it when rollers knock.
+const KNOCKS: f64 = 2.0;
+
+/// Contact that does not sink in deeper than the radial clearance or a tenth of an element, where nobody gave
+/// its stiffness: the paper's, in proportion, is too soft where few rollers carry.
+pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
+    let written = |path: &str| given.iter().any(|written| written == path);
+    if written("contact.penalty_scale") || written("contact.formula") {
+        return;
+    }
+    let g = scene.resolve();
+    let Ok(shared) = static_load::at_start(&g) else { return };
+    let radius = g.inner_contact_radius();
+    let w = shared.max_roller_n() / g.thickness;
+    let depth = (0.75 * w / (g.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+    let hertz = 0.5 * shared.max_approach_m();
+    let warned = (0.5 * g.clearance).max(hertz).min(0.1 * g.element_size);
+    let stiffer = (KNOCKS * depth / warned).powf(1.5);
+    if stiffer > 1.0 && stiffer.is_finite() {
+        scene.contact.penalty_scale = to_digits(2, (stiffer * scene.contact.penalty_scale).min(3.0));
     }
 }
 

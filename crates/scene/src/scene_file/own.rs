@@ -141,6 +141,7 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
             }
             named::surround(scene, Surrounded { bearing, pitch_mm }, given);
             named::modes(scene, given);
+            named::stiffness(scene, given);
             Own::Complete
         }
         Err(refusal) => Own::Refused(Refusal { of_another: main.describes_another(), ..refusal }),
@@ -148,11 +149,7 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
 }
 
 /// The completed bearing.
-fn bearing(
-    b: &BearingScene,
-    main: Given,
-    written: &dyn Fn(&str) -> bool,
-) -> Result<BearingScene, Refusal> {
+fn bearing(b: &BearingScene, main: Given, written: &dyn Fn(&str) -> bool) -> Result<BearingScene, Refusal> {
     let mut assumed = Vec::new();
     let mut assume = |what: Assumed| {
         if !assumed.contains(&what) {
@@ -264,7 +261,8 @@ impl Given {
     /// All diameters, with the diametral clearance [mm] where it does not follow from given ones; `None` where
     /// too few are given.
     fn diameters(self, clearance: f64) -> Option<Diameters> {
-        let between = |outer: f64, inner: f64| Diameters { outer, inner, roller: 0.5 * (outer - inner - clearance) };
+        let between =
+            |outer: f64, inner: f64| Diameters { outer, inner, roller: 0.5 * (outer - inner - clearance) };
         let pitch = self.pitch.or_else(|| Some(0.5 * (self.bore? + self.outside?)));
         Some(match (self.outer, self.inner, self.roller) {
             (Some(outer), Some(inner), Some(roller)) => Diameters { outer, inner, roller },
@@ -314,7 +312,9 @@ impl Given {
             Side::Outer => {
                 (self.outside, "outside_mm", b.outer_ring_thickness_mm, "outer_ring_thickness_mm", "outer")
             }
-            Side::Inner => (self.bore, "bore_mm", b.inner_ring_thickness_mm, "inner_ring_thickness_mm", "inner"),
+            Side::Inner => {
+                (self.bore, "bore_mm", b.inner_ring_thickness_mm, "inner_ring_thickness_mm", "inner")
+            }
         };
         let race = if side == Side::Outer { d.outer } else { d.inner };
         let left = boundary.map(|mm| 0.5 * if side == Side::Outer { mm - race } else { race - mm });
@@ -328,7 +328,11 @@ impl Given {
                     Side::Outer => (tidy(race + 0.5 * d.roller), "more"),
                     Side::Inner => (tidy(race - 0.5 * d.roller), "less"),
                 };
-                let also = if written { format!(", and `{field}` says {}", number(thickness)) } else { String::new() };
+                let also = if written {
+                    format!(", and `{field}` says {}", number(thickness))
+                } else {
+                    String::new()
+                };
                 Err(Refusal {
                     field: format!("bearing.{name}"),
                     message: format!(

@@ -5,8 +5,8 @@ use super::outline::Outline;
 use crate::deviation::DeviationScene;
 use crate::housing::HousingScene;
 use crate::scene::{
-    Assumed, FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, RingMeshScene,
-    RotatingLoadScene, Scene, StructuralDampingScene,
+    Assumed, FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
+    RingMeshScene, RotatingLoadScene, Scene, StructuralDampingScene,
 };
 
 /// Groups that a scene may lack.

@@ -17,7 +17,7 @@ use crate::host;
 use crate::place::Place;
 
 /// The loop is tried for about so long [s].
-const LOOP_S: f64 = 1.0;
+const LOOP_S: f64 = 0.5;
 /// Elements and steps of the full model in a second, and rollers and steps of the reduced one, to guess how many
 /// samples that is.
 const ELEMENT_STEPS: f64 = 3e8;
@@ -107,5 +107,7 @@ fn samples(scene: &ResolvedScene, plan: &Plan) -> f64 {
 
 fn run_in(scene: &Scene, folder: &Path, threads: usize) -> Result<RunInfo> {
     let dir = RunDir::create(folder)?;
-    Ok(host::with(threads, |host| simulation::simulate(scene, &dir, host, &mut |_| ControlFlow::Continue(())))?)
+    Ok(host::with(threads, |host| {
+        simulation::simulate(scene, &dir, host, &mut |_| ControlFlow::Continue(()))
+    })?)
 }

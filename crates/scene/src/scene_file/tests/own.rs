@@ -96,7 +96,9 @@ fn example_the_command_line_completes_a_bearing_too() {
 #[test]
 fn example_other_numbers_of_the_papers_bearing_leave_it_the_papers() {
     let paper = Scene::default();
-    for fields in ["rollers: 20", "thickness_mm: 100", "inner_race_diameter_mm: 163.5", "clearance_change_um: 9"] {
+    for fields in
+        ["rollers: 20", "thickness_mm: 100", "inner_race_diameter_mm: 163.5", "clearance_change_um: 9"]
+    {
         let scene = parse(&format!("(bearing: ({fields}))")).expect("the paper's");
         assert_eq!((&scene.cage, &scene.adapter), (&paper.cage, &paper.adapter), "{fields}");
         assert_eq!(scene.operation, paper.operation, "{fields}");
@@ -115,7 +117,11 @@ fn refuses_bearings_that_lack_something_or_contradict_themselves() {
             "make a pitch diameter of 70.52 mm",
         ),
         ("pitch_mm: 70, roller_diameter_mm: 11, bore_mm: 62", "bearing.bore_mm", "leaves the inner ring"),
-        ("pitch_mm: 70, roller_diameter_mm: 11, outside_mm: 80", "bearing.outside_mm", "leaves the outer ring"),
+        (
+            "pitch_mm: 70, roller_diameter_mm: 11, outside_mm: 80",
+            "bearing.outside_mm",
+            "leaves the outer ring",
+        ),
         ("pitch_mm: 10, roller_diameter_mm: 11", "bearing.pitch_mm", "make no bearing"),
         ("pitch_mm: -10, roller_diameter_mm: 11", "bearing.pitch_mm", "outside its range"),
     ] {
