@@ -120,14 +120,15 @@ fn analytic_rollers_between_rigid_rings() {
         .filter(|bearing| bearing.boundary.is_some() || bearing.name == catalogue::PAPER)
         .map(|bearing| (bearing.name, ""))
         .collect();
-    // Narrow and wide series have the same rollers, and deep groove bearings differ by their size alone.
+    // Narrow and wide series have the same rollers, and further sizes differ by their size alone.
     let one_of_many = |name: &str| {
-        let wide = name.starts_with("NU 2") && name.len() == 7;
+        let wide = name.starts_with("NU ") && name.len() == 7;
+        let large = (13..20).any(|size| name == format!("NU 2{size}") || name == format!("NU 3{size}"));
         let sized = ["60", "62", "63", "UC"].iter().any(|series| name.starts_with(series));
         let kept = ["NU 2210", "6004", "6203", "6205", "6206", "6209", "6305", "6320", "UC206"];
-        (wide || sized) && !kept.contains(&name)
+        (wide || large || sized) && !kept.contains(&name)
     };
-    cases.retain(|(name, _)| !one_of_many(name) && !name.starts_with("NU 23"));
+    cases.retain(|(name, _)| !one_of_many(name));
     assert!(cases.len() > 27, "{cases:?}");
     cases.push(("NU 205".into(), "(on: roller(1), form: missing)"));
     let off = side_by_side(&cases, |(bearing, defects)| {

@@ -61,7 +61,8 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     sheet.heading("3 ms by the full model");
     table(&mut sheet, &runs, "full");
     let failed = |run: &Finished| run.info.as_ref().is_none_or(|info| info.status != Status::Complete);
-    let names: Vec<&str> = runs.iter().filter(|run| failed(run)).map(|run| run.variant.name.as_str()).collect();
+    let names: Vec<&str> =
+        runs.iter().filter(|run| failed(run)).map(|run| run.variant.name.as_str()).collect();
     let failure = (!names.is_empty()).then(|| format!("not complete: {}", names.join(", ")));
     Ok(Answer { failure, ..Answer::on(sheet.write()?) })
 }
@@ -73,13 +74,14 @@ fn bearings(sheet: &mut Sheet, runs: &[Finished]) {
         let bore = b.inner_race_diameter_mm - 2.0 * b.inner_ring_thickness_mm;
         let words = |what: &stribeck_scene::scene::Assumed| format!("{what:?}").to_lowercase();
         let assumed: Vec<String> = b.assumed.iter().map(words).collect();
-        let (carried, pressure, safety) = Loads::of(scene).map_or(("–".into(), "–".into(), "–".into()), |loads| {
-            (
-                number(1e-3 * loads.largest_n, 2),
-                number(1e-6 * loads.pressure_pa[1], 0),
-                number(loads.static_safety(), 1),
-            )
-        });
+        let (carried, pressure, safety) =
+            Loads::of(scene).map_or(("–".into(), "–".into(), "–".into()), |loads| {
+                (
+                    number(1e-3 * loads.largest_n, 2),
+                    number(1e-6 * loads.pressure_pa[1], 0),
+                    number(loads.static_safety(), 1),
+                )
+            });
         vec![
             run.variant.name.replace("-reduced", ""),
             number(bore, 1),

@@ -49,9 +49,7 @@ fn fits(asked: &str, bearing: &CatalogueBearing) -> bool {
         let mut letters = rest.chars();
         match letters.next() {
             _ if own.is_empty() => false,
-            Some('2') if !own.starts_with('N') => {
-                letters.next().is_some_and(|c| c.is_ascii_alphabetic())
-            }
+            Some('2') if !own.starts_with('N') => letters.next().is_some_and(|c| c.is_ascii_alphabetic()),
             Some('0'..='9') => own.starts_with('U') && rest.len() == 2,
             _ => true,
         }
