@@ -492,21 +492,10 @@ fn print(analysis: &Analysis) {
         );
     }
     if let Some(spall) = findings.spall_mm {
-        if spall.low > 0.0 {
-            say!(
-                "  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm",
-                spall.value,
-                spall.low,
-                spall.high
-            );
-        } else {
-            // One knock a passage bounds the length and does not tell it.
-            say!(
-                "  spall: shorter than {:.2} mm if entry and exit both knock, else up to {:.1} mm",
-                2.0 * spall.value,
-                spall.high
-            );
-        }
+        say!("  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm", spall.value, spall.low, spall.high);
+    }
+    if let Some(below_mm) = findings.spall_below_mm {
+        say!("  spall: shorter than {below_mm:.2} mm if entry and exit both knock");
     }
     for note in &findings.notes {
         say!("  note: {note}");
