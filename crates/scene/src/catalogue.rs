@@ -140,7 +140,8 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
     let mm = |mm: f64| (1e4 * mm).round() / 1e4;
     match what {
         Assumed::Clearance => format!(
-            "nobody gave the clearance of this bearing: {:.0} µm are assumed, the middle of the normal group (ISO \
+            "nobody gave the clearance of this bearing: {:.0} µm are assumed, the middle of the normal \
+             group (ISO \
              5753-1), between raceways of {} and {} mm and rollers of {} mm",
             1e3 * (b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm),
             mm(b.outer_race_diameter_mm),
@@ -148,7 +149,8 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
             mm(b.roller_diameter_mm)
         ),
         Assumed::Pitch => format!(
-            "nobody gave the pitch diameter of this bearing: {} mm are assumed, half-way between bore and outside \
+            "nobody gave the pitch diameter of this bearing: {} mm are assumed, half-way between bore and \
+             outside \
              diameter, which is right to some 2 %",
             mm(0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm))
         ),
@@ -161,7 +163,8 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
             mm(b.inner_ring_thickness_mm)
         ),
         Assumed::Rollers => format!(
-            "nobody gave the number of rollers: {} are assumed, with a fifth of the pitch circle free, and all \
+            "nobody gave the number of rollers: {} are assumed, with a fifth of the pitch circle free, \
+             and all \
              frequencies of defects but that of the cage follow it",
             b.rollers
         ),
@@ -192,7 +195,8 @@ pub(crate) fn usual_elements(pitch_mm: f64, diameter_mm: f64) -> usize {
     (PI * pitch_mm / (SPACING * diameter_mm)).round() as usize
 }
 
-/// Diametral clearance [mm] of a bearing with this bore [mm]: the middle of the normal group, ISO 5753-1:2009.
+/// Diametral clearance [mm] of a bearing with this bore [mm]: the middle of the normal group, ISO
+/// 5753-1:2009.
 pub(crate) fn normal_clearance_mm(element: Element, bore_mm: f64) -> f64 {
     // Largest bore [mm], clearance [µm].
     const BALL: [(f64, f64); 9] = [

@@ -49,8 +49,8 @@ fn balls_factor(ratio: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// What makers print, with the bearing's own balls. Source: SKF, Rolling bearings (2018), deep groove ball
-    /// bearings: C₀ of 6205 is 7.8 kN, of 6203 4.75 kN.
+    /// What makers print, with the bearing's own balls. Source: SKF, Rolling bearings (2018), deep groove
+    /// ball bearings: C₀ of 6205 is 7.8 kN, of 6203 4.75 kN.
     #[test]
     fn peer_static_ratings_of_ball_bearings() {
         for (name, printed_n) in [("6205", 7_800.0), ("6203", 4_750.0)] {
@@ -60,8 +60,8 @@ mod tests {
         }
     }
 
-    /// By hand: 44 (1 − 7.5/39) 13 · 9 · 7.5 = 31.2 kN for 13 rollers 9 mm long and 7.5 mm thick (less a clearance
-    /// of 32.5 µm, a fifth of a per cent).
+    /// By hand: 44 (1 − 7.5/39) 13 · 9 · 7.5 = 31.2 kN for 13 rollers 9 mm long and 7.5 mm thick (less a
+    /// clearance of 32.5 µm, a fifth of a per cent).
     #[test]
     fn example_static_rating_of_rollers() {
         let scene = Scene::parse("(bearing: \"NU 205\")", "here").expect("known");

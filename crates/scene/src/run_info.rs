@@ -145,7 +145,8 @@ impl EnergyInfo {
 }
 
 /// What an energy is off by in words: over the heat where that is more than the peak strain energy, because
-/// the error of the step grows with the heat and says nothing beside strain; else over the peak strain energy.
+/// the error of the step grows with the heat and says nothing beside strain; else over the peak strain
+/// energy.
 pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
     match of_heat {
         Some(share) => format!("{:.3} % of the heat", 100.0 * share),
@@ -221,8 +222,8 @@ pub fn clock(seconds: f64) -> String {
 mod tests {
     use super::{EnergyInfo, clock};
 
-    /// A second of the reduced model was said to be off by 35.785 % of the peak strain energy, which read as a
-    /// failure: it was 0.02 % of the heat. A rigid housing stores millionths of what turns into heat.
+    /// A second of the reduced model was said to be off by 35.785 % of the peak strain energy, which read as
+    /// a failure: it was 0.02 % of the heat. A rigid housing stores millionths of what turns into heat.
     #[test]
     fn issue_an_imbalance_is_told_by_the_larger_of_strain_and_heat() {
         let energy = |max_relative_error, peak_strain_j, heat_j| EnergyInfo {

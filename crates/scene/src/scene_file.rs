@@ -190,8 +190,8 @@ impl Understood {
     }
 }
 
-/// The scene with a bearing of its own completed. `given` has the paths of the fields that somebody wrote into
-/// the paper's scene; `None` where its bearing is another one already.
+/// The scene with a bearing of its own completed. `given` has the paths of the fields that somebody wrote
+/// into the paper's scene; `None` where its bearing is another one already.
 fn complete(mut scene: Scene, set: Vec<origin::Override>, given: Option<Vec<String>>) -> Understood {
     let own = given.map(|given| own::complete(&mut scene, &given));
     let refusal = match own {

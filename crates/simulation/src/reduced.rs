@@ -182,8 +182,8 @@ fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Op
 /// model.step_us=…` on `reduced_30ms.ron`).
 const STEPS_A_FACET: f64 = 20.0;
 
-/// Makes the modes of the scene, which has a reduced model, and keeps them where `runs` says that the folder of
-/// the run will lie. Whether they had to be made: an earlier run may have left them there.
+/// Makes the modes of the scene, which has a reduced model, and keeps them where `runs` says that the folder
+/// of the run will lie. Whether they had to be made: an earlier run may have left them there.
 ///
 /// # Errors
 /// When the scene cannot be meshed, preloaded or reduced.

@@ -10,8 +10,8 @@ use crate::out::say;
 /// Flags of `bearings`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// A bearing by name, or by name and numbers as in "NU 205, elements=13"; the beginning of names, as NU or
-    /// 62, lists those [default: all that have a name]
+    /// A bearing by name, or by name and numbers as in "NU 205, elements=13"; the beginning of names, as NU
+    /// or 62, lists those [default: all that have a name]
     name: Option<String>,
 }
 

@@ -72,14 +72,16 @@ fn loads(plan: &Plan) {
     let loads = &plan.loads;
     let [outer, inner] = loads.pressure_pa.map(|pa| 1e-6 * pa);
     say!(
-        "  clearance {:.0} µm; {} rolling elements carry, the most loaded one {:.0} N (rigid rings, Stribeck and \
+        "  clearance {:.0} µm; {} rolling elements carry, the most loaded one {:.0} N (rigid rings, \
+         Stribeck and \
          Sjövall)",
         1e6 * loads.clearance_m,
         loads.loaded,
         loads.largest_n
     );
     say!(
-        "  Hertz pressure of its line contacts: {outer:.0} MPa at the outer, {inner:.0} MPa at the inner raceway"
+        "  Hertz pressure of its line contacts: {outer:.0} MPa at the outer, {inner:.0} MPa at the inner \
+         raceway"
     );
     say!(
         "  static safety s₀ = C₀/P₀ = {:.1}, with C₀ = {:.1} kN by ISO 76 from these dimensions",
@@ -105,7 +107,8 @@ fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
     };
     let threads = if trial.info.reduced.is_some() { 1 } else { trial.threads };
     say!(
-        "  the run takes about {} on this machine as busy as it is now, {threads} thread{} (set-up {}{modes}), and \
+        "  the run takes about {} on this machine as busy as it is now, {threads} thread{} (set-up \
+         {}{modes}), and \
          its report some seconds more: {:.2} ms of it were tried",
         clock(trial.run_s()),
         if threads == 1 { "" } else { "s" },

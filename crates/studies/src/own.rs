@@ -48,7 +48,8 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let runs = Runner::new("own", &options.flags, host).run(&variants)?;
     let mut sheet = Sheet::new(host.root(), "own", "Bearings by their own fields, at the first try");
     sheet.say(
-        "Ten bearings of `fixtures/scenes/own`, none of the catalogue, with dimensions as makers print them. Each \
+        "Ten bearings of `fixtures/scenes/own`, none of the catalogue, with dimensions as makers print \
+         them. Each \
          file has fields of `bearing` alone; cage, adapter, defect, elements, load, stiffness of the contact and \
          what is missing of the bearing follow from them. Each was run for one second by the reduced model \
          (`--set model=reduced()`) and for 3 ms by the full one (`--set mesh.grading=()`), in oil, as the defaults \

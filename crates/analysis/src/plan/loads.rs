@@ -56,7 +56,8 @@ impl Loads {
     }
 }
 
-/// Below this static safety rolling elements leave dents (ISO 76 asks for 1.5 and more where it runs quietly).
+/// Below this static safety rolling elements leave dents (ISO 76 asks for 1.5 and more where it runs
+/// quietly).
 const SAFE: f64 = 1.0;
 /// A cage that nothing holds has fallen through its room after this many times a free fall over it.
 const FALLS: f64 = 3.0;
@@ -70,7 +71,8 @@ fn overload(loads: &Loads) -> Option<String> {
     let safety = loads.static_safety();
     (safety < SAFE).then(|| {
         format!(
-            "the load of {:.0} N exceeds the static rating of this bearing, {:.0} N by ISO 76 (s₀ = {safety:.2}): \
+            "the load of {:.0} N exceeds the static rating of this bearing, {:.0} N by ISO 76 (s₀ = \
+             {safety:.2}): \
              steel would yield, which the model does not. Take less `operation.load_n`, or check \
              `bearing.thickness_mm`, the length of the rollers",
             loads.load_n, loads.static_rating_n
@@ -83,8 +85,8 @@ fn play(scene: &ResolvedScene) -> Option<f64> {
     let cage = scene.cage.as_ref()?;
     let [inner, outer] = cage.radii();
     let path = scene.path_radius();
-    // A corner stops the cage where it lies above or below the middle of its roller: r c/y for a corner at the
-    // height y, to first order of the clearance c.
+    // A corner stops the cage where it lies above or below the middle of its roller: r c/y for a corner at
+    // the height y, to first order of the clearance c.
     let height = (inner - path).max(path - outer);
     let held = cage.pocket == PocketWalls::Corners && height > 0.0;
     Some(if held { scene.roller_radius * cage.pocket_clearance / height } else { f64::INFINITY })
@@ -108,7 +110,8 @@ fn cage(scene: &ResolvedScene) -> Option<String> {
         "no corner of its pockets lies above or below the middle of a roller".to_owned()
     };
     Some(format!(
-        "nothing holds the cage between the raceways, where it has {:.2} mm of room: {holds}, and in a free fall it \
+        "nothing holds the cage between the raceways, where it has {:.2} mm of room: {holds}, and in a \
+         free fall it \
          is through after {:.0} ms. In {:.0} ms it will stray, and may stop the run. Take {}; without `cage.\
          outer_diameter_mm` and `cage.thickness_mm` it gets the ones that hold it where the bearing is named or \
          one's own",
@@ -134,7 +137,8 @@ fn penetration(scene: &ResolvedScene, loads: &Loads) -> Option<String> {
     };
     let model = if scene.written.model == ModelScene::Full { "full" } else { "reduced" };
     Some(format!(
-        "under its largest force contact sinks in by some {percent:.0} % of an element, {ends} ({model} model): take \
+        "under its largest force contact sinks in by some {percent:.0} % of an element, {ends} ({model} \
+         model): take \
          a larger `contact.penalty_scale`, or less `operation.load_n`"
     ))
 }
@@ -164,8 +168,8 @@ mod tests {
         assert!(dangers.is_empty(), "{dangers:?}");
     }
 
-    /// An NU 2210 by fields, with the cage that a message had proposed for it, diverged after 377 ms; a plan saw
-    /// nothing.
+    /// An NU 2210 by fields, with the cage that a message had proposed for it, diverged after 377 ms; a plan
+    /// saw nothing.
     #[test]
     fn issue_a_cage_that_will_stray_is_seen_beforehand() {
         let bearing = "rollers: 17, roller_diameter_mm: 11, inner_race_diameter_mm: 59.5, bore_mm: 50, \

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use ron::extensions::Extensions;
 use serde::Deserialize;
 
 use super::{Boundary, CatalogueBearing, Element};
-use crate::scene_file::dialect::dialect;
 
 /// Name of the file in either folder.
 const NAME: &str = "bearings.ron";
@@ -72,8 +72,10 @@ fn paths() -> Vec<PathBuf> {
 fn read(path: &Path) -> Result<Vec<CatalogueBearing>, String> {
     let shown = path.display();
     let text = std::fs::read_to_string(path).map_err(|why| format!("`{shown}` cannot be read: {why}"))?;
-    let text = crate::scene_file::without_mark(&text);
-    let entries: Vec<Entry> = dialect()
+    // Some editors put a byte order mark in front.
+    let text = text.trim_start_matches('\u{feff}');
+    let dialect = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+    let entries: Vec<Entry> = dialect
         .from_str(text)
         .map_err(|why| format!("`{shown}` is no list of bearings: {why}. Such a list is `{EXAMPLE}`"))?;
     entries.into_iter().map(|entry| entry.bearing(path)).collect()
@@ -88,7 +90,8 @@ impl Entry {
             (None, None, None) => None,
             _ => {
                 return Err(format!(
-                    "`{}` in `{}` has some of `bore_mm`, `outside_mm` and `width_mm`: give all three, or none for \
+                    "`{}` in `{}` has some of `bore_mm`, `outside_mm` and `width_mm`: give all three, or \
+                     none for \
                      its frequencies alone",
                     self.name,
                     path.display()
@@ -116,7 +119,8 @@ impl Entry {
         let letters = super::names::plain(&bearing.name);
         if letters.is_empty() || !bearing.is_sane() || !rings {
             return Err(format!(
-                "`{}` in `{}` is no bearing: it needs a `name` with letters or digits, `diameter_mm`, a larger \
+                "`{}` in `{}` is no bearing: it needs a `name` with letters or digits, `diameter_mm`, a \
+                 larger \
                  `pitch_mm` with room for its `elements`, and rings around them: `bore_mm` < pitch − diameter, \
                  pitch + diameter < `outside_mm`",
                 bearing.name,

@@ -17,19 +17,22 @@ const MFPT: &str =
     "E. Bechhoefer, MFPT bearing fault data set, 2013: 8 rolling elements of 0.235 in, pitch 1.245 in";
 const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design, makers' catalogues: d = (E \
     − F)/2, pitch (E + F)/2";
-pub(super) const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints raceways: F and \
+pub(super) const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints \
+ raceways: F and \
     E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + F)/2";
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
-pub(super) const BALL_RULE: &str = "bore, outside and width by ISO 15; balls by rule: pitch (bore + outside)/2, diameter 0.3 (outside − bore). \
+pub(super) const BALL_RULE: &str = "bore, outside and width by ISO 15; balls by rule: pitch (bore + \
+ outside)/2, diameter 0.3 (outside − bore). \
     Of six bearings whose balls are known the rule is off by 6 % at most in diameter and by 1.5 % in pitch";
-pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628; balls by the rule of deep groove bearings of the same outside \
+pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628; balls by the rule of \
+ deep groove bearings of the same outside \
     diameter (pitch (bore + outside)/2, diameter 0.3 (outside − bore)), which is off by 6 % at most in the \
     diameter of six known ones";
 
 /// Raceway diameters F and E [mm] of cylindrical roller bearings of E design by size, with bore and outside
-/// diameter [mm] by ISO 15, and width [mm] of the narrow and of the wide series, which have the same raceways;
-/// those of [`IN_PROPORTION`] from its neighbour.
+/// diameter [mm] by ISO 15, and width [mm] of the narrow and of the wide series, which have the same
+/// raceways; those of [`IN_PROPORTION`] from its neighbour.
 const CYLINDRICAL: [(u32, f64, f64, [f64; 2], [f64; 2]); 38] = [
     (202, 19.3, 30.3, [15.0, 35.0], [11.0, 14.0]),
     (203, 22.1, 35.1, [17.0, 40.0], [12.0, 16.0]),
@@ -275,8 +278,8 @@ mod tests {
 
     /// What [`BALL_RULE`] says of itself, by the bearings whose balls are listed with their source.
     #[test]
-    fn peer_balls_by_rule_beside_known_ones() {
-        // Source: the rows of `OTHERS`, which name theirs. Diameter 6 %, pitch 1.5 %; all of the numbers.
+    fn example_balls_by_rule_beside_known_ones() {
+        // Diameter to 6 %, pitch to 1.5 %, and all of the numbers.
         let known = OTHERS.iter().filter(|row| row.1 == Element::Ball && row.5 == 0.0);
         let mut compared = 0;
         for &(name, _, elements, diameter, pitch, _, boundary, _) in known {

@@ -288,8 +288,8 @@ fn cage(scene: &Scene) -> Option<Finding> {
     ))
 }
 
-/// Outer diameter of a cage of this thickness whose corners touch rollers above their middles [mm], as those of
-/// the catalogue; not a number where it would not lie between the raceways, or has straight pockets.
+/// Outer diameter of a cage of this thickness whose corners touch rollers above their middles [mm], as those
+/// of the catalogue; not a number where it would not lie between the raceways, or has straight pockets.
 fn held_mm(scene: &Scene, cage: &CageScene) -> f64 {
     let b = &scene.bearing;
     let outer = b.outer_race_diameter_mm - OFF_RACE * b.roller_diameter_mm;

@@ -13,7 +13,6 @@ use crate::scene::{
     BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, ReducedScene,
     Scene,
 };
-use crate::static_load;
 
 /// Length of a roller over the width of its ring, between flanges.
 pub(super) const ROLLER_LENGTH: f64 = 0.6;
@@ -201,6 +200,10 @@ pub(super) fn modes(scene: &mut Scene, given: &[String]) {
 /// below it when rollers knock.
 const KNOCKS: f64 = 2.0;
 
+/// Share of the load that the most loaded of many rollers carries between raceways with clearance, times their
+/// number: Stribeck's 5, and a fifth more for a clearance as wide as the rollers give way.
+const WITH_CLEARANCE: f64 = 6.0;
+
 /// Contact that does not sink in deeper than the radial clearance or a tenth of an element, where nobody gave
 /// its stiffness: the paper's, in proportion, is too soft where few rollers carry.
 pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
@@ -209,11 +212,10 @@ pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
         return;
     }
     let g = scene.resolve();
-    let Ok(shared) = static_load::at_start(&g) else { return };
-    let radius = g.inner_contact_radius();
-    let w = shared.max_roller_n() / g.thickness;
-    let depth = (0.75 * w / (g.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
-    let hertz = 0.5 * shared.max_approach_m();
+    let largest = g.load * (WITH_CLEARANCE / g.rollers as f64).min(1.0);
+    let w = largest / g.thickness;
+    let depth = (0.75 * w / (g.penalty_stiffness * (2.0 * g.inner_contact_radius()).sqrt())).powf(2.0 / 3.0);
+    let hertz = 0.5 * LineContacts::of(&g).approach(w).0;
     let warned = (0.5 * g.clearance).max(hertz).min(0.1 * g.element_size);
     let stiffer = (KNOCKS * depth / warned).powf(1.5);
     if stiffer > 1.0 && stiffer.is_finite() {

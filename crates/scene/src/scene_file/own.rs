@@ -258,8 +258,8 @@ impl Given {
         [self.outer, self.inner].iter().flatten().count()
     }
 
-    /// All diameters, with the diametral clearance [mm] where it does not follow from given ones; `None` where
-    /// too few are given.
+    /// All diameters, with the diametral clearance [mm] where it does not follow from given ones; `None`
+    /// where too few are given.
     fn diameters(self, clearance: f64) -> Option<Diameters> {
         let between =
             |outer: f64, inner: f64| Diameters { outer, inner, roller: 0.5 * (outer - inner - clearance) };
@@ -336,7 +336,8 @@ impl Given {
                 Err(Refusal {
                     field: format!("bearing.{name}"),
                     message: format!(
-                        "`bearing.{name}` is {}, which leaves the {name_of_ring} ring {} mm beside its raceway of \
+                        "`bearing.{name}` is {}, which leaves the {name_of_ring} ring {} mm beside its \
+                         raceway of \
                          {} mm{also}",
                         number(boundary.unwrap_or(0.0)),
                         number(tidy(left)),

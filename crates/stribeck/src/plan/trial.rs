@@ -18,8 +18,8 @@ use crate::place::Place;
 
 /// The loop is tried for about so long [s].
 const LOOP_S: f64 = 0.5;
-/// Elements and steps of the full model in a second, and rollers and steps of the reduced one, to guess how many
-/// samples that is.
+/// Elements and steps of the full model in a second, and rollers and steps of the reduced one, to guess how
+/// many samples that is.
 const ELEMENT_STEPS: f64 = 3e8;
 const ROLLER_STEPS: f64 = 2e6;
 /// Samples at least.
@@ -58,8 +58,8 @@ impl Drop for Folder {
     }
 }
 
-/// Begins a run of the scene in a folder of its own, which is gone afterwards. Modes that it makes are kept for
-/// the run where there are runs.
+/// Begins a run of the scene in a folder of its own, which is gone afterwards. Modes that it makes are kept
+/// for the run where there are runs.
 pub(super) fn begin(scene: &ResolvedScene, plan: &Plan, place: &Place) -> Result<Trial> {
     let written = &scene.written;
     let threads = host::cores();
