@@ -170,7 +170,7 @@ struct Understood {
     scene: Scene,
     set: Vec<origin::Override>,
     /// Why the bearing that it gives by its own fields is none.
-    refusal: Option<own::Refusal>,
+    refusal: Option<Box<own::Refusal>>,
 }
 
 impl Understood {

@@ -5,6 +5,9 @@ use super::{Boundary, CatalogueBearing, Element};
 /// Name, element, number, diameter, pitch [mm], contact angle [°], bore, outside, width [mm], source.
 type Row = (&'static str, Element, Option<u32>, f64, f64, f64, Option<[f64; 3]>, &'static str);
 
+/// Size, F, E, bore and outside diameter, width of the narrow and of the wide series [mm].
+type Cylindrical = (u32, f64, f64, [f64; 2], [f64; 2]);
+
 /// Name of the paper's bearing.
 pub const PAPER: &str = "paper";
 
@@ -33,7 +36,7 @@ pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628
 /// Raceway diameters F and E [mm] of cylindrical roller bearings of E design by size, with bore and outside
 /// diameter [mm] by ISO 15, and width [mm] of the narrow and of the wide series, which have the same
 /// raceways; those of [`IN_PROPORTION`] from its neighbour.
-const CYLINDRICAL: [(u32, f64, f64, [f64; 2], [f64; 2]); 38] = [
+const CYLINDRICAL: [Cylindrical; 38] = [
     (202, 19.3, 30.3, [15.0, 35.0], [11.0, 14.0]),
     (203, 22.1, 35.1, [17.0, 40.0], [12.0, 16.0]),
     (204, 26.5, 41.5, [20.0, 47.0], [14.0, 18.0]),

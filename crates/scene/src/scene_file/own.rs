@@ -32,7 +32,7 @@ pub(super) enum Own {
     /// It is complete.
     Complete,
     /// It is none.
-    Refused(Refusal),
+    Refused(Box<Refusal>),
 }
 
 /// Why given fields make no bearing.
@@ -144,12 +144,16 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
             named::stiffness(scene, given);
             Own::Complete
         }
-        Err(refusal) => Own::Refused(Refusal { of_another: main.describes_another(), ..refusal }),
+        Err(refusal) => Own::Refused(Box::new(Refusal { of_another: main.describes_another(), ..*refusal })),
     }
 }
 
 /// The completed bearing.
-fn bearing(b: &BearingScene, main: Given, written: &dyn Fn(&str) -> bool) -> Result<BearingScene, Refusal> {
+fn bearing(
+    b: &BearingScene,
+    main: Given,
+    written: &dyn Fn(&str) -> bool,
+) -> Result<BearingScene, Box<Refusal>> {
     let mut assumed = Vec::new();
     let mut assume = |what: Assumed| {
         if !assumed.contains(&what) {
@@ -285,14 +289,14 @@ impl Given {
     }
 
     /// Refuses dimensions that are given twice and differ.
-    fn agree(self) -> Result<(), Refusal> {
+    fn agree(self) -> Result<(), Box<Refusal>> {
         let Some(pitch) = self.pitch else { return Ok(()) };
         let without = Self { pitch: None, bore: None, outside: None, ..self };
         let Some(found) = without.diameters(0.0).map(Diameters::pitch) else { return Ok(()) };
         if (found / pitch - 1.0).abs() <= AGREE {
             return Ok(());
         }
-        Err(Refusal {
+        Err(Box::new(Refusal {
             field: "bearing.pitch_mm".to_owned(),
             message: format!(
                 "`bearing.pitch_mm` is {}, and raceways and rollers make a pitch diameter of {} mm",
@@ -303,11 +307,17 @@ impl Given {
             suggestion: "leave `pitch_mm` out, or a raceway".to_owned(),
             repair: None,
             of_another: true,
-        })
+        }))
     }
 
     /// Thickness of a ring [mm] by what is given; `None` where nothing is.
-    fn ring(self, b: &BearingScene, d: Diameters, written: bool, side: Side) -> Result<Option<f64>, Refusal> {
+    fn ring(
+        self,
+        b: &BearingScene,
+        d: Diameters,
+        written: bool,
+        side: Side,
+    ) -> Result<Option<f64>, Box<Refusal>> {
         let (boundary, name, thickness, field, name_of_ring) = match side {
             Side::Outer => {
                 (self.outside, "outside_mm", b.outer_ring_thickness_mm, "outer_ring_thickness_mm", "outer")
@@ -333,7 +343,7 @@ impl Given {
                 } else {
                     String::new()
                 };
-                Err(Refusal {
+                Err(Box::new(Refusal {
                     field: format!("bearing.{name}"),
                     message: format!(
                         "`bearing.{name}` is {}, which leaves the {name_of_ring} ring {} mm beside its \
@@ -347,13 +357,13 @@ impl Given {
                     suggestion: format!("`{name}: {}`, or leave it out", number(limit)),
                     repair: (!written && limit > 0.0).then(|| (format!("bearing.{name}"), number(limit))),
                     of_another: true,
-                })
+                }))
             }
         }
     }
 
     /// What else is needed, in words.
-    fn lacks(self) -> Refusal {
+    fn lacks(self) -> Box<Refusal> {
         let fields = [
             ("roller_diameter_mm", self.roller),
             ("inner_race_diameter_mm", self.inner),
@@ -382,7 +392,7 @@ impl Given {
             _ => None,
         };
         let again = papers.map(|mm| format!("; `{first}: {}` is the paper's bearing", number(mm)));
-        Refusal {
+        Box::new(Refusal {
             field: format!("bearing.{first}"),
             message: format!(
                 "a bearing with {} is not the paper's, and of one's own it lacks {missing}",
@@ -394,11 +404,11 @@ impl Given {
             suggestion: format!("give {instead}, too{}", again.unwrap_or_default()),
             repair: papers.map(|mm| (format!("bearing.{first}"), number(mm))),
             of_another: false,
-        }
+        })
     }
 
     /// Diameters between which no roller is left.
-    fn impossible(self, d: Diameters) -> Refusal {
+    fn impossible(self, d: Diameters) -> Box<Refusal> {
         let field = if self.pitch.is_some() {
             "pitch_mm"
         } else if self.roller.is_some() {
@@ -406,7 +416,7 @@ impl Given {
         } else {
             "inner_race_diameter_mm"
         };
-        Refusal {
+        Box::new(Refusal {
             field: format!("bearing.{field}"),
             message: format!(
                 "these diameters make no bearing: raceways of {} and {} mm, rollers of {} mm",
@@ -418,6 +428,6 @@ impl Given {
             suggestion: "check the diameters, in mm".to_owned(),
             repair: None,
             of_another: true,
-        }
+        })
     }
 }
