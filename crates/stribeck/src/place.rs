@@ -5,6 +5,7 @@ use std::time::SystemTime;
 
 use anyhow::{Context, Result, anyhow, bail};
 use stribeck_bearing::{error::Error, own_mesh};
+use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
 
@@ -73,6 +74,11 @@ impl Place {
             }
             other => anyhow!(other),
         })?;
+        // Of a bearing of the catalogue the report says it.
+        let own = Some(&scene.bearing).filter(|bearing| !bearing.assumed.is_empty());
+        for note in own.into_iter().flat_map(catalogue::assumptions) {
+            eprintln!("note: {note}");
+        }
         Ok(scene)
     }
 
@@ -119,7 +125,9 @@ impl Place {
         let written = |path: &Path| -> Option<SystemTime> {
             files.iter().filter_map(|name| path.join(name).metadata().ok()?.modified().ok()).max()
         };
-        let runs = entries.flatten().filter_map(|entry| Some((written(&entry.path())?, entry.path())));
+        // A plan that was killed may have left what it tried.
+        let entries = entries.flatten().filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'));
+        let runs = entries.filter_map(|entry| Some((written(&entry.path())?, entry.path())));
         match runs.max() {
             Some((_, path)) => Ok(path),
             None => bail!("no runs in `{}`: {advice}", folder.display()),
