@@ -31,11 +31,22 @@ pub(crate) fn build_module() -> Result<ExitCode> {
 fn build() -> Result<PathBuf> {
     let root = workspace::root();
     // A folder of its own: cargo would wait for the one that runs this command.
-    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("lab");
+    let folder =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("lab");
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo
         .current_dir(&root)
-        .args(["rustc", "--quiet", "--profile", "lab", "-p", "stribeck-lab", "--lib", "--crate-type", "cdylib"])
+        .args([
+            "rustc",
+            "--quiet",
+            "--profile",
+            "lab",
+            "-p",
+            "stribeck-lab",
+            "--lib",
+            "--crate-type",
+            "cdylib",
+        ])
         .args(["--target", TARGET, "--target-dir"])
         .arg(&folder)
         .env("RUSTFLAGS", "-C target-feature=+simd128")

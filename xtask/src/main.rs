@@ -1,4 +1,4 @@
-//! What develops Stribeck: `cargo xtask ci`, `study`, `compare` and `fuzz`, and the program's own `simulate`,
+//! What develops Stribeck: `cargo xtask ci`, `study`, `peers` and `fuzz`, and the program's own `simulate`,
 //! `report` and `plan`.
 //!
 //! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
@@ -23,6 +23,8 @@ use stribeck::Place;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    loudness: stribeck::Loudness,
 }
 
 #[derive(Debug, Subcommand)]
@@ -33,7 +35,7 @@ enum Command {
     /// Answers a question by many runs: tables and pictures in docs/results
     Study(study::Options),
     /// Solves the same problems with other programs, checks that they agree, and times them
-    Compare(compare::Options),
+    Peers(compare::Options),
     /// Builds the module of `cargo xtask lab`, which steps a bearing in a page, and says where it is
     LabModule,
     /// Writes the guide's page of all fields of a scene from their types
@@ -45,11 +47,13 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    stribeck::conclude(match Cli::parse().command {
+    let cli = Cli::parse();
+    cli.loudness.apply();
+    stribeck::conclude(match cli.command {
         Command::Program(command) => lab::with_module(command)
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
         Command::Study(options) => study::run(&options),
-        Command::Compare(options) => compare::run(&options),
+        Command::Peers(options) => compare::run(&options),
         Command::LabModule => lab::build_module(),
         Command::Fields(options) => fields::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),

@@ -134,8 +134,14 @@ pub struct MeasuredFindings {
     pub unexplained: Option<Unexplained>,
     /// The conclusion in one sentence.
     pub verdict: String,
-    /// Length of a spall [mm].
+    /// Length of a spall, from two events a passage [mm].
     pub spall_mm: Option<Interval>,
+    /// Time between these events [ms].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub event_spacing_ms: Option<f64>,
+    /// Where a passage has a single event: the spall is shorter than this, if entry and exit both knock [mm].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spall_below_mm: Option<f64>,
     /// Limits of the conclusion.
     pub notes: Vec<String>,
 }
@@ -256,8 +262,8 @@ impl Analysis {
         one_half_only(&mut judged.families, &kept, rate_hz)?;
         judged.conclude(&bands);
         notes.extend(judged.notes.iter().cloned());
-        let (spall_mm, why) = length::estimate(&kept, rate_hz, machine, &judged.families)?;
-        notes.extend(why);
+        let spall = length::estimate(&kept, rate_hz, machine, &judged.families);
+        notes.push(spall.note);
         let enhanced = enhanced::of(&kept, rate_hz, enhanced_up_to_hz(&judged.families))?;
         Ok(Self {
             findings: MeasuredFindings {
@@ -276,7 +282,9 @@ impl Analysis {
                 families: judged.families,
                 unexplained: judged.unexplained,
                 verdict: judged.verdict,
-                spall_mm,
+                spall_mm: spall.length_mm,
+                event_spacing_ms: spall.spacing_ms,
+                spall_below_mm: spall.below_mm,
                 notes,
             },
             beginning: kept.into_iter().take(SHOWN).collect(),

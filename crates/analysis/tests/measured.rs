@@ -298,12 +298,11 @@ fn example_a_second_event_gives_a_length_and_the_longer_one_that_it_may_mean() {
 }
 
 #[test]
-fn issue_one_knock_an_element_is_no_bound_on_the_length() {
+fn issue_one_knock_an_element_is_no_length() {
     // A simulated spall of 4 mm, whose elements never came free, was given as one below 1.83 mm.
     let channel = Channel::held("test", edges(71.7, 0.0, 0.6e-3));
     let found = Analysis::of(&channel, 4.0 * RATE_HZ, &machine(1200.0)).unwrap().findings;
-    let spall = found.spall_mm.unwrap_or_else(|| panic!("{:?}", found.notes));
-    assert!(spall.low == 0.0 && (16.3..16.5).contains(&spall.high) && spall.value < 2.0, "{spall:?}");
+    assert!(found.spall_mm.is_none() && found.spall_below_mm.is_some_and(|mm| mm < 4.0), "{found:?}");
     assert!(found.notes.iter().any(|n| n.contains("if entry and exit both knock")), "{:?}", found.notes);
 }
 
@@ -455,8 +454,10 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
         errors.len(),
         100.0 * median
     );
-    // In three records of eighteen the bands do not agree on a second event.
-    assert!(errors.len() >= 15 && median <= 0.1 && covered >= 15, "{errors:?} {covered}");
+    // In the other records of eighteen the bands, which share nothing, do not agree on a second event. Of
+    // nine intervals of 90 % at least seven hold in 95 of 100 cases.
+    assert!(errors.len() >= 9 && median <= 0.1, "{errors:?}");
+    assert!(f64::from(covered) >= 0.75 * errors.len() as f64, "{covered} of {}", errors.len());
     assert!(unordered.is_empty(), "{unordered:?}");
     assert!(hits[0] >= 8 && hits[1] >= 7, "{hits:?}");
 }

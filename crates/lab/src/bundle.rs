@@ -82,7 +82,8 @@ pub(crate) fn bundle(written: &Scene, runs: Option<&Path>) -> Result<Bundled, Er
     let handles = handles(&resolved, &modal.parameters, spall.as_ref(), [time_step, rates.oil.viscosity]);
     let reduction = &modal.reduction;
     let facts = facts(&scene, &resolved, reduction, &handles, time_step);
-    let (reference, states) = reference(&resolved, steps_per_sample, BearingInMotion::new(bearing, start.clone()))?;
+    let (reference, states) =
+        reference(&resolved, steps_per_sample, BearingInMotion::new(bearing, start.clone()))?;
     let content =
         Content { modal, interval: resolved.interval, steps_per_sample, start, handles, spall, rates };
     Ok(Bundled { content, facts, reference, states })
@@ -147,7 +148,9 @@ fn rates(scene: &Scene, modal: &stribeck_modal::ModalBearing) -> Result<Rates, E
         .parameters;
     let films = loaded_films(&resolved).map_err(stribeck_simulation::Error::from)?;
     let (Some(oil), Some(films)) = (oil, films) else {
-        return Err(Error::Unsuited("the scene has no loaded roller: `operation.load_n` is too small".to_owned()));
+        return Err(Error::Unsuited(
+            "the scene has no loaded roller: `operation.load_n` is too small".to_owned(),
+        ));
     };
     let rigid = scene.housing.is_rigid() || scene.solver.damping_frame == DampingFrame::RigidMotion;
     Ok(Rates {

@@ -278,7 +278,9 @@ impl Engine {
 }
 
 fn balance(e: &Energies) -> f64 {
-    e.kinetic + e.strain + e.contact + e.friction + e.damping + e.contact_damping + e.film - e.external - e.drive
+    e.kinetic + e.strain + e.contact + e.friction + e.damping + e.contact_damping + e.film
+        - e.external
+        - e.drive
 }
 
 /// Mean displacement of the outer raceway by a unit of each mode.

@@ -87,7 +87,11 @@ pub fn check(number: usize, value: f64) -> Result<(), Error> {
     let Some(handle) = HANDLES.get(number) else { return Err(Error::UnknownHandle(number)) };
     let Handle { name, unit, least, most, .. } = *handle;
     // Not a number is refused, too.
-    if (least..=most).contains(&value) { Ok(()) } else { Err(Error::Range { name, value, unit, least, most }) }
+    if (least..=most).contains(&value) {
+        Ok(())
+    } else {
+        Err(Error::Range { name, value, unit, least, most })
+    }
 }
 
 #[cfg(test)]

@@ -72,10 +72,11 @@ pub fn page(scenes: &[Scene], module: &[u8], runs: Option<&Path>, command: &str)
     data += &element("module", "text/plain", &module);
     data += &element("engine", "text/plain", &plain(ENGINE));
     let scripts: Vec<String> = SCRIPTS.iter().map(|(_, text)| plain(text)).collect();
-    let html = PAGE
-        .replacen("/*STYLE*/", STYLE, 1)
-        .replacen("<!--DATA-->", &data, 1)
-        .replacen("/*SCRIPTS*/", &format!("{}\n{}", plain(ENGINE), scripts.join("\n")), 1);
+    let html = PAGE.replacen("/*STYLE*/", STYLE, 1).replacen("<!--DATA-->", &data, 1).replacen(
+        "/*SCRIPTS*/",
+        &format!("{}\n{}", plain(ENGINE), scripts.join("\n")),
+        1,
+    );
     Ok(Page {
         html,
         bytes_of_scenes: packed.iter().map(|parts| parts.iter().map(String::len).sum()).collect(),

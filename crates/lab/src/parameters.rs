@@ -58,8 +58,7 @@ pub(crate) fn modal(content: &Content, to: &Handles, duty: Option<Duty>) -> Resu
     }
     if turned(at::MASS_DAMPING) {
         parameters.damping.mass = to[at::MASS_DAMPING];
-        parameters.damping.mass_of_modes =
-            if content.rates.damps_modes { to[at::MASS_DAMPING] } else { 0.0 };
+        parameters.damping.mass_of_modes = if content.rates.damps_modes { to[at::MASS_DAMPING] } else { 0.0 };
     }
     if turned(at::SPEED) {
         parameters.speeds = speeds(&content.rates, to[at::SPEED]);

@@ -29,7 +29,8 @@ pub(crate) fn sample(motion: &BearingInMotion, watched: usize, mean: &[Vec<f64>;
             (outer, inner) = (size, roller.inner[0].hypot(roller.inner[1]));
         }
     }
-    let centre = mean.each_ref().map(|shape| shape.iter().zip(motion.modes()).map(|(a, q)| a * q).sum::<f64>());
+    let centre =
+        mean.each_ref().map(|shape| shape.iter().zip(motion.modes()).map(|(a, q)| a * q).sum::<f64>());
     to.extend([motion.time(), acceleration[0], acceleration[1], outer, inner, sum[0], sum[1]]);
     to.extend([centre[0], centre[1], largest]);
 }
@@ -43,7 +44,18 @@ pub(crate) fn picture(motion: &BearingInMotion, energies: &Energies, imbalance: 
     let Energies {
         kinetic, strain, contact, friction, damping, contact_damping, film, external, drive, ..
     } = *energies;
-    to.extend([kinetic, strain, contact, friction, damping, contact_damping, film, external, drive, imbalance]);
+    to.extend([
+        kinetic,
+        strain,
+        contact,
+        friction,
+        damping,
+        contact_damping,
+        film,
+        external,
+        drive,
+        imbalance,
+    ]);
     to.push(motion.bearing().time_step);
     // Forces are means over an interval, and there is none before the first step.
     let moved = energies.time > 0.0;

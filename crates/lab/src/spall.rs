@@ -200,7 +200,10 @@ mod tests {
     const RADIUS: f64 = 0.1;
 
     fn circle(n: usize) -> Vec<[f64; 2]> {
-        (0..n).map(|i| TAU * (0.3 + i as f64) / n as f64).map(|a| [RADIUS * a.cos(), RADIUS * a.sin()]).collect()
+        (0..n)
+            .map(|i| TAU * (0.3 + i as f64) / n as f64)
+            .map(|a| [RADIUS * a.cos(), RADIUS * a.sin()])
+            .collect()
     }
 
     fn spall(slope_deg: f64) -> Spall {

@@ -173,7 +173,8 @@ fn refuses_a_file_cut_in_half() {
 fn refuses_a_browser_without_web_assembly() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-without");
-    let html = page_of(&coarse(), &module).replacen("<head>", "<head><script>delete window.WebAssembly</script>", 1);
+    let html =
+        page_of(&coarse(), &module).replacen("<head>", "<head><script>delete window.WebAssembly</script>", 1);
     let file = written(&folder, "lab.html", &html);
     let address = format!("file://{}", file.display());
     let said = asked(&browser, &folder, &address, "return text('trouble');");

@@ -51,7 +51,8 @@ fn invariant_the_first_samples_are_those_of_the_program() {
     for sample in 0..200 {
         motion.interval(steps_per_sample);
         engine.run(1).expect("a sound run");
-        let there: Vec<f64> = motion.rollers().flat_map(|roller| [roller.outer, roller.inner].concat()).collect();
+        let there: Vec<f64> =
+            motion.rollers().flat_map(|roller| [roller.outer, roller.inner].concat()).collect();
         assert_eq!(engine.forces(), there, "sample {sample}");
     }
 }
@@ -66,7 +67,10 @@ fn roundtrip_content_in_bytes() {
     assert_eq!(back.start, content.start);
     assert_eq!(back.modal.parameters, content.modal.parameters);
     assert_eq!(back.modal.reduction.shapes, content.modal.reduction.shapes);
-    assert_eq!(back.modal.reduction.springs.as_ref().map(|s| &s.stiffness), content.modal.reduction.springs.as_ref().map(|s| &s.stiffness));
+    assert_eq!(
+        back.modal.reduction.springs.as_ref().map(|s| &s.stiffness),
+        content.modal.reduction.springs.as_ref().map(|s| &s.stiffness)
+    );
     let [a, b] = [&back, &content].map(|c| c.modal.reduction.sensors[0].residual[7][1]);
     assert!((a - b).abs() <= 1e-7 * b.abs(), "{a} {b}");
     for end in [0, 100, bytes.len() / 2, bytes.len() - 1] {
@@ -129,7 +133,9 @@ fn example_a_spall_that_is_moved_unloads_the_roller_over_it() {
     let mut engine = engine(&content);
     let start = content.modal.parameters.rollers.clone();
     // Two rollers of the load zone, which lies at the top.
-    let over = |angle: f64| start.iter().position(|r| (r.angle - angle.to_radians()).abs() < 0.14).expect("a roller");
+    let over = |angle: f64| {
+        start.iter().position(|r| (r.angle - angle.to_radians()).abs() < 0.14).expect("a roller")
+    };
     let forces = |engine: &mut Engine, place: f64| {
         engine.ask(at::SPALL_ANGLE, place).expect("in range");
         engine.apply().expect("a bearing");

@@ -8,8 +8,8 @@ use stribeck_scene::run_dir::write_atomic;
 
 use crate::page::{head, json, sentence};
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
-use crate::{Error, course};
-use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, Interval};
+use crate::{Error, course, sound};
+use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
 
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
@@ -47,7 +47,7 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                     "."
                 }
                 p { strong { (findings.verdict) } }
-                @if let Some(spall) = &findings.spall_mm { p { (spall_in_words(spall)) } }
+                @if let Some(words) = spall_in_words(findings) { p { (words) } }
                 h2 #families { "Defect families" }
                 @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
                 h2 #signal { "Signal" }
@@ -59,6 +59,7 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                         td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
                     }
                 }
+                (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz, findings.unit.as_deref().unwrap_or("")))
                 @for figure in figures { (figure) }
                 (course)
                 h2 #notes { "Notes" }
@@ -68,19 +69,17 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
     })
 }
 
-/// The length of a spall with its interval.
-fn spall_in_words(spall: &Interval) -> String {
-    if spall.low > 0.0 {
+/// The length of a spall with its interval, or its bound.
+fn spall_in_words(findings: &MeasuredFindings) -> Option<String> {
+    let length = findings.spall_mm.map(|spall| {
         format!(
             "Length of the spall: {:.2} mm, 90 % between {:.2} and {:.2} mm.",
             spall.value, spall.low, spall.high
         )
-    } else {
-        format!(
-            "Length of the spall: {:.2} mm if entry and exit both knock, else anything up to {:.1} mm.",
-            spall.value, spall.high
-        )
-    }
+    });
+    let bound =
+        |below_mm| format!("The spall is shorter than {below_mm:.2} mm if entry and exit both knock.");
+    length.or_else(|| findings.spall_below_mm.map(bound))
 }
 
 fn families(families: &[Family]) -> Markup {
@@ -197,11 +196,7 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
 
 /// The envelope spectrum in which a family stands, with its harmonics and, where they are expected, its
 /// sidebands.
-fn envelope(
-    band: &BandEnvelope,
-    family: &Family,
-    findings: &stribeck_analysis::measured::MeasuredFindings,
-) -> Figure {
+fn envelope(band: &BandEnvelope, family: &Family, findings: &MeasuredFindings) -> Figure {
     let hz = family.name.shocks_per_period() * family.measured_hz.unwrap_or(family.expected_hz);
     let id = format!("envelope-{}", family.name.name().to_lowercase());
     let mut figure =

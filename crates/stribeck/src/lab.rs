@@ -75,12 +75,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             1e-6 * page.html.len() as f64
         );
     }
-    say!(
-        "lab: {} ({:.2} MB: {})",
-        shown(&options.out),
-        1e-6 * page.html.len() as f64,
-        parts(&names, &page)
-    );
+    say!("lab: {} ({:.2} MB: {})", shown(&options.out), 1e-6 * page.html.len() as f64, parts(&names, &page));
     if options.open {
         open(&options.out)?;
     }
@@ -118,11 +113,7 @@ fn module(options: &Options, place: &Place) -> Result<Vec<u8>> {
         },
     };
     let bytes = std::fs::read(&file).with_context(|| format!("cannot read `{}`", shown(&file)))?;
-    ensure!(
-        is_module(&bytes),
-        "`{}` is no WebAssembly module: `cargo xtask lab` builds one",
-        shown(&file)
-    );
+    ensure!(is_module(&bytes), "`{}` is no WebAssembly module: `cargo xtask lab` builds one", shown(&file));
     Ok(bytes)
 }
 

@@ -61,8 +61,12 @@ struct Measured {
 pub(crate) struct Found {
     /// Families that are claimed.
     pub(crate) claimed: Vec<String>,
-    /// Value, lower and upper end [mm].
+    /// Length of the spall from two events a passage: value, lower and upper end [mm].
     pub(crate) spall_mm: Option<[f64; 3]>,
+    /// Time between these events [s].
+    pub(crate) spacing_s: Option<f64>,
+    /// Bound of the length from one event a passage [mm].
+    pub(crate) below_mm: Option<f64>,
     /// Frequency of the family that is there [Hz].
     pub(crate) hz: Option<f64>,
 }
@@ -101,9 +105,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     );
     lengths(&mut sheet, &records);
     // Only lengths that a second event gives have a spacing.
-    let spaced = records
-        .iter()
-        .filter(|r| r.rpm == LOOPED_RPM && r.found.spall_mm.is_some_and(|[_, low, _]| low > 0.0));
+    let spaced = records.iter().filter(|r| r.rpm == LOOPED_RPM && r.found.spall_mm.is_some());
     let runner = Runner::new("loop", &options.flags, host);
     let mut first = Vec::new();
     for record in spaced {
@@ -141,16 +143,17 @@ pub(crate) fn analyse(
     Ok(Found {
         claimed: families.iter().filter(|f| f["claimed"] == true).map(name).collect(),
         spall_mm: value.zip(low).zip(high).map(|((value, low), high)| [value, low, high]),
+        spacing_s: findings["event_spacing_ms"].as_f64().map(|ms| 1e-3 * ms),
+        below_mm: findings["spall_below_mm"].as_f64(),
         hz: families.iter().find(|f| name(f) == family).and_then(|f| f["measured_hz"].as_f64()),
     })
 }
 
 impl Found {
-    /// Distance of the two events [s]: the value is what the contact runs in that time.
-    fn spacing_s(&self, diameter_mm: f64) -> Option<f64> {
+    /// Speed of the contact along the raceway [mm/s].
+    fn speed_mm_s(&self, diameter_mm: f64) -> Option<f64> {
         let elements = CatalogueBearing::parse(BEARING).ok()?.elements?;
-        let speed_mm_s = std::f64::consts::PI * diameter_mm * self.hz? / f64::from(elements);
-        Some(self.spall_mm?[0] / speed_mm_s)
+        Some(std::f64::consts::PI * diameter_mm * self.hz? / f64::from(elements))
     }
 }
 
@@ -169,8 +172,7 @@ struct Pass<'a> {
 impl<'a> Pass<'a> {
     /// A spall of the estimated length.
     fn begin(record: &'a Measured) -> Option<Self> {
-        let measured_s = record.found.spacing_s(RACEWAYS[record.raceway].3)?;
-        Some(Self::of(record, record.found.spall_mm?[0], measured_s))
+        Some(Self::of(record, record.found.spall_mm?[0], record.found.spacing_s?))
     }
 
     fn of(record: &'a Measured, length_mm: f64, measured_s: f64) -> Self {
@@ -180,7 +182,7 @@ impl<'a> Pass<'a> {
     /// A spall that is longer by what the contact runs in the time that is missing.
     fn again(&self) -> Option<Self> {
         let missing_s = self.measured_s - self.simulated_s.as_ref().ok()?;
-        let speed_mm_s = self.record.found.spall_mm?[0] / self.measured_s;
+        let speed_mm_s = self.record.found.speed_mm_s(RACEWAYS[self.record.raceway].3)?;
         Some(Self::of(self.record, self.length_mm + speed_mm_s * missing_s, self.measured_s))
     }
 
@@ -221,15 +223,13 @@ fn simulate(
         let mut lasted: Vec<f64> = lasted.collect();
         lasted.sort_by(f64::total_cmp);
         pass.by_load_s = lasted.get(lasted.len() / 2).copied();
-        let (_, _, family, diameter_mm) = RACEWAYS[pass.record.raceway];
+        let family = RACEWAYS[pass.record.raceway].2;
         let found =
             analyse(host, &run.folder, &[], &out.join(format!("{}-simulated", variant.name)), family)?;
-        pass.simulated_s = match found.spall_mm {
-            Some([_, low, _]) if low > 0.0 => {
-                found.spacing_s(diameter_mm).ok_or_else(|| "no frequency".to_owned())
-            }
-            _ if found.claimed.is_empty() => Err("no defect is claimed".to_owned()),
-            _ => Err("no second event".to_owned()),
+        pass.simulated_s = match found.spacing_s {
+            Some(spacing_s) => Ok(spacing_s),
+            None if found.claimed.is_empty() => Err("no defect is claimed".to_owned()),
+            None => Err("no second event".to_owned()),
         };
     }
     Ok(())
@@ -299,10 +299,9 @@ fn lengths(sheet: &mut Sheet, records: &[Measured]) {
         verdict(covered >= COVERED),
     ));
     sheet.say(
-        "Where an interval begins at 0, no second event follows the knock. If entry and exit both knock, the \
-         spall is shorter than twice the estimate, else it would show one; if not, it may have any length up \
-         to the distance of two elements, where the interval ends. The sizes of others are those of spalls \
-         shorter than half of that distance ([spalls](spalls.md)).",
+        "A record without an estimate has one event a passage, which bounds a length and does not tell \
+         it. The \
+         sizes are those of spalls shorter than half of the distance of two elements ([spalls](spalls.md)).",
     );
 }
 
@@ -331,8 +330,8 @@ fn loops(sheet: &mut Sheet, first: &[Pass<'_>], second: &[Pass<'_>]) {
          between entry and exit the measured one, within {} %? The record does not say the load, which \
          matters: an element that rings press together \
          comes free some way behind the first edge, and is caught as far before the second one (THEORY \
-         §7.5). So the first pass, with the value of \
-         `spall_mm`, comes out short. In the second one the spall is longer by what the contact runs in the \
+         §7.5). The first pass takes the value of \
+         `spall_mm`, in which that is counted for a rigid housing; in the second one the spall is longer by what the contact runs in the \
          time that was missing. *By load* is \
          the time from half of an element\u{2019}s load to half of it, on outer raceways.",
         100.0 * ALLOWED

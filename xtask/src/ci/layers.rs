@@ -32,7 +32,7 @@ const LAYERS: [(&str, &[&str]); 26] = [
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
-    ("report", &["analysis", "dsp", "scene"]),
+    ("report", &["analysis", "dsp", "formats", "scene"]),
     ("studies", &["analysis", "contact", "dsp", "formats", "mesh", "report", "scene", "solver", "system"]),
     (
         "stribeck",

@@ -30,7 +30,13 @@ impl Drop for Tab {
 impl Tab {
     pub(crate) fn open(browser: &Path, profile: &Path) -> Self {
         let mut browser = Command::new(browser)
-            .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"])
+            .args([
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-dev-shm-usage",
+                "--no-first-run",
+            ])
             .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
             .arg(format!("--user-data-dir={}", profile.display()))
             .args(["--remote-debugging-port=0", "--window-size=1400,1200", "about:blank"])
@@ -43,7 +49,12 @@ impl Tab {
         let line = lines.find(|line| line.contains("ws://")).expect("the browser listens");
         // What it says further must be read, or it waits.
         std::thread::spawn(move || lines.for_each(drop));
-        let host = line.split("ws://").nth(1).and_then(|rest| rest.split('/').next()).expect("an address").to_owned();
+        let host = line
+            .split("ws://")
+            .nth(1)
+            .and_then(|rest| rest.split('/').next())
+            .expect("an address")
+            .to_owned();
         let tab = tab_address(&host);
         let stream = connect(&host, &tab);
         let mut tab = Self { browser, stream, calls: 0, errors: Vec::new() };

@@ -288,8 +288,7 @@ impl Parts for Chords {
 
     #[inline(always)]
     fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet) {
-        let places =
-            roller.map(|r| [straight([u, u], r, raceway, self.shift)[0], fused(r.slope, u, r.base)]);
+        let places = roller.map(|r| [straight([u, u], r, raceway, self.shift)[0], fused(r.slope, u, r.base)]);
         jump(&mut self.sum, places);
     }
 }

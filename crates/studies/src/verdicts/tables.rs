@@ -311,6 +311,7 @@ pub(super) fn lengths(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]
         for (record, judged) in pairs(records, judged).filter(|(r, _)| asked(r)) {
             let (Some(truth), Some(outcome)) = (record.length_mm, &judged.outcome) else { continue };
             of += 1;
+            bounds += usize::from(outcome.is_bounded);
             let Some(spall) = outcome.spall_mm else { continue };
             for (what, value) in [
                 ("true mm", truth),
@@ -319,10 +320,6 @@ pub(super) fn lengths(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]
                 ("high mm", spall.high),
             ] {
                 sheet.value("lengths", &record.name, what, Some(value));
-            }
-            if spall.low <= 0.0 {
-                bounds += 1;
-                continue;
             }
             given += 1;
             held += usize::from((spall.low..=spall.high).contains(&truth));

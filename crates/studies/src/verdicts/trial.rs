@@ -58,6 +58,8 @@ pub(super) struct Outcome {
     pub(super) choice: Defect,
     pub(super) p_values: [f64; 4],
     pub(super) spall_mm: Option<Interval>,
+    /// Whether a single event bounds the length.
+    pub(super) is_bounded: bool,
     pub(super) verdict: String,
 }
 
@@ -122,6 +124,7 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         choice: Defect::ALL[best],
         p_values: of(|f| f.p_value, 1.0),
         spall_mm: analysis.findings.spall_mm,
+        is_bounded: analysis.findings.spall_below_mm.is_some(),
         verdict: analysis.findings.verdict,
     })
 }
