@@ -54,8 +54,8 @@ fn build() -> Result<PathBuf> {
     let done = cargo.status().context("cannot start cargo")?;
     ensure!(
         done.success(),
-        "the module of the lab cannot be built. Its target comes by `rustup target add {TARGET}`, or on Debian \
-         with `apt-get install rustc-web lld`"
+        "the module of the lab cannot be built. Its target comes by `rustup target add {TARGET}`, or on \
+         Debian with `apt-get install rustc-web lld`"
     );
     let built = folder.join(TARGET).join("lab").join(MODULE);
     let module = root.join("target").join("lab").join(MODULE);

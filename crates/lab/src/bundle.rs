@@ -44,14 +44,15 @@ pub(crate) struct Bundled {
     pub(crate) content: Content,
     /// What the scripts read.
     pub(crate) facts: Value,
-    /// Forces on all rollers at [`CHECKS`] places of the first milliseconds, as the program computes them, after
-    /// the samples from one to the next.
+    /// Forces on all rollers at [`CHECKS`] places of the first milliseconds, as the program computes them,
+    /// after the samples from one to the next.
     pub(crate) reference: Vec<f64>,
     /// States of that run from which the page goes on, [`STATES`] in all, as bytes.
     pub(crate) states: Vec<Vec<u8>>,
 }
 
-/// The scene as it runs in a page: in modes, without pictures, with sensors all around the ring after its own.
+/// The scene as it runs in a page: in modes, without pictures, with sensors all around the ring after its
+/// own.
 pub(crate) fn in_modes(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     if scene.model == ModelScene::Full {
@@ -115,8 +116,8 @@ fn spall(scene: &ResolvedScene) -> Result<Option<Spall>, Error> {
         return match scene.grooves.len() {
             0 => Ok(None),
             more => Err(Error::Unsuited(format!(
-                "the scene has {more} spalls with steep walls, and a lab moves one: leave one of them in `defect` \
-                 or `defects`"
+                "the scene has {more} spalls with steep walls, and a lab moves one: leave one of \
+                 them in `defect` or `defects`"
             ))),
         };
     };

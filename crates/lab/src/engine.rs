@@ -35,8 +35,8 @@ pub struct Engine {
     displacement: Vec<f64>,
 }
 
-/// Imbalance of energy beyond which a run has gone wrong, over the most that rings and contacts have stored, over
-/// the heat, and over the energy of motion: those of a run of the program (`stribeck-simulation`).
+/// Imbalance of energy beyond which a run has gone wrong, over the most that rings and contacts have stored,
+/// over the heat, and over the energy of motion: those of a run of the program (`stribeck-simulation`).
 const OF_STORED: f64 = 0.25;
 const OF_HEAT: f64 = 0.01;
 const OF_MOTION: f64 = 1e-6;
@@ -220,9 +220,9 @@ impl Engine {
         let apart = of(self.most_stored) > OF_STORED && of(heat) > OF_HEAT && of(e.kinetic) > OF_MOTION;
         if apart || !off.is_finite() {
             return Err(Error::Diverged(format!(
-                "energy is off by {:.3} % of the most that rings and contacts have stored at {:.4} ms. Take a \
-                 smaller time step, a larger `model.modes_khz`, or `model: full` to see which of the two models \
-                 is wrong",
+                "energy is off by {:.3} % of the most that rings and contacts have stored at {:.4} ms. \
+                 Take a smaller time step, a larger `model.modes_khz`, or `model: full` to see which of the \
+                 two models is wrong",
                 100.0 * of(self.most_stored),
                 1e3 * self.motion.time()
             )));

@@ -6,7 +6,8 @@
 pub enum Error {
     /// The numbers of a bearing in the page cannot be read.
     #[error(
-        "the numbers of the bearing cannot be read ({0}): the file is damaged, or of another version. Make it anew with `stribeck lab`"
+        "the numbers of the bearing cannot be read ({0}): the file is damaged, or of another \
+         version. Make it anew with `stribeck lab`"
     )]
     Content(#[from] postcard::Error),
     /// There is no such handle.

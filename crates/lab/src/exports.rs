@@ -1,5 +1,5 @@
-//! The names that the page calls. Numbers come as they are; arrays are read from the memory of the module at the
-//! address and of the length that a call gives.
+//! The names that the page calls. Numbers come as they are; arrays are read from the memory of the module at
+//! the address and of the length that a call gives.
 #![allow(unsafe_code, reason = "a name that a module exports is an unsafe attribute; nothing else here is")]
 
 use std::cell::RefCell;
@@ -112,8 +112,8 @@ pub(crate) extern "C" fn lab_displacement() -> *const f64 {
     hand_over(|engine| engine.displacement().to_vec())
 }
 
-/// Vertices of the outer raceway (0), of the inner raceway (1), of a roller (2), angles of the rollers' vertices
-/// (3), handles (4), forces (5).
+/// Vertices of the outer raceway (0), of the inner raceway (1), of a roller (2), angles of the rollers'
+/// vertices (3), handles (4), forces (5).
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_numbers(which: usize) -> *const f64 {
     hand_over(|engine| match which {

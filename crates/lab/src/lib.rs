@@ -1,10 +1,10 @@
 //! A rolling element bearing that runs in the browser.
 //!
-//! The crate is compiled twice. For `wasm32-unknown-unknown` it is the module in the page: an [`Engine`] that
-//! steps the reduced bearing of [`stribeck_reduced`], with handles for load, speed, spall, facets and more, and
-//! `exports.rs`, the names that the page calls. For the machine that makes the page it is [`page`]: a scene is
-//! meshed and reduced, and its numbers, the module and the scripts in `web/` become one HTML file that needs no
-//! network.
+//! The crate is compiled twice. For `wasm32-unknown-unknown` it is the module in the page: an [`Engine`]
+//! that steps the reduced bearing of [`stribeck_reduced`], with handles for load, speed, spall, facets and
+//! more, and `exports.rs`, the names that the page calls. For the machine that makes the page it is
+//! [`page`]: a scene is meshed and reduced, and its numbers, the module and the scripts in `assets/` become
+//! one HTML file that needs no network.
 //!
 //! # Where to look
 //!
@@ -17,7 +17,7 @@
 //! | What does the page read of it? | `readings.rs` |
 //! | What does the page call? | `exports.rs` |
 //! | How is the start found without a library? | `dense.rs` |
-//! | How is the page made? | `page.rs`, from `bundle.rs` and `web/` |
+//! | How is the page made? | `page.rs`, from `bundle.rs` and `assets/` |
 
 pub mod content;
 pub mod handles;

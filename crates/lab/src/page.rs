@@ -17,19 +17,19 @@ use crate::{
 const MAGIC: &[u8] = b"\0asm";
 
 /// The page and its scripts, in the order in which they use each other.
-const PAGE: &str = include_str!("../web/lab.html");
-const STYLE: &str = include_str!("../web/lab.css");
-const ENGINE: &str = include_str!("../web/engine.js");
+const PAGE: &str = include_str!("../assets/lab.html");
+const STYLE: &str = include_str!("../assets/lab.css");
+const ENGINE: &str = include_str!("../assets/engine.js");
 const SCRIPTS: [(&str, &str); 9] = [
-    ("words.js", include_str!("../web/words.js")),
-    ("signals.js", include_str!("../web/signals.js")),
-    ("plots.js", include_str!("../web/plots.js")),
-    ("stage.js", include_str!("../web/stage.js")),
-    ("presets.js", include_str!("../web/presets.js")),
-    ("sound.js", include_str!("../web/sound.js")),
-    ("files.js", include_str!("../web/files.js")),
-    ("driver.js", include_str!("../web/driver.js")),
-    ("lab.js", include_str!("../web/lab.js")),
+    ("words.js", include_str!("../assets/words.js")),
+    ("signals.js", include_str!("../assets/signals.js")),
+    ("plots.js", include_str!("../assets/plots.js")),
+    ("stage.js", include_str!("../assets/stage.js")),
+    ("presets.js", include_str!("../assets/presets.js")),
+    ("sound.js", include_str!("../assets/sound.js")),
+    ("files.js", include_str!("../assets/files.js")),
+    ("driver.js", include_str!("../assets/driver.js")),
+    ("lab.js", include_str!("../assets/lab.js")),
 ];
 
 /// A page.
@@ -49,7 +49,8 @@ pub fn is_module(bytes: &[u8]) -> bool {
 }
 
 /// The page of some scenes, which all run in modes there. `module` is this crate, compiled for
-/// `wasm32-unknown-unknown`; `runs` is where reductions may be kept; `command` is what would make the page again.
+/// `wasm32-unknown-unknown`; `runs` is where reductions may be kept; `command` is what would make the page
+/// again.
 ///
 /// # Errors
 /// When a scene cannot be meshed, preloaded or reduced, or a lab cannot show it.

@@ -35,8 +35,8 @@ pub(crate) fn spall(handles: &Handles) -> Option<Spall> {
     })
 }
 
-/// The bearing of some handles, under a load and at a speed that follow `duty`. A handle that stands where the
-/// scene has it changes no bit.
+/// The bearing of some handles, under a load and at a speed that follow `duty`. A handle that stands where
+/// the scene has it changes no bit.
 ///
 /// # Errors
 /// When a raceway has no room for the spall.

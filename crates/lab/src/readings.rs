@@ -3,9 +3,9 @@
 use stribeck_reduced::motion::{BearingInMotion, Energies};
 
 /// Numbers of a sample, in this order: time [s]; acceleration at the sensor, x and y, mean over the interval
-/// [m/s²]; normal force of the outer and of the inner raceway on the roller that is watched [N]; force of all
-/// rollers on the outer ring, x and y [N]; displacement of the centre of the outer raceway from its place at the
-/// preload, x and y [m]; largest normal force on the outer raceway [N].
+/// [m/s²]; normal force of the outer and of the inner raceway on the roller that is watched [N]; force of
+/// all rollers on the outer ring, x and y [N]; displacement of the centre of the outer raceway from its
+/// place at the preload, x and y [m]; largest normal force on the outer raceway [N].
 pub const PER_SAMPLE: usize = 10;
 
 /// Numbers before the rollers in a picture: time [s]; angle of the inner ring [rad]; cage, x and y [m] and
@@ -13,8 +13,9 @@ pub const PER_SAMPLE: usize = 10;
 /// friction, damping, contact damping, films, work of the load, work of the drive, imbalance; time step [s].
 pub const BEFORE_ROLLERS: usize = 18;
 
-/// Numbers of a roller in a picture: centre, x and y [m]; angle by which it has turned [rad]; force of the outer
-/// raceway, x and y [N]; of the inner one and of the cage likewise; films on both [m], zero without oil.
+/// Numbers of a roller in a picture: centre, x and y [m]; angle by which it has turned [rad]; force of the
+/// outer raceway, x and y [N]; of the inner one and of the cage likewise; films on both [m], zero without
+/// oil.
 pub const PER_ROLLER: usize = 11;
 
 /// Appends a sample.

@@ -79,8 +79,8 @@ fn turn(angle: f64) -> f64 {
     (angle + PI).rem_euclid(TAU) - PI
 }
 
-/// Angles of `n` vertices and how far each lies below its circle, counter-clockwise: even on the floor and even
-/// on the rest, walls one facet each.
+/// Angles of `n` vertices and how far each lies below its circle, counter-clockwise: even on the floor and
+/// even on the rest, walls one facet each.
 fn places(n: usize, first: f64, radius: f64, spall: Option<&Spall>) -> Result<Vec<[f64; 2]>, Error> {
     let Some(Spall { angle, length, depth, slope, .. }) = spall else {
         return Ok((0..n).map(|i| [first + TAU * i as f64 / n as f64, 0.0]).collect());
@@ -103,8 +103,8 @@ fn places(n: usize, first: f64, radius: f64, spall: Option<&Spall>) -> Result<Ve
     Ok(level.chain(below).collect())
 }
 
-/// Vertices of a raceway with another spall, or none. `outwards` is 1 for the outer and −1 for the inner raceway:
-/// where a spall leads.
+/// Vertices of a raceway with another spall, or none. `outwards` is 1 for the outer and −1 for the inner
+/// raceway: where a spall leads.
 ///
 /// # Errors
 /// When the raceway has no room for the spall.

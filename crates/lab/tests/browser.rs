@@ -1,7 +1,8 @@
 //! The page in a real browser, from a file: it steps, answers its handles, and shows numbers that are right.
 //!
-//! Needs Chromium and the module that `cargo xtask lab-module` builds. Where either is absent the test says so and
-//! checks nothing; under `STRIBECK_NEED_BROWSER` and `STRIBECK_NEED_LAB`, which `.ci/run` sets, it fails instead.
+//! Needs Chromium and the module that `cargo xtask lab-module` builds. Where either is absent the test says
+//! so and checks nothing; under `STRIBECK_NEED_BROWSER` and `STRIBECK_NEED_LAB`, which `.ci/run` sets, it
+//! fails instead.
 
 #[path = "browser/devtools.rs"]
 mod devtools;
@@ -131,7 +132,8 @@ fn example_the_page_runs_and_its_numbers_are_right() {
     assert!(number(&said, "close") > 3e-3, "{said}");
 }
 
-/// A preset is reached by its link; arcs take the tone of the facets away. Without a worker the page steps itself.
+/// A preset is reached by its link; arcs take the tone of the facets away. Without a worker the page steps
+/// itself.
 #[test]
 fn example_presets_are_links_and_arcs_take_the_tone_away() {
     let Some((browser, module)) = tools() else { return };

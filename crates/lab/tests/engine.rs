@@ -63,7 +63,8 @@ fn roundtrip_content_in_bytes() {
     let content = content(&folder);
     let bytes = content.to_bytes().expect("memory");
     let back = Content::from_bytes(&bytes).expect("whole");
-    // What moves the bearing is kept to the last bit; what sensors measure beyond the modes to single precision.
+    // What moves the bearing is kept to the last bit; what sensors measure beyond the modes to single
+    // precision.
     assert_eq!(back.start, content.start);
     assert_eq!(back.modal.parameters, content.modal.parameters);
     assert_eq!(back.modal.reduction.shapes, content.modal.reduction.shapes);
@@ -78,11 +79,11 @@ fn roundtrip_content_in_bytes() {
     }
 }
 
-/// Rollers carry the load and the weight of ring and housing, on average over the passing of some rollers; after
-/// the load is turned, the new one.
+/// Rollers carry the load and the weight of ring and housing, on average over the passing of some rollers;
+/// after the load is turned, the new one.
 #[test]
-fn analytic_rollers_carry_the_load_after_it_was_turned() {
-    // Source: own, balance of momentum of ring and housing over a time in which their velocity hardly changes.
+fn conserves_the_load_that_rollers_carry_after_it_was_turned() {
+    // Balance of momentum of ring and housing over a time in which their velocity hardly changes.
     const TOLERANCE: f64 = 1e-3;
     let folder = Scratch::create("lab-load");
     let content = content(&folder);

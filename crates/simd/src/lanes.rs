@@ -19,8 +19,8 @@ pub const LANES: usize = 8;
 pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
-    /// self · factor + term. Vectors round once, whatever the instruction set but WebAssembly's; a single number
-    /// rounds twice.
+    /// self · factor + term. Vectors round once, whatever the instruction set but WebAssembly's; a single
+    /// number rounds twice.
     fn times_plus(self, factor: Self, term: Self) -> Self;
 
     /// A constant of the same kind.
@@ -390,7 +390,8 @@ impl<S: Simd> Neg for Vector<S> {
 impl<S: Simd> Number for Vector<S> {
     #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
-        // WebAssembly has no instruction that rounds once; a function that imitates it takes fifty times as long.
+        // WebAssembly has no instruction that rounds once; a function that imitates it takes fifty times as
+        // long.
         #[cfg(target_arch = "wasm32")]
         return Self { lanes: self.simd.mul_add_e_f64s(self.lanes, factor.lanes, term.lanes), ..self };
         #[cfg(not(target_arch = "wasm32"))]

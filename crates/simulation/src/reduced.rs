@@ -205,8 +205,8 @@ pub struct Prepared {
     pub start: State,
 }
 
-/// Prepares the bearing of a scene, which has a reduced model, for a program that drives it by itself. `runs` as
-/// for [`steps_in_a_sample`].
+/// Prepares the bearing of a scene, which has a reduced model, for a program that drives it by itself.
+/// `runs` as for [`steps_in_a_sample`].
 ///
 /// # Errors
 /// When the scene cannot be meshed, preloaded or reduced, or has no equilibrium to start from.

@@ -13,7 +13,8 @@ use crate::place::{Place, shown};
 /// Flags of `lab`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Scene files, each a bearing in the page [default: the run of the paper]; a full model runs in its modes
+    /// Scene files, each a bearing in the page [default: the run of the paper]; a full model runs in its
+    /// modes
     scenes: Vec<PathBuf>,
     /// The page
     #[arg(long, value_name = "FILE", default_value = "lab.html")]
@@ -71,7 +72,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         .with_context(|| format!("cannot write `{}`", shown(&options.out)))?;
     if page.html.len() > LARGEST {
         eprintln!(
-            "warning: the page has {:.1} MB; --set mesh.size_mm=1 or a smaller `model.modes_khz` makes it smaller",
+            "warning: the page has {:.1} MB; --set mesh.size_mm=1 or a smaller \
+             `model.modes_khz` makes it smaller",
             1e-6 * page.html.len() as f64
         );
     }
@@ -107,8 +109,8 @@ fn module(options: &Options, place: &Place) -> Result<Vec<u8>> {
             Some(file) => file,
             None => bail!(
                 "no {MODULE}, which steps the bearing in the page: `cargo xtask lab` builds it in the \
-                 repository of Stribeck (it needs `rustup target add wasm32-unknown-unknown`) and makes the page. \
-                 Elsewhere put the file beside the program, or name it with --module or {VARIABLE}"
+                 repository of Stribeck (it needs `rustup target add wasm32-unknown-unknown`) and makes \
+                 the page. Elsewhere put the file beside the program, or name it with --module or {VARIABLE}"
             ),
         },
     };
