@@ -123,11 +123,17 @@ function watch(roller) {
 function showHandles() {
   for (const spec of lab.facts.specs) {
     const row = document.querySelector(`[data-key="${spec.key}"]`), value = lab.handles[spec.key];
-    if (!row) continue;
+    // What stands where it stood is left alone: so is what was refused there, and why.
+    if (!row || Number(row.dataset.shown) === value) continue;
+    row.dataset.shown = value;
     const [field, slider] = [row.querySelector("select, input:not([type=range])"), row.querySelector("input[type=range]")];
     if (document.activeElement !== field || field.tagName === "SELECT") field.value = field.tagName === "SELECT" ? value : round(value);
     if (slider) slider.value = value;
     row.querySelector(".why").textContent = "";
+  }
+  for (const spec of lab.facts.specs) {
+    const row = document.querySelector(`[data-key="${spec.key}"]`);
+    if (!row) continue;
     const needless = (spec.key.startsWith("spall") && spec.key !== "spallRing" && !lab.handles.spallRing) || (spec.key === "facets" && lab.handles.arcs);
     if (!row.querySelector("[disabled]")) row.classList.toggle("off", Boolean(needless));
   }
@@ -207,6 +213,7 @@ function receive(message) {
     },
     stopped() { lab.running = false; $("run").textContent = "Run"; trouble(`The run has stopped: ${message.why}. “Start anew” begins again from the equilibrium.`); },
     refused() {
+      document.querySelectorAll("[data-key]").forEach((row) => delete row.dataset.shown);
       if (message.handles.length) lab.handles = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, message.handles[i]]));
       showHandles();
       trouble(message.task === "open" || message.task === "module" ? message.why : `${message.why}. The handles stay as they were.`);
