@@ -153,6 +153,10 @@ impl Bearing {
             if most > farthest && along(&last) < 0.0 {
                 farthest *= 0.5;
             }
+            // Short steps that go back and forth about a kink, where a roller begins to carry, close in on it.
+            if iteration >= ITERATIONS / 2 && along(&last) < 0.0 {
+                farthest = 0.5 * farthest.min(most);
+            }
             let share = (farthest / most).min(1.0);
             state.q.iter_mut().zip(&step).for_each(|(q, step)| *q += share * step);
             last = step;

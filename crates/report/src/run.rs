@@ -19,7 +19,7 @@ use crate::lead::lead;
 use crate::page::{head, json, section, sentence, write_figures};
 use crate::paper::PaperCase;
 use crate::pictures::Pictures;
-use crate::{Error, agreement, answer, sections, tables};
+use crate::{Error, agreement, answer, sections, sound, tables};
 
 /// Writes the report of the run in `run_dir` into that directory and returns its numbers.
 ///
@@ -81,6 +81,7 @@ fn page(
                 (contents(paper.is_some(), run.scene.written.model != ModelScene::Full, summary.duty.is_some()))
                 @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
+                (sound::of_run(findings))
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)

@@ -9,6 +9,8 @@ use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
 
+use crate::out::{caution, detail};
+
 /// The surroundings of a command.
 #[derive(Debug, Clone)]
 pub struct Place {
@@ -34,6 +36,9 @@ impl Place {
     /// What is wrong with it, or with the meshes that it names, with line and field.
     pub fn scene(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
         let file = file.map(|file| self.locate(file));
+        if let Some(file) = &file {
+            detail!("scene `{}`", shown(file));
+        }
         let scene = match &file {
             Some(file) => Scene::read_with(file, overrides)?,
             None => Scene::singh2014().with_overrides(overrides)?,
@@ -44,8 +49,8 @@ impl Place {
                 .iter()
                 .map(|Replaced { field, written, now }| format!("`{field}` {now} instead of {written}"));
             let told = told.collect::<Vec<_>>().join(", ");
-            eprintln!(
-                "warning: with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
+            caution!(
+                "with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
                  --set what is to stay",
                 file.display()
             );

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use stribeck_scene::run_dir::{Run, RunDir};
 
-use crate::out::say;
+use crate::out::{caution, detail, say};
 use crate::place::{Place, shown};
 
 /// Flags of `report`.
@@ -43,15 +43,16 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             shown(&folder)
         );
         for note in stribeck_report::write_ensemble(&folder)?.notes {
-            eprintln!("warning: {note}");
+            caution!("{note}");
         }
         say!("report: {}", shown(&RunDir::open_ensemble(&folder)?.report()));
         return Ok(ExitCode::SUCCESS);
     }
     let dir = RunDir::open(&folder)?;
     for missing in Run::read(dir.path())?.damage() {
-        eprintln!("warning: {missing}");
+        caution!("{missing}");
     }
+    detail!("report of `{}`", shown(dir.path()));
     stribeck_report::write_between(dir.path(), time_s)?;
     say!("report: {}", shown(&dir.report()));
     Ok(ExitCode::SUCCESS)
