@@ -161,8 +161,8 @@ impl Bearing {
                 break;
             }
             if iteration + 1 == ITERATIONS {
-                // Where a film or an edge makes the force jump, steps of nanometres go back and forth for ever:
-                // no farther from equilibrium than the load over one is a start, too.
+                // Where a film or an edge makes the force jump, steps of nanometres go back and forth for
+                // ever: no farther from equilibrium than the load over one is a start, too.
                 if residual <= load * 1e-9 {
                     break;
                 }

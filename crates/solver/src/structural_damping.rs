@@ -250,7 +250,8 @@ mod tests {
         }
     }
 
-    /// Growth [1/s] over many evaluations of one mode of `omega` [rad/s] without branches, in steps of `dt` [s].
+    /// Growth [1/s] over many evaluations of one mode of `omega` [rad/s] without branches, in steps of `dt`
+    /// [s].
     fn growth(damping: &StructuralDamping, omega: f64, dt: f64) -> f64 {
         let branches = damping.branches();
         let stiffer = damping.stiffening(f64::INFINITY);

@@ -23,13 +23,10 @@ pub struct Options {
 const NUMBERS: &str = "give its numbers, `\"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
-    let found = match &options.name {
+    let all = match &options.name {
         None => catalogue::known().map_err(|why| anyhow!(why))?,
         Some(name) => match CatalogueBearing::parse_or_advise(name, NUMBERS) {
-            Ok(bearing) if options.json => {
-                say!("{}", serde_json::to_string_pretty(&as_json(&bearing))?);
-                return Ok(ExitCode::SUCCESS);
-            }
+            Ok(bearing) if options.json => return print(&as_json(&bearing)),
             Ok(bearing) => {
                 one(&bearing);
                 return Ok(ExitCode::SUCCESS);
@@ -41,12 +38,36 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         },
     };
     if options.json {
-        let all: Value = found.iter().map(as_json).collect();
-        say!("{}", serde_json::to_string_pretty(&all)?);
-    } else {
-        list(&found);
+        return print(&all.iter().map(as_json).collect());
     }
+    list(&all);
     Ok(ExitCode::SUCCESS)
+}
+
+fn print(json: &Value) -> Result<ExitCode> {
+    say!("{}", serde_json::to_string_pretty(json)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Frequencies of defects in multiples of the shaft's, `null` where the number of elements is not known.
+fn as_json(bearing: &CatalogueBearing) -> Value {
+    let [diameter_mm, pitch_mm] = bearing.shown_mm();
+    let orders = bearing.orders().ok();
+    json!({
+        "name": bearing.name,
+        "elements": bearing.elements,
+        "diameter_mm": diameter_mm,
+        "pitch_mm": pitch_mm,
+        "angle_deg": bearing.angle_deg,
+        "bore_mm": bearing.boundary.map(|b| b.bore_mm),
+        "outside_mm": bearing.boundary.map(|b| b.outside_mm),
+        "width_mm": bearing.boundary.map(|b| b.width_mm),
+        "bpfo": orders.as_ref().map(|o| o.bpfo),
+        "bpfi": orders.as_ref().map(|o| o.bpfi),
+        "bsf": orders.as_ref().map(|o| o.bsf),
+        "ftf": orders.as_ref().map(|o| o.ftf),
+        "source": bearing.source,
+    })
 }
 
 fn list(bearings: &[CatalogueBearing]) {
@@ -71,27 +92,6 @@ fn list(bearings: &[CatalogueBearing]) {
          different numbers; a scene assumes one and says so. `stribeck bearings NAME` says where the numbers are \
          from; `bearings.ron` in the working folder adds your own."
     );
-}
-
-/// Frequencies of defects in multiples of the shaft's, `null` where the number of elements is not known.
-fn as_json(bearing: &CatalogueBearing) -> Value {
-    let [diameter_mm, pitch_mm] = bearing.shown_mm();
-    let orders = bearing.orders().ok();
-    json!({
-        "name": bearing.name,
-        "elements": bearing.elements,
-        "diameter_mm": diameter_mm,
-        "pitch_mm": pitch_mm,
-        "angle_deg": bearing.angle_deg,
-        "bore_mm": bearing.boundary.map(|b| b.bore_mm),
-        "outside_mm": bearing.boundary.map(|b| b.outside_mm),
-        "width_mm": bearing.boundary.map(|b| b.width_mm),
-        "bpfo": orders.as_ref().map(|o| o.bpfo),
-        "bpfi": orders.as_ref().map(|o| o.bpfi),
-        "bsf": orders.as_ref().map(|o| o.bsf),
-        "ftf": orders.as_ref().map(|o| o.ftf),
-        "source": bearing.source,
-    })
 }
 
 fn row(bearing: &CatalogueBearing) -> String {
