@@ -12,11 +12,11 @@ use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::Run;
 
 pub(super) use self::forces::{DRAWN as CROSSINGS, crossings as crossing_figures};
-pub(super) use self::spectra::{about_the_tone, density};
+pub(super) use self::spectra::{about_the_tone, density, loudest_in_words};
 use super::course;
 use super::pictures::Pictures;
 use crate::Error;
-use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
+use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series, Tab};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::measured::Course;
 use stribeck_analysis::record::Record;
@@ -52,6 +52,30 @@ impl Item {
     pub(super) fn to_html(&self) -> Result<Markup, Error> {
         match self {
             Self::Chart(figure) => figure.to_html(),
+            Self::Picture(picture) => picture.to_html(),
+        }
+    }
+
+    /// Its place among figures behind tabs; pictures have none.
+    pub(super) fn tab(&self) -> Option<&Tab> {
+        match self {
+            Self::Chart(figure) => figure.tab.as_ref(),
+            Self::Picture(_) => None,
+        }
+    }
+
+    /// How far to trust it.
+    pub(super) fn note(&self) -> &str {
+        match self {
+            Self::Chart(figure) => &figure.note,
+            Self::Picture(picture) => &picture.note,
+        }
+    }
+
+    /// The form for the page with the note left to whoever shows it once for several.
+    pub(super) fn without_note(&self) -> Result<Markup, Error> {
+        match self {
+            Self::Chart(figure) => figure.clone().note("").to_html(),
             Self::Picture(picture) => picture.to_html(),
         }
     }

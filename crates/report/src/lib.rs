@@ -32,6 +32,7 @@ mod lead;
 mod answer;
 mod course;
 mod figures;
+mod moving;
 mod paper;
 mod pictures;
 mod sections;

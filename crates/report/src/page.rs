@@ -71,14 +71,54 @@ pub(crate) fn section(
     after: Markup,
     otherwise: &str,
 ) -> Result<Markup, Error> {
-    let drawn = items.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
+    let drawn = figures(items)?;
     Ok(html! {
         h2 id=(id) { (name) }
         (before)
-        @if drawn.is_empty() { p { (otherwise) } }
-        @for figure in drawn { (figure) }
+        @if items.is_empty() { p { (otherwise) } }
+        (drawn)
         (after)
     })
+}
+
+/// Figures one after the other; neighbours of one group share a frame with tabs, and a note that all of them
+/// have stands once below it.
+pub(crate) fn figures(items: &[Item]) -> Result<Markup, Error> {
+    let groups =
+        items.chunk_by(|a, b| a.tab().is_some() && a.tab().map(|t| t.group) == b.tab().map(|t| t.group));
+    let drawn = groups.map(|group| match group {
+        [alone] => alone.to_html(),
+        several => tabs(several),
+    });
+    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
+    Ok(html! { @for group in drawn { (group) } })
+}
+
+fn tabs(items: &[Item]) -> Result<Markup, Error> {
+    let first = items[0].note();
+    let shared = Some(first).filter(|note| !note.is_empty() && items.iter().all(|item| item.note() == *note));
+    let drawn = items.iter().map(|item| if shared.is_some() { item.without_note() } else { item.to_html() });
+    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        div class="tabs" {
+            div class="tab-row" role="tablist" {
+                @for (n, item) in items.iter().enumerate() {
+                    button type="button" role="tab" aria-selected=(if n == 0 { "true" } else { "false" }) {
+                        (item.tab().map_or("", |tab| tab.label.as_str()))
+                    }
+                }
+            }
+            @for (n, figure) in drawn.iter().enumerate() {
+                div class=(if n == 0 { "panel on" } else { "panel" }) role="tabpanel" { (figure) }
+            }
+            @if let Some(note) = shared { p class="note" { (note) } }
+        }
+    })
+}
+
+/// A word of the trade with its meaning behind it.
+pub(crate) fn term(word: &str, meaning: &str) -> Markup {
+    html! { abbr title=(meaning) tabindex="0" { (word) } }
 }
 
 /// A note with a capital and a full stop.

@@ -24,7 +24,7 @@ addEventListener("load", () => setTimeout(() => {
   const undrawn = [];
   for (const figure of document.querySelectorAll("figure")) {
     const canvas = figure.querySelector("canvas");
-    if (figure.classList.contains("plot")) {
+    if (figure.matches(".plot, .moving-bearing")) {
       if (!canvas || !canvas.width || !canvas.height) { undrawn.push(figure.id + ": no canvas"); continue; }
       const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
       const colours = new Set();

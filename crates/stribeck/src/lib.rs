@@ -17,6 +17,7 @@ mod infer;
 mod many_runs;
 mod memory;
 mod out;
+mod pdf;
 mod plan;
 mod ranks;
 mod report;

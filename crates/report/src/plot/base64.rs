@@ -16,7 +16,7 @@ pub(super) fn floats(values: &[f64]) -> String {
 }
 
 /// Encodes bytes as they are.
-pub(super) fn bytes(bytes: &[u8]) -> String {
+pub(crate) fn bytes(bytes: &[u8]) -> String {
     encode(bytes)
 }
 
