@@ -17,7 +17,7 @@ use stribeck_analysis::summary::{EnergyFinding, Event, PhaseLevels, Summary};
 use stribeck_analysis::words::{gravities, significant};
 
 use crate::figures::loudest_in_words;
-use crate::page::sentence;
+use crate::page::{sentence, with_code};
 
 /// Rollers that are named one by one, at most.
 const NAMED: usize = 6;
@@ -42,7 +42,7 @@ pub(super) fn paragraphs(run: &Run, findings: &Findings) -> Markup {
             aside class="caveat" aria-label="How far to trust it" {
                 p { strong { "How far to trust it. " } (caution(run, summary)) }
                 ul {
-                    @for warning in warnings(run, summary) { li { (warning) } }
+                    @for warning in warnings(run, summary) { li { (with_code(&warning)) } }
                     @for words in trust(summary) { li { (words) } }
                 }
             }

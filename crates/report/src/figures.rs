@@ -72,11 +72,11 @@ impl Item {
         }
     }
 
-    /// The form for the page with the note left to whoever shows it once for several.
-    pub(super) fn without_note(&self) -> Result<Markup, Error> {
+    /// The form for the page with another note.
+    pub(super) fn with_note(&self, note: String) -> Result<Markup, Error> {
         match self {
-            Self::Chart(figure) => figure.clone().note("").to_html(),
-            Self::Picture(picture) => picture.to_html(),
+            Self::Chart(figure) => figure.clone().note(note).to_html(),
+            Self::Picture(picture) => Picture { note, ..picture.clone() }.to_html(),
         }
     }
 

@@ -109,7 +109,7 @@ impl Stretch {
         let finest = if finest.is_finite() { (finest as usize).max(1) } else { whole };
         let per_frame = whole.min(finest);
         let shown = (len / per_frame).min(FRAMES) * per_frame;
-        let before = event_s.map_or(0.0, |at| (at - passage_s) / interval_s).max(0.0) as usize;
+        let before = event_s.map_or(0.0, |at| (at - passage_s) / interval_s).round().max(0.0) as usize;
         let first = before.min(len - shown);
         Self { samples: first..first + shown, per_frame }
     }
@@ -359,7 +359,7 @@ fn markup(sent: &Sent<'_>, stretch: &Stretch, record: &Record<'_>) -> Result<Mar
 mod tests {
     use super::*;
 
-    /// Twenty samples of 1 ms; a passage takes 4 ms, so that 0.1 ms would be the frame.
+    /// Samples every 10 µs, rollers 10 ms apart.
     #[test]
     fn example_a_short_record_is_shown_whole_and_a_long_one_about_its_first_event() {
         let whole = Stretch::of(3000, 1e-5, 0.01, Some(0.005));

@@ -16,7 +16,7 @@ use stribeck_scene::scene::ModelScene;
 
 use crate::figures::{self, Figures, Item};
 use crate::lead::lead;
-use crate::page::{head, json, section, sentence, write_figures};
+use crate::page::{head, json, section, sentence, with_code, write_figures};
 use crate::paper::PaperCase;
 use crate::pictures::Pictures;
 use crate::{Error, agreement, answer, moving, sections, tables};
@@ -174,8 +174,8 @@ fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
              curve."
         }
         ul class="notes" {
-            @for note in &summary.notes { li { (sentence(note)) } }
-            @for note in run.info.warnings.iter().filter(|words| answer::is_of_pictures(words)) { li { (sentence(note)) } }
+            @for note in &summary.notes { li { (with_code(&sentence(note))) } }
+            @for note in run.info.warnings.iter().filter(|words| answer::is_of_pictures(words)) { li { (with_code(&sentence(note))) } }
         }
         p { "What limits the numbers stands beside the " a href="#summary" { "answer" } "." }
         h2 #provenance { "Provenance" }

@@ -17,6 +17,8 @@ const SAMPLES_A_STEP: f64 = 1.0;
 const LEAST_PERIODS: f64 = 10.0;
 /// Rates that are tried, over two resolutions of the samples about the one that was measured.
 const RATES: usize = 41;
+/// A speed that is wrong by more than this factor is not worth a word.
+const FAR: f64 = 2.0;
 /// Which of the unrelated rates is the control: well above the measured one.
 const ABOVE: f64 = 1.2;
 
@@ -156,9 +158,10 @@ fn other_speeds(findings: &MeasuredFindings, family: &Family) -> Option<String> 
     let comb_hz = family.name.shocks_per_period() * family.measured_hz?;
     let others = findings.families.iter().filter(|f| f.name != family.name && f.expected_hz > 0.0);
     let each: Vec<String> = others
-        .map(|other| {
-            let needed = rpm * comb_hz / (other.name.shocks_per_period() * other.expected_hz);
-            format!("{} at {needed:.1} rpm ({:+.1} %)", other.name, 100.0 * (needed / rpm - 1.0))
+        .map(|other| (other, comb_hz / (other.name.shocks_per_period() * other.expected_hz)))
+        .filter(|(_, times)| (1.0 / FAR..FAR).contains(times))
+        .map(|(other, times)| {
+            format!("{} at {:.1} rpm ({:+.1} %)", other.name, rpm * times, 100.0 * (times - 1.0))
         })
         .collect();
     let words = format!(

@@ -91,7 +91,7 @@ pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
     let mut whole = overlaid(whole_band("spectrum-notched", "Raw and notched", raw))
         .tabbed(TABS, "tone filtered out")
         .caption("The notch removes the carrier and leaves its sidebands and harmonics.")
-        .note(stated(raw));
+        .note(legend(findings) + &stated(raw));
     whole.marks = harmonic_marks(findings);
     let zoom = zoom(findings, raw);
     let title = format!("The same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
@@ -302,8 +302,9 @@ pub(in super::super) fn loudest_in_words(findings: &Findings) -> Option<String> 
         there.push(format!("bending of the free ring with {}", modes.join(", ")));
     }
     let why = if there.is_empty() {
-        "no line of the mesh, the defect or the free ring is predicted there: it is ringing of rings and \
-         housing on their contacts, struck by entries, exits and facets"
+        "no line of the mesh, the defect or the free ring is predicted there: \
+         ringing of rings and housing on their contacts, struck by entries, exits and facets, is the likely \
+         cause"
             .to_owned()
     } else {
         format!(

@@ -7,7 +7,7 @@ use super::{Abscissa, Axis, Colour, Figure, Series, Style, Ticks, base64, decima
 use crate::Error;
 
 /// Points sent to the page for one series; beyond that extremes are kept and the figure says so.
-pub(super) const POINT_LIMIT: usize = 20_000;
+pub(super) const POINT_LIMIT: usize = 10_000;
 
 /// What `plot.js` reads.
 #[derive(Serialize)]
