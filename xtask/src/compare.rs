@@ -1,4 +1,4 @@
-//! `cargo xtask compare`: the same problems in our solver and in others, answers checked, times side by side.
+//! `cargo xtask peers`: the same problems in our solver and in others, answers checked, times side by side.
 //!
 //! Other programs are installed from PyPI into `target/peers`. One that cannot be installed or run is
 //! reported and left out. Ours is timed again before every run of another, so that both meet the same

@@ -1,4 +1,4 @@
-//! What develops Stribeck: `cargo xtask ci`, `study`, `compare` and `fuzz`, and the program's own `simulate`,
+//! What develops Stribeck: `cargo xtask ci`, `study`, `peers` and `fuzz`, and the program's own `simulate`,
 //! `report` and `plan`.
 //!
 //! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
@@ -22,6 +22,8 @@ use stribeck::Place;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    #[command(flatten)]
+    loudness: stribeck::Loudness,
 }
 
 #[derive(Debug, Subcommand)]
@@ -32,7 +34,7 @@ enum Command {
     /// Answers a question by many runs: tables and pictures in docs/results
     Study(study::Options),
     /// Solves the same problems with other programs, checks that they agree, and times them
-    Compare(compare::Options),
+    Peers(compare::Options),
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
@@ -42,10 +44,12 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    stribeck::conclude(match Cli::parse().command {
+    let cli = Cli::parse();
+    cli.loudness.apply();
+    stribeck::conclude(match cli.command {
         Command::Program(command) => command.run(&Place::repository("cargo xtask", workspace::root())),
         Command::Study(options) => study::run(&options),
-        Command::Compare(options) => compare::run(&options),
+        Command::Peers(options) => compare::run(&options),
         Command::Fields(options) => fields::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
         Command::Ci(options) => ci::run(&options),

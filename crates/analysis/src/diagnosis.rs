@@ -107,20 +107,24 @@ fn judged(
     name: &str,
     samples: Vec<f64>,
 ) -> Result<Option<Analysis>, Error> {
-    let (bearing, speed_rpm) = (CatalogueBearing::of_scene(&scene.written), 60.0 * relative_hz(expected));
-    let machine = Machine {
-        speed_rpm: Some(speed_rpm),
-        outer_speed_rpm: Machine::outer_speed_rpm(&scene.written),
-        bearing: Some(bearing),
-        speed_is_exact: true,
-        ..Machine::default()
-    };
+    let machine = machine(scene, expected);
     let channel = Channel::held(name.to_owned(), samples)
         .in_unit(Some(AccelerationUnit::MetrePerSecondSquared.symbol().to_owned()));
     match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
         // A record that is too short, or a sensor that stands still.
         Err(Error::NoSignal(_)) => Ok(None),
         analysis => analysis.map(Some),
+    }
+}
+
+/// Speed and bearing of a scene.
+pub(crate) fn machine(scene: &ResolvedScene, expected: &Kinematics) -> Machine {
+    Machine {
+        speed_rpm: Some(60.0 * relative_hz(expected)),
+        outer_speed_rpm: Machine::outer_speed_rpm(&scene.written),
+        bearing: Some(CatalogueBearing::of_scene(&scene.written)),
+        speed_is_exact: true,
+        ..Machine::default()
     }
 }
 

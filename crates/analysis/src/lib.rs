@@ -27,6 +27,7 @@
 //! | How large is a signal, before and behind the notch, and where in the spectrum? | [`levels`], [`loudest`], [`filtering`], [`signal`], [`noise`] |
 //! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
+//! | What differs between runs or records, and is it more than scatter? | [`comparison`] |
 //! | What does a measured record show, and may one call it a defect? | [`measured`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
 //!
@@ -88,6 +89,7 @@ pub mod measured;
 pub mod stress;
 
 pub mod agreement;
+pub mod comparison;
 pub mod ensemble;
 pub mod findings;
 pub mod paper;

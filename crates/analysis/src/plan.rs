@@ -1,6 +1,8 @@
 //! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is,
 //! what it costs, and how long a record must be. Nothing is simulated.
 
+mod loads;
+
 use std::f64::consts::PI;
 
 use stribeck_dsp::PeriodCount;
@@ -11,7 +13,6 @@ use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{
     ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies,
 };
-use stribeck_scene::static_load;
 
 use crate::Error;
 use crate::defect::Shocks;
@@ -19,6 +20,8 @@ use crate::kinematics::KinematicsFinding;
 use crate::lumped::Lumped;
 use crate::prediction::Prediction;
 use crate::rolling;
+
+pub use loads::Loads;
 
 /// Facts of the mesh that a plan needs.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,9 +41,9 @@ pub struct Plan {
     pub lumped: Lumped,
     /// Sag of a roller's facets, of the outer and of the inner raceway's [m].
     pub sag_m: [f64; 3],
-    /// Largest static force on a roller [N] and Hertz half-width under it at the outer raceway [m].
-    pub load_n: f64,
-    /// See `load_n`.
+    /// Static load sharing.
+    pub loads: Loads,
+    /// Hertz half-width under the largest static force at the outer raceway [m].
     pub half_width_m: f64,
     /// Oil under the most loaded roller, on the outer and on the inner raceway; `None` without oil.
     pub films: Option<[LoadedFilm; 2]>,
@@ -63,6 +66,8 @@ pub struct Plan {
     /// the defect, of several the slowest, without one BPFO; `None` where the rings do not turn against each
     /// other.
     pub envelope: Option<(&'static str, f64)>,
+    /// What will go wrong, each with its reason.
+    pub dangers: Vec<String>,
     /// Recommended changes, each with its reason.
     pub advice: Vec<String>,
 }
@@ -91,10 +96,10 @@ impl Plan {
         let material = &scene.material;
         let sag = |radius: f64, facets: f64| radius * (1.0 - (PI / facets).cos());
         let radius = scene.roller_radius;
-        let load_n = static_load::at_start(scene)?.max_roller_n();
+        let loads = Loads::of(scene)?;
         let effective = scene.outer_contact_radius();
         let half_width_m =
-            (4.0 * load_n / scene.thickness * effective / (PI * material.contact_modulus())).sqrt();
+            (4.0 * loads.largest_n / scene.thickness * effective / (PI * material.contact_modulus())).sqrt();
 
         let (duration_s, interval_s) = (scene.duration, scene.interval);
         let time_step_s = scene.written.solver.time_step_factor * mesh.element_time_step_s;
@@ -115,7 +120,8 @@ impl Plan {
                 sag(scene.outer_race_radius, counts.outer_facets as f64),
                 sag(scene.inner_race_radius, counts.inner_facets as f64),
             ],
-            load_n,
+            dangers: loads::dangers(scene, &loads),
+            loads,
             half_width_m,
             films: lubrication::loaded_films(scene)?,
             facet_m: 2.0 * PI * radius / facets,
@@ -144,7 +150,7 @@ impl Plan {
     /// roller with the outer raceway [m] (THEORY §4.2).
     fn point_step_m(&self, scene: &ResolvedScene, points_per_facet: usize) -> f64 {
         let radius = scene.outer_contact_radius();
-        let load = self.load_n / scene.thickness;
+        let load = self.loads.largest_n / scene.thickness;
         let depth = (0.75 * load / (scene.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
         (2.0 * depth / radius).sqrt() * self.facet_m / points_per_facet as f64
     }
@@ -365,7 +371,8 @@ mod tests {
         }
         // THEORY §4.2, on the paper's mesh: the penalty goes with its size.
         scene.mesh.size_mm = 0.5;
-        let step = Plan { load_n: 10950.0, ..quiet }.point_step_m(&scene.resolve(), 8);
+        let loads = Loads { largest_n: 10950.0, ..quiet.loads.clone() };
+        let step = Plan { loads, ..quiet }.point_step_m(&scene.resolve(), 8);
         assert!((step - 4.1e-6).abs() < 0.1e-6, "{step}");
     }
 }

@@ -69,7 +69,7 @@ impl Statistic {
         let mean = (sorted.iter().sum::<f64>() / n).clamp(least, most);
         let spread = sorted.iter().map(|v| (v - mean).powi(2)).sum::<f64>();
         let deviation = (sorted.len() > 1).then(|| (spread / (n - 1.0)).sqrt());
-        let half = deviation.map(|deviation| students_t(sorted.len() - 1) * deviation / n.sqrt());
+        let half = deviation.map(|deviation| students_t(sorted.len() as f64 - 1.0) * deviation / n.sqrt());
         Some(Self {
             mean,
             low: half.map(|half| mean - half),
@@ -89,14 +89,34 @@ impl Statistic {
     /// single start. Source: Hahn and Meeker, *Statistical Intervals*, 1991, §4.7.
     pub fn of_a_further_one(&self) -> Option<f64> {
         let n = self.count as f64;
-        Some(students_t(self.count.checked_sub(1)?.max(1)) * self.deviation? * (1.0 + 1.0 / n).sqrt())
+        Some(students_t((n - 1.0).max(1.0)) * self.deviation? * (1.0 + 1.0 / n).sqrt())
+    }
+
+    /// Where the true difference of this mean less that of `other` lies with [`CONFIDENCE`], by Welch's
+    /// interval for unequal variances; where one of them is a single start, by what a further start of the
+    /// other may do. `None` where neither has a scatter. Source: B. L. Welch, Biometrika 34 (1947) 28–35.
+    pub fn less(&self, other: &Self) -> Option<[f64; 2]> {
+        let difference = self.mean - other.mean;
+        let variance = |s: &Self| Some(s.deviation?.powi(2) / s.count as f64);
+        let half = match (variance(self), variance(other)) {
+            (Some(a), Some(b)) if a + b > 0.0 => {
+                let part = |v: f64, s: &Self| v * v / (s.count as f64 - 1.0);
+                let freedom = (a + b).powi(2) / (part(a, self) + part(b, other));
+                students_t(freedom) * (a + b).sqrt()
+            }
+            (Some(_), Some(_)) => 0.0,
+            (Some(_), None) => self.of_a_further_one()?,
+            (None, Some(_)) => other.of_a_further_one()?,
+            (None, None) => return None,
+        };
+        Some([difference - half, difference + half])
     }
 
     /// How many starts it takes for a mean that is known to this `part` of itself, by the scatter seen so
     /// far; `None` without a scatter, or when it takes more than [`MOST_STARTS`].
     pub fn starts_for(&self, part: f64) -> Option<usize> {
         let scatter = self.deviation? / self.mean.abs();
-        (2..=MOST_STARTS).find(|&n| students_t(n - 1) * scatter <= part * (n as f64).sqrt())
+        (2..=MOST_STARTS).find(|&n| students_t(n as f64 - 1.0) * scatter <= part * (n as f64).sqrt())
     }
 }
 
@@ -113,8 +133,8 @@ impl Share {
 }
 
 /// Two-sided quantile of Student's t at [`CONFIDENCE`] for a number of degrees of freedom of 1 or more.
-fn students_t(freedom: usize) -> f64 {
-    StudentsT::new(0.0, 1.0, freedom as f64).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
+fn students_t(freedom: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, freedom).map_or(f64::NAN, |t| t.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }
 
 /// Quantile of ascending values, which are not empty: linear between neighbours, type 7 of Hyndman and Fan,
@@ -169,7 +189,8 @@ mod tests {
             (29, 2.045),
             (100, 1.984),
         ] {
-            assert!((students_t(freedom) - value).abs() < PRINTED, "{freedom}: {}", students_t(freedom));
+            let t = students_t(f64::from(freedom));
+            assert!((t - value).abs() < PRINTED, "{freedom}: {t}");
         }
     }
 
@@ -185,6 +206,26 @@ mod tests {
         let half = t * (7.0_f64 / 3.0).sqrt();
         assert!((s.low.expect("three") - (3.0 - half)).abs() < 1e-9, "{s:?}");
         assert!((s.high.expect("three") - (3.0 + half)).abs() < 1e-9, "{s:?}");
+    }
+
+    /// Two scatters of one variance and three starts each have four degrees of freedom, so that the interval
+    /// is t√(2/3) wide to either side. A single start beside three has what a fourth of them may do.
+    /// Source: Welch (1947); the table of `analytic_students_t_of_the_table`.
+    #[test]
+    fn analytic_interval_of_a_difference() {
+        let of = |values: &[f64]| Statistic::of(values, values.len()).expect("some");
+        let (low, high) = (of(&[0.0, 1.0, 2.0]), of(&[10.0, 11.0, 12.0]));
+        let [from, to] = high.less(&low).expect("both scatter");
+        let half = 2.776 * (2.0_f64 / 3.0).sqrt();
+        assert!(
+            (from - (10.0 - half)).abs() < PRINTED && (to - (10.0 + half)).abs() < PRINTED,
+            "{from} {to}"
+        );
+        let [from, to] = of(&[5.0]).less(&low).expect("one scatters");
+        let half = 4.303 * (4.0_f64 / 3.0).sqrt();
+        assert!((from - (4.0 - half)).abs() < PRINTED && (to - (4.0 + half)).abs() < PRINTED, "{from} {to}");
+        assert_eq!(of(&[5.0]).less(&of(&[4.0])), None);
+        assert_eq!(of(&[2.0; 3]).less(&of(&[1.0; 3])), Some([1.0, 1.0]));
     }
 
     #[test]

@@ -2,7 +2,7 @@
 //! is `null`, with the reason in `notes`.
 
 use serde::{Deserialize, Serialize};
-use stribeck_dsp::Resolution;
+use stribeck_dsp::{Resolution, statistics};
 use stribeck_scene::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
 use stribeck_scene::scene::DefectRing;
 
@@ -257,8 +257,35 @@ pub struct LevelsFinding {
     pub between_filtered_rms_g: Option<f64>,
     /// Largest magnitude within 1 ms of any exit, behind the notch.
     pub impulse_filtered_g: Option<f64>,
+    /// The whole record, start-up included; `None` where it is constant.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub record: Option<RecordLevels>,
     /// Every sensor.
     pub sensors: Vec<SensorLevels>,
+}
+
+/// Numbers of a whole record of the leading sensor about its mean.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct RecordLevels {
+    /// Root mean square [g].
+    pub rms_g: f64,
+    /// Largest distance from the mean [g].
+    pub peak_g: f64,
+    /// Peak over root mean square.
+    pub crest_factor: f64,
+    /// Fourth central moment over the square of the second; 3 for Gaussian noise.
+    pub kurtosis: f64,
+}
+
+impl RecordLevels {
+    /// Of a signal [g]; `None` where it is constant or not finite.
+    pub fn of(signal_g: &[f64]) -> Option<Self> {
+        let mean = statistics::mean(signal_g).ok()?;
+        let centred: Vec<f64> = signal_g.iter().map(|x| x - mean).collect();
+        let kurtosis = statistics::kurtosis(&centred).ok()?;
+        let (rms_g, peak_g) = (statistics::rms(&centred).ok()?, statistics::peak(&centred).ok()?);
+        Some(Self { rms_g, peak_g, crest_factor: peak_g / rms_g, kurtosis })
+    }
 }
 
 /// Levels at one sensor [g].

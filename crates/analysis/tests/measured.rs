@@ -454,8 +454,8 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
         errors.len(),
         100.0 * median
     );
-    // In the other records of eighteen the bands, which share nothing, do not agree on a second event. Of nine
-    // intervals of 90 % at least seven hold in 95 of 100 cases.
+    // In the other records of eighteen the bands, which share nothing, do not agree on a second event. Of
+    // nine intervals of 90 % at least seven hold in 95 of 100 cases.
     assert!(errors.len() >= 9 && median <= 0.1, "{errors:?}");
     assert!(f64::from(covered) >= 0.75 * errors.len() as f64, "{covered} of {}", errors.len());
     assert!(unordered.is_empty(), "{unordered:?}");

@@ -43,6 +43,7 @@
 //! | a smooth density of a short record | [`multitaper`] |
 //! | the record at another rate | [`resample_poly`] |
 //! | what a sensor and its recorder would have made of a computed signal | [`Sensor`] |
+//! | how a signal sounds | [`Sound`] |
 //! | root mean square, crest factor, kurtosis | [`statistics`] |
 //!
 //! `examples/knocks.rs` does all of it to one signal.
@@ -113,6 +114,7 @@ mod spectrogram;
 mod velocity;
 
 mod sensor;
+mod sound;
 
 pub mod statistics;
 
@@ -134,6 +136,7 @@ pub use resample::resample_poly;
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use separation::{Separated, separate};
+pub use sound::Sound;
 pub use spacing::{EventSpacing, Spacing, event_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};

@@ -58,6 +58,32 @@ fn roundtrip_every_format_keeps_samples_names_and_rate() {
 }
 
 #[test]
+fn roundtrip_whole_numbers_keep_samples_to_half_a_step_and_clip() {
+    let folder = Scratch::create("formats-pcm");
+    let mut noise = Noise::new(6);
+    let mut channel = || -> Vec<f64> { (0..1001).map(|_| noise.uniform()).collect() };
+    let mut channels = vec![channel(), channel(), channel()];
+    (channels[0][3], channels[1][4]) = (1.5, -1.5);
+    for (bits, step) in [(12, 2_f64.powi(-15)), (24, 2_f64.powi(-23)), (32, 2_f64.powi(-31))] {
+        let path = folder.path().join(format!("{bits}.wav"));
+        let whole = wav::Whole::holding(bits).unwrap();
+        std::fs::write(&path, wav::pcm(48_000, whole, &channels, &notes()).unwrap()).unwrap();
+        let recording = Recording::open(&path).unwrap();
+        assert!(recording.notes.is_empty(), "{:?}", recording.notes);
+        for (n, channel) in channels.iter().enumerate() {
+            let read = recording.channel(&(n + 1).to_string()).unwrap();
+            assert_eq!((read.rate_hz, read.len), (Some(48_000.0), 1001));
+            for (a, b) in read.read().unwrap().iter().zip(channel) {
+                // The positive end is one step lower, as two's complement has it.
+                assert!((a - b.clamp(-1.0, 1.0 - step)).abs() <= 0.5 * step, "{bits}: {a} {b}");
+            }
+        }
+    }
+    assert_eq!(wav::Whole::holding(33), None);
+    assert!(wav::pcm(48_000, wav::Whole::Of16, &[vec![0.0], vec![]], &[]).is_none());
+}
+
+#[test]
 fn survives_files_damaged_at_any_byte() {
     let folder = Scratch::create("formats-damaged");
     for extension in ["csv", "npz", "mat", "uff", "parquet", "wav"] {

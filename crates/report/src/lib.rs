@@ -17,6 +17,8 @@
 //! | a run, or a stretch of it | [`write()`], [`write_between`] | `report.html`, `summary.json`, `figures/` |
 //! | many starts of a scene | [`write_ensemble`] | `report.html`, `summary.json`, `figures/` |
 //! | the reduced model beside the full one | [`write_agreement`] | `report.html`, `validation.json` |
+//! | runs, ensembles and records beside each other | [`write_comparison`] | `report.html`, `compare.json` |
+//! | a campaign | [`write_campaign`] | `index.html` |
 //! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
@@ -28,6 +30,7 @@ pub mod plot;
 mod page;
 
 mod lead;
+mod sound;
 
 mod answer;
 mod course;
@@ -39,6 +42,8 @@ mod sections;
 mod tables;
 
 mod agreement;
+mod campaign;
+mod comparison;
 mod ensemble;
 pub mod inference;
 mod measured;
@@ -48,6 +53,8 @@ mod trend;
 mod error;
 
 pub use agreement::write_agreement;
+pub use campaign::{CampaignIndex, CampaignRun, write_campaign};
+pub use comparison::{MOST_COMPARED, answer as comparison_in_words, difference, mean, write_comparison};
 pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use measured::write_measured;

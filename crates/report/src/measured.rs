@@ -8,7 +8,7 @@ use stribeck_scene::run_dir::write_atomic;
 
 use crate::page::{head, json, sentence};
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
-use crate::{Error, course};
+use crate::{Error, course, sound};
 use stribeck_analysis::measured::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
 
@@ -66,6 +66,7 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                         td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
                     }
                 }
+                (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz, findings.unit.as_deref().unwrap_or("")))
                 @for figure in figures { (figure) }
                 (course)
                 h2 #notes { "Notes" }

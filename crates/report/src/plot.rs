@@ -22,6 +22,8 @@ mod raster;
 mod scale;
 mod svg;
 
+pub(crate) use base64::bytes as base64_bytes;
+
 pub use animation::{Canvas, gif, shade_rgb};
 pub use interactive::script;
 pub use picture::{Anchor, Picture, Sheet};

@@ -19,7 +19,7 @@ use crate::lead::lead;
 use crate::page::{head, json, section, sentence, with_code, write_figures};
 use crate::paper::PaperCase;
 use crate::pictures::Pictures;
-use crate::{Error, agreement, answer, moving, sections, tables};
+use crate::{Error, agreement, answer, moving, sections, sound, tables};
 
 /// Writes the report of the run in `run_dir` into that directory and returns its numbers.
 ///
@@ -89,6 +89,7 @@ fn page(
                 @if let Some(moving) = moving { h2 #motion { "The bearing in motion" } (moving) }
                 @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
+                (sound::of_run(findings))
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", html! {}, &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) h3 { "Lines of the mesh" } p { (answer::mesh(summary)) } (sections::families(summary)) }, "The record is too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)

@@ -33,13 +33,16 @@ pub(super) fn paper(summary: &Summary) -> Markup {
                         tr {
                             td { (row.quantity) }
                             td class="n" { (row.paper) }
-                            td class="n wrap" { (row.ours) }
+                            td class="n wrap" { @if row.ours == CANNOT_TELL { "–" } @else { (row.ours) } }
                             td class="n" { (row.difference) }
                             td class="why" { (row.why) }
                         }
                     }
                 }
             }
+        }
+        @if summary.paper.iter().any(|row| row.ours == CANNOT_TELL) {
+            p class="hint" { "–: this record is too short to tell." }
         }
     }
 }
@@ -51,6 +54,9 @@ pub(super) const OFF: &str = "How far the middle line lies from where the record
     spectrum resolves: within ±1 it is at its place";
 const SCATTER: &str = "By how much that differs between components of sensors and forces of rollers, in the \
     same widths";
+
+/// What a row of the paper's numbers says where the record has none.
+const CANNOT_TELL: &str = "this record cannot tell";
 
 fn family(family: Origin) -> (&'static str, &'static str) {
     match family {
@@ -121,6 +127,21 @@ fn no_lines() -> Markup {
     here: see " a href="#duty" { "Speed and load" } "." } }
 }
 
+/// For each item how many from it on are equal to it; `None` for one that is equal to that before.
+fn runs_of_equal<T: PartialEq>(items: impl Iterator<Item = T>) -> Vec<Option<usize>> {
+    let items: Vec<T> = items.collect();
+    let counted = |at: usize| {
+        let begins = at == 0 || items[at] != items[at - 1];
+        begins.then(|| items[at..].iter().take_while(|item| **item == items[at]).count())
+    };
+    (0..items.len()).map(counted).collect()
+}
+
+/// A verdict, beside all rows that share it.
+fn said_once(verdict: &str, rows: Option<usize>) -> Markup {
+    html! { @if let Some(rows) = rows { td class="why" rowspan=(rows) { (verdict) } } }
+}
+
 /// Verdicts on the families, and their lines.
 pub(super) fn families(summary: &Summary) -> Markup {
     if unsteady(summary) {
@@ -129,6 +150,7 @@ pub(super) fn families(summary: &Summary) -> Markup {
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
     let signed = |v: Option<f64>| v.map(|v| format!("{v:+.1}").replace('-', "−"));
     let lines = summary.families.iter().flat_map(|f| &f.lines).filter(|l| l.measured_hz.is_some());
+    let verdicts = runs_of_equal(summary.families.iter().map(|f| f.verdict.as_str()));
     html! {
         div class="scroll" {
             table class="ledger" {
@@ -140,7 +162,7 @@ pub(super) fn families(summary: &Summary) -> Markup {
                     }
                 }
                 tbody {
-                    @for f in &summary.families {
+                    @for (f, of) in summary.families.iter().zip(&verdicts) {
                         tr {
                             td { (spoken(&f.name)) }
                             (cell(hz(f.predicted_hz)))
@@ -148,7 +170,7 @@ pub(super) fn families(summary: &Summary) -> Markup {
                             (cell(signed(f.offset_resolutions)))
                             (cell(f.offset_scatter_resolutions.map(|v| format!("{v:.1}"))))
                             (cell(f.level_g.map(|g| significant(g, 3))))
-                            td class="why" { (f.verdict) }
+                            (said_once(&f.verdict, *of))
                         }
                     }
                 }
@@ -202,6 +224,8 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
         })
         .collect();
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
+    // A heading between two groups ends a cell that spans rows.
+    let verdicts = runs_of_equal(summary.artefacts.iter().map(|a| (family(a.family).1, a.verdict.as_str())));
     html! {
         p {
             "Sensor “" (summary.levels.sensor.as_deref().unwrap_or("none")) "”, a_y. Facet lines are claimed \
@@ -217,7 +241,7 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
                     }
                 }
                 tbody {
-                    @for (first, a) in rows {
+                    @for ((first, a), of) in rows.into_iter().zip(verdicts) {
                         @if first { tr class={ "group " (family(a.family).0) } { td colspan="6" { (family(a.family).1) } } }
                         tr {
                             td { (spoken(&a.name)) @if matches!(a.family, Origin::Mesh | Origin::Defect) { " ×" (a.harmonic) } }
@@ -225,7 +249,7 @@ pub(super) fn artefacts(summary: &Summary) -> Markup {
                             (cell(hz(a.from_motion_hz)))
                             (cell(hz(a.measured_hz)))
                             (cell(a.level_g.map(|g| significant(g, 3))))
-                            td class="why" { (a.verdict) }
+                            (said_once(&a.verdict, of))
                         }
                     }
                 }

@@ -21,7 +21,7 @@ use stribeck_scene::{run_info::RunInfo, scene::Scene};
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
 /// Version of the file; a program continues only what it understands to the last bit.
-const VERSION: u32 = 17;
+const VERSION: u32 = 18;
 
 /// Length of a scene's hash.
 const HASH: usize = 16;

@@ -141,7 +141,11 @@ impl Campaign {
         Self::parse(without_mark(&text), &shown, path.parent().unwrap_or(Path::new("")))
     }
 
-    fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
+    /// The campaign of a `text` that is to lie in `folder` as a file called `name`.
+    ///
+    /// # Errors
+    /// As [`Campaign::read`].
+    pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
         let place = File::new(name, text, &CAMPAIGN);
         let file: Text = dialect::dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));

@@ -2,12 +2,17 @@
 //!
 //! Makers do not print the number of rolling elements of every bearing; where no source is known for it, the
 //! entry has none and the user must give it. Any bearing can be given by its numbers:
-//! `elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0`.
+//! `elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0`, or have a name in a file of the user's own,
+//! `bearings.ron` in the working folder or in `stribeck` below that of the configuration.
+
+mod file;
+mod names;
+mod tables;
 
 use std::f64::consts::PI;
 use std::fmt;
 
-use crate::scene::{BearingScene, Scene};
+use crate::scene::{Assumed, BearingScene, Scene};
 
 /// Shapes of rolling elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,93 +68,35 @@ pub struct DefectOrders {
     pub ftf: f64,
 }
 
-type Row = (&'static str, Element, Option<u32>, f64, f64, f64, Option<[f64; 3]>, &'static str);
+pub use tables::{PAPER, all};
 
-/// Name of the paper's bearing.
-pub const PAPER: &str = "paper";
-
-const SINGH: &str = "S. Singh et al., Numerical noise generation in modelled bearing vibration signals, \
-    Inter-Noise 2014, table 1";
-const CWRU: &str = "Case Western Reserve University Bearing Data Center, bearing information";
-const IMS: &str = "J. Lee et al., Bearing data set, IMS, University of Cincinnati, 2007";
-const XJTU: &str = "B. Wang et al., IEEE Trans. Reliab. 69 (2020) 401–412, table II";
-const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design, makers' catalogues: d = (E \
-    − F)/2, pitch (E + F)/2";
-const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints raceways: F and \
-    E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + F)/2";
-const BOUNDARY: &str =
-    "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
-
-/// Raceway diameters F and E [mm] of cylindrical roller bearings of E design, by designation, with bore,
-/// outside diameter and width [mm] by ISO 15; those of [`IN_PROPORTION`] from its neighbour.
-const CYLINDRICAL: [(&str, f64, f64, [f64; 3]); 22] = [
-    ("NU 202", 19.3, 30.3, [15.0, 35.0, 11.0]),
-    ("NU 203", 22.1, 35.1, [17.0, 40.0, 12.0]),
-    ("NU 204", 26.5, 41.5, [20.0, 47.0, 14.0]),
-    ("NU 205", 31.5, 46.5, [25.0, 52.0, 15.0]),
-    ("NU 206", 37.5, 55.5, [30.0, 62.0, 16.0]),
-    ("NU 207", 44.0, 64.0, [35.0, 72.0, 17.0]),
-    ("NU 208", 49.5, 71.5, [40.0, 80.0, 18.0]),
-    ("NU 209", 54.5, 76.5, [45.0, 85.0, 19.0]),
-    ("NU 210", 59.5, 81.5, [50.0, 90.0, 20.0]),
-    ("NU 211", 66.0, 90.0, [55.0, 100.0, 21.0]),
-    ("NU 212", 72.0, 100.0, [60.0, 110.0, 22.0]),
-    (IN_PROPORTION, 21.5, 35.9, [15.0, 42.0, 13.0]),
-    ("NU 303", 24.2, 40.2, [17.0, 47.0, 14.0]),
-    ("NU 304", 27.5, 45.5, [20.0, 52.0, 15.0]),
-    ("NU 305", 34.0, 54.0, [25.0, 62.0, 17.0]),
-    ("NU 306", 40.5, 62.5, [30.0, 72.0, 19.0]),
-    ("NU 307", 46.2, 70.2, [35.0, 80.0, 21.0]),
-    ("NU 308", 52.0, 80.0, [40.0, 90.0, 23.0]),
-    ("NU 309", 58.5, 88.5, [45.0, 100.0, 25.0]),
-    ("NU 310", 65.0, 97.0, [50.0, 110.0, 27.0]),
-    ("NU 311", 70.5, 106.5, [55.0, 120.0, 29.0]),
-    ("NU 312", 77.0, 115.0, [60.0, 130.0, 31.0]),
-];
-
-/// The one whose raceways are printed nowhere: 15 + 27·(24.2 − 17)/30 and 15 + 27·(40.2 − 17)/30 mm, to a
-/// tenth.
-const IN_PROPORTION: &str = "NU 302";
-
-const OTHERS: [Row; 8] = [
-    (PAPER, Element::Roller, Some(24), 18.0, 181.98, 0.0, None, SINGH),
-    ("6203", Element::Ball, Some(8), 6.746, 28.5, 0.0, Some([17.0, 40.0, 12.0]), CWRU),
-    ("6205", Element::Ball, Some(9), 7.94, 39.04, 0.0, Some([25.0, 52.0, 15.0]), CWRU),
-    ("6206", Element::Ball, Some(9), 9.525, 46.0, 0.0, Some([30.0, 62.0, 16.0]), BOUNDARY),
-    ("6209", Element::Ball, None, 12.7, 65.0, 0.0, Some([45.0, 85.0, 19.0]), BOUNDARY),
-    ("6305", Element::Ball, Some(7), 11.509, 43.5, 0.0, Some([25.0, 62.0, 17.0]), BOUNDARY),
-    ("ZA-2115", Element::Roller, Some(16), 8.407, 71.501, 15.17, None, IMS),
-    ("UER204", Element::Ball, Some(8), 7.92, 34.55, 0.0, Some([20.0, 47.0, 17.0]), XJTU),
-];
-
-/// Cylindrical roller bearings by where their flanges are, which a plane model does not have: rollers and
-/// raceways are the same.
-const FLANGES: [&str; 4] = ["NU", "NJ", "NUP", "N"];
-
-/// All bearings that have a name here.
-pub fn all() -> Vec<CatalogueBearing> {
-    let cylindrical = FLANGES.iter().flat_map(|flanges| {
-        CYLINDRICAL.iter().map(move |&(name, f, e, boundary)| {
-            let [diameter, pitch] = [0.5 * (e - f), 0.5 * (e + f)];
-            let source = if name == IN_PROPORTION { PROPORTION } else { E_TYPE };
-            let row = (name, Element::Roller, None, diameter, pitch, 0.0, Some(boundary), source);
-            CatalogueBearing { name: name.replace("NU", flanges), ..CatalogueBearing::of(row) }
-        })
-    });
-    OTHERS.iter().copied().map(CatalogueBearing::of).chain(cylindrical).collect()
+/// All bearings that have a name: those of the user's own files, then those of the catalogue.
+///
+/// # Errors
+/// Words on a file of the user's own that cannot be read.
+pub fn known() -> Result<Vec<CatalogueBearing>, String> {
+    let mut bearings = file::bearings()?;
+    bearings.extend(all());
+    Ok(bearings)
 }
 
-/// What [`all`] has, in words.
-fn names() -> String {
-    let others: Vec<&str> = OTHERS.iter().map(|row| row.0).collect();
-    let sizes: Vec<&str> = CYLINDRICAL.iter().filter_map(|row| row.0.strip_prefix("NU ")).collect();
-    format!("{}, or {} with {}", others.join(", "), FLANGES.join(", "), sizes.join(", "))
+/// Those of [`known`] whose names begin as `text` does: `NU`, `62`.
+///
+/// # Errors
+/// As [`known`].
+pub fn beginning_with(text: &str) -> Result<Vec<CatalogueBearing>, String> {
+    Ok(names::beginning_with(text, known()?))
 }
 
-/// What a scene of a bearing in the catalogue rests on that no catalogue prints; nothing for a scene of the
-/// user's own numbers.
+/// What a scene rests on that nobody gave: what no catalogue prints of a bearing of the catalogue, and what
+/// the fields of one's own bearing left out.
 pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
-    let Some(known) = all().into_iter().find(|known| known.name == bearing.designation) else {
+    if !bearing.assumed.is_empty() {
+        return bearing.assumed.iter().map(|what| assumption(*what, bearing)).collect();
+    }
+    // A file that cannot be read any more is none of the scene's business.
+    let bearings = self::known().unwrap_or_else(|_| all());
+    let Some(known) = bearings.into_iter().find(|known| known.name == bearing.designation) else {
         return Vec::new();
     };
     let (name, length) = (&known.name, bearing.thickness_mm);
@@ -162,7 +109,13 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
             bearing.rollers
         ));
     }
-    if known.source == PROPORTION {
+    if [tables::BALL_RULE, tables::INSERT_RULE].contains(&known.source.as_str()) {
+        notes.push(format!(
+            "no source is known here for the balls of {name}: they are assumed to be 0.3 (outside − bore) in \
+             diameter, half-way between bore and outside, which is right to some 6 %"
+        ));
+    }
+    if known.source == tables::PROPORTION {
         notes.push(format!(
             "no catalogue known here prints the raceways of {name}; they are assumed to lie where those of \
              its next larger size do, between bore and outside"
@@ -182,9 +135,108 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     notes
 }
 
+/// What was assumed of a bearing of one's own, in words.
+fn assumption(what: Assumed, b: &BearingScene) -> String {
+    let mm = |mm: f64| (1e4 * mm).round() / 1e4;
+    match what {
+        Assumed::Clearance => format!(
+            "nobody gave the clearance of this bearing: {:.0} µm are assumed, the middle of the normal \
+             group (ISO \
+             5753-1), between raceways of {} and {} mm and rollers of {} mm",
+            1e3 * (b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm),
+            mm(b.outer_race_diameter_mm),
+            mm(b.inner_race_diameter_mm),
+            mm(b.roller_diameter_mm)
+        ),
+        Assumed::Pitch => format!(
+            "nobody gave the pitch diameter of this bearing: {} mm are assumed, half-way between bore and \
+             outside \
+             diameter, which is right to some 2 %",
+            mm(0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm))
+        ),
+        Assumed::OuterRing => format!(
+            "nobody gave `outside_mm` or the thickness of the outer ring: {} mm are assumed, 0.4 of a roller",
+            mm(b.outer_ring_thickness_mm)
+        ),
+        Assumed::InnerRing => format!(
+            "nobody gave `bore_mm` or the thickness of the inner ring: {} mm are assumed, 0.4 of a roller",
+            mm(b.inner_ring_thickness_mm)
+        ),
+        Assumed::Rollers => format!(
+            "nobody gave the number of rollers: {} are assumed, with a fifth of the pitch circle free, \
+             and all \
+             frequencies of defects but that of the cage follow it",
+            b.rollers
+        ),
+        Assumed::Length => format!(
+            "nobody gave the length of the rollers, `thickness_mm`: {} mm are assumed, 0.6 of `width_mm` or, \
+             without it, a roller's diameter",
+            mm(b.thickness_mm)
+        ),
+    }
+}
+
 /// Circumference of the pitch circle over the rolling elements side by side, where their number is not known:
 /// cages of E design leave about a quarter.
 const SPACING: f64 = 1.25;
+
+/// Part of the pitch circle [°] over which balls lie side by side when a deep groove bearing is filled.
+const FILLING_DEG: f64 = 186.0;
+
+/// As many balls as go into a deep groove bearing whose rings lie against each other while it is filled:
+/// right for all of the catalogue whose number is known.
+pub(crate) fn filled(pitch_mm: f64, diameter_mm: f64) -> usize {
+    let one = 2.0 * (diameter_mm / pitch_mm).min(1.0).asin();
+    (1.0 + FILLING_DEG.to_radians() / one).round() as usize
+}
+
+/// As many rolling elements as cages usually hold.
+pub(crate) fn usual_elements(pitch_mm: f64, diameter_mm: f64) -> usize {
+    (PI * pitch_mm / (SPACING * diameter_mm)).round() as usize
+}
+
+/// Diametral clearance [mm] of a bearing with this bore [mm]: the middle of the normal group, ISO
+/// 5753-1:2009.
+pub(crate) fn normal_clearance_mm(element: Element, bore_mm: f64) -> f64 {
+    // Largest bore [mm], clearance [µm].
+    const BALL: [(f64, f64); 9] = [
+        (10.0, 7.5),
+        (18.0, 10.5),
+        (30.0, 12.5),
+        (40.0, 13.0),
+        (50.0, 14.5),
+        (65.0, 18.0),
+        (80.0, 20.0),
+        (100.0, 24.0),
+        (120.0, 28.0),
+    ];
+    const ROLLER: [(f64, f64); 16] = [
+        (30.0, 32.5),
+        (40.0, 37.5),
+        (50.0, 45.0),
+        (65.0, 55.0),
+        (80.0, 57.5),
+        (100.0, 67.5),
+        (120.0, 70.0),
+        (140.0, 82.5),
+        (160.0, 95.0),
+        (180.0, 100.0),
+        (200.0, 117.5),
+        (225.0, 135.0),
+        (250.0, 142.5),
+        (280.0, 160.0),
+        (315.0, 167.5),
+        (355.0, 185.0),
+    ];
+    let of = |table: &[(f64, f64)]| {
+        let found = table.iter().find(|(largest, _)| bore_mm <= *largest).or(table.last());
+        1e-3 * found.map_or(0.0, |(_, um)| *um)
+    };
+    match element {
+        Element::Ball => of(&BALL),
+        Element::Roller => of(&ROLLER),
+    }
+}
 
 impl CatalogueBearing {
     /// Diameter of a rolling element and of the pitch circle as they are read [mm]: to the micrometre, which
@@ -195,12 +247,27 @@ impl CatalogueBearing {
 
     /// As many rolling elements as cages usually hold.
     pub(crate) fn usual_elements(&self) -> usize {
-        (PI * self.pitch_mm / (SPACING * self.diameter_mm)).round() as usize
+        match self.element {
+            Element::Ball => filled(self.pitch_mm, self.diameter_mm),
+            Element::Roller => usual_elements(self.pitch_mm, self.diameter_mm),
+        }
     }
 
     /// The most that find room on the pitch circle.
     fn most_elements(&self) -> u32 {
         (PI / (self.diameter_mm / self.pitch_mm).asin() + 1e-9) as u32
+    }
+
+    fn has_sane_diameters(&self) -> bool {
+        self.diameter_mm > 0.0
+            && self.pitch_mm > 1.1 * self.diameter_mm
+            && self.pitch_mm.is_finite()
+            && (0.0..90.0).contains(&self.angle_deg)
+    }
+
+    /// Whether there is such a bearing.
+    fn is_sane(&self) -> bool {
+        self.has_sane_diameters() && self.elements.is_none_or(|n| (3..=self.most_elements()).contains(&n))
     }
 
     /// The bearing of a scene, as far as its frequencies go.
@@ -236,7 +303,7 @@ impl CatalogueBearing {
         let mut parts = text.split(',').map(str::trim).filter(|part| !part.is_empty()).peekable();
         let named = match parts.peek() {
             Some(name) if !name.contains('=') => {
-                let found = find(name, advice);
+                let found = known().and_then(|known| names::find(name, known, advice));
                 parts.next();
                 Some(found?)
             }
@@ -273,11 +340,7 @@ impl CatalogueBearing {
                 other => return Err(format!("`{other}` is no number of a bearing; known are {known}")),
             }
         }
-        let sane = bearing.diameter_mm > 0.0
-            && bearing.pitch_mm > 1.1 * bearing.diameter_mm
-            && bearing.pitch_mm.is_finite()
-            && (0.0..90.0).contains(&bearing.angle_deg);
-        if !sane {
+        if !bearing.has_sane_diameters() {
             let wanted = if own {
                 "give `diameter_mm`, a larger `pitch_mm`"
             } else {
@@ -316,13 +379,6 @@ impl CatalogueBearing {
             ftf: 0.5 * (1.0 - ratio),
         })
     }
-
-    fn of((name, element, elements, diameter_mm, pitch_mm, angle_deg, boundary, source): Row) -> Self {
-        let (name, source) = (name.to_owned(), source.to_owned());
-        let boundary =
-            boundary.map(|[bore_mm, outside_mm, width_mm]| Boundary { bore_mm, outside_mm, width_mm });
-        Self { name, element, elements, diameter_mm, pitch_mm, angle_deg, boundary, source }
-    }
 }
 
 impl fmt::Display for CatalogueBearing {
@@ -338,32 +394,6 @@ impl fmt::Display for CatalogueBearing {
         let [diameter, pitch] = self.shown_mm();
         write!(f, "{what} of {diameter} mm, pitch {pitch} mm, contact angle {}°", self.angle_deg)
     }
-}
-
-/// The bearing whose name, letters and digits alone, is that of `name` or begins it.
-fn find(name: &str, advice: &str) -> Result<CatalogueBearing, String> {
-    let plain =
-        |text: &str| text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_uppercase();
-    let fits = |asked: &str, bearing: &CatalogueBearing| {
-        let own = plain(&bearing.name);
-        // `6205-2RS1` and `6205-2Z` are a 6205, with two seals or shields, and 62055 is not. Inserts have
-        // bores of their own, which their balls do not know of: `UER204-12`.
-        asked.strip_prefix(&own).is_some_and(|rest| {
-            let mut letters = rest.chars();
-            match letters.next() {
-                _ if own.is_empty() => false,
-                Some('2') => letters.next().is_some_and(|c| c.is_ascii_alphabetic()),
-                Some('0'..='9') => own.starts_with("UE") && rest.len() == 2,
-                _ => true,
-            }
-        })
-    };
-    // A maker may stand before: `Rexnord ZA-2115`.
-    let behind_maker = name.split_once(' ').filter(|(maker, _)| maker.chars().all(char::is_alphabetic));
-    let asked = [Some(name), behind_maker.map(|(_, rest)| rest)];
-    let found =
-        asked.into_iter().flatten().map(plain).find_map(|asked| all().into_iter().find(|b| fits(&asked, b)));
-    found.ok_or_else(|| format!("no bearing `{name}` is known; {advice}, or one of {}", names()))
 }
 
 #[cfg(test)]
@@ -411,9 +441,34 @@ mod tests {
             let other = CatalogueBearing::parse(text).unwrap();
             assert_eq!((other.name.as_str(), other.diameter_mm), (name, roller.diameter_mm));
         }
+        for (text, name) in [
+            ("SKF6205", "6205"),
+            ("NU2210 ECP", "NU 2210"),
+            ("nu 220 ecm/c3", "NU 220"),
+            ("NU 2202 ECP", "NU 2202"),
+            ("FAG NU2305-E-TVP2", "NU 2305"),
+            ("6310-2Z", "6310"),
+            ("UC206", "UC206"),
+            ("UC205-16", "UC205"),
+        ] {
+            assert_eq!(CatalogueBearing::parse(text).map(|known| known.name), Ok(name.to_owned()), "{text}");
+        }
         let own = CatalogueBearing::parse("elements=9, diameter_mm=7.94, pitch_mm=39.04").unwrap();
         assert!((own.orders().unwrap().bpfo - 3.585).abs() < 1e-3);
         assert!(CatalogueBearing::parse("NU 312").unwrap().orders().unwrap_err().contains("elements=…"));
+    }
+
+    #[test]
+    fn example_names_that_begin_alike_make_a_list() {
+        let names = |text: &str| -> Vec<String> {
+            beginning_with(text).expect("no file").into_iter().map(|bearing| bearing.name).collect()
+        };
+        let of_kind = names("nu");
+        assert_eq!(of_kind.len(), 76);
+        assert!(of_kind.iter().all(|name| name.starts_with("NU ")), "{of_kind:?}");
+        assert_eq!(names("N").len(), 76);
+        assert_eq!(names("62").len(), 21);
+        assert!(names("xyz").is_empty() && names("").is_empty());
     }
 
     #[test]
@@ -441,6 +496,13 @@ mod tests {
             ("diameter_mm=8, pitch_mm=8", "is no bearing"),
             ("6205, elements=x", "no number"),
             ("NU 205, elements=200", "16 at most"),
+            ("NU 221", "no bearing `NU 221`"),
+            ("1205 ETN9", "self-aligning"),
+            ("2205-2RS", "self-aligning"),
+            ("22210 E", "spherical"),
+            ("7205 B", "contact angle"),
+            ("32010", "tapered"),
+            ("51105", "thrust"),
         ] {
             let why = CatalogueBearing::parse(text).unwrap_err();
             assert!(why.contains(says), "{text}: {why}");

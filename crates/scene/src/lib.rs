@@ -66,6 +66,7 @@ pub mod housing;
 pub mod inference;
 pub mod kinematics;
 mod line_contact;
+pub mod load_rating;
 pub mod lubrication;
 pub mod material;
 pub mod mesh_file;

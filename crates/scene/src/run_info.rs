@@ -132,20 +132,25 @@ impl EnergyInfo {
         (self.heat_j > self.peak_strain_j && share.is_finite()).then_some(share)
     }
 
+    /// Largest |imbalance| over the larger of peak strain energy and heat [-]: the measure that a run of any
+    /// length is judged by.
+    pub fn of_larger(&self) -> f64 {
+        self.share_of_heat().unwrap_or(self.max_relative_error)
+    }
+
     /// What the energy was off by at most, as [`imbalance`] says it.
     pub fn in_words(&self) -> String {
         imbalance(self.max_relative_error, self.share_of_heat())
     }
 }
 
-/// What an energy is off by, over the peak strain energy and, where that is more, over the heat, in words. A
-/// rigid housing stores next to nothing as strain: what exceeds that is told by its share of the heat alone.
+/// What an energy is off by in words: over the heat where that is more than the peak strain energy, because
+/// the error of the step grows with the heat and says nothing beside strain; else over the peak strain
+/// energy.
 pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
-    let strain = format!("{:.3} % of the peak strain energy", 100.0 * of_strain);
-    match of_heat.map(|share| format!("{:.3} % of the heat", 100.0 * share)) {
-        Some(heat) if of_strain > 1.0 => heat,
-        Some(heat) => format!("{strain}, {heat}"),
-        None => strain,
+    match of_heat {
+        Some(share) => format!("{:.3} % of the heat", 100.0 * share),
+        None => format!("{:.3} % of the peak strain energy", 100.0 * of_strain),
     }
 }
 
@@ -217,19 +222,18 @@ pub fn clock(seconds: f64) -> String {
 mod tests {
     use super::{EnergyInfo, clock};
 
-    /// A rigid housing stores millionths of what turns into heat.
+    /// A second of the reduced model was said to be off by 35.785 % of the peak strain energy, which read as
+    /// a failure: it was 0.02 % of the heat. A rigid housing stores millionths of what turns into heat.
     #[test]
-    fn example_what_exceeds_all_strain_is_told_by_its_heat() {
+    fn issue_an_imbalance_is_told_by_the_larger_of_strain_and_heat() {
         let energy = |max_relative_error, peak_strain_j, heat_j| EnergyInfo {
             max_relative_error,
             peak_strain_j,
             heat_j,
         };
         assert_eq!(energy(2e-3, 0.5, 0.1).in_words(), "0.200 % of the peak strain energy");
-        assert_eq!(
-            energy(2e-3, 0.5, 5.0).in_words(),
-            "0.200 % of the peak strain energy, 0.020 % of the heat"
-        );
+        assert_eq!(energy(2e-3, 0.5, 5.0).in_words(), "0.020 % of the heat");
+        assert_eq!(energy(2e-3, 0.5, 5.0).of_larger(), 2e-4);
         assert_eq!(energy(440.0, 1e-3, 100.0).in_words(), "0.440 % of the heat");
     }
 

@@ -105,6 +105,40 @@ pub struct BearingScene {
     /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow
     /// counter-clockwise.
     pub first_roller_deg: f64,
+    /// Pitch diameter [mm], in the place of a raceway: a bearing of one's own may give this and the next
+    /// three, from which reading a scene completes the fields above; absent then.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pitch_mm: Option<f64>,
+    /// Bore [mm], in the place of the inner ring's thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bore_mm: Option<f64>,
+    /// Outside diameter [mm], in the place of the outer ring's thickness.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub outside_mm: Option<f64>,
+    /// Width of the rings [mm], in the place of `thickness_mm`: rollers are usually 0.6 of it long.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub width_mm: Option<f64>,
+    /// What nobody gave of a bearing of one's own and was assumed; the program writes it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub assumed: Vec<Assumed>,
+}
+
+/// A number of a bearing of one's own that nobody gave.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Assumed {
+    /// The clearance: the middle of the normal group (ISO 5753-1).
+    Clearance,
+    /// The pitch diameter: half-way between bore and outside diameter.
+    Pitch,
+    /// The thickness of the outer ring: 0.4 of a roller.
+    OuterRing,
+    /// The thickness of the inner ring: 0.4 of a roller.
+    InnerRing,
+    /// The number of rollers: with a fifth of the pitch circle free between them.
+    Rollers,
+    /// The length of the rollers: 0.6 of the width, or where that is not known their diameter.
+    Length,
 }
 
 /// Rigid cage: a ring cut into as many pieces as there are pockets.
@@ -547,7 +581,7 @@ pub struct SensorScene {
 #[serde(default, deny_unknown_fields)]
 pub struct GuardsScene {
     /// Imbalance of energy over the peak strain energy above which the run carries a warning [%]; of a
-    /// reduced run, over the most that rings and contacts have stored.
+    /// reduced run, over the larger of the most that rings and contacts have stored and of its heat.
     pub energy_warning_percent: f64,
     /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat,
     /// too.
@@ -620,6 +654,11 @@ impl Default for BearingScene {
             roller_diameter_mm: 18.0,
             thickness_mm: 30.0,
             first_roller_deg: 94.0,
+            pitch_mm: None,
+            bore_mm: None,
+            outside_mm: None,
+            width_mm: None,
+            assumed: Vec::new(),
         }
     }
 }

@@ -17,6 +17,7 @@ mod named;
 mod origin;
 pub(crate) mod outline;
 mod overrides;
+mod own;
 pub(crate) mod problem;
 mod reference;
 mod ring_meshes;
@@ -80,11 +81,10 @@ impl Scene {
     ///
     /// As [`Scene::read_with`].
     pub fn with_overrides<S: AsRef<str>>(&self, overrides: &[S]) -> Result<Self, SceneError> {
-        let (mut scene, set) = overrides::apply(self.clone(), overrides)?;
-        let origin = Origin::in_memory(set);
-        table::read(&mut scene, Path::new(""), &origin)?;
-        check(&scene, &origin)?;
-        Ok(scene)
+        let (scene, set) = overrides::apply(self.clone(), overrides)?;
+        let is_papers = own::is_papers(&self.bearing) && !names_bearing(overrides);
+        let understood = complete(scene, set, is_papers.then(|| named::written_by(overrides)));
+        understood.check("", "", Path::new(""))
     }
 
     /// Checks a scene that was built in memory.
@@ -117,7 +117,7 @@ pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<R
     let others: Vec<&str> = all.iter().copied().filter(|text| !is_bearing(text)).collect();
     let Some(text) = load(path).ok().filter(|_| others.len() < all.len()) else { return Vec::new() };
     let (text, file) = (without_mark(&text), path.display().to_string());
-    let complete = |overrides: &[&str]| Some(understand(text, &file, overrides).ok()?.0.to_ron());
+    let complete = |overrides: &[&str]| Some(understand(text, &file, overrides).ok()?.scene.to_ron());
     let (Some(before), Some(after)) = (complete(&others), complete(&all)) else { return Vec::new() };
     let [in_file, there] = [&before, &after].map(|text| Outline::of(text));
     let value = |text: &str, outline: &Outline, field: &str| {
@@ -146,7 +146,7 @@ pub fn refused_at<S: AsRef<str>>(
     let file = path.map_or_else(String::new, |path| path.display().to_string());
     let text = without_mark(&text);
     let set = match understand(text, &file, overrides) {
-        Ok((_, set)) if path.is_some() => set,
+        Ok(understood) if path.is_some() => understood.set,
         _ => overrides::apply(Scene::singh2014(), overrides).map_or_else(|_| Vec::new(), |(_, set)| set),
     };
     let mut problem = Problem::new(message, Origin::in_file(&file, text, set).place(field));
@@ -162,11 +162,50 @@ fn compose<S: AsRef<str>>(
     overrides: &[S],
 ) -> Result<Scene, SceneError> {
     let text = without_mark(text);
-    let (mut scene, set) = understand(text, file, overrides)?;
-    let origin = Origin::in_file(file, text, set);
-    table::read(&mut scene, folder, &origin)?;
-    check(&scene, &origin)?;
-    Ok(scene)
+    understand(text, file, overrides)?.check(file, text, folder)
+}
+
+/// A scene as it was read, before its meaning is checked.
+struct Understood {
+    scene: Scene,
+    set: Vec<origin::Override>,
+    /// Why the bearing that it gives by its own fields is none.
+    refusal: Option<Box<own::Refusal>>,
+}
+
+impl Understood {
+    /// The scene with its tables in `folder`, if it can be. `text` is that of `file`.
+    fn check(self, file: &str, text: &str, folder: &Path) -> Result<Scene, SceneError> {
+        let Self { mut scene, set, refusal } = self;
+        let origin = Origin::in_file(file, text, set);
+        table::read(&mut scene, folder, &origin)?;
+        if let Some(refusal) = refusal.as_ref().filter(|refusal| refusal.is_of_another()) {
+            return Err(refusal.problem(&origin).into());
+        }
+        match (check(&scene, &origin), refusal) {
+            (checked, None) => checked.map(|()| scene),
+            (Ok(()), Some(refusal)) => Err(refusal.problem(&origin).into()),
+            (Err(error), Some(refusal)) => Err(error.about_bearing(&refusal.hint())),
+        }
+    }
+}
+
+/// The scene with a bearing of its own completed. `given` has the paths of the fields that somebody wrote
+/// into the paper's scene; `None` where its bearing is another one already.
+fn complete(mut scene: Scene, set: Vec<origin::Override>, given: Option<Vec<String>>) -> Understood {
+    let own = given.map(|given| own::complete(&mut scene, &given));
+    let refusal = match own {
+        Some(own::Own::Refused(refusal)) => Some(refusal),
+        _ => None,
+    };
+    Understood { scene, set, refusal }
+}
+
+/// Whether one of `overrides` is the name of a bearing.
+fn names_bearing<S: AsRef<str>>(overrides: &[S]) -> bool {
+    overrides.iter().filter_map(|text| text.as_ref().split_once('=')).any(|(path, value)| {
+        path.trim() == "bearing" && (!value.contains('(') || named::designation(value).is_some())
+    })
 }
 
 /// Some editors put a byte order mark in front; RON knows none.
@@ -175,23 +214,21 @@ pub(crate) fn without_mark(text: &str) -> &str {
 }
 
 /// Text → scene, overrides.
-fn understand<S: AsRef<str>>(
-    text: &str,
-    file: &str,
-    overrides: &[S],
-) -> Result<(Scene, Vec<origin::Override>), SceneError> {
+fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Understood, SceneError> {
     let outline = Outline::of(text);
     let in_file = named::take(text, &outline);
     let mut scene = syntax::parse(in_file.as_ref().map_or(text, |(blanked, _)| blanked), text, file)?;
-    if let Some((_, name)) = in_file {
-        let mut given = named::written(text);
-        given.extend(named::written_by(overrides));
-        named::put(&mut scene, &name, &given).map_err(|why| {
+    let mut given = named::written(text);
+    given.extend(named::written_by(overrides));
+    if let Some((_, name)) = &in_file {
+        named::put(&mut scene, name, &given).map_err(|why| {
             let place = outline.get("bearing").map(|entry| place_in_file(file, text, entry.value.clone()));
             unknown_bearing(why, place.unwrap_or(Place::Unwritten { file: file.to_owned() }))
         })?;
     }
-    overrides::apply(scene, overrides)
+    let has_name = in_file.is_some() || names_bearing(overrides);
+    let (scene, set) = overrides::apply(scene, overrides)?;
+    Ok(complete(scene, set, (!has_name).then_some(given)))
 }
 
 /// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. What further
@@ -215,7 +252,7 @@ pub(crate) fn unreadable_values<S: AsRef<str>>(
     let scene = match path {
         Some(path) => load(path).and_then(|text| {
             let nothing: &[&str] = &[];
-            Ok(understand(without_mark(&text), &path.display().to_string(), nothing)?.0)
+            Ok(understand(without_mark(&text), &path.display().to_string(), nothing)?.scene)
         }),
         None => Ok(Scene::singh2014()),
     };

@@ -20,7 +20,7 @@ pub mod reduced;
 mod simulate;
 
 pub use error::Error;
-pub use reduced::steps_in_a_sample;
+pub use reduced::make_modes;
 pub use simulate::{Watch, extend, follow, resume, saved_until, simulate};
 
 #[cfg(doctest)]

@@ -182,14 +182,14 @@ fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Op
 /// model.step_us=…` on `reduced_30ms.ron`).
 const STEPS_A_FACET: f64 = 20.0;
 
-/// Steps in a sample of a run of the scene, which has a reduced model. `runs` is where the folder of the run
-/// would lie: a reduction that earlier runs made is there, and one that must be made is kept there.
+/// Makes the modes of the scene, which has a reduced model, and keeps them where `runs` says that the folder
+/// of the run will lie. Whether they had to be made: an earlier run may have left them there.
 ///
 /// # Errors
 /// When the scene cannot be meshed, preloaded or reduced.
-pub fn steps_in_a_sample(scene: &ResolvedScene, runs: Option<&Path>) -> Result<usize, Error> {
-    let (mesh, _) = cache::reduced_mesh(&scene.written, runs)?;
-    Ok(in_steps(scene, &wanted(scene), modal_bearing(scene, mesh.reduction)?)?.1)
+pub fn make_modes(scene: &ResolvedScene, runs: Option<&Path>) -> Result<bool, Error> {
+    let (_, from_cache) = cache::reduced_mesh(&scene.written, runs)?;
+    Ok(!from_cache)
 }
 
 /// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there

@@ -14,7 +14,7 @@ use crate::{
     kernel::{
         advance::StepParameters,
         mass_sums::{LaneSums, MassSums, NUMBERS},
-        structural_damping::BranchSteps,
+        structural_damping::{Evaluation, HeldWork},
         sweep::StepEnergies,
         tile::{Tile, Turn},
     },
@@ -22,11 +22,10 @@ use crate::{
     rigid::RigidState,
     route::{Division, Route, pack, tile_at, unpack},
     state::State,
-    structural_damping::MAX_BRANCHES,
 };
 
 /// Numbers of what a tile counts in a step.
-const ENERGIES: usize = 2 + MAX_BRANCHES;
+const ENERGIES: usize = 4;
 
 /// Numbers that tell where a rigid body is, how it moves and what drove it.
 const RIGID: usize = 7;
@@ -161,8 +160,9 @@ impl Dynamics {
         let Some(mut division) = self.division.take() else { return };
         let rank = division.ranks.rank();
         let State { x, y, vx, vy, springs, .. } = &mut self.state;
-        let stretch = springs.stretch.iter_mut().flatten();
-        for field in [x, y, vx, vy].into_iter().chain(stretch) {
+        let damped = !springs.paths.is_empty();
+        let springs = springs.fields().filter(|_| damped);
+        for field in [x, y, vx, vy].into_iter().chain(springs) {
             let tiles = || self.tiles.iter().zip(&division.rank_of);
             for (tile, _) in tiles().filter(|(_, of)| **of == rank) {
                 division.shared.tell(field[tile.slots.clone()].iter().copied());
@@ -235,12 +235,12 @@ impl Dynamics {
     }
 
     /// Sweeps the tiles of this rank, those first that others wait for, and exchanges nodes meanwhile.
-    pub(crate) fn sweep_and_exchange(&mut self, parameters: StepParameters, branches: &BranchSteps) {
+    pub(crate) fn sweep_and_exchange(&mut self, parameters: StepParameters, evaluation: Option<&Evaluation>) {
         let Some(mut division) = self.division.take() else {
-            return self.sweep_turn(Turn::Late, parameters, branches);
+            return self.sweep_turn(Turn::Late, parameters, evaluation);
         };
-        self.sweep_turn(Turn::Early, parameters, branches);
-        self.exchange(&mut division, |dynamics| dynamics.sweep_turn(Turn::Late, parameters, branches));
+        self.sweep_turn(Turn::Early, parameters, evaluation);
+        self.exchange(&mut division, |dynamics| dynamics.sweep_turn(Turn::Late, parameters, evaluation));
         self.division = Some(division);
     }
 
@@ -269,7 +269,7 @@ impl Dynamics {
 
     /// Moves rigid bodies, each on one rank, and lets every rank know where they are and what tiles have
     /// counted.
-    pub(crate) fn move_rigid_and_share(&mut self, parameters: &StepParameters, measure: bool) {
+    pub(crate) fn move_rigid_and_share(&mut self, parameters: &StepParameters, evaluates: bool) {
         let (dt, gravity) = (self.time_step, self.gravity);
         let Some(Division { ranks, rank_of, rank_of_rigid, shared, .. }) = &mut self.division else {
             for ((body, at), driven) in self.rigid_bodies.iter().zip(&mut self.rigid).zip(&mut self.driven) {
@@ -280,13 +280,13 @@ impl Dynamics {
         let rank = ranks.rank();
         let counts = |tile: &Tile| {
             let heat = tile.damping.is_some() || tile.elastic && parameters.beta > 0.0;
-            tile.turns || heat && parameters.count_heat || measure && tile.structural.is_some()
+            tile.turns || heat && parameters.count_heat || evaluates && tile.structural.is_some()
         };
         let tiles = self.tiles.iter().zip(&*rank_of).zip(&mut self.counted);
-        for ((_, _), StepEnergies { work, heat, springs }) in
+        for ((_, _), StepEnergies { work, heat, held }) in
             tiles.filter(|((tile, of), _)| **of == rank && counts(tile))
         {
-            shared.tell([*work, *heat].into_iter().chain(*springs));
+            shared.tell([*work, *heat, held.released, held.taken_up]);
         }
         for (b, body) in self.rigid_bodies.iter().enumerate().filter(|(b, _)| rank_of_rigid[*b] == rank) {
             let at = &mut self.rigid[b];
@@ -299,8 +299,8 @@ impl Dynamics {
         shared.gather(&**ranks, energies.chain(rank_of_rigid.iter().map(|&of| (of, RIGID))));
         for ((tile, &of), counted) in self.tiles.iter().zip(&*rank_of).zip(&mut self.counted) {
             *counted = match counts(tile).then(|| shared.hear(of, ENERGIES)) {
-                Some(&[work, heat, ref springs @ ..]) => {
-                    StepEnergies { work, heat, springs: std::array::from_fn(|b| springs[b]) }
+                Some(&[work, heat, released, taken_up]) => {
+                    StepEnergies { work, heat, held: HeldWork { released, taken_up } }
                 }
                 _ => StepEnergies::default(),
             };

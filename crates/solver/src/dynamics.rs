@@ -7,13 +7,13 @@ use crate::{
     force::Force,
     kernel::{
         advance::{StepParameters, gain},
-        fields::TileFields,
+        fields::{BranchFields, TileFields},
         frames::LaneFrames,
         layout::{Layout, lay_out},
         mass_sums::{LaneSums, MassSums, lane_sums},
         parallel::{TileRuns, sweep_all},
         stiffness_damping::Extrapolated,
-        structural_damping::BranchSteps,
+        structural_damping::Evaluation,
         sweep::{Scratch, StepEnergies},
         tile::{Tile, TileDamping, Turn},
     },
@@ -21,7 +21,7 @@ use crate::{
     rigid::{RigidBody, RigidMotion, RigidState},
     route::Division,
     state::{Accumulated, Moment, NodeForces, State},
-    structural_damping::{MAX_BRANCHES, StructuralDamping},
+    structural_damping::StructuralDamping,
 };
 use stribeck_simd::{field::Field, lanes::LANES, threads::share_out};
 
@@ -85,8 +85,6 @@ pub(crate) struct DampedBody {
 pub(crate) struct Springs {
     pub(crate) damping: StructuralDamping,
     pub(crate) bodies: Vec<DampedBody>,
-    /// Whether the next step is to measure what they hold.
-    pub(crate) measure: bool,
 }
 
 /// All elements in slot numbers, for energies and statics.
@@ -380,7 +378,7 @@ impl Dynamics {
 
     /// Whether elements see nodes elsewhere than where they are, by their velocities.
     pub(crate) fn sees_ahead(&self) -> bool {
-        self.beta > 0.0 || self.springs.is_some()
+        self.beta > 0.0
     }
 
     /// β of the stiffness damping [s].
@@ -426,20 +424,22 @@ impl Dynamics {
 
     /// Moves elastic and rigid bodies, and counts what that takes.
     fn move_bodies(&mut self, since_placed: f64) {
-        let branches = self.branch_steps();
+        let evaluation = self.evaluation();
         let count_heat = self.state.step.is_multiple_of(HEAT_EVERY);
         let (dt, gravity, beta) = (self.time_step, self.gravity, self.beta);
         let fetch = self.fetch;
         let back = !self.state.step.is_multiple_of(2);
         let parameters = StepParameters { dt, gravity, beta, since_placed, count_heat, fetch, back };
-        self.sweep_and_exchange(parameters, &branches);
-        self.move_rigid_and_share(&parameters, branches.measure);
+        self.sweep_and_exchange(parameters, evaluation.as_ref());
+        self.move_rigid_and_share(&parameters, evaluation.is_some());
         // In the order of the tiles, whatever thread or rank each was on.
-        let StepEnergies { work, heat, springs } =
+        let StepEnergies { work, heat, held } =
             self.counted.iter().fold(StepEnergies::default(), |sum, &e| sum + e);
         self.drive.add(work);
         self.driven.iter().for_each(|&driven| self.drive.add_to_step(driven));
-        self.count_structural_loss(branches.measure, springs);
+        if evaluation.is_some() {
+            self.state.springs.count(held);
+        }
         let before = self.heat.last;
         self.heat.add(if count_heat { heat } else { before });
         if count_heat && before > 0.0 {
@@ -449,22 +449,24 @@ impl Dynamics {
     }
 
     /// Sweeps the tiles whose turn it is.
-    pub(crate) fn sweep_turn(&mut self, turn: Turn, parameters: StepParameters, branches: &BranchSteps) {
-        let mut stretch: [[&mut [f64]; 2]; MAX_BRANCHES] = Default::default();
-        for (to, of) in stretch.iter_mut().zip(&mut self.state.springs.stretch) {
-            *to = of.each_mut().map(|component| &mut component[..]);
-        }
-        let fields = TileFields {
-            x: &mut self.state.x,
-            y: &mut self.state.y,
-            vx: &mut self.state.vx,
-            vy: &mut self.state.vy,
-            fx: &mut self.forces.fx,
-            fy: &mut self.forces.fy,
-            stretch,
+    pub(crate) fn sweep_turn(
+        &mut self,
+        turn: Turn,
+        parameters: StepParameters,
+        evaluation: Option<&Evaluation>,
+    ) {
+        let State { x, y, vx, vy, springs, .. } = &mut self.state;
+        let mut branches = BranchFields {
+            held: springs.held.each_mut().map(|field| &mut field[..]),
+            ..BranchFields::default()
         };
+        for (to, of) in branches.paths.iter_mut().zip(&mut springs.paths) {
+            *to = of.each_mut().map(|field| &mut field[..]);
+        }
+        let NodeForces { fx, fy } = &mut self.forces;
+        let fields = TileFields { x, y, vx, vy, fx, fy, branches };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
-        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted, branches, turn };
+        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted, evaluation, turn };
         sweep_all(runs, scratch, parameters);
     }
 

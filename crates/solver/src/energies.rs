@@ -43,8 +43,13 @@ impl Dynamics {
     /// Strain and hourglass energy of the present positions [J]. As [`Dynamics::step`], to be called from
     /// within the pool.
     pub fn elastic_energy(&self) -> ElasticEnergy {
+        self.elastic_energy_of(|_| true)
+    }
+
+    /// The same of some bodies, chosen by their numbers in the mesh [J].
+    pub(crate) fn elastic_energy_of(&self, chosen: impl Fn(usize) -> bool) -> ElasticEnergy {
         let Elements { bodies, .. } = self.elements();
-        let mut parts: Vec<Part> = bodies.iter().flat_map(Part::of).collect();
+        let mut parts: Vec<Part> = bodies.iter().filter(|b| chosen(b.body)).flat_map(Part::of).collect();
         let len = |part: &Part| part.quads.len() + part.triangles.len();
         self.share_out(&mut parts, &len, &|part| part.energy = self.energy_of(part));
         let mut all = ElasticEnergy::default();

@@ -7,7 +7,7 @@ use crate::{
     dynamics::Dynamics,
     error::{Error, check_count},
     rigid::RigidState,
-    state::{Accumulated, State},
+    state::{Accumulated, SpringState, State},
 };
 
 /// Everything about a model in motion that changes in time. The model, its time step and its damping are no
@@ -59,10 +59,12 @@ impl Dynamics {
             check_count("slots of the snapshot", field.len(), slots, "those of the model")?;
         }
         let ((branches, spins), springs) = (s.springs.counts(), self.springs.as_ref());
-        let own = self.state.springs.stretch.len();
+        let own = self.state.springs.paths.len();
         check_count("branches of the snapshot", branches, own, "those of the structural damping")?;
-        for field in s.springs.stretch.iter().flatten() {
-            check_count("slots of the snapshot", field.len(), slots, "those of the model")?;
+        let held = if own == 0 { 0 } else { slots };
+        let SpringState { paths, held: forces, .. } = &s.springs;
+        for field in paths.iter().flatten().chain(forces) {
+            check_count("slots of the snapshot", field.len(), held, "those of the model")?;
         }
         let bodies = if spins == 0 { 0 } else { springs.map_or(0, |springs| springs.bodies.len()) };
         check_count("spins of the snapshot", spins, bodies, "one for each body with structural damping")?;

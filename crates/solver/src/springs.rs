@@ -1,26 +1,21 @@
-//! The springs and dashpots of structural damping in motion: where they are, how fast their bodies turn, what
-//! they hold and lose (THEORY §2.8).
+//! Structural damping in motion: when its branches are evaluated, how fast their bodies turn, what their
+//! springs hold and their dashpots lose (THEORY §2.8).
 
 use crate::{
     dynamics::{DampedBody, Dynamics, Springs},
     error::{Error, check},
     kernel::{
         mass_sums::{LaneSums, MassSums, lane_sums},
-        structural_damping::{BranchSteps, SpringEnergies},
+        structural_damping::{Evaluation, HeldWork},
         tile::{Tile, TileStructural, Turn},
     },
-    state::SpringState,
+    state::{SpringState, State},
     structural_damping::StructuralDamping,
 };
 use stribeck_simd::{field::Field, lanes::LANES};
 
-/// Steps from one measurement of spins to the next, bodies turn at a steady pace; and most steps from one
-/// measurement of losses to the next.
+/// Steps from one measurement of spins to the next: bodies turn at a steady pace.
 const MEASURE_EVERY: u64 = 32;
-
-/// Measurements of losses in the shortest relaxation time τ. Dashpots lose most to vibrations of 1/(2πτ),
-/// whose loss swings twice a cycle: once in πτ.
-const MEASUREMENTS: f64 = 6.0;
 
 impl Dynamics {
     /// Sets the structural damping of elastic bodies, or none; replaces an earlier one. Its springs are
@@ -55,16 +50,25 @@ impl Dynamics {
                 layout.bodies.iter().any(damped).then(new)
             })
             .collect();
-        self.tiles.iter_mut().zip(marks).for_each(|(tile, mark)| tile.structural = mark);
+        let before = self.structural_damping().map_or(1.0, |damping| damping.stiffening(f64::INFINITY));
+        let after = damping.map_or(1.0, |damping| damping.stiffening(f64::INFINITY));
+        for (tile, mark) in self.tiles.iter_mut().zip(marks) {
+            let [from, to] = [(before, &tile.structural), (after, &mark)]
+                .map(|(factor, damped)| if damped.is_some() { factor } else { 1.0 });
+            if from != to {
+                tile.stiffen(to / from);
+            }
+            tile.structural = mark;
+        }
         let branches = damping.map_or(0, |d| d.branches().len());
-        let zeros = || Field::zeros(self.layout().len());
-        let stretch = (0..branches).map(|_| [zeros(), zeros()]).collect();
+        let slots = if damping.is_some() { self.layout().len() } else { 0 };
+        let zeros = || [Field::zeros(slots), Field::zeros(slots)];
+        let paths = (0..branches).map(|_| zeros()).collect();
         self.springs = damping.map(|damping| Springs {
             damping: damping.clone(),
             bodies: chosen().map(|&body| DampedBody { places: self.layout().places(body) }).collect(),
-            measure: false,
         });
-        self.state.springs = SpringState { stretch, ..SpringState::default() };
+        self.state.springs = SpringState { paths, held: zeros(), ..SpringState::default() };
         self.make_room_to_see_ahead();
         Ok(())
     }
@@ -85,16 +89,36 @@ impl Dynamics {
         factor
     }
 
-    /// Has the next step measure what springs hold.
+    /// Adds up what the springs hold and the dashpots have lost until the present positions. As
+    /// [`Dynamics::step`], to be called from within the pool.
+    ///
+    /// All that branches take is the work of their forces: elements are stiffer by Σ g, which is the change
+    /// of an energy, and the rest is the work of the forces that are held.
     pub fn measure_springs(&mut self) {
-        self.springs.iter_mut().for_each(|springs| springs.measure = true);
+        let Some(share) = self.structural_damping().map(|d| d.stiffening(f64::INFINITY) - 1.0) else {
+            return;
+        };
+        let energy = self.damped_energy();
+        let (held, State { x, y, .. }) = (&self.state.springs.held, &self.state);
+        let along = |n: usize| held[0][n] * x[n] + held[1][n] * y[n];
+        let own = self.tiles.iter().filter(|tile| tile.structural.is_some());
+        let now: f64 = own.map(|tile| (0..tile.own).map(|n| along(tile.slots.start + n)).sum::<f64>()).sum();
+        let springs = &mut self.state.springs;
+        let at_start = *springs.at_start.get_or_insert(energy);
+        springs.loss = share * (energy - at_start) - springs.work - (now - springs.taken_up);
     }
 
-    /// Heat of the dashpots since the start and energy of the springs, at the positions before the last step,
-    /// which must have measured it [J].
+    /// Elastic energy of the damped bodies [J].
+    fn damped_energy(&self) -> f64 {
+        let damped = self.structural_damping().map_or(&[][..], StructuralDamping::bodies);
+        let energy = self.elastic_energy_of(|body| damped.contains(&body));
+        energy.strain + energy.hourglass
+    }
+
+    /// Heat of the dashpots since the start and energy of the springs [J], at the positions of the last
+    /// [`Dynamics::measure_springs`].
     pub fn structural_loss(&self) -> f64 {
-        let SpringState { lost, held, .. } = &self.state.springs;
-        lost.at_last_positions() + held
+        self.state.springs.loss
     }
 
     /// Measures now and then, before a step, how fast damped bodies turn.
@@ -136,37 +160,25 @@ impl Dynamics {
         }
     }
 
-    /// Steps from one measurement of losses to the next.
-    fn losses_every(&self) -> u64 {
-        let branches = self.structural_damping().map_or(&[][..], |damping| damping.branches());
-        let shortest = branches.iter().map(|b| b.relaxation_time).fold(f64::INFINITY, f64::min);
-        ((shortest / (MEASUREMENTS * self.time_step())) as u64).clamp(1, MEASURE_EVERY)
-    }
-
-    /// What the branches do in the step at hand.
-    pub(crate) fn branch_steps(&mut self) -> BranchSteps {
-        let (due, dt) = (self.state.step.is_multiple_of(self.losses_every()), self.time_step());
-        let Some(springs) = &mut self.springs else { return BranchSteps::default() };
-        let measure = std::mem::take(&mut springs.measure) || due;
-        let moving = std::mem::replace(&mut self.state.springs.moving, true);
-        BranchSteps::new(springs.damping.branches(), if moving { dt } else { 0.0 }, measure)
-    }
-
-    /// Adds what dashpots lose in a step, 2E/τ, which a step that measures has found anew.
-    pub(crate) fn count_structural_loss(&mut self, measured: bool, energies: SpringEnergies) {
-        let (every, dt) = (self.losses_every(), self.time_step());
-        let due = self.state.step.is_multiple_of(every);
-        let Some(springs) = &self.springs else { return };
-        let SpringState { lost, held, .. } = &mut self.state.springs;
-        if measured {
-            *held = energies.iter().sum();
+    /// What the branches do in the step at hand, if they are evaluated in it.
+    pub(crate) fn evaluation(&mut self) -> Option<Evaluation> {
+        let (step, dt) = (self.state.step, self.time_step());
+        let damping = &self.springs.as_ref().filter(|_| step >= self.state.springs.next)?.damping;
+        let until = damping.steps_until_next(dt, step);
+        let since = self.state.springs.evaluated.map(|last| step - last);
+        let evaluation = Evaluation::new(damping.branches(), dt, since, until);
+        if self.state.springs.at_start.is_none() {
+            self.state.springs.at_start = Some(self.damped_energy());
         }
-        if due {
-            let branches = energies.iter().zip(springs.damping.branches());
-            let power: f64 = branches.map(|(energy, b)| 2.0 * energy / b.relaxation_time).sum();
-            lost.count(dt * power, every);
-        } else {
-            lost.repeat();
-        }
+        (self.state.springs.evaluated, self.state.springs.next) = (Some(step), step + until);
+        Some(evaluation)
+    }
+}
+
+impl SpringState {
+    /// Adds what an evaluation has found.
+    pub(crate) fn count(&mut self, held: HeldWork) {
+        self.work += held.released - self.taken_up;
+        self.taken_up = held.taken_up;
     }
 }

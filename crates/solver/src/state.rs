@@ -28,23 +28,35 @@ pub struct State {
 /// What changes in time of the springs and dashpots of structural damping.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SpringState {
-    /// How far the springs of each branch are stretched (x, y) [m], one value a slot, a step before the
-    /// positions.
-    pub(crate) stretch: Vec<[Field; 2]>,
+    /// Positions through the low-pass of each branch (x, y) [m], one value a slot, at the last evaluation.
+    pub(crate) paths: Vec<[Field; 2]>,
+    /// Forces that nodes are pushed with until the next evaluation (x, y) [N].
+    pub(crate) held: [Field; 2],
     /// Angular velocity of each damped body when it was last measured [rad/s]; empty before.
     pub(crate) spins: Vec<f64>,
-    /// Heat of the dashpots [J].
-    pub(crate) lost: Accumulated,
-    /// Energy of the springs when it was last measured [J].
-    pub(crate) held: f64,
-    /// Whether a step has been taken: springs are relaxed at the positions of the first.
-    pub(crate) moving: bool,
+    /// Step of the last evaluation; none before the first.
+    pub(crate) evaluated: Option<u64>,
+    /// Step of the next one.
+    pub(crate) next: u64,
+    /// Work of the held forces until half a step before the last evaluation, and the sum of the present ones
+    /// times positions there [J].
+    pub(crate) work: f64,
+    pub(crate) taken_up: f64,
+    /// Elastic energy of the damped bodies at the start [J].
+    pub(crate) at_start: Option<f64>,
+    /// Heat and energy of the springs when they were last asked for [J].
+    pub(crate) loss: f64,
 }
 
 impl SpringState {
-    /// Stretches, and the bodies whose spins are known.
+    /// Paths, and the bodies whose spins are known.
     pub(crate) fn counts(&self) -> (usize, usize) {
-        (self.stretch.len(), self.spins.len())
+        (self.paths.len(), self.spins.len())
+    }
+
+    /// All fields of nodes.
+    pub(crate) fn fields(&mut self) -> impl Iterator<Item = &mut Field> {
+        self.paths.iter_mut().flatten().chain(&mut self.held)
     }
 }
 
@@ -67,18 +79,6 @@ impl Accumulated {
     pub(crate) fn add_to_step(&mut self, more: f64) {
         self.total += more;
         self.last += more;
-    }
-
-    /// Adds a step that is not counted: it is taken to be like the last one that was.
-    pub(crate) fn repeat(&mut self) {
-        self.add(self.last);
-    }
-
-    /// Adds a step that is counted, as every `every`-th is: in between it ran straight from the last one to
-    /// this.
-    pub(crate) fn count(&mut self, step: f64, every: u64) {
-        self.total += 0.5 * (every - 1) as f64 * (step - self.last);
-        self.add(step);
     }
 
     /// Up to the time of the positions before the last step [J].

@@ -16,7 +16,7 @@ use stribeck_scene::run_dir::{RunDir, check_folder, write_atomic};
 use stribeck_scene::scene::Scene;
 
 use crate::causes;
-use crate::out::say;
+use crate::out::{say, tell};
 use crate::place::{Place, shown};
 
 /// Flags of `analyse`.
@@ -26,28 +26,50 @@ pub struct Options {
     /// folder of a run; several are set side by side, in their order
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: Reading,
+    /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
+    /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
+    #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
+    alarms: Vec<Limit>,
+    /// The first N files are of the sound machine: limits of all levels follow from their scatter, but for
+    /// those given
+    #[arg(long, value_name = "N")]
+    reference: Option<usize>,
+    /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
+    /// -analysis]
+    #[arg(long)]
+    out: Option<PathBuf>,
+    /// Writes the findings to standard output as JSON: those of one record, or a list of several
+    #[arg(long)]
+    json: bool,
+}
+
+/// How records are read, and what is known of their machine, as flags of every command that takes some.
+#[derive(Debug, Clone, clap::Args)]
+pub(crate) struct Reading {
     /// Samples a second [Hz], when the file does not say it
     #[arg(long, allow_negative_numbers = true)]
-    rate_hz: Option<f64>,
+    pub(crate) rate_hz: Option<f64>,
     /// Take the rate of `--rate-hz` where the file says another one, with a note
     #[arg(long, requires = "rate_hz")]
     force_rate: bool,
     /// Channel, or a part of its name that no other has [default: the only one, or the first of the longest
     /// that moves]
     #[arg(long)]
-    channel: Option<String>,
+    pub(crate) channel: Option<String>,
     /// Bearing: its name, or its numbers, for example "elements=9, diameter_mm=7.94, pitch_mm=39.04,
     /// angle_deg=0"
     #[arg(long)]
-    bearing: Option<String>,
+    pub(crate) bearing: Option<String>,
     /// Speed of the shaft [1/min], or a range such as 1400..1600: then the line of the shaft that stands out
     /// there is followed over the record, and a record whose speed varies is analysed over the angle
     #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse, allow_hyphen_values = true)]
-    speed_rpm: Option<Speed>,
+    pub(crate) speed_rpm: Option<Speed>,
     /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise, or of the angle
     /// of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
     #[arg(long)]
-    tacho: Option<String>,
+    pub(crate) tacho: Option<String>,
     /// Pulses of the tachometer a turn, such as the teeth of its wheel
     #[arg(long, value_name = "N", default_value_t = 1, requires = "tacho", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pulses_per_turn: u32,
@@ -64,23 +86,11 @@ pub struct Options {
     /// Unit of the samples after that
     #[arg(long)]
     unit: Option<String>,
-    /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
-    /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
-    #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
-    alarms: Vec<Limit>,
-    /// The first N files are of the sound machine: limits of all levels follow from their scatter, but for
-    /// those given
-    #[arg(long, value_name = "N")]
-    reference: Option<usize>,
-    /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
-    /// -analysis]
-    #[arg(long)]
-    out: Option<PathBuf>,
 }
 
 /// What a user knows of the speed [1/min].
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Speed {
+pub(crate) enum Speed {
     Of(f64),
     Between(f64, f64),
 }
@@ -139,6 +149,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
         let analysis = analyse(file, &out, options, place)?;
+        if options.json {
+            say!("{}", serde_json::to_string_pretty(&analysis.findings)?);
+            return Ok(ExitCode::SUCCESS);
+        }
         print(&analysis);
         for limit in &options.alarms {
             match limit.judge(&analysis.findings) {
@@ -165,7 +179,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
         };
         let file = file.display().to_string();
-        say!("{file}: {}", findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict));
+        let verdict = findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict);
+        if !options.json {
+            say!("{file}: {verdict}");
+        }
         entries.push(TrendEntry { file, folder, findings, error, alarms: Vec::new() });
     }
     let limits = limits(options, &entries);
@@ -173,18 +190,22 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let mut records = entries.iter().filter_map(|e| e.findings.as_ref()).peekable();
         let why = records.peek().map(|first| limit.quantity.missing(first));
         if let (Some(why), false) = (why, records.any(|f| limit.judge(f).is_some())) {
-            eprintln!("note: no record has a level for the limit of {}: {why}", limit.quantity.name());
+            tell!("note: no record has a level for the limit of {}: {why}", limit.quantity.name());
         }
     }
     for entry in &mut entries {
         let Some(findings) = &entry.findings else { continue };
         entry.alarms = limits.iter().filter_map(|limit| limit.judge(findings)).collect();
-        for judged in entry.alarms.iter().filter(|judged| judged.state != State::Good) {
+        for judged in entry.alarms.iter().filter(|judged| judged.state != State::Good && !options.json) {
             say!("{}: {}", entry.file, passed(judged));
         }
     }
     write_trend(&out, &entries, &limits)?;
-    say!("side by side: {}", shown(&out.join("trend.html")));
+    if options.json {
+        say!("{}", serde_json::to_string_pretty(&entries)?);
+    } else {
+        say!("side by side: {}", shown(&out.join("trend.html")));
+    }
     let failed = entries.iter().filter(|entry| entry.findings.is_none()).count();
     ensure!(failed == 0, "{failed} of {} records could not be analysed", entries.len());
     Ok(ExitCode::SUCCESS)
@@ -235,6 +256,14 @@ const SAME_RATE: f64 = 1e-3;
 
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
+    let analysis = examine(asked, &options.reading, place)?;
+    let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
+    write_measured(out, &name, &analysis)?;
+    Ok(analysis)
+}
+
+/// Reads and analyses one record.
+pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
     let mut file = place.locate(asked);
     let mut scene = None;
     if !file.exists() {
@@ -315,8 +344,6 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
         );
     }
     analysis.findings.notes.splice(0..0, notes);
-    let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    write_measured(out, &name, &analysis)?;
     Ok(analysis)
 }
 
@@ -358,7 +385,7 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
         );
     };
     if found.is_none() && signals.iter().filter(|c| c.len == longest).count() > 1 {
-        eprintln!("note: channel `{}`; there are {}", channel.name, recording.names());
+        tell!("note: channel `{}`; there are {}", channel.name, recording.names());
     }
     Ok(channel)
 }
@@ -382,7 +409,7 @@ const STEADY: f64 = 0.01;
 
 /// What is known of the machine, and the times of whole turns, in samples, where the speed varies.
 fn machine(
-    options: &Options,
+    options: &Reading,
     recording: &Recording,
     channel: &Channel,
     rate_hz: f64,

@@ -3,6 +3,7 @@
 use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
+use serde_json::{Value, json};
 use stribeck_scene::catalogue::{self, CatalogueBearing};
 
 use crate::out::say;
@@ -10,41 +11,87 @@ use crate::out::say;
 /// Flags of `bearings`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// A bearing by name, or by name and numbers as in "NU 205, elements=13" [default: all that have a name]
+    /// A bearing by name, or by name and numbers as in "NU 205, elements=13"; the beginning of names, as NU
+    /// or 62, lists those [default: all that have a name]
     name: Option<String>,
+    /// Writes them as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 /// What to do where a name is not known.
 const NUMBERS: &str = "give its numbers, `\"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
-    match &options.name {
-        Some(name) => one(&CatalogueBearing::parse_or_advise(name, NUMBERS).map_err(|why| anyhow!(why))?),
-        None => {
-            say!(
-                "{:<9} {:>5} {:>9} {:>9} {:>6} {:>14} {:>7} {:>7} {:>7} {:>7}",
-                "name",
-                "count",
-                "element",
-                "pitch",
-                "angle",
-                "bore out width",
-                "BPFO",
-                "BPFI",
-                "BSF",
-                "FTF"
-            );
-            for bearing in catalogue::all() {
-                say!("{}", row(&bearing));
+    let all = match &options.name {
+        None => catalogue::known().map_err(|why| anyhow!(why))?,
+        Some(name) => match CatalogueBearing::parse_or_advise(name, NUMBERS) {
+            Ok(bearing) if options.json => return print(&as_json(&bearing)),
+            Ok(bearing) => {
+                one(&bearing);
+                return Ok(ExitCode::SUCCESS);
             }
-            say!(
-                "Lengths in mm; frequencies in multiples of the shaft\u{2019}s, outer ring at rest. `?`: \
-                 makers fit different numbers; \
-                 a scene assumes one and says so. `stribeck bearings NAME` says where the numbers are from."
-            );
-        }
+            Err(why) => match catalogue::beginning_with(name).map_err(|why| anyhow!(why))? {
+                none if none.is_empty() => return Err(anyhow!(why)),
+                some => some,
+            },
+        },
+    };
+    if options.json {
+        return print(&all.iter().map(as_json).collect());
     }
+    list(&all);
     Ok(ExitCode::SUCCESS)
+}
+
+fn print(json: &Value) -> Result<ExitCode> {
+    say!("{}", serde_json::to_string_pretty(json)?);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Frequencies of defects in multiples of the shaft's, `null` where the number of elements is not known.
+fn as_json(bearing: &CatalogueBearing) -> Value {
+    let [diameter_mm, pitch_mm] = bearing.shown_mm();
+    let orders = bearing.orders().ok();
+    json!({
+        "name": bearing.name,
+        "elements": bearing.elements,
+        "diameter_mm": diameter_mm,
+        "pitch_mm": pitch_mm,
+        "angle_deg": bearing.angle_deg,
+        "bore_mm": bearing.boundary.map(|b| b.bore_mm),
+        "outside_mm": bearing.boundary.map(|b| b.outside_mm),
+        "width_mm": bearing.boundary.map(|b| b.width_mm),
+        "bpfo": orders.as_ref().map(|o| o.bpfo),
+        "bpfi": orders.as_ref().map(|o| o.bpfi),
+        "bsf": orders.as_ref().map(|o| o.bsf),
+        "ftf": orders.as_ref().map(|o| o.ftf),
+        "source": bearing.source,
+    })
+}
+
+fn list(bearings: &[CatalogueBearing]) {
+    say!(
+        "{:<9} {:>5} {:>9} {:>9} {:>6} {:>15} {:>7} {:>7} {:>7} {:>7}",
+        "name",
+        "count",
+        "element",
+        "pitch",
+        "angle",
+        "bore out width",
+        "BPFO",
+        "BPFI",
+        "BSF",
+        "FTF"
+    );
+    for bearing in bearings {
+        say!("{}", row(bearing));
+    }
+    say!(
+        "Lengths in mm; frequencies in multiples of the shaft\u{2019}s, outer ring at rest. `?`: makers fit \
+         different numbers; a scene assumes one and says so. `stribeck bearings NAME` says where the numbers are \
+         from; `bearings.ron` in the working folder adds your own."
+    );
 }
 
 fn row(bearing: &CatalogueBearing) -> String {
@@ -58,7 +105,7 @@ fn row(bearing: &CatalogueBearing) -> String {
     );
     let [diameter, pitch] = bearing.shown_mm();
     format!(
-        "{:<9} {count:>5} {diameter:>9} {pitch:>9} {:>5}° {boundary:>14}{orders}",
+        "{:<9} {count:>5} {diameter:>9} {pitch:>9} {:>5}° {boundary:>15}{orders}",
         bearing.name, bearing.angle_deg
     )
 }

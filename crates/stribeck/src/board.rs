@@ -9,6 +9,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use stribeck_run::host::Progress;
 use stribeck_scene::run_info::clock;
 
+use crate::out::{caution, is_quiet, tell};
+
 /// A bar is redrawn this often, a log gets a line.
 const PAUSES: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(10)];
 /// Parts of the bar.
@@ -39,7 +41,11 @@ impl Board {
     /// A board for so many, each called a `noun`.
     pub(crate) fn new(noun: &'static str, all: usize) -> Self {
         let on_terminal = std::io::stderr().is_terminal();
-        let target = if on_terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let target = if on_terminal && !is_quiet() {
+            ProgressDrawTarget::stderr()
+        } else {
+            ProgressDrawTarget::hidden()
+        };
         let bar = ProgressBar::with_draw_target(Some(PARTS), target);
         if let Ok(style) = ProgressStyle::with_template("{bar:24} {wide_msg}") {
             bar.set_style(style);
@@ -70,7 +76,7 @@ impl Board {
             self.bar.set_message(line);
             self.bar.tick();
         } else {
-            eprintln!("{line}");
+            tell!("{line}");
         }
     }
 
@@ -86,7 +92,12 @@ impl Board {
 
     /// Says something above the bar.
     pub(crate) fn say(&self, line: &str) {
-        self.bar.suspend(|| eprintln!("{line}"));
+        self.bar.suspend(|| tell!("{line}"));
+    }
+
+    /// Warns above the bar.
+    pub(crate) fn warn(&self, line: &str) {
+        self.bar.suspend(|| caution!("{line}"));
     }
 
     /// Takes the bar away.

@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
+use stribeck_report::{CampaignIndex, CampaignRun, write_campaign};
 use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::run_dir::check_folder;
 use stribeck_scene::scene::Scene;
@@ -21,8 +22,9 @@ use stribeck_scene::scene::Scene;
 use crate::emit::{self, MOST_PARTS, Part};
 use crate::interrupt::{self, Interrupt};
 use crate::many_runs::{ManyRuns, Share, Stage, Wanted};
-use crate::out::say;
+use crate::out::{alert, say, tell};
 use crate::place::{Place, shown};
+use tables::{Row, Written};
 
 /// Flags of `campaign`.
 #[derive(Debug, clap::Args)]
@@ -67,18 +69,22 @@ pub(crate) fn shard(text: &str) -> Result<Shard, String> {
 /// Held by the part that writes the files of the campaign itself.
 const TURN: &str = ".turn";
 
-const SCENES: &str = "scenes.txt";
+/// The text of the campaign in its folder.
+pub(crate) const CAMPAIGN: &str = "campaign.ron";
+pub(crate) const SCENES: &str = "scenes.txt";
+const DATASHEET: &str = "DATASHEET.md";
+const INDEX: &str = "index.html";
 
 /// The folder of a campaign is known by the former from the first moment of its first part on, and by the
 /// latter when it is done.
-const MARKS: [&str; 2] = [TURN, "runs.parquet"];
+pub(crate) const MARKS: [&str; 2] = [TURN, "runs.parquet"];
 
 /// Where the things of a campaign are.
 struct Folder(ManyRuns);
 
 impl Folder {
     fn file(&self) -> PathBuf {
-        self.path().join("campaign.ron")
+        self.path().join(CAMPAIGN)
     }
 
     /// Hashes of the scenes of all runs, by which a table or a scene file that was changed is known.
@@ -134,16 +140,25 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         say!("{}", emit::script(engine, "campaign", &file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
+    carry_out(&campaign, out, options.share, options.shard)
+}
+
+/// Runs what is due of a campaign, or of one part of it, in `out`, and makes its tables when all is done.
+pub(crate) fn carry_out(
+    campaign: &Campaign,
+    out: PathBuf,
+    share: Share,
+    shard: Option<Shard>,
+) -> Result<ExitCode> {
     let folder = Folder(ManyRuns(out));
     check_folder(folder.path(), &MARKS)?;
-    enter(&folder, &campaign)?;
+    enter(&folder, campaign)?;
     let interrupt = Interrupt::listen()?;
-    let mine = |variant: &&Variant| {
-        options.shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1)
-    };
+    let mine =
+        |variant: &&Variant| shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1);
     let due = folder.0.due(campaign.keep, campaign.runs.iter().filter(mine).map(Wanted::from), &interrupt)?;
-    folder.0.make(campaign.keep, &due, options.share, &interrupt, &|jobs| {
-        eprintln!(
+    folder.0.make(campaign.keep, &due, share, &interrupt, &|jobs| {
+        tell!(
             "{}: {} runs, {} of them to be run here, {} → {}",
             campaign.name,
             campaign.runs.len(),
@@ -152,7 +167,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             shown(folder.path())
         );
     });
-    conclude(&folder, &campaign, &interrupt, mine)
+    conclude(&folder, campaign, &interrupt, mine)
 }
 
 /// Writes a file that other parts may write at the same time.
@@ -222,13 +237,13 @@ fn conclude(
     if left > 0 {
         let all = campaign.runs.len();
         if left_here == 0 {
-            eprintln!(
+            tell!(
                 "this part is done; {left} of {all} runs of others are not at their end. Whichever part ends \
                  last makes the tables"
             );
             return Ok(ExitCode::SUCCESS);
         }
-        eprintln!(
+        tell!(
             "{left} of {all} runs are not at their end or without their numbers; the same command goes on. \
              Tables are made when all are"
         );
@@ -237,15 +252,49 @@ fn conclude(
     let rows = tables::rows(folder, campaign, &stages)?;
     let turn = folder.take_turn()?;
     let written = tables::write(folder, campaign, &rows)?;
-    replace(&folder.path().join("DATASHEET.md"), &datasheet::text(campaign, &rows, &written))?;
+    replace(&folder.path().join(DATASHEET), &datasheet::text(campaign, &rows, &written))?;
+    write_campaign(folder.path(), &index(folder, campaign, &rows, &written))?;
     drop(turn);
     let complete = rows.iter().filter(|row| row.is_complete()).count();
     for row in rows.iter().filter(|row| !row.is_complete()).take(3) {
         let why = row.reason.as_deref().unwrap_or_default();
         let allowed = why.lines().find_map(|line| line.trim_start().strip_prefix("= allowed: "));
         let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed: {allowed}"));
-        eprintln!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
+        alert!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
     }
     say!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.path().join(tables::RUNS)));
+    say!("page: {}", shown(&folder.path().join(INDEX)));
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
+}
+
+/// What the page of the campaign shows.
+fn index(folder: &Folder, campaign: &Campaign, rows: &[Row], written: &Written) -> CampaignIndex {
+    let run = |row: &Row| {
+        let run = row.folder.as_ref().and_then(|path| path.strip_prefix(folder.path()).ok());
+        CampaignRun {
+            number: row.number,
+            start: row.start,
+            status: row.status.to_owned(),
+            reason: row.reason.clone(),
+            values: row.values.iter().map(|value| value.trim_matches('"').to_owned()).collect(),
+            claimed: row.claimed.clone(),
+            numbers: row.numbers.clone(),
+            folder: run.map(|path| path.display().to_string()),
+        }
+    };
+    let mut files = vec![
+        (DATASHEET, "what the data set holds, its limits, and every column with its unit"),
+        (tables::RUNS, "a row a run, with the truth and every number of its summary"),
+        (tables::EVENTS, "a row for each passage of a roller over a spall of a raceway"),
+    ];
+    if !written.signals.is_empty() {
+        files.push((tables::SIGNALS, "a row for each sample of the accelerations"));
+    }
+    files.push((CAMPAIGN, "the campaign, as it was run"));
+    CampaignIndex {
+        name: campaign.name.clone(),
+        fields: campaign.fields.clone(),
+        runs: rows.iter().map(run).collect(),
+        files: files.into_iter().map(|(file, what)| (file.to_owned(), what.to_owned())).collect(),
+    }
 }

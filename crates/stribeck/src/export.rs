@@ -1,6 +1,7 @@
 //! `stribeck export`: the results of a run in the formats of other programs.
 
 mod deck;
+mod sound;
 mod vtkhdf;
 
 use std::path::PathBuf;
@@ -18,7 +19,7 @@ use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 use stribeck_scene::scene::ModelScene;
 
-use crate::out::say;
+use crate::out::{caution, say};
 use crate::place::{Place, shown};
 
 /// Flags of `export`.
@@ -36,8 +37,14 @@ pub struct Options {
     /// quality=30, noise_density=0.002, range=500, bits=24, seed=1", in m/s²
     #[arg(long)]
     sensor: Option<String>,
-    /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, paraview, frames.vtkhdf
-    /// or mesh.FORMAT]
+    /// Samples a second of a sound [Hz]: 44100 or 48000 [default: 48000]
+    #[arg(long, value_name = "HZ", value_parser = sound::rate)]
+    rate_hz: Option<u32>,
+    /// Plays a sound N times slower, and as much lower [default: 1]
+    #[arg(long, value_name = "N", value_parser = sound::slow)]
+    slow: Option<f64>,
+    /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, sound.wav, paraview,
+    /// frames.vtkhdf or mesh.FORMAT]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -55,8 +62,10 @@ enum Format {
     Uff,
     /// Parquet, a row a sample
     Parquet,
-    /// Sound, 64-bit floats
+    /// Sound to listen to: one channel, 16 bits, as loud as they hold; with `--sensor` the bits of the sensor
     Wav,
+    /// The same container with 64-bit floats, every channel in its own unit
+    Wav64,
     /// ParaView: a folder of VTU files with the stress about the defect, a grid a frame, and the .pvd that
     /// lists them
     #[value(alias = "vtu")]
@@ -79,7 +88,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let dir = RunDir::open(&folder)?;
     let run = Run::read(dir.path())?;
     for missing in run.damage() {
-        eprintln!("warning: {missing}");
+        caution!("{missing}");
+    }
+    for (flag, given) in [("--rate-hz", options.rate_hz.is_some()), ("--slow", options.slow.is_some())] {
+        if given && (options.to != Format::Wav || options.sensor.is_some()) {
+            bail!(
+                "`{flag}` is for a sound to listen to: use it with `--to wav` and without `--sensor`, whose \
+                 own `rate_hz` is the rate of a recorder"
+            );
+        }
     }
     let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));
     let written = match options.to {
@@ -92,6 +109,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Format::K => deck::write(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
         Format::Inp => deck::write(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
         Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
+        Format::Wav if options.sensor.is_none() => sound::write(&dir, &run, options, &out("sound.wav"))?,
         _ => signals(&dir, &run, options)?,
     };
     say!("{}", shown(&written));
@@ -143,7 +161,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
         Format::Mat => "mat",
         Format::Uff => "uff",
         Format::Parquet => "parquet",
-        Format::Wav => "wav",
+        Format::Wav | Format::Wav64 => "wav",
         Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh => "",
     };
     let path = options.out.clone().unwrap_or_else(|| dir.path().join(format!("trace.{extension}")));
@@ -156,7 +174,8 @@ fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
         Format::Mat => mat5::write(&path, &channels, &notes)?,
         Format::Uff => uff58::write(&path, &no_time, &notes)?,
         Format::Parquet => parquet::write(&path, &channels, &notes)?,
-        Format::Wav => wav::write(&path, &no_time, &notes)?,
+        Format::Wav => sound::recorded(&path, &no_time, options.sensor.as_deref(), notes)?,
+        Format::Wav64 => wav::write(&path, &no_time, &notes)?,
         Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh => {}
     }
     Ok(path)

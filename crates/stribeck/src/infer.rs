@@ -21,7 +21,7 @@ use stribeck_scene::run_dir::{Keep, check_folder, write_atomic};
 use crate::campaign::{Shard, shard};
 use crate::interrupt::{self, Interrupt};
 use crate::many_runs::{Share, Stage, summary_of};
-use crate::out::say;
+use crate::out::{say, tell};
 use crate::place::{Place, shown};
 use answer::Known;
 use outputs::{Row, Table};
@@ -87,7 +87,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         interrupt: &interrupt,
     };
     let Some(known) = study.carry_out()? else {
-        eprintln!("the same command goes on");
+        tell!("the same command goes on");
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     };
     let answer = answer::of(&known)?;
@@ -213,7 +213,7 @@ impl Study<'_> {
         if !due.is_empty() {
             rounds.runs().make(Keep::Numbers, &due, options.share, interrupt, &|jobs| {
                 let round = round.shown();
-                eprintln!("{}, {round}: {} runs to be made, {}", inference.name, due.len(), jobs.shown());
+                tell!("{}, {round}: {} runs to be made, {}", inference.name, due.len(), jobs.shown());
             });
         }
         let mut told = false;
@@ -223,12 +223,12 @@ impl Study<'_> {
                 break;
             }
             if interrupt.is_pressed() {
-                eprintln!("{}: {left} runs are not at their end", round.shown());
+                tell!("{}: {left} runs are not at their end", round.shown());
                 return Ok(false);
             }
             ensure!(options.shard.is_some(), "{left} runs of {} cannot be made: see above", round.shown());
             if !told {
-                eprintln!("{}: waits for {left} runs of other parts", round.shown());
+                tell!("{}: waits for {left} runs of other parts", round.shown());
                 told = true;
             }
             std::thread::sleep(LOOK);

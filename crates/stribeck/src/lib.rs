@@ -11,34 +11,71 @@ mod analyse;
 mod bearings;
 mod board;
 mod campaign;
+mod compare;
 mod emit;
 mod export;
 mod infer;
+mod list;
 mod many_runs;
 mod memory;
+mod new;
+mod open;
 mod out;
 mod pdf;
 mod plan;
 mod ranks;
+mod remove;
 mod report;
+mod shelf;
+mod shell;
 mod side_by_side;
 mod simulate;
+mod sweep;
 mod validate;
 
 use std::process::ExitCode;
 
 use anyhow::Result;
+pub use out::Loudness;
 pub use place::Place;
+
+/// Stribeck: explicit dynamics of rolling element bearings.
+///
+/// Reads a scene (a short text), simulates the bearing, and leaves a folder with traces, energies and a
+/// report.
+#[derive(Debug, clap::Parser)]
+#[command(name = "stribeck", version = host::VERSION, max_term_width = 100, arg_required_else_help = true)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    loudness: Loudness,
+}
+
+impl Cli {
+    /// Does what the command line asks for, in `place`.
+    ///
+    /// # Errors
+    /// With what to tell the user.
+    pub fn run(&self, place: &Place) -> Result<ExitCode> {
+        self.loudness.apply();
+        self.command.run(place)
+    }
+}
 
 /// What the program can do.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
+    /// Writes a scene of your own, by five questions or by flags, that runs as it is
+    New(new::Options),
     /// Runs a scene and writes its report
     Simulate(simulate::Options),
     /// Writes the report of a run again
     Report(report::Options),
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and goes on
     Campaign(campaign::Options),
+    /// Runs a scene with several values of some fields, each with every other: a campaign in one line
+    Sweep(sweep::Options),
     /// Infers unknown fields of a scene from numbers that were seen: what they can have been, what they
     /// cannot
     Infer(infer::Options),
@@ -51,8 +88,20 @@ pub enum Command {
     Bearings(bearings::Options),
     /// Says what a measured record shows: which defects, how sure, and what it cannot say
     Analyse(analyse::Options),
+    /// Sets runs, ensembles and measured records beside each other: what was changed, what changed with it
+    Compare(compare::Options),
     /// Writes the signals or the stress frames of a run in a format of other programs
     Export(export::Options),
+    /// Lists the runs that there are, with what was made of them
+    List(list::Options),
+    /// Opens the page of a run in a browser
+    Open(open::Options),
+    /// Removes runs, after asking
+    Rm(remove::Options),
+    /// Writes what a shell needs to complete commands and flags
+    Completions(shell::Completions),
+    /// Writes the pages of the manual
+    Man(shell::Man),
 }
 
 impl Command {
@@ -62,15 +111,23 @@ impl Command {
     /// With what to tell the user.
     pub fn run(&self, place: &Place) -> Result<ExitCode> {
         match self {
+            Self::New(options) => new::run(options, place),
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Campaign(options) => campaign::run(options, place),
+            Self::Sweep(options) => sweep::run(options, place),
             Self::Infer(options) => infer::run(options, place),
             Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),
             Self::Bearings(options) => bearings::run(options),
             Self::Analyse(options) => analyse::run(options, place),
+            Self::Compare(options) => compare::run(options, place),
             Self::Export(options) => export::run(options, place),
+            Self::List(options) => list::run(options, place),
+            Self::Open(options) => open::run(options, place),
+            Self::Rm(options) => remove::run(options, place),
+            Self::Completions(options) => shell::completions(options),
+            Self::Man(options) => shell::man(options),
         }
     }
 }
@@ -82,8 +139,7 @@ pub fn conclude(done: Result<ExitCode>) -> ExitCode {
         _ => Ok(code),
     });
     done.unwrap_or_else(|error| {
-        eprintln!("error: {error}");
-        causes(&error).iter().for_each(|cause| eprintln!("  because: {cause}"));
+        out::error(&error, &causes(&error));
         ExitCode::FAILURE
     })
 }

@@ -13,6 +13,7 @@ use stribeck_scene::scene::Scene;
 
 use crate::interrupt::Interrupt;
 use crate::memory;
+use crate::out::caution;
 use crate::place::shown;
 use crate::side_by_side::{Due, Jobs, Shop};
 use crate::simulate::{jobs, threads};
@@ -119,7 +120,7 @@ impl ManyRuns {
                 // What a kill has left; it may free the space that others need.
                 Stage::Ended if !interrupt.is_pressed() => {
                     if let Err(why) = settle(&self.run(scene), keep) {
-                        eprintln!("warning: {why:#}");
+                        caution!("{why:#}");
                     }
                 }
                 _ => {}
@@ -140,7 +141,7 @@ impl ManyRuns {
         let limit_gb = share.memory_gb.or_else(memory::free_gb).unwrap_or(f64::INFINITY);
         let need_gb = due.iter().map(|due| memory::need_gb(&due.scene)).fold(0.0, f64::max);
         if need_gb > limit_gb {
-            eprintln!("warning: a run may take {need_gb:.1} GB, and there are {limit_gb:.1} GB for it");
+            caution!("a run may take {need_gb:.1} GB, and there are {limit_gb:.1} GB for it");
         }
         let fitting = ((limit_gb / need_gb) as usize).max(1);
         let jobs = Jobs::of(share.jobs, share.threads, due.len().min(fitting));
@@ -156,7 +157,7 @@ impl ManyRuns {
                 None => Ok(()),
             };
             if let Err(why) = kept {
-                shop.say(&format!("warning: {why}"));
+                shop.warn(&why.to_string());
             }
         });
     }

@@ -1,8 +1,119 @@
-//! Standard output: what the user reads, or another program that may close it before the end.
+//! Standard output: what the user reads, or another program that may close it before the end. Standard error:
+//! how it goes, by `-q` and `-v`.
 
 use std::fmt::Arguments;
-use std::io::{Error, ErrorKind, Write, stdout};
-use std::sync::{Mutex, PoisonError};
+use std::io::{Error, ErrorKind, IsTerminal, Write, stderr, stdout};
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::Instant;
+
+use clap::builder::styling::{AnsiColor, Style};
+
+/// How much is said on the way.
+#[derive(Debug, Clone, Copy, Default, clap::Args)]
+pub struct Loudness {
+    /// Says results, warnings and errors alone
+    #[arg(short, long, global = true, conflicts_with = "verbose", display_order = 1000)]
+    quiet: bool,
+    /// Says more: what is read and written, each line with the seconds since the start
+    #[arg(short, long, global = true, display_order = 1001)]
+    verbose: bool,
+}
+
+const QUIET: u8 = 0;
+const USUAL: u8 = 1;
+const VERBOSE: u8 = 2;
+static LOUDNESS: AtomicU8 = AtomicU8::new(USUAL);
+static BEGAN: OnceLock<Instant> = OnceLock::new();
+
+impl Loudness {
+    /// Holds from now on.
+    pub fn apply(self) {
+        BEGAN.get_or_init(Instant::now);
+        let level = match (self.quiet, self.verbose) {
+            (true, _) => QUIET,
+            (_, true) => VERBOSE,
+            _ => USUAL,
+        };
+        LOUDNESS.store(level, Ordering::Relaxed);
+    }
+}
+
+/// Whether nothing is to be said of progress.
+pub(crate) fn is_quiet() -> bool {
+    LOUDNESS.load(Ordering::Relaxed) == QUIET
+}
+
+/// Writes a line of how it goes to standard error, but for `--quiet`.
+macro_rules! tell {
+    ($($words:tt)*) => { $crate::out::progress(format_args!($($words)*)) };
+}
+pub(crate) use tell;
+
+/// Writes a line to standard error for `--verbose` alone.
+macro_rules! detail {
+    ($($words:tt)*) => { $crate::out::aside(format_args!($($words)*)) };
+}
+pub(crate) use detail;
+
+/// Writes a warning to standard error, always.
+macro_rules! caution {
+    ($($words:tt)*) => { $crate::out::warning(format_args!($($words)*)) };
+}
+pub(crate) use caution;
+
+/// Writes a line to standard error, always: how something ended that did not end well.
+macro_rules! alert {
+    ($($words:tt)*) => { $crate::out::always(format_args!($($words)*)) };
+}
+pub(crate) use alert;
+
+pub(crate) fn always(words: Arguments<'_>) {
+    on_error(words);
+}
+
+pub(crate) fn progress(words: Arguments<'_>) {
+    if !is_quiet() {
+        on_error(words);
+    }
+}
+
+pub(crate) fn aside(words: Arguments<'_>) {
+    if LOUDNESS.load(Ordering::Relaxed) == VERBOSE {
+        on_error(words);
+    }
+}
+
+pub(crate) fn warning(words: Arguments<'_>) {
+    on_error(format_args!("{} {words}", marked("warning:", AnsiColor::Yellow)));
+}
+
+/// Says what went wrong, and why.
+pub(crate) fn error(error: &anyhow::Error, causes: &[String]) {
+    on_error(format_args!("{} {error}", marked("error:", AnsiColor::Red)));
+    causes.iter().for_each(|cause| on_error(format_args!("  because: {cause}")));
+}
+
+fn on_error(words: Arguments<'_>) {
+    let since = BEGAN.get().filter(|_| LOUDNESS.load(Ordering::Relaxed) == VERBOSE);
+    // Nobody is left to be told that standard error is closed.
+    match since {
+        Some(began) => drop(writeln!(stderr(), "[{:8.3} s] {words}", began.elapsed().as_secs_f64())),
+        None => drop(writeln!(stderr(), "{words}")),
+    }
+}
+
+/// A word in colour where a person reads it on a terminal.
+fn marked(word: &str, colour: AnsiColor) -> String {
+    let plain = std::env::var_os("NO_COLOR").is_some_and(|set| !set.is_empty())
+        || std::env::var_os("TERM").is_some_and(|term| term == "dumb")
+        || !stderr().is_terminal();
+    if plain {
+        return word.to_owned();
+    }
+    let style = Style::new().bold().fg_color(Some(colour.into()));
+    format!("{style}{word}{style:#}")
+}
 
 /// Why standard output took no more, once it did not.
 static CLOSED: Mutex<Option<Error>> = Mutex::new(None);

@@ -5,8 +5,11 @@ use std::time::SystemTime;
 
 use anyhow::{Context, Result, anyhow, bail};
 use stribeck_bearing::{error::Error, own_mesh};
+use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
+
+use crate::out::{caution, detail};
 
 /// The surroundings of a command.
 #[derive(Debug, Clone)]
@@ -33,6 +36,9 @@ impl Place {
     /// What is wrong with it, or with the meshes that it names, with line and field.
     pub fn scene(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
         let file = file.map(|file| self.locate(file));
+        if let Some(file) = &file {
+            detail!("scene `{}`", shown(file));
+        }
         let scene = match &file {
             Some(file) => Scene::read_with(file, overrides)?,
             None => Scene::singh2014().with_overrides(overrides)?,
@@ -43,8 +49,8 @@ impl Place {
                 .iter()
                 .map(|Replaced { field, written, now }| format!("`{field}` {now} instead of {written}"));
             let told = told.collect::<Vec<_>>().join(", ");
-            eprintln!(
-                "warning: with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
+            caution!(
+                "with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
                  --set what is to stay",
                 file.display()
             );
@@ -68,6 +74,11 @@ impl Place {
             }
             other => anyhow!(other),
         })?;
+        // Of a bearing of the catalogue the report says it.
+        let own = Some(&scene.bearing).filter(|bearing| !bearing.assumed.is_empty());
+        for note in own.into_iter().flat_map(catalogue::assumptions) {
+            eprintln!("note: {note}");
+        }
         Ok(scene)
     }
 
@@ -114,7 +125,9 @@ impl Place {
         let written = |path: &Path| -> Option<SystemTime> {
             files.iter().filter_map(|name| path.join(name).metadata().ok()?.modified().ok()).max()
         };
-        let runs = entries.flatten().filter_map(|entry| Some((written(&entry.path())?, entry.path())));
+        // A plan that was killed may have left what it tried.
+        let entries = entries.flatten().filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'));
+        let runs = entries.filter_map(|entry| Some((written(&entry.path())?, entry.path())));
         match runs.max() {
             Some((_, path)) => Ok(path),
             None => bail!("no runs in `{}`: {advice}", folder.display()),

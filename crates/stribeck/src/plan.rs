@@ -1,5 +1,7 @@
 //! `stribeck plan`: what to expect of a scene before it is run.
 
+mod trial;
+
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -12,11 +14,11 @@ use stribeck_scene::housing::HousingScene;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_info::clock;
-use stribeck_scene::scene::{ModelScene, ReducedScene};
-use stribeck_simulation::steps_in_a_sample;
+use stribeck_scene::scene::ModelScene;
 
 use crate::out::say;
 use crate::place::Place;
+use trial::Trial;
 
 /// Flags of `plan`.
 #[derive(Debug, clap::Args)]
@@ -26,19 +28,13 @@ pub struct Options {
     /// Overrides a field of the scene, for example --set mesh.size_mm=1.0; may be repeated
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     overrides: Vec<String>,
-    /// Processor time for one element and one step [ns], for the estimate of cost
-    #[arg(long, default_value_t = 3.5)]
-    ns_per_element_step: f64,
-    /// Processor time for one roller and one step of the reduced model, dry [ns], for the estimate of cost
-    #[arg(long, default_value_t = 250.0)]
-    ns_per_roller_step: f64,
+    /// Does not begin the run to see what it takes: the rest of the plan at once
+    #[arg(long)]
+    no_trial: bool,
 }
 
-/// A run of the reduced model that takes longer is worth a word [s of processor time].
+/// A run of the reduced model that takes longer is worth a word [s].
 const LONG_S: f64 = 3600.0;
-
-/// A step with oil takes so many times as long in the reduced model (docs/PERFORMANCE.md, section 7).
-const OIL: f64 = 3.6;
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let scene = place.scene(options.scene.as_deref(), &options.overrides)?.resolve();
@@ -53,29 +49,102 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         MeshFacts { counts: assembly.mesh_info(), element_time_step_s: assembly.element_time_step_s(&scene) };
     let mut plan = Plan::of(&scene, &mesh)?;
     say!("{}", scene.written.name);
+    loads(&plan);
     contact_noise(&scene, &plan);
     oil_and_families(&scene, &plan);
-    match &scene.written.model {
-        ModelScene::Full => {
-            let cost = 1e-9 * options.ns_per_element_step * plan.steps * plan.elements as f64;
-            say!(
-                "  {} elements, steps of at least {:.0} ns, at most {:.0} of them: at most about {cost:.0} s \
-                 of processor time at {} ns per element-step",
-                plan.elements,
-                1e9 * plan.time_step_s,
-                plan.steps,
-                options.ns_per_element_step
-            );
-        }
-        ModelScene::Reduced(reduced) => {
-            plan.advice.extend(reduced_cost(options, place, &scene, reduced, plan.elements)?);
-        }
-    }
     record(&scene, &plan);
+    for danger in &plan.dangers {
+        say!("  warning: {danger}");
+    }
+    if !options.no_trial {
+        let trial = trial::begin(&scene, &plan, place)?;
+        cost(&scene, &plan, &trial);
+        plan.advice.extend(long(&scene, &trial));
+    }
     for advice in &plan.advice {
         say!("  advice: {advice}");
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// What the bearing carries.
+fn loads(plan: &Plan) {
+    let loads = &plan.loads;
+    let [outer, inner] = loads.pressure_pa.map(|pa| 1e-6 * pa);
+    say!(
+        "  clearance {:.0} µm; {} rolling elements carry, the most loaded one {:.0} N (rigid rings, \
+         Stribeck and \
+         Sjövall)",
+        1e6 * loads.clearance_m,
+        loads.loaded,
+        loads.largest_n
+    );
+    say!(
+        "  Hertz pressure of its line contacts: {outer:.0} MPa at the outer, {inner:.0} MPa at the inner \
+         raceway"
+    );
+    say!(
+        "  static safety s₀ = C₀/P₀ = {:.1}, with C₀ = {:.1} kN by ISO 76 from these dimensions",
+        loads.static_safety(),
+        1e-3 * loads.static_rating_n
+    );
+}
+
+/// What the run takes.
+fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
+    let steps = (trial.info.steps_planned as f64 * scene.duration
+        / trial.info.simulated_s.max(f64::MIN_POSITIVE))
+    .round();
+    let what = match &trial.info.reduced {
+        Some(reduced) => format!("{} modes of {} elements", reduced.modes, plan.elements),
+        None => format!("{} elements", plan.elements),
+    };
+    say!("  {what}, {steps:.0} steps of {:.3} µs", 1e6 * trial.info.time_step_s);
+    let modes = match trial.modes_s {
+        Some(s) if trial.kept => format!("; its modes took {}, and are kept for it", clock(s)),
+        Some(s) => format!(", {} of it for the modes, which are kept for further runs", clock(s)),
+        None => String::new(),
+    };
+    let threads = if trial.info.reduced.is_some() { 1 } else { trial.threads };
+    say!(
+        "  the run takes about {} on this machine as busy as it is now, {threads} thread{} (set-up \
+         {}{modes}), and \
+         its report some seconds more: {:.2} ms of it were tried",
+        clock(trial.run_s()),
+        if threads == 1 { "" } else { "s" },
+        clock(trial.run_s() - trial.loop_s),
+        1e3 * trial.info.simulated_s
+    );
+    for warning in &trial.info.warnings {
+        say!("  warning: {warning}");
+    }
+    if let Some(reason) = &trial.info.stop_reason {
+        say!("  warning: the run stops at once: {reason}");
+    }
+}
+
+/// Advice where a reduced run takes hours.
+fn long(scene: &ResolvedScene, trial: &Trial) -> Option<String> {
+    let ModelScene::Reduced(reduced) = &scene.written.model else { return None };
+    if trial.run_s() <= LONG_S {
+        return None;
+    }
+    let dampers = match &scene.written.housing {
+        HousingScene::Springs(springs) if springs.damping_n_s_m > 0.0 => {
+            ", and the dampers of `housing.damping_n_s_m`,"
+        }
+        _ => "",
+    };
+    let step_us = 1e6 * trial.info.time_step_s;
+    let why = if step_us < 0.99 * reduced.step_us {
+        format!(
+            ": modes and contacts{dampers} allow steps of {step_us:.3} µs, not the {} µs of `model.step_us`",
+            reduced.step_us
+        )
+    } else {
+        String::new()
+    };
+    Some(format!("the run takes hours{why}"))
 }
 
 /// Lines that facets make, and how strong.
@@ -87,8 +156,7 @@ fn contact_noise(scene: &ResolvedScene, plan: &Plan) {
     let [roller, outer, inner] = plan.sag_m.map(|s| 1e6 * s);
     say!("  sag of the facets: rollers {roller:.2} µm, outer raceway {outer:.2} µm, inner {inner:.2} µm");
     say!(
-        "  largest static force {:.0} N: Hertz contact {:.2} mm wide on facets of {:.2} mm",
-        plan.load_n,
+        "  under the largest force a Hertz contact is {:.2} mm wide, on facets of {:.2} mm",
         2e3 * plan.half_width_m,
         1e3 * plan.facet_m
     );
@@ -129,53 +197,6 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
         k.cage_hz,
         k.shaft_hz
     );
-}
-
-/// What a run of the reduced model costs; advice where that is hours.
-fn reduced_cost(
-    options: &Options,
-    place: &Place,
-    scene: &ResolvedScene,
-    reduced: &ReducedScene,
-    elements: usize,
-) -> Result<Option<String>> {
-    // The modes are worth keeping for the run where there are runs.
-    let runs = Some(place.runs()).filter(|runs| runs.is_dir());
-    eprintln!("modes …");
-    let per_sample = steps_in_a_sample(scene, runs.as_deref())?;
-    let (solver, output) = (&scene.written.solver, &scene.written.output);
-    let steps = (per_sample as f64 * 1e3 * solver.duration_ms / output.interval_us).round();
-    let (oil, with_oil) = match scene.written.film {
-        Some(_) => (OIL, " and 3.6 times as much with oil"),
-        None => (1.0, ""),
-    };
-    let rollers = scene.written.rollers_in_place().count() as f64;
-    let cost = 1e-9 * options.ns_per_roller_step * oil * steps * rollers;
-    let step_us = output.interval_us / per_sample as f64;
-    say!(
-        "  reduced model: {steps:.0} steps of {step_us:.3} µs: about {} of processor time at {} ns per \
-         roller-step{with_oil}, beside the modes of {elements} elements",
-        clock(cost),
-        options.ns_per_roller_step,
-    );
-    if cost <= LONG_S {
-        return Ok(None);
-    }
-    let dampers = match &scene.written.housing {
-        HousingScene::Springs(springs) if springs.damping_n_s_m > 0.0 => {
-            ", and the dampers of `housing.damping_n_s_m`,"
-        }
-        _ => "",
-    };
-    let why = if step_us < 0.99 * reduced.step_us {
-        format!(
-            ": modes and contacts{dampers} allow steps of {step_us:.3} µs, not the {} µs of `model.step_us`",
-            reduced.step_us
-        )
-    } else {
-        String::new()
-    };
-    Ok(Some(format!("the run takes hours{why}")))
 }
 
 /// What the record will hold.

@@ -8,6 +8,8 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use stribeck_run::host::Progress;
 use stribeck_scene::run_info::{RunInfo, clock};
 
+use crate::out::{is_quiet, tell};
+
 /// A bar is redrawn this often.
 const REDRAW: Duration = Duration::from_millis(100);
 /// A log gets a line after this part of the run …
@@ -31,7 +33,11 @@ impl Meter {
     /// A meter for a run of `duration_ms` simulated time.
     pub fn new(duration_ms: f64) -> Self {
         let on_terminal = std::io::stderr().is_terminal();
-        let target = if on_terminal { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+        let target = if on_terminal && !is_quiet() {
+            ProgressDrawTarget::stderr()
+        } else {
+            ProgressDrawTarget::hidden()
+        };
         let bar = ProgressBar::with_draw_target(Some(1), target);
         if let Ok(style) = ProgressStyle::with_template("{bar:24} {wide_msg}") {
             bar.set_style(style);
@@ -68,7 +74,7 @@ impl Meter {
             // One drawing a call, already rationed above.
             self.bar.tick();
         } else {
-            eprintln!("{line}");
+            tell!("{line}");
         }
     }
 

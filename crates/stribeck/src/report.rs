@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use stribeck_scene::run_dir::{Run, RunDir};
 
-use crate::out::say;
+use crate::out::{caution, detail, say};
 use crate::pdf;
 use crate::place::{Place, shown};
 
@@ -47,14 +47,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             shown(&folder)
         );
         for note in stribeck_report::write_ensemble(&folder)?.notes {
-            eprintln!("warning: {note}");
+            caution!("{note}");
         }
         return announce(options, &RunDir::open_ensemble(&folder)?.report());
     }
     let dir = RunDir::open(&folder)?;
     for missing in Run::read(dir.path())?.damage() {
-        eprintln!("warning: {missing}");
+        caution!("{missing}");
     }
+    detail!("report of `{}`", shown(dir.path()));
     stribeck_report::write_between(dir.path(), time_s)?;
     announce(options, &dir.report())
 }

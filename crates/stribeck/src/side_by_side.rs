@@ -81,9 +81,9 @@ impl<'a> Shop<'a> {
         self.board.finish();
     }
 
-    /// Says something above the bar.
-    pub(crate) fn say(&self, line: &str) {
-        self.board.say(line);
+    /// Warns above the bar.
+    pub(crate) fn warn(&self, line: &str) {
+        self.board.warn(line);
     }
 
     fn work(&self, ended: &(dyn Fn(&Due, Option<&Error>) + Sync)) {

@@ -18,7 +18,7 @@ use stribeck_simulation as simulation;
 use crate::conclude;
 use crate::host;
 use crate::interrupt::{self, Interrupt};
-use crate::out::say;
+use crate::out::{alert, caution, say, tell};
 use crate::place::{Place, shown};
 use crate::progress::{Meter, energy_error};
 use crate::ranks::Processes;
@@ -156,7 +156,7 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     let processes =
         ranks.as_ref().map_or_else(String::new, |ranks| format!("{} processes of ", ranks.count()));
     let path = shown(dir.path());
-    eprintln!("{}: {} ms, {processes}{threads} threads → {path}", scene.name, scene.solver.duration_ms);
+    tell!("{}: {} ms, {processes}{threads} threads → {path}", scene.name, scene.solver.duration_ms);
 
     let mut meter = Meter::new(scene.solver.duration_ms);
     let mut watch = |progress: &Progress| {
@@ -183,10 +183,10 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     if dir.has_started() && !complete {
         let path = shown(dir.path());
         if let Some(old) = dir.replaces() {
-            eprintln!("`{}` still holds the earlier run; the new one lies in `{path}`", shown(old));
+            tell!("`{}` still holds the earlier run; the new one lies in `{path}`", shown(old));
         }
         if finished.as_ref().is_ok_and(|info| info.status == Status::Interrupted) {
-            eprintln!("continue it: {} simulate --resume {path}", place.program);
+            tell!("continue it: {} simulate --resume {path}", place.program);
         }
     }
     // A run that broke off has a report too: what was computed until then is what shows why.
@@ -194,7 +194,7 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
         match report::write(dir.path()) {
             Ok(_) => say!("report: {}", shown(&dir.report())),
             // The run's own error matters more than that of its report.
-            Err(error) if finished.is_err() => eprintln!("warning: no report: {error}"),
+            Err(error) if finished.is_err() => caution!("no report: {error}"),
             Err(error) => {
                 return Err(anyhow::Error::from(error).context("the run is complete, its report is not"));
             }
@@ -217,7 +217,7 @@ fn reserve(options: &Options, place: &Place, scene: &Scene) -> Result<RunDir> {
     }
     match RunDir::create(folder) {
         Err(Error::FolderHoldsRun { found, ways, .. }) if options.out.is_none() => {
-            eprintln!("`{}` holds {found}, which is kept. You can {}", shown(folder), ways.join(", or "));
+            tell!("`{}` holds {found}, which is kept. You can {}", shown(folder), ways.join(", or "));
             Ok(RunDir::create_numbered(folder)?)
         }
         Err(Error::FolderInUse { .. }) if options.out.is_none() => Ok(RunDir::create_numbered(folder)?),
@@ -261,10 +261,10 @@ fn check_overrides(overrides: &[String]) -> Result<()> {
 /// Says how the run ended and what it cost.
 fn announce(info: &RunInfo) {
     for note in &info.notes {
-        eprintln!("note: {note}");
+        tell!("note: {note}");
     }
     for warning in &info.warnings {
-        eprintln!("warning: {warning}");
+        caution!("{warning}");
     }
     let how = match info.status {
         Status::Complete => "complete",
@@ -302,6 +302,6 @@ fn announce(info: &RunInfo) {
         energy_error(info)
     );
     if let Some(reason) = &info.stop_reason {
-        eprintln!("stopped: {reason}");
+        alert!("stopped: {reason}");
     }
 }

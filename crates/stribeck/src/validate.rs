@@ -13,7 +13,7 @@ use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ModelScene, Scene};
 
 use crate::interrupt::{self, Interrupt};
-use crate::out::say;
+use crate::out::{say, tell};
 use crate::place::{Place, shown};
 use crate::side_by_side::{Due, Jobs, Shop};
 use crate::simulate::{jobs, threads};
@@ -82,7 +82,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     let due = due(&folders, &models, options)?;
     let jobs = Jobs::of(options.jobs, options.threads, due.len());
-    eprintln!(
+    tell!(
         "{}: {} starts of {} ms by both models, {} runs to make, {} → {}",
         scene.name,
         options.starts,
@@ -96,7 +96,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     shop.run(&|_, _| {});
     let left = self::due(&folders, &models, options)?.len();
     if left > 0 {
-        eprintln!("{left} runs are not at their end; the same command goes on with them");
+        tell!("{left} runs are not at their end; the same command goes on with them");
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
     let mut pairs = Vec::new();

@@ -105,10 +105,10 @@ fn example_a_run_is_exported_and_read_back() {
     assert!(output.status.success(), "{}", said(&output));
     let trace = Recording::open(desk.join("runs/quick/trace.npy")).unwrap();
     let name = trace.channels.iter().map(|c| c.name.clone()).find(|n| n.ends_with("ay_m_s2")).unwrap();
-    for format in ["csv", "npz", "mat", "uff", "wav"] {
+    for (format, end) in [("csv", "csv"), ("npz", "npz"), ("mat", "mat"), ("uff", "uff"), ("wav64", "wav")] {
         let output = stribeck(desk.path(), &["export", "quick", "--to", format, "--channel", &name]);
         assert!(output.status.success(), "{format}: {}", said(&output));
-        let path = desk.join(format!("runs/quick/trace.{format}"));
+        let path = desk.join(format!("runs/quick/trace.{end}"));
         let found = Recording::open(&path).unwrap();
         let read = found
             .channels

@@ -299,7 +299,8 @@ fn lengths(sheet: &mut Sheet, records: &[Measured]) {
         verdict(covered >= COVERED),
     ));
     sheet.say(
-        "A record without an estimate has one event a passage, which bounds a length and does not tell it. The \
+        "A record without an estimate has one event a passage, which bounds a length and does not tell \
+         it. The \
          sizes are those of spalls shorter than half of the distance of two elements ([spalls](spalls.md)).",
     );
 }

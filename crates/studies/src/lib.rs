@@ -19,6 +19,7 @@ mod impulse;
 mod kills;
 mod long;
 mod noise;
+mod own;
 mod paper;
 mod reduced;
 mod rig;
@@ -69,6 +70,8 @@ pub enum Study {
     Reduced(reduced::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
+    /// Bearings by their own fields, at the first try, by both models
+    Own(own::Options),
     /// Measured records of known state through the verdict of `analyse`, beside plainer methods
     Verdicts(verdicts::Options),
 }
@@ -94,6 +97,7 @@ impl Study {
             Self::Spalls(options) => spalls::run(options, host),
             Self::Reduced(options) => reduced::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
+            Self::Own(options) => own::run(options, host),
             Self::Verdicts(options) => verdicts::run(options, host),
         }
     }

@@ -31,7 +31,7 @@ const LAYERS: [(&str, &[&str]); 25] = [
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
-    ("report", &["analysis", "dsp", "scene"]),
+    ("report", &["analysis", "dsp", "formats", "scene"]),
     ("studies", &["analysis", "contact", "dsp", "formats", "mesh", "report", "scene", "solver", "system"]),
     (
         "stribeck",

@@ -38,7 +38,7 @@ pub(super) fn page(setting: &Setting, measured: &[Measured], absent: &[Absent]) 
     let _ = writeln!(
         page,
         "# The same work in other programs\n\n\
-         Written by `cargo xtask compare`, raw runs in [compare.csv](compare.csv). Commit {}. {}. \
+         Written by `cargo xtask peers`, raw runs in [compare.csv](compare.csv). Commit {}. {}. \
          Load average {} before, {} after. Every program on one thread, double precision.\n\n\
          Timed is the step loop alone: forces, masses, motion; no output. Times are processor time in ns per \
          element \

@@ -7,7 +7,7 @@ use super::SensorSignal;
 use crate::Error;
 use crate::filtering::Filter;
 use crate::levels::{self, Phase, SignalLevel, Visit};
-use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, SensorLevels};
+use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, RecordLevels, SensorLevels};
 use crate::tones::{self, NearestLine, PredictedLine};
 
 /// Multiple of the facet tone that the paper sees beside it.
@@ -102,6 +102,7 @@ impl<'a> Spans<'a> {
             between_filtered_g: filtered.map(|l| l.peak),
             between_filtered_p99_g: filtered.map(|l| l.p99),
             between_filtered_rms_g: filtered.map(|l| l.rms),
+            record: RecordLevels::of(&sensor.raw_g),
             sensors: Vec::new(),
         }
     }

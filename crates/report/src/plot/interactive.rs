@@ -172,7 +172,7 @@ fn thinned(series: &Series) -> Vec<(f64, f64)> {
 
 impl Colour {
     /// Name of the CSS variable that holds it in the current theme.
-    fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Grey => "--c-grey",
             Self::Blue => "--c-blue",

@@ -5,6 +5,7 @@
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
+use super::named::{OFF_RACE, ROLLER_LENGTH};
 use super::wording::{number, round_down, round_up};
 use crate::housing::HousingScene;
 use crate::resolved::CageGeometry;
@@ -40,6 +41,7 @@ const FEWER_ROLLERS: usize = 8;
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     let groups = [
         rings,
+        described_twice,
         clearance_change,
         bore,
         pitch_circle,
@@ -132,6 +134,30 @@ fn rings(scene: &Scene) -> Option<Finding> {
                 .number(inner + 2.0 * roller, "no clearance"),
         ],
     ))
+}
+
+/// Pitch, bore, outside diameter and width that a bearing has beside its other dimensions, as one that was
+/// named or built in memory, must be those that follow from them.
+fn described_twice(scene: &Scene) -> Option<Finding> {
+    let b = &scene.bearing;
+    let pitch = 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm);
+    let all = [
+        ("pitch_mm", b.pitch_mm, pitch),
+        ("bore_mm", b.bore_mm, b.inner_race_diameter_mm - 2.0 * b.inner_ring_thickness_mm),
+        ("outside_mm", b.outside_mm, b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm),
+        ("width_mm", b.width_mm, b.thickness_mm / ROLLER_LENGTH),
+    ];
+    let differs =
+        |(_, given, is): &(_, Option<f64>, f64)| given.is_some_and(|mm| (mm - is).abs() > 0.01 * pitch);
+    let (name, given, is) = all.into_iter().find(differs)?;
+    let field = format!("bearing.{name}");
+    let message = format!(
+        "`{field}` is {}, and the other dimensions of this bearing make it {}",
+        number(given.unwrap_or(is)),
+        number(round_down(is, 5))
+    );
+    let remedy = Remedy::new(field, "nothing beside a complete bearing").number(round_down(is, 5), "");
+    Some(Finding::new(message, vec![remedy]))
 }
 
 /// A clearance that fits and temperature leave.
@@ -234,6 +260,7 @@ fn cage(scene: &Scene) -> Option<Finding> {
         number(outer_race)
     );
     let centred = (outer_race + inner_race) / 2.0 + cage.thickness_mm;
+    let held = held_mm(scene, cage);
     let widest = inner_race + 2.0 * cage.thickness_mm;
     let (room_outside, room_inside) = (outer < outer_race, inner > inner_race);
     let if_only = |possible: bool, words: String| if possible { words } else { NOTHING.to_owned() };
@@ -245,7 +272,9 @@ fn cage(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new("cage.outer_diameter_mm", diameter).number(round_down(centred, 4), ""),
+            Remedy::new("cage.outer_diameter_mm", diameter)
+                .number(held, "where its pockets hold it")
+                .number(round_down(centred, 4), ""),
             Remedy::new(
                 "cage.thickness_mm",
                 if_only(room_outside, less_than((outer - inner_race) / 2.0, "mm")),
@@ -257,6 +286,15 @@ fn cage(scene: &Scene) -> Option<Finding> {
             without_cage(),
         ],
     ))
+}
+
+/// Outer diameter of a cage of this thickness whose corners touch rollers above their middles [mm], as those
+/// of the catalogue; not a number where it would not lie between the raceways, or has straight pockets.
+fn held_mm(scene: &Scene, cage: &CageScene) -> f64 {
+    let b = &scene.bearing;
+    let outer = b.outer_race_diameter_mm - OFF_RACE * b.roller_diameter_mm;
+    let above = outer - 2.0 * cage.thickness_mm > 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm);
+    if cage.pocket == PocketWalls::Corners && above { round_down(outer, 4) } else { f64::NAN }
 }
 
 /// Outer and inner diameter [mm].

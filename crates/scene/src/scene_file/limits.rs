@@ -102,6 +102,8 @@ fn with_everything() -> Scene {
     // Not written where they are what they are by default.
     (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (90.0, 100.0);
     scene.bearing.clearance_change_um = -10.0;
+    let b = &mut scene.bearing;
+    (b.pitch_mm, b.bore_mm, b.outside_mm, b.width_mm) = (Some(65.0), Some(50.0), Some(90.0), Some(20.0));
     scene
 }
 
@@ -203,6 +205,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     add("bearing.roller_diameter_mm", b.roller_diameter_mm, positive(5_000.0), "mm");
     add("bearing.thickness_mm", b.thickness_mm, positive(10_000.0), "mm");
     add("bearing.first_roller_deg", b.first_roller_deg, within(-360.0, 360.0), "°");
+    let others = [("pitch", b.pitch_mm), ("bore", b.bore_mm), ("outside", b.outside_mm), ("width", b.width_mm)];
+    for (name, mm) in others {
+        if let Some(mm) = mm {
+            add(&format!("bearing.{name}_mm"), mm, positive(20_000.0), "mm");
+        }
+    }
     if let Some(cage) = &scene.cage {
         add("cage.outer_diameter_mm", cage.outer_diameter_mm, positive(20_000.0), "mm");
         add("cage.thickness_mm", cage.thickness_mm, positive(5_000.0), "mm");

@@ -10,11 +10,12 @@ use crate::housing::{HousingScene, PedestalScene};
 use crate::line_contact::LineContacts;
 use crate::point_contact;
 use crate::scene::{
-    BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, Scene,
+    BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, ReducedScene,
+    Scene,
 };
 
 /// Length of a roller over the width of its ring, between flanges.
-const ROLLER_LENGTH: f64 = 0.6;
+pub(super) const ROLLER_LENGTH: f64 = 0.6;
 
 /// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.
 const STRIBECK: f64 = 4.37;
@@ -52,7 +53,7 @@ pub(crate) fn designation(value: &str) -> Option<String> {
 
 /// Room between the outer raceway and a cage with corners, and its thickness, in diameters of a roller: it
 /// lies outside of the pitch circle then, as that of the paper's bearing.
-const OFF_RACE: f64 = 0.22;
+pub(super) const OFF_RACE: f64 = 0.22;
 
 /// Friction of steel on steel in oil. That of the paper's scene, a tenth of it, lets small bearings skid.
 const FRICTION: f64 = 0.05;
@@ -63,7 +64,6 @@ const FRICTION: f64 = 0.05;
 /// # Errors
 /// Words on what is not known of the bearing, or why a plane model has no such bearing.
 pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
-    let given = |path: &str| given.iter().any(|written| written == path);
     let fields = "give it by its fields, `bearing: (rollers: 13, roller_diameter_mm: 7.5, …)`";
     let known = CatalogueBearing::parse_or_advise(name, fields)?;
     let paper = Scene::default();
@@ -82,13 +82,38 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         return Ok(());
     }
     let bearing = of(&known)?;
+    if !given.iter().any(|path| path == "name") {
+        scene.name = plain_name(&known.name);
+    }
+    surround(scene, Surrounded { bearing, pitch_mm: known.pitch_mm }, given);
+    if known.element == Element::Ball {
+        // By the load, which was chosen for cylinders as long as the balls' ring allows, if nobody gave one.
+        scene.bearing.thickness_mm = tidy(thickness_of_balls(scene));
+    }
+    Ok(())
+}
+
+/// A designation as the name of a folder.
+pub(super) fn plain_name(designation: &str) -> String {
+    designation.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-")
+}
+
+/// A bearing and its pitch diameter [mm], without clearance.
+pub(super) struct Surrounded {
+    pub(super) bearing: BearingScene,
+    pub(super) pitch_mm: f64,
+}
+
+/// Puts a bearing into a scene, and around it in proportion to the paper's what nobody gave: cage, housing,
+/// defect, elements, friction, load and pictures.
+pub(super) fn surround(scene: &mut Scene, of: Surrounded, given: &[String]) {
+    let Surrounded { bearing, pitch_mm } = of;
+    let given = |path: &str| given.iter().any(|written| written == path);
+    let paper = Scene::default();
     let facets = paper.mesh.roller_facets as f64 / scene.mesh.roller_facets as f64;
     let size = bearing.roller_diameter_mm / paper.bearing.roller_diameter_mm;
     let outside = |b: &BearingScene| b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
     let across = outside(&bearing) / outside(&paper.bearing);
-    if !given("name") {
-        scene.name = known.name.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-");
-    }
     let follow = |path: &str, field: &mut f64, value: f64| {
         if !given(path) {
             *field = to_digits(3, value);
@@ -103,7 +128,7 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         // reach to both sides.
         let [outer, thick] = match cage.pocket {
             PocketWalls::Corners => [bearing.outer_race_diameter_mm - OFF_RACE * roller, OFF_RACE * roller],
-            PocketWalls::Straight => [known.pitch_mm + 0.4 * roller, 0.4 * roller],
+            PocketWalls::Straight => [pitch_mm + 0.4 * roller, 0.4 * roller],
         };
         follow("cage.outer_diameter_mm", &mut cage.outer_diameter_mm, outer);
         follow("cage.thickness_mm", &mut cage.thickness_mm, thick);
@@ -156,11 +181,46 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         follow("output.frames.every_us", &mut frames.every_us, every);
     }
     scene.bearing = bearing;
-    if known.element == Element::Ball {
-        // By the load, which was chosen for cylinders as long as the balls' ring allows, if nobody gave one.
-        scene.bearing.thickness_mm = tidy(thickness_of_balls(scene));
+}
+
+/// Modes of rings smaller or larger than the paper's, where nobody gave them: a NU 205 with 60 kHz has the
+/// forces of the full model to 0.6 % (docs/results/reduced.md), and 30 kHz are as good for the paper's.
+pub(super) fn modes(scene: &mut Scene, given: &[String]) {
+    let outside = |b: &BearingScene| b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
+    let across = outside(&scene.bearing) / outside(&BearingScene::default());
+    if let ModelScene::Reduced(reduced) = &mut scene.model
+        && !given.iter().any(|path| path == "model.modes_khz")
+    {
+        let khz = ReducedScene::default().modes_khz / across.sqrt();
+        reduced.modes_khz = to_digits(2, khz.clamp(2.0, 300.0));
     }
-    Ok(())
+}
+
+/// A penetration under the largest static force that is so many times smaller than what guards warn of stays
+/// below it when rollers knock.
+const KNOCKS: f64 = 2.0;
+
+/// Share of the load that the most loaded of many rollers carries between raceways with clearance, times their
+/// number: Stribeck's 5, and a fifth more for a clearance as wide as the rollers give way.
+const WITH_CLEARANCE: f64 = 6.0;
+
+/// Contact that does not sink in deeper than the radial clearance or a tenth of an element, where nobody gave
+/// its stiffness: the paper's, in proportion, is too soft where few rollers carry.
+pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
+    let written = |path: &str| given.iter().any(|written| written == path);
+    if written("contact.penalty_scale") || written("contact.formula") {
+        return;
+    }
+    let g = scene.resolve();
+    let largest = g.load * (WITH_CLEARANCE / g.rollers as f64).min(1.0);
+    let w = largest / g.thickness;
+    let depth = (0.75 * w / (g.penalty_stiffness * (2.0 * g.inner_contact_radius()).sqrt())).powf(2.0 / 3.0);
+    let hertz = 0.5 * LineContacts::of(&g).approach(w).0;
+    let warned = (0.5 * g.clearance).max(hertz).min(0.1 * g.element_size);
+    let stiffer = (KNOCKS * depth / warned).powf(1.5);
+    if stiffer > 1.0 && stiffer.is_finite() {
+        scene.contact.penalty_scale = to_digits(2, (stiffer * scene.contact.penalty_scale).min(3.0));
+    }
 }
 
 /// Rings and rolling elements of a bearing in the catalogue.
@@ -177,7 +237,7 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
         return Err(format!("the rings of `{name}` are not known: give the bearing by its fields"));
     };
     let (ball, pitch) = (known.diameter_mm, known.pitch_mm);
-    let clearance = clearance_mm(known.element, bore_mm);
+    let clearance = catalogue::normal_clearance_mm(known.element, bore_mm);
     // Rings are as far apart as the catalogue says; the clearance is taken from the rollers, or from the
     // groove of the outer ring.
     let (roller, outer) = match known.element {
@@ -195,24 +255,15 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
         rollers: count,
         roller_diameter_mm: tidy(roller),
         thickness_mm: tidy(ROLLER_LENGTH * width_mm),
-        // As far before the middle of its load zone, in parts of the pitch, as the paper's.
-        first_roller_deg: tidy(90.0 + 4.0 * 24.0 / count as f64),
-        clearance_change_um: 0.0,
+        first_roller_deg: first_roller(count),
+        ..BearingScene::default()
     })
 }
 
-/// Diametral clearance [mm]: the middle of the normal group (ISO 5753-1).
-fn clearance_mm(element: Element, bore_mm: f64) -> f64 {
-    let um = match element {
-        Element::Ball if bore_mm <= 18.0 => 10.5,
-        Element::Ball if bore_mm <= 30.0 => 12.5,
-        Element::Ball => 14.5,
-        Element::Roller if bore_mm <= 30.0 => 32.5,
-        Element::Roller if bore_mm <= 40.0 => 37.5,
-        Element::Roller if bore_mm <= 50.0 => 45.0,
-        Element::Roller => 55.0,
-    };
-    1e-3 * um
+/// Angle of roller 1 of so many [°]: as far before the middle of the load zone, in parts of the pitch, as the
+/// paper's.
+pub(super) fn first_roller(rollers: usize) -> f64 {
+    tidy(90.0 + 4.0 * 24.0 / rollers as f64)
 }
 
 /// Length of cylinders [mm] that let the raceways approach each other at the most loaded place as balls would
@@ -232,7 +283,7 @@ fn thickness_of_balls(scene: &Scene) -> f64 {
 }
 
 /// A dimension to a few micrometres.
-fn tidy(number: f64) -> f64 {
+pub(super) fn tidy(number: f64) -> f64 {
     to_digits(5, number)
 }
 

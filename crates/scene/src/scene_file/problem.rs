@@ -67,6 +67,13 @@ impl SceneError {
         Self { problems }
     }
 
+    /// The same with `hint` behind what is said of fields of the bearing.
+    pub(crate) fn about_bearing(mut self, hint: &str) -> Self {
+        let of_bearing = |problem: &&mut Problem| problem.field.starts_with("bearing.");
+        self.problems.iter_mut().filter(of_bearing).for_each(|problem| problem.message.push_str(hint));
+        self
+    }
+
     /// The problems, in the order in which they were found. Never empty.
     pub fn problems(&self) -> &[Problem] {
         &self.problems

@@ -57,9 +57,13 @@ impl FieldReference {
 }
 
 /// Fields that are absent where they have these values.
-const LATER: [(&str, &str); 4] = [
+const LATER: [(&str, &str); 8] = [
     ("operation.load_angle_deg", "270.0"),
     ("operation.outer_speed_rpm", "0.0"),
     ("bearing.clearance_change_um", "0.0"),
+    ("bearing.pitch_mm", "None"),
+    ("bearing.bore_mm", "None"),
+    ("bearing.outside_mm", "None"),
+    ("bearing.width_mm", "None"),
     ("roughness.slope", "2.0"),
 ];

@@ -5,8 +5,8 @@ use super::outline::Outline;
 use crate::deviation::DeviationScene;
 use crate::housing::HousingScene;
 use crate::scene::{
-    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, RingMeshScene,
-    RotatingLoadScene, Scene, StructuralDampingScene,
+    Assumed, FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
+    RingMeshScene, RotatingLoadScene, Scene, StructuralDampingScene,
 };
 
 /// Groups that a scene may lack.
@@ -21,6 +21,10 @@ const OPTIONAL_GROUPS: [&str; 9] = [
     "outer_ring_mesh",
     "inner_ring_mesh",
 ];
+
+/// Fields that describe another bearing than the default one.
+const OF_ANOTHER: [&str; 4] =
+    ["bearing.pitch_mm", "bearing.bore_mm", "bearing.outside_mm", "bearing.width_mm"];
 
 /// Every field that a scene has, from the defaults.
 pub(crate) struct Schema {
@@ -64,6 +68,11 @@ impl Schema {
         // Not written by default.
         (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (0.5, 0.5);
         scene.bearing.clearance_change_um = 0.5;
+        scene.bearing.pitch_mm = Some(181.98);
+        scene.bearing.bore_mm = Some(143.96);
+        scene.bearing.outside_mm = Some(220.0);
+        scene.bearing.width_mm = Some(50.0);
+        scene.bearing.assumed = vec![Assumed::Clearance];
         let of_housing = |housing| {
             scene.operation.outer_speed_profile.clone_from(&scene.operation.speed_profile);
             let complete = Complete::of(&Scene { housing, ..scene.clone() });
@@ -129,7 +138,8 @@ impl Schema {
 
     /// The default of `path` where it is one word, text or number of its own.
     pub(crate) fn plain_default(&self, path: &str) -> Option<&str> {
-        self.default_of(path).filter(|default| !default.contains(['(', '[']) && !path.contains('['))
+        let has_one = !path.contains('[') && !OF_ANOTHER.contains(&path);
+        self.default_of(path).filter(|default| has_one && !default.contains(['(', '[']))
     }
 
     /// Names valid directly inside `section` (empty: the root).

@@ -150,7 +150,10 @@ impl Guards {
                 self.advice()
             ));
         }
-        if percent > limits.energy_warning_percent && !info.guards.energy_warned {
+        // Of the larger of both: in a run that turns energy into heat for long, one that always stands says
+        // nothing.
+        let of_larger = percent.min(100.0 * off.of_heat);
+        if of_larger > limits.energy_warning_percent && !info.guards.energy_warned {
             info.guards.energy_warned = true;
             info.warnings.push(format!(
                 "energy was off by {percent:.3} % of the most that rings and contacts have stored and {} \

@@ -87,13 +87,16 @@ pub(crate) struct Nodes<'a> {
     /// Positions that elements see [m].
     pub(crate) x: &'a mut [f64],
     pub(crate) y: &'a mut [f64],
-    /// Positions of the nodes [m] where elements see others; empty where they see these.
+    /// Positions of the nodes [m] where elements see others, with stiffness damping; else empty.
     pub(crate) own_x: &'a mut [f64],
     pub(crate) own_y: &'a mut [f64],
     pub(crate) vx: &'a mut [f64],
     pub(crate) vy: &'a mut [f64],
     pub(crate) fx: &'a mut [f64],
     pub(crate) fy: &'a mut [f64],
+    /// Forces [N] that structural damping holds; empty where there is none.
+    pub(crate) held_x: &'a [f64],
+    pub(crate) held_y: &'a [f64],
     /// Time step times [`gain`] over mass [s/kg].
     pub(crate) step_over_mass: &'a [f64],
     /// Mass [kg]; only read where heat is counted.
@@ -115,6 +118,10 @@ impl Nodes<'_> {
             prefetch_index(&*self.vx, low + FETCH);
             prefetch_index(&*self.vy, low + FETCH);
             prefetch_index(self.step_over_mass, low + FETCH);
+            if !self.held_x.is_empty() {
+                prefetch_index(self.held_x, low + FETCH);
+                prefetch_index(self.held_y, low + FETCH);
+            }
         }
     }
 
@@ -123,6 +130,7 @@ impl Nodes<'_> {
     pub(crate) fn alike<D: Damping>(&mut self) -> Nodes<'_> {
         let n = self.x.len();
         let own = if D::STIFFNESS { n } else { 0 };
+        let held = if D::HOLDS { n } else { 0 };
         Nodes {
             x: &mut self.x[..n],
             y: &mut self.y[..n],
@@ -132,6 +140,8 @@ impl Nodes<'_> {
             vy: &mut self.vy[..n],
             fx: &mut self.fx[..n],
             fy: &mut self.fy[..n],
+            held_x: &self.held_x[..held],
+            held_y: &self.held_y[..held],
             step_over_mass: &self.step_over_mass[..n],
             mass: self.mass,
         }
@@ -144,9 +154,10 @@ pub(crate) trait Damping {
     const DAMPS: bool;
     /// Whether the heat of that is counted.
     const COUNTS: bool;
-    /// Whether there is stiffness or structural damping: elements see positions that are not those of the
-    /// nodes.
+    /// Whether there is stiffness damping: elements see positions that are not those of the nodes.
     const STIFFNESS: bool = false;
+    /// Whether there is structural damping, which holds a force at each node.
+    const HOLDS: bool = false;
 }
 
 /// No damping.
@@ -155,8 +166,10 @@ pub(crate) struct Undamped;
 pub(crate) struct Damped;
 /// Damping and its heat.
 pub(crate) struct Counted;
-/// The same, and stiffness or structural damping.
+/// The same, and stiffness damping.
 pub(crate) struct WithStiffness<D>(PhantomData<D>);
+/// The same, and structural damping.
+pub(crate) struct WithHeld<D>(PhantomData<D>);
 
 impl Damping for Undamped {
     const DAMPS: bool = false;
@@ -179,6 +192,12 @@ impl<D: Damping> Damping for WithStiffness<D> {
     const STIFFNESS: bool = true;
 }
 
+impl<D: Damping> Damping for WithHeld<D> {
+    const DAMPS: bool = D::DAMPS;
+    const COUNTS: bool = D::COUNTS;
+    const HOLDS: bool = true;
+}
+
 /// Takes a group of nodes from `at` on one step on under forces x, y [N]: v += Δt·a, x += Δt·v. With `LAST`,
 /// only the first `n` of them.
 ///
@@ -193,11 +212,15 @@ pub(crate) fn advance<S: Simd, D: Damping, const LAST: bool>(
     at: usize,
     lane: usize,
     n: usize,
-    [fx, fy]: [Vector<S>; 2],
+    [mut fx, mut fy]: [Vector<S>; 2],
     free: [f64; 2],
     step: &Step<S>,
     heat: &mut Vector<S>,
 ) {
+    if D::HOLDS {
+        fx = fx + Vector::load(simd, nodes.held_x, at);
+        fy = fy + Vector::load(simd, nodes.held_y, at);
+    }
     let [own_x, own_y] =
         if D::STIFFNESS { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
     let (x, y) = (Vector::load(simd, own_x, at), Vector::load(simd, own_y, at));
@@ -293,8 +316,9 @@ pub(crate) fn rotate<D: Damping>(
         let (dx, dy) = (c1 * rx - s * ry, s * rx + c1 * ry);
         let (vx, vy) = (dx / dt, dy / dt);
         let m = gain * dt / nodes.step_over_mass[i];
-        let reaction_x = m * ((vx - nodes.vx[i]) / dt - gravity[0]) - nodes.fx[i];
-        let reaction_y = m * ((vy - nodes.vy[i]) / dt - gravity[1]) - nodes.fy[i];
+        let [held_x, held_y] = if D::HOLDS { [nodes.held_x[i], nodes.held_y[i]] } else { [0.0, 0.0] };
+        let reaction_x = m * ((vx - nodes.vx[i]) / dt - gravity[0]) - nodes.fx[i] - held_x;
+        let reaction_y = m * ((vy - nodes.vy[i]) / dt - gravity[1]) - nodes.fy[i] - held_y;
         work += 0.5 * dt * (reaction_x * (vx + nodes.vx[i]) + reaction_y * (vy + nodes.vy[i]));
         x[i] += dx;
         y[i] += dy;

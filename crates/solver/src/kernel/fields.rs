@@ -12,16 +12,23 @@ pub(crate) struct TileFields<'a> {
     /// Forces from outside the elements; read and reset at loaded nodes.
     pub(crate) fx: &'a mut [f64],
     pub(crate) fy: &'a mut [f64],
-    /// How far the springs of structural damping are stretched [m]; empty where there are none.
-    pub(crate) stretch: [[&'a mut [f64]; 2]; MAX_BRANCHES],
+    pub(crate) branches: BranchFields<'a>,
+}
+
+/// Those of structural damping; empty where there is none.
+#[derive(Default)]
+pub(crate) struct BranchFields<'a> {
+    /// Positions through the low-pass of each branch [m].
+    pub(crate) paths: [[&'a mut [f64]; 2]; MAX_BRANCHES],
+    /// Forces that nodes are pushed with until the next evaluation [N].
+    pub(crate) held: [&'a mut [f64]; 2],
 }
 
 impl TileFields<'_> {
     /// The same fields, borrowed once more.
     pub(crate) fn again(&mut self) -> TileFields<'_> {
-        let Self { x, y, vx, vy, fx, fy, stretch } = self;
-        let stretch = stretch.each_mut().map(|branch| branch.each_mut().map(|v| &mut **v));
-        TileFields { x, y, vx, vy, fx, fy, stretch }
+        let Self { x, y, vx, vy, fx, fy, branches } = self;
+        TileFields { x, y, vx, vy, fx, fy, branches: branches.again() }
     }
 
     /// Those of the first `at` slots, and the others.
@@ -32,13 +39,34 @@ impl TileFields<'_> {
         let (vy, vy2) = self.vy.split_at_mut(at);
         let (fx, fx2) = self.fx.split_at_mut(at);
         let (fy, fy2) = self.fy.split_at_mut(at);
-        let mut rest: [[&mut [f64]; 2]; MAX_BRANCHES] = Default::default();
-        let mut stretch = self.stretch;
-        for (v, rest) in stretch.iter_mut().flatten().zip(rest.iter_mut().flatten()) {
-            let all = std::mem::take(v);
-            (*v, *rest) = all.split_at_mut(at.min(all.len()));
+        let (branches, others) = self.branches.split_at(at);
+        let second = Self { x: x2, y: y2, vx: vx2, vy: vy2, fx: fx2, fy: fy2, branches: others };
+        (Self { x, y, vx, vy, fx, fy, branches }, second)
+    }
+}
+
+impl BranchFields<'_> {
+    fn again(&mut self) -> BranchFields<'_> {
+        fn both<'b>(of: &'b mut [&mut [f64]; 2]) -> [&'b mut [f64]; 2] {
+            of.each_mut().map(|v| &mut **v)
         }
-        let second = Self { x: x2, y: y2, vx: vx2, vy: vy2, fx: fx2, fy: fy2, stretch: rest };
-        (Self { x, y, vx, vy, fx, fy, stretch }, second)
+        BranchFields { paths: self.paths.each_mut().map(both), held: both(&mut self.held) }
+    }
+
+    fn split_at(mut self, at: usize) -> (Self, Self) {
+        let mut rest = Self::default();
+        let (own, others) = (self.all(), rest.all());
+        for (v, other) in own.zip(others) {
+            let whole = std::mem::take(v);
+            (*v, *other) = whole.split_at_mut(at.min(whole.len()));
+        }
+        (self, rest)
+    }
+}
+
+impl<'a> BranchFields<'a> {
+    fn all(&mut self) -> impl Iterator<Item = &mut &'a mut [f64]> {
+        let Self { paths, held } = self;
+        paths.iter_mut().flatten().chain(held)
     }
 }

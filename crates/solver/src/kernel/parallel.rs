@@ -3,7 +3,7 @@
 use crate::kernel::{
     advance::StepParameters,
     fields::TileFields,
-    structural_damping::BranchSteps,
+    structural_damping::Evaluation,
     sweep::{Scratch, StepEnergies, sweep},
     tile::{Tile, Turn},
 };
@@ -14,8 +14,8 @@ pub(crate) struct TileRuns<'a> {
     pub(crate) tiles: &'a [Tile],
     pub(crate) fields: TileFields<'a>,
     pub(crate) counted: &'a mut [StepEnergies],
-    /// What the branches of structural damping do.
-    pub(crate) branches: &'a BranchSteps,
+    /// What the branches of structural damping do, in a step that evaluates them.
+    pub(crate) evaluation: Option<&'a Evaluation>,
     /// The tiles that are swept; others are left alone.
     pub(crate) turn: Turn,
 }
@@ -29,14 +29,14 @@ impl<'a> TileRuns<'a> {
             (_, None) => self.fields.x.len(),
         };
         let (a, b) = self.fields.split_at(nodes);
-        let ((p, q), branches, turn) = (self.counted.split_at_mut(tile), self.branches, self.turn);
-        let left = Self { tiles: left, fields: a, counted: p, branches, turn };
-        (left, Self { tiles: right, fields: b, counted: q, branches, turn })
+        let ((p, q), evaluation, turn) = (self.counted.split_at_mut(tile), self.evaluation, self.turn);
+        let left = Self { tiles: left, fields: a, counted: p, evaluation, turn };
+        (left, Self { tiles: right, fields: b, counted: q, evaluation, turn })
     }
 
     fn take(&mut self) -> Self {
         let (tiles, fields, counted) = (&[][..], TileFields::default(), &mut [][..]);
-        std::mem::replace(self, Self { tiles, fields, counted, branches: self.branches, turn: self.turn })
+        std::mem::replace(self, Self { tiles, fields, counted, evaluation: self.evaluation, turn: self.turn })
     }
 
     /// From the first one on, or backwards.
@@ -48,7 +48,7 @@ impl<'a> TileRuns<'a> {
         if let ([tile], [energies]) = (self.tiles, self.counted)
             && tile.turn == self.turn
         {
-            *energies = sweep(tile, self.fields, scratch, parameters, self.branches);
+            *energies = sweep(tile, self.fields, scratch, parameters, self.evaluation);
         }
     }
 }

@@ -102,6 +102,12 @@ impl QuadMetric {
         Self { minus_rest, stiffness, from_mixed, s1: q.s1, s2: q.s2, hourglass: k.hourglass }
     }
 
+    /// Makes the element stiffer by a factor.
+    pub(crate) fn stiffen(&mut self, factor: f64) {
+        let Self { stiffness, from_mixed, hourglass, .. } = self;
+        stiffness.iter_mut().chain(from_mixed).chain([hourglass]).for_each(|k| *k *= factor);
+    }
+
     /// The same element with corners numbered 4, 3, 2, 1.
     pub(crate) fn turned_over(&self) -> Self {
         let ([p, r, pr], [k11, k12, k22, k13, k23]) = (self.minus_rest, self.stiffness);

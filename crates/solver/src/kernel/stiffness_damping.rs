@@ -20,10 +20,10 @@ use stribeck_simd::{
 /// Where the elements of the tile at hand see its nodes, and what that changes about their forces.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Extrapolated {
-    /// Positions x + β v, or x + Σ g u with structural damping [m].
+    /// Positions x + β v, or those from which the branches of structural damping pull [m].
     pub(crate) x: Field,
     pub(crate) y: Field,
-    /// Damping force [N], in steps that count its heat.
+    /// Damping force [N], in steps that count its heat or evaluate branches.
     pub(crate) fx: Field,
     pub(crate) fy: Field,
 }
@@ -104,9 +104,9 @@ pub(crate) fn tile_forces<S: Simd>(
     } else {
         single_elements(simd, tile, k, x, y, fx, fy);
     }
-    let (own_x, own_y, mass) = (&mut [][..], &mut [][..], &[][..]);
-    let step_over_mass = &tile.step_over_mass;
-    let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, step_over_mass, mass };
+    let (own_x, own_y, none) = (&mut [][..], &mut [][..], &[][..]);
+    let (held_x, held_y, mass, step_over_mass) = (none, none, none, &tile.step_over_mass);
+    let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, held_x, held_y, step_over_mass, mass };
     // A loop: within a closure the compiler would not use the instruction set of this function.
     for s in &tile.strips {
         strip_forces(simd, s, &tile.varying, k, &mut nodes, step);

@@ -1,14 +1,12 @@
-//! Structural damping: elements see each node where stretched springs would pull it, so that their forces
-//! hold those of the springs (THEORY §2.8); and the energy of the springs.
-
-use std::ops::Range;
+//! Structural damping: branches answer to the nodes' path through a low-pass, and their forces are held from
+//! one evaluation to the next, some steps later (THEORY §2.8).
 
 use pulp::{Simd, WithSimd};
 
 use crate::{
     kernel::{
         advance::{Step, StepParameters},
-        fields::TileFields,
+        fields::{BranchFields, TileFields},
         frames::LaneFrames,
         stiffness_damping::{Extrapolated, tile_forces},
         tile::{Tile, TileStructural},
@@ -17,186 +15,169 @@ use crate::{
 };
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-/// Energy of the springs of each branch [J].
-pub(crate) type SpringEnergies = [f64; MAX_BRANCHES];
-
-/// What the branches do in a step.
+/// What the branches do in a step that evaluates them.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct BranchSteps {
+pub(crate) struct Evaluation {
     all: [BranchStep; MAX_BRANCHES],
     count: usize,
-    /// Whether the energy of springs is measured in this step.
-    pub(crate) measure: bool,
+    /// Σ g/(1 + Σ g): the stiffened elements of a tile times this are the springs of all branches.
+    share: f64,
+    /// Whether springs are relaxed where the nodes are now: nothing is held yet.
+    first: bool,
+    /// Time since the last evaluation, and from now to the middle of the steps until the next [s].
+    since: f64,
+    middle: f64,
 }
 
-/// One of them: u becomes `keep` u + `gain` v, and elements see nodes `share` u ahead.
+/// One of them: its path q becomes `keep` q + (1 − `keep`) x, and stands for `weight` of all springs, half a
+/// step back: (1 + `back`) q − `back` x.
 #[derive(Debug, Clone, Copy, Default)]
 struct BranchStep {
     keep: f64,
-    gain: f64,
-    share: f64,
+    weight: f64,
+    back: f64,
 }
 
-impl BranchSteps {
-    /// Steps of `dt` [s]: u' = v − u/τ, exact for a velocity that is constant in a step.
-    pub(crate) fn new(branches: &[Branch], dt: f64, measure: bool) -> Self {
-        let mut steps = Self { count: branches.len(), measure, ..Self::default() };
-        for (to, &Branch { stiffness, relaxation_time }) in steps.all.iter_mut().zip(branches) {
-            let lost = -(-dt / relaxation_time).exp_m1();
-            *to = BranchStep { keep: 1.0 - lost, gain: relaxation_time * lost, share: stiffness };
+impl Evaluation {
+    /// `since` steps of `dt` [s] after the last evaluation, none for the first one, and `until` before the
+    /// next.
+    pub(crate) fn new(branches: &[Branch], dt: f64, since: Option<u64>, until: u64) -> Self {
+        let sum: f64 = branches.iter().map(|b| b.stiffness).sum();
+        let passed = since.map_or(0.0, |steps| steps as f64 * dt);
+        let mut all = [BranchStep::default(); MAX_BRANCHES];
+        for (to, &Branch { stiffness, relaxation_time }) in all.iter_mut().zip(branches) {
+            *to = BranchStep {
+                keep: (-passed / relaxation_time).exp(),
+                weight: stiffness / sum,
+                back: 0.5 * (dt / relaxation_time).exp_m1(),
+            };
         }
-        steps
+        Self {
+            all,
+            count: branches.len(),
+            share: sum / (1.0 + sum),
+            first: since.is_none(),
+            since: passed,
+            middle: 0.5 * (until - 1) as f64 * dt,
+        }
     }
 }
 
-/// Takes the springs of a tile a step on and finds where its elements see the nodes. Ghosts must have
-/// positions and velocities.
-pub(crate) struct Stretch<'a> {
+/// Evaluates the branches of a tile. Ghosts must have positions.
+pub(crate) struct Evaluate<'a> {
     pub(crate) tile: &'a Tile,
     pub(crate) fields: TileFields<'a>,
-    pub(crate) seen: &'a mut Extrapolated,
+    pub(crate) scratch: &'a mut Extrapolated,
     pub(crate) parameters: StepParameters,
-    pub(crate) branches: &'a BranchSteps,
+    pub(crate) evaluation: &'a Evaluation,
 }
 
-impl WithSimd for Stretch<'_> {
-    /// Zero where they are not measured.
-    type Output = SpringEnergies;
+/// What forces that are held have done [J]: they work over the way from half a step before an evaluation to
+/// half a step before the next. Sums over nodes of force times position there; a shift adds nothing, because
+/// the forces of all elements are in balance.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct HeldWork {
+    /// Of the forces that were held until now.
+    pub(crate) released: f64,
+    /// Of the forces that are held from now on.
+    pub(crate) taken_up: f64,
+}
+
+impl std::ops::Add for HeldWork {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self { released: self.released + other.released, taken_up: self.taken_up + other.taken_up }
+    }
+}
+
+impl WithSimd for Evaluate<'_> {
+    type Output = HeldWork;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> SpringEnergies {
-        let Self { tile, fields, seen, parameters, branches } = self;
-        let mut energies = SpringEnergies::default();
-        let Some(structural) = &tile.structural else { return energies };
-        let TileFields { x, y, vx, vy, stretch, .. } = fields;
-        let n = tile.slots.len();
-        let Extrapolated { x: seen_x, y: seen_y, fx, fy } = seen;
+    fn with_simd<S: Simd>(self, simd: S) -> HeldWork {
+        let Self { tile, fields, scratch, parameters, evaluation } = self;
+        let Some(structural) = &tile.structural else { return HeldWork::default() };
+        let TileFields { x, y, vx, vy, branches, .. } = fields;
+        let BranchFields { paths, held: [held_x, held_y] } = branches;
+        let (n, half) = (tile.slots.len(), 0.5 * parameters.dt);
+        let (ways_x, ways_y) = ([&*x, &*vx], [&*y, &*vy]);
+        let released = virial(held_x, ways_x, half, tile.own) + virial(held_y, ways_y, half, tile.own);
+        let Extrapolated { x: seen_x, y: seen_y, fx, fy } = scratch;
         let (seen_x, seen_y) = (&mut seen_x[..n], &mut seen_y[..n]);
-        let nodes = [&*x, &*y, &*vx, &*vy];
-        let [[ax, ay], [bx, by], [cx, cy]] = stretch;
-        let all = 0..x.len();
-        let to = [&mut *seen_x, &mut *seen_y];
-        stretch_nodes(
-            simd,
-            structural,
-            nodes,
-            [[&mut *ax, &mut *ay], [&mut *bx, &mut *by], [&mut *cx, &mut *cy]],
-            to,
-            branches,
-            all,
-        );
-        if !branches.measure {
-            return energies;
+        seen_x.fill(0.0);
+        seen_y.fill(0.0);
+        for (path, step) in paths.into_iter().zip(&evaluation.all).take(evaluation.count) {
+            follow(simd, structural, [x, y], path, [&mut *seen_x, &mut *seen_y], step, evaluation);
         }
-        // ½ g u·K u, with K u the change of the elastic forces by a displacement u. Steps that measure see
-        // their nodes anew afterwards, to the same bits.
-        let k = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let step = &Step::new(simd, &parameters, 0.0, &LaneFrames::REST);
         let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
         fx.fill(0.0);
         fy.fill(0.0);
-        tile_forces(simd, tile, k, [&mut *x, &mut *y, &mut *vx, &mut *vy], [&mut *fx, &mut *fy], step);
-        let springs = [[&*ax, &*ay], [&*bx, &*by], [&*cx, &*cy]];
-        let springs = &springs[..branches.count];
-        for (energy, [ux, uy]) in energies.iter_mut().zip(springs) {
-            *energy = work(fx, ux, tile.own) + work(fy, uy, tile.own);
-        }
-        for ((energy, [ux, uy]), BranchStep { share, .. }) in
-            energies.iter_mut().zip(springs).zip(&branches.all)
-        {
-            for (to, at, u) in [(&mut *seen_x, &*x, ux), (&mut *seen_y, &*y, uy)] {
-                copy(at, to);
-                displace(simd, to, 1.0, u);
+        let k = &tile.stiffness.of(Vector::all(simd, 0.0));
+        let step = &Step::new(simd, &parameters, 0.0, &LaneFrames::REST);
+        tile_forces(simd, tile, k, [seen_x, seen_y, vx, vy], [&mut *fx, &mut *fy], step);
+        for (held, force) in [(&mut *held_x, fx), (&mut *held_y, fy)] {
+            for (held, force) in held.iter_mut().zip(force) {
+                *held = -evaluation.share * *force;
             }
-            fx.fill(0.0);
-            fy.fill(0.0);
-            let seen = [&mut *seen_x, &mut *seen_y, &mut *vx, &mut *vy];
-            tile_forces(simd, tile, k, seen, [&mut *fx, &mut *fy], step);
-            *energy = 0.5 * share * (*energy - work(fx, ux, tile.own) - work(fy, uy, tile.own));
         }
-        copy(x, seen_x);
-        copy(y, seen_y);
-        for ([ux, uy], BranchStep { share, .. }) in springs.iter().zip(&branches.all) {
-            displace(simd, seen_x, *share, ux);
-            displace(simd, seen_y, *share, uy);
-        }
-        energies
+        let (ways_x, ways_y) = ([&*x, &*vx], [&*y, &*vy]);
+        let taken_up = virial(held_x, ways_x, half, tile.own) + virial(held_y, ways_y, half, tile.own);
+        HeldWork { released, taken_up }
     }
 }
 
-/// Work of forces over displacements of the first `own` nodes [J].
-fn work(force: &[f64], u: &[f64], own: usize) -> f64 {
-    force[..own].iter().zip(&u[..own]).map(|(f, u)| f * u).sum()
-}
-
-/// Copies positions, as many as there is room for.
-fn copy(from: &[f64], to: &mut [f64]) {
-    to.copy_from_slice(&from[..to.len()]);
-}
-
-/// Moves positions by `share` of displacements.
+/// Sum of forces on the first `own` nodes times where these were a time `half` [s] ago [J].
 #[inline(always)]
-fn displace<S: Simd>(simd: S, to: &mut [f64], share: f64, u: &[f64]) {
-    let share = Vector::all(simd, share);
-    for i in (0..to.len()).step_by(Vector::<S>::LEN) {
-        share.times_plus(Vector::load(simd, u, i), Vector::load(simd, to, i)).store(to, i);
+fn virial(force: &[f64], [at, v]: [&[f64]; 2], half: f64, own: usize) -> f64 {
+    let mut columns = [0.0; LANES];
+    let whole = own - own % LANES;
+    for first in (0..whole).step_by(LANES) {
+        let group = first..first + LANES;
+        let (force, at, v) = (&force[group.clone()], &at[group.clone()], &v[group]);
+        for l in 0..LANES {
+            columns[l] += force[l] * (at[l] - half * v[l]);
+        }
     }
+    let rest: f64 = (whole..own).map(|n| force[n] * (at[n] - half * v[n])).sum();
+    columns.iter().sum::<f64>() + rest
 }
 
-/// Takes the springs of some nodes, whole groups of lanes, a step on and finds where elements see these
-/// nodes.
+/// Takes the path of one branch to the present and adds it to where the springs of all branches pull from.
+///
+/// Paths turn with the bodies: a rigid motion then leads to one and the same shift of all nodes, which gives
+/// no force.
 #[inline(always)]
-pub(crate) fn stretch_nodes<S: Simd>(
+fn follow<S: Simd>(
     simd: S,
     structural: &TileStructural,
-    nodes: [&[f64]; 4],
-    [a, b, c]: [[&mut [f64]; 2]; MAX_BRANCHES],
-    seen: [&mut [f64]; 2],
-    branches: &BranchSteps,
-    which: Range<usize>,
-) {
-    match branches.count {
-        0 => {}
-        1 => stretch(simd, structural, nodes, [a], seen, branches, which),
-        2 => stretch(simd, structural, nodes, [a, b], seen, branches, which),
-        _ => stretch(simd, structural, nodes, [a, b, c], seen, branches, which),
-    }
-}
-
-/// The same for a number of branches that is known when the program is compiled. Springs are stretched by the
-/// velocity relative to a rotation at the spin of each lane's body: a rigid motion is then seen as one and
-/// the same shift of all nodes.
-#[inline(always)]
-fn stretch<S: Simd, const BRANCHES: usize>(
-    simd: S,
-    structural: &TileStructural,
-    [x, y, vx, vy]: [&[f64]; 4],
-    mut springs: [[&mut [f64]; 2]; BRANCHES],
+    [x, y]: [&[f64]; 2],
+    [path_x, path_y]: [&mut [f64]; 2],
     [seen_x, seen_y]: [&mut [f64]; 2],
-    steps: &BranchSteps,
-    which: Range<usize>,
+    &BranchStep { keep, weight, back }: &BranchStep,
+    evaluation: &Evaluation,
 ) {
-    // Loops: within a closure the compiler would not use the instruction set of this function.
-    let mut each = [[Vector::all(simd, 0.0); 3]; BRANCHES];
-    for (to, &BranchStep { keep, gain, share }) in each.iter_mut().zip(&steps.all) {
-        *to = [Vector::all(simd, keep), Vector::all(simd, gain), Vector::all(simd, share)];
-    }
+    let turned = |time: f64| {
+        let angles = structural.spin.map(|spin| spin * time);
+        (angles.map(f64::cos), angles.map(f64::sin))
+    };
+    let ((cos, sin), (cos_ahead, sin_ahead)) = (turned(evaluation.since), turned(evaluation.middle));
+    let keep = if evaluation.first { 0.0 } else { keep };
+    let [kept, new] = [keep, 1.0 - keep].map(|share| Vector::all(simd, share));
+    let [from_path, from_node] = [weight * (1.0 + back), -weight * back].map(|w| Vector::all(simd, w));
     // A tile's slots are whole lines of cache.
-    for i in which.step_by(Vector::<S>::LEN) {
+    for i in (0..x.len()).step_by(Vector::<S>::LEN) {
+        let lane = i % LANES;
+        let (c, s) = (Vector::load(simd, &cos, lane), Vector::load(simd, &sin, lane));
         let (x, y) = (Vector::load(simd, x, i), Vector::load(simd, y, i));
-        let (vx, vy) = (Vector::load(simd, vx, i), Vector::load(simd, vy, i));
-        let spin = Vector::load(simd, &structural.spin, i % LANES);
-        let (rx, ry) = (spin.times_plus(y, vx), (-spin).times_plus(x, vy));
-        let (mut to_x, mut to_y) = (x, y);
-        for ([ux, uy], [keep, gain, share]) in springs.iter_mut().zip(&each) {
-            let new_x = gain.times_plus(rx, *keep * Vector::load(simd, ux, i));
-            let new_y = gain.times_plus(ry, *keep * Vector::load(simd, uy, i));
-            new_x.store(ux, i);
-            new_y.store(uy, i);
-            to_x = share.times_plus(new_x, to_x);
-            to_y = share.times_plus(new_y, to_y);
-        }
-        to_x.store(seen_x, i);
-        to_y.store(seen_y, i);
+        let (px, py) = (Vector::load(simd, path_x, i), Vector::load(simd, path_y, i));
+        let qx = kept.times_plus(c.times_plus(px, -(s * py)), new * x);
+        let qy = kept.times_plus(s.times_plus(px, c * py), new * y);
+        qx.store(path_x, i);
+        qy.store(path_y, i);
+        let (ux, uy) = (from_path.times_plus(qx, from_node * x), from_path.times_plus(qy, from_node * y));
+        let (c, s) = (Vector::load(simd, &cos_ahead, lane), Vector::load(simd, &sin_ahead, lane));
+        let (tx, ty) = (Vector::load(simd, seen_x, i), Vector::load(simd, seen_y, i));
+        c.times_plus(ux, (-s).times_plus(uy, tx)).store(seen_x, i);
+        s.times_plus(ux, c.times_plus(uy, ty)).store(seen_y, i);
     }
 }

@@ -1,32 +1,25 @@
 //! One pass over a tile: element forces, then each finished row of nodes moves while it is still in cache
 //! (THEORY §2.3; cost in PERFORMANCE.md).
 
-use std::ops::Range;
-
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
     kernel::{
         advance::{
-            Counted, Damped, Damping, Nodes, Step, StepParameters, Undamped, WithStiffness, advance_row,
-            gain, rotate,
+            Counted, Damped, Damping, Nodes, Step, StepParameters, Undamped, WithHeld, WithStiffness,
+            advance_row, gain, rotate,
         },
         fields::TileFields,
         frames::LaneFrames,
         gather::{congruent_elements, single_elements},
         stiffness_damping::{Extrapolate, Extrapolated},
         strip::strip,
-        structural_damping::{BranchSteps, SpringEnergies, Stretch, stretch_nodes},
-        tile::{Tile, TileStructural},
+        structural_damping::{Evaluate, Evaluation, HeldWork},
+        tile::Tile,
     },
     model::Motion,
-    structural_damping::MAX_BRANCHES,
 };
-use stribeck_simd::{
-    field::Field,
-    lanes::{LANES, Vector},
-    threads::Met,
-};
+use stribeck_simd::{field::Field, lanes::Vector, threads::Met};
 
 /// Memory of one thread for the tile at hand.
 #[derive(Debug, Clone)]
@@ -34,7 +27,8 @@ pub(crate) struct Scratch {
     /// Forces on the nodes of the tile at hand; all zero between tiles.
     fx: Field,
     fy: Field,
-    /// Where elements see the nodes; empty without stiffness and structural damping.
+    /// Where elements see the nodes, with stiffness damping, and what evaluates branches of structural damping;
+    /// empty without both.
     pub(crate) extrapolated: Extrapolated,
     /// Where this thread, the first of two, met the other.
     pub(crate) met: Met,
@@ -58,15 +52,14 @@ pub(crate) struct StepEnergies {
     pub(crate) work: f64,
     /// Heat of damping; zero where it is not counted.
     pub(crate) heat: f64,
-    /// Of the springs of structural damping at the positions' time; zero where it is not measured.
-    pub(crate) springs: SpringEnergies,
+    /// Of forces that structural damping holds; zero in steps that do not evaluate them.
+    pub(crate) held: HeldWork,
 }
 
 impl std::ops::Add for StepEnergies {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        let springs = std::array::from_fn(|b| self.springs[b] + other.springs[b]);
-        Self { work: self.work + other.work, heat: self.heat + other.heat, springs }
+        Self { work: self.work + other.work, heat: self.heat + other.heat, held: self.held + other.held }
     }
 }
 
@@ -76,29 +69,22 @@ pub(crate) fn sweep(
     mut fields: TileFields<'_>,
     scratch: &mut Scratch,
     parameters: StepParameters,
-    branches: &BranchSteps,
+    evaluation: Option<&Evaluation>,
 ) -> StepEnergies {
     let arch = Arch::new();
-    if !sees_ahead(tile, &parameters) {
-        return arch.dispatch(Sweep { tile, fields, scratch, parameters, stretch: None });
+    let mut held = HeldWork::default();
+    if let Some(evaluation) = evaluation.filter(|_| tile.structural.is_some()) {
+        let (fields, scratch) = (fields.again(), &mut scratch.extrapolated);
+        held = arch.dispatch(Evaluate { tile, fields, scratch, parameters, evaluation });
     }
-    let stretch = tile.structural.is_some() && !branches.measure;
-    if stretch {
-        return arch.dispatch(Sweep { tile, fields, scratch, parameters, stretch: Some(branches) });
+    if !sees_ahead(tile, &parameters) {
+        return StepEnergies { held, ..arch.dispatch(Sweep { tile, fields, scratch, parameters }) };
     }
     // The first pass reads all of a tile: there is nothing left to prefetch.
     let parameters = StepParameters { fetch: false, ..parameters };
     let extrapolated = &mut scratch.extrapolated;
-    if tile.structural.is_some() {
-        let (fields, seen) = (&mut fields, extrapolated);
-        let springs = arch.dispatch(Stretch { tile, fields: fields.again(), seen, parameters, branches });
-        let fields = fields.again();
-        let energies = arch.dispatch(Sweep { tile, fields, scratch, parameters, stretch: None });
-        return StepEnergies { springs, ..energies };
-    }
     let before = arch.dispatch(Extrapolate { tile, fields: fields.again(), extrapolated, parameters });
-    let again = fields.again();
-    let mut energies = arch.dispatch(Sweep { tile, fields: again, scratch, parameters, stretch: None });
+    let mut energies = arch.dispatch(Sweep { tile, fields: fields.again(), scratch, parameters });
     if parameters.count_heat {
         energies.heat +=
             0.5 * parameters.dt * (before + scratch.extrapolated.power(tile.own, fields.vx, fields.vy));
@@ -108,7 +94,7 @@ pub(crate) fn sweep(
 
 /// Whether elements of the tile see other positions than those of the nodes.
 fn sees_ahead(tile: &Tile, parameters: &StepParameters) -> bool {
-    tile.elastic && (parameters.beta > 0.0 || tile.structural.is_some())
+    tile.elastic && parameters.beta > 0.0
 }
 
 /// A sweep to be compiled for each instruction set and kind of damping.
@@ -117,8 +103,6 @@ struct Sweep<'a> {
     fields: TileFields<'a>,
     scratch: &'a mut Scratch,
     parameters: StepParameters,
-    /// Branches whose springs are still to be stretched, each row of nodes just before its first element.
-    stretch: Option<&'a BranchSteps>,
 }
 
 impl WithSimd for Sweep<'_> {
@@ -127,7 +111,11 @@ impl WithSimd for Sweep<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> StepEnergies {
         let stiffness = sees_ahead(self.tile, &self.parameters);
+        let holds = self.tile.structural.is_some();
         match (&self.tile.damping, self.parameters.count_heat) {
+            (None, _) if holds => self.run::<S, WithHeld<Undamped>>(simd),
+            (Some(_), true) if holds => self.run::<S, WithHeld<Counted>>(simd),
+            (Some(_), false) if holds => self.run::<S, WithHeld<Damped>>(simd),
             (None, _) if stiffness => self.run::<S, WithStiffness<Undamped>>(simd),
             (Some(_), true) if stiffness => self.run::<S, WithStiffness<Counted>>(simd),
             (Some(_), false) if stiffness => self.run::<S, WithStiffness<Damped>>(simd),
@@ -141,12 +129,14 @@ impl WithSimd for Sweep<'_> {
 impl Sweep<'_> {
     #[inline(always)]
     fn run<S: Simd, D: Damping>(self, simd: S) -> StepEnergies {
-        let Self { tile, fields, scratch, parameters, stretch: branches } = self;
+        let Self { tile, fields, scratch, parameters } = self;
         let StepParameters { dt, gravity, .. } = parameters;
         let (rate, frames) = tile.damping.as_ref().map_or((0.0, &LaneFrames::REST), |d| (d.rate, &d.frames));
         let step = &Step::new(simd, &parameters, rate, frames);
         let stiffness = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y, stretch } = fields;
+        let TileFields { x, y, vx, vy, fx: outer_x, fy: outer_y, branches } = fields;
+        let held = if D::HOLDS { branches.held } else { Default::default() };
+        let [held_x, held_y] = held.map(|field| &*field);
         let n = tile.slots.len();
         let (fx, fy) = (&mut scratch.fx[..n], &mut scratch.fy[..n]);
         for run in &tile.loaded {
@@ -162,14 +152,6 @@ impl Sweep<'_> {
         } else {
             (x, y, &mut [][..], &mut [][..])
         };
-        let mut springs = D::STIFFNESS.then(|| Springs::of(tile, branches, stretch)).flatten();
-        if let Some(springs) = &mut springs {
-            let nodes = [&*own_x, &*own_y, &*vx, &*vy];
-            springs.stretch_ghosts(simd, nodes, [&mut *x, &mut *y]);
-            if tile.congruent || !tile.quads.is_empty() || !tile.triangles.is_empty() {
-                springs.stretch_until(simd, tile.own, nodes, [&mut *x, &mut *y]);
-            }
-        }
         if tile.congruent {
             congruent_elements(simd, tile, stiffness, x, y, fx, fy);
         } else {
@@ -177,14 +159,11 @@ impl Sweep<'_> {
         }
         let mass = tile.damping.as_ref().map_or(&[][..], |d| &d.mass);
         let step_over_mass = &tile.step_over_mass;
-        let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, step_over_mass, mass };
+        let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, held_x, held_y, step_over_mass, mass };
         let mut finish = tile.finish.iter().peekable();
         let (mut work, mut heat) = (0.0, Vector::all(simd, 0.0));
         for done in 0..=tile.strips.len() {
             while let Some(f) = finish.next_if(|f| f.after == done) {
-                if let Some(springs) = &mut springs {
-                    springs.stretch_nodes_until(simd, f.nodes.end, &mut nodes);
-                }
                 let free = match f.motion {
                     Motion::Free => [1.0, 1.0],
                     Motion::HeldX => [0.0, 1.0],
@@ -199,67 +178,12 @@ impl Sweep<'_> {
                 advance_row::<S, D>(simd, &mut nodes, f.nodes.clone(), tile.congruent, free, step, &mut heat);
             }
             if let Some(s) = tile.strips.get(done) {
-                if let Some(springs) = &mut springs {
-                    springs.stretch_nodes_until(simd, s.last_node() + 1, &mut nodes);
-                }
                 strip::<S, D>(simd, s, &tile.varying, stiffness, &mut nodes, step, &mut heat);
             }
         }
         fx[tile.own..].fill(0.0);
         fy[tile.own..].fill(0.0);
         StepEnergies { work, heat: step.heat(heat), ..StepEnergies::default() }
-    }
-}
-
-/// Springs of structural damping that follow the sweep: a row of nodes is then in cache when its elements are
-/// computed.
-struct Springs<'a> {
-    structural: &'a TileStructural,
-    branches: &'a BranchSteps,
-    stretch: [[&'a mut [f64]; 2]; MAX_BRANCHES],
-    /// Nodes before this one are done.
-    done: usize,
-    /// Whole groups of lanes of own nodes end here; the others are done with the ghosts.
-    own: usize,
-}
-
-impl<'a> Springs<'a> {
-    #[inline(always)]
-    fn of(
-        tile: &'a Tile,
-        branches: Option<&'a BranchSteps>,
-        stretch: [[&'a mut [f64]; 2]; MAX_BRANCHES],
-    ) -> Option<Self> {
-        let (structural, branches) = tile.structural.as_ref().zip(branches)?;
-        Some(Self { structural, branches, stretch, done: 0, own: tile.own - tile.own % LANES })
-    }
-
-    #[inline(always)]
-    fn stretch_ghosts<S: Simd>(&mut self, simd: S, nodes: [&[f64]; 4], seen: [&mut [f64]; 2]) {
-        let which = self.own..nodes[0].len();
-        self.stretch(simd, which, nodes, seen);
-    }
-
-    #[inline(always)]
-    fn stretch_until<S: Simd>(&mut self, simd: S, until: usize, nodes: [&[f64]; 4], seen: [&mut [f64]; 2]) {
-        let until = until.next_multiple_of(LANES).min(self.own);
-        if until > self.done {
-            let which = std::mem::replace(&mut self.done, until)..until;
-            self.stretch(simd, which, nodes, seen);
-        }
-    }
-
-    #[inline(always)]
-    fn stretch_nodes_until<S: Simd>(&mut self, simd: S, until: usize, nodes: &mut Nodes<'_>) {
-        let Nodes { x, y, own_x, own_y, vx, vy, .. } = nodes;
-        self.stretch_until(simd, until, [own_x, own_y, vx, vy], [x, y]);
-    }
-
-    #[inline(always)]
-    fn stretch<S: Simd>(&mut self, simd: S, which: Range<usize>, nodes: [&[f64]; 4], seen: [&mut [f64]; 2]) {
-        let [[ax, ay], [bx, by], [cx, cy]] = &mut self.stretch;
-        let springs = [[&mut **ax, &mut **ay], [&mut **bx, &mut **by], [&mut **cx, &mut **cy]];
-        stretch_nodes(simd, self.structural, nodes, springs, seen, self.branches, which);
     }
 }
 
@@ -407,9 +331,9 @@ mod tests {
                 vy: &mut d.state.vy[own.clone()],
                 fx: &mut fx[own.clone()],
                 fy: &mut fy[own],
-                stretch: Default::default(),
+                branches: Default::default(),
             };
-            in_lanes(Sweep { tile, fields, scratch: &mut scratch, parameters, stretch: None }, lanes);
+            in_lanes(Sweep { tile, fields, scratch: &mut scratch, parameters }, lanes);
         }
         let found = slots.iter().flat_map(|&slot| [d.state.vx[slot], d.state.vy[slot]]).collect();
         [found, expected]

@@ -161,12 +161,6 @@ pub(crate) struct Finish {
 }
 
 impl Strip {
-    /// The largest number among its nodes, plus what a last group of lanes reads behind it.
-    pub(crate) fn last_node(&self) -> usize {
-        let [a, b, c, d] = self.corners;
-        a.max(b).max(c).max(d) as usize + self.len + LANES
-    }
-
     /// Renumbers the corners 4, 3, 2, 1: the upper row becomes the lower one.
     fn turn_over(&mut self, varying: &mut VaryingReferences) {
         self.corners.reverse();
@@ -176,6 +170,15 @@ impl Strip {
 }
 
 impl Tile {
+    /// Makes all elements stiffer by a factor.
+    pub(crate) fn stiffen(&mut self, factor: f64) {
+        let k = &mut self.stiffness;
+        [&mut k.lame, &mut k.two_shear, &mut k.hourglass].into_iter().for_each(|k| *k *= factor);
+        self.strips.iter_mut().for_each(|strip| strip.metric.stiffen(factor));
+        self.quads_of_runs.iter_mut().for_each(|(_, metric)| metric.stiffen(factor));
+        self.varying.stiffen(factor);
+    }
+
     /// About how many bytes a step reads here.
     pub(crate) fn bytes(&self) -> usize {
         // Positions, velocities, time step over mass.

@@ -130,9 +130,6 @@ fn conserves_the_ledger_of_structural_damping() {
             d.state.vx[n as usize] += 3.0 * (300.0 * d.state.y[n as usize]).cos();
         }
     }
-    // Within the first steps half of the noise turns into strain, and springs come under load: too fast to be
-    // measured.
-    run(&mut d, &mut [], 96);
     let [start, none] = step_and_count(&mut d);
     let (mut loss, mut worst) = (none, 0.0_f64);
     for _ in 0..6000 {
@@ -140,7 +137,8 @@ fn conserves_the_ledger_of_structural_damping() {
         loss = so_far;
         worst = worst.max((rest + loss - start - none).abs());
     }
-    assert!(worst < 1e-2 * (loss - none), "{:e} of the loss is missing", worst / (loss - none));
+    println!("{:e} of the loss is missing", worst / (loss - none));
+    assert!(worst < 3e-3 * (loss - none), "{:e} of the loss is missing", worst / (loss - none));
 }
 
 /// A disc that flies and spins while it vibrates keeps its momentum and its angular momentum, and the springs

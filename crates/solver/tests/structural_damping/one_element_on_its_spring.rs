@@ -21,8 +21,8 @@
 //!
 //! # Parameters
 //!
-//! v = 1 mm/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; one branch of g = 0.3 and τ = 1.5/ω; to t = 40/ω in 100,
-//! 200, 400 and 800 steps.
+//! v = 1 mm/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; one branch of g = 0.3 and τ = 0.75/ω; to t = 20/ω in 100,
+//! 200 and 400 steps, each of which evaluates the branch.
 //!
 //! # Expected
 //!
@@ -35,7 +35,7 @@ use stribeck_testing::orders;
 use crate::common::*;
 use crate::damp;
 
-/// How far an order may be from two: the coarsest step, 0.4 of a radian, has a term of fourth order beside
+/// How far an order may be from two: the coarsest step, 0.2 of a radian, has a term of fourth order beside
 /// that of second.
 const ORDER: f64 = 0.1;
 
@@ -47,8 +47,8 @@ fn converges_with_the_square_of_the_time_step() {
         model.motion[n] = if model.mesh.x[n] > 0.5 * length { Motion::HeldY } else { Motion::Held };
     }
     let omega = 2.0_f64.sqrt() * steel().dilatational_speed() / length;
-    let branch = Branch { stiffness: 0.3, relaxation_time: 1.5 / omega };
-    let (end, speed) = (40.0 / omega, 1e-3);
+    let branch = Branch { stiffness: 0.3, relaxation_time: 0.75 / omega };
+    let (end, speed) = (20.0 / omega, 1e-3);
     // x' = v, v' = −ω²(x + g u), u' = v − u/τ by the classical Runge–Kutta method in steps too small to
     // matter.
     let rate = |[x, v, u]: [f64; 3]| {
@@ -64,7 +64,7 @@ fn converges_with_the_square_of_the_time_step() {
         let k4 = rate(at(k3, small));
         exact = std::array::from_fn(|i| exact[i] + small / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]));
     }
-    let errors: Vec<f64> = [100, 200, 400, 800]
+    let errors: Vec<f64> = [100, 200, 400]
         .into_iter()
         .map(|steps| {
             let mut d = lay_out(&model);

@@ -37,14 +37,17 @@ pub(super) struct Row {
     /// What its guards have warned of, a line each.
     pub(super) warnings: Option<String>,
     variant: usize,
-    start: usize,
-    values: Vec<String>,
+    pub(super) start: usize,
+    pub(super) values: Vec<String>,
     pub(super) scene: Option<Scene>,
+    /// Families that its record is said to show, joined by `+`; `none` where it shows none, `None` where it
+    /// is not judged.
+    pub(super) claimed: Option<String>,
     /// Version and commit of the program that ran it.
     pub(super) program: Option<String>,
-    folder: Option<PathBuf>,
+    pub(super) folder: Option<PathBuf>,
     /// Numbers of the summary by their path.
-    numbers: BTreeMap<String, f64>,
+    pub(super) numbers: BTreeMap<String, f64>,
     samples: Option<i64>,
 }
 
@@ -74,6 +77,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
             start: variant.start,
             values: variant.values.clone(),
             scene: variant.scene.clone().ok(),
+            claimed: None,
             program: None,
             folder: None,
             numbers: BTreeMap::new(),
@@ -86,7 +90,9 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 if info.status == Status::Diverged {
                     (row.status, row.reason) = ("diverged", info.stop_reason);
                 }
-                flatten(&summary_of(&path)?, "", &mut row.numbers);
+                let summary = summary_of(&path)?;
+                flatten(&summary, "", &mut row.numbers);
+                row.claimed = diagnosed(&summary, &mut row.numbers);
                 row.numbers.insert("energy.max_relative_error".into(), info.energy.max_relative_error);
                 // An overflow is no number, and a column without numbers is none.
                 row.numbers.retain(|_, number| number.is_finite());
@@ -117,6 +123,22 @@ fn flatten(value: &Value, path: &str, to: &mut BTreeMap<String, f64>) {
         Value::Number(number) => drop(number.as_f64().map(|number| to.insert(path.to_owned(), number))),
         _ => {}
     }
+}
+
+/// The families that are claimed; the levels of all go to the numbers.
+fn diagnosed(summary: &Value, to: &mut BTreeMap<String, f64>) -> Option<String> {
+    let families = summary.pointer("/diagnosis/families")?.as_array()?;
+    let mut claimed = Vec::new();
+    for family in families {
+        let name = family.get("name")?.as_str()?;
+        if let Some(level_db) = family.get("level_db").and_then(Value::as_f64) {
+            to.insert(format!("diagnosis.{}_level_db", name.to_lowercase()), level_db);
+        }
+        if family.get("claimed").and_then(Value::as_bool) == Some(true) {
+            claimed.push(name);
+        }
+    }
+    Some(if claimed.is_empty() { "none".to_owned() } else { claimed.join("+") })
 }
 
 /// Writes the tables, each whole or not at all. That of the signals needs those of the runs.
@@ -199,6 +221,7 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
         number("fault_depth_mm", &|row| Some(truth(row)?.first?.depth_mm)),
         number("fault_angle_deg", &|row| Some(truth(row)?.first?.angle_deg)),
         text("deviation_type", &|row| truth(row)?.deviations),
+        text("claimed", &|row| row.claimed.clone()),
         of_scene("shaft_speed_rpm", &|s| s.operation.speed_rpm),
         of_scene("load_n", &|s| s.operation.load_n),
         of_scene("sampling_rate_hz", &sampling_rate_hz),

@@ -13,7 +13,7 @@ use stribeck_scene::scene::Scene;
 use super::{Options, check_overrides, reserve, take_place};
 use crate::host;
 use crate::interrupt::{self, Interrupt};
-use crate::out::say;
+use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
 use crate::side_by_side::{Due, Jobs, Shop};
 
@@ -42,7 +42,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let due = due_starts(&dir, &scene, &ensemble)?;
     let jobs = Jobs::of(options.jobs, options.threads, due.len());
     let wanted = ensemble.starts;
-    eprintln!(
+    tell!(
         "{}: {wanted} starts of {} ms, {} to run, {} → {}",
         scene.name,
         scene.solver.duration_ms,
@@ -63,7 +63,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         if ensemble.failed.get(&due.number) != before.as_ref()
             && let Err(error) = dir.write_ensemble(&scene, &ensemble)
         {
-            shop.say(&format!("warning: {error}"));
+            shop.warn(&error.to_string());
         }
     });
     let ensemble = ensemble.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -73,9 +73,9 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let path = shown(dir.path());
     if ended < wanted {
         if let Some(old) = dir.replaces() {
-            eprintln!("`{}` still holds the earlier run; the new one lies in `{path}`", shown(old));
+            tell!("`{}` still holds the earlier run; the new one lies in `{path}`", shown(old));
         }
-        eprintln!(
+        tell!(
             "{} of {wanted} starts are not at their end; continue them: {} simulate --resume {path}",
             wanted - ended,
             place.program
@@ -88,7 +88,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let summary = report::write_ensemble(dir.path())?;
         complete += summary.count(stribeck_analysis::ensemble::Ended::Complete);
         for note in &summary.notes {
-            eprintln!("warning: {note}");
+            caution!("{note}");
         }
         say!("report: {}", shown(&dir.report()));
     }

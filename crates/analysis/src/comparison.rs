@@ -1,0 +1,312 @@
+//! Runs, ensembles and measured records beside each other: which fields of their scenes differ, which numbers
+//! differ, and whether the scatter of starts explains that.
+
+mod contrast;
+mod fields;
+mod quantity;
+mod side;
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+use stribeck_dsp::BandEnvelope;
+
+use crate::Error;
+use crate::ensemble::Merged;
+use crate::statistic::{Statistic, band};
+pub use contrast::{Contrast, Verdict};
+pub use fields::{FieldDifference, differences};
+pub use side::{Kind, Member, Sampled, Shape, Side};
+
+/// Contents of `compare.json`.
+#[derive(Debug, Clone, Serialize)]
+pub struct Comparison {
+    /// What is compared; the first is what the others are compared with.
+    pub sides: Vec<Side>,
+    /// Fields in which the scenes differ.
+    pub fields: Vec<FieldDifference>,
+    /// The main numbers.
+    pub rows: Vec<Row>,
+    /// All other numbers of the runs' summaries in which they differ, by their path.
+    pub numbers: Vec<Row>,
+    /// Cautions.
+    pub notes: Vec<String>,
+}
+
+/// One number of every side.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// Stable name, or the path in `summary.json`.
+    pub name: String,
+    /// In words.
+    pub quantity: String,
+    /// Unit; empty for none.
+    pub unit: String,
+    /// Of each side; `None` where it has none.
+    pub values: Vec<Option<Statistic>>,
+    /// Of each side but the first, against that; `None` where one of them has none.
+    pub against_first: Vec<Option<Contrast>>,
+}
+
+impl Row {
+    fn of(name: &str, quantity: &str, unit: &str, values: Vec<Option<Statistic>>) -> Option<Self> {
+        values.iter().any(Option::is_some).then(|| {
+            let contrast = |other: &Option<Statistic>| {
+                let first = values.first().copied().flatten()?;
+                Some(Contrast::of(&first, other.as_ref()?))
+            };
+            let against_first = values.iter().skip(1).map(contrast).collect();
+            let (name, quantity, unit) = (name.to_owned(), quantity.to_owned(), unit.to_owned());
+            Self { name, quantity, unit, values, against_first }
+        })
+    }
+
+    /// Whether some side differs from the first by more than the scatter.
+    pub fn differs(&self) -> bool {
+        self.against_first.iter().flatten().any(|contrast| contrast.verdict == Verdict::Differs)
+    }
+}
+
+impl Comparison {
+    /// Of two or more sides.
+    ///
+    /// # Errors
+    /// [`Error::Summary`] when a summary cannot be read as numbers.
+    pub fn of(sides: Vec<Side>) -> Result<Self, Error> {
+        let scenes: Vec<_> = sides.iter().map(|side| side.scene.as_ref()).collect();
+        let fields = differences(&scenes);
+        let units: Vec<&str> = sides.iter().map(|side| side.unit.as_str()).collect();
+        let one_unit = units.windows(2).all(|pair| pair[0] == pair[1]);
+        let rows = quantity::ALL.iter().filter_map(|q| {
+            let of_signal = q.unit == quantity::OF_SIGNAL;
+            // Volts and g have no difference.
+            if of_signal && !one_unit {
+                return None;
+            }
+            let unit = if of_signal { units.first().copied().unwrap_or("") } else { q.unit };
+            let values = sides.iter().map(|side| {
+                let values: Vec<f64> = side.members.iter().filter_map(|member| q.of(member)).collect();
+                Statistic::of(&values, side.members.len())
+            });
+            Row::of(q.name, q.words, unit, values.collect())
+        });
+        let rows = rows.collect();
+        let numbers = numbers(&sides)?;
+        let notes = notes(&sides, one_unit);
+        Ok(Self { sides, fields, rows, numbers, notes })
+    }
+
+    /// Band whose envelope is compared [Hz]: that in which the first side with a claim has its highest
+    /// family, else the band of the first side that knocks most.
+    pub fn band_hz(&self) -> Option<(f64, f64)> {
+        let claimed = self.sides.iter().flat_map(|side| side.members.first()).find_map(|member| {
+            let level = |f: &&crate::measured::Family| f.level_db.unwrap_or(f64::NEG_INFINITY);
+            member.claimed().max_by(|a, b| level(a).total_cmp(&level(b)))?.band_hz
+        });
+        claimed.or_else(|| {
+            let bands = &self.sides.first()?.members.first()?.bands;
+            let most = bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis))?;
+            Some((most.low_hz, most.high_hz))
+        })
+    }
+
+    /// Whether all sides whose speed is known turn equally fast, so that their families stand at the same
+    /// frequencies where their bearings are the same.
+    pub fn is_of_one_speed(&self) -> bool {
+        const SAME: f64 = 1e-3;
+        let known: Vec<f64> = self.sides.iter().filter_map(|side| side.shaft_hz).collect();
+        let equal = |pair: &[f64]| (pair[1] - pair[0]).abs() <= SAME * pair[0];
+        known.len() < self.sides.len() || known.windows(2).all(equal)
+    }
+}
+
+impl Side {
+    /// Envelope spectrum of the band nearest to `band_hz`, mean over the signals, with the band's ends [Hz];
+    /// `None` where no signal is long enough.
+    pub fn envelope(&self, band_hz: (f64, f64)) -> Option<(Sampled, (f64, f64))> {
+        let distance =
+            |b: &BandEnvelope| (b.low_hz / band_hz.0).ln().abs() + (b.high_hz / band_hz.1).ln().abs();
+        let nearest = |member: &'_ Member| {
+            let place = (0..member.bands.len())
+                .min_by(|a, b| distance(&member.bands[*a]).total_cmp(&distance(&member.bands[*b])));
+            place.map(|place| member.bands[place].clone())
+        };
+        let bands: Vec<BandEnvelope> = self.members.iter().filter_map(nearest).collect();
+        let first = bands.first()?;
+        let curves: Vec<&[f64]> = bands.iter().map(|band| band.values.as_slice()).collect();
+        let mean = Sampled { start: 0.0, step: first.grid_hz, values: mean(&curves) };
+        Some((mean, (first.low_hz, first.high_hz)))
+    }
+
+    /// Power spectral density [unit²/Hz], mean over the signals; `None` where none is long enough.
+    pub fn density(&self) -> Option<Sampled> {
+        let first = self.members.iter().find_map(|member| member.density.as_ref())?;
+        Some(Sampled { values: mean(&self.densities()), ..first.clone() })
+    }
+
+    /// Densities that hold the middle 80 % of the signals, point by point; `None` of a single signal.
+    pub fn density_band(&self) -> Option<[Vec<f64>; 2]> {
+        let all = self.densities();
+        (all.len() > 1).then(|| band(&all))
+    }
+
+    fn densities(&self) -> Vec<&[f64]> {
+        self.members.iter().filter_map(|member| Some(member.density.as_ref()?.values.as_slice())).collect()
+    }
+
+    /// Mean force on a roller by angle [°, N], mean over the starts that have one there; `None` for a record.
+    pub fn load_distribution(&self) -> Option<(Vec<f64>, Vec<f64>)> {
+        let first = self.members.first().filter(|m| m.distribution.mean_n.iter().any(|f| f.is_finite()))?;
+        let curves: Vec<&[f64]> = self.members.iter().map(|m| m.distribution.mean_n.as_slice()).collect();
+        Some((first.distribution.angle_deg.clone(), mean(&curves)))
+    }
+}
+
+/// Mean of curves as long as the shortest, point by point; values that are not finite do not count.
+fn mean(curves: &[&[f64]]) -> Vec<f64> {
+    let length = curves.iter().map(|curve| curve.len()).min().unwrap_or(0);
+    let at = |n: usize| {
+        let known = curves.iter().map(|curve| curve[n]).filter(|value| value.is_finite());
+        let (sum, count) = known.fold((0.0, 0), |(sum, count), value| (sum + value, count + 1));
+        if count == 0 { f64::NAN } else { sum / f64::from(count) }
+    };
+    (0..length).map(at).collect()
+}
+
+/// Numbers that stand alone in the summaries of all runs and are not the same in all; those of lists are left
+/// to the runs' own pages.
+fn numbers(sides: &[Side]) -> Result<Vec<Row>, Error> {
+    let merged: Vec<Merged> = sides.iter().map(Side::merged).collect::<Result<_, _>>()?;
+    let mut all: BTreeMap<String, Vec<Option<Statistic>>> = BTreeMap::new();
+    for (place, merged) in merged.iter().enumerate() {
+        flatten(merged, "", &mut |path, statistic| {
+            all.entry(path).or_insert_with(|| vec![None; sides.len()])[place] = Some(statistic);
+        });
+    }
+    let differs = |values: &[Option<Statistic>]| {
+        let means: Vec<f64> = values.iter().flatten().map(|s| s.mean).collect();
+        means.windows(2).any(|pair| pair[0] != pair[1])
+    };
+    let rows = all.into_iter().filter(|(_, values)| differs(values));
+    Ok(rows.filter_map(|(path, values)| Row::of(&path, &path, "", values)).collect())
+}
+
+fn flatten(merged: &Merged, path: &str, take: &mut impl FnMut(String, Statistic)) {
+    match merged {
+        Merged::Number(statistic) => take(path.to_owned(), *statistic),
+        Merged::Group(fields) => {
+            // What a run cost belongs to the machine.
+            for (name, inner) in fields.iter().filter(|(name, _)| !(path.is_empty() && *name == "run")) {
+                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
+                flatten(inner, &path, take);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn notes(sides: &[Side], one_unit: bool) -> Vec<String> {
+    let mut notes = Vec::new();
+    if !one_unit {
+        let units = sides.iter().map(|side| match side.unit.as_str() {
+            "" => format!("{} has no unit", side.label),
+            unit => format!("{} is in {unit}", side.label),
+        });
+        notes.push(format!(
+            "levels are not compared, and traces are drawn over their own root mean square: {}. `--unit` \
+             and `--scale` say what a sample of a record is",
+            units.collect::<Vec<_>>().join(", ")
+        ));
+    }
+    if sides.iter().all(|side| side.signals == 1) {
+        notes.push(
+            "every side is a single signal, and nobody knows what chance does to it: a peak changes by tens \
+             of per cent from one start to another. `stribeck simulate SCENE --starts 8` makes a side with a \
+             scatter"
+                .to_owned(),
+        );
+    } else {
+        notes.push(
+            "of twenty numbers that are the same in truth, one is outside its interval of 95 % by chance"
+                .to_owned(),
+        );
+    }
+    let shortest = sides.iter().map(|side| side.duration_s).fold(f64::INFINITY, f64::min);
+    let longest = sides.iter().map(|side| side.duration_s).fold(0.0, f64::max);
+    if longest > 1.5 * shortest {
+        notes.push(format!(
+            "the records are {shortest:.3} to {longest:.3} s long: peaks grow with the length, and families \
+             stand out more in a longer one"
+        ));
+    }
+    let unlike = |of: &dyn Fn(&Side) -> f64| {
+        let values: Vec<f64> = sides.iter().map(of).collect();
+        values.windows(2).any(|pair| (pair[1] / pair[0] - 1.0).abs() > 1e-6)
+    };
+    if unlike(&|side| side.rate_hz) {
+        notes.push(
+            "the sample rates differ: peaks and root mean squares are those of different bands".to_owned(),
+        );
+    }
+    for side in sides {
+        notes.extend(side.notes.iter().map(|note| format!("{}: {note}", side.label)));
+    }
+    notes
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use stribeck_formats::Channel;
+    use stribeck_scene::catalogue::CatalogueBearing;
+    use stribeck_testing::Noise;
+
+    use super::*;
+    use crate::measured::{Analysis, Machine};
+
+    /// Knocks of the outer raceway of a 6205 at 1200 rpm, `height` times as strong as the noise.
+    fn record(label: &str, height: f64, unit: &str, scale: f64, seed: u64) -> Side {
+        let (rate_hz, mut noise) = (12_800.0, Noise::new(seed));
+        let samples = (0..65_536).map(|n| {
+            let since = (f64::from(n) / rate_hz).rem_euclid(1.0 / 71.7);
+            scale * (noise.uniform() + height * (-since / 1e-3).exp() * (TAU * 3_000.0 * since).sin())
+        });
+        let channel = Channel::held("housing", samples.collect()).in_unit(Some(unit.to_owned()));
+        let bearing = CatalogueBearing::parse("6205").expect("of the catalogue");
+        let machine = Machine { speed_rpm: Some(1200.0), bearing: Some(bearing), ..Machine::default() };
+        Side::of_record(label, &Analysis::of(&channel, rate_hz, &machine).expect("a sound record"))
+    }
+
+    #[test]
+    fn example_a_sound_and_a_damaged_record_in_two_units_of_acceleration() {
+        let damaged = record("damaged", 3.0, "m/s²", crate::levels::STANDARD_GRAVITY, 5);
+        let both = Comparison::of(vec![record("sound", 0.0, "g", 1.0, 4), damaged]).expect("two records");
+        let row = |name: &str| both.rows.iter().find(|row| row.name == name);
+        let rms = row("rms").expect("of both");
+        let [sound, damaged] = [0, 1].map(|n| rms.values[n].expect("of both").mean);
+        // Uniform noise from −1 to 1 or half of that has its closed form; the damaged one has more.
+        assert!(damaged > 1.2 * sound && damaged < 5.0 * sound, "{sound} {damaged}");
+        assert_eq!(rms.unit, "g");
+        let contrast = rms.against_first[0].expect("of both");
+        assert_eq!((contrast.verdict, contrast.low), (Verdict::Unknown, None));
+        assert!((contrast.difference - (damaged - sound)).abs() < 1e-12);
+        let bpfo = row("bpfo_db").expect("of the damaged one");
+        assert!(bpfo.values[1].is_some() && bpfo.against_first == [None]);
+        assert!(both.sides[1].verdict.contains("outer raceway"), "{}", both.sides[1].verdict);
+        assert!(both.fields.is_empty() && both.numbers.is_empty());
+        let (band_hz, own) = (both.band_hz().expect("a claim"), both.sides[1].members[0].claimed());
+        assert!(own.into_iter().any(|family| family.band_hz == Some(band_hz)));
+        let (envelope, found_hz) = both.sides[0].envelope(band_hz).expect("long enough");
+        assert!(found_hz == band_hz && envelope.values.len() > 100);
+        assert!(both.is_of_one_speed());
+    }
+
+    #[test]
+    fn refuses_to_compare_levels_in_volts_with_levels_in_g() {
+        let sides = vec![record("a", 0.0, "V", 1.0, 4), record("b", 0.0, "g", 1.0, 5)];
+        let both = Comparison::of(sides).expect("two records");
+        assert!(both.rows.iter().all(|row| row.name != "rms") && !both.rows.is_empty());
+        assert!(both.notes[0].contains("a is in V, b is in g"), "{}", both.notes[0]);
+    }
+}

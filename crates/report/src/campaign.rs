@@ -1,0 +1,396 @@
+//! The index of a campaign: its main numbers over the fields that vary, and a row for each run.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use maud::{DOCTYPE, Markup, html};
+use stribeck_analysis::words::significant;
+use stribeck_scene::run_dir::write_atomic;
+
+use crate::Error;
+use crate::page::head;
+use crate::plot::{Axis, Colour, Figure, Series};
+
+/// A campaign whose runs have come to their end.
+#[derive(Debug)]
+pub struct CampaignIndex {
+    /// Its name.
+    pub name: String,
+    /// Fields that vary.
+    pub fields: Vec<String>,
+    /// Its runs, in order.
+    pub runs: Vec<CampaignRun>,
+    /// Files beside the page: name and what it holds.
+    pub files: Vec<(String, String)>,
+}
+
+/// One run of it.
+#[derive(Debug)]
+pub struct CampaignRun {
+    /// Number, from 1.
+    pub number: usize,
+    /// Number of its start, from 1.
+    pub start: usize,
+    /// How it ended: `complete`, `diverged`, `failed` or `refused`.
+    pub status: String,
+    /// Why it did not complete.
+    pub reason: Option<String>,
+    /// Values of the fields that vary.
+    pub values: Vec<String>,
+    /// What its record is said to show: `BPFO`, `none`; `None` where it is not judged.
+    pub claimed: Option<String>,
+    /// Numbers of its summary by their path.
+    pub numbers: BTreeMap<String, f64>,
+    /// Its folder, from that of the campaign.
+    pub folder: Option<String>,
+}
+
+/// What is drawn and listed: path in the summary, words, unit.
+const QUANTITIES: [(&str, &str, &str); 12] = [
+    ("levels.record.rms_g", "Root mean square", "g"),
+    ("levels.record.peak_g", "Peak", "g"),
+    ("levels.record.kurtosis", "Kurtosis", ""),
+    ("diagnosis.bpfo_level_db", "Level of BPFO", "dB"),
+    ("diagnosis.bpfi_level_db", "Level of BPFI", "dB"),
+    ("diagnosis.bsf_level_db", "Level of BSF", "dB"),
+    ("diagnosis.ftf_level_db", "Level of FTF", "dB"),
+    ("levels.exit_g", "Peak at exits from the defect", "g"),
+    ("levels.gap_rms_g", "Root mean square between passages", "g"),
+    ("load.max_roller_n", "Largest force on a roller", "N"),
+    ("kinematics.cage_hz", "Cage", "Hz"),
+    ("energy.heat_j", "Heat of friction and damping", "J"),
+];
+/// Those that the table lists.
+const LISTED: usize = 7;
+/// Fields that have figures; more are in the tables.
+const MOST_FIELDS: usize = 4;
+/// Rows of the table.
+const MOST_ROWS: usize = 1000;
+/// Values of a field that have colours of their own.
+const MOST_COLOURS: usize = 8;
+const COLOURS: [Colour; MOST_COLOURS] = [
+    Colour::Blue,
+    Colour::Orange,
+    Colour::Green,
+    Colour::Purple,
+    Colour::Red,
+    Colour::Teal,
+    Colour::Brown,
+    Colour::Pink,
+];
+/// A field whose values span more than this is drawn over its logarithm.
+const DECADES_FROM: f64 = 20.0;
+
+/// Writes `index.html` into the folder of a campaign.
+///
+/// # Errors
+/// [`Error::Run`] when the file cannot be written, [`Error::Drawing`].
+pub fn write_campaign(folder: &Path, index: &CampaignIndex) -> Result<(), Error> {
+    let page = page(index)?.into_string();
+    write_atomic(&folder.join("index.html"), page.as_bytes())?;
+    Ok(())
+}
+
+fn page(index: &CampaignIndex) -> Result<Markup, Error> {
+    let mut sections = Vec::new();
+    for (at, field) in index.fields.iter().enumerate().take(MOST_FIELDS) {
+        let abscissa = Abscissa::of(index, at);
+        let figures: Vec<Figure> =
+            QUANTITIES.iter().filter_map(|quantity| figure(index, at, &abscissa, quantity)).collect();
+        let drawn = figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
+        sections.push((field, drawn));
+    }
+    let complete = index.runs.iter().filter(|run| run.status == "complete").count();
+    Ok(html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&index.name))
+            body {
+                h1 { (index.name) }
+                p class="lead" { (lead(index)) }
+                @if complete < index.runs.len() { (banner(index, complete)) }
+                @for (place, (field, figures)) in sections.iter().enumerate() {
+                    h2 { "Over " code { (field) } }
+                    @if figures.is_empty() { p { "No run has a number that could be drawn." } }
+                    // One field at a time; the others are a click away.
+                    @if place == 0 { div class="pairs-of-figures" { @for figure in figures { (figure) } } }
+                    @else if !figures.is_empty() {
+                        details {
+                            summary { (format!("{} figures", figures.len())) }
+                            div class="pairs-of-figures" { @for figure in figures { (figure) } }
+                        }
+                    }
+                }
+                h2 #runs { "Runs" }
+                (table(index))
+                h2 #files { "Files" }
+                ul class="notes" {
+                    @for (file, what) in &index.files { li { a href=(file) { (file) } ": " (what) } }
+                }
+            }
+        }
+    })
+}
+
+fn lead(index: &CampaignIndex) -> String {
+    let starts = index.runs.iter().map(|run| run.start).max().unwrap_or(1);
+    let over = |field: &String| format!("{field} ({} values)", values(index, field).len());
+    let of_starts = if starts > 1 { format!(", {starts} starts each") } else { String::new() };
+    format!(
+        "{} runs over {}{of_starts}.",
+        index.runs.len(),
+        index.fields.iter().map(over).collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// Values that a field has, each once, in their order.
+fn values<'a>(index: &'a CampaignIndex, field: &str) -> Vec<&'a str> {
+    let at = index.fields.iter().position(|name| name == field);
+    let mut found: Vec<&str> = Vec::new();
+    for value in index.runs.iter().filter_map(|run| run.values.get(at?)) {
+        if !found.contains(&value.as_str()) {
+            found.push(value);
+        }
+    }
+    found
+}
+
+fn banner(index: &CampaignIndex, complete: usize) -> Markup {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for run in index.runs.iter().filter(|run| run.status != "complete") {
+        *counts.entry(run.status.as_str()).or_default() += 1;
+    }
+    let others: Vec<String> = counts.into_iter().map(|(status, count)| format!("{count} {status}")).collect();
+    html! {
+        div class="banner" role="alert" {
+            strong { (complete) " of " (index.runs.len()) " runs are complete" } ": " (others.join(", "))
+            ". What the others left is drawn where there is a number, and their reasons are in the table."
+        }
+    }
+}
+
+/// Where the values of a field stand on an axis.
+struct Abscissa {
+    axis: Axis,
+    /// Of each run; not a number where it has none.
+    places: Vec<f64>,
+    /// What the places of words are.
+    words: String,
+}
+
+impl Abscissa {
+    fn of(index: &CampaignIndex, at: usize) -> Self {
+        let field = &index.fields[at];
+        let numbers: Option<Vec<f64>> =
+            index.runs.iter().map(|run| run.values.get(at)?.parse::<f64>().ok()).collect();
+        let Some(numbers) = numbers else {
+            let all = values(index, field);
+            let place = |run: &CampaignRun| {
+                let value = run.values.get(at).map(String::as_str);
+                value
+                    .and_then(|value| all.iter().position(|v| *v == value))
+                    .map_or(f64::NAN, |n| n as f64 + 1.0)
+            };
+            let words: Vec<String> =
+                all.iter().enumerate().map(|(n, value)| format!("{} is {value}", n + 1)).collect();
+            return Self {
+                axis: Axis::counted(field, all.len()),
+                places: index.runs.iter().map(place).collect(),
+                words: format!(" {}.", words.join(", ")),
+            };
+        };
+        let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+        let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        if least > 0.0 && most / least > DECADES_FROM {
+            let places = numbers.iter().map(|x| x.log10()).collect();
+            return Self { axis: Axis::decades(field, ""), places, words: String::new() };
+        }
+        // Room beside the outer ones.
+        let margin = if most > least { 0.04 * (most - least) } else { 0.5 * most.abs().max(1.0) };
+        let axis = Axis::plain(field, "").over(least - margin, most + margin);
+        Self { axis, places: numbers, words: String::new() }
+    }
+
+    /// From the least to the largest place.
+    fn width(&self) -> f64 {
+        let known = self.places.iter().copied().filter(|place| place.is_finite());
+        let (least, most) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        if most > least { most - least } else { 1.0 }
+    }
+}
+
+/// A quantity over a field, coloured by the other field where there is one other, else by what is claimed.
+fn figure(
+    index: &CampaignIndex,
+    at: usize,
+    abscissa: &Abscissa,
+    (path, words, unit): &(&str, &str, &str),
+) -> Option<Figure> {
+    let known = index.runs.iter().zip(&abscissa.places).filter_map(|(run, place)| {
+        Some((run, *place, *run.numbers.get(*path)?)).filter(|(_, place, _)| place.is_finite())
+    });
+    let mut known: Vec<(&CampaignRun, f64, f64)> = known.collect();
+    if known.is_empty() {
+        return None;
+    }
+    known.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let other = (0..index.fields.len()).find(|n| *n != at).filter(|_| index.fields.len() == 2);
+    let other = other.filter(|n| values(index, &index.fields[*n]).len() <= MOST_COLOURS);
+    let group = |run: &CampaignRun| match other {
+        Some(n) => format!("{} {}", last(&index.fields[n]), run.values.get(n).map_or("–", String::as_str)),
+        None => run.claimed.as_ref().map_or("not judged".to_owned(), |claimed| match claimed.as_str() {
+            "none" => "nothing claimed".to_owned(),
+            claimed => format!("{claimed} claimed"),
+        }),
+    };
+    let mut groups: Vec<String> = Vec::new();
+    for (run, ..) in &known {
+        if !groups.contains(&group(run)) {
+            groups.push(group(run));
+        }
+    }
+    let id = format!("{}-{at}", path.replace(['.', '_'], "-"));
+    let title = format!("{words} over {}", index.fields[at]);
+    let mut figure = Figure::new(&id, &title, abscissa.axis.clone(), Axis::plain(words, unit));
+    let joined = other.is_some() || index.fields.len() == 1;
+    let (mut lines, mut dots) = (Vec::new(), Vec::new());
+    for (name, colour) in groups.iter().zip(COLOURS.into_iter().cycle()) {
+        let (x, y): (Vec<f64>, Vec<f64>) =
+            known.iter().filter(|(run, ..)| group(run) == *name).map(|(_, x, y)| (*x, *y)).unzip();
+        lines.extend(means(name, colour, &x, &y).filter(|_| joined));
+        let x = side_by_side(&x, abscissa.width());
+        dots.push(Series::listed(name, colour, x, y).as_points());
+    }
+    // Lines lie behind the dots.
+    figure.series = lines.into_iter().chain(dots).collect();
+    let starts = index.runs.iter().any(|run| run.start > 1);
+    let (least, most) = known
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (_, _, y)| (least.min(*y), most.max(*y)));
+    let dots = if starts { "A dot for every start." } else { "A dot for every run." };
+    Some(
+        figure
+            .caption(format!(
+                "From {} to {}.",
+                significant(least, 3),
+                format!("{} {unit}", significant(most, 3)).trim_end()
+            ))
+            .note(format!("{dots}{}", abscissa.words)),
+    )
+}
+
+/// A line through the means of points at ascending places, where there are several places.
+fn means(name: &str, colour: Colour, x: &[f64], y: &[f64]) -> Option<Series> {
+    let (mut places, mut means): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    for all in x.chunk_by(|a, b| a == b) {
+        let from = x.partition_point(|place| *place < all[0]);
+        places.push(all[0]);
+        means.push(y[from..from + all.len()].iter().sum::<f64>() / all.len() as f64);
+    }
+    let name = if places.len() < x.len() { format!("{name}, mean") } else { format!("{name}, joined") };
+    (places.len() > 1).then(|| Series::listed(&name, colour, places, means))
+}
+
+/// The same places, equal ones a little apart, so that every dot is seen.
+fn side_by_side(x: &[f64], width: f64) -> Vec<f64> {
+    /// Of the width of the axis, from the first to the last of equal places.
+    const APART: f64 = 0.012;
+    x.chunk_by(|a, b| a == b)
+        .flat_map(|all| {
+            let step = APART * width / all.len() as f64;
+            (0..all.len()).map(move |n| all[0] + step * (n as f64 - 0.5 * (all.len() - 1) as f64))
+        })
+        .collect()
+}
+
+/// The last word of a field's path.
+fn last(field: &str) -> &str {
+    field.rsplit('.').next().unwrap_or(field)
+}
+
+fn table(index: &CampaignIndex) -> Markup {
+    let listed: Vec<&(&str, &str, &str)> = QUANTITIES
+        .iter()
+        .take(LISTED)
+        .filter(|(path, ..)| index.runs.iter().any(|run| run.numbers.contains_key(*path)))
+        .collect();
+    html! {
+        div class="scroll" {
+            table {
+                tr {
+                    th { "Run" }
+                    @for field in &index.fields { th { (last(field)) } }
+                    th { "Ended" } th { "Claimed" }
+                    @for (_, words, unit) in &listed { th class="n" { (words) @if !unit.is_empty() { " (" (unit) ")" } } }
+                }
+                @for run in index.runs.iter().take(MOST_ROWS) {
+                    tr {
+                        td {
+                            @match &run.folder {
+                                Some(folder) => a href=(format!("{folder}/")) { (run.number) },
+                                None => (run.number),
+                            }
+                        }
+                        @for value in &run.values { td { (value) } }
+                        td { (run.status) @if let Some(why) = &run.reason { ": " (why.lines().next().unwrap_or_default()) } }
+                        td { (run.claimed.as_deref().unwrap_or("–")) }
+                        @for (path, ..) in &listed {
+                            td class="n" { (run.numbers.get(*path).map_or("–".to_owned(), |x| significant(*x, 4))) }
+                        }
+                    }
+                }
+            }
+        }
+        @if index.runs.len() > MOST_ROWS {
+            p class="hint" { (format!("The first {MOST_ROWS} of {} runs; `runs.parquet` has all.", index.runs.len())) }
+        }
+        p class="hint" {
+            "Levels of a family are those of its first harmonic above the background of the envelope \
+             spectrum, whether it is claimed or not. A number of the run opens its folder."
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn run(number: usize, value: &str, rms_g: f64) -> CampaignRun {
+        CampaignRun {
+            number,
+            start: 1,
+            status: "complete".to_owned(),
+            reason: None,
+            values: vec![value.to_owned()],
+            claimed: Some("none".to_owned()),
+            numbers: BTreeMap::from([("levels.record.rms_g".to_owned(), rms_g)]),
+            folder: None,
+        }
+    }
+
+    fn index(runs: Vec<CampaignRun>) -> CampaignIndex {
+        CampaignIndex { name: "x".into(), fields: vec!["operation.load_n".into()], runs, files: Vec::new() }
+    }
+
+    #[test]
+    fn example_the_line_goes_through_the_means_of_each_place() {
+        let index = index(vec![run(1, "100", 1.0), run(2, "200", 4.0), run(3, "100", 3.0)]);
+        let figure = figure(&index, 0, &Abscissa::of(&index, 0), &QUANTITIES[0]).expect("a number");
+        assert_eq!((figure.series[0].y.as_slice(), figure.series[1].y.len()), (&[2.0, 4.0][..], 3));
+        // Charts join what stands at one place.
+        let x: Vec<f64> = (0..3).map(|n| figure.series[1].position(n)).collect();
+        assert!(x[0] < x[1] && x[1] - x[0] < 2.0 && x[2] == 200.0, "{x:?}");
+        assert!(index.runs.iter().all(|run| !run.numbers.contains_key("levels.record.kurtosis")));
+        assert!(super::figure(&index, 0, &Abscissa::of(&index, 0), &QUANTITIES[2]).is_none());
+    }
+
+    #[test]
+    fn example_words_stand_side_by_side_and_decades_over_their_logarithm() {
+        let of_words = index(vec![run(1, "outer", 1.0), run(2, "inner", 2.0), run(3, "outer", 1.5)]);
+        let abscissa = Abscissa::of(&of_words, 0);
+        assert_eq!(abscissa.places, [1.0, 2.0, 1.0]);
+        assert_eq!(abscissa.words, " 1 is outer, 2 is inner.");
+        let of_decades = Abscissa::of(&index(vec![run(1, "1", 1.0), run(2, "100", 2.0)]), 0);
+        assert_eq!(of_decades.places, [0.0, 2.0]);
+    }
+}

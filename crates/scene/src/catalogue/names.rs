@@ -1,0 +1,108 @@
+//! From what people write to the bearing that they mean.
+
+use super::{CatalogueBearing, tables};
+
+/// Makers whose names may stand glued to a designation.
+const MAKERS: [&str; 14] = [
+    "SKF", "FAG", "INA", "NSK", "NTN", "SNR", "KOYO", "TIMKEN", "NACHI", "REXNORD", "ZKL", "ZWZ", "HRB",
+    "LDK",
+];
+
+/// Letters and digits alone, in capitals.
+pub(super) fn plain(text: &str) -> String {
+    text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_uppercase()
+}
+
+/// The bearing among `known` whose name, letters and digits alone, is that of `name` or begins it. Of several
+/// it is the one with the longest name, and of these the first.
+pub(super) fn find(
+    name: &str,
+    known: Vec<CatalogueBearing>,
+    advice: &str,
+) -> Result<CatalogueBearing, String> {
+    // A maker may stand before: `Rexnord ZA-2115`, `SKF6205`.
+    let behind_maker = name.split_once(' ').filter(|(maker, _)| maker.chars().all(char::is_alphabetic));
+    let mut asked: Vec<String> =
+        [Some(name), behind_maker.map(|(_, rest)| rest)].into_iter().flatten().map(plain).collect();
+    let whole = plain(name);
+    asked.extend(MAKERS.iter().filter_map(|maker| whole.strip_prefix(maker)).map(str::to_owned));
+    for asked in &asked {
+        let fitting = known.iter().filter(|bearing| fits(asked, bearing));
+        let longest = |best: Option<&CatalogueBearing>| best.map_or(0, |bearing| bearing.name.len());
+        let found =
+            fitting.fold(None, |best, next| if next.name.len() > longest(best) { Some(next) } else { best });
+        if let Some(found) = found {
+            return Ok(found.clone());
+        }
+    }
+    if let Some(why) = asked.iter().find_map(|asked| beyond_a_plane(asked)) {
+        return Err(format!("`{name}` is {why}"));
+    }
+    Err(format!("no bearing `{name}` is known; {advice}, or one of {}", tables::names()))
+}
+
+fn fits(asked: &str, bearing: &CatalogueBearing) -> bool {
+    let own = plain(&bearing.name);
+    // `6205-2RS1` and `6205-2Z` are a 6205, with two seals or shields, and 62055 is not. Inserts have
+    // bores of their own, which their balls do not know of: `UER204-12`.
+    asked.strip_prefix(&own).is_some_and(|rest| {
+        let mut letters = rest.chars();
+        match letters.next() {
+            _ if own.is_empty() => false,
+            Some('2') if !own.starts_with('N') => letters.next().is_some_and(|c| c.is_ascii_alphabetic()),
+            Some('0'..='9') => own.starts_with('U') && rest.len() == 2,
+            _ => true,
+        }
+    })
+}
+
+/// Why a plane model has no bearing of this kind, where its name says of which one it is.
+fn beyond_a_plane(whole: &str) -> Option<&'static str> {
+    // Seals and shields begin with a digit of their own.
+    let asked = ["2RS", "2Z"].iter().filter_map(|seal| whole.split_once(seal)).map(|(own, _)| own).next();
+    let asked = asked.unwrap_or(whole);
+    let digits: String = asked.chars().take_while(char::is_ascii_digit).collect();
+    let behind = asked[digits.len()..].chars().next();
+    if behind.is_some_and(|c| !c.is_ascii_alphabetic()) {
+        return None;
+    }
+    match (digits.len(), digits.get(..2)?) {
+        (4, "12" | "13" | "22" | "23") => Some(
+            "a self-aligning ball bearing: two rows of balls on one sphere in the outer ring, which a \
+             model of one \
+             row in a plane does not have",
+        ),
+        (4, "72" | "73" | "70" | "32" | "33") => Some(
+            "an angular contact ball bearing, and a plane model has no contact angle: its rows share the \
+             load along \
+             the shaft, too",
+        ),
+        (5, "21" | "22" | "23" | "24") => Some(
+            "a spherical roller bearing: two rows of barrels on one sphere in the outer ring, which a \
+             model of one \
+             row in a plane does not have",
+        ),
+        (5, "30" | "31" | "32" | "33") => Some(
+            "a tapered roller bearing, and a plane model has no contact angle: its rollers share the load \
+             along the \
+             shaft, too",
+        ),
+        (5, "51" | "52" | "81") => Some("a thrust bearing: it takes no radial load"),
+        _ => None,
+    }
+}
+
+/// The bearings among `known` whose names begin as `text` does.
+pub(super) fn beginning_with(text: &str, known: Vec<CatalogueBearing>) -> Vec<CatalogueBearing> {
+    let asked = plain(text);
+    let begins = |name: &str| match name.strip_prefix(asked.as_str()) {
+        // `N` are the bearings of that kind, not those that begin with NU.
+        Some(rest) => {
+            let whole =
+                |c: char| !c.is_ascii_alphabetic() || !asked.ends_with(|c: char| c.is_ascii_alphabetic());
+            rest.chars().next().is_none_or(whole)
+        }
+        None => false,
+    };
+    known.into_iter().filter(|bearing| !asked.is_empty() && begins(&plain(&bearing.name))).collect()
+}

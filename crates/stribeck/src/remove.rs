@@ -1,0 +1,91 @@
+//! `stribeck rm`: removes runs, after asking.
+
+use std::fs;
+use std::io::{BufRead, IsTerminal, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::out::say;
+use crate::place::{Place, shown};
+use crate::shelf::{Item, find, in_words, is_held};
+
+/// Flags of `rm`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// Runs, ensembles, campaigns or analyses: their folders, or their names below runs/
+    #[arg(required = true, value_name = "RUN")]
+    runs: Vec<PathBuf>,
+    /// Removes them without asking
+    #[arg(long, short = 'y')]
+    yes: bool,
+}
+
+pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    // All are looked at before the first is removed.
+    let mut items: Vec<Item> = Vec::new();
+    for asked in &options.runs {
+        let item = find(asked, place)?;
+        removable(&item)?;
+        if items.iter().all(|other| other.path != item.path) {
+            items.push(item);
+        }
+    }
+    let bytes = items.iter().map(|item| item.bytes).sum();
+    for item in &items {
+        say!("{}  {}, {}, {}", shown(&item.path), item.kind.word(), item.state, in_words(item.bytes));
+    }
+    if !options.yes && !agreed(&items, bytes, place)? {
+        say!("nothing was removed");
+        return Ok(ExitCode::FAILURE);
+    }
+    for item in &items {
+        fs::remove_dir_all(&item.path)
+            .with_context(|| format!("`{}` could not be removed in full", shown(&item.path)))?;
+    }
+    say!("removed {}, {}", in_number(items.len()), in_words(bytes));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn in_number(count: usize) -> String {
+    if count == 1 { "1 folder".to_owned() } else { format!("{count} folders") }
+}
+
+fn removable(item: &Item) -> Result<()> {
+    let path = &item.path;
+    ensure!(
+        !path.is_symlink(),
+        "`{}` is a link to another place: remove the link, or name the folder itself",
+        shown(path)
+    );
+    let (whole, here) = (canonical(path)?, canonical(Path::new("."))?);
+    ensure!(
+        !here.starts_with(&whole),
+        "`{}` is the folder that you are in, or holds it: go to another one first",
+        shown(path)
+    );
+    ensure!(!is_held(path), "`{}` is being written by a program: stop that with Ctrl-C first", shown(path));
+    Ok(())
+}
+
+fn canonical(path: &Path) -> Result<PathBuf> {
+    path.canonicalize().with_context(|| format!("`{}` cannot be found", path.display()))
+}
+
+/// Whether the user says yes; without a terminal nobody can be asked.
+fn agreed(items: &[Item], bytes: u64, place: &Place) -> Result<bool> {
+    let (mut stderr, stdin) = (std::io::stderr(), std::io::stdin());
+    if !(stdin.is_terminal() && stderr.is_terminal()) {
+        bail!(
+            "nothing was removed: nobody can be asked here. `{} rm {} --yes` removes without asking",
+            place.program,
+            items.iter().map(|item| shown(&item.path)).collect::<Vec<_>>().join(" ")
+        );
+    }
+    write!(stderr, "Remove {} for good, {}? [y/N] ", in_number(items.len()), in_words(bytes))?;
+    stderr.flush()?;
+    let mut answer = String::new();
+    stdin.lock().read_line(&mut answer)?;
+    Ok(matches!(answer.trim().to_lowercase().as_str(), "y" | "yes"))
+}
