@@ -301,7 +301,6 @@ mod tests {
             let mut all: Vec<f64> = modes.map(|omega| growth(&damping, omega, dt)).collect();
             all.sort_by(f64::total_cmp);
             let (median, worst) = (all[all.len() / 2], all[all.len() - 1]);
-            println!("{branches}: {:e} to {worst:e}, expected {expected:e}", all[0]);
             assert!(worst < -0.6 * expected, "{branches} branches: {worst:e} of {expected:e}");
             assert!((median / -expected - 1.0).abs() < 0.15, "{branches} branches: {median:e}");
         }
