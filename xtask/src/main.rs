@@ -7,6 +7,7 @@ mod ci;
 mod compare;
 mod fields;
 mod fuzz;
+mod lab;
 mod study;
 mod workspace;
 
@@ -35,6 +36,8 @@ enum Command {
     Study(study::Options),
     /// Solves the same problems with other programs, checks that they agree, and times them
     Peers(compare::Options),
+    /// Builds the module of `cargo xtask lab`, which steps a bearing in a page, and says where it is
+    LabModule,
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
@@ -47,9 +50,11 @@ fn main() -> ExitCode {
     let cli = Cli::parse();
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
-        Command::Program(command) => command.run(&Place::repository("cargo xtask", workspace::root())),
+        Command::Program(command) => lab::with_module(command)
+            .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
         Command::Study(options) => study::run(&options),
         Command::Peers(options) => compare::run(&options),
+        Command::LabModule => lab::build_module(),
         Command::Fields(options) => fields::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
         Command::Ci(options) => ci::run(&options),

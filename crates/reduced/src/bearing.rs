@@ -141,6 +141,11 @@ impl Bearing {
         2.0 * ((0.25 * d * d + square).sqrt() - 0.5 * d) / square
     }
 
+    /// Speeds and load, where they change.
+    pub fn duty(&self) -> Option<&stribeck_duty::Duty> {
+        self.operation.duty.as_ref()
+    }
+
     /// Whether the outer ring sits in a seat that may open and slip.
     pub fn has_seat(&self) -> bool {
         self.seat.is_some()

@@ -136,6 +136,21 @@ impl BearingInMotion {
         }
     }
 
+    /// The bearing.
+    pub fn bearing(&self) -> &Bearing {
+        &self.bearing
+    }
+
+    /// Coordinates of the modes [√kg m] from the preload.
+    pub fn modes(&self) -> &[f64] {
+        &self.saved.state.q
+    }
+
+    /// Angle of the inner ring [rad].
+    pub fn shaft(&self) -> f64 {
+        self.saved.state.shaft
+    }
+
     /// Steps taken.
     pub fn steps(&self) -> u64 {
         self.saved.state.steps

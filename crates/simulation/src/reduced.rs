@@ -192,6 +192,32 @@ pub fn make_modes(scene: &ResolvedScene, runs: Option<&Path>) -> Result<bool, Er
     Ok(!from_cache)
 }
 
+/// The bearing of a scene before its first step, as a run of the scene takes it.
+#[derive(Debug)]
+pub struct Prepared {
+    /// Its numbers.
+    pub modal: ModalBearing,
+    /// Steps in a sample.
+    pub steps_per_sample: usize,
+    /// The bearing, and its equilibrium to start from.
+    pub bearing: Bearing,
+    /// See `bearing`.
+    pub start: State,
+}
+
+/// Prepares the bearing of a scene, which has a reduced model, for a program that drives it by itself.
+/// `runs` as for [`steps_in_a_sample`].
+///
+/// # Errors
+/// When the scene cannot be meshed, preloaded or reduced, or has no equilibrium to start from.
+pub fn prepared(scene: &ResolvedScene, runs: Option<&Path>) -> Result<Prepared, Error> {
+    let (mesh, _) = cache::reduced_mesh(&scene.written, runs)?;
+    let modal = modal_bearing(scene, mesh.reduction)?;
+    let (bearing, steps_per_sample) = in_steps(scene, &wanted(scene), modal.clone())?;
+    let start = bearing.at_start(&dense::solve)?;
+    Ok(Prepared { modal, steps_per_sample, bearing, start })
+}
+
 /// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there
 /// are in a sample.
 fn in_steps(

@@ -25,7 +25,10 @@ use stribeck_scene::{
     static_load,
     trace::Trace,
 };
-use stribeck_simulation::{resume, simulate};
+use stribeck_simulation::{
+    reduced::{Prepared, prepared},
+    resume, simulate,
+};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse.
@@ -47,6 +50,27 @@ fn coarse(duration_ms: f64) -> Scene {
 
 fn bytes(folder: &Scratch, name: &str, file: &str) -> Vec<u8> {
     fs::read(folder.join(name).join(file)).expect("readable")
+}
+
+/// What another program drives by itself is the bearing of a run: the same bits.
+#[test]
+fn invariant_a_prepared_bearing_is_that_of_a_run() {
+    let folder = Scratch::create("reduced-prepared");
+    let scene = coarse(1.0);
+    run(&scene, &folder, "run", 1);
+    let trace = trace(&folder, "run");
+    let Prepared { steps_per_sample, bearing, start, .. } =
+        prepared(&scene.resolve(), None).expect("the scene is sound");
+    let start = Saved::first(&bearing, start);
+    let mut motion = BearingInMotion::new(bearing, start);
+    for sample in 0..trace.len() {
+        motion.interval(steps_per_sample);
+        for (number, roller) in motion.rollers().enumerate() {
+            let channel = format!("roller.{}.outer_fy_n", number + 1);
+            let there = trace.get(&channel).expect("recorded")[sample];
+            assert_eq!(roller.outer[1].to_bits(), there.to_bits(), "{channel} of sample {sample}");
+        }
+    }
 }
 
 /// In pieces, from modes made anew or kept, with more threads: the same trace and ledger.

@@ -15,6 +15,7 @@ mod compare;
 mod emit;
 mod export;
 mod infer;
+pub mod lab;
 mod list;
 mod many_runs;
 mod memory;
@@ -83,6 +84,8 @@ pub enum Command {
     Validate(validate::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
     Plan(plan::Options),
+    /// Makes a page in which bearings run: one file for a browser, with handles and instruments
+    Lab(lab::Options),
     /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are
     /// from
     Bearings(bearings::Options),
@@ -119,6 +122,7 @@ impl Command {
             Self::Infer(options) => infer::run(options, place),
             Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),
+            Self::Lab(options) => lab::run(options, place),
             Self::Bearings(options) => bearings::run(options),
             Self::Analyse(options) => analyse::run(options, place),
             Self::Compare(options) => compare::run(options, place),

@@ -9,7 +9,7 @@ const TESTING: &str = "testing";
 
 /// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a
 /// paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 25] = [
+const LAYERS: [(&str, &[&str]); 26] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -28,6 +28,7 @@ const LAYERS: [(&str, &[&str]); 25] = [
     ("reduction", &["bearing", "mesh", "modal", "scene", "solver", "surface", "system"]),
     ("reduced", &["duty", "film", "modal", "simd", "surface"]),
     ("simulation", &["bearing", "mesh", "modal", "reduced", "reduction", "run", "scene", "solver", "system"]),
+    ("lab", &["duty", "modal", "reduced", "reduction", "scene", "simulation"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
@@ -41,6 +42,7 @@ const LAYERS: [(&str, &[&str]); 25] = [
             "dsp",
             "formats",
             "infer",
+            "lab",
             "mesh",
             "mpi",
             "report",
@@ -97,7 +99,9 @@ fn compare(name: &str, manifest: &str, allowed: &[&str]) -> Vec<String> {
         if !allowed.contains(&to) {
             complaints
                 .push(format!("`{name}` depends on `{to}` ({section}), against the direction of the layers"));
-        } else if section == "[dependencies]" {
+        } else if section == "[dependencies]"
+            || section.starts_with("[target.") && section.ends_with(".dependencies]")
+        {
             found.push(to);
         }
     }

@@ -3,7 +3,7 @@
 //! Both boundaries are heights h over u, and the penetration p(u) is the roller's less the raceway's.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_simd::lanes::{LANES, Number, Vector, fused};
 
 use crate::{
     contact::eight_facets::{self, EightFacets},
@@ -288,8 +288,7 @@ impl Parts for Chords {
 
     #[inline(always)]
     fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet) {
-        let places =
-            roller.map(|r| [straight([u, u], r, raceway, self.shift)[0], r.slope.mul_add(u, r.base)]);
+        let places = roller.map(|r| [straight([u, u], r, raceway, self.shift)[0], fused(r.slope, u, r.base)]);
         jump(&mut self.sum, places);
     }
 }
@@ -312,7 +311,7 @@ impl Parts for Arcs {
     fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet) {
         let places = roller.map(|r| {
             let seen = round([u, u], r, raceway, self.sides, self.shift);
-            [seen.p[0], 0.5 * seen.curvature * r.inside(u) + r.slope.mul_add(u, r.base)]
+            [seen.p[0], 0.5 * seen.curvature * r.inside(u) + fused(r.slope, u, r.base)]
         });
         jump(&mut self.sum, places);
     }

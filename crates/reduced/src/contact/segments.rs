@@ -5,7 +5,7 @@
 //! their vertices only have to be seen anew, all in vectors.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
+use stribeck_simd::lanes::{LANES, Number, Vector, fused, vector_starts};
 
 use crate::{
     contact::outline::{Facet, View},
@@ -195,7 +195,7 @@ impl<'a> Edge<'a> {
     #[inline(always)]
     fn look(&mut self) {
         let View { d, from, .. } = *self.view;
-        let across = |[x, y]: [f64; 2]| (-d[1]).mul_add(x - from[0], d[0] * (y - from[1]));
+        let across = |[x, y]: [f64; 2]| fused(-d[1], x - from[0], d[0] * (y - from[1]));
         [self.from, self.to] = self.ends().map(across);
     }
 

@@ -1,0 +1,294 @@
+//! A bearing that follows its handles.
+
+use stribeck_reduced::{
+    bearing::Bearing,
+    motion::{BearingInMotion, Energies, Saved},
+};
+
+use crate::{
+    content::Content,
+    dense,
+    error::Error,
+    handles::{self, HANDLES, Handles, at},
+    parameters::{course, modal},
+    readings::{self, PER_SAMPLE},
+};
+
+/// A bearing in motion, its handles and what the page reads of it.
+#[derive(Debug)]
+pub struct Engine {
+    content: Content,
+    /// Handles as they are, and as they are asked for.
+    now: Handles,
+    asked: Handles,
+    motion: BearingInMotion,
+    steps_per_sample: usize,
+    /// Mean displacement of the outer raceway by a unit of each mode, x and y [1/√kg].
+    mean: [Vec<f64>; 2],
+    energies: Energies,
+    /// Energy of all kinds less work since the last change [J], and the most that rings and contacts have
+    /// stored [J].
+    first: Option<f64>,
+    most_stored: f64,
+    samples: Vec<f64>,
+    picture: Vec<f64>,
+    displacement: Vec<f64>,
+}
+
+/// Imbalance of energy beyond which a run has gone wrong, over the most that rings and contacts have stored,
+/// over the heat, and over the energy of motion: those of a run of the program (`stribeck-simulation`).
+const OF_STORED: f64 = 0.25;
+const OF_HEAT: f64 = 0.01;
+const OF_MOTION: f64 = 1e-6;
+
+impl Engine {
+    /// The bearing of the scene at its start.
+    ///
+    /// # Errors
+    /// When oil finds no smooth surface to lie on.
+    pub fn new(content: Content) -> Result<Self, Error> {
+        let dt = content.interval / content.steps_per_sample as f64;
+        let handles = content.handles;
+        let bearing = Bearing::new(modal(&content, &handles, None)?, dt)?;
+        // Sensors change no motion; the first sample of one begins with its velocity at the start.
+        let start = Saved::first(&bearing, content.start.state.clone());
+        let mean = mean_shape(&bearing);
+        Ok(Self {
+            steps_per_sample: content.steps_per_sample,
+            now: handles,
+            asked: handles,
+            motion: BearingInMotion::new(bearing, start),
+            mean,
+            energies: Energies::default(),
+            first: None,
+            most_stored: 0.0,
+            samples: Vec::new(),
+            picture: Vec::new(),
+            displacement: Vec::new(),
+            content,
+        })
+    }
+
+    /// Asks for a value of a handle; [`apply`](Self::apply) turns all that were asked for.
+    ///
+    /// # Errors
+    /// When it is beyond the range of the handle.
+    pub fn ask(&mut self, handle: usize, value: f64) -> Result<(), Error> {
+        handles::check(handle, value)?;
+        self.asked[handle] = value;
+        Ok(())
+    }
+
+    /// Turns the handles that were asked for: the bearing runs on, or starts anew where one of them needs it.
+    /// Whether it starts anew.
+    ///
+    /// # Errors
+    /// When there is no such bearing or it has no equilibrium; the handles are then as they were.
+    pub fn apply(&mut self) -> Result<bool, Error> {
+        let anew = (0..HANDLES.len()).any(|n| !HANDLES[n].live && self.asked[n] != self.now[n]);
+        let done = if anew { self.restart() } else { self.go_on() };
+        match done {
+            Ok(()) => {
+                self.now = self.asked;
+                Ok(anew)
+            }
+            Err(error) => {
+                self.asked = self.now;
+                Err(error)
+            }
+        }
+    }
+
+    /// Starts anew with the handles that were asked for.
+    ///
+    /// # Errors
+    /// As [`apply`](Self::apply).
+    pub fn restart(&mut self) -> Result<(), Error> {
+        if self.asked == self.content.handles {
+            *self = Self::new(self.content.clone())?;
+            return Ok(());
+        }
+        let constant = course(&self.content, [self.asked[at::LOAD], self.asked[at::SPEED]], &self.asked, 0.0);
+        let (bearing, steps) = self.bearing(Some(constant))?;
+        let state = bearing.at_start(&dense::solve)?;
+        let start = Saved::first(&bearing, state);
+        self.take(bearing, steps, start);
+        self.now = self.asked;
+        Ok(())
+    }
+
+    /// Goes on from a state of a run of the scene.
+    ///
+    /// # Errors
+    /// When the bytes are no state of this bearing.
+    pub fn go_on_from(&mut self, bytes: &[u8]) -> Result<(), Error> {
+        let state = postcard::from_bytes(bytes)?;
+        let saved = Saved::first(self.motion.bearing(), state);
+        if !saved.fits(self.motion.bearing()) {
+            return Err(Error::Content(postcard::Error::DeserializeBadEncoding));
+        }
+        let bearing = self.motion.bearing().clone();
+        self.take(bearing, self.steps_per_sample, saved);
+        Ok(())
+    }
+
+    /// Goes on with the handles that were asked for.
+    fn go_on(&mut self) -> Result<(), Error> {
+        let only_watched = (0..HANDLES.len()).all(|n| n == at::ROLLER || self.asked[n] == self.now[n]);
+        if only_watched {
+            return Ok(());
+        }
+        let time = self.motion.time();
+        let duty = &self.motion_duty();
+        let from = duty.unwrap_or([self.now[at::LOAD], self.now[at::SPEED]]);
+        let duty = course(&self.content, from, &self.asked, time);
+        let (bearing, steps) = self.bearing(Some(duty))?;
+        let mut saved = self.motion.saved();
+        saved.state.steps = (time / bearing.time_step).round() as u64;
+        let start = Saved::first(&bearing, saved.state);
+        if !start.fits(&bearing) {
+            // Oil that comes or goes with the speed: films are begun anew.
+            let state = bearing.at_start(&dense::solve)?;
+            let start = Saved::first(&bearing, state);
+            self.take(bearing, steps, start);
+            return Ok(());
+        }
+        self.take(bearing, steps, start);
+        Ok(())
+    }
+
+    /// Load and speed at present, where they follow a course.
+    fn motion_duty(&self) -> Option<[f64; 2]> {
+        let time = self.motion.time();
+        self.motion.bearing().duty().map(|duty| [duty.load_n(time), duty.speed_rpm(time)])
+    }
+
+    /// The bearing of the handles that were asked for, and the steps of a sample: no step is longer than the
+    /// critical one.
+    fn bearing(&self, duty: Option<stribeck_duty::Duty>) -> Result<(Bearing, usize), Error> {
+        let modal = modal(&self.content, &self.asked, duty)?;
+        let interval = self.content.interval;
+        let in_steps = |longest: f64| ((interval / longest - 1e-9).ceil() as usize).max(2);
+        let mut steps = self.content.steps_per_sample;
+        if self.asked[at::STEP] != self.content.handles[at::STEP] {
+            steps = in_steps(1e-6 * self.asked[at::STEP]);
+        }
+        let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
+        let critical = bearing.critical_time_step();
+        if bearing.time_step <= critical || self.asked[at::STEP] != self.content.handles[at::STEP] {
+            return Ok((bearing, steps));
+        }
+        let steps = in_steps(critical);
+        Ok((Bearing::new(modal, interval / steps as f64)?, steps))
+    }
+
+    fn take(&mut self, bearing: Bearing, steps: usize, start: Saved) {
+        self.mean = mean_shape(&bearing);
+        self.motion = BearingInMotion::new(bearing, start);
+        self.steps_per_sample = steps;
+        (self.first, self.most_stored, self.energies) = (None, 0.0, Energies::default());
+    }
+
+    /// Takes so many samples, which are then in [`samples`](Self::samples).
+    ///
+    /// # Errors
+    /// When the run has gone wrong.
+    pub fn run(&mut self, samples: usize) -> Result<(), Error> {
+        self.samples.clear();
+        self.samples.reserve(samples * PER_SAMPLE);
+        let watched = self.now[at::ROLLER] as usize;
+        for _ in 0..samples {
+            self.energies = self.motion.interval(self.steps_per_sample);
+            readings::sample(&self.motion, watched, &self.mean, &mut self.samples);
+            self.guard()?;
+        }
+        Ok(())
+    }
+
+    /// Energy that is stored and lost less the work that was put in, since the last change [J].
+    fn imbalance(&self) -> f64 {
+        balance(&self.energies) - self.first.unwrap_or(0.0)
+    }
+
+    fn guard(&mut self) -> Result<(), Error> {
+        let e = self.energies;
+        self.first.get_or_insert(balance(&e));
+        self.most_stored = self.most_stored.max(e.strain + e.contact);
+        let off = self.imbalance().abs();
+        let heat = e.friction + e.damping + e.contact_damping + e.film;
+        let of = |what: f64| off / what.max(f64::MIN_POSITIVE);
+        let apart = of(self.most_stored) > OF_STORED && of(heat) > OF_HEAT && of(e.kinetic) > OF_MOTION;
+        if apart || !off.is_finite() {
+            return Err(Error::Diverged(format!(
+                "energy is off by {:.3} % of the most that rings and contacts have stored at {:.4} ms. \
+                 Take a smaller time step, a larger `model.modes_khz`, or `model: full` to see which of the \
+                 two models is wrong",
+                100.0 * of(self.most_stored),
+                1e3 * self.motion.time()
+            )));
+        }
+        Ok(())
+    }
+
+    /// Samples of the last run, in rows of [`PER_SAMPLE`].
+    pub fn samples(&self) -> &[f64] {
+        &self.samples
+    }
+
+    /// The bearing at present, as `readings.rs` says.
+    pub fn picture(&mut self) -> &[f64] {
+        let imbalance = self.imbalance();
+        readings::picture(&self.motion, &self.energies, imbalance, &mut self.picture);
+        &self.picture
+    }
+
+    /// Displacement of the vertices of the outer raceway, x and y of each [m].
+    pub fn displacement(&mut self) -> &[f64] {
+        readings::displacement(&self.motion, &mut self.displacement);
+        &self.displacement
+    }
+
+    /// Vertices of the outer raceway (0), of the inner raceway (1) and of a roller (2) [m].
+    pub fn outline(&self, which: usize) -> Vec<f64> {
+        let outlines = modal(&self.content, &self.now, None).map(|modal| modal.parameters.outlines);
+        let outlines = outlines.unwrap_or_else(|_| self.content.modal.parameters.outlines.clone());
+        match which {
+            0 => outlines.outer,
+            1 => outlines.inner,
+            _ => outlines.rims[0].clone(),
+        }
+        .concat()
+    }
+
+    /// Handles as they are.
+    pub fn handles(&self) -> &Handles {
+        &self.now
+    }
+
+    /// Angle of the vertex 0 of each roller at the start [rad].
+    pub fn vertex_angles(&self) -> Vec<f64> {
+        self.content.modal.parameters.rollers.iter().map(|roller| roller.vertex_angle).collect()
+    }
+
+    /// Forces of both raceways on all rollers, x and y of the outer one, then of the inner one [N]: what the
+    /// check compares.
+    pub fn forces(&self) -> Vec<f64> {
+        self.motion.rollers().flat_map(|roller| [roller.outer, roller.inner].concat()).collect()
+    }
+}
+
+fn balance(e: &Energies) -> f64 {
+    e.kinetic + e.strain + e.contact + e.friction + e.damping + e.contact_damping + e.film
+        - e.external
+        - e.drive
+}
+
+/// Mean displacement of the outer raceway by a unit of each mode.
+fn mean_shape(bearing: &Bearing) -> [Vec<f64>; 2] {
+    let (r, shapes) = (bearing.reduction.padded, &bearing.reduction.shapes);
+    let vertices = (shapes.len() / (2 * r)).max(1) as f64;
+    let mean = |first: usize| {
+        (0..r).map(|k| shapes.iter().skip(first + k).step_by(2 * r).sum::<f64>() / vertices).collect()
+    };
+    [mean(0), mean(r)]
+}

@@ -1,0 +1,141 @@
+//! `stribeck lab`: bearings that run in the browser, in one file.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, Result, bail, ensure};
+use stribeck_lab::page::{self, is_module};
+use stribeck_scene::scene::Scene;
+
+use crate::out::say;
+use crate::place::{Place, shown};
+
+/// Flags of `lab`.
+#[derive(Debug, clap::Args)]
+pub struct Options {
+    /// Scene files, each a bearing in the page [default: the run of the paper]; a full model runs in its
+    /// modes
+    scenes: Vec<PathBuf>,
+    /// The page
+    #[arg(long, value_name = "FILE", default_value = "lab.html")]
+    out: PathBuf,
+    /// Overrides a field of every scene, for example --set model=reduced(modes_khz:20); may be repeated
+    #[arg(long = "set", value_name = "FIELD=VALUE")]
+    set: Vec<String>,
+    /// Opens the page in the browser
+    #[arg(long)]
+    open: bool,
+    /// The module that steps the bearing, built by `cargo xtask lab` [default: the one that is found]
+    #[arg(long, value_name = "FILE")]
+    module: Option<PathBuf>,
+}
+
+/// Names the module for programs that are not beside it.
+const VARIABLE: &str = "STRIBECK_LAB_MODULE";
+
+/// Its name beside the program, and below the folder of builds in a repository.
+pub const MODULE: &str = "stribeck_lab.wasm";
+
+/// More in one page is slow to open.
+const MOST_SCENES: usize = 12;
+
+/// What a page may have [bytes]: more is hard to send.
+const LARGEST: usize = 3 << 20;
+
+impl Options {
+    /// With a module that was just built, unless the user named one.
+    pub fn with_module(mut self, module: PathBuf) -> Self {
+        self.module.get_or_insert(module);
+        self
+    }
+}
+
+pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    ensure!(
+        options.scenes.len() <= MOST_SCENES,
+        "{} scenes in one page: at most {MOST_SCENES}. Make several pages",
+        options.scenes.len()
+    );
+    let module = module(options, place)?;
+    let files = options.scenes.iter().map(|file| Some(file.as_path()));
+    let files: Vec<Option<&Path>> = if options.scenes.is_empty() { vec![None] } else { files.collect() };
+    let scenes: Vec<Scene> =
+        files.iter().map(|file| place.scene(*file, &options.set)).collect::<Result<_>>()?;
+    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+    eprintln!("{}: meshed, brought to rest and reduced", names.join(", "));
+    let runs = place.runs();
+    let page = page::page(&scenes, &module, Some(&runs), &again(options, place))?;
+    if let Some(folder) = options.out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        std::fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", shown(folder)))?;
+    }
+    std::fs::write(&options.out, &page.html)
+        .with_context(|| format!("cannot write `{}`", shown(&options.out)))?;
+    if page.html.len() > LARGEST {
+        eprintln!(
+            "warning: the page has {:.1} MB; --set mesh.size_mm=1 or a smaller \
+             `model.modes_khz` makes it smaller",
+            1e-6 * page.html.len() as f64
+        );
+    }
+    say!("lab: {} ({:.2} MB: {})", shown(&options.out), 1e-6 * page.html.len() as f64, parts(&names, &page));
+    if options.open {
+        open(&options.out)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// How large the parts of a page are.
+fn parts(names: &[&str], page: &page::Page) -> String {
+    let of = |(name, bytes): (&&str, &usize)| format!("{name} {:.2}", 1e-6 * *bytes as f64);
+    let scenes: Vec<String> = names.iter().zip(&page.bytes_of_scenes).map(of).collect();
+    format!("{}, module {:.2}", scenes.join(", "), 1e-6 * page.bytes_of_module as f64)
+}
+
+/// The command that would make the page again.
+fn again(options: &Options, place: &Place) -> String {
+    let scenes = options.scenes.iter().map(|scene| format!(" {}", scene.display()));
+    let set = options.set.iter().map(|set| format!(" --set {set}"));
+    format!("{} lab{}{}", place.program, scenes.collect::<String>(), set.collect::<String>())
+}
+
+/// The module: the one that was named, or the one that is found.
+fn module(options: &Options, place: &Place) -> Result<Vec<u8>> {
+    let named = options.module.clone().or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
+    let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(MODULE)));
+    let built = place.runs().with_file_name("target").join("lab").join(MODULE);
+    let file = match named {
+        Some(file) => file,
+        None => match beside.into_iter().chain([built]).find(|file| file.is_file()) {
+            Some(file) => file,
+            None => bail!(
+                "no {MODULE}, which steps the bearing in the page: `cargo xtask lab` builds it in the \
+                 repository of Stribeck (it needs `rustup target add wasm32-unknown-unknown`) and makes \
+                 the page. Elsewhere put the file beside the program, or name it with --module or {VARIABLE}"
+            ),
+        },
+    };
+    let bytes = std::fs::read(&file).with_context(|| format!("cannot read `{}`", shown(&file)))?;
+    ensure!(is_module(&bytes), "`{}` is no WebAssembly module: `cargo xtask lab` builds one", shown(&file));
+    Ok(bytes)
+}
+
+/// Opens a file with the browser of the system.
+fn open(page: &Path) -> Result<()> {
+    let page = std::path::absolute(page).with_context(|| format!("cannot find `{}`", shown(page)))?;
+    let mut command = if cfg!(target_os = "macos") {
+        Command::new("open")
+    } else if cfg!(target_os = "windows") {
+        let mut command = Command::new("cmd");
+        command.args(["/c", "start", ""]);
+        command
+    } else {
+        Command::new("xdg-open")
+    };
+    let started = command.arg(&page).status();
+    ensure!(
+        started.as_ref().is_ok_and(std::process::ExitStatus::success),
+        "no browser opens by itself here: open `{}` in one",
+        shown(&page)
+    );
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! The module of the lab: `crates/lab`, compiled for `wasm32-unknown-unknown`.
+
+use std::path::PathBuf;
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, Result, ensure};
+use stribeck::lab::MODULE;
+
+use crate::workspace;
+
+/// What it is compiled for.
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// The command of the program, with a module that is built before it where it makes a lab.
+pub(crate) fn with_module(command: stribeck::Command) -> Result<stribeck::Command> {
+    Ok(match command {
+        stribeck::Command::Lab(options) => stribeck::Command::Lab(options.with_module(build()?)),
+        other => other,
+    })
+}
+
+/// Builds the module and says where it is.
+pub(crate) fn build_module() -> Result<ExitCode> {
+    let module = build()?;
+    let bytes = std::fs::metadata(&module).map_or(0, |file| file.len());
+    println!("{} ({:.2} MB)", module.display(), 1e-6 * bytes as f64);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The module, built where a build finds the same name again.
+fn build() -> Result<PathBuf> {
+    let root = workspace::root();
+    // A folder of its own: cargo would wait for the one that runs this command.
+    let folder =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("lab");
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo
+        .current_dir(&root)
+        .args([
+            "rustc",
+            "--quiet",
+            "--profile",
+            "lab",
+            "-p",
+            "stribeck-lab",
+            "--lib",
+            "--crate-type",
+            "cdylib",
+        ])
+        .args(["--target", TARGET, "--target-dir"])
+        .arg(&folder)
+        .env("RUSTFLAGS", "-C target-feature=+simd128")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS");
+    let done = cargo.status().context("cannot start cargo")?;
+    ensure!(
+        done.success(),
+        "the module of the lab cannot be built. Its target comes by `rustup target add {TARGET}`, or on \
+         Debian with `apt-get install rustc-web lld`"
+    );
+    let built = folder.join(TARGET).join("lab").join(MODULE);
+    let module = root.join("target").join("lab").join(MODULE);
+    let place = module.parent().unwrap_or(&root);
+    std::fs::create_dir_all(place).with_context(|| format!("cannot make {}", place.display()))?;
+    std::fs::copy(&built, &module).with_context(|| format!("cannot read {}", built.display()))?;
+    Ok(module)
+}
