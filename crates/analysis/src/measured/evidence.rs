@@ -109,7 +109,7 @@ pub fn what_would_change(findings: &MeasuredFindings) -> Vec<String> {
     if !findings.families.iter().any(|f| f.claimed) {
         let looked = findings.families.iter().filter(|f| f.rank.is_some());
         let nearest = looked.min_by(|a, b| a.p_value.total_cmp(&b.p_value));
-        said.extend(nearest.map(|family| missing(family)));
+        said.extend(nearest.map(missing));
     }
     if let (Some(found), Some(rpm)) = (&findings.unexplained, findings.speed_rpm) {
         let each = findings.families.iter().filter(|f| f.expected_hz > 0.0).map(|f| {
