@@ -24,7 +24,7 @@
 //! | How do speed and load change, and at which orders does a defect stand? | [`duty`] |
 //! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`floor`], [`spall`] |
-//! | How large is a signal, before and behind the notch? | [`levels`], [`filtering`], [`signal`], [`noise`] |
+//! | How large is a signal, before and behind the notch, and where in the spectrum? | [`levels`], [`loudest`], [`filtering`], [`signal`], [`noise`] |
 //! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What differs between runs or records, and is it more than scatter? | [`comparison`] |
@@ -72,6 +72,7 @@ pub mod floor;
 pub mod kinematics;
 pub mod levels;
 pub mod load;
+pub mod loudest;
 pub mod lumped;
 pub mod noise;
 pub mod plan;

@@ -34,6 +34,7 @@ pub mod alarm;
 mod angular;
 mod course;
 mod enhanced;
+pub mod evidence;
 mod halves;
 mod length;
 mod limits;

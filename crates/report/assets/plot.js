@@ -164,6 +164,31 @@
     },
   });
 
+  // The moving bearing shows its time on every chart over the time of the run, and a click there moves it.
+  const playhead = {
+    hooks: {
+      ready: (u) => {
+        u.playhead = u.over.appendChild(document.createElement("div"));
+        u.playhead.className = "playhead";
+        let from = 0;
+        u.over.addEventListener("pointerdown", (e) => { from = e.clientX; });
+        u.over.addEventListener("click", (e) => {
+          if (Math.abs(e.clientX - from) > 3) return;
+          const at = u.posToVal(e.clientX - u.over.getBoundingClientRect().left, "x");
+          document.dispatchEvent(new CustomEvent("trace-time", { detail: at }));
+        });
+        document.addEventListener("bearing-time", (e) => { u.time = e.detail; place(u); });
+      },
+      draw: (u) => place(u),
+    },
+  };
+  const place = (u) => {
+    if (!u.playhead) return;
+    const shown = u.time != null && u.time >= u.scales.x.min && u.time <= u.scales.x.max;
+    u.playhead.style.display = shown ? "block" : "none";
+    if (shown) u.playhead.style.transform = `translateX(${u.valToPos(u.time, "x")}px)`;
+  };
+
   const axisStyle = (axis, size) => ({
     label: axis.ticks === "prefixed" || !axis.unit ? axis.label : `${axis.label} [${axis.unit}]`,
     labelFont: "13px system-ui, sans-serif",
@@ -178,10 +203,10 @@
   });
 
   const build = (figure) => {
-    const place = figure.querySelector(".chart");
+    const holder = figure.querySelector(".chart");
     const spec = JSON.parse(figure.querySelector('script[type="application/json"]').textContent);
     const data = tables(spec);
-    const width = () => Math.max(320, place.clientWidth);
+    const width = () => Math.max(320, holder.clientWidth);
     const [from, to] = spec.x.range || [data[0][0] ?? 0, data[0][data[0].length - 1] ?? 1];
     const pixels = (x) => ((x - from) / (to - from)) * (width() - 100);
     const first = visibleMarks(spec.marks, from, to).map((m) => [pixels(m.x), widthOf(m.label)]);
@@ -213,18 +238,117 @@
       ],
       bands: pairsOf(spec.series.flatMap((s, i) => (s.edge ? [i + 1] : []))).map((pair) => (
         { series: pair, fill: () => theme(spec.series[pair[0] - 1].colour) + "40" })),
-      plugins: [decorate(spec, rowLimit), wheelZoom(place, spec.sync)],
-    }, data, place);
+      plugins: [decorate(spec, rowLimit), wheelZoom(holder, spec.sync), ...(spec.run_time ? [playhead] : [])],
+    }, data, holder);
     if (spec.x.range) chart.setScale("x", { min: from, max: to });
     // uPlot resets to the data; a figure with a fixed range resets to that.
     if (spec.x.range) chart.over.addEventListener("dblclick", () => chart.setScale("x", { min: from, max: to }));
-    place.addEventListener("pointerdown", () => place.focus({ preventScroll: true }));
-    new ResizeObserver(() => chart.setSize({ width: width(), height: chart.height })).observe(place);
+    holder.addEventListener("pointerdown", () => holder.focus({ preventScroll: true }));
+    new ResizeObserver(() => chart.setSize({ width: width(), height: chart.height })).observe(holder);
+    if (spec.wide) {
+      const words = ([a, b]) => `${tickTexts(spec.x)(chart, [a], 0, 0, b).toString().replace(/ .*/, "")} to ${tickTexts(spec.x)(chart, [b], 0, 0, b)}`;
+      const button = document.createElement("button");
+      let wide = false;
+      const label = () => { button.textContent = wide ? `Only ${words([from, to])}` : `Whole band, ${words(spec.wide)}`; };
+      button.type = "button";
+      button.className = "wide";
+      button.addEventListener("click", () => {
+        wide = !wide;
+        const [min, max] = wide ? spec.wide : [from, to];
+        chart.setScale("x", { min, max });
+        label();
+      });
+      label();
+      holder.after(button);
+    }
     figure.classList.add("live");
     return chart;
   };
 
+  // Figures of a group: one is seen, the others keep their width so that their charts do.
+  const tabs = (group) => {
+    const buttons = [...group.querySelectorAll('[role="tab"]')], panels = [...group.querySelectorAll(".panel")];
+    const choose = (chosen) => {
+      buttons.forEach((button, n) => {
+        button.setAttribute("aria-selected", n === chosen);
+        button.tabIndex = n === chosen ? 0 : -1;
+      });
+      panels.forEach((panel, n) => panel.classList.toggle("on", n === chosen));
+    };
+    buttons.forEach((button, n) => {
+      button.addEventListener("click", () => choose(n));
+      button.addEventListener("keydown", (e) => {
+        const step = { ArrowRight: 1, ArrowLeft: buttons.length - 1 }[e.key];
+        if (!step) return;
+        const next = (n + step) % buttons.length;
+        choose(next);
+        buttons[next].focus();
+      });
+    });
+    group.chooseOf = (element) => choose(panels.findIndex((panel) => panel.contains(element)));
+    group.classList.add("live");
+    choose(0);
+  };
+
+  // A link to a figure behind a tab opens it.
+  const follow = () => {
+    const wanted = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    const group = wanted && wanted.closest(".tabs");
+    if (group) { group.chooseOf(wanted); wanted.scrollIntoView(); }
+  };
+
+  const save = (name, address) => {
+    const link = document.createElement("a");
+    link.download = name;
+    link.href = address;
+    link.click();
+  };
+
+  // Each figure as a file: its drawing as it is, and the same in pixels, twice as fine as on the page.
+  const saving = (figure) => {
+    const svg = figure.querySelector(".still svg, .drawing svg");
+    const image = figure.querySelector(".moving img, .drawing img"), canvas = figure.querySelector("canvas.bearing");
+    const text = () => new XMLSerializer().serializeToString(svg);
+    const address = () => "data:image/svg+xml;charset=utf-8," + encodeURIComponent(text());
+    const forms = [];
+    if (svg) {
+      forms.push(["SVG", () => save(figure.id + ".svg", address())]);
+      forms.push(["PNG", () => {
+        const picture = new Image();
+        picture.onload = () => {
+          const paper = document.createElement("canvas");
+          paper.width = 2 * svg.width.baseVal.value;
+          paper.height = 2 * svg.height.baseVal.value;
+          paper.getContext("2d").drawImage(picture, 0, 0, paper.width, paper.height);
+          save(figure.id + ".png", paper.toDataURL("image/png"));
+        };
+        picture.src = address();
+      }]);
+    } else if (image) {
+      const form = image.src.slice(11, 14).toUpperCase();
+      forms.push([form, () => save(`${figure.id}.${form.toLowerCase()}`, image.src)]);
+    } else if (canvas) {
+      forms.push(["PNG", () => save(figure.id + ".png", canvas.toDataURL("image/png"))]);
+    }
+    if (!forms.length) return;
+    const row = document.createElement("div");
+    row.className = "save";
+    for (const [form, go] of forms) {
+      const button = document.createElement("button");
+      button.type = "button";
+      button.textContent = form;
+      button.title = "Save this figure as " + form;
+      button.addEventListener("click", go);
+      row.append(button);
+    }
+    figure.prepend(row);
+  };
+
   addEventListener("DOMContentLoaded", () => {
+    document.querySelectorAll(".tabs").forEach(tabs);
+    document.querySelectorAll("figure").forEach(saving);
+    addEventListener("hashchange", follow);
+    follow();
     const charts = [...document.querySelectorAll("figure.plot")].map(build);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => charts.forEach((c) => c.redraw()));
   });

@@ -11,26 +11,86 @@ use stribeck_scene::scene::{DefectRing, DefectScene};
 use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::FamilyFinding;
+use stribeck_analysis::findings::Findings;
 use stribeck_analysis::rolling;
 use stribeck_analysis::summary::{EnergyFinding, Event, PhaseLevels, Summary};
 use stribeck_analysis::words::{gravities, significant};
 
+use crate::figures::loudest_in_words;
+use crate::page::{sentence, with_code};
+
 /// Rollers that are named one by one, at most.
 const NAMED: usize = 6;
 
-/// The first paragraphs of the page.
-pub(super) fn paragraphs(run: &Run, summary: &Summary) -> Markup {
+/// The first paragraphs of the page, and beside them how far to trust them.
+pub(super) fn paragraphs(run: &Run, findings: &Findings) -> Markup {
+    let summary = &findings.summary;
     html! {
-        div #summary class="answer" {
-            p { strong { "The defect. " } (defect(run, summary)) }
-            p { strong { "The mesh. " } (mesh(summary)) }
-            p { strong { "The physics. " } (physics(run, summary)) }
-            p { strong { "How far to trust it. " } (trust(summary)) }
-            @for warning in rolling::warnings(summary.load.expected_n, summary.load.least_rolling_n, &summary.kinematics) {
-                p { strong { "Warning. " } (crate::page::sentence(&warning)) }
+        div #summary class="top" {
+            div class="answer" {
+                p { strong { "The defect. " } (defect(run, summary)) }
+                p {
+                    strong { "The signal. " }
+                    (physics(summary))
+                    @if let Some(words) = loudest_in_words(findings) { " " (words) }
+                }
+                p { strong { "The mesh. " } (mesh_in_short(summary)) }
+                @if let Some(diagnosis) = &summary.diagnosis {
+                    p { strong { "Without the scene. " } (diagnosis.verdict) " " a href="#diagnosis" { "Why" } "." }
+                }
+            }
+            aside class="caveat" aria-label="How far to trust it" {
+                p { strong { "How far to trust it. " } (caution(run, summary)) }
+                ul {
+                    @for warning in warnings(run, summary) { li { (with_code(&warning)) } }
+                    @for words in trust(summary) { li { (words) } }
+                }
             }
         }
     }
+}
+
+/// The first thing to bear in mind: a run that warned, or whose contact is a choice as every scene's is.
+fn caution(run: &Run, summary: &Summary) -> String {
+    match warnings(run, summary).len() {
+        0 => "The run gave no warning; levels in g still depend on choices of the scene.".to_owned(),
+        1 => "The run gave a warning:".to_owned(),
+        more => format!("The run gave {more} warnings:"),
+    }
+}
+
+/// Warnings of the run and of its load, those of the contact first; that pictures are missing is a note.
+fn warnings(run: &Run, summary: &Summary) -> Vec<String> {
+    let of_run = run.info.warnings.iter().filter(|words| !is_of_pictures(words)).cloned();
+    let motion = &summary.kinematics;
+    let of_load = rolling::warnings(summary.load.expected_n, summary.load.least_rolling_n, motion);
+    let mut all: Vec<String> = of_run.chain(of_load).map(|words| sentence(&words)).collect();
+    all.sort_by_key(|words| !words.starts_with("Contact"));
+    all
+}
+
+/// Whether a warning of a run only says which pictures its page will lack.
+pub(super) fn is_of_pictures(warning: &str) -> bool {
+    warning.starts_with("no pictures")
+}
+
+/// Which families of facet lines are there, in one sentence; where exactly stands at the spectrum.
+fn mesh_in_short(summary: &Summary) -> String {
+    let found: Vec<&FamilyFinding> = summary.families.iter().filter(|f| f.found).collect();
+    if unsteady(summary).is_some() || found.is_empty() {
+        return mesh(summary);
+    }
+    let each: Vec<String> = found
+        .iter()
+        .map(|f| {
+            let level = f.level_g.map_or(String::new(), |g| format!(", up to {}", gravities(g)));
+            format!("{} about {:.0} Hz{level}", f.spoken(), f.carrier_hz.unwrap_or(f64::NAN))
+        })
+        .collect();
+    format!(
+        "Lines of the {} are artefacts of the mesh: a real bearing has none, and another mesh moves them.",
+        each.join(", and of the ")
+    )
 }
 
 /// Number and noun.
@@ -169,7 +229,8 @@ fn radial(summary: &Summary) -> Option<&PhaseLevels> {
     sensor.components.iter().find(|c| c.component == "radial").map(|c| &c.phases)
 }
 
-fn mesh(summary: &Summary) -> String {
+/// The families of facet lines in full.
+pub(super) fn mesh(summary: &Summary) -> String {
     if let Some(duty) = unsteady(summary) {
         let (least, most) = duty.relative_speed_rpm;
         return format!(
@@ -253,12 +314,9 @@ fn orders(duty: &DutyFinding) -> String {
     )
 }
 
-fn physics(run: &Run, summary: &Summary) -> String {
+fn physics(summary: &Summary) -> String {
     if let Some(duty) = unsteady(summary) {
-        return format!(
-            "Bursts at entries and exits and the forces of the rollers follow from load and geometry. {}",
-            orders(duty)
-        );
+        return orders(duty);
     }
     let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Origin::Defect).collect();
     let seen: Vec<String> =
@@ -284,27 +342,24 @@ fn physics(run: &Run, summary: &Summary) -> String {
             )
         }
     });
-    let bursts = if summary.events.is_empty() { "The" } else { "Bursts at entries and exits and the" };
-    format!(
-        "{bursts} forces of the rollers follow from load and geometry.{} {}",
-        lines.unwrap_or_default(),
-        if run.scene.written.housing.is_rigid() {
-            "The outer ring is rigid and has no natural frequency of its own."
-        } else {
-            "No line is booked as a natural frequency of the ring, because a place near one proves nothing."
-        }
-    )
+    lines.unwrap_or_default().trim_start().to_owned()
 }
 
-fn trust(summary: &Summary) -> String {
+/// What limits the numbers, one subject each.
+fn trust(summary: &Summary) -> Vec<String> {
     let EnergyFinding { max_relative_error, share_of_heat, .. } = summary.energy;
-    let energy = format!("Energy balances to {}", imbalance(max_relative_error, share_of_heat));
     let load = summary
         .load
         .relative_error
         .map_or(String::new(), |e| format!(", the mean load to {:.2} %", 100.0 * e.abs()));
-    let spectrum = summary.spectrum.as_ref().map_or(String::new(), |s| {
-        let good = format!(" Frequencies are good to {} Hz, one over", significant(s.resolution_hz, 2));
+    let mut said = vec![
+        "Peaks are those of one start: another start angle moves them by tens of per cent. They also \
+         depend on contact stiffness, damping and pocket clearance, which are choices of the scene."
+            .to_owned(),
+        format!("Energy balances to {}{load}.", imbalance(max_relative_error, share_of_heat)),
+    ];
+    said.extend(summary.spectrum.as_ref().map(|s| {
+        let good = format!("Frequencies are good to {} Hz, one over", significant(s.resolution_hz, 2));
         let defect = s.fine_resolution_hz.map_or(String::new(), |hz| {
             format!("; those of the defect\u{2019}s family to {} Hz, one over the record", significant(hz, 2))
         });
@@ -315,12 +370,8 @@ fn trust(summary: &Summary) -> String {
                 significant(s.segment_s, 3)
             ),
         }
-    });
-    format!(
-        "{energy}{load}.{spectrum} Peaks are those of one start: another start angle moves them by tens of \
-         per cent. They also \
-         depend on contact stiffness, damping and pocket clearance, which are choices of the scene."
-    )
+    }));
+    said
 }
 
 fn sensor(summary: &Summary) -> &str {

@@ -12,11 +12,11 @@ use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::Run;
 
 pub(super) use self::forces::{DRAWN as CROSSINGS, crossings as crossing_figures};
-pub(super) use self::spectra::{about_the_tone, density};
+pub(super) use self::spectra::{about_the_tone, density, loudest_in_words};
 use super::course;
 use super::pictures::Pictures;
 use crate::Error;
-use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series};
+use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series, Tab};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::measured::Course;
 use stribeck_analysis::record::Record;
@@ -53,6 +53,30 @@ impl Item {
         match self {
             Self::Chart(figure) => figure.to_html(),
             Self::Picture(picture) => picture.to_html(),
+        }
+    }
+
+    /// Its place among figures behind tabs; pictures have none.
+    pub(super) fn tab(&self) -> Option<&Tab> {
+        match self {
+            Self::Chart(figure) => figure.tab.as_ref(),
+            Self::Picture(_) => None,
+        }
+    }
+
+    /// How far to trust it.
+    pub(super) fn note(&self) -> &str {
+        match self {
+            Self::Chart(figure) => &figure.note,
+            Self::Picture(picture) => &picture.note,
+        }
+    }
+
+    /// The form for the page with another note.
+    pub(super) fn with_note(&self, note: String) -> Result<Markup, Error> {
+        match self {
+            Self::Chart(figure) => figure.clone().note(note).to_html(),
+            Self::Picture(picture) => Picture { note, ..picture.clone() }.to_html(),
         }
     }
 

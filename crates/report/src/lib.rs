@@ -35,6 +35,7 @@ mod sound;
 mod answer;
 mod course;
 mod figures;
+mod moving;
 mod paper;
 mod pictures;
 mod sections;

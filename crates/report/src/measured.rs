@@ -7,8 +7,9 @@ use stribeck_dsp::BandEnvelope;
 use stribeck_scene::run_dir::write_atomic;
 
 use crate::page::{head, json, sentence};
-use crate::plot::{Axis, Colour, Figure, Mark, Series};
+use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 use crate::{Error, course, sound};
+use stribeck_analysis::measured::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
 
 /// Lowest cyclic frequency drawn [Hz].
@@ -29,7 +30,9 @@ pub fn write_measured(folder: &Path, file: &str, analysis: &Analysis) -> Result<
 fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
     let findings = &analysis.findings;
     let unit = findings.unit.as_deref().unwrap_or("unit");
-    let figures = figures(analysis, unit).iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
+    let drawn = |figures: Vec<Figure>| figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>();
+    let evidence = drawn(evidence(analysis)?)?;
+    let figures = drawn(figures(analysis, unit))?;
     let course = course::picture(&analysis.course, unit).to_html()?;
     let title = format!("{file}, {}", findings.channel);
     let number = |x: f64| format!("{x:.4}");
@@ -48,6 +51,10 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                 }
                 p { strong { (findings.verdict) } }
                 @if let Some(words) = spall_in_words(findings) { p { (words) } }
+                h2 #evidence { "What the verdict rests on" }
+                @for figure in evidence { (figure) }
+                h3 { "What would change it" }
+                ul { @for words in what_would_change(findings) { li { (words) } } }
                 h2 #families { "Defect families" }
                 @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
                 h2 #signal { "Signal" }
@@ -136,18 +143,99 @@ fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
         density.iter().map(|p| decibel(*p)).collect(),
     ));
     let mut figures = vec![waveform, spectrum];
-    let shown: Vec<&Family> = findings.families.iter().filter(|f| f.claimed).collect();
-    let there: Vec<&Family> = findings.families.iter().filter(|f| f.is_there()).collect();
-    for family in if shown.is_empty() { there } else { shown } {
-        figures.extend(analysis.band_of(family).map(|band| envelope(band, family, findings)));
+    figures.extend(analysis.enhanced.as_ref().map(|spectrum| enhanced(spectrum, &findings.families)));
+    figures
+}
+
+/// The families that are shown: those that are claimed, otherwise those that are there, otherwise the one
+/// that is nearest to it.
+fn shown(families: &[Family]) -> Vec<&Family> {
+    let all = |of: fn(&Family) -> bool| families.iter().filter(|f| of(f)).collect::<Vec<_>>();
+    let (claimed, there) = (all(|f| f.claimed), all(Family::is_there));
+    if !claimed.is_empty() {
+        return claimed;
     }
-    if figures.len() == 2 {
-        // Nothing to show: the band that knocks most.
+    if !there.is_empty() {
+        return there;
+    }
+    let nearest = families.iter().filter(|f| f.band_hz.is_some());
+    nearest.min_by(|a, b| a.p_value.total_cmp(&b.p_value)).into_iter().collect()
+}
+
+/// Of each family that is shown its envelope spectrum, the combs that it is compared with and the mean over
+/// its period; without a family the envelope of the band that knocks most.
+fn evidence(analysis: &Analysis) -> Result<Vec<Figure>, Error> {
+    let findings = &analysis.findings;
+    let mut figures = Vec::new();
+    for family in shown(&findings.families) {
+        figures.extend(analysis.band_of(family).map(|band| envelope(band, family, findings)));
+        figures.extend(combs(family));
+        figures.extend(synchronous(analysis, family)?.map(|means| period(family, &means)));
+    }
+    if figures.is_empty() {
         let most = analysis.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
         figures.extend(most.map(|band| spectrum_of(band, "envelope", "Squared envelope spectrum", 500.0)));
     }
-    figures.extend(analysis.enhanced.as_ref().map(|spectrum| enhanced(spectrum, &findings.families)));
-    figures
+    Ok(figures)
+}
+
+/// Height of the family's comb beside that of combs about unrelated fundamentals of the same spectrum.
+fn combs(family: &Family) -> Option<Figure> {
+    let hz = family.name.shocks_per_period() * family.measured_hz.unwrap_or(family.expected_hz);
+    let highest = family.controls.iter().map(|c| c.1).reduce(f64::max)?;
+    let (x, y): (Vec<f64>, Vec<f64>) = family.controls.iter().copied().unzip();
+    let lead = family.score_db() - highest;
+    let id = format!("combs-{}", family.name.name().to_lowercase());
+    let figure = Figure::new(
+        &id,
+        &format!("{} beside {} unrelated combs", family.name.shocks_name(), x.len()),
+        Axis::si("Fundamental", "Hz"),
+        Axis::plain("Height over the background", "dB"),
+    )
+    .with(Series::listed("unrelated", Colour::Grey, x, y).as_points())
+    .with(Series::listed(family.name.shocks_name(), Colour::Red, vec![hz], vec![family.score_db()]).as_points())
+    .caption(if lead > 0.0 {
+        format!("It stands {lead:.1} dB above the highest of them.")
+    } else {
+        format!("The highest of them stands {:.1} dB above it.", -lead)
+    })
+    .note(
+        "A comb is as high as the fourth highest of its first five harmonics. Unrelated are fundamentals that \
+         share no multiple or fraction with this one, and are none of the shaft or the cage.",
+    );
+    Some(figure)
+}
+
+/// The mean power over one period of the knocks, and over an unrelated one.
+fn period(family: &Family, (of_family, control): &(SynchronousMean, SynchronousMean)) -> Figure {
+    let curve = |name: &str, colour: Colour, mean: &SynchronousMean| {
+        let step = 1.0 / mean.power.len() as f64;
+        Series::sampled(name, colour, 0.5 * step, step, mean.power.clone())
+    };
+    let highest = |mean: &SynchronousMean| mean.power.iter().copied().fold(0.0, f64::max);
+    let name = family.name.shocks_name();
+    let id = format!("period-{}", family.name.name().to_lowercase());
+    let (most, by_chance) = (highest(of_family), highest(control));
+    let mut figure = Figure::new(
+        &id,
+        &format!("Mean over one period of {name}"),
+        Axis::plain("Part of the period", "").over(0.0, 1.0),
+        Axis::plain("Power over its mean", ""),
+    )
+    .with(curve(&format!("unrelated, {:.2} Hz", control.hz), Colour::Grey, control))
+    .with(curve(&format!("{name}, {:.2} Hz", of_family.hz), Colour::Blue, of_family))
+    .caption(format!(
+        "Over {} periods the power of the band rises to {most:.2} times its mean once a period; about an \
+         unrelated rate, sought alike, to {by_chance:.2}.",
+        of_family.periods
+    ))
+    .note(
+        "From the beginning of the record, in the band in which the family stands highest. Each curve is turned \
+         so that its highest value lies at a quarter. Knocks that slip lose their phase from period to period, \
+         and with it this peak, though their lines stand.",
+    );
+    figure.levels = vec![Level { y: 1.0, label: "mean".into(), colour: Colour::Grey }];
+    figure
 }
 
 /// The enhanced envelope spectrum with the places of all families: dashed where they are expected, solid
@@ -214,20 +302,31 @@ fn envelope(band: &BandEnvelope, family: &Family, findings: &MeasuredFindings) -
         Defect::Bsf => cage_hz,
         Defect::Bpfo | Defect::Ftf => 0.0,
     };
+    let side = if family.name == Defect::Bpfi { "shaft" } else { "cage" };
+    let mark = |x: f64, label: String, colour: Colour, dashed: bool| Mark { x, label, colour, dashed };
     for n in 1..=5 {
         let at = f64::from(n) * hz;
-        figure.marks.push(Mark { x: at, label: format!("{n}×"), colour: Colour::Red, dashed: false });
-        if side_hz > 0.0 && n <= 2 {
-            for side in [at - side_hz, at + side_hz] {
-                figure.marks.push(Mark {
-                    x: side,
-                    label: String::new(),
-                    colour: Colour::Orange,
-                    dashed: true,
-                });
-            }
+        figure.marks.push(mark(at, format!("{n}×"), Colour::Red, false));
+        if side_hz > 0.0 && n <= 3 {
+            let label = |sign: &str| if n == 1 { format!("{sign}{side}") } else { String::new() };
+            figure.marks.push(mark(at - side_hz, label("−"), Colour::Orange, true));
+            figure.marks.push(mark(at + side_hz, label("+"), Colour::Orange, true));
         }
     }
+    let highest = family.controls.iter().max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((control_hz, _)) = highest {
+        let inside = (1..=5).map(f64::from).filter(|n| n * control_hz < 5.6 * hz);
+        figure.marks.extend(inside.map(|n| {
+            let label = if n > 1.0 { String::new() } else { "highest unrelated".to_owned() };
+            mark(n * control_hz, label, Colour::Grey, true)
+        }));
+    }
+    figure.note += &format!(
+        " Red: harmonics of {}{}{}.",
+        family.name.shocks_name(),
+        if side_hz > 0.0 { format!("; orange: their sidebands of the {side}") } else { String::new() },
+        if highest.is_some() { "; grey: the highest comb of an unrelated fundamental" } else { "" }
+    );
     figure
 }
 

@@ -71,14 +71,78 @@ pub(crate) fn section(
     after: Markup,
     otherwise: &str,
 ) -> Result<Markup, Error> {
-    let drawn = items.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
+    let drawn = figures(items)?;
     Ok(html! {
         h2 id=(id) { (name) }
         (before)
-        @if drawn.is_empty() { p { (otherwise) } }
-        @for figure in drawn { (figure) }
+        @if items.is_empty() { p { (otherwise) } }
+        (drawn)
         (after)
     })
+}
+
+/// Figures one after the other; neighbours of one group share a frame with tabs, and sentences that the notes
+/// of all of them have stand once below it.
+pub(crate) fn figures(items: &[Item]) -> Result<Markup, Error> {
+    let groups =
+        items.chunk_by(|a, b| a.tab().is_some() && a.tab().map(|t| t.group) == b.tab().map(|t| t.group));
+    let drawn = groups.map(|group| match group {
+        [alone] => alone.to_html(),
+        several => tabs(several),
+    });
+    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
+    Ok(html! { @for group in drawn { (group) } })
+}
+
+fn tabs(items: &[Item]) -> Result<Markup, Error> {
+    let notes: Vec<Vec<&str>> = items.iter().map(|item| sentences(item.note())).collect();
+    let of_all = |sentence: &&str| notes.iter().all(|note| note.contains(sentence));
+    let shared: Vec<&str> = notes[0].iter().copied().filter(|sentence| of_all(sentence)).collect();
+    let own = |note: &[&str]| {
+        let left: Vec<&str> = note.iter().copied().filter(|sentence| !shared.contains(sentence)).collect();
+        left.join(" ")
+    };
+    let drawn = items.iter().zip(&notes).map(|(item, note)| item.with_note(own(note)));
+    let drawn = drawn.collect::<Result<Vec<_>, _>>()?;
+    Ok(html! {
+        div class="tabs" {
+            div class="tab-row" role="tablist" {
+                @for (n, item) in items.iter().enumerate() {
+                    button type="button" role="tab" aria-selected=(if n == 0 { "true" } else { "false" }) {
+                        (item.tab().map_or("", |tab| tab.label.as_str()))
+                    }
+                }
+            }
+            @for (n, figure) in drawn.iter().enumerate() {
+                div class=(if n == 0 { "panel on" } else { "panel" }) role="tabpanel" { (figure) }
+            }
+            @if !shared.is_empty() { p class="note" { (shared.join(" ")) } }
+        }
+    })
+}
+
+/// A word of the trade with its meaning behind it.
+pub(crate) fn term(word: &str, meaning: &str) -> Markup {
+    html! { abbr title=(meaning) tabindex="0" { (word) } }
+}
+
+/// A note sentence by sentence, each with its full stop.
+fn sentences(note: &str) -> Vec<&str> {
+    let mut rest = note;
+    let mut all = Vec::new();
+    while let Some(at) = rest.find(". ") {
+        all.push(&rest[..=at]);
+        rest = &rest[at + 2..];
+    }
+    all.push(rest);
+    all.retain(|sentence| !sentence.is_empty());
+    all
+}
+
+/// Words with what stands between grave accents as code.
+pub(crate) fn with_code(words: &str) -> Markup {
+    let parts = words.split('`').enumerate();
+    html! { @for (n, part) in parts { @if n % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
 /// A note with a capital and a full stop.
@@ -87,4 +151,15 @@ pub(crate) fn sentence(note: &str) -> String {
     let first: String = letters.next().map(|c| c.to_uppercase().collect()).unwrap_or_default();
     let stop = if note.ends_with('.') { "" } else { "." };
     format!("{first}{}{stop}", letters.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn example_a_note_falls_into_sentences_and_keeps_its_decimals() {
+        assert_eq!(sentences("Up to 33.3 Hz. Red: the defect."), ["Up to 33.3 Hz.", "Red: the defect."]);
+        assert!(sentences("").is_empty());
+    }
 }

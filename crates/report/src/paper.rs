@@ -10,9 +10,9 @@ use stribeck_analysis::summary::SensorLevels;
 use stribeck_analysis::words::significant;
 use stribeck_scene::scene::Scene;
 
-use crate::Error;
 use crate::figures::Item;
 use crate::tables::cell;
+use crate::{Error, page};
 
 /// A run of the paper's bearing, or many starts of it of which one is drawn.
 pub(crate) struct PaperCase<'a> {
@@ -71,13 +71,13 @@ impl<'a> PaperCase<'a> {
 
     /// The section of the page: what differs, the numbers, the `figures`, and `more` folded up behind them.
     pub(crate) fn section(&self, figures: &[Item], more: Markup) -> Result<Markup, Error> {
-        let drawn = figures.iter().map(Item::to_html).collect::<Result<Vec<_>, _>>()?;
+        let drawn = page::figures(figures)?;
         Ok(html! {
             h2 #numbers { "The paper, figure by figure" }
             p { (self.verdict()) }
             (self.table())
             p class="hint" { (self.about()) }
-            @for figure in drawn { (figure) }
+            (drawn)
             (more)
         })
     }

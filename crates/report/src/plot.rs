@@ -13,7 +13,7 @@
 //! ```
 
 mod animation;
-mod base64;
+pub(crate) mod base64;
 mod decimate;
 mod interactive;
 mod labels;
@@ -56,6 +56,21 @@ pub struct Figure {
     pub levels: Vec<Level>,
     /// Figures with the same key share the cursor.
     pub sync: Option<String>,
+    /// Whether the abscissa is the time of the run, which the moving bearing shares.
+    pub run_time: bool,
+    /// A wider range of the abscissa, one click away.
+    pub wide: Option<(f64, f64)>,
+    /// Where it is one of several that stand behind tabs.
+    pub tab: Option<Tab>,
+}
+
+/// A place among figures of which a page shows one at a time.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Tab {
+    /// Figures of the same group that follow each other share a frame.
+    pub group: &'static str,
+    /// Words on the tab.
+    pub label: String,
 }
 
 /// An axis: the quantity, its unit and, when it is fixed, its range.
@@ -202,6 +217,9 @@ impl Figure {
             bands: Vec::new(),
             levels: Vec::new(),
             sync: None,
+            run_time: false,
+            wide: None,
+            tab: None,
         }
     }
 
@@ -223,9 +241,16 @@ impl Figure {
         self
     }
 
-    /// Shares the cursor with every figure of the same key.
+    /// Shares the cursor with every figure of the same key, and the time of the run with the moving bearing.
     pub fn synced(mut self, key: &str) -> Self {
         self.sync = Some(key.into());
+        self.run_time = true;
+        self
+    }
+
+    /// Puts the figure behind a tab of a group.
+    pub fn tabbed(mut self, group: &'static str, label: impl Into<String>) -> Self {
+        self.tab = Some(Tab { group, label: label.into() });
         self
     }
 

@@ -16,10 +16,10 @@ use stribeck_scene::scene::ModelScene;
 
 use crate::figures::{self, Figures, Item};
 use crate::lead::lead;
-use crate::page::{head, json, section, sentence, write_figures};
+use crate::page::{head, json, section, sentence, with_code, write_figures};
 use crate::paper::PaperCase;
 use crate::pictures::Pictures;
-use crate::{Error, agreement, answer, sections, sound, tables};
+use crate::{Error, agreement, answer, moving, sections, sound, tables};
 
 /// Writes the report of the run in `run_dir` into that directory and returns its numbers.
 ///
@@ -54,7 +54,8 @@ pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Erro
     write_figures(&all, &run_dir.join("figures"))?;
     // The scene as written, comments and all; a run without it was refused above.
     let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
-    let page = page(&run, run_dir, &findings, &figures, &scene)?.into_string();
+    let moving = moving::figure(&record, &findings)?;
+    let page = page(&run, run_dir, &findings, &figures, moving.as_ref(), &scene)?.into_string();
     write_atomic(&run_dir.join("report.html"), page.as_bytes())?;
     Ok(findings.summary)
 }
@@ -64,6 +65,7 @@ fn page(
     run_dir: &Path,
     findings: &Findings,
     figures: &Figures,
+    moving: Option<&Markup>,
     scene: &str,
 ) -> Result<Markup, Error> {
     let summary = &findings.summary;
@@ -77,13 +79,19 @@ fn page(
                 h1 { (summary.scene) }
                 p class="lead" { (lead(&run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
                 (banner(run))
-                (answer::paragraphs(run, summary))
-                (contents(paper.is_some(), run.scene.written.model != ModelScene::Full, summary.duty.is_some()))
+                (answer::paragraphs(run, findings))
+                (contents([
+                    moving.is_some(),
+                    paper.is_some(),
+                    summary.duty.is_some(),
+                    run.scene.written.model != ModelScene::Full,
+                ]))
+                @if let Some(moving) = moving { h2 #motion { "The bearing in motion" } (moving) }
                 @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
                 (sound::of_run(findings))
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
-                (section("spectra", "Spectrum", sections::families(summary), &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) }, "The record is too short for a spectrum.")?)
+                (section("spectra", "Spectrum", html! {}, &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) h3 { "Lines of the mesh" } p { (answer::mesh(summary)) } (sections::families(summary)) }, "The record is too short for a spectrum.")?)
                 (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
                 (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary, findings.prediction.standing_spalls().next().is_some()), "No roller was recorded.")?)
                 (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
@@ -101,9 +109,12 @@ fn page(
     })
 }
 
-fn contents(of_paper: bool, reduced: bool, varies: bool) -> Markup {
+/// Links to all sections; those in motion, of the paper, of the duty and of the full model where there are
+/// any.
+fn contents([moving, of_paper, varies, reduced]: [bool; 4]) -> Markup {
     let entries = [
         ("summary", "Summary"),
+        ("motion", "In motion"),
         ("numbers", "The paper"),
         ("acceleration", "Acceleration"),
         ("duty", "Speed and load"),
@@ -118,6 +129,7 @@ fn contents(of_paper: bool, reduced: bool, varies: bool) -> Markup {
         ("provenance", "Provenance"),
     ];
     let shown = entries.into_iter().filter(|(id, _)| match *id {
+        "motion" => moving,
         "numbers" => of_paper,
         "duty" => varies,
         "model" => reduced,
@@ -162,11 +174,11 @@ fn closing(run: &Run, summary: &Summary, scene: &str) -> Markup {
              name in a legend hides its \
              curve."
         }
-        @if summary.notes.is_empty() && run.info.warnings.is_empty() { p { "None." } }
         ul class="notes" {
-            @for note in &summary.notes { li { (sentence(note)) } }
-            @for warning in &run.info.warnings { li { "Warning of the run: " (warning) } }
+            @for note in &summary.notes { li { (with_code(&sentence(note))) } }
+            @for note in run.info.warnings.iter().filter(|words| answer::is_of_pictures(words)) { li { (with_code(&sentence(note))) } }
         }
+        p { "What limits the numbers stands beside the " a href="#summary" { "answer" } "." }
         h2 #provenance { "Provenance" }
         (tables::provenance(&run.info, summary))
         details {

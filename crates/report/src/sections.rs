@@ -4,6 +4,7 @@ use maud::{Markup, html};
 use stribeck_scene::run_dir::Run;
 
 use super::figures::spoken;
+use super::page::term;
 use super::tables::{cell, folded};
 use stribeck_analysis::artefacts::Origin;
 use stribeck_analysis::duty::DutyFinding;
@@ -45,6 +46,14 @@ pub(super) fn paper(summary: &Summary) -> Markup {
         }
     }
 }
+
+const FACET_LINES: &str = "Rollers and raceways are polygons in the model; their corners pass the contacts and \
+    make tones that a real bearing does not have";
+const CARRIER: &str = "The carrier: the line in the middle of a family, at the rate at which facets pass";
+pub(super) const OFF: &str = "How far the middle line lies from where the recorded motion puts it, in widths that the \
+    spectrum resolves: within ±1 it is at its place";
+const SCATTER: &str = "By how much that differs between components of sensors and forces of rollers, in the \
+    same widths";
 
 /// What a row of the paper's numbers says where the record has none.
 const CANNOT_TELL: &str = "this record cannot tell";
@@ -147,8 +156,9 @@ pub(super) fn families(summary: &Summary) -> Markup {
             table class="ledger" {
                 thead {
                     tr {
-                        th { "Family of facet lines" } th class="n" { "Predicted Hz" } th class="n" { "Carrier Hz" }
-                        th class="n" { "Off, resolutions" } th class="n" { "± channels" } th class="n" { "Largest g" } th { "Verdict" }
+                        th { "Family of " (term("facet lines", FACET_LINES)) } th class="n" { "Predicted Hz" }
+                        th class="n" { (term("Middle line Hz", CARRIER)) } th class="n" { (term("Off its place", OFF)) }
+                        th class="n" { (term("± over channels", SCATTER)) } th class="n" { "Largest g" } th { "Verdict" }
                     }
                 }
                 tbody {
@@ -167,8 +177,8 @@ pub(super) fn families(summary: &Summary) -> Markup {
             }
         }
         p class="hint" {
-            "Each family is a carrier with sidebands at multiples of BPFO. Its comb is fitted with the \
-             recorded motion of the rollers to \
+            "Each family is a middle line (the carrier) with sidebands at multiples of BPFO on both sides. \
+             These equally spaced lines (the comb) are fitted with the recorded motion of the rollers to \
              both components of every sensor and to the force on every loaded roller, and must explain them \
              clearly better than combs \
              that are off their place and than the other families (THEORY §7.7)."

@@ -24,12 +24,15 @@ addEventListener("load", () => setTimeout(() => {
   const undrawn = [];
   for (const figure of document.querySelectorAll("figure")) {
     const canvas = figure.querySelector("canvas");
-    if (figure.classList.contains("plot")) {
+    if (figure.matches(".plot, .moving-bearing")) {
       if (!canvas || !canvas.width || !canvas.height) { undrawn.push(figure.id + ": no canvas"); continue; }
       const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
       const colours = new Set();
       for (let i = 0; i < pixels.length; i += 4) if (pixels[i + 3]) colours.add(pixels[i] << 16 | pixels[i + 1] << 8 | pixels[i + 2]);
       if (colours.size < 3) undrawn.push(figure.id + ": " + colours.size + " colours");
+    } else if (figure.matches(".sound")) {
+      // The header of a WAV file alone is shorter.
+      if (figure.querySelector("audio").src.length < 100) undrawn.push(figure.id + ": silent");
     } else {
       const image = figure.querySelector("img"), drawing = figure.querySelector("svg");
       if (image ? !(image.complete && image.naturalWidth > 0) : !(drawing && drawing.childElementCount > 2)) undrawn.push(figure.id + ": empty");

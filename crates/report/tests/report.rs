@@ -22,6 +22,10 @@ const SAMPLES: usize = 3000;
 /// Largest page that mails and reviews still take.
 const PAGE_LIMIT_BYTES: u64 = 15_000_000;
 
+/// What the moving bearing of 24 rollers may add to a page: 600 frames of two forces in bytes, 76 of two angles
+/// in two bytes each, as text.
+const MOVING_LIMIT_BYTES: usize = 60_000;
+
 fn close(found: Option<f64>, wanted: f64, tolerance: f64, what: &str) {
     let found = found.unwrap_or_else(|| panic!("{what} is missing"));
     assert!((found - wanted).abs() <= tolerance, "{what}: {found} instead of {wanted} ± {tolerance}");
@@ -260,6 +264,14 @@ fn example_the_page_holds_every_figure_and_needs_no_network() {
         let pixels = fs::read(folder.0.join(format!("figures/{figure}.png"))).expect("a picture");
         assert!(pixels.starts_with(b"\x89PNG"), "{figure}.png is broken");
     }
+    // The moving bearing is no file of its own.
+    let moving = page.split("<figure id=\"moving\"").nth(1).expect("a moving bearing");
+    let data = moving.split("<script type=\"application/json\">").nth(1).expect("its data");
+    let data = data.split("</script>").next().expect("an end");
+    assert!(data.len() < MOVING_LIMIT_BYTES, "{} bytes of motion", data.len());
+    let motion: serde_json::Value = serde_json::from_str(data).expect("JSON");
+    assert_eq!(motion["rollers"].as_array().map(Vec::len), Some(24));
+    assert_eq!((motion["frames"].as_u64(), motion["spalls"].as_array().map(Vec::len)), (Some(600), Some(1)));
     // Addresses may be named (a namespace, a comment), never loaded.
     for loading in ["src=\"http", "href=\"http", "url(http", "@import", "fetch(", "<link rel=\"stylesheet\""]
     {

@@ -250,7 +250,8 @@ mod tests {
         }
     }
 
-    /// Growth [1/s] over many evaluations of one mode of `omega` [rad/s] without branches, in steps of `dt` [s].
+    /// Growth [1/s] over many evaluations of one mode of `omega` [rad/s] without branches, in steps of `dt`
+    /// [s].
     fn growth(damping: &StructuralDamping, omega: f64, dt: f64) -> f64 {
         let branches = damping.branches();
         let stiffer = damping.stiffening(f64::INFINITY);
@@ -300,7 +301,6 @@ mod tests {
             let mut all: Vec<f64> = modes.map(|omega| growth(&damping, omega, dt)).collect();
             all.sort_by(f64::total_cmp);
             let (median, worst) = (all[all.len() / 2], all[all.len() - 1]);
-            println!("{branches}: {:e} to {worst:e}, expected {expected:e}", all[0]);
             assert!(worst < -0.6 * expected, "{branches} branches: {worst:e} of {expected:e}");
             assert!((median / -expected - 1.0).abs() < 0.15, "{branches} branches: {median:e}");
         }

@@ -22,6 +22,7 @@ mod memory;
 mod new;
 mod open;
 mod out;
+mod pdf;
 mod plan;
 mod ranks;
 mod remove;

@@ -1,12 +1,13 @@
 //! `stribeck report`: the report of a run, written again.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
 use stribeck_scene::run_dir::{Run, RunDir};
 
 use crate::out::{caution, detail, say};
+use crate::pdf;
 use crate::place::{Place, shown};
 
 /// Flags of `report`.
@@ -20,6 +21,9 @@ pub struct Options {
     /// Look at the record up to this time [s] [default: its end]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     to_s: Option<f64>,
+    /// Print the page as report.pdf, too, A4, through Chromium, Chrome or Edge where one is installed
+    #[arg(long)]
+    pdf: bool,
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
@@ -45,8 +49,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         for note in stribeck_report::write_ensemble(&folder)?.notes {
             caution!("{note}");
         }
-        say!("report: {}", shown(&RunDir::open_ensemble(&folder)?.report()));
-        return Ok(ExitCode::SUCCESS);
+        return announce(options, &RunDir::open_ensemble(&folder)?.report());
     }
     let dir = RunDir::open(&folder)?;
     for missing in Run::read(dir.path())?.damage() {
@@ -54,6 +57,14 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     detail!("report of `{}`", shown(dir.path()));
     stribeck_report::write_between(dir.path(), time_s)?;
-    say!("report: {}", shown(&dir.report()));
+    announce(options, &dir.report())
+}
+
+/// Says where the page is, and prints it where that was asked for.
+fn announce(options: &Options, page: &Path) -> Result<ExitCode> {
+    say!("report: {}", shown(page));
+    if options.pdf {
+        say!("pdf: {}", shown(&pdf::print(page)?));
+    }
     Ok(ExitCode::SUCCESS)
 }

@@ -2,6 +2,7 @@
 
 use stribeck_analysis::plan::Loads;
 use stribeck_scene::run_info::{RunInfo, Status, clock};
+use stribeck_scene::scene::Assumed;
 
 use anyhow::Result;
 
@@ -73,7 +74,14 @@ fn bearings(sheet: &mut Sheet, runs: &[Finished]) {
     let rows = runs.iter().filter(|run| run.variant.name.ends_with("-reduced")).map(|run| {
         let (scene, b) = (&run.scene, &run.scene.written.bearing);
         let bore = b.inner_race_diameter_mm - 2.0 * b.inner_ring_thickness_mm;
-        let words = |what: &stribeck_scene::scene::Assumed| format!("{what:?}").to_lowercase();
+        let words = |what: &Assumed| match what {
+            Assumed::Clearance => "clearance".to_owned(),
+            Assumed::Pitch => "pitch".to_owned(),
+            Assumed::OuterRing => "outer ring".to_owned(),
+            Assumed::InnerRing => "inner ring".to_owned(),
+            Assumed::Rollers => "number".to_owned(),
+            Assumed::Length => "length".to_owned(),
+        };
         let assumed: Vec<String> = b.assumed.iter().map(words).collect();
         let (carried, pressure, safety) =
             Loads::of(scene).map_or(("–".into(), "–".into(), "–".into()), |loads| {

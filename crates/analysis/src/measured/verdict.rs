@@ -67,6 +67,10 @@ pub struct Family {
     /// Height of the family [dB], for comparison with others.
     #[serde(skip)]
     height_db: f64,
+    /// The unrelated combs of the same spectrum that it must stand above: fundamental [Hz] and height [dB];
+    /// for pictures.
+    #[serde(skip)]
+    pub controls: Vec<(f64, f64)>,
 }
 
 /// Why a family is called a defect, or not; text in files.
@@ -125,7 +129,7 @@ pub(super) struct First {
 }
 
 /// Largest part of unrelated combs that may stand as high.
-const MOST_AS_HIGH: f64 = 0.1;
+pub(super) const MOST_AS_HIGH: f64 = 0.1;
 /// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
 /// same records.
 const SOUND_DEPTHS: f64 = 11.4;
@@ -212,7 +216,9 @@ pub(super) fn judge(
         .into_iter()
         .map(|(mut family, standing)| {
             if let Some(Standing { band, comb, comb_hz, times, .. }) = standing {
-                family.rank = rank(&comb, comb_hz, &whitened[band].1, first_hz, Some(&own));
+                let controls = controls(&comb, comb_hz, &whitened[band].1, first_hz, Some(&own));
+                family.rank = part_as_high(&comb, &controls);
+                family.controls = controls.iter().map(|c| (c.fundamental_hz, decibel(c.height))).collect();
                 if family.is_there() {
                     family.measured_hz = Some(comb.fundamental_hz / times);
                 }
@@ -309,6 +315,7 @@ fn look(
         claimed: false,
         reason: Reason::Undecided,
         height_db: f64::NEG_INFINITY,
+        controls: Vec::new(),
     };
     if segment_s * comb_hz < PERIODS {
         family.reason = Reason::Decided(format!(
@@ -410,9 +417,7 @@ fn too_narrow(comb_hz: f64, any: bool) -> String {
     format!("no band is wide enough for {harmonics} harmonics of {comb_hz:.1} Hz: {advice}")
 }
 
-/// Part of the combs with unrelated fundamentals that stand as high as this one; `None` when none can be
-/// tried. Those of the `first` family [Hz], of the machine itself (`own`) and sidebands of this one are none
-/// of them, and one that is found from several sides is one.
+/// Part of the unrelated combs that stand as high as this one; `None` when none can be tried.
 pub(super) fn rank(
     comb: &Comb,
     comb_hz: f64,
@@ -420,6 +425,24 @@ pub(super) fn rank(
     first_hz: Option<f64>,
     own: Option<&OwnLines>,
 ) -> Option<f64> {
+    part_as_high(comb, &controls(comb, comb_hz, spectrum, first_hz, own))
+}
+
+fn part_as_high(comb: &Comb, controls: &[Comb]) -> Option<f64> {
+    let as_high = controls.iter().filter(|control| control.height >= comb.height).count();
+    (!controls.is_empty()).then(|| as_high as f64 / controls.len() as f64)
+}
+
+/// The highest combs about fundamentals that are unrelated to a comb's, which share what is not the bearing's
+/// with it. Those of the `first` family [Hz], of the machine itself (`own`) and sidebands of this one are
+/// none of them, and one that is found from several sides is one.
+fn controls(
+    comb: &Comb,
+    comb_hz: f64,
+    spectrum: &Whitened,
+    first_hz: Option<f64>,
+    own: Option<&OwnLines>,
+) -> Vec<Comb> {
     let width_hz = 1.5 * spectrum.grid_hz();
     let of_the_first = |hz: f64| first_hz.is_some_and(|first_hz| is_the_same(hz, first_hz));
     let beside = |hz: f64| {
@@ -436,8 +459,7 @@ pub(super) fn rank(
         .collect();
     found.sort_by(|a, b| a.fundamental_hz.total_cmp(&b.fundamental_hz));
     found.dedup_by(|a, b| (a.fundamental_hz - b.fundamental_hz).abs() < width_hz);
-    let as_high = found.iter().filter(|control| control.height >= comb.height).count();
-    (!found.is_empty()).then(|| as_high as f64 / found.len() as f64)
+    found
 }
 
 /// Harmonics whose sidebands are looked for, and how many of both sides of all make a family modulated.
@@ -713,6 +735,7 @@ impl Family {
         self.depth_band_hz = Some(band_hz);
         self.band_hz = Some(band_hz);
         self.rank = rank;
+        self.controls.clear();
         self.not_told_apart_from = None;
         self.reason = Reason::Undecided;
         self.calibrate();
@@ -764,6 +787,7 @@ mod tests {
             claimed: false,
             reason: Reason::Undecided,
             height_db: 25.0,
+            controls: Vec::new(),
         }
     }
 

@@ -3,6 +3,8 @@
 use maud::{Markup, html};
 
 use super::super::figures::spoken;
+use super::super::page::term;
+use super::super::sections::OFF;
 use super::super::tables::cell;
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
 use stribeck_analysis::statistic::{CONFIDENCE, Statistic};
@@ -198,7 +200,7 @@ pub(super) fn families(summary: &EnsembleSummary) -> Markup {
                 thead {
                     tr {
                         th { "Family of facet lines" } th class="n" { "Found in" } th class="n" { "Predicted Hz" } th class="n" { "Carrier Hz" }
-                        th class="n" { "Off, resolutions" } th class="n" { "Largest g" }
+                        th class="n" { (term("Off its place", OFF)) } th class="n" { "Largest g" }
                     }
                 }
                 tbody {

@@ -9,6 +9,8 @@ use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::{Event, PhaseLevels};
 use stribeck_analysis::words::gravities;
 
+/// All of them stand behind tabs.
+const TABS: &str = "acceleration";
 /// Most exits that are named in full.
 const NAMED: usize = 6;
 
@@ -18,6 +20,7 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     let levels = &findings.summary.levels;
     let title = format!("Acceleration a_y at sensor “{}”", leading.name);
     let mut figure = over_time("acceleration", &title)
+        .tabbed(TABS, format!("“{}”", leading.name))
         .with(sampled(findings, "mean over each interval", Colour::Blue, &leading.raw_g))
         .caption(format!("Peaks: {}.", peaks(Some(&levels.phases))));
     figure.marks = passages(&findings.summary.events);
@@ -44,7 +47,9 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
 pub(super) fn notched(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first().filter(|s| !s.filtered_g.is_empty())?;
     let levels = &findings.summary.levels;
-    let mut figure = over_time("acceleration-notched", "The same with the tone filtered out")
+    let title = format!("The same at “{}” with the tone filtered out", leading.name);
+    let mut figure = over_time("acceleration-notched", &title)
+        .tabbed(TABS, "tone filtered out")
         .with(sampled(findings, "raw", Colour::Grey, &leading.raw_g))
         .with(sampled(findings, "notched", Colour::Orange, &leading.filtered_g))
         .caption(match (levels.between_g, levels.between_filtered_g) {
@@ -76,9 +81,12 @@ pub(super) fn notched(findings: &Findings) -> Option<Figure> {
 pub(super) fn others(record: &Record<'_>, findings: &Findings) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for sensor in findings.sensors.iter().skip(1) {
-        let mut figure =
-            over_time(&format!("acceleration-{}", sensor.name), &format!("Sensor “{}”", sensor.name))
-                .with(sampled(findings, "raw", Colour::Grey, &sensor.raw_g));
+        let mut figure = over_time(
+            &format!("acceleration-{}", sensor.name),
+            &format!("Acceleration a_y at sensor “{}”", sensor.name),
+        )
+        .tabbed(TABS, format!("“{}”", sensor.name))
+        .with(sampled(findings, "raw", Colour::Grey, &sensor.raw_g));
         if !sensor.filtered_g.is_empty() {
             figure = figure.with(sampled(findings, "notched", Colour::Orange, &sensor.filtered_g));
         }
@@ -104,7 +112,9 @@ fn instantaneous(
     else {
         return Ok(None);
     };
-    let figure = over_time("acceleration-instant", "Instantaneous nodal acceleration")
+    let title = format!("Instantaneous nodal acceleration at “{}”", leading.name);
+    let figure = over_time("acceleration-instant", &title)
+        .tabbed(TABS, "instantaneous")
         .with(sampled(findings, "instantaneous", Colour::Grey, &instant_g))
         .with(sampled(findings, "mean over each interval", Colour::Blue, &leading.raw_g));
     Ok(Some(

@@ -49,5 +49,5 @@ pub(super) fn figures() -> [Figure; 2] {
              tone."
         ));
     zoom.x.range = Some((0.010, 0.015));
-    [whole, zoom]
+    [whole.tabbed("beat", "Fig. 5a"), zoom.tabbed("beat", "Fig. 5b")]
 }

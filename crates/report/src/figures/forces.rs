@@ -29,6 +29,7 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         format!("{}{} raceway on roller {}", raceway[..1].to_uppercase(), &raceway[1..], crossing.roller);
     let mut figure = Figure::new(&format!("force-{}", at + 1), &title, Axis::si("Time", "s"), force)
         .synced("time")
+        .tabbed("forces", format!("Roller {}", crossing.roller))
         .with(sampled(findings, "raw", Colour::Grey, &crossing.raw_n));
     if !crossing.filtered_n.is_empty() {
         figure = figure.with(sampled(findings, "notched", Colour::Blue, &crossing.filtered_n));

@@ -3,6 +3,8 @@
 //! Colours say where a line comes from: green, purple and teal are the mesh, red is the defect, brown is the
 //! ring.
 
+use std::f64::consts::SQRT_2;
+
 use stribeck_dsp::Spectrum;
 
 use super::{mark, spoken};
@@ -11,12 +13,18 @@ use stribeck_analysis::artefacts;
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::{FamilyFinding, SIDEBANDS};
 use stribeck_analysis::findings::Findings;
+use stribeck_analysis::loudest::loudest;
 use stribeck_analysis::tones;
+use stribeck_analysis::words::significant;
 
 /// How far below its highest value a spectrum is drawn [dB]; rounding noise lies lower.
 const DEPTH_DB: f64 = 120.0;
 /// Upper end of the low frequencies [Hz].
 const LOW_HZ: f64 = 2_500.0;
+/// Upper end of what a spectrum shows at first [Hz]; the whole band is a click away.
+const FIRST_HZ: f64 = 10_000.0;
+/// Spectra behind tabs.
+const TABS: &str = "spectra";
 /// Multiples of the defect's frequency that are marked.
 const FAMILY: usize = 10;
 /// Where each colour of the marks comes from, of those that are drawn.
@@ -38,9 +46,13 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first()?;
     let raw = leading.raw_density.as_ref()?;
     let title = format!("Power spectral density of a_y at sensor “{}”", leading.name);
-    let mut figure = over_frequency("spectrum", &title, (0.0, 0.5 * raw.sample_rate_hz()))
+    let mut figure = whole_band("spectrum", &title, raw)
+        .tabbed(TABS, "as recorded")
         .with(density("raw", Colour::Blue, raw))
-        .caption(found(findings))
+        .caption(match loudest_in_words(findings) {
+            Some(words) => format!("{} {words}", found(findings)),
+            None => found(findings),
+        })
         .note(legend(findings) + &stated(raw));
     figure.marks = harmonic_marks(findings);
     Some(figure)
@@ -71,19 +83,20 @@ pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
     let (Some(raw), Some(filtered)) = (&leading.raw_density, &leading.filtered_density) else {
         return Vec::new();
     };
-    let overlay = |id: &str, title: &str, range: (f64, f64)| {
-        // Drawn first, so that the raw curve stays visible where both agree.
-        let figure = over_frequency(id, title, range).with(density("notched", Colour::Orange, filtered));
-        figure.with(density("raw", Colour::Blue, raw))
+    // Drawn first, so that the raw curve stays visible where both agree.
+    let overlaid = |figure: Figure| {
+        figure.with(density("notched", Colour::Orange, filtered)).with(density("raw", Colour::Blue, raw))
     };
     let attenuation = findings.summary.notch.as_ref().and_then(|n| n.attenuation_db);
-    let mut whole = overlay("spectrum-notched", "Raw and notched", (0.0, 0.5 * raw.sample_rate_hz()))
+    let mut whole = overlaid(whole_band("spectrum-notched", "Raw and notched", raw))
+        .tabbed(TABS, "tone filtered out")
         .caption("The notch removes the carrier and leaves its sidebands and harmonics.")
-        .note(stated(raw));
+        .note(legend(findings) + &stated(raw));
     whole.marks = harmonic_marks(findings);
     let zoom = zoom(findings, raw);
     let title = format!("The same, {:.0} to {:.0} Hz", zoom.0, zoom.1);
-    let mut zoomed = overlay("spectrum-zoom", &title, zoom)
+    let mut zoomed = overlaid(over_frequency("spectrum-zoom", &title, zoom))
+        .tabbed(TABS, "about the tone")
         .caption(match (tone(findings), attenuation) {
             (Some(_), Some(db)) => format!("At its centre the notch lowers the density by {db:.0} dB."),
             _ => "The notch stands where a tone is predicted; none stands out at this sensor.".into(),
@@ -157,8 +170,9 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
         none if none.is_empty() => "Low frequencies".to_owned(),
         shown => format!("Low frequencies: {shown}"),
     };
-    let mut figure =
-        over_frequency("spectrum-low", &title, (0.0, top)).with(decibels("raw", Colour::Blue, raw, drawn));
+    let mut figure = over_frequency("spectrum-low", &title, (0.0, top))
+        .tabbed(TABS, "low frequencies")
+        .with(decibels("raw", Colour::Blue, raw, drawn));
     let unsteady = unsteady(findings);
     let caption = match findings.prediction.shocks.map(|shocks| (shocks.name(), shocks.hz)) {
         None if unsteady => {
@@ -236,6 +250,7 @@ fn physics_marks(findings: &Findings, top: f64) -> Vec<Mark> {
 fn all_sensors(findings: &Findings, zoom: (f64, f64), raw: &Spectrum) -> Figure {
     let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple, Colour::Red, Colour::Teal];
     let mut figure = over_frequency("spectrum-sensors", "All sensors, raw", zoom)
+        .tabbed(TABS, "all sensors")
         .caption(
             "The comb has the same spacing everywhere; which of its lines is strongest depends on the place.",
         )
@@ -247,6 +262,65 @@ fn all_sensors(findings: &Findings, zoom: (f64, f64), raw: &Spectrum) -> Figure 
     }
     figure.marks = line_marks(findings);
     figure
+}
+
+/// Over the whole band of a spectrum, of which its lower part is shown at first.
+fn whole_band(id: &str, title: &str, spectrum: &Spectrum) -> Figure {
+    let half_hz = 0.5 * spectrum.sample_rate_hz();
+    let mut figure = over_frequency(id, title, (0.0, half_hz.min(FIRST_HZ)));
+    figure.wide = (half_hz > FIRST_HZ).then_some((0.0, half_hz));
+    figure
+}
+
+/// Where most of the signal lies, beside the strongest facet tone, in words.
+pub(in super::super) fn loudest_in_words(findings: &Findings) -> Option<String> {
+    let leading = findings.sensors.first()?;
+    let found = loudest(leading.raw_density.as_ref()?)?;
+    let (low, high) = found.band_hz;
+    let kilo = |hz: f64| significant(1e-3 * hz, 3);
+    let inside = |hz: f64| (low..high).contains(&hz);
+    let share = 100.0 * (found.rms / found.total_rms).powi(2);
+    let tone = tones::dominant(&findings.summary.tones, &leading.name);
+    let tone = tone.and_then(|tone| {
+        let (hz, level_g) = (tone.measured_hz?, tone.level_g? / SQRT_2);
+        Some(format!("; the strongest facet tone, {hz:.0} Hz, holds {} g", significant(level_g, 3)))
+    });
+    let mut there: Vec<String> = Vec::new();
+    let harmonics: Vec<String> = findings
+        .lines
+        .iter()
+        .filter(|line| Some(&line.name) == findings.prediction.facet_lines.first().map(|(name, _)| name))
+        .filter(|line| line.harmonic > 1 && inside(line.predicted_hz))
+        .map(|line| format!("×{}", line.harmonic))
+        .collect();
+    if !harmonics.is_empty() {
+        there.push(format!("{} of the facet tone", harmonics.join(", ")));
+    }
+    let modes: Vec<String> =
+        findings.modes.iter().filter(|m| inside(m.1)).map(|(n, _)| format!("n = {n}")).collect();
+    if !modes.is_empty() {
+        there.push(format!("bending of the free ring with {}", modes.join(", ")));
+    }
+    let why = if there.is_empty() {
+        "no line of the mesh, the defect or the free ring is predicted there: \
+         ringing of rings and housing on their contacts, struck by entries, exits and facets, is the likely \
+         cause"
+            .to_owned()
+    } else {
+        format!(
+            "predicted there: {}; ringing of rings and housing on their contacts adds to it",
+            there.join("; ")
+        )
+    };
+    Some(format!(
+        "{} to {} kHz holds {} of {} g RMS ({share:.0} % of the power){}. {}.",
+        kilo(low),
+        kilo(high),
+        significant(found.rms, 3),
+        significant(found.total_rms, 3),
+        tone.unwrap_or_default(),
+        why[..1].to_uppercase() + &why[1..]
+    ))
 }
 
 fn over_frequency(id: &str, title: &str, (from, to): (f64, f64)) -> Figure {

@@ -127,7 +127,7 @@ fn spectra(case: &PaperCase<'_>) -> Vec<Figure> {
     let mut zoom = overlay("7b", "The same from 4 to 6 kHz", ZOOM_HZ).caption(numbers(case, "7"));
     zoom.marks = both(TONE_HZ, tone);
     zoom.marks.push(mark(CURSOR_HZ, "paper 4545 Hz", Colour::Red, true));
-    vec![whole, both_of, zoom]
+    vec![whole, both_of.tabbed("paper-7", "Fig. 7a"), zoom.tabbed("paper-7", "Fig. 7b")]
 }
 
 /// Fig. 8: vertical force of the outer raceway on the three rollers that cross the defect.
@@ -138,7 +138,7 @@ fn forces(case: &PaperCase<'_>) -> Vec<Figure> {
         figure.title = format!("Fig. 8{letter}: {}", figure.title);
         figure.x = figure.x.over(RECORD_S.0, RECORD_S.1);
         figure.sync = Some("paper-time".into());
-        figure
+        figure.tabbed("paper-8", format!("Fig. 8{letter}"))
     };
     crossing_figures(case.drawn).into_iter().zip(PANELS).map(panel).collect()
 }
@@ -197,7 +197,8 @@ fn levels(paper: &[(f64, &str)], case: &PaperCase<'_>, of: &[usize], figure: &st
     let here: Vec<_> = case.beside.iter().filter(|b| b.shown.figure == figure).collect();
     let mine = of.iter().filter_map(|&at| here.get(at)).filter_map(|b| {
         let mean = b.ours?.mean;
-        Some(level(mean, format!("ours: {}", ours(b)?), Colour::Blue))
+        let quantity = b.shown.quantity.to_lowercase();
+        Some(level(mean, format!("ours, {quantity}: ± {}", ours(b)?), Colour::Blue))
     });
     theirs.chain(mine.flatten()).collect()
 }

@@ -7,7 +7,7 @@ use super::{Abscissa, Axis, Colour, Figure, Series, Style, Ticks, base64, decima
 use crate::Error;
 
 /// Points sent to the page for one series; beyond that extremes are kept and the figure says so.
-pub(super) const POINT_LIMIT: usize = 20_000;
+pub(super) const POINT_LIMIT: usize = 10_000;
 
 /// What `plot.js` reads.
 #[derive(Serialize)]
@@ -19,6 +19,8 @@ struct Sent<'a> {
     bands: Vec<(f64, f64)>,
     levels: Vec<SentLevel>,
     sync: Option<&'a str>,
+    run_time: bool,
+    wide: Option<(f64, f64)>,
 }
 
 #[derive(Serialize)]
@@ -106,6 +108,8 @@ impl Figure {
             bands: self.bands.iter().map(|b| (b.from, b.to)).collect(),
             levels: self.levels.iter().map(|l| SentLevel { y: l.y, colour: l.colour.name() }).collect(),
             sync: self.sync.as_deref(),
+            run_time: self.run_time,
+            wide: self.wide,
         };
         let text = serde_json::to_string(&sent)
             .map_err(|why| Error::Drawing { figure: self.id.clone(), why: why.to_string() })?;

@@ -144,7 +144,7 @@ impl Picture {
     pub fn to_html(&self) -> Result<Markup, Error> {
         let svg = self.sheet.to_svg();
         let still = if self.dense {
-            let data = base64::bytes(&raster::png(&self.id, &svg)?);
+            let data = base64::bytes(&raster::scaled(&self.id, &svg, 1.0)?);
             html! { img src={ "data:image/png;base64," (data) } alt=(self.title); }
         } else {
             html! { (PreEscaped(svg)) }

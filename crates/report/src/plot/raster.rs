@@ -14,14 +14,19 @@ const SCALE: f32 = 1.5;
 /// # Errors
 /// [`Error::Drawing`] when the SVG cannot be understood.
 pub fn png(name: &str, svg: &str) -> Result<Vec<u8>, Error> {
+    scaled(name, svg, SCALE)
+}
+
+/// The same, `scale` pixels a unit.
+pub(super) fn scaled(name: &str, svg: &str, scale: f32) -> Result<Vec<u8>, Error> {
     let failed = |why: String| Error::Drawing { figure: name.to_owned(), why };
     let options = usvg::Options { fontdb: fonts(), ..usvg::Options::default() };
     let tree = usvg::Tree::from_str(svg, &options).map_err(|why| failed(why.to_string()))?;
     let size = tree.size();
-    let pixels = |length: f32| (length * SCALE).ceil() as u32;
+    let pixels = |length: f32| (length * scale).ceil() as u32;
     let mut pixmap = tiny_skia::Pixmap::new(pixels(size.width()), pixels(size.height()))
         .ok_or_else(|| failed("the picture has no size".into()))?;
-    resvg::render(&tree, tiny_skia::Transform::from_scale(SCALE, SCALE), &mut pixmap.as_mut());
+    resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixmap.as_mut());
     encoded(&pixmap).map_err(|why| failed(why.to_string()))
 }
 

@@ -200,8 +200,8 @@ pub(super) fn modes(scene: &mut Scene, given: &[String]) {
 /// below it when rollers knock.
 const KNOCKS: f64 = 2.0;
 
-/// Share of the load that the most loaded of many rollers carries between raceways with clearance, times their
-/// number: Stribeck's 5, and a fifth more for a clearance as wide as the rollers give way.
+/// Share of the load that the most loaded of many rollers carries between raceways with clearance, times
+/// their number: Stribeck's 5, and a fifth more for a clearance as wide as the rollers give way.
 const WITH_CLEARANCE: f64 = 6.0;
 
 /// Contact that does not sink in deeper than the radial clearance or a tenth of an element, where nobody gave

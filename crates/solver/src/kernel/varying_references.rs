@@ -51,7 +51,8 @@ impl VaryingReferences {
         }
     }
 
-    /// Makes all elements stiffer by a factor, but for their hourglass stiffness, which is no part of a shape.
+    /// Makes all elements stiffer by a factor, but for their hourglass stiffness, which is no part of a
+    /// shape.
     pub(crate) fn stiffen(&mut self, factor: f64) {
         let groups = self.0.chunks_mut(Self::KINDS * LANES);
         groups.flat_map(|group| &mut group[3 * LANES..4 * LANES]).for_each(|scale| *scale *= factor);

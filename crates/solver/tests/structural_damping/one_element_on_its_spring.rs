@@ -21,8 +21,8 @@
 //!
 //! # Parameters
 //!
-//! v = 1 mm/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; one branch of g = 0.3 and τ = 0.75/ω; to t = 20/ω in 100,
-//! 200 and 400 steps, each of which evaluates the branch.
+//! v = 1 mm/s, E = 208 GPa, ν = 0.3, ρ = 7800 kg/m³; one branch of g = 0.3 and τ = 0.75/ω; to t = 20/ω in
+//! 100, 200 and 400 steps, each of which evaluates the branch.
 //!
 //! # Expected
 //!
