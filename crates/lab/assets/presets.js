@@ -5,7 +5,7 @@ export const PRESETS = [
   {
     id: "noise", name: "Fig. 2: noise", roller: true,
     set: (scene) => ({ ...scene, arcs: 0 }), notch: false, view: "trace",
-    words: (f) => `Each time a roller leaves the spall the ring is struck, ${shown(f.bpfo, "Hz")} as often as rollers come by; but between these strikes the signal never rests. `
+    words: (f) => `Each time a roller leaves the spall the ring is struck, as often as rollers come by (BPFO, ${shown(f.bpfo, "Hz")}); but between these strikes the signal never rests. `
       + "Circles that a mesh makes of straight facets are not round: what you see there is the mesh, and no bearing has it.",
   },
   {
