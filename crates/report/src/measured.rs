@@ -193,15 +193,17 @@ fn combs(family: &Family) -> Option<Figure> {
         Axis::plain("Height over the background", "dB"),
     )
     .with(Series::listed("unrelated", Colour::Grey, x, y).as_points())
-    .with(Series::listed(family.name.shocks_name(), Colour::Red, vec![hz], vec![family.score_db()]).as_points())
+    .with(
+        Series::listed(family.name.shocks_name(), Colour::Red, vec![hz], vec![family.score_db()]).as_points(),
+    )
     .caption(if lead > 0.0 {
         format!("It stands {lead:.1} dB above the highest of them.")
     } else {
         format!("The highest of them stands {:.1} dB above it.", -lead)
     })
     .note(
-        "A comb is as high as the fourth highest of its first five harmonics. Unrelated are fundamentals that \
-         share no multiple or fraction with this one, and are none of the shaft or the cage.",
+        "A comb is as high as the fourth highest of its first five harmonics. Unrelated are fundamentals \
+         that share no multiple or fraction with this one, and are none of the shaft or the cage.",
     );
     Some(figure)
 }
@@ -230,8 +232,8 @@ fn period(family: &Family, (of_family, control): &(SynchronousMean, SynchronousM
         of_family.periods
     ))
     .note(
-        "From the beginning of the record, in the band in which the family stands highest. Each curve is turned \
-         so that its highest value lies at a quarter. Knocks that slip lose their phase from period to period, \
+        "From the beginning of the record, in the band in which the family stands highest. Each curve is \
+         turned so that its highest value lies at a quarter. Knocks that slip lose their phase from period to period, \
          and with it this peak, though their lines stand.",
     );
     figure.levels = vec![Level { y: 1.0, label: "mean".into(), colour: Colour::Grey }];

@@ -43,7 +43,7 @@ struct Sent<'a> {
     pockets: Vec<f64>,
     /// Half the angle that a pocket takes of the cage.
     pocket_half_rad: f64,
-    /// Angle of each roller's centre, and its rotation: u16 of a turn, roller by roller at each of the angles.
+    /// Angle of each roller's centre, and its rotation: u16 of a turn, roller by roller at each angle.
     orbit: String,
     spin: String,
     /// Normal forces: u8 of `largest_n`, roller by roller in each frame.
@@ -330,7 +330,7 @@ fn markup(sent: &Sent<'_>, stretch: &Stretch, record: &Record<'_>) -> Result<Mar
     Ok(html! {
         figure id="moving" class="moving-bearing" tabindex="0" aria-label="The bearing in slow motion" {
             p class="caption" {
-                "Bars outside: force of the outer raceway on each roller; bars inside: that of the inner one. "
+                "Bars outside: force of the outer raceway on each roller; inside: that of the inner one. "
                 "Click a roller to follow its force; click any trace of the page to go to that time."
             }
             div class="stage" {
@@ -344,7 +344,7 @@ fn markup(sent: &Sent<'_>, stretch: &Stretch, record: &Record<'_>) -> Result<Mar
                 output {}
             }
             p class="note" {
-                "Keys: space plays and stops, ← and → go one frame, with Shift ten, Home and End to the ends. "
+                "Keys: space plays and stops, ← and → go one frame, with Shift ten; Home and End. "
                 "A frame is " (significant(1e6 * sent.step_s, 3)) " µs long; forces are means over it, "
                 "acceleration its extremes. Drawn to scale: the radial play of micrometres is not to be seen."
                 (part)

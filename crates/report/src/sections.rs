@@ -47,11 +47,11 @@ pub(super) fn paper(summary: &Summary) -> Markup {
     }
 }
 
-const FACET_LINES: &str = "Rollers and raceways are polygons in the model; their corners pass the contacts and \
-    make tones that a real bearing does not have";
+const FACET_LINES: &str = "Rollers and raceways are polygons in the model; their corners pass the contacts \
+    and make tones that a real bearing does not have";
 const CARRIER: &str = "The carrier: the line in the middle of a family, at the rate at which facets pass";
-pub(super) const OFF: &str = "How far the middle line lies from where the recorded motion puts it, in widths that the \
-    spectrum resolves: within ±1 it is at its place";
+pub(super) const OFF: &str = "How far the middle line lies from where the recorded motion puts it, in \
+    widths that the spectrum resolves: within ±1 it is at its place";
 const SCATTER: &str = "By how much that differs between components of sensors and forces of rollers, in the \
     same widths";
 

@@ -22,8 +22,8 @@ const SAMPLES: usize = 3000;
 /// Largest page that mails and reviews still take.
 const PAGE_LIMIT_BYTES: u64 = 15_000_000;
 
-/// What the moving bearing of 24 rollers may add to a page: 600 frames of two forces in bytes, 76 of two angles
-/// in two bytes each, as text.
+/// What the moving bearing of 24 rollers may add to a page: 600 frames of two forces in bytes, 76 of two
+/// angles in two bytes each, as text.
 const MOVING_LIMIT_BYTES: usize = 60_000;
 
 fn close(found: Option<f64>, wanted: f64, tolerance: f64, what: &str) {

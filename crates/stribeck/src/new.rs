@@ -219,7 +219,7 @@ fn text(name: &str, answers: &Answers) -> String {
         Where::Roller => (
             "with a spall on a rolling element",
             "How long the spall is along the surface, and how deep.",
-            "defect: None,\n    defects: [(on: roller(1), form: spall(length_mm: 2, depth_mm: 0.1))],"
+            "defect: None,\n    defects: [(on: roller(1), form: spall(length_mm: 2, depth_mm: 0.05))],"
                 .to_owned(),
         ),
         Where::Outer | Where::Inner => (

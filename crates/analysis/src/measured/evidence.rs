@@ -35,7 +35,8 @@ pub struct SynchronousMean {
 
 /// The mean over the period of a family's knocks, and that over an unrelated period, sought and turned in the
 /// same way: what the search alone makes of the record. From the beginning of the record, in the band in
-/// which the family stands highest. `None` for a family without a band, a record too short, or a rate too low.
+/// which the family stands highest. `None` for a family without a band, a record too short, or a rate too
+/// low.
 ///
 /// # Errors
 /// [`Error::Signal`] when the envelope cannot be made.
@@ -95,8 +96,8 @@ pub fn what_would_change(findings: &MeasuredFindings) -> Vec<String> {
     let mut said = Vec::new();
     for family in findings.families.iter().filter(|f| f.claimed) {
         said.push(format!(
-            "{} is claimed as long as each of these holds: probability of a false alarm {} (limit {ALPHA:.0e}), \
-             {:.0} % of unrelated combs as high (limit {:.0} %), power swinging by {:.0} % (limit {:.0} %).",
+            "{} is claimed as long as each of these holds: probability of a false alarm {} (limit \
+             {ALPHA:.0e}), {:.0} % of unrelated combs as high (limit {:.0} %), power swinging by {:.0} % (limit {:.0} %).",
             family.name,
             family.false_alarm(),
             100.0 * family.rank.unwrap_or(1.0),
@@ -180,7 +181,7 @@ mod tests {
     /// of a resolution, the swing is that of the power less what steps of 5° average, and an unrelated rate
     /// shows nothing.
     #[test]
-    fn analytic_the_mean_over_a_period_is_the_modulation() {
+    fn example_the_mean_over_a_period_is_the_modulation() {
         const RATE_HZ: f64 = 8_000.0;
         /// Averaging over a step of 1/72 of a period, and a rate off by a fortieth of a resolution.
         const LOST: f64 = 0.01;

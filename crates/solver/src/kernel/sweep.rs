@@ -27,8 +27,8 @@ pub(crate) struct Scratch {
     /// Forces on the nodes of the tile at hand; all zero between tiles.
     fx: Field,
     fy: Field,
-    /// Where elements see the nodes, with stiffness damping, and what evaluates branches of structural damping;
-    /// empty without both.
+    /// Where elements see the nodes, with stiffness damping, and what evaluates branches of structural
+    /// damping; empty without both.
     pub(crate) extrapolated: Extrapolated,
     /// Where this thread, the first of two, met the other.
     pub(crate) met: Met,
