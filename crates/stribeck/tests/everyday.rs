@@ -338,7 +338,8 @@ fn example_a_reduced_run_from_its_plan_to_a_deck() {
             "`name` \"nu-203\" instead of \"mine\"",
         ],
     );
-    assert!(!said(&other).contains("`mesh.size_mm`"), "{}", said(&other));
+    // A warning of the trial may name it, too.
+    assert!(!said(&other).contains("`mesh.size_mm` "), "{}", said(&other));
 }
 
 /// The advice for an ensemble named no start of it, and the newest run to export was one.

@@ -259,7 +259,7 @@ fn example_a_scene_of_ones_own_is_written_once() {
     }
     desk.refuses(&["new", "nu205-inner.ron"], &["is there already and is kept"]);
     desk.refuses(&["new", "mine.txt"], &["ends in `.ron`"]);
-    desk.refuses(&["new", "--bearing=7205"], &["no bearing `7205`", "stribeck bearings"]);
+    desk.refuses(&["new", "--bearing=6x05"], &["no bearing `6x05`", "stribeck bearings"]);
     desk.refuses(&["new", "--load-n=-5"], &["no number above 0"]);
     desk.refuses(&["new", "--defect=ouder"], &["outer", "inner", "roller", "none"]);
     assert_eq!(desk.text("nu205-inner.ron"), text);
