@@ -178,15 +178,15 @@ mod tests {
     use super::*;
 
     /// Power that swings by 1 + 0.8 cos at 50.02 Hz, sought at 50 Hz in 4 s: the rate is found to a twentieth
-    /// of a resolution, the swing is that of the power less what steps of 5° average, and of an unrelated rate
-    /// little is left.
+    /// of a resolution, the swing is that of the power less what steps of 5° average, and of an unrelated
+    /// rate little is left.
     #[test]
     fn example_the_mean_over_a_period_is_the_modulation() {
         const RATE_HZ: f64 = 8_000.0;
         /// Averaging over a step of 1/72 of a period, and a rate off by a fortieth of a resolution.
         const LOST: f64 = 0.01;
-        /// An eighth of the swing: samples fall into steps in a rhythm of their own, 130.2 in a period, and the
-        /// search takes the rate that meets it.
+        /// An eighth of the swing: samples fall into steps in a rhythm of their own, 130.2 in a period, and
+        /// the search takes the rate that meets it.
         const UNRELATED: f64 = 0.1;
         let at = |n: usize| std::f64::consts::TAU * 50.02 * n as f64 / RATE_HZ;
         let power: Vec<f64> = (0..32_000).map(|n| 3.0 * (1.0 + 0.8 * at(n).cos())).collect();
