@@ -8,8 +8,8 @@
 use std::process::ExitCode;
 
 /// Differences that are rounding, over the largest number of a list. Sums over lanes are taken in another
-/// order, and products are rounded before they are added, where other machines fuse both; a force follows from a
-/// penetration that is a difference of places, a ten-thousandth of them.
+/// order, and products are rounded before they are added, where other machines fuse both; a force follows
+/// from a penetration that is a difference of places, a ten-thousandth of them.
 #[cfg(target_arch = "wasm32")]
 const ROUNDING: f64 = 1e-9;
 
