@@ -186,6 +186,9 @@ mod tests {
         /// Averaging over a step of 1/72 of a period, and a rate off by a fortieth of a resolution.
         const LOST: f64 = 0.01;
         /// An eighth of the swing: samples fall into steps in a rhythm of their own, 130.2 in a period, and
+        /// the search takes the rate that meets it.
+        const UNRELATED: f64 = 0.1;
+        let at = |n: usize| std::f64::consts::TAU * 50.02 * n as f64 / RATE_HZ;
         let power: Vec<f64> = (0..32_000).map(|n| 3.0 * (1.0 + 0.8 * at(n).cos())).collect();
         let found = mean(&power, RATE_HZ, 50.0).unwrap();
         assert!((found.hz - 50.02).abs() < 0.0126, "{}", found.hz);
