@@ -1,6 +1,19 @@
 // Plots on canvas: lines by their least and largest value in a column, ticks, markers, a cursor, zoom.
 import { colourOf, shown } from "./words.js";
 
+// The canvas as large as the screen has pixels for it, empty; and its size in the page.
+export function sized(canvas) {
+  const ratio = window.devicePixelRatio || 1, [wide, high] = [canvas.clientWidth, canvas.clientHeight];
+  if (canvas.width !== Math.round(wide * ratio) || canvas.height !== Math.round(high * ratio)) {
+    canvas.width = Math.round(wide * ratio);
+    canvas.height = Math.round(high * ratio);
+  }
+  const c = canvas.getContext("2d");
+  c.setTransform(ratio, 0, 0, ratio, 0, 0);
+  c.clearRect(0, 0, wide, high);
+  return [c, wide, high];
+}
+
 // Steps of 1, 2 or 5 times a power of ten.
 function ticks(low, high, about) {
   const raw = (high - low) / about, power = 10 ** Math.floor(Math.log10(raw));
@@ -59,16 +72,10 @@ export class Plot {
   }
 
   draw() {
-    const { canvas } = this, ratio = window.devicePixelRatio || 1;
+    const { canvas } = this;
     const [wide, high] = [canvas.clientWidth, canvas.clientHeight];
     if (!wide || !high || !this.range) return;
-    if (canvas.width !== Math.round(wide * ratio) || canvas.height !== Math.round(high * ratio)) {
-      canvas.width = Math.round(wide * ratio);
-      canvas.height = Math.round(high * ratio);
-    }
-    const c = canvas.getContext("2d");
-    c.setTransform(ratio, 0, 0, ratio, 0, 0);
-    c.clearRect(0, 0, wide, high);
+    const [c] = sized(canvas);
     c.font = "11px system-ui, sans-serif";
     Object.assign(this, { left: 52, right: wide - 18, top: 16, bottom: high - 30 });
     const [x0, x1] = this.seen(), [y0, y1] = this.yRange || this.fitted(x0, x1);

@@ -1,4 +1,5 @@
 // The bearing to scale, and the spall magnified.
+import { sized } from "./plots.js";
 import { colourOf, shown } from "./words.js";
 
 const TAU = 2 * Math.PI;
@@ -20,18 +21,6 @@ export function readPicture(numbers, layout) {
   }
   return { time, shaft, cage: { x: cageX, y: cageY, angle: cageAngle }, seat: [seatX, seatY], rollers, step,
     energies: { kinetic, strain, contact, friction, damping, contactDamping, film, external, drive, imbalance } };
-}
-
-function sized(canvas) {
-  const ratio = window.devicePixelRatio || 1, [wide, high] = [canvas.clientWidth, canvas.clientHeight];
-  if (canvas.width !== Math.round(wide * ratio) || canvas.height !== Math.round(high * ratio)) {
-    canvas.width = Math.round(wide * ratio);
-    canvas.height = Math.round(high * ratio);
-  }
-  const c = canvas.getContext("2d");
-  c.setTransform(ratio, 0, 0, ratio, 0, 0);
-  c.clearRect(0, 0, wide, high);
-  return [c, wide, high];
 }
 
 export class Stage {

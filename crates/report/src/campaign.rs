@@ -66,18 +66,6 @@ const LISTED: usize = 7;
 const MOST_FIELDS: usize = 4;
 /// Rows of the table.
 const MOST_ROWS: usize = 1000;
-/// Values of a field that have colours of their own.
-const MOST_COLOURS: usize = 8;
-const COLOURS: [Colour; MOST_COLOURS] = [
-    Colour::Blue,
-    Colour::Orange,
-    Colour::Green,
-    Colour::Purple,
-    Colour::Red,
-    Colour::Teal,
-    Colour::Brown,
-    Colour::Pink,
-];
 /// A field whose values span more than this is drawn over its logarithm.
 const DECADES_FROM: f64 = 20.0;
 
@@ -235,7 +223,7 @@ fn figure(
     }
     known.sort_by(|a, b| a.1.total_cmp(&b.1));
     let other = (0..index.fields.len()).find(|n| *n != at).filter(|_| index.fields.len() == 2);
-    let other = other.filter(|n| values(index, &index.fields[*n]).len() <= MOST_COLOURS);
+    let other = other.filter(|n| values(index, &index.fields[*n]).len() <= Colour::FOREGROUNDS.len());
     let group = |run: &CampaignRun| match other {
         Some(n) => format!("{} {}", last(&index.fields[n]), run.values.get(n).map_or("–", String::as_str)),
         None => run.claimed.as_ref().map_or("not judged".to_owned(), |claimed| match claimed.as_str() {
@@ -254,7 +242,7 @@ fn figure(
     let mut figure = Figure::new(&id, &title, abscissa.axis.clone(), Axis::plain(words, unit));
     let joined = other.is_some() || index.fields.len() == 1;
     let (mut lines, mut dots) = (Vec::new(), Vec::new());
-    for (name, colour) in groups.iter().zip(COLOURS.into_iter().cycle()) {
+    for (name, colour) in groups.iter().zip(Colour::FOREGROUNDS.into_iter().cycle()) {
         let (x, y): (Vec<f64>, Vec<f64>) =
             known.iter().filter(|(run, ..)| group(run) == *name).map(|(_, x, y)| (*x, *y)).unzip();
         lines.extend(means(name, colour, &x, &y).filter(|_| joined));

@@ -16,19 +16,7 @@ use crate::plot::{Colour, Figure};
 use figures::Figures;
 
 /// Most sides whose curves stay apart over each other.
-pub const MOST_COMPARED: usize = 8;
-
-/// Colours of the sides, in their order.
-const COLOURS: [Colour; MOST_COMPARED] = [
-    Colour::Blue,
-    Colour::Orange,
-    Colour::Green,
-    Colour::Purple,
-    Colour::Red,
-    Colour::Teal,
-    Colour::Brown,
-    Colour::Pink,
-];
+pub const MOST_COMPARED: usize = Colour::FOREGROUNDS.len();
 /// Fields and numbers that the answer names; the tables have all.
 const NAMED: usize = 4;
 /// Longest value of a field in the answer [characters].
@@ -190,7 +178,7 @@ fn at_a_glance(sides: &[Side]) -> Markup {
                     th { "" } th { "What" } th { "Bearing" } th { "Shaft (rpm)" } th { "Load (N)" } th { "Signal" }
                     th { "Length (s)" } th { "Rate (Hz)" }
                 }
-                @for (side, colour) in sides.iter().zip(COLOURS) {
+                @for (side, colour) in sides.iter().zip(Colour::FOREGROUNDS) {
                     tr {
                         td { span class="side" style=(format!("background: var({})", colour.name())) {} (side.label) }
                         td { (kind(side)) }

@@ -167,6 +167,12 @@ pub enum Colour {
     Black,
 }
 
+impl Colour {
+    /// The foregrounds in their order: curves of one kind take them one after the other.
+    pub const FOREGROUNDS: [Self; 8] =
+        [Self::Blue, Self::Orange, Self::Green, Self::Purple, Self::Red, Self::Teal, Self::Brown, Self::Pink];
+}
+
 /// A vertical line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {

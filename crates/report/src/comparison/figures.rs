@@ -3,7 +3,6 @@
 use stribeck_analysis::comparison::{Comparison, Member, Sampled, Side};
 use stribeck_analysis::defect::Defect;
 
-use super::COLOURS;
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
 
 /// How far below its highest value a spectrum is drawn [dB]; rounding noise lies lower.
@@ -26,7 +25,7 @@ pub(super) struct Figures {
 
 impl Figures {
     pub(super) fn of(comparison: &Comparison) -> Self {
-        let sides: Vec<(&Side, Colour)> = comparison.sides.iter().zip(COLOURS).collect();
+        let sides: Vec<(&Side, Colour)> = comparison.sides.iter().zip(Colour::FOREGROUNDS).collect();
         let one_unit = sides.windows(2).all(|pair| pair[0].0.unit == pair[1].0.unit);
         Self {
             trace: traces(&sides, one_unit).into_iter().collect(),
