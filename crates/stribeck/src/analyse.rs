@@ -85,6 +85,10 @@ pub(crate) struct Reading {
     /// Radial internal clearance in operation [µm], a number or a range [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
     clearance_um: Option<(f64, f64)>,
+    /// How far the outer ring and its housing give at the loaded place [µm/kN], a number or a range: what gives
+    /// presses an element farther [default: 0]
+    #[arg(long, value_name = "RANGE", value_parser = range)]
+    housing_um_per_kn: Option<(f64, f64)>,
     /// What a sample is multiplied by, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
@@ -504,8 +508,16 @@ fn machine(
     let nominal =
         matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.is_some());
     let speed_is_exact = scene.is_some() || options.tacho.is_some() || !nominal;
-    let (load_n, clearance_um) = (options.load_n, options.clearance_um);
-    Ok((Machine { speed_rpm, outer_speed_rpm, bearing, speed_is_exact, load_n, clearance_um }, pulses))
+    let machine = Machine {
+        speed_rpm,
+        outer_speed_rpm,
+        bearing,
+        speed_is_exact,
+        load_n: options.load_n,
+        clearance_um: options.clearance_um,
+        housing_um_per_kn: options.housing_um_per_kn,
+    };
+    Ok((machine, pulses))
 }
 
 fn default_folder(file: &Path) -> PathBuf {

@@ -73,17 +73,20 @@ fn of_two_events(
     machine: &Machine,
 ) -> SpallLength {
     let run = speed_mm_s * lag_s;
-    let (loading, is_given) = Loading::of(bearing, machine.load_n, machine.clearance_um);
+    let (loading, is_given) =
+        Loading::of(bearing, machine.load_n, machine.clearance_um, machine.housing_um_per_kn);
     let (pressed, least, most) = loading.pressed_mm(bearing, raceway);
     let advice = if is_given { "" } else { "; `--load-n` with a narrower range narrows the interval" };
     let note = format!(
         "the length of the spall is the {run:.2} mm that the contact runs between two events and the \
-         {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in a rigid \
-         housing presses the element together{advice}. It holds for a spall shorter than half of the \
+         {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in a housing \
+         that gives {:.0} to {:.0} µm/kN presses the element together{advice}. It holds for a spall shorter than half of the \
          {apart_mm:.1} mm between two elements: one of {:.1} mm, whose exit and the entry of the next element \
          are as far apart, would knock in the same rhythm",
         loading.load_n.0,
         loading.load_n.1,
+        loading.housing_um_per_kn.0,
+        loading.housing_um_per_kn.1,
         apart_mm - run + pressed
     );
     SpallLength {

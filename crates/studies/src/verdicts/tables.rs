@@ -550,6 +550,21 @@ pub(super) fn numbers(sheet: &mut Sheet) {
             "one rig of the quoted part (UESTC, 6 % off) and the heights of both parts",
         ],
         [
+            "`LEAST_LEAD` = 20",
+            "how far a speed must lead all others to be told without one, and to correct one",
+            "every second record of the chosen part: no wrong one led by more than 17",
+        ],
+        [
+            "`UNRELATED_SPACINGS`",
+            "a rolling element has more sidebands of the cage than at 0.6 to 1.4 times its spacing",
+            "a convention, after wrong claims on three records of the chosen part with another bearing",
+        ],
+        [
+            "`SIDEBANDS` = 3",
+            "sidebands of the shaft that are no second defect of a rolling element",
+            "a convention, after wrong claims on two records of the quoted part at half the rate (UESTC)",
+        ],
+        [
             "`MODEL` = 0.5 to 1.5",
             "the error of D as it is computed",
             "the outer raceways of HIT-SM and simulated spalls; the inner ones tested it",
