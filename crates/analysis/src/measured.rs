@@ -88,8 +88,8 @@ pub struct Machine {
     pub load_n: Option<(f64, f64)>,
     /// Radial internal clearance in operation, least and most [µm]; `None` for none.
     pub clearance_um: Option<(f64, f64)>,
-    /// How far the outer ring and its housing give at the loaded place, least and most [µm/kN]; `None` for not
-    /// at all.
+    /// How far the outer ring and its housing give at the loaded place, least and most [µm/kN]; `None` for
+    /// not at all.
     pub housing_um_per_kn: Option<(f64, f64)>,
 }
 
@@ -337,8 +337,8 @@ impl Sharp {
     }
 }
 
-/// The speed by the lines of the shaft, or, where they do not tell, by those of shaft and bearing together. One
-/// that is exact is only made sharper.
+/// The speed by the lines of the shaft, or, where they do not tell, by those of shaft and bearing together.
+/// One that is exact is only made sharper.
 fn sharp_speed(
     shaft: Option<shaft::Shaft>,
     samples: &[f64],
@@ -375,8 +375,8 @@ fn found_speed(
     let (rpm, next_rpm, lead) = (60.0 * told.hz, 60.0 * told.next_hz, told.lead);
     notes.push(if told.is_told {
         format!(
-            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} rpm, of \
-             all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} behind in the \
+            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} rpm, \
+             of all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} behind in the \
              logarithm of the likelihood, where {:.0} are asked",
             60.0 * told.uncertainty_hz,
             60.0 * speed::FROM_HZ,
@@ -385,8 +385,8 @@ fn found_speed(
         )
     } else {
         format!(
-            "the record does not tell the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain about as \
-             much of it"
+            "the record does not tell the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain about \
+             as much of it"
         )
     });
     told.is_told.then_some(told)

@@ -397,7 +397,8 @@ fn issue_the_speed_is_told_by_shaft_and_bearing_together() {
     assert_eq!(claimed(&findings), ["BPFI"], "{findings:?}");
     // A speed that is 4 % off is corrected by the same lines.
     let findings = analysed(inner_raceway(shaft_hz), 1.04 * 60.0 * shaft_hz);
-    assert!((findings.speed_rpm.unwrap() / (60.0 * shaft_hz) - 1.0).abs() < 1e-3, "{:?}", findings.notes);
+    // To 1.2 rpm, and no closer than what is not corrected.
+    assert!((findings.speed_rpm.unwrap() / (60.0 * shaft_hz) - 1.0).abs() < 2e-3, "{:?}", findings.notes);
     assert_eq!(claimed(&findings), ["BPFI"], "{findings:?}");
     // Noise tells none.
     let findings = of(coloured(8, SAMPLES));

@@ -85,8 +85,8 @@ pub(crate) struct Reading {
     /// Radial internal clearance in operation [µm], a number or a range [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
     clearance_um: Option<(f64, f64)>,
-    /// How far the outer ring and its housing give at the loaded place [µm/kN], a number or a range: what gives
-    /// presses an element farther [default: 0]
+    /// How far the outer ring and its housing give at the loaded place [µm/kN], a number or a range: what
+    /// gives presses an element farther [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
     housing_um_per_kn: Option<(f64, f64)>,
     /// What a sample is multiplied by, for example 1/sensitivity

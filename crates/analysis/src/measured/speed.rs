@@ -24,8 +24,8 @@ const BESIDE: u32 = 3;
 const STANDS: f64 = 20.0;
 /// Probability that it is not there.
 const MISSING: f64 = 0.5;
-/// The evidence of a single line ends here [nats], but for the logarithm of its height over that from which it
-/// does: many lines must agree.
+/// The evidence of a single line ends here [nats], but for the logarithm of its height over that from which
+/// it does: many lines must agree.
 const MOST: f64 = 5.0;
 const MOST_FROM: f64 = 8.0;
 /// Slip of a family, either way, and steps in which it is tried.
@@ -50,6 +50,10 @@ const REACH: f64 = 0.07;
 const SAME_NEAR: f64 = 0.006;
 /// The lead over all others within reach from which a given speed is corrected [nats].
 const LEAST_LEAD_NEAR: f64 = 20.0;
+/// Evidence of the shaft's own multiples in the spectrum without which no speed is told [nats], three lines
+/// that stand: a comb of the bearing alone is consistent with any speed from which slip, or another bearing,
+/// makes it a family.
+const LEAST_OF_SHAFT: f64 = 15.0;
 /// Turns that a record must hold: with fewer, the multiples of neighbouring speeds are not resolved.
 const TURNS: f64 = 50.0;
 const TURNS_NEAR: f64 = 100.0;
@@ -64,18 +68,19 @@ pub(super) struct Told {
     pub(super) lead: f64,
     /// The speed that comes next [Hz].
     pub(super) next_hz: f64,
-    /// Whether it leads far enough.
+    /// Whether it leads far enough, and the shaft itself shows.
     pub(super) is_told: bool,
 }
 
 impl Told {
     fn of(hz: f64, score: f64, next: (f64, f64), spectrum: &Evidence, least_lead: f64) -> Self {
+        let shaft_shows = spectrum.comb(hz, SHAFT) >= LEAST_OF_SHAFT;
         Self {
             hz,
             uncertainty_hz: 0.5 * spectrum.grid_hz / f64::from(SHAFT),
             lead: score - next.1,
             next_hz: next.0,
-            is_told: score - next.1 >= least_lead,
+            is_told: shaft_shows && score - next.1 >= least_lead,
         }
     }
 }
