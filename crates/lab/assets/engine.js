@@ -1,6 +1,8 @@
 // The module and its bearing, and the loop that steps it: in a worker, or on the page where there is none.
 
-// Handles that are looked up by name elsewhere stand in the order of `handles.rs`.
+// Place of the watched roller among the handles (`at` in `handles.rs`); others are looked up by name.
+const ROLLER = 16;
+
 export class Bearing {
   constructor(instance) {
     this.x = instance.exports;
@@ -40,6 +42,7 @@ export class Bearing {
   picture() { return this.numbers(this.x.lab_picture()); }
   displacement() { return this.numbers(this.x.lab_displacement()); }
   forces() { return this.numbers(this.x.lab_numbers(5)); }
+  handles() { return this.numbers(this.x.lab_numbers(4)); }
   still() {
     const [outer, inner, roller, vertexAngles, handles] = [0, 1, 2, 3, 4].map((n) => this.numbers(this.x.lab_numbers(n)));
     return { outer, inner, roller, vertexAngles, handles };
@@ -117,7 +120,7 @@ export function serve(say, now, later) {
     alone.open(content);
     guided.open(content);
     const perCheck = alone.forces().length, checks = forces.length / perCheck, pieces = states.length;
-    const told = { alone: 0, guided: 0, largest: 0, close: 0 };
+    const told = { alone: 0, guided: 0, largest: 0, close: 0, course: [] };
     const worst = (here, n) => here.reduce((off, force, i) => Math.max(off, Math.abs(force - forces[n * perCheck + i])), 0);
     for (const force of forces) told.largest = Math.max(told.largest, Math.abs(force));
     for (let n = 0; n < checks; n += 1) {
@@ -125,7 +128,8 @@ export function serve(say, now, later) {
       alone.run(every);
       guided.run(every);
       told.guided = Math.max(told.guided, worst(guided.forces(), n));
-      told.alone = Math.max(told.alone, worst(alone.forces(), n));
+      told.course.push(worst(alone.forces(), n));
+      told.alone = Math.max(told.alone, told.course[n]);
       if (told.alone < 1e-9 * told.largest) told.close = (n + 1) * every * interval;
     }
     return { kind: "checked", ...told, pieces, until: checks * every * interval, took: now() - began };
@@ -147,7 +151,9 @@ export function serve(say, now, later) {
     turn({ asked }) {
       for (const [handle, value] of asked) bearing.ask(handle, value);
       const anew = bearing.apply();
-      since = 0;
+      // The watched roller changes often, and nothing but its trace.
+      if (asked.every(([handle]) => handle === ROLLER)) { post({ kind: "handles", handles: bearing.handles() }); return; }
+      if (anew) since = 0;
       still({ anew });
       if (anew) post({ kind: "picture", ...picture() });
     },

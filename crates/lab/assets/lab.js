@@ -231,6 +231,10 @@ function receive(message) {
       if (message.opened) ready();
       lab.dirty = true;
     },
+    handles() {
+      lab.handles = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, message.handles[i]]));
+      showHandles();
+    },
     picture() { lab.picture = readPicture(message.picture, lab.layout); lab.displacement = message.displacement; lab.dirty = true; },
     samples() {
       lab.engine.send({ task: "read" });
@@ -256,9 +260,9 @@ function receive(message) {
   tasks[message.kind]();
 }
 
-function showCheck({ alone, guided, largest, close, pieces, until, took }) {
+function showCheck({ alone, guided, largest, close, course, pieces, until, took }) {
   const share = (off) => (off === 0 ? "nothing" : `${(off / largest).toExponential(1)} of the largest force`);
-  lab.checked = { alone: alone / largest, guided: guided / largest, largest, close };
+  lab.checked = { alone: alone / largest, guided: guided / largest, largest, close, course: course.map((off) => off / largest) };
   const good = guided < 1e-9 * largest;
   $("checked").innerHTML = `<strong class="${good ? "good" : "bad"}">${share(guided)}</strong> is the largest difference, of forces of both raceways on all rollers up to ${shown(largest, "N")}, from ${pieces} states of the program’s run over ${shown(until / pieces, "s")} each. `
     + `In one piece from the start they agree to a billionth until ${shown(close, "s")} and differ by ${share(alone)} at most within ${shown(until, "s")}: two numbers are added at a time here and eight there, products are rounded on their own here, and a roller that strikes makes what that changes larger. (${shown(took / 1000, "s")} of computing.)`;
@@ -315,7 +319,7 @@ function drawTraces() {
   plots.trace.show({ range, series: cleaned
     ? [{ name: "as it is", colour: colourOf("c-grey"), y: raw, x0, dx }, { name: "behind the notch", colour: colourOf("c-blue"), y: cleaned, x0, dx, width: 1.6 }]
     : [{ name: "", colour: colourOf("c-blue"), y: raw, x0, dx }] });
-  $("force-name").textContent = `Force on roller ${lab.handles.roller + 1}`;
+  $("force-name").textContent = $("follow").checked && stage.spall() ? `Force on the roller at the spall, now no. ${lab.handles.roller + 1}` : `Force on roller ${lab.handles.roller + 1}`;
   plots.force.show({ range, series: [
     { name: "inner raceway", colour: colourOf("c-orange"), y: lab.record.last(4, n), x0, dx },
     { name: "outer raceway", colour: colourOf("c-blue"), y: lab.record.last(3, n), x0, dx }] });
