@@ -332,9 +332,17 @@ function drawTraces() {
     series: [{ name: "", colour: colourOf("c-teal"), x: ox, y: oy, dot: true }] });
 }
 
-function drawSpectra() {
-  const rate = 1 / lab.facts.interval, f = tones(), signal = acceleration(lab.record.size);
+// Spectra are of so many samples at most: a page that computes for longer drops pictures.
+const SPECTRA = 1 << 16;
+
+function drawSpectra(which) {
+  const rate = 1 / lab.facts.interval, f = tones(), signal = acceleration(SPECTRA);
   if (signal.length < 2048) { $("tone").textContent = "The spectrum needs some milliseconds more."; lab.spectra = {}; return; }
+  if (which !== "envelope") drawSpectrum(signal, rate, f);
+  if (which !== "spectrum") drawEnvelope(signal, rate, f);
+}
+
+function drawSpectrum(signal, rate, f) {
   // A line is as wide as the record is short: half of what is there, up to a third of a second.
   let n = 1024;
   while (2 * n <= Math.min(signal.length, 32768)) n *= 2;
@@ -352,6 +360,9 @@ function drawSpectra() {
   // Where corners would pass, also where there are none.
   const corners = lab.handles.facets * f.spin;
   lab.spectra.corners = corners < 0.5 * rate ? lineNear(s, corners, Math.max(3 * s.step, 0.005 * corners)) : null;
+}
+
+function drawEnvelope(signal, rate, f) {
   const [low, high] = [1000 * Number($("low").value), 1000 * Number($("high").value)];
   const e = envelope(signal, rate, low, Math.min(high, 0.49 * rate));
   const es = spectrum(e, rate, e.length), end = Math.max(6 * f.bpfo, 40 * es.step);
@@ -418,7 +429,13 @@ function frame(now) {
   stage.draw(lab.picture, lab.displacement, { handles: lab.handles, load: lab.handles.load, direction: loadVector().map((v) => v / length), caption: caption() });
   if (lab.running) followed();
   if (!lab.frozen && now - lastTraces > 60) { lastTraces = now; drawTraces(); }
-  if (!lab.frozen && now - lastSpectra > 400) { lastSpectra = now; drawSpectra(); showNumbers(); }
+  // One after the other, so that no picture waits for both; both where a control was turned.
+  if (!lab.frozen && now - lastSpectra > 250) {
+    drawSpectra(lastSpectra === 0 ? "both" : lab.turned ? "envelope" : "spectrum");
+    lab.turned = !lab.turned;
+    lastSpectra = now;
+    showNumbers();
+  }
   $("speed").textContent = lab.running && lab.speed ? `${shown(1000 * lab.speed.achieved)} ms of the bearing a second (${shown(1000 * lab.speed.possible)} possible), ${Math.round(lab.framesPerSecond || 0)} pictures a second` : lab.running ? "" : "paused";
 }
 

@@ -355,3 +355,39 @@ fn roundtrip_what_is_saved_and_what_is_heard() {
     assert_eq!(oiled.defect, None);
     assert_eq!(oiled.film.map(|film| film.viscosity_pa_s), Some(0.08));
 }
+
+/// The page steps two scenes as the program does: forces from ten states of its run, a millisecond each, differ
+/// by rounding alone; in one piece they do until something strikes (docs/guide/src/lab.md).
+#[test]
+fn invariant_the_page_steps_as_the_program_does() {
+    // What vectors of another width and products that are rounded leave after 500 steps.
+    const ROUNDING: f64 = 1e-9;
+    let Some((browser, module)) = tools() else { return };
+    let folder = Scratch::create("lab-check");
+    let read = |name: &str| {
+        let file = format!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/{}.ron"), name);
+        Scene::read(file).expect("a scene of the repository")
+    };
+    let scenes = ["quick", "deep_groove"].map(read);
+    let html = page::page(&scenes, &module, None, "stribeck lab").expect("sound scenes").html;
+    let file = written(&folder, "lab.html", &html);
+    let script = r#"
+      const all = [];
+      for (const n of [0, 1]) {
+        set("bearing", n);
+        await until(() => lab.opened === n && lab.picture);
+        document.getElementById("run").click();
+        document.getElementById("check").click();
+        await until(() => lab.checked);
+        all.push({ guided: lab.checked.guided, first: Math.max(...lab.checked.course.slice(0, 30)), words: text("checked") });
+      }
+      return { all, trouble: text("trouble") };
+    "#;
+    let said = asked(&browser, &folder, &format!("file://{}", file.display()), script);
+    assert_eq!(said["trouble"], "", "{said}");
+    for checked in said["all"].as_array().expect("a list") {
+        assert!(number(checked, "guided") < ROUNDING, "{checked}");
+        assert!(number(checked, "first") < ROUNDING, "{checked}");
+        assert!(checked["words"].as_str().is_some_and(|words| words.contains("from 10 states")), "{checked}");
+    }
+}
