@@ -137,7 +137,7 @@ pub use kurtogram::{KurtogramBand, fast_kurtogram};
 pub use multitaper::{dpss, multitaper};
 pub use notch::Notch;
 pub use options::{Averaging, Detrend, WelchOptions};
-pub use path::{Path, coloured_like};
+pub use path::{Path, at_rate, coloured_like};
 pub use peak::{Peak, Sinusoid};
 pub use prewhitened::prewhitened_power;
 pub use resample::resample_poly;

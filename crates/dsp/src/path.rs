@@ -59,23 +59,7 @@ impl Path {
     /// [`Error::NotPositive`] for a rate, [`Error::Undefined`] for a record faster than the force,
     /// [`Error::TooShort`], [`Error::NotFinite`].
     pub fn through(&self, force: &[f64], rate_hz: f64, to_hz: f64) -> Result<Vec<f64>> {
-        check_positive("rate_hz", rate_hz)?;
-        check_positive("to_hz", to_hz)?;
-        check_signal(force, 16, "a force")?;
-        if to_hz > rate_hz {
-            let why = "the force is sampled more slowly than the record";
-            return Err(Error::Undefined { quantity: "record of a force", why });
-        }
-        let lines = lines_of(&faded(force));
-        let grid_hz = rate_hz / lines.len() as f64;
-        let count = (force.len() as f64 * to_hz / rate_hz).round() as usize;
-        let mut kept = vec![Complex::default(); count];
-        for n in 1..count.div_ceil(2).min(lines.len() / 2) {
-            kept[n] = lines[n] * self.response(n as f64 * grid_hz) / lines.len() as f64;
-            kept[count - n] = kept[n].conj();
-        }
-        FftPlanner::new().plan_fft_inverse(count).process(&mut kept);
-        Ok(kept.iter().map(|z| z.re).collect())
+        shaped(force, rate_hz, to_hz, |hz| self.response(hz))
     }
 }
 
@@ -98,6 +82,39 @@ pub fn coloured_like(signal: &[f64], density: &[f64]) -> Result<Vec<f64>> {
     lines.iter_mut().zip(&response).for_each(|(line, r)| *line *= r / count as f64);
     FftPlanner::new().plan_fft_inverse(count).process(&mut lines);
     Ok(lines.iter().take(signal.len()).map(|z| z.re).collect())
+}
+
+/// A signal at a lower rate `to_hz`, without its mean, faded in and out.
+///
+/// # Errors
+/// As [`Path::through`].
+pub fn at_rate(signal: &[f64], rate_hz: f64, to_hz: f64) -> Result<Vec<f64>> {
+    shaped(signal, rate_hz, to_hz, |_| Complex::new(1.0, 0.0))
+}
+
+fn shaped(
+    force: &[f64],
+    rate_hz: f64,
+    to_hz: f64,
+    response: impl Fn(f64) -> Complex<f64>,
+) -> Result<Vec<f64>> {
+    check_positive("rate_hz", rate_hz)?;
+    check_positive("to_hz", to_hz)?;
+    check_signal(force, 16, "a force")?;
+    if to_hz > rate_hz {
+        let why = "the force is sampled more slowly than the record";
+        return Err(Error::Undefined { quantity: "record of a force", why });
+    }
+    let lines = lines_of(&faded(force));
+    let grid_hz = rate_hz / lines.len() as f64;
+    let count = (force.len() as f64 * to_hz / rate_hz).round() as usize;
+    let mut kept = vec![Complex::default(); count];
+    for n in 1..count.div_ceil(2).min(lines.len() / 2) {
+        kept[n] = lines[n] * response(n as f64 * grid_hz) / lines.len() as f64;
+        kept[count - n] = kept[n].conj();
+    }
+    FftPlanner::new().plan_fft_inverse(count).process(&mut kept);
+    Ok(kept.iter().map(|z| z.re).collect())
 }
 
 fn lines_of(values: &[f64]) -> Vec<Complex<f64>> {
