@@ -1,8 +1,9 @@
 //! Finds the module of the page, so that the program carries it (feature `embed`).
 //!
-//! It is `assets/module/stribeck_lab.wasm`, which `cargo xtask lab-module --embed` puts there and packages hold,
-//! or the file that the variable `STRIBECK_LAB_EMBED` names. It is not compiled here: that takes half a minute
-//! of a core and a target that few have (docs/DESIGN.md). One that is older than its sources is left out.
+//! It is `assets/module/stribeck_lab.wasm`, which `cargo xtask lab-module --embed` puts there and packages
+//! hold, or the file that the variable `STRIBECK_LAB_EMBED` names. It is not compiled here: that takes half
+//! a minute of a core and a target that few have (docs/DESIGN.md). One that is older than its sources is left
+//! out.
 
 use std::{
     env, fs,
@@ -58,8 +59,8 @@ fn module(here: &Path) -> Option<PathBuf> {
     }
     if sources.iter().any(|folder| newest(folder).is_some_and(|written| written > made)) {
         println!(
-            "cargo::warning={FOLDER}/{FILE} is older than its sources and is left out: `cargo xtask lab-module \
-             --embed` makes it anew"
+            "cargo::warning={FOLDER}/{FILE} is older than its sources and is left out: `cargo xtask \
+             lab-module --embed` makes it anew"
         );
         return None;
     }

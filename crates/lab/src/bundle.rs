@@ -10,6 +10,7 @@ use stribeck_modal::{
 };
 use stribeck_reduced::motion::{BearingInMotion, Saved};
 use stribeck_reduction::modal_bearing;
+use stribeck_run::guards::OUT_OF_PLACE;
 use stribeck_scene::{
     advice,
     housing::HousingScene,
@@ -39,9 +40,6 @@ const CHECKS: usize = 100;
 
 /// Of these, so many are the beginning of a stretch that the page steps from the program's own state.
 const STATES: usize = 10;
-
-/// Rollers may leave the space between the raceways by this share of their radius.
-const OUT_OF_PLACE: f64 = 0.5;
 
 /// What the page holds of a scene.
 pub(crate) struct Bundled {

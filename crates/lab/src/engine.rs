@@ -189,8 +189,8 @@ impl Engine {
     }
 
     /// Takes so many samples, which are then in [`samples`](Self::samples). Where the cage has left the place
-    /// that the model has for it, the run begins anew behind fewer of them, and the reason is returned: a run of
-    /// the program ends there.
+    /// that the model has for it, the run begins anew behind fewer of them, and the reason is returned: a run
+    /// of the program ends there.
     ///
     /// # Errors
     /// When the run has gone wrong.

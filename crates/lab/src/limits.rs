@@ -1,7 +1,7 @@
 //! Where a run stops: the limits of the scene, with the words of the program.
 //!
-//! The program's own stand in `stribeck-simulation` and `stribeck-run`, which read scenes and files and so are
-//! not in a page; `issue_a_run_that_stops_says_what_the_program_says` holds both beside each other.
+//! The program's own stand in `stribeck-simulation` and `stribeck-run`, which read scenes and files and so
+//! are not in a page; `issue_a_run_that_stops_says_what_the_program_says` holds both beside each other.
 
 use serde::{Deserialize, Serialize};
 use stribeck_reduced::motion::{BearingInMotion, Energies};
@@ -46,8 +46,8 @@ const OF_MOTION: f64 = 1e-6;
 const ASTRAY: f64 = 0.1;
 
 impl Limits {
-    /// Why a run stops, if it does: at energies whose imbalance is `imbalance` [J] where rings and contacts have
-    /// stored `most_stored` [J] at most.
+    /// Why a run stops, if it does: at energies whose imbalance is `imbalance` [J] where rings and contacts
+    /// have stored `most_stored` [J] at most.
     pub(crate) fn reason(
         &self,
         motion: &BearingInMotion,
@@ -75,7 +75,8 @@ impl Limits {
             _ => "more than all heat".to_owned(),
         };
         Some(format!(
-            "energy is off by {percent:.3} % of the most that rings and contacts have stored and {share} {}. {}",
+            "energy is off by {percent:.3} % of the most that rings and contacts have stored and {share} {}. \
+             {}",
             when(motion),
             self.advice(motion)
         ))
@@ -91,8 +92,8 @@ impl Limits {
                 self.holds_cage
             );
         }
-        "Take a smaller `model.step_us`, a larger `model.modes_khz`, or `model: full` to see which of the two \
-         models is wrong"
+        "Take a smaller `model.step_us`, a larger `model.modes_khz`, or `model: full` to see which of the \
+         two models is wrong"
             .to_owned()
     }
 
@@ -100,8 +101,8 @@ impl Limits {
         let share = motion.deepest() / self.element_size;
         (share > 0.01 * self.penetration_percent).then(|| {
             format!(
-                "contact has sunk in by {:.0} % of an element {}: take a larger `contact.penalty_scale` or less \
-                 `operation.load_n`",
+                "contact has sunk in by {:.0} % of an element {}: take a larger `contact.penalty_scale` or \
+                 less `operation.load_n`",
                 100.0 * share,
                 when(motion)
             )
@@ -115,8 +116,8 @@ impl Limits {
             (!(self.annulus[0]..=self.annulus[1]).contains(&radius)).then(|| {
                 let through = if radius < self.annulus[0] { "inner" } else { "outer" };
                 format!(
-                    "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from that of \
-                     the outer ring {}. Take a larger `contact.penalty_scale`, less `operation.load_n` or a \
+                    "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from \
+                     that of the outer ring {}. Take a larger `contact.penalty_scale`, less `operation.load_n` or a \
                      smaller `model.step_us`",
                     1e3 * radius,
                     when(motion)
@@ -131,8 +132,8 @@ impl Limits {
         (off > stop).then(|| {
             let room = if touches.is_finite() { format!("{:.2}", 1e3 * touches) } else { "no".to_owned() };
             format!(
-                "the cage has cut through a ring: its centre is {:.2} mm from that of the outer ring {}, and \
-                 between the raceways it has {room} mm of room. Nothing holds it there: take {}",
+                "the cage has cut through a ring: its centre is {:.2} mm from that of the outer ring {}, \
+                 and between the raceways it has {room} mm of room. Nothing holds it there: take {}",
                 1e3 * off,
                 when(motion),
                 self.holds_cage

@@ -356,8 +356,8 @@ fn roundtrip_what_is_saved_and_what_is_heard() {
     assert_eq!(oiled.film.map(|film| film.viscosity_pa_s), Some(0.08));
 }
 
-/// The page steps two scenes as the program does: forces from ten states of its run, a millisecond each, differ
-/// by rounding alone; in one piece they do until something strikes (docs/guide/src/lab.md).
+/// The page steps two scenes as the program does: forces from ten states of its run, a millisecond each,
+/// differ by rounding alone; in one piece they do until something strikes (docs/guide/src/lab.md).
 #[test]
 fn invariant_the_page_steps_as_the_program_does() {
     // What vectors of another width and products that are rounded leave after 500 steps.

@@ -158,8 +158,8 @@ fn lab(run: &Run, run_dir: &Path) -> Markup {
     html! {
         p #lab {
             @if run_dir.join(LAB).is_file() {
-                "This bearing runs in the " a href=(LAB) { "lab" } ": load, speed, spall, facets or arcs are turned \
-                 there while it runs, in the browser."
+                "This bearing runs in the " a href=(LAB) { "lab" } ": load, speed, spall, facets or arcs are \
+                 turned there while it runs, in the browser."
             } @else {
                 code { "stribeck report --lab " (run_dir.file_name().unwrap_or_default().display()) }
                 " makes a page beside this one in which the bearing runs, with handles for load, speed, spall, \

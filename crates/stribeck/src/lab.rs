@@ -133,8 +133,8 @@ fn found(place: &Place) -> Result<PathBuf> {
     match beside.into_iter().chain([built]).find(|file| file.is_file()) {
         Some(file) => Ok(file),
         None => bail!(
-            "this program was built without {MODULE}, which steps the bearing in the page. In the repository of \
-             Stribeck `cargo xtask lab` builds it and makes the page, and `cargo xtask lab-module --embed` \
+            "this program was built without {MODULE}, which steps the bearing in the page. In the repository \
+             of Stribeck `cargo xtask lab` builds it and makes the page, and `cargo xtask lab-module --embed` \
              before `cargo install` gives it to the program; both need `rustup target add \
              wasm32-unknown-unknown`. Elsewhere put the file beside the program, or name it with --module or \
              {VARIABLE}"
