@@ -11,7 +11,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     roller_force::RollerForce,
-    row::{Numbers, Row, Single, in_single, largest_of},
+    row::{Numbers, Row, Single, closed_in_single, in_single, largest_of},
 };
 pub(crate) use responses::RollerResponses;
 pub use state::SeatState;
@@ -40,8 +40,8 @@ pub(crate) struct Springs {
     /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
     by_mode: Vec<Single>,
     by_spring: Vec<Single>,
-    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of
-    /// the preload.
+    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, the first one again
+    /// after the last, and by those of the preload.
     by_rollers: Vec<Single>,
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.
@@ -68,7 +68,7 @@ impl Springs {
         let rows =
             |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
         let by_mode = in_single(&seat.tension);
-        let by_rollers = in_single(&seat.by_rollers);
+        let by_rollers = closed_in_single(&seat.by_rollers, n / LANES);
         let stiffness = in_single(&seat.stiffness);
         let found = seat.tension.len() / n;
         let of =
@@ -127,7 +127,7 @@ impl Springs {
             && panels
                 .pressed
                 .iter()
-                .all(|roller| (roller.facet as usize) < self.by_rollers.len() / self.rows())
+                .all(|roller| (roller.facet as usize + 1) < self.by_rollers.len() / self.rows())
     }
 
     /// Lets the seat open and slip where it does at rest, the modes being at `q`.
@@ -209,8 +209,7 @@ impl Springs {
     #[inline(always)]
     fn ends(&self, facet: usize) -> [&[Single]; 2] {
         let groups = self.rows();
-        let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
-        [&self.by_rollers[groups * facet..][..groups], &self.by_rollers[groups * second..][..groups]]
+        self.by_rollers[groups * facet..][..2 * groups].split_at(groups).into()
     }
 }
 

@@ -54,16 +54,16 @@ impl Springs {
     ) {
         let groups = self.rows();
         responses.rollers.clear();
-        responses.by.clear();
+        responses.by.resize(groups * rollers.len(), Row::default());
+        let mut first = 0;
         for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
             let ends = self.ends(roller.facet as usize);
             let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
             let mut given = Vector::all(simd, 0.0);
-            let first = responses.by.len();
-            responses.by.resize(first + groups, Row::default());
             let gaps = panels.open.as_chunks::<LANES>().0;
             let both = ends[0].iter().zip(ends[1]);
-            for ((by, gap), (ahead, behind)) in responses.by[first..].iter_mut().zip(gaps).zip(both) {
+            for ((by, gap), (ahead, behind)) in responses.by[first..][..groups].iter_mut().zip(gaps).zip(both)
+            {
                 for at in vector_starts(simd) {
                     let (ahead, behind) = (ahead.load(simd, at), behind.load(simd, at));
                     let between = ahead.times_plus(a, behind * b);
@@ -71,6 +71,7 @@ impl Springs {
                     between.store(by, at);
                 }
             }
+            first += groups;
             let expected = roller.next();
             let mut answer =
                 RollerResponse { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
