@@ -60,6 +60,17 @@ pub(crate) struct SeenRollers {
 }
 
 impl SeenRollers {
+    /// Replaces one of them.
+    #[cfg(test)]
+    pub(super) fn set(&mut self, lane: usize, seen: &RollerView) {
+        for c in 0..2 {
+            self.centre[c][lane] = seen.centre[c];
+            self.spin[c][lane] = seen.spin[c];
+            self.velocity[c][lane] = seen.velocity[c];
+        }
+        self.turning[lane] = seen.turning;
+    }
+
     /// One of them.
     pub(crate) fn one(&self, lane: usize) -> RollerView {
         RollerView {
