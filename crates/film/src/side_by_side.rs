@@ -20,9 +20,9 @@ const NEAR: f64 = 1e-3;
 const MOST_CORRECTIONS: usize = 6;
 
 /// Corrections of the force at a depth at most, and the share of its cube root at which the last one leaves
-/// its square: nothing.
+/// its square.
 const SEARCHES: usize = 12;
-const ENOUGH: f64 = 1e-8;
+const ENOUGH: f64 = 1e-5;
 
 /// A number of each of eight films.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -210,7 +210,8 @@ impl<P: SpringInLanes> FilmLaw<P> {
             }
             let film = Pressed::until(c);
             let force = lift * film.force;
-            let root = force.cube_root();
+            let these = Vector::ones(simd, left);
+            let root = half.choose_below(these, force.cube_root(), zero);
             let [depth, by_root] = self.spring.depth_of(simd, root);
             let stiff = three * root * root / by_root;
             let grows = lift * film.force_slope;
@@ -219,7 +220,6 @@ impl<P: SpringInLanes> FilmLaw<P> {
             let slope = grows - opened * film.opening_slope * stiff;
             let change = -(over / slope);
             let next = c + change;
-            let these = Vector::ones(simd, left);
             end = half.choose_below(these, next, end);
             carried = half.choose_below(these, grows.times_plus(change, force), carried);
             opens = half.choose_below(these, film.opening_slope.times_plus(change, film.opening), opens);
@@ -262,7 +262,9 @@ impl<P: SpringInLanes> FilmLaw<P> {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, three) = (all(0.0), all(3.0));
         let most = self.spring.largest_root(simd, depth);
-        let mut root = zero.choose_below(guess, guess.cube_root(), most);
+        let these = Vector::ones(simd, films);
+        let root = zero.choose_below(guess, guess.cube_root(), most);
+        let mut root = all(0.5).choose_below(these, root, zero);
         let mut slope = zero;
         for _ in 0..SEARCHES {
             let [given, steep] = self.spring.depth_of(simd, root);
@@ -274,7 +276,6 @@ impl<P: SpringInLanes> FilmLaw<P> {
                 break;
             }
         }
-        let these = Vector::ones(simd, films);
         let (square, half) = (root * root, all(0.5));
         Dry {
             root: half.choose_below(these, root, zero),

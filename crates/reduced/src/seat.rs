@@ -57,13 +57,15 @@ pub(crate) struct Springs {
     /// Largest displacement of any vertex of the raceway by a unit that each opens or slips [1].
     farthest: Vec<Row>,
     friction: f64,
+    /// Whether films make rollers press that hardly do.
+    with_oil: bool,
     at_rest: Passes,
     in_step: Passes,
 }
 
 impl Springs {
     /// Of a seat whose tables have been rounded to single precision.
-    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64, time_step: f64) -> Self {
+    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64, with_oil: bool, time_step: f64) -> Self {
         let n = 2 * seat.padded;
         let rows =
             |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
@@ -97,6 +99,7 @@ impl Springs {
             pressed: rows(&seat.pressed),
             farthest: largest_of::<1>(&seat.by_rollers, n),
             friction,
+            with_oil,
             at_rest: Passes { most: 1000, still: STILL * mean },
             in_step: Passes { most: 200, still: STILL.max(STILL_IN_STEP * time_step * time_step) * mean },
         }
@@ -172,6 +175,9 @@ impl Springs {
         for (roller, by) in responses.rollers.iter().zip(responses.by.chunks_exact(self.rows())) {
             by_rollers += roller.force * dot(simd, by, panels.open.as_chunks().0);
         }
+        for &(vertex, force) in &responses.fixed {
+            by_rollers += force * dot(simd, self.at_vertex(vertex), panels.open.as_chunks().0);
+        }
         [heat, self.stored(simd, panels, tension) + by_rollers]
     }
 
@@ -203,6 +209,13 @@ impl Springs {
             }
         }
         sum.sum()
+    }
+
+    /// Tensions by a unit force at a vertex.
+    #[inline(always)]
+    fn at_vertex(&self, vertex: usize) -> &[Single] {
+        let rows = self.rows();
+        &self.by_rollers[rows * vertex..][..rows]
     }
 
     /// Tensions by a unit force at both vertices of a facet.
@@ -241,7 +254,7 @@ mod tests {
             at_sensors: Vec::new(),
             flexibility: vec![1e-6],
         };
-        let springs = Springs::new(&seat, LANES, friction, 1e-6);
+        let springs = Springs::new(&seat, LANES, friction, false, 1e-6);
         let panels = springs.at_rest(LANES, 0);
         (springs, panels)
     }

@@ -6,6 +6,8 @@ use stribeck_film::{Spring, SpringInLanes};
 use stribeck_modal::compliance::{Compliance, Curve};
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
+use crate::row::lanes;
+
 /// Corrections of the force at a depth at most, and the share of it below which the last one leaves its
 /// square: nothing.
 const CORRECTIONS: usize = 30;
@@ -86,15 +88,16 @@ impl SpringInLanes for BodySpring {
         let square = root * root;
         let force = square * root;
         let y = force.sqrt();
-        let (knot, first, slope);
-        if all(self.curve.spacing()).bits_below(y) == 0 {
-            let [_, g, grows, _] = self.curve.piece_at(0.0);
-            (knot, first, slope) = (all(0.0), all(g), all(grows));
-        } else {
-            let mut columns = [[0.0; LANES]; 3];
-            y.store(&mut columns[0], 0);
-            for lane in 0..Vector::<S>::LEN {
-                let [knot, g, grows, _] = self.curve.piece_at(columns[0][lane]);
+        // Most films press with next to nothing: on the first piece.
+        let [_, g, grows, _] = self.curve.piece_at(0.0);
+        let (mut knot, mut first, mut slope) = (all(0.0), all(g), all(grows));
+        let beyond = all(self.curve.spacing()).bits_below(y);
+        if beyond != 0 {
+            let mut roots = [0.0; LANES];
+            let mut columns = [[0.0; LANES], [g; LANES], [grows; LANES]];
+            y.store(&mut roots, 0);
+            for lane in lanes(beyond) {
+                let [knot, g, grows, _] = self.curve.piece_at(roots[lane]);
                 (columns[0][lane], columns[1][lane], columns[2][lane]) = (knot, g, grows);
             }
             knot = Vector::load(simd, &columns[0], 0);

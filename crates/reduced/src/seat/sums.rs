@@ -84,11 +84,11 @@ pub(super) fn listed(
 
 /// Sum of the products of some rows with others.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, rows: &[Row], others: &[[f64; LANES]]) -> f64 {
+pub(super) fn dot<S: Simd, N: Numbers>(simd: S, rows: &[N], others: &[[f64; LANES]]) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
     for (row, other) in rows.iter().zip(others) {
         for at in vector_starts(simd) {
-            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, other, at), sum);
+            sum = row.load(simd, at).times_plus(Vector::load(simd, other, at), sum);
         }
     }
     sum.sum()
