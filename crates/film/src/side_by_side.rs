@@ -1,7 +1,8 @@
 //! Films of eight bodies on one track, side by side in vectors: the law of [`FilmLaw::flow`].
 //!
 //! Each step takes one step of Newton's method from where the film ended in the last one, and further ones
-//! only where it goes far. What that leaves, a millionth of the force, the next step makes up for.
+//! only where it goes far. What that leaves, less than a ten-thousandth of the force, the next step makes up
+//! for.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -14,7 +15,7 @@ use crate::{
 
 /// The place where a film ends is not corrected again after a correction by less than this share of one plus
 /// its size, …
-const NEAR: f64 = 1e-3;
+const NEAR: f64 = 1e-2;
 
 /// … and films that need more corrections than this are taken one by one.
 const MOST_CORRECTIONS: usize = 6;
