@@ -1,6 +1,7 @@
 //! `stribeck analyse`: what a measured record shows.
 
 mod gaps;
+mod together;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -36,6 +37,10 @@ pub struct Options {
     /// those given
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
+    /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
+    /// several files, such as axes, or both ends of a shaft; says which part each hears, and which is nearest
+    #[arg(long, conflicts_with_all = ["alarms", "reference"])]
+    together: bool,
     /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
     /// -analysis]
     #[arg(long)]
@@ -167,6 +172,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             options.files.len()
         );
     }
+    if options.together {
+        return together::run(options, place);
+    }
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
@@ -286,21 +294,7 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
 
 /// Reads and analyses one record.
 pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
-    let mut file = place.locate(asked);
-    let mut scene = None;
-    if !file.exists() {
-        file = place.locate_run(asked);
-    }
-    if RunDir::is_ensemble(&file) {
-        RunDir::open(&file)?;
-    }
-    if file.is_dir() {
-        scene = Some(
-            Scene::read(file.join("scene.ron"))
-                .with_context(|| format!("`{}` is a folder, and no run", file.display()))?,
-        );
-        file = file.join("trace.npy");
-    }
+    let (file, scene) = located(asked, place)?;
     let recording = Recording::open(&file)?;
     let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
@@ -367,6 +361,23 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
     }
     analysis.findings.notes.splice(0..0, notes);
     Ok(analysis)
+}
+
+/// The file of a record, and the scene where it is that of a run.
+fn located(asked: &Path, place: &Place) -> Result<(PathBuf, Option<Scene>)> {
+    let mut file = place.locate(asked);
+    if !file.exists() {
+        file = place.locate_run(asked);
+    }
+    if RunDir::is_ensemble(&file) {
+        RunDir::open(&file)?;
+    }
+    if !file.is_dir() {
+        return Ok((file, None));
+    }
+    let scene = Scene::read(file.join("scene.ron"))
+        .with_context(|| format!("`{}` is a folder, and no run", file.display()))?;
+    Ok((file.join("trace.npy"), Some(scene)))
 }
 
 /// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the
