@@ -215,6 +215,10 @@ pub(super) fn modes(scene: &mut Scene, given: &[String]) {
 /// in 2.1 times as deep (docs/results/own.md).
 const KNOCKS: f64 = 2.5;
 
+/// The same of so few rollers that one carries all at times: the ring falls from each onto the next.
+const KNOCKS_OF_FEW: f64 = 6.0;
+const FEW: usize = 6;
+
 /// Share of the load that the most loaded of many rollers carries between raceways with clearance, times
 /// their number: Stribeck's 5, and a fifth more for a clearance as wide as the rollers give way.
 const WITH_CLEARANCE: f64 = 6.0;
@@ -232,7 +236,8 @@ pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
     let depth = (0.75 * w / (g.penalty_stiffness * (2.0 * g.inner_contact_radius()).sqrt())).powf(2.0 / 3.0);
     let hertz = 0.5 * LineContacts::of(&g).approach(w).0;
     let warned = (0.5 * g.clearance).max(hertz).min(0.1 * g.element_size);
-    let stiffer = (KNOCKS * depth / warned).powf(1.5);
+    let knocks = if g.rollers <= FEW { KNOCKS_OF_FEW } else { KNOCKS };
+    let stiffer = (knocks * depth / warned).powf(1.5);
     if stiffer > 1.0 && stiffer.is_finite() {
         scene.contact.penalty_scale = to_digits(2, (stiffer * scene.contact.penalty_scale).min(3.0));
     }
