@@ -166,9 +166,6 @@ impl Bearing {
             let share = (farthest / most).min(1.0);
             state.q.iter_mut().zip(&step).for_each(|(q, step)| *q += share * step);
             last = step;
-            if std::env::var_os("START").is_some() {
-                eprintln!("START {iteration} residual {residual:e} most {most:e} share {share:e} back {back}");
-            }
             // Work of the unbalanced forces, against that of the load over a nanometre.
             if iteration > 0 && residual <= TOLERANCE * load * 1e-9 {
                 break;

@@ -1,6 +1,5 @@
 // Harmonic and sideband cursors of spectra: lines at multiples of a frequency, or about one at equal distances.
 window.spectrumCursors = (figure, spec, { theme, prefixOf, data }) => {
-  "use strict";
   const MOST = 40;
   const unit = spec.x.unit;
   let chart = null, mode = "off", base = null, carrier = null;

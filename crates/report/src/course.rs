@@ -78,16 +78,22 @@ pub(super) fn order_map(
     let top = course.grid_hz * (lines - 1) as f64;
     let axis = Span { label: "Order (knocks a turn)", end: top, unit: "", prefixed: false };
     let mut picture = heat(&part, unit, ("order-map", "Order map of the envelope"), &turns, &axis);
-    for (name, order) in orders.iter().filter(|(_, order)| *order < top) {
+    // Labels side by side: orders of raceways and elements lie close together.
+    for (n, (name, order)) in orders.iter().filter(|(_, order)| *order < top).enumerate() {
         let y = AT[1] + SIZE[1] * (1.0 - order / top);
         let line = [[AT[0], y], [AT[0] + SIZE[0], y]];
         picture.sheet.path(&line, false, "stroke:#fff;stroke-width:1;stroke-dasharray:6 6");
         let words = format!("{name} {order:.2}");
-        picture.sheet.text([AT[0] + SIZE[0] - 4.0, y - 3.0], 12.0, Anchor::End, "#fff", &words);
+        let (right, wide) =
+            (AT[0] + SIZE[0] - 6.0 - 100.0 * n as f64, 7.0 * words.chars().count() as f64 + 6.0);
+        let ground = format!("M{:.1} {:.1}h{wide:.1}v-15h-{wide:.1}z", right - wide + 3.0, y - 1.0);
+        picture.sheet.outline(&ground, "fill:#ffffffd0;stroke:none");
+        picture.sheet.text([right, y - 4.0], 12.0, Anchor::End, INK, &words);
     }
-    picture.caption = "What knocks so many times a turn stands at its order as a horizontal line, whatever the \
+    picture.caption =
+        "What knocks so many times a turn stands at its order as a horizontal line, whatever the \
                        speed; what keeps its frequency slants."
-        .into();
+            .into();
     picture.note = format!(
         "Squared envelope of {:.0} to {:.0} Hz, averaged over equal steps of the shaft's angle; in dB re 1 \
          ({unit})⁴ an order, lines {:.2} orders apart, Hann window; each column is the mean over {:.2} turns.",
@@ -268,7 +274,8 @@ fn draw_cells(sheet: &mut Sheet, shades: &Shades) {
             if let Some(shade) = same[0] {
                 let (x, y) = (AT[0] + wide * column as f64, AT[1] + SIZE[1] - high * row as f64);
                 let (w, h) = (wide + 0.3, high * same.len() as f64 + 0.3);
-                let _ = write!(paths[shade], "M{x:.1} {y:.1}h{w:.1}v{h:.1}h-{w:.1}z");
+                // Upwards, towards higher frequencies.
+                let _ = write!(paths[shade], "M{x:.1} {y:.1}h{w:.1}v-{h:.1}h-{w:.1}z");
             }
             row += same.len();
         }
@@ -333,6 +340,26 @@ mod tests {
         assert!((rows[0].1[1] - 1.0).abs() < 1e-12);
         // A speed that stands makes no rows.
         assert!(waterfall_rows(&course(), Some(&[600.0; 10])).is_empty());
+    }
+
+    /// Cells of one shade above each other were drawn downwards from their foot, out of the picture.
+    #[test]
+    fn issue_cells_of_a_spectrogram_stay_inside_its_axes() {
+        let quiet =
+            Course { step_s: 0.1, grid_hz: 100.0, lines: 4, values: [1.0, 1e-9, 1e-9, 1e-9].repeat(10) };
+        let svg = picture(&quiet, "g").sheet.to_svg();
+        // A rectangle: its foot and how far it goes up.
+        let cells = svg.match_indices("v-").filter_map(|(at, _)| {
+            let from = svg[..at].rfind('M')?;
+            let foot: f64 = svg[from + 1..at].split(['h', ' ']).nth(1)?.parse().ok()?;
+            let up: f64 = svg[at + 2..].split('h').next()?.parse().ok()?;
+            Some((foot, up))
+        });
+        let cells: Vec<(f64, f64)> = cells.collect();
+        assert!(cells.len() >= 20, "{}", cells.len());
+        for (foot, up) in cells {
+            assert!(foot <= AT[1] + SIZE[1] + 0.1 && foot - up >= AT[1] - 0.5, "{foot} {up}");
+        }
     }
 
     #[test]

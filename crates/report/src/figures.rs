@@ -17,8 +17,8 @@ use super::course;
 use super::pictures::Pictures;
 use crate::Error;
 use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series, Tab};
-use stribeck_analysis::findings::Findings;
 use stribeck_analysis::duty::{DutyFinding, turns as duty_turns};
+use stribeck_analysis::findings::Findings;
 use stribeck_analysis::measured::{Course, Varying};
 use stribeck_analysis::record::Record;
 

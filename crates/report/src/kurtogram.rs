@@ -8,8 +8,6 @@ use crate::plot::{Anchor, Picture, Scale, Sheet, shade_rgb, ticks};
 const AT: [f64; 2] = [104.0, 14.0];
 const SIZE: [f64; 2] = [720.0, 176.0];
 const INK: &str = "#14181c";
-/// Lines closer than this part of the whole band share a level of the tree.
-const SAME: f64 = 0.2;
 
 /// A band that is pointed out: its ends [Hz] and why.
 pub(super) struct Chosen {
@@ -80,8 +78,8 @@ pub(super) fn picture(bands: &[BandEnvelope], chosen: &[Chosen]) -> Option<Pictu
 fn levels(bands: &[BandEnvelope], half_hz: f64) -> Vec<(usize, Vec<&BandEnvelope>)> {
     let mut levels: Vec<(usize, Vec<&BandEnvelope>)> = Vec::new();
     for band in bands {
-        // The lowest band begins above zero.
-        let count = (half_hz / (band.high_hz - band.low_hz) * (1.0 - SAME * 0.1)).round().max(1.0) as usize;
+        // Halves of halves; the lowest band begins above zero and is a little narrower.
+        let count = 1_usize << (half_hz / (band.high_hz - band.low_hz)).log2().round().max(0.0) as u32;
         match levels.iter_mut().find(|(of, _)| *of == count) {
             Some((_, level)) => level.push(band),
             None => levels.push((count, vec![band])),
@@ -110,7 +108,8 @@ mod tests {
             band(20.0, 1000.0, 0.5),
             band(20.0, 500.0, 0.1),
             band(500.0, 1000.0, 4.0),
-            band(20.0, 250.0, 0.0),
+            // As much narrower as the lowest eighth of a record.
+            band(40.0, 250.0, 0.0),
             band(250.0, 500.0, 0.2),
             band(500.0, 750.0, 12.0),
             band(750.0, 1000.0, -0.3),

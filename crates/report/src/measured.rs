@@ -93,7 +93,7 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
                 h2 #course { "Bands and course" }
                 (pictures)
                 h2 #notes { "Notes" }
-                ul class="notes" { @for note in &findings.notes { li { (sentence(note)) } } }
+                ul class="notes" { @for note in &findings.notes { li { (page::with_code(&sentence(note))) } } }
             }
         }
     })
@@ -281,9 +281,11 @@ fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figu
     let findings = &analysis.findings;
     let mut figures = Vec::new();
     for family in shown(&findings.families) {
-        figures.extend(analysis.band_of(family).map(|band| {
-            behind(envelope(band, family, findings), band, findings, baseline)
-        }));
+        figures.extend(
+            analysis
+                .band_of(family)
+                .map(|band| behind(envelope(band, family, findings), band, findings, baseline)),
+        );
         figures.extend(combs(family));
         figures.extend(synchronous(analysis, family)?.map(|means| period(family, &means)));
     }

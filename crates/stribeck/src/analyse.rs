@@ -267,8 +267,7 @@ const SAME_RATE: f64 = 1e-3;
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
     let mut analysis = examine(asked, &options.reading, place)?;
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    let baseline =
-        options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
+    let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
     let baseline = baseline.transpose()?;
     write_measured(out, &name, &analysis, baseline.as_ref())?;
     Ok(analysis)

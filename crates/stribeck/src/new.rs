@@ -237,7 +237,8 @@ fn answers(options: &Options, asks: bool) -> Result<Answers> {
             None => Ok(named(default).map_err(anyhow::Error::msg)?),
         }
     };
-    let number = |flag: &str, given: Option<f64>, question: &str, default: f64, limit: &Limit<'_>| match given {
+    let number = |flag: &str, given: Option<f64>, question: &str, default: f64, limit: &Limit<'_>| match given
+    {
         Some(given) => limit(given).map_err(|why| anyhow::anyhow!("{flag}: {why}")),
         None if asks => ask(question, &default, &|text: &str| limit(positive(text)?)),
         None => limit(default).map_err(|why| anyhow::anyhow!("{flag}, by default: {why}")),

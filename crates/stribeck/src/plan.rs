@@ -117,7 +117,9 @@ fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
     say!("  {what}, {:.0} steps of {:.3} µs", steps(scene, trial), 1e6 * trial.info.time_step_s);
     let modes = match trial.modes {
         Some(cost) if trial.kept => format!("; its modes took {}, and are kept for it", clock(cost.busy_s)),
-        Some(cost) => format!(", {} of it for the modes, which are kept for further runs", clock(cost.quiet_s)),
+        Some(cost) => {
+            format!(", {} of it for the modes, which are kept for further runs", clock(cost.quiet_s))
+        }
         None => String::new(),
     };
     let all = trial.run();

@@ -101,7 +101,8 @@ mod tests {
         assert!((first - 600.0).abs() < 10.0 && (last - 1800.0).abs() < 10.0, "{first} {last}");
         let orders = found.orders.expect("enough turns");
         for column in orders.values.chunks_exact(orders.lines) {
-            let highest = (2..orders.lines / 4).max_by(|a, b| column[*a].total_cmp(&column[*b])).expect("lines");
+            let highest =
+                (2..orders.lines / 4).max_by(|a, b| column[*a].total_cmp(&column[*b])).expect("lines");
             assert!((highest as f64 * orders.grid_hz - 3.6).abs() <= 0.3, "{highest}");
         }
     }

@@ -11,11 +11,7 @@ use crate::place::{Place, shown};
 
 /// Reads and analyses the record that another one is drawn over; what must be known of both goes to the notes
 /// of the latter.
-pub(super) fn of(
-    file: &Path,     options: &Options,
-    analysis: &mut Analysis,
-    place: &Place,
-) -> Result<Baseline> {
+pub(super) fn of(file: &Path, options: &Options, analysis: &mut Analysis, place: &Place) -> Result<Baseline> {
     let mut reading = options.reading.clone();
     if options.baseline_rpm.is_some() {
         (reading.speed_rpm, reading.tacho) = (options.baseline_rpm, None);

@@ -86,7 +86,10 @@ mod tests {
         let names: Vec<String> = campaign.runs.iter().map(|run| name(&campaign, run)).collect();
         assert_eq!(names[0], "1-load_n=2000-bearing=NU_205-start1");
         assert_eq!(names.len(), 4);
-        assert!(names.iter().all(|name| names.iter().filter(|other| *other == name).count() == 1), "{names:?}");
+        assert!(
+            names.iter().all(|name| names.iter().filter(|other| *other == name).count() == 1),
+            "{names:?}"
+        );
         assert_eq!(plain("reduced(modes_khz: 20)"), "reduced_modes_khz__20");
     }
 }
