@@ -85,16 +85,38 @@ pub(crate) struct Reading {
     /// Radial load of the bearing [N], a number or a range such as 50..150: how far it presses an element
     /// together belongs to the length of a spall [default: 0.2 to 10 % of the static rating]
     #[arg(long, value_name = "RANGE", value_parser = range)]
-    load_n: Option<(f64, f64)>,
+    pub(crate) load_n: Option<(f64, f64)>,
     /// Radial internal clearance in operation [µm], a number or a range [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
-    clearance_um: Option<(f64, f64)>,
+    pub(crate) clearance_um: Option<(f64, f64)>,
     /// What a sample is multiplied by, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
     /// Unit of the samples after that
     #[arg(long)]
     unit: Option<String>,
+}
+
+impl Reading {
+    /// Whether anything is known of a machine, or said of a file.
+    pub(crate) fn is_given(&self) -> bool {
+        let numbers = self.rate_hz.is_some() || self.load_n.is_some() || self.clearance_um.is_some();
+        let words = [&self.channel, &self.bearing, &self.tacho, &self.unit].iter().any(|word| word.is_some());
+        numbers || words || self.speed_rpm.is_some()
+    }
+
+    /// The same machine, for a file of one channel that says its rate.
+    pub(crate) fn of_one_channel(&self) -> Self {
+        Self {
+            rate_hz: None,
+            force_rate: false,
+            channel: None,
+            tacho: None,
+            scale: 1.0,
+            unit: None,
+            ..self.clone()
+        }
+    }
 }
 
 /// What a user knows of the speed [1/min].
