@@ -52,6 +52,7 @@ pub mod tacho;
 mod unexplained;
 mod unit;
 mod unrelated;
+pub mod varying;
 mod velocity;
 mod verdict;
 
@@ -65,10 +66,13 @@ pub use crate::defect::Defect;
 pub use angular::over_angle;
 pub use course::Course;
 pub use enhanced::Enhanced;
+pub(crate) use length::{LONGEST, SHORTEST_S};
 use pass::Pass;
+pub use pressed::usual_load_n;
 pub use screening::Health;
 pub use unexplained::Unexplained;
 pub use unit::AccelerationUnit;
+pub use varying::Varying;
 use velocity::VelocityLevel;
 pub(crate) use verdict::sidebands_seen;
 pub use verdict::{Family, Reason};
@@ -188,6 +192,8 @@ pub struct Analysis {
     pub over: Vec<BandEnvelope>,
     /// Density over time.
     pub course: Course,
+    /// Spectra over speed and angle where the speed varies; who knows the turns puts them there.
+    pub varying: Option<Varying>,
     /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
     pub enhanced: Option<Enhanced>,
 }
@@ -300,8 +306,17 @@ impl Analysis {
             bands,
             over,
             course: tracing.finish(),
+            varying: None,
             enhanced,
         })
+    }
+
+    /// The band of the family that stands highest; without one that knocks most [Hz].
+    pub fn leading_band_hz(&self) -> Option<(f64, f64)> {
+        let there = self.findings.families.iter().filter(|f| f.is_there() && f.band_hz.is_some());
+        let leading = there.min_by(|a, b| a.p_value.total_cmp(&b.p_value)).and_then(|f| f.band_hz);
+        let most = self.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
+        leading.or_else(|| most.map(|band| (band.low_hz, band.high_hz)))
     }
 
     /// The band in which a family stands highest.

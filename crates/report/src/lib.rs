@@ -36,6 +36,7 @@ mod sound;
 mod answer;
 mod course;
 mod figures;
+mod kurtogram;
 mod moving;
 mod paper;
 mod pictures;
@@ -58,7 +59,7 @@ pub use campaign::{CampaignIndex, CampaignRun, write_campaign};
 pub use comparison::{MOST_COMPARED, answer as comparison_in_words, difference, mean, write_comparison};
 pub use ensemble::write_ensemble;
 pub use error::Error;
-pub use measured::write_measured;
+pub use measured::{Baseline, write_measured};
 pub use run::{write, write_between};
 pub use trend::{TrendEntry, write_joint, write_trend};
 

@@ -1,7 +1,9 @@
 //! `stribeck analyse`: what a measured record shows.
 
+mod baseline;
 mod gaps;
 mod together;
+mod turning;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -29,6 +31,13 @@ pub struct Options {
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
+    /// A record of the same machine when it was sound, or before: its spectra and levels are drawn behind. It
+    /// is read with the same flags and changes no verdict
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Its speed of the shaft [1/min] where that was another one
+    #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
+    baseline_rpm: Option<Speed>,
     /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
     /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
@@ -81,10 +90,10 @@ pub(crate) struct Reading {
     /// Radial load of the bearing [N], a number or a range such as 50..150: how far it presses an element
     /// together belongs to the length of a spall [default: 0.2 to 10 % of the static rating]
     #[arg(long, value_name = "RANGE", value_parser = range)]
-    load_n: Option<(f64, f64)>,
+    pub(crate) load_n: Option<(f64, f64)>,
     /// Radial internal clearance in operation [µm], a number or a range [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
-    clearance_um: Option<(f64, f64)>,
+    pub(crate) clearance_um: Option<(f64, f64)>,
     /// How far the outer ring and its housing give at the loaded place [µm/kN], a number or a range: what
     /// gives presses an element farther [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
@@ -95,6 +104,28 @@ pub(crate) struct Reading {
     /// Unit of the samples after that
     #[arg(long)]
     unit: Option<String>,
+}
+
+impl Reading {
+    /// Whether anything is known of a machine, or said of a file.
+    pub(crate) fn is_given(&self) -> bool {
+        let numbers = self.rate_hz.is_some() || self.load_n.is_some() || self.clearance_um.is_some();
+        let words = [&self.channel, &self.bearing, &self.tacho, &self.unit].iter().any(|word| word.is_some());
+        numbers || words || self.speed_rpm.is_some()
+    }
+
+    /// The same machine, for a file of one channel that says its rate.
+    pub(crate) fn of_one_channel(&self) -> Self {
+        Self {
+            rate_hz: None,
+            force_rate: false,
+            channel: None,
+            tacho: None,
+            scale: 1.0,
+            unit: None,
+            ..self.clone()
+        }
+    }
 }
 
 /// What a user knows of the speed [1/min].
@@ -268,9 +299,11 @@ const SAME_RATE: f64 = 1e-3;
 
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
-    let analysis = examine(asked, &options.reading, place)?;
+    let mut analysis = examine(asked, &options.reading, place)?;
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    write_measured(out, &name, &analysis)?;
+    let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
+    let baseline = baseline.transpose()?;
+    write_measured(out, &name, &analysis, baseline.as_ref())?;
     Ok(analysis)
 }
 
@@ -309,9 +342,9 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
     // Pulses count from the beginning of the file.
     let moved = |all: Vec<f64>| all.into_iter().map(|at| at - from as f64).filter(|at| *at >= 0.0).collect();
     let pulses: Option<Vec<f64>> = pulses.map(moved);
-    let over_angle = match pulses {
+    let over_angle = match &pulses {
         Some(pulses) => {
-            let even = over_angle(&scaled, rate_hz, &pulses)?;
+            let even = over_angle(&scaled, rate_hz, pulses)?;
             if even.is_none() {
                 notes.push(
                     "the record is too long to be taken over the angle: its lines are smeared".to_owned(),
@@ -331,6 +364,9 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
         }
         None => Analysis::of(&scaled, rate_hz, &machine)?,
     };
+    if let (Some(pulses), Some(_)) = (&pulses, &over_angle) {
+        analysis.varying = turning::varying(&analysis, &scaled, rate_hz, pulses)?;
+    }
     let claims = analysis.findings.families.iter().any(|family| family.claimed);
     if claims && scene.is_some() {
         notes.push(
