@@ -86,6 +86,7 @@ pub mod tones;
 pub mod artefacts;
 pub mod diagnosis;
 pub mod measured;
+pub mod stiffness;
 pub mod stress;
 
 pub mod agreement;
