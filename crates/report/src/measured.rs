@@ -50,6 +50,7 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                     "."
                 }
                 p { strong { (findings.verdict) } }
+                @if let Some(zone) = &findings.zone { p { "Velocity: " (zone.to_string()) "." } }
                 @if let Some(words) = spall_in_words(findings) { p { (words) } }
                 h2 #evidence { "What the verdict rests on" }
                 @for figure in evidence { (figure) }
