@@ -5,8 +5,8 @@ use std::{collections::BTreeSet, path::Path, process::Command};
 
 use anyhow::{Context, Result, ensure};
 
-/// Packages that the program asks for with other features than `xtask` does: each is compiled twice, and so is
-/// all that depends on it.
+/// Packages that the program asks for with other features than `xtask` does: each is compiled twice, and so
+/// is all that depends on it.
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let [program, tasks] = [libraries(root, "stribeck")?, libraries(root, "xtask")?];
     let twice = program.difference(&tasks);
