@@ -49,6 +49,8 @@ pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Erro
     let mut figures = Figures::of(&record, &findings, pictures)?;
     if let Some(case) = PaperCase::of_run(&run.scene.written, &findings) {
         figures.paper = case.figures(figures.paper);
+        // The same forces are its Fig. 8.
+        figures.forces.clear();
     }
     let all: Vec<&Item> = figures.all().collect();
     write_figures(&all, &run_dir.join("figures"))?;
@@ -93,7 +95,7 @@ fn page(
                 (sound::of_run(findings))
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", html! {}, &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) h3 { "Lines of the mesh" } p { (answer::mesh(summary)) } (sections::families(summary)) }, "The record is too short for a spectrum.")?)
-                (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
+                (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), if paper.is_some() && !findings.crossings.is_empty() { "The forces over time stand above, as the paper's Fig. 8." } else { "No roller crosses a defect." })?)
                 (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary, findings.prediction.standing_spalls().next().is_some()), "No roller was recorded.")?)
                 (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
                 (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)

@@ -1,6 +1,9 @@
 //! `stribeck analyse`: what a measured record shows.
 
+mod baseline;
 mod gaps;
+mod together;
+mod turning;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -28,6 +31,13 @@ pub struct Options {
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
+    /// A record of the same machine when it was sound, or before: its spectra and levels are drawn behind. It
+    /// is read with the same flags and changes no verdict
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Its speed of the shaft [1/min] where that was another one
+    #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
+    baseline_rpm: Option<Speed>,
     /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
     /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
@@ -36,6 +46,10 @@ pub struct Options {
     /// those given
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
+    /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
+    /// several files, such as axes, or both ends of a shaft; says which part each hears, and which is nearest
+    #[arg(long, conflicts_with_all = ["alarms", "reference"])]
+    together: bool,
     /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
     /// -analysis]
     #[arg(long)]
@@ -167,6 +181,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             options.files.len()
         );
     }
+    if options.together {
+        return together::run(options, place);
+    }
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
@@ -278,29 +295,17 @@ const SAME_RATE: f64 = 1e-3;
 
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
-    let analysis = examine(asked, &options.reading, place)?;
+    let mut analysis = examine(asked, &options.reading, place)?;
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    write_measured(out, &name, &analysis)?;
+    let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
+    let baseline = baseline.transpose()?;
+    write_measured(out, &name, &analysis, baseline.as_ref())?;
     Ok(analysis)
 }
 
 /// Reads and analyses one record.
 pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
-    let mut file = place.locate(asked);
-    let mut scene = None;
-    if !file.exists() {
-        file = place.locate_run(asked);
-    }
-    if RunDir::is_ensemble(&file) {
-        RunDir::open(&file)?;
-    }
-    if file.is_dir() {
-        scene = Some(
-            Scene::read(file.join("scene.ron"))
-                .with_context(|| format!("`{}` is a folder, and no run", file.display()))?,
-        );
-        file = file.join("trace.npy");
-    }
+    let (file, scene) = located(asked, place)?;
     let recording = Recording::open(&file)?;
     let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
@@ -333,9 +338,9 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
     // Pulses count from the beginning of the file.
     let moved = |all: Vec<f64>| all.into_iter().map(|at| at - from as f64).filter(|at| *at >= 0.0).collect();
     let pulses: Option<Vec<f64>> = pulses.map(moved);
-    let over_angle = match pulses {
+    let over_angle = match &pulses {
         Some(pulses) => {
-            let even = over_angle(&scaled, rate_hz, &pulses)?;
+            let even = over_angle(&scaled, rate_hz, pulses)?;
             if even.is_none() {
                 notes.push(
                     "the record is too long to be taken over the angle: its lines are smeared".to_owned(),
@@ -355,6 +360,9 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
         }
         None => Analysis::of(&scaled, rate_hz, &machine)?,
     };
+    if let (Some(pulses), Some(_)) = (&pulses, &over_angle) {
+        analysis.varying = turning::varying(&analysis, &scaled, rate_hz, pulses)?;
+    }
     let claims = analysis.findings.families.iter().any(|family| family.claimed);
     if claims && scene.is_some() {
         notes.push(
@@ -367,6 +375,23 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
     }
     analysis.findings.notes.splice(0..0, notes);
     Ok(analysis)
+}
+
+/// The file of a record, and the scene where it is that of a run.
+fn located(asked: &Path, place: &Place) -> Result<(PathBuf, Option<Scene>)> {
+    let mut file = place.locate(asked);
+    if !file.exists() {
+        file = place.locate_run(asked);
+    }
+    if RunDir::is_ensemble(&file) {
+        RunDir::open(&file)?;
+    }
+    if !file.is_dir() {
+        return Ok((file, None));
+    }
+    let scene = Scene::read(file.join("scene.ron"))
+        .with_context(|| format!("`{}` is a folder, and no run", file.display()))?;
+    Ok((file.join("trace.npy"), Some(scene)))
 }
 
 /// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the
