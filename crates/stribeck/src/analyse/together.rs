@@ -44,7 +44,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let mut entries = Vec::new();
     for (at, (source, analysis)) in sources.iter().zip(&analyses).enumerate() {
         let folder = format!("{:0digits$}-{}", at + 1, source.name.replace(['/', '\\', ' ', ':'], "_"));
-        write_measured(&out.join(&folder), &source.name, analysis)?;
+        write_measured(&out.join(&folder), &source.name, analysis, None)?;
         entries.push(TrendEntry {
             file: source.name.clone(),
             folder,
