@@ -47,6 +47,7 @@ pub mod ridge;
 mod screening;
 mod second;
 mod shaft;
+pub mod sources;
 mod speed;
 pub mod tacho;
 mod unexplained;
@@ -55,6 +56,7 @@ mod unrelated;
 pub mod varying;
 mod velocity;
 mod verdict;
+pub mod zone;
 
 use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, BandEnvelopes};
@@ -92,6 +94,8 @@ pub struct Machine {
     pub load_n: Option<(f64, f64)>,
     /// Radial internal clearance in operation, least and most [µm]; `None` for none.
     pub clearance_um: Option<(f64, f64)>,
+    /// Other shafts, gears and bearings.
+    pub around: sources::Surroundings,
 }
 
 impl Machine {
@@ -137,6 +141,9 @@ pub struct MeasuredFindings {
     pub health: Health,
     /// Root mean square of the velocity from 10 to 1000 Hz [mm/s], for accelerations in m/s² or g.
     pub velocity_mm_s: Option<f64>,
+    /// Its zone by ISO 20816-3, where group and foundation of the machine are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zone: Option<zone::Zoned>,
     /// The defect families; none without speed and bearing.
     pub families: Vec<Family>,
     /// A comb that knocks, is no family's of this bearing, and stands higher than all that are.
@@ -286,6 +293,7 @@ impl Analysis {
                 segments,
                 health,
                 velocity_mm_s: velocity.as_ref().and_then(VelocityLevel::finish),
+                zone: None,
                 families: judged.families,
                 unexplained: judged.unexplained,
                 verdict: judged.verdict,

@@ -50,6 +50,7 @@ mod ensemble;
 pub mod inference;
 mod measured;
 mod run;
+mod sources;
 mod trend;
 
 mod error;
@@ -61,6 +62,7 @@ pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use measured::{Baseline, write_measured};
 pub use run::{write, write_between};
+pub use sources::write_sources;
 pub use trend::{TrendEntry, write_joint, write_trend};
 
 #[cfg(doctest)]
