@@ -218,7 +218,10 @@ fn example_a_sweep_has_a_page_and_takes_further_values() {
     assert_eq!(runs(), 3);
     // Names that a person can read lead to the runs, and commands take them.
     let named = |name: &str| desk.0.join(folder).join("by_name").join(name);
-    assert!(named("2-load_n=30000").join("summary.json").exists() || named("2-load_n=30000").join("run.json").exists());
+    assert!(
+        named("2-load_n=30000").join("summary.json").exists()
+            || named("2-load_n=30000").join("run.json").exists()
+    );
     let by_name = format!("{folder}/by_name/3-load_n=40000");
     says(&desk.succeeds(&["report", &by_name]), &["report.html"]);
     let page = desk.text(&format!("{folder}/index.html"));
