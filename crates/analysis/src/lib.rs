@@ -88,6 +88,7 @@ pub mod artefacts;
 pub mod diagnosis;
 pub mod measured;
 pub mod records;
+pub mod stiffness;
 pub mod stress;
 
 pub mod agreement;

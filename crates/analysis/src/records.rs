@@ -11,7 +11,7 @@ use crate::Error;
 use crate::measured::{LONGEST, SHORTEST_S};
 
 /// One record: what its passages tell, and the noise that was put in.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordFinding {
     /// Power of the noise over that of the rest [dB].
     pub noise_db: f64,
@@ -21,7 +21,7 @@ pub struct RecordFinding {
 }
 
 /// What passages over a spall tell behind any path. Times are parts of the period of the passages.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PassageSignature {
     /// Time between the two events of a passage; `None` where no second one shows.
     pub spacing: Option<f64>,
@@ -29,6 +29,9 @@ pub struct PassageSignature {
     pub clear_from: Option<f64>,
     /// Energy of the first event over that of the second [dB].
     pub first_over_second_db: Option<f64>,
+    /// Correlation of the power within a passage, at 24 lags from 0.03 to 0.45 of its period: a second event is
+    /// a hump at its distance.
+    pub within: Vec<f64>,
     /// Correlation of the power with that one passage later.
     pub repeats: f64,
     /// The same ten passages later.
@@ -47,6 +50,7 @@ impl From<Signature> for PassageSignature {
             spacing: s.spacing,
             clear_from: s.clear_from,
             first_over_second_db: s.first_over_second_db,
+            within: s.within.to_vec(),
             repeats: s.repeats,
             repeats_later: s.repeats_later,
             by_shaft_db: s.sidebands_db[0],
@@ -162,7 +166,7 @@ mod tests {
         let force = force(&scene, 2.5e-3, duration_s(rhythm));
         let found = of(&scene, &force, 1e5, &mut notes).expect("records");
         assert!(notes.is_empty(), "{notes:?}");
-        let [quiet, loud] = found[..] else { panic!("{found:?}") };
+        let [quiet, loud] = &found[..] else { panic!("{found:?}") };
         let expected = 2.5e-3 * rhythm.passing_hz;
         assert!((quiet.signature.spacing.expect("two events") / expected - 1.0).abs() < 0.03, "{quiet:?}");
         assert!(

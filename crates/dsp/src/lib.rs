@@ -144,7 +144,7 @@ pub use resample::resample_poly;
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use separation::{Separated, separate};
-pub use signature::{PASSAGES, Rhythm, Signature};
+pub use signature::{PASSAGES, Rhythm, Signature, WITHIN};
 pub use sound::Sound;
 pub use spacing::{EventSpacing, Spacing, event_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};

@@ -23,6 +23,10 @@ const BAND: (f64, f64) = (0.25, 1.0);
 /// Passages of a piece of a record: enough for their rhythm, few enough that a simulated bearing makes them in
 /// a second or two.
 pub const PASSAGES: f64 = 30.0;
+/// Lags within a passage at which the correlation is told.
+pub const WITHIN: usize = 24;
+/// The least and the greatest of them, over the period.
+const LAGS: (f64, f64) = (0.03, 0.45);
 /// How far the period of the passages may be from the expected one, as slip makes it.
 const SLIP: f64 = 0.03;
 /// Power is averaged over this part of a period before heights and order of events are read.
@@ -55,6 +59,9 @@ pub struct Signature {
     pub clear_from: Option<f64>,
     /// Energy of the first event over that of the second [dB]; `None` where no second shows.
     pub first_over_second_db: Option<f64>,
+    /// Correlation of the power within a passage, at the lags of [`Signature::within_at`]: a second event
+    /// is a hump at its distance.
+    pub within: [f64; WITHIN],
     /// Correlation of the power with that one passage later.
     pub repeats: f64,
     /// The same ten passages later: slip takes it away.
@@ -86,6 +93,11 @@ impl Signature {
         (PASSAGES / rhythm.passing_hz * rate_hz).floor() as usize
     }
 
+    /// The lags of [`within`](Self::within), over the period.
+    pub fn within_at() -> [f64; WITHIN] {
+        std::array::from_fn(|n| LAGS.0 + (LAGS.1 - LAGS.0) * n as f64 / (WITHIN - 1) as f64)
+    }
+
     fn median(pieces: &[Self]) -> Self {
         let of = |number: &dyn Fn(&Self) -> f64| median(pieces.iter().map(number).collect());
         let seen = |number: &dyn Fn(&Self) -> Option<f64>| {
@@ -96,6 +108,7 @@ impl Signature {
             spacing: seen(&|s| s.spacing),
             clear_from: seen(&|s| s.clear_from),
             first_over_second_db: seen(&|s| s.first_over_second_db),
+            within: std::array::from_fn(|n| of(&|s| s.within[n])),
             repeats: of(&|s| s.repeats),
             repeats_later: of(&|s| s.repeats_later),
             sidebands_db: [0, 1].map(|n| of(&|s| s.sidebands_db[n])),
@@ -132,6 +145,9 @@ impl Signature {
             },
             first_over_second_db: lag_s.map(|lag_s| {
                 order_db(&power, (lag_s * rate_hz) as usize, (SHARP * expected_s * rate_hz) as usize)
+            }),
+            within: Self::within_at().map(|lag| {
+                correlation[((lag * expected_s * rate_hz).round() as usize).min(correlation.len() - 1)]
             }),
             repeats: around(1.0),
             repeats_later: around(LATER),
@@ -272,7 +288,12 @@ mod tests {
     fn invariant_a_path_leaves_the_signature_alone() {
         let [a, b] = [4_100.0, 7_300.0].map(|hz| of(&record(hz, 6.0, 0.02, 0.0)));
         let expected = 3e-3 * RHYTHM.passing_hz;
+        let hump = |s: &Signature| {
+            let humps = s.within.iter().zip(Signature::within_at()).filter(|(_, lag)| *lag > 0.15);
+            humps.max_by(|a, b| a.0.total_cmp(b.0)).map_or(0.0, |(_, lag)| lag)
+        };
         for found in [a, b] {
+            assert!((hump(&found) - expected).abs() < 0.02, "{found:?}");
             assert!((found.spacing.expect("pairs") / expected - 1.0).abs() < 0.02, "{found:?}");
             let order = found.first_over_second_db.expect("pairs");
             assert!((order + 6.0).abs() < 2.0, "{found:?}");

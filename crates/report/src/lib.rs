@@ -22,6 +22,7 @@
 //! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
+//! | several channels of one machine | [`write_joint`] | `joint.html`, `joint.json` |
 //!
 //! [`plot`] draws figures of any signal, for a page (zoomable) and for a document (SVG, PNG).
 
@@ -49,6 +50,7 @@ mod ensemble;
 pub mod inference;
 mod measured;
 mod run;
+mod sources;
 mod trend;
 
 mod error;
@@ -60,7 +62,8 @@ pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use measured::{Baseline, write_measured};
 pub use run::{write, write_between};
-pub use trend::{TrendEntry, write_trend};
+pub use sources::write_sources;
+pub use trend::{TrendEntry, write_joint, write_trend};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -70,6 +70,7 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
                     @if let Some(baseline) = baseline { " In grey behind it: " (baseline.name) "." }
                 }
                 p { strong { (findings.verdict) } }
+                @if let Some(zone) = &findings.zone { p { "Velocity: " (zone.to_string()) "." } }
                 @if let Some(words) = spall_in_words(findings) { p { (words) } }
                 h2 #evidence { "What the verdict rests on" }
                 (evidence)

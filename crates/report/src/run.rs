@@ -10,7 +10,7 @@ use stribeck_analysis::defect::{Defect, Shocks};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
-use stribeck_scene::run_dir::{Run, write_atomic};
+use stribeck_scene::run_dir::{LAB, Run, write_atomic};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::ModelScene;
 
@@ -89,6 +89,7 @@ fn page(
                     run.scene.written.model != ModelScene::Full,
                 ]))
                 @if let Some(moving) = moving { h2 #motion { "The bearing in motion" } (moving) }
+                (lab(run, run_dir))
                 @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
                 (sound::of_run(findings))
@@ -147,6 +148,25 @@ fn all_numbers(summary: &Summary) -> Markup {
             summary { "Each number of the paper, and ours" }
             (sections::paper(summary))
             (sections::readings(summary))
+        }
+    }
+}
+
+/// Leads to the page in which the bearing of a reduced run runs, or says how it is made.
+fn lab(run: &Run, run_dir: &Path) -> Markup {
+    if run.scene.written.model == ModelScene::Full {
+        return html! {};
+    }
+    html! {
+        p #lab {
+            @if run_dir.join(LAB).is_file() {
+                "This bearing runs in the " a href=(LAB) { "lab" } ": load, speed, spall, facets or arcs are \
+                 turned there while it runs, in the browser."
+            } @else {
+                code { "stribeck report --lab " (run_dir.file_name().unwrap_or_default().display()) }
+                " makes a page beside this one in which the bearing runs, with handles for load, speed, spall, \
+                 facets or arcs."
+            }
         }
     }
 }

@@ -45,19 +45,26 @@ impl LineContacts {
     /// ```
     pub(crate) fn approach(&self, w: f64) -> (f64, f64) {
         let mut sum = (0.0, 0.0);
-        for (radius, depth) in self.sides {
-            // Against a rigid ring the contact is half as soft.
-            let modulus = if depth.is_some() { self.modulus } else { 2.0 * self.modulus };
-            let half_width = (4.0 * w * radius / (std::f64::consts::PI * modulus)).sqrt();
-            let roller = 2.0 * (4.0 * self.roller / half_width).ln() - 1.0;
-            let of_ring =
-                |depth: f64| 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
-            let ring = depth.map_or(0.0, of_ring);
-            sum.0 += w * self.softness * (roller + ring);
-            // b grows with the root of w, so each logarithm loses 1/(2w).
-            sum.1 += self.softness * (roller + ring - logarithms(depth));
+        for side in 0..2 {
+            let (approach, slope) = self.approach_at(side, w);
+            sum.0 += approach;
+            sum.1 += slope;
         }
         sum
+    }
+
+    /// The same of one contact: 0 the outer, 1 the inner one.
+    pub(crate) fn approach_at(&self, side: usize, w: f64) -> (f64, f64) {
+        let (radius, depth) = self.sides[side];
+        // Against a rigid ring the contact is half as soft.
+        let modulus = if depth.is_some() { self.modulus } else { 2.0 * self.modulus };
+        let half_width = (4.0 * w * radius / (std::f64::consts::PI * modulus)).sqrt();
+        let roller = 2.0 * (4.0 * self.roller / half_width).ln() - 1.0;
+        let of_ring =
+            |depth: f64| 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
+        let ring = depth.map_or(0.0, of_ring);
+        // b grows with the root of w, so each logarithm loses 1/(2w).
+        (w * self.softness * (roller + ring), self.softness * (roller + ring - logarithms(depth)))
     }
 
     /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²]; `None` beyond the largest

@@ -1,7 +1,9 @@
 //! `stribeck analyse`: what a measured record shows.
 
 mod baseline;
+mod components;
 mod gaps;
+mod together;
 mod turning;
 
 use std::path::{Path, PathBuf};
@@ -9,6 +11,8 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
+use stribeck_analysis::measured::sources::Component;
+use stribeck_analysis::measured::zone::{Foundation, Group, Zoned};
 use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
 use stribeck_analysis::record;
 use stribeck_formats::{Channel, Recording, says_time};
@@ -37,6 +41,18 @@ pub struct Options {
     /// Its speed of the shaft [1/min] where that was another one
     #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
     baseline_rpm: Option<Speed>,
+    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU 205,
+    /// ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
+    #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
+        conflicts_with_all = ["bearing", "alarms", "reference"])]
+    components: Vec<Component>,
+    /// Group of the machine by ISO 20816-3, for the zone of the velocity level: 1 above 300 kW, 2 from 15 to
+    /// 300 kW
+    #[arg(long, value_name = "GROUP", requires = "foundation", value_parser = clap::value_parser!(u8).range(1..=2))]
+    iso_group: Option<u8>,
+    /// What the machine stands on, for the zone of the velocity level
+    #[arg(long, value_enum, requires = "iso_group")]
+    foundation: Option<Standing>,
     /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
     /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
@@ -45,6 +61,10 @@ pub struct Options {
     /// those given
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
+    /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
+    /// several files, such as axes, or both ends of a shaft; says which part each hears, and which is nearest
+    #[arg(long, conflicts_with_all = ["alarms", "reference"])]
+    together: bool,
     /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
     /// -analysis]
     #[arg(long)]
@@ -52,6 +72,15 @@ pub struct Options {
     /// Writes the findings to standard output as JSON: those of one record, or a list of several
     #[arg(long)]
     json: bool,
+}
+
+/// Foundations.
+#[derive(Debug, Clone, Copy, clap::ValueEnum)]
+enum Standing {
+    /// Its lowest natural frequency with the machine lies 25 % above the main excitation, or more
+    Rigid,
+    /// Everything else
+    Flexible,
 }
 
 /// How records are read, and what is known of their machine, as flags of every command that takes some.
@@ -176,6 +205,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             options.files.len()
         );
     }
+    if options.together {
+        return together::run(options, place);
+    }
+    if !options.components.is_empty() {
+        return components::run(options, place);
+    }
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
@@ -288,6 +323,7 @@ const SAME_RATE: f64 = 1e-3;
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
     let mut analysis = examine(asked, &options.reading, place)?;
+    analysis.findings.zone = zoned(options, &analysis);
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
     let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
     let baseline = baseline.transpose()?;
@@ -295,23 +331,70 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     Ok(analysis)
 }
 
+/// The zone of the velocity level, where it is asked for and can be told.
+fn zoned(options: &Options, analysis: &Analysis) -> Option<Zoned> {
+    let group = if options.iso_group? == 1 { Group::Large } else { Group::Medium };
+    let foundation = match options.foundation? {
+        Standing::Rigid => Foundation::Rigid,
+        Standing::Flexible => Foundation::Flexible,
+    };
+    let velocity = analysis.findings.velocity_mm_s;
+    if velocity.is_none() {
+        tell!(
+            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at 2000 Hz \
+             or faster for a second"
+        );
+    }
+    Some(Zoned::of(velocity?, group, foundation))
+}
+
+/// A record that was read, and what is known of its machine.
+struct Read {
+    /// The samples, over the angle of the shaft where its speed varies.
+    signal: Channel,
+    /// Their rate [Hz].
+    rate_hz: f64,
+    machine: Machine,
+    /// What happened on the way.
+    notes: Vec<String>,
+    /// Whether it is a run's.
+    of_run: bool,
+    /// Where the speed varies: the samples over time.
+    turning: Option<Turning>,
+}
+
+/// A record whose shaft changes its speed, over time.
+struct Turning {
+    signal: Channel,
+    rate_hz: f64,
+    /// Times of whole turns, in samples.
+    pulses: Vec<f64>,
+}
+
 /// Reads and analyses one record.
 pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
-    let mut file = place.locate(asked);
-    let mut scene = None;
-    if !file.exists() {
-        file = place.locate_run(asked);
+    let Read { signal, rate_hz, machine, mut notes, of_run, turning } = read(asked, options, place)?;
+    let mut analysis = Analysis::of(&signal, rate_hz, &machine)?;
+    if let Some(Turning { signal, rate_hz, pulses }) = &turning {
+        analysis.varying = turning::varying(&analysis, signal, *rate_hz, pulses)?;
     }
-    if RunDir::is_ensemble(&file) {
-        RunDir::open(&file)?;
-    }
-    if file.is_dir() {
-        scene = Some(
-            Scene::read(file.join("scene.ron"))
-                .with_context(|| format!("`{}` is a folder, and no run", file.display()))?,
+    let claims = analysis.findings.families.iter().any(|family| family.claimed);
+    if claims && of_run {
+        notes.push(
+            "a run has no noise but its bearing's: what elements rattle as they come under the load can make \
+             a claim of its own, in a sound \
+             bearing, too. Its report says what is in the scene; `export` with `--sensor` and a \
+             `noise_density` gives it a machine's noise"
+                .to_owned(),
         );
-        file = file.join("trace.npy");
     }
+    analysis.findings.notes.splice(0..0, notes);
+    Ok(analysis)
+}
+
+/// Reads one record.
+fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
+    let (file, scene) = located(asked, place)?;
     let recording = Recording::open(&file)?;
     let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
@@ -356,31 +439,33 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
         }
         None => None,
     };
-    let mut analysis = match &over_angle {
-        Some((even, rate)) => {
-            notes.push(
-                "the record was taken over the angle of the shaft: frequencies are those at its mean speed"
-                    .to_owned(),
-            );
-            Analysis::of(even, *rate, &machine)?
-        }
-        None => Analysis::of(&scaled, rate_hz, &machine)?,
+    let of_run = scene.is_some();
+    let Some((even, even_hz)) = over_angle else {
+        return Ok(Read { signal: scaled, rate_hz, machine, notes, of_run, turning: None });
     };
-    if let (Some(pulses), Some(_)) = (&pulses, &over_angle) {
-        analysis.varying = turning::varying(&analysis, &scaled, rate_hz, pulses)?;
+    notes.push(
+        "the record was taken over the angle of the shaft: frequencies are those at its mean speed"
+            .to_owned(),
+    );
+    let turning = pulses.map(|pulses| Turning { signal: scaled, rate_hz, pulses });
+    Ok(Read { signal: even, rate_hz: even_hz, machine, notes, of_run, turning })
+}
+
+/// The file of a record, and the scene where it is that of a run.
+fn located(asked: &Path, place: &Place) -> Result<(PathBuf, Option<Scene>)> {
+    let mut file = place.locate(asked);
+    if !file.exists() {
+        file = place.locate_run(asked);
     }
-    let claims = analysis.findings.families.iter().any(|family| family.claimed);
-    if claims && scene.is_some() {
-        notes.push(
-            "a run has no noise but its bearing's: what elements rattle as they come under the load can make \
-             a claim of its own, in a sound \
-             bearing, too. Its report says what is in the scene; `export` with `--sensor` and a \
-             `noise_density` gives it a machine's noise"
-                .to_owned(),
-        );
+    if RunDir::is_ensemble(&file) {
+        RunDir::open(&file)?;
     }
-    analysis.findings.notes.splice(0..0, notes);
-    Ok(analysis)
+    if !file.is_dir() {
+        return Ok((file, None));
+    }
+    let scene = Scene::read(file.join("scene.ron"))
+        .with_context(|| format!("`{}` is a folder, and no run", file.display()))?;
+    Ok((file.join("trace.npy"), Some(scene)))
 }
 
 /// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the
@@ -530,7 +615,9 @@ fn machine(
         matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.is_some());
     let speed_is_exact = scene.is_some() || options.tacho.is_some() || !nominal;
     let (load_n, clearance_um) = (options.load_n, options.clearance_um);
-    Ok((Machine { speed_rpm, outer_speed_rpm, bearing, speed_is_exact, load_n, clearance_um }, pulses))
+    let around = Default::default();
+    let known = Machine { speed_rpm, outer_speed_rpm, bearing, speed_is_exact, load_n, clearance_um, around };
+    Ok((known, pulses))
 }
 
 fn default_folder(file: &Path) -> PathBuf {
@@ -541,6 +628,20 @@ fn default_folder(file: &Path) -> PathBuf {
 fn print(analysis: &Analysis) {
     let findings = &analysis.findings;
     say!("{}", findings.verdict);
+    print_families(analysis);
+    if let Some(spall) = findings.spall_mm {
+        say!("  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm", spall.value, spall.low, spall.high);
+    }
+    if let Some(below_mm) = findings.spall_below_mm {
+        say!("  spall: shorter than {below_mm:.2} mm if entry and exit both knock");
+    }
+    for note in &findings.notes {
+        say!("  note: {note}");
+    }
+}
+
+fn print_families(analysis: &Analysis) {
+    let findings = &analysis.findings;
     for f in &findings.families {
         let measured = f.measured_hz.map_or("        –".to_owned(), |hz| format!("{hz:9.3}"));
         let level = f.level_db.map_or("    –".to_owned(), |db| format!("{db:5.1}"));
@@ -554,13 +655,7 @@ fn print(analysis: &Analysis) {
             f.reason
         );
     }
-    if let Some(spall) = findings.spall_mm {
-        say!("  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm", spall.value, spall.low, spall.high);
-    }
-    if let Some(below_mm) = findings.spall_below_mm {
-        say!("  spall: shorter than {below_mm:.2} mm if entry and exit both knock");
-    }
-    for note in &findings.notes {
-        say!("  note: {note}");
+    if let Some(zone) = &findings.zone {
+        say!("  velocity: {zone}");
     }
 }

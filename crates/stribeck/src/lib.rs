@@ -31,6 +31,7 @@ mod shelf;
 mod shell;
 mod side_by_side;
 mod simulate;
+mod stiffness;
 mod sweep;
 mod validate;
 
@@ -84,6 +85,8 @@ pub enum Command {
     Validate(validate::Options),
     /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
     Plan(plan::Options),
+    /// Stiffness and damping of a bearing over load, speed and cage angle, for rotor dynamics
+    Stiffness(stiffness::Options),
     /// Makes a page in which bearings run: one file for a browser, with handles and instruments
     Lab(lab::Options),
     /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are
@@ -122,6 +125,7 @@ impl Command {
             Self::Infer(options) => infer::run(options, place),
             Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),
+            Self::Stiffness(options) => stiffness::run(options, place),
             Self::Lab(options) => lab::run(options, place),
             Self::Bearings(options) => bearings::run(options),
             Self::Analyse(options) => analyse::run(options, place),

@@ -50,13 +50,15 @@ const BESIDE_CAGE: i32 = 2;
 const NAMED: f64 = 1e-9;
 
 /// The highest comb that is no multiple of the shaft or the cage, no multiple, fraction or sideband of a
-/// higher family, is far beyond noise, and knocks.
+/// higher family, is far beyond noise, and knocks. `of_others` says whether a frequency [Hz] is another
+/// bearing's.
 pub(super) fn strongest(
     bands: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
     cage_hz: f64,
     highest_hz: f64,
     families: &[Known],
+    of_others: &dyn Fn(f64) -> bool,
 ) -> Option<Found> {
     let (low_hz, high_hz) = (FROM * own.shaft_hz, TO * highest_hz);
     let mut best: Option<(usize, Comb)> = None;
@@ -70,7 +72,7 @@ pub(super) fn strongest(
             let Ok(comb) = found else { break };
             searched += 1.0;
             let leads = best.as_ref().is_none_or(|(_, best)| comb.height > best.height);
-            if leads && !is_explained(&comb, own, cage_hz, families) {
+            if leads && !of_others(comb.fundamental_hz) && !is_explained(&comb, own, cage_hz, families) {
                 best = Some((n, comb));
             }
         }

@@ -182,8 +182,16 @@ pub(super) fn judge(
     // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
     let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
     let width_hz = OWN_LINES / segment_s;
-    let mut own =
-        OwnLines { shaft_hz, cage_hz: None, elements: f64::from(bearing.elements.unwrap_or(0)), width_hz };
+    let around = &machine.around;
+    let in_hz = |orders: &[f64]| orders.iter().map(|order| order * shaft_hz).collect();
+    let mut own = OwnLines {
+        shaft_hz,
+        cage_hz: None,
+        elements: f64::from(bearing.elements.unwrap_or(0)),
+        width_hz,
+        shafts_hz: in_hz(&around.shafts),
+        meshes_hz: in_hz(&around.meshes),
+    };
     let places = [orders.bpfo * shaft_hz, orders.bpfi * shaft_hz, orders.bsf * shaft_hz, cage_hz];
     let cage = look(Defect::Ftf, cage_hz, &whitened, None, record_s, segment_s);
     own.cage_hz = cage.1.as_ref().filter(|_| cage.0.noise_p_value < ALPHA).map(|s| s.comb.fundamental_hz);
@@ -208,7 +216,8 @@ pub(super) fn judge(
             Some(Known { comb_hz: comb.fundamental_hz, height: comb.height })
         })
         .collect();
-    let stranger = unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &known);
+    let of_others = |hz: f64| around.may_be(hz / shaft_hz);
+    let stranger = unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &known, &of_others);
     let first = first(looked.iter().map(|(family, _)| family));
     let first_db = first.map_or(f64::NEG_INFINITY, |at| looked[at].0.height_db);
     let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
@@ -636,7 +645,8 @@ fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
         "it is there, as the rhythm in which one rolling element passes under the load".to_owned().into();
 }
 
-fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -> String {
+/// The verdict in words.
+pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -> String {
     // Two families that cannot be distinguished are reported under the name of the first.
     let spoken_for = |at: usize, family: &Family| {
         families[..at].iter().any(|f| f.claimed && f.not_told_apart_from == Some(family.name))

@@ -1,0 +1,77 @@
+//! The page of a record with several bearings and gears.
+
+use std::path::Path;
+
+use maud::{DOCTYPE, html};
+use serde_json::json;
+use stribeck_analysis::measured::sources::{Component, Sources};
+use stribeck_scene::run_dir::write_atomic;
+
+use crate::Error;
+use crate::measured::write_measured;
+use crate::page::{head, json as pretty};
+
+/// Writes `findings.json` and `report.html` of all components into `folder`, and below it the page of each
+/// bearing.
+///
+/// # Errors
+/// [`Error::Write`] and [`Error::Run`] when folder or files cannot be written, [`Error::Drawing`].
+pub fn write_sources(
+    folder: &Path,
+    file: &str,
+    components: &[Component],
+    sources: &Sources,
+) -> Result<(), Error> {
+    let mut entries = Vec::new();
+    for (n, (component, analysis)) in sources.bearings.iter().enumerate() {
+        let own = subfolder(n, component);
+        write_measured(&folder.join(&own), &format!("{file}: {component}"), analysis, None)?;
+        entries.push(json!({
+            "component": component.to_string(),
+            "ratio": component.ratio,
+            "folder": own,
+            "findings": &analysis.findings,
+        }));
+    }
+    let words: Vec<String> = components.iter().map(ToString::to_string).collect();
+    let all = json!({ "components": words, "verdict": sources.verdict, "bearings": entries });
+    write_atomic(&folder.join("findings.json"), pretty(&all)?.as_bytes())?;
+    let title = format!("{file}: {} components", components.len());
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&title))
+            body {
+                h1 { (title) }
+                p class="lead" { (words.join("; ")) "." }
+                div class="scroll" { table {
+                    tr { th { "Bearing" } th { "Shaft (rpm)" } th { "Family" } th { "Measured (Hz)" } th { "Claimed" } th { "Why" } }
+                    @for (n, (component, analysis)) in sources.bearings.iter().enumerate() {
+                        @for family in &analysis.findings.families {
+                            tr {
+                                td { a href=(format!("{}/report.html", subfolder(n, component))) { (component.to_string()) } }
+                                td { (analysis.findings.speed_rpm.map_or_else(String::new, |rpm| format!("{rpm:.1}"))) }
+                                td { (family.name.name()) }
+                                td { (family.measured_hz.map_or_else(|| "–".to_owned(), |hz| format!("{hz:.2}"))) }
+                                td { @if family.claimed { strong { "yes" } } @else { "no" } }
+                                td { (family.reason.to_string()) }
+                            }
+                        }
+                    }
+                } }
+                @for (component, analysis) in &sources.bearings {
+                    p { strong { (component.to_string()) ": " } (analysis.findings.verdict) }
+                }
+            }
+        }
+    };
+    write_atomic(&folder.join("report.html"), page.into_string().as_bytes())?;
+    Ok(())
+}
+
+/// Folder of a bearing below that of the record.
+fn subfolder(n: usize, component: &Component) -> String {
+    let name =
+        component.bearing().map_or(String::new(), |b| b.name.replace(|c: char| !c.is_alphanumeric(), "-"));
+    format!("{}-{name}", n + 1)
+}

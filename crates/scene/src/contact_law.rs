@@ -1,0 +1,134 @@
+//! Approach of a rolling element and each of its raceways under a force, by a law of one's choice.
+
+use std::f64::consts::PI;
+
+use serde::{Deserialize, Serialize};
+
+use crate::line_contact::LineContacts;
+use crate::load_rating::is_ball_bearing;
+use crate::point_contact::{self, CONFORMITY};
+use crate::resolved::ResolvedScene;
+
+/// A law of contact of rolling elements and raceways.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ContactLawKind {
+    /// Line contact in plane strain, down to the thickness of the rings: what the models compute with
+    /// (THEORY §6.2).
+    Line,
+    /// Point contact of balls in grooves, after Hertz.
+    Ball,
+    /// Palmgren's measured law of rollers of finite length.
+    Palmgren,
+}
+
+impl ContactLawKind {
+    /// The one that a bearing has: points for balls of the catalogue, lines for all others.
+    pub fn of(scene: &ResolvedScene) -> Self {
+        if is_ball_bearing(&scene.written) { Self::Ball } else { Self::Line }
+    }
+
+    /// In words, with its source.
+    pub fn spoken(self) -> &'static str {
+        match self {
+            Self::Line => "line contact in plane strain (Johnson 1985, \u{a7}5.6)",
+            Self::Ball => "point contact of Hertz, grooves of 0.52 diameters (Hamrock and Brewe 1983)",
+            Self::Palmgren => {
+                "line contact by Palmgren, \u{3b4} = 3.84e-5 Q^0.9/l^0.8 in mm and N (Harris 2001)"
+            }
+        }
+    }
+}
+
+/// The law of both contacts of one rolling element.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactLaw(Law);
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Law {
+    /// With the length of the contacts [m].
+    Line { contacts: LineContacts, length: f64 },
+    /// δ = factor Q^power at the outer and the inner contact, factor in [m/N^power].
+    Power { factors: [f64; 2], power: f64 },
+}
+
+impl ContactLaw {
+    /// Of a scene's rolling elements.
+    pub fn of(scene: &ResolvedScene, kind: ContactLawKind) -> Self {
+        Self(match kind {
+            ContactLawKind::Line => Law::Line { contacts: LineContacts::of(scene), length: scene.thickness },
+            ContactLawKind::Ball => {
+                let (r, groove) = (scene.roller_radius, 2.0 * CONFORMITY * scene.roller_radius);
+                let modulus = 2.0 * scene.material.contact_modulus();
+                let across = [-scene.outer_race_radius, scene.inner_race_radius];
+                let factors = across.map(|across| point_contact::approach(r, across, groove, 1.0, modulus));
+                Law::Power { factors, power: 2.0 / 3.0 }
+            }
+            ContactLawKind::Palmgren => {
+                let factor = 3.84e-8 * (1e3 * scene.thickness).powf(-0.8);
+                Law::Power { factors: [factor; 2], power: 0.9 }
+            }
+        })
+    }
+
+    /// Approach at one contact [m], 0 the outer and 1 the inner one, under a force [N], and its derivative
+    /// [m/N]; nothing without force.
+    pub fn approach(&self, side: usize, force: f64) -> (f64, f64) {
+        if force <= 0.0 {
+            return (0.0, 0.0);
+        }
+        match &self.0 {
+            Law::Line { contacts, length } => {
+                let (approach, slope) = contacts.approach_at(side, force / length);
+                (approach, slope / length)
+            }
+            Law::Power { factors, power } => {
+                let approach = factors[side] * force.powf(*power);
+                (approach, power * approach / force)
+            }
+        }
+    }
+
+    /// Force at the inner contact [N] and its derivative [N/m], where the raceways have come `approach` [m]
+    /// nearer than the element is thick and `outwards` [N] presses it to the outer raceway besides; `None`
+    /// where the law ends. Nothing as long as the inner raceway is not touched.
+    pub fn force(&self, approach: f64, outwards: f64) -> Option<(f64, f64)> {
+        const HALVINGS: usize = 60;
+        let both = |force: f64| {
+            let (outer, inner) = (self.approach(0, force + outwards), self.approach(1, force));
+            (outer.0 + inner.0 - approach, outer.1 + inner.1)
+        };
+        if approach <= self.approach(0, outwards).0 {
+            return Some((0.0, 0.0));
+        }
+        // The approach is concave over the force, so Newton's method from below never overshoots.
+        let mut force = 1.0;
+        for _ in 0..HALVINGS {
+            if both(force).0 <= 0.0 {
+                break;
+            }
+            force *= 0.1;
+        }
+        for _ in 0..200 {
+            let (left, slope) = both(force);
+            if slope <= 0.0 || !slope.is_finite() {
+                return None;
+            }
+            let step = -left / slope;
+            force += step;
+            if step.abs() <= 1e-13 * force {
+                return Some((force, 1.0 / both(force).1));
+            }
+        }
+        None
+    }
+}
+
+/// Mass of a rolling element [kg]: of a ball, or of a cylinder as long as the model is thick.
+pub fn element_mass(scene: &ResolvedScene, kind: ContactLawKind) -> f64 {
+    let (r, rho) = (scene.roller_radius, scene.material.density);
+    match kind {
+        ContactLawKind::Ball => rho * 4.0 / 3.0 * PI * r.powi(3),
+        ContactLawKind::Line | ContactLawKind::Palmgren => rho * PI * r * r * scene.thickness,
+    }
+}
