@@ -209,7 +209,11 @@ impl EightFilms {
         for at in vector_starts(simd) {
             let size = Vector::load(simd, &pushed.force.0, at);
             let ([dx, dy], [fx, fy]) = (load(simd, &near.d, at), load(simd, force, at));
-            store([(-size).times_plus(dx, fx), (-size).times_plus(dy, fy)], force, at);
+            // Where there is no roller its direction is no number, and nothing times that is none either.
+            let (half, these) = (Vector::all(simd, 0.5), Vector::ones(simd, films >> at));
+            let pushed = [[dx, fx], [dy, fy]]
+                .map(|[d, had]| half.choose_below(these, (-size).times_plus(d, had), had));
+            store(pushed, force, at);
         }
         Some(pushed)
     }
