@@ -11,17 +11,37 @@ use crate::workspace;
 /// What it is compiled for.
 const TARGET: &str = "wasm32-unknown-unknown";
 
+/// Where a build of `crates/lab` finds it, below the root.
+const EMBEDDED: &str = "crates/lab/assets/module";
+
+/// Flags of `lab-module`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// Puts it where the next build of the program takes it along, for `cargo install` and `cargo package`
+    #[arg(long)]
+    embed: bool,
+}
+
 /// The command of the program, with a module that is built before it where it makes a lab.
 pub(crate) fn with_module(command: stribeck::Command) -> Result<stribeck::Command> {
     Ok(match command {
         stribeck::Command::Lab(options) => stribeck::Command::Lab(options.with_module(build()?)),
+        stribeck::Command::Report(options) if options.makes_lab() => {
+            stribeck::Command::Report(options.with_module(build()?))
+        }
         other => other,
     })
 }
 
 /// Builds the module and says where it is.
-pub(crate) fn build_module() -> Result<ExitCode> {
-    let module = build()?;
+pub(crate) fn build_module(options: &Options) -> Result<ExitCode> {
+    let mut module = build()?;
+    if options.embed {
+        let folder = workspace::root().join(EMBEDDED);
+        let embedded = folder.join(MODULE);
+        std::fs::copy(&module, &embedded).with_context(|| format!("cannot write to {}", folder.display()))?;
+        module = embedded;
+    }
     let bytes = std::fs::metadata(&module).map_or(0, |file| file.len());
     println!("{} ({:.2} MB)", module.display(), 1e-6 * bytes as f64);
     Ok(ExitCode::SUCCESS)

@@ -3,12 +3,14 @@
 //!
 //! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
 
+mod book;
 mod ci;
 mod compare;
 mod fields;
 mod fuzz;
 mod lab;
 mod study;
+mod wheel;
 mod workspace;
 
 use std::process::ExitCode;
@@ -37,7 +39,11 @@ enum Command {
     /// Solves the same problems with other programs, checks that they agree, and times them
     Peers(compare::Options),
     /// Builds the module of `cargo xtask lab`, which steps a bearing in a page, and says where it is
-    LabModule,
+    LabModule(lab::Options),
+    /// Builds the documents as a book with mdBook, with a lab in its guide
+    Book,
+    /// Builds the wheel of the Python module, which needs no Rust where it is installed
+    Wheel(wheel::Options),
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
@@ -54,7 +60,9 @@ fn main() -> ExitCode {
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
         Command::Study(options) => study::run(&options),
         Command::Peers(options) => compare::run(&options),
-        Command::LabModule => lab::build_module(),
+        Command::LabModule(options) => lab::build_module(&options),
+        Command::Wheel(options) => wheel::build(&options),
+        Command::Book => book::run(),
         Command::Fields(options) => fields::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
         Command::Ci(options) => ci::run(&options),

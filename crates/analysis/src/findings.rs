@@ -155,6 +155,7 @@ impl Findings {
         let envelope = EnvelopeAnswer::with_note(enveloped, &mut notes);
         let orders = case.orders(&motion, &sensors, &mut notes)?;
         let film = FilmFinding::measure(case.run, record)?;
+        let records = case.records(&carried, &mut notes)?;
         let answers = Answers {
             motion,
             carried,
@@ -170,6 +171,7 @@ impl Findings {
             envelope,
             orders,
             film,
+            records,
             notes,
         };
         Ok(case.findings(answers))

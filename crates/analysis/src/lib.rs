@@ -29,6 +29,7 @@
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What differs between runs or records, and is it more than scatter? | [`comparison`] |
 //! | What does a measured record show, and may one call it a defect? | [`measured`] |
+//! | What would such a record tell of a run, behind an unknown path and in noise? | [`records`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
 //!
 //! # A measured gearbox
@@ -86,6 +87,7 @@ pub mod tones;
 pub mod artefacts;
 pub mod diagnosis;
 pub mod measured;
+pub mod records;
 pub mod stiffness;
 pub mod stress;
 

@@ -36,6 +36,7 @@ mod course;
 mod enhanced;
 pub mod evidence;
 mod halves;
+pub mod joint;
 mod length;
 mod limits;
 mod own;
@@ -47,10 +48,12 @@ mod screening;
 mod second;
 mod shaft;
 pub mod sources;
+mod speed;
 pub mod tacho;
 mod unexplained;
 mod unit;
 mod unrelated;
+pub mod varying;
 mod velocity;
 mod verdict;
 pub mod zone;
@@ -65,10 +68,13 @@ pub use crate::defect::Defect;
 pub use angular::over_angle;
 pub use course::Course;
 pub use enhanced::Enhanced;
+pub(crate) use length::{LONGEST, SHORTEST_S};
 use pass::Pass;
+pub use pressed::usual_load_n;
 pub use screening::Health;
 pub use unexplained::Unexplained;
 pub use unit::AccelerationUnit;
+pub use varying::Varying;
 use velocity::VelocityLevel;
 pub(crate) use verdict::sidebands_seen;
 pub use verdict::{Family, Reason};
@@ -122,6 +128,9 @@ pub struct MeasuredFindings {
     /// The speed that was given, where the lines of the shaft correct it [1/min].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_given_rpm: Option<f64>,
+    /// How far a speed that the record tells without any that was given may be off [1/min].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_uncertainty_rpm: Option<f64>,
     /// The bearing, in words.
     pub bearing: Option<String>,
     /// Resolution of the envelope spectra: one over the length of a segment [Hz].
@@ -187,6 +196,8 @@ pub struct Analysis {
     pub over: Vec<BandEnvelope>,
     /// Density over time.
     pub course: Course,
+    /// Spectra over speed and angle where the speed varies; who knows the turns puts them there.
+    pub varying: Option<Varying>,
     /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
     pub enhanced: Option<Enhanced>,
 }
@@ -241,23 +252,17 @@ impl Analysis {
         drop(envelopes);
         let resolution_hz = rate_hz / segment as f64;
         let (record_s, segment_s) = (screening.count() as f64 / rate_hz, segment as f64 / rate_hz);
-        let shaft = shaft_by_lines(&kept, rate_hz, machine);
-        let corrected = shaft.filter(|shaft| {
-            let given_hz = machine.speed_rpm.map_or(f64::NAN, |rpm| rpm / 60.0);
-            !machine.speed_is_exact && shaft.corrects(given_hz)
-        });
-        let given_rpm = machine.speed_rpm;
-        if let (Some(shaft), Some(rpm)) = (corrected, given_rpm) {
-            notes.push(format!(
-                "the lines of the shaft stand at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were \
-                 given, and are taken",
-                60.0 * shaft.hz,
-                60.0 * shaft.uncertainty_hz,
-                100.0 * (60.0 * shaft.hz / rpm - 1.0)
-            ));
-        }
+        let found = found_speed(&kept, rate_hz, &bands, machine, &mut notes);
         let machine = &Machine {
-            speed_rpm: corrected.map_or(machine.speed_rpm, |shaft| Some(60.0 * shaft.hz)),
+            speed_rpm: machine.speed_rpm.or(found.map(|found| 60.0 * found.hz)),
+            speed_is_exact: machine.speed_is_exact || found.is_some(),
+            ..machine.clone()
+        };
+        let shaft = shaft_by_lines(&kept, rate_hz, machine);
+        let given_rpm = machine.speed_rpm;
+        let corrected_hz = corrected_speed(shaft, &kept, rate_hz, &bands, machine, &mut notes);
+        let machine = &Machine {
+            speed_rpm: corrected_hz.map_or(machine.speed_rpm, |hz| Some(60.0 * hz)),
             ..machine.clone()
         };
         let speed_is_told = shaft.is_some_and(|shaft| shaft.is_told());
@@ -281,7 +286,8 @@ impl Analysis {
                 samples: screening.count(),
                 duration_s: screening.count() as f64 / rate_hz,
                 speed_rpm: machine.speed_rpm,
-                speed_given_rpm: corrected.and(given_rpm),
+                speed_given_rpm: corrected_hz.and(given_rpm),
+                speed_uncertainty_rpm: found.map(|found| 60.0 * found.uncertainty_hz),
                 bearing: machine.bearing.as_ref().map(|b| format!("{}: {b}", b.name)),
                 resolution_hz,
                 segments,
@@ -301,8 +307,17 @@ impl Analysis {
             bands,
             over,
             course: tracing.finish(),
+            varying: None,
             enhanced,
         })
+    }
+
+    /// The band of the family that stands highest; without one that knocks most [Hz].
+    pub fn leading_band_hz(&self) -> Option<(f64, f64)> {
+        let there = self.findings.families.iter().filter(|f| f.is_there() && f.band_hz.is_some());
+        let leading = there.min_by(|a, b| a.p_value.total_cmp(&b.p_value)).and_then(|f| f.band_hz);
+        let most = self.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
+        leading.or_else(|| most.map(|band| (band.low_hz, band.high_hz)))
     }
 
     /// The band in which a family stands highest.
@@ -311,6 +326,68 @@ impl Analysis {
         let bands = if family.over.is_some() { &self.over } else { &self.bands };
         bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
     }
+}
+
+/// The speed [Hz] by which a given one is corrected, with a note: by the lines of the shaft, or, where they
+/// do not tell, by those of shaft and bearing together.
+fn corrected_speed(
+    shaft: Option<shaft::Shaft>,
+    samples: &[f64],
+    rate_hz: f64,
+    bands: &[BandEnvelope],
+    machine: &Machine,
+    notes: &mut Vec<String>,
+) -> Option<f64> {
+    let rpm = machine.speed_rpm.filter(|rpm| *rpm > 0.0 && !machine.speed_is_exact)?;
+    let (hz, uncertainty_hz, what) = match shaft.filter(|shaft| shaft.is_told()) {
+        Some(shaft) => (shaft.hz, shaft.uncertainty_hz, "the lines of the shaft stand"),
+        None => {
+            let bearing = machine.bearing.as_ref().filter(|_| machine.outer_speed_rpm == 0.0)?;
+            samples.iter().all(|x| x.is_finite()).then_some(())?;
+            let told =
+                speed::near(samples, rate_hz, bands, bearing, rpm / 60.0).filter(|told| told.is_told)?;
+            (told.hz, told.uncertainty_hz, "the lines of the shaft and of the bearing together stand")
+        }
+    };
+    shaft::is_correction(hz, rpm / 60.0).then_some(())?;
+    notes.push(format!(
+        "{what} at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were given, and are taken",
+        60.0 * hz,
+        60.0 * uncertainty_hz,
+        100.0 * (60.0 * hz / rpm - 1.0)
+    ));
+    Some(hz)
+}
+
+/// The speed by shaft and bearing together, where none is given; why not, in a note.
+fn found_speed(
+    samples: &[f64],
+    rate_hz: f64,
+    bands: &[BandEnvelope],
+    machine: &Machine,
+    notes: &mut Vec<String>,
+) -> Option<speed::Told> {
+    let bearing = machine.bearing.as_ref().filter(|_| machine.speed_rpm.is_none())?;
+    samples.iter().all(|x| x.is_finite()).then_some(())?;
+    let told = speed::from_nothing(samples, rate_hz, bands, bearing)?;
+    let (rpm, next_rpm, lead) = (60.0 * told.hz, 60.0 * told.next_hz, told.lead);
+    notes.push(if told.is_told {
+        format!(
+            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} rpm, of \
+             all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} behind in the \
+             logarithm of the likelihood, where {:.0} are asked",
+            60.0 * told.uncertainty_hz,
+            60.0 * speed::FROM_HZ,
+            60.0 * speed::TO_HZ,
+            speed::LEAST_LEAD
+        )
+    } else {
+        format!(
+            "the record does not tell the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain about as \
+             much of it"
+        )
+    });
+    told.is_told.then_some(told)
 }
 
 /// The shaft by its lines, where a speed is given and the outer ring stands still.

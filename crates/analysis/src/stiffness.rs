@@ -169,9 +169,10 @@ impl BearingStiffness {
         Ok(Self {
             scene: written.name.clone(),
             bearing: written.bearing.designation.clone(),
-            model: "quasi-static equilibrium between rigid rings with elastic contacts and centrifugal force, \
+            model:
+                "quasi-static equilibrium between rigid rings with elastic contacts and centrifugal force, \
                     without defects, friction, oil and the elasticity of rings and housing"
-                .to_owned(),
+                    .to_owned(),
             contact: grid.law.spoken().to_owned(),
             elements: scene.rollers,
             clearance_um: 1e6 * scene.clearance,
@@ -197,15 +198,18 @@ impl BearingStiffness {
         text
     }
 
-    /// A file that ROSS loads, `BearingElement.load(FILE)`, at node 0: the means of one load over the speed of
-    /// the shaft [rad/s].
+    /// A file that ROSS loads, `BearingElement.load(FILE)`, at node 0: the means of one load over the speed
+    /// of the shaft [rad/s].
     pub fn ross(&self, load_n: f64) -> Value {
         // ROSS interpolates over ascending frequencies.
         let mut points: Vec<&Point> = self.points.iter().filter(|p| p.load_n == load_n).collect();
         points.sort_by(|a, b| a.speed_rpm.abs().total_cmp(&b.speed_rpm.abs()));
         points.dedup_by(|a, b| a.speed_rpm.abs() == b.speed_rpm.abs());
         let column = |of: &dyn Fn(&Point) -> f64| points.iter().map(|p| of(p)).collect::<Vec<f64>>();
-        let tag = format!("stribeck {} {load_n} N", if self.bearing.is_empty() { &self.scene } else { &self.bearing });
+        let tag = format!(
+            "stribeck {} {load_n} N",
+            if self.bearing.is_empty() { &self.scene } else { &self.bearing }
+        );
         let element = json!({
             "n": 0,
             "tag": tag,

@@ -17,6 +17,7 @@ use crate::floor::FloorContact;
 use crate::kinematics::KinematicsFinding;
 use crate::load::LoadFinding;
 use crate::reading::CursorReading;
+use crate::records::RecordFinding;
 use crate::tones::Tone;
 
 /// All numbers of a run.
@@ -62,6 +63,9 @@ pub struct Summary {
     /// Blind diagnosis from the leading sensor; `None` when the record is too short.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<DiagnosisFinding>,
+    /// What records of a machine's sensor would tell, one for each level of noise that the scene names.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<RecordFinding>,
     /// Possible readings behind the paper's 4545 Hz at this sample rate.
     pub cursor: Option<CursorReading>,
     /// Every number of the paper beside ours.

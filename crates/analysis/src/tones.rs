@@ -118,7 +118,8 @@ pub fn measure(sensor: &str, lines: &[PredictedLine], spectrum: &Spectrum) -> Re
         if peak.at_edge {
             continue;
         }
-        let line = spectrum.sinusoid(&peak).map_err(Error::Signal)?;
+        // At zero and at half the sample rate a line has no amplitude: it was not measured.
+        let Ok(line) = spectrum.sinusoid(&peak) else { continue };
         let prominence = prominence_db(spectrum, &peak, (lowest, highest));
         for &at in &group {
             let near = |hz: f64| (line.frequency_hz - hz).abs() <= reach(hz);

@@ -20,8 +20,8 @@ const TEETH: f64 = 23.0;
 /// Draws, unless `STRIBECK_DRAWS` says another number: of 100, none is called what it is not, and 111 of 117
 /// defects are named (two minutes).
 const DRAWS: u64 = 12;
-/// Least part of the defects that is named: knocks are as weak as twice the noise, and a family that slip brings
-/// within a resolution of a multiple of a shaft cannot be told from it.
+/// Least part of the defects that is named: knocks are as weak as twice the noise, and a family that slip
+/// brings within a resolution of a multiple of a shaft cannot be told from it.
 const NAMED: f64 = 0.8;
 
 /// Which families the two bearings have; none where they are sound.
@@ -32,8 +32,8 @@ fn components() -> Vec<Component> {
     texts.iter().map(|text| Component::parse(text).expect("a component")).collect()
 }
 
-/// Knocks `hz` times a second that ring at `ring_hz`, each late or early by up to 1 % of a period, as strong as
-/// `strength` says at their time.
+/// Knocks `hz` times a second that ring at `ring_hz`, each late or early by up to 1 % of a period, as strong
+/// as `strength` says at their time.
 fn knocks(signal: &mut [f64], noise: &mut Noise, hz: f64, ring_hz: f64, strength: &dyn Fn(f64) -> f64) {
     let mut k = 0.0;
     while k / hz < signal.len() as f64 / RATE_HZ {
@@ -62,7 +62,9 @@ fn record(draw: u64) -> (Vec<f64>, f64, Truth) {
         .map(|n| {
             let t = n as f64 / RATE_HZ;
             let turn = TAU * shaft_hz * t;
-            let sides = 1.0 + modulation[0] * (turn + phases[3]).cos() + modulation[1] * (RATIO * turn + phases[4]).cos();
+            let sides = 1.0
+                + modulation[0] * (turn + phases[3]).cos()
+                + modulation[1] * (RATIO * turn + phases[4]).cos();
             (0..3).map(|h| mesh[h] * sides * ((h + 1) as f64 * TEETH * turn + phases[h]).cos()).sum()
         })
         .collect();
@@ -100,7 +102,10 @@ fn record(draw: u64) -> (Vec<f64>, f64, Truth) {
 fn judged(draw: u64) -> (Sources, Truth) {
     let (signal, rpm, truth) = record(draw);
     let machine = Machine { speed_rpm: Some(rpm), speed_is_exact: true, ..Machine::default() };
-    (analyse(&Channel::held("gearbox", signal), RATE_HZ, &machine, &components()).expect("an analysis"), truth)
+    (
+        analyse(&Channel::held("gearbox", signal), RATE_HZ, &machine, &components()).expect("an analysis"),
+        truth,
+    )
 }
 
 #[test]
@@ -112,7 +117,10 @@ fn example_a_gear_and_two_bearings_are_told_apart() {
         for ((component, analysis), truth) in sources.bearings.iter().zip(truth) {
             let names: Vec<&str> = claimed(analysis).iter().map(|name| name.name()).collect();
             if names.iter().any(|name| Some(*name) != truth) {
-                wrong.push(format!("{draw}: {component}: {names:?}, truth {truth:?}: {}", analysis.findings.verdict));
+                wrong.push(format!(
+                    "{draw}: {component}: {names:?}, truth {truth:?}: {}",
+                    analysis.findings.verdict
+                ));
             }
             defects += usize::from(truth.is_some());
             if truth.is_some_and(|truth| !names.contains(&truth)) {

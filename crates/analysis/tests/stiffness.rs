@@ -58,7 +58,8 @@ fn gamma(x: f64) -> f64 {
         -5.395_239_384_953e-6,
     ];
     let t = x + 5.5;
-    let series = C.iter().enumerate().fold(1.000_000_000_190_015, |sum, (j, c)| sum + c / (x + 1.0 + j as f64));
+    let series =
+        C.iter().enumerate().fold(1.000_000_000_190_015, |sum, (j, c)| sum + c / (x + 1.0 + j as f64));
     ((x + 0.5) * t.ln() - t + (2.506_628_274_631_000_5 * series / x).ln()).exp()
 }
 
@@ -114,8 +115,8 @@ fn analytic_stiffness_of_a_6205() {
     compare("stiffness of a 6205 across 1 kN, rigid rings", source, "N/m", ours[1], across, ASKED);
 }
 
-/// Q = 8.06·10⁴ l^(8/9) δ^(10/9) in N and mm at each contact (Harris 2001, equation 6.12 solved for Q), two of
-/// them in series.
+/// Q = 8.06·10⁴ l^(8/9) δ^(10/9) in N and mm at each contact (Harris 2001, equation 6.12 solved for Q), two
+/// of them in series.
 #[test]
 fn analytic_stiffness_of_a_nu_2210() {
     let scene = scene("NU 2210, elements=17");

@@ -39,6 +39,9 @@
 //! | how a record changes | [`spectrogram`], [`Spectrograph`] for records of any length, [`ridge`] |
 //! | whether a family of harmonics is there, and how sure that is | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`] |
+//! | when something struck, behind an unknown path | [`prewhitened_power`] |
+//! | what a sensor records behind a random path, or the path of a record | [`Path`], [`coloured_like`] |
+//! | what passages tell, whatever the path to the sensor | [`Signature`] |
 //! | what is locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | a smooth density of a short record | [`multitaper`] |
 //! | the record at another rate | [`resample_poly`] |
@@ -106,9 +109,12 @@ mod deconvolution;
 mod infogram;
 mod kurtogram;
 mod multitaper;
+mod path;
+mod prewhitened;
 mod resample;
 mod ridge;
 mod separation;
+mod signature;
 mod spacing;
 mod spectrogram;
 mod velocity;
@@ -131,11 +137,14 @@ pub use kurtogram::{KurtogramBand, fast_kurtogram};
 pub use multitaper::{dpss, multitaper};
 pub use notch::Notch;
 pub use options::{Averaging, Detrend, WelchOptions};
+pub use path::{Path, at_rate, coloured_like};
 pub use peak::{Peak, Sinusoid};
+pub use prewhitened::prewhitened_power;
 pub use resample::resample_poly;
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use separation::{Separated, separate};
+pub use signature::{PASSAGES, Rhythm, Signature, WITHIN};
 pub use sound::Sound;
 pub use spacing::{EventSpacing, Spacing, event_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};

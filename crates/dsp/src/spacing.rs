@@ -13,6 +13,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::error::{check_positive, check_signal};
+use crate::prewhitened::prewhitened_power;
 use crate::{Error, Result};
 
 /// Distance of two events.
@@ -44,8 +45,6 @@ pub enum EventSpacing {
 const BANDS: [(f64, f64); 2] = [(0.25, 0.5), (0.5, 1.0)];
 /// Length over which correlations are smoothed [s]: events are no sharper.
 const SMOOTHED_S: f64 = 0.3e-3;
-/// The envelope is cut off above this quantile, so that a few loud events do not decide.
-const LOUDEST: f64 = 0.999;
 /// Least correlation in one of the bands.
 const LEAST: f64 = 0.05;
 /// Least correlation in the other, at the same lag: it only confirms.
@@ -143,26 +142,14 @@ fn smoothing(sample_rate_hz: f64) -> usize {
 
 /// Correlation of the squared envelope of the pre-whitened signal in a band, over half the sample rate,
 /// smoothed, for lags up to `longest`.
-fn correlation(signal: &[f64], (from, to): (f64, f64), sample_rate_hz: f64, longest: usize) -> Vec<f64> {
-    let count = signal.len();
+fn correlation(signal: &[f64], band: (f64, f64), sample_rate_hz: f64, longest: usize) -> Vec<f64> {
+    let mut lines: Vec<Complex<f64>> =
+        prewhitened_power(signal, band).into_iter().map(|e| Complex::new(e, 0.0)).collect();
+    let count = lines.len();
+    let mean = lines.iter().map(|z| z.re).sum::<f64>() / count as f64;
+    lines.iter_mut().for_each(|z| z.re -= mean);
     let mut planner = FftPlanner::new();
     let (forward, inverse) = (planner.plan_fft_forward(count), planner.plan_fft_inverse(count));
-    let mut lines: Vec<Complex<f64>> = signal.iter().map(|x| Complex::new(*x, 0.0)).collect();
-    forward.process(&mut lines);
-    let kept = (0.5 * from * count as f64) as usize..(0.5 * to * count as f64) as usize;
-    for (n, line) in lines.iter_mut().enumerate() {
-        let magnitude = line.norm();
-        *line = if kept.contains(&n) && magnitude > 0.0 { *line / magnitude } else { Complex::default() };
-    }
-    inverse.process(&mut lines);
-    let mut squared: Vec<f64> = lines.iter().map(Complex::norm_sqr).collect();
-    let mut sorted = squared.clone();
-    let (_, limit, _) =
-        sorted.select_nth_unstable_by((LOUDEST * (count - 1) as f64) as usize, f64::total_cmp);
-    let limit = *limit;
-    squared.iter_mut().for_each(|e| *e = e.min(limit));
-    let mean = squared.iter().sum::<f64>() / count as f64;
-    lines.iter_mut().zip(&squared).for_each(|(z, e)| *z = Complex::new(e - mean, 0.0));
     forward.process(&mut lines);
     lines.iter_mut().for_each(|z| *z = Complex::new(z.norm_sqr(), 0.0));
     inverse.process(&mut lines);

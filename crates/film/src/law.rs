@@ -14,16 +14,16 @@ pub const WIDEST: f64 = 1e-3;
 
 /// Bodies that roll more slowly than this count as rolling at it [m/s]: enough to divide by, and a
 /// ten-thousandth of what a bearing does.
-const SLOWEST: f64 = 1e-3;
+pub(crate) const SLOWEST: f64 = 1e-3;
 
 /// Where a film ends that neither opens nor closes.
-const STEADY: f64 = 0.475_131;
+pub(crate) const STEADY: f64 = 0.475_131;
 
 /// A land that ends this many film widths away has no end.
-const FAR: f64 = 20.0;
+pub(crate) const FAR: f64 = 20.0;
 
 /// A contact that carries so many times what its film can lift stays as it is for some steps.
-const FIXED: f64 = 4.0;
+pub(crate) const FIXED: f64 = 4.0;
 
 /// Share of the way that is left when the end of a film is found. The next step makes up for it.
 const ACCURACY: f64 = 1e-6;
@@ -45,12 +45,14 @@ pub struct Oil {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmLaw<S> {
     /// Relative radius R [m].
-    radius: f64,
+    pub(crate) radius: f64,
     /// 4ηRL [N s]: times u/h a force.
-    wedge: f64,
+    pub(crate) wedge: f64,
     /// 1/√(2R) [1/√m].
-    slope: f64,
-    least: f64,
+    pub(crate) slope: f64,
+    pub(crate) least: f64,
+    /// Force of a film that neither opens nor closes, over 4ηuRL/h [-].
+    pub(crate) steady: f64,
     /// What the surfaces give under the film.
     pub spring: S,
 }
@@ -61,7 +63,7 @@ pub struct Layer {
     /// Thickness above the least [m].
     pub above: f64,
     /// Where it ends, in √(2Rh) behind the closest approach.
-    end: f64,
+    pub(crate) end: f64,
     /// Force through it [N].
     pub force: f64,
 }
@@ -90,7 +92,8 @@ impl<S: Spring> FilmLaw<S> {
     /// A film of oil between surfaces of the relative radius R, over a `length` out of plane [m].
     pub fn new(oil: Oil, radius: f64, length: f64, spring: S) -> Self {
         let wedge = 4.0 * oil.viscosity * radius * length;
-        Self { radius, wedge, slope: 1.0 / (2.0 * radius).sqrt(), least: oil.least, spring }
+        let (slope, steady) = (1.0 / (2.0 * radius).sqrt(), Pressed::until(STEADY).force);
+        Self { radius, wedge, slope, least: oil.least, steady, spring }
     }
 
     /// Film thickness [m].
@@ -115,8 +118,7 @@ impl<S: Spring> FilmLaw<S> {
     /// The film of steady rolling at a gap [m] and an entrainment speed [m/s], where the land leaves a share
     /// of the force.
     pub fn settled(&self, gap: f64, speed: f64, share: f64) -> (Layer, Pushed) {
-        let steady = Pressed::until(STEADY);
-        let carried = self.wedge * speed.abs().max(SLOWEST) * share * steady.force;
+        let carried = self.wedge * speed.abs().max(SLOWEST) * share * self.steady;
         let dry = (-gap).max(0.0);
         let mut above = gap.max(0.0);
         if self.spring.force(dry) < carried / self.least {
@@ -149,7 +151,7 @@ impl<S: Spring> FilmLaw<S> {
         let rate = speed * thickness.sqrt() * self.slope;
         let before = layer.force;
         if above == 0.0 && dry > 0.0 {
-            let (carried, loose) = (self.spring.force_near(dry, before), lift * Pressed::until(STEADY).force);
+            let (carried, loose) = (self.spring.force_near(dry, before), lift * self.steady);
             if carried >= loose {
                 // Solid: contact alone acts.
                 (layer.force, layer.end) = (carried, STEADY);
@@ -185,7 +187,7 @@ impl<S: Spring> FilmLaw<S> {
 /// at the force `lift` · G and the rate `opened` · q [m]. `None` when it cannot follow.
 fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, Pressed)> {
     let need = |c: f64| {
-        let film = Pressed::until(c);
+        let film: Pressed = Pressed::until(c);
         let (depth, by_force) = spring.depth(lift * film.force);
         let value = depth - opened * film.opening - room;
         (value, by_force * lift * film.force_slope - opened * film.opening_slope, film)

@@ -39,6 +39,7 @@
 //! |---|---|
 //! | Where does a film lie? | `track.rs` |
 //! | How thick is it, what does it carry, how much heat does it make? | `law.rs` |
+//! | How are eight films taken at once? | `side_by_side.rs` |
 //! | Which forces and speeds of opening does Reynolds' equation give? | `reynolds.rs` |
 //! | What do the surfaces give under it? | `spring.rs` |
 
@@ -47,12 +48,13 @@
 
 mod law;
 mod reynolds;
+pub mod side_by_side;
 mod spring;
 mod track;
 
 pub use law::{FilmLaw, Layer, Oil, Pushed, WIDEST};
-pub use spring::{Bed, Spring};
-pub use track::{Land, Place, Point};
+pub use spring::{Bed, Spring, SpringInLanes};
+pub use track::{FacetCurve, Land, Place, Point};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

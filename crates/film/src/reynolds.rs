@@ -6,51 +6,80 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use stribeck_simd::lanes::Number;
+
 /// A film that opens so fast that it ends before this place carries less than a two-hundredth of what it does
 /// at rest: the oil no longer fills the gap.
 pub(crate) const EMPTY: f64 = -5.0;
 
-/// The film that ends at a place c.
+/// The film that ends at a place c, or several of them side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Pressed {
+pub(crate) struct Pressed<N = f64> {
     /// Force over 4ηuRL/h [-]: 1.2237 when the film neither opens nor closes.
-    pub(crate) force: f64,
+    pub(crate) force: N,
     /// Its derivative by c.
-    pub(crate) force_slope: f64,
+    pub(crate) force_slope: N,
     /// Rate at which the film opens, over u √(h/2R) [-].
-    pub(crate) opening: f64,
+    pub(crate) opening: N,
     /// Its derivative by c.
-    pub(crate) opening_slope: f64,
+    pub(crate) opening_slope: N,
 }
 
 /// ∫ Xᵏ/(1 + X²)³ from −∞ to c, for k = 0 … 3, and the angle π/2 + arctan c.
-#[inline]
-fn moments(c: f64) -> ([f64; 4], f64) {
-    let angle = FRAC_PI_2 + c.atan();
-    let inverse = 1.0 / (1.0 + c * c);
-    let quarter = 0.25 * inverse * inverse;
-    let zeroth = c * quarter + 0.375 * (c * inverse + angle);
-    let second = 0.5 * (c * inverse + angle) - zeroth;
-    ([zeroth, -quarter, second, quarter - 0.5 * inverse], angle)
+#[inline(always)]
+fn moments<N: Number>(c: N) -> ([N; 4], N) {
+    let half = c.constant(0.5);
+    let angle = c.constant(FRAC_PI_2) + c.arc_tangent();
+    let one = c.constant(1.0);
+    let inverse = one / (one + c * c);
+    let quarter = c.constant(0.25) * inverse * inverse;
+    let both = c * inverse + angle;
+    let zeroth = c.times_plus(quarter, c.constant(0.375) * both);
+    let second = half * both - zeroth;
+    ([zeroth, -quarter, second, quarter - half * inverse], angle)
 }
 
-impl Pressed {
+impl<N: Number> Pressed<N> {
     /// The film that ends at `c`, from [`EMPTY`] on.
     ///
     /// The slope of the pressure is (X − c)(X + c + q)/(1 + X²)³ with the opening q. It must integrate to
     /// nothing.
-    #[inline]
-    pub(crate) fn until(c: f64) -> Self {
+    #[inline(always)]
+    pub(crate) fn until(c: N) -> Self {
+        let six = c.constant(-6.0);
         let ([i0, i1, i2, i3], _) = moments(c);
         let lever = c * i0 - i1;
+        let rest = i2 - c * i1;
         // c + q, which is small beside c when the film closes fast.
-        let sum = (i2 - c * i1) / lever;
+        let sum = rest / lever;
         let opening = sum - c;
         let opening_slope = -(sum + c) * i0 / lever;
-        let force = -6.0 * (i3 + opening * i2 - c * sum * i1);
-        let force_slope = -6.0 * (opening_slope * (i2 - c * i1) - (sum + c) * i1);
+        let force = six * (i3 + opening * i2 - c * sum * i1);
+        let force_slope = six * (opening_slope * rest - (sum + c) * i1);
         Self { force, force_slope, opening, opening_slope }
     }
+}
+
+/// What is left of the force at the very end of a land: see [`left_of_land`].
+const AT_END: f64 = 0.229_810_2;
+
+/// [`left_of_land`] with the closest approach on the land.
+#[inline(always)]
+pub(crate) fn left_on_land<N: Number>(edge: N) -> N {
+    let (one, half, quarter) = (edge.constant(1.0), edge.constant(0.5), edge.constant(0.25));
+    let ([i0, ..], angle) = moments(edge);
+    let inverse = one / (one + edge * edge);
+    let square = inverse * inverse;
+    (half * (angle + edge * inverse) - edge * square - quarter * square * square / i0)
+        / edge.constant(FRAC_PI_2)
+}
+
+/// [`left_of_land`] with the closest approach at the end, where the land has this slope over √(2h/R).
+#[inline(always)]
+pub(crate) fn left_at_end<N: Number>(slope: N) -> N {
+    let of = |value: f64| slope.constant(value);
+    let inner = of(1.12) + slope * of(0.138);
+    of(AT_END) / (of(1.0) + slope * (of(2.07) + slope * inner))
 }
 
 /// What is left of a film's force where the land ends, at a place of the film thickness and radius `2Rh` of
@@ -60,16 +89,7 @@ impl Pressed {
 /// Pure squeeze with no pressure at the end. Beyond the end a fit of the quadrature, good to 4 %.
 #[inline]
 pub(crate) fn left_of_land(edge: f64) -> f64 {
-    const AT_END: f64 = 0.229_810_2;
-    if edge > 0.0 {
-        let ([i0, ..], angle) = moments(edge);
-        let inverse = 1.0 / (1.0 + edge * edge);
-        let square = inverse * inverse;
-        (0.5 * (angle + edge * inverse) - edge * square - 0.25 * square * square / i0) / FRAC_PI_2
-    } else {
-        let slope = -edge;
-        AT_END / (1.0 + slope * (2.07 + slope * (1.12 + slope * 0.138)))
-    }
+    if edge > 0.0 { left_on_land(edge) } else { left_at_end(-edge) }
 }
 
 #[cfg(test)]

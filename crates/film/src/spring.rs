@@ -1,5 +1,8 @@
 //! What the surfaces give under a film.
 
+use pulp::Simd;
+use stribeck_simd::lanes::Vector;
+
 /// Deepest indentation at which the force follows the growing contact; beyond it the force rises straight, so
 /// that the time step knows a stiffest [m]. A film that presses so hard is gone within microseconds.
 const DEEPEST: f64 = 2e-6;
@@ -23,6 +26,18 @@ pub trait Spring {
 
     /// Energy at a depth of zero or more [J].
     fn energy(&self, depth: f64) -> f64;
+}
+
+/// What surfaces give under several films side by side.
+pub trait SpringInLanes: Spring {
+    /// Depths [m] under forces whose cube roots these are [N^⅓], and the derivatives by the roots.
+    fn depth_of<S: Simd>(&self, simd: S, root: Vector<S>) -> [Vector<S>; 2];
+
+    /// What the cube root of the force at a depth of zero or more [m] cannot exceed.
+    fn largest_root<S: Simd>(&self, simd: S, depth: Vector<S>) -> Vector<S>;
+
+    /// Energies [J] under forces whose cube roots these are.
+    fn energy_at<S: Simd>(&self, simd: S, root: Vector<S>) -> Vector<S>;
 }
 
 /// A cylinder that is pressed into a bed of springs, those of penalty contact.

@@ -139,6 +139,31 @@ impl Land {
         if at_end && !self.closed { None } else { surface.neighbour(facet, forward) }
     }
 
+    /// The curve of one of its facets, in reference positions.
+    pub fn curve(&self, surface: &Surface, x: &[f64], y: &[f64], facet: u32) -> FacetCurve {
+        let Arc { origin, length, tangent, rise, .. } = Arc::new(surface, x, y, facet as usize);
+        let (whole, facet) = (surface.facets(), facet as usize);
+        let before = (facet + whole - self.first) % whole;
+        FacetCurve {
+            origin,
+            length,
+            tangent,
+            rise,
+            before: before as f64,
+            behind: (self.facets - before) as f64,
+        }
+    }
+
+    /// The facet of the land before or after another one.
+    pub fn beside(&self, surface: &Surface, facet: u32, forward: bool) -> Option<u32> {
+        self.neighbour(surface, facet as usize, forward).map(|facet| facet as u32)
+    }
+
+    /// Whether it goes all around.
+    pub fn is_closed(&self) -> bool {
+        self.closed
+    }
+
     /// Distance along the land from a place to its first and its last end [m]; infinite without ends.
     #[inline]
     pub fn to_ends(&self, surface: &Surface, place: Place) -> [f64; 2] {
@@ -153,6 +178,24 @@ impl Land {
         let last = ((self.facets - before) as f64 - place.along) * mean;
         [first, last]
     }
+}
+
+/// The curve of a facet of a land, for those who take several at once: heights over its chord along the normal,
+/// which is the tangent turned clockwise by a right angle.
+#[derive(Debug, Clone, Copy)]
+pub struct FacetCurve {
+    /// Its first node [m].
+    pub origin: [f64; 2],
+    /// Length of its chord [m], and the direction.
+    pub length: f64,
+    /// See `length`.
+    pub tangent: [f64; 2],
+    /// Heights, as [`stribeck_surface::smooth::height`] says.
+    pub rise: Rise,
+    /// Facets of the land before it, and those from it on.
+    pub before: f64,
+    /// See `before`.
+    pub behind: f64,
 }
 
 /// The curve of a facet in present positions.

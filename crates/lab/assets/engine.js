@@ -1,6 +1,8 @@
 // The module and its bearing, and the loop that steps it: in a worker, or on the page where there is none.
 
-// Handles that are looked up by name elsewhere stand in the order of `handles.rs`.
+// Place of the watched roller among the handles (`at` in `handles.rs`); others are looked up by name.
+const ROLLER = 16;
+
 export class Bearing {
   constructor(instance) {
     this.x = instance.exports;
@@ -18,8 +20,11 @@ export class Bearing {
   // What a call said, or the reason why it failed.
   sure(code) {
     if (code >>> 0 !== 0xffffffff) return code;
-    const text = new Uint8Array(this.x.memory.buffer, this.x.lab_text(), this.x.lab_text_length());
-    throw new Error(new TextDecoder().decode(text) || "the module has no bearing");
+    throw new Error(this.words() || "the module has no bearing");
+  }
+
+  words() {
+    return new TextDecoder().decode(new Uint8Array(this.x.memory.buffer, this.x.lab_text(), this.x.lab_text_length()).slice());
   }
 
   numbers(address) {
@@ -28,18 +33,27 @@ export class Bearing {
 
   ask(handle, value) { this.sure(this.x.lab_ask(handle, value)); }
   apply() { return this.sure(this.x.lab_apply()) === 1; }
-  run(samples) { this.sure(this.x.lab_run(samples)); return this.numbers(this.x.lab_samples()); }
+  // Samples; `began` says why the run began anew behind them, where it did.
+  run(samples) {
+    this.began = this.sure(this.x.lab_run(samples)) === 1 ? this.words() : null;
+    return this.numbers(this.x.lab_samples());
+  }
+
   picture() { return this.numbers(this.x.lab_picture()); }
   displacement() { return this.numbers(this.x.lab_displacement()); }
   forces() { return this.numbers(this.x.lab_numbers(5)); }
+  handles() { return this.numbers(this.x.lab_numbers(4)); }
   still() {
     const [outer, inner, roller, vertexAngles, handles] = [0, 1, 2, 3, 4].map((n) => this.numbers(this.x.lab_numbers(n)));
     return { outer, inner, roller, vertexAngles, handles };
   }
 }
 
-// Answers messages of the page through `post`; `now` is a clock in ms and `later` calls back soon.
-export function serve(post, now, later) {
+// Answers messages of the page through `say`; `now` is a clock in ms and `later` calls back soon.
+export function serve(say, now, later) {
+  // Every answer says of which bearing: those of the one before may still be on their way.
+  let opened = -1;
+  const post = (message, transfer) => say({ ...message, of: opened }, transfer);
   let module = null, bearing = null, content = null, interval = 0;
   let running = false, pace = 0, scheduled = false, unread = 0, batch = 4;
   let simulated = 0, since = 0, busy = 0;
@@ -64,12 +78,13 @@ export function serve(post, now, later) {
     if (!since) { since = began; simulated = 0; busy = 0; }
     const due = pace > 0 ? Math.floor((pace * (began - since) / 1000 - simulated) / interval) : Infinity;
     const parts = [];
-    let taken = 0, spent = 0, failure = null;
-    while (taken < Math.min(due, MOST) && spent < TURN) {
+    let taken = 0, spent = 0, failure = null, anew = null;
+    while (taken < Math.min(due, MOST) && spent < TURN && !anew) {
       const samples = Math.min(batch, due - taken);
       try { parts.push(bearing.run(samples)); } catch (error) { failure = error; break; }
       taken += samples;
       spent = now() - began;
+      anew = bearing.began;
     }
     // So many samples that the clock is read often enough, and seldom.
     if (spent > 0 && taken > 0) batch = Math.max(1, Math.min(4096, Math.round(taken * 2 / Math.max(spent, 0.2))));
@@ -86,8 +101,9 @@ export function serve(post, now, later) {
       parts.reduce((at, part) => { samples.set(part, at); return at + part.length; }, 0);
       unread += 1;
       const shown = picture();
-      post({ kind: "samples", samples, speed, ...shown }, [samples.buffer, shown.picture.buffer, shown.displacement.buffer]);
+      post({ kind: "samples", samples, speed, memory: bearing.x.memory.buffer.byteLength, ...shown }, [samples.buffer, shown.picture.buffer, shown.displacement.buffer]);
     }
+    if (anew) post({ kind: "began", why: anew });
     if (failure) {
       running = false;
       post({ kind: "stopped", why: failure.message });
@@ -104,7 +120,7 @@ export function serve(post, now, later) {
     alone.open(content);
     guided.open(content);
     const perCheck = alone.forces().length, checks = forces.length / perCheck, pieces = states.length;
-    const told = { alone: 0, guided: 0, largest: 0, close: 0 };
+    const told = { alone: 0, guided: 0, largest: 0, close: 0, course: [] };
     const worst = (here, n) => here.reduce((off, force, i) => Math.max(off, Math.abs(force - forces[n * perCheck + i])), 0);
     for (const force of forces) told.largest = Math.max(told.largest, Math.abs(force));
     for (let n = 0; n < checks; n += 1) {
@@ -112,7 +128,8 @@ export function serve(post, now, later) {
       alone.run(every);
       guided.run(every);
       told.guided = Math.max(told.guided, worst(guided.forces(), n));
-      told.alone = Math.max(told.alone, worst(alone.forces(), n));
+      told.course.push(worst(alone.forces(), n));
+      told.alone = Math.max(told.alone, told.course[n]);
       if (told.alone < 1e-9 * told.largest) told.close = (n + 1) * every * interval;
     }
     return { kind: "checked", ...told, pieces, until: checks * every * interval, took: now() - began };
@@ -120,7 +137,9 @@ export function serve(post, now, later) {
 
   const tasks = {
     module({ bytes }) { module = new WebAssembly.Module(bytes); },
-    open({ bytes, step }) {
+    open({ bytes, step, bearing: number }) {
+      opened = number;
+      running = false;
       content = bytes;
       interval = step;
       bearing = fresh();
@@ -132,7 +151,9 @@ export function serve(post, now, later) {
     turn({ asked }) {
       for (const [handle, value] of asked) bearing.ask(handle, value);
       const anew = bearing.apply();
-      since = 0;
+      // The watched roller changes often, and nothing but its trace.
+      if (asked.every(([handle]) => handle === ROLLER)) { post({ kind: "handles", handles: bearing.handles() }); return; }
+      if (anew) since = 0;
       still({ anew });
       if (anew) post({ kind: "picture", ...picture() });
     },

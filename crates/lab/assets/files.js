@@ -37,26 +37,39 @@ export function poster(parts, heading, background, ink) {
   return new Promise((done) => sheet.toBlob(done, "image/png"));
 }
 
-// The scene with the handles as they stand: fields that were turned, in the text of the scene.
-export function sceneText(ron, scene, handles) {
-  let text = ron;
+// The scene with the handles as they stand: fields that were turned, in its text as the program writes it.
+export function sceneText(facts, scene, handles) {
+  let text = facts.ron;
   const turned = (name) => handles[name] !== scene[name];
-  const number = (value) => (Number.isInteger(value) ? `${value}.0` : String(value));
-  const put = (field, value) => { text = text.replace(new RegExp(`(\\b${field}: )[^,\\n]*,`), `$1${value},`); };
-  if (turned("load")) put("load_n", number(handles.load));
-  if (turned("speed")) put("speed_rpm", number(handles.speed));
-  if (turned("friction")) put("friction", number(handles.friction));
-  if (turned("contactDamping")) put("damping_ratio", number(handles.contactDamping));
-  if (turned("massDamping")) put("mass_damping_per_s", number(handles.massDamping));
-  if (turned("arcs")) put("surface", handles.arcs ? "arc" : "facet");
-  if (turned("facets")) put("roller_facets", String(handles.facets));
-  if (turned("viscosity") && handles.viscosity > 0) put("viscosity_pa_s", number(handles.viscosity));
-  const spall = ["spallRing", "spallAngle", "spallLength", "spallDepth", "spallSlope"];
-  if (spall.some(turned)) {
-    const block = handles.spallRing === 0 ? "None" : `(\n        ring: ${handles.spallRing > 1 ? "inner" : "outer"},\n        length_mm: ${number(handles.spallLength)},\n        depth_mm: ${number(handles.spallDepth)},\n        angle_deg: ${number(handles.spallAngle)},\n        edge_slope_deg: ${number(handles.spallSlope)},\n    )`;
-    text = text.replace(/(\n {4}defect: )(None|(Some\()?\([\s\S]*?\n {4}\)+),/, `$1${block},`);
+  const number = (value) => { const plain = Number(value.toPrecision(12)); return Number.isInteger(plain) ? `${plain}.0` : String(plain); };
+  const part = (name) => new RegExp(`\n {4}${name}: (?:[^\n]*[(\\[]\n[\\s\\S]*?\n {4}[)\\]]+|[^\n]*),`);
+  const whole = (name, value) => { text = text.replace(part(name), `\n    ${name}: ${value},`); };
+  const read = (name, field) => (text.match(part(name)) || [""])[0].match(new RegExp(`\n {8}${field}: ([^\n]*),`));
+  // A field that has its default may not be written: it is put first.
+  const put = (name, field, value) => {
+    text = text.replace(part(name), (block) => (read(name, field)
+      ? block.replace(new RegExp(`(\n {8}${field}: )[^\n]*,`), `$1${value},`)
+      : block.replace(/[(]\n/, `(\n        ${field}: ${value},\n`)));
+  };
+  if (turned("load")) put("operation", "load_n", number(handles.load));
+  if (turned("direction")) put("operation", "load_angle_deg", number((((Math.atan2(facts.along[1], facts.along[0]) * 180 / Math.PI + handles.direction) % 360) + 360) % 360));
+  if (turned("speed")) put("operation", "speed_rpm", number(handles.speed));
+  if (turned("clearance")) put("bearing", "inner_race_diameter_mm", number(Number(read("bearing", "inner_race_diameter_mm")[1]) - 1e-3 * (handles.clearance - scene.clearance)));
+  if (turned("friction")) put("contact", "friction", number(handles.friction));
+  if (turned("contactDamping")) put("contact", "damping_ratio", number(handles.contactDamping));
+  if (turned("massDamping")) put("solver", "mass_damping_per_s", number(handles.massDamping));
+  if (turned("arcs")) put("contact", "surface", handles.arcs ? "arc" : "facet");
+  if (turned("facets")) put("mesh", "roller_facets", String(handles.facets));
+  if (turned("step")) put("model", "step_us", number(handles.step));
+  if (turned("viscosity")) {
+    if (!(handles.viscosity > 0)) whole("film", "None");
+    else if (scene.viscosity > 0) put("film", "viscosity_pa_s", number(handles.viscosity));
+    else whole("film", `(\n        viscosity_pa_s: ${number(handles.viscosity)},\n    )`);
   }
-  const left = ["clearance", "direction"].filter(turned).map((name) => `// ${name} was turned to ${handles[name]} in the lab: see the fields of \`bearing\` and \`operation\`.\n`);
-  if (turned("viscosity") && !(handles.viscosity > 0)) left.push("// The oil was taken away in the lab: `film: None`.\n");
-  return left.join("") + text;
+  if (!["spallRing", "spallAngle", "spallLength", "spallDepth", "spallSlope"].some(turned)) return text;
+  const fields = { ring: handles.spallRing > 1 ? "inner" : "outer", length_mm: number(handles.spallLength), depth_mm: number(handles.spallDepth), angle_deg: number(handles.spallAngle), edge_slope_deg: number(handles.spallSlope) };
+  const spall = handles.spallRing === 0 ? "None" : `(\n${Object.entries(fields).map(([name, value]) => `        ${name}: ${value},\n`).join("")}    )`;
+  const more = !/\n {4}defects: \[\],/.test(text);
+  whole("defect", spall);
+  return more ? `// The spall of the lab is \`defect\`; those of \`defects\` stand as they stood.\n${text}` : text;
 }

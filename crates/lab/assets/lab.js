@@ -63,6 +63,20 @@ function buildHandles() {
   }
 }
 
+// What changes the reduction stands there greyed, with the command that makes another lab.
+function buildFixed() {
+  const row = ([name, value, set], n) => {
+    const line = document.createElement("div");
+    line.className = "handle off";
+    line.innerHTML = `<label for="fixed-${n}"></label><input id="fixed-${n}" disabled>`;
+    line.firstChild.textContent = name;
+    Object.assign(line.lastChild, { value, title: `in the reduction; ${lab.all.command} --set ${set} makes another lab` });
+    return line;
+  };
+  $("fixed").replaceChildren(...lab.facts.fixed.map(row));
+  $("command").textContent = `${lab.all.command} --set ${lab.facts.fixed[2][2]}`;
+}
+
 function handleRow(spec) {
   const row = document.createElement("div");
   row.className = "handle";
@@ -107,7 +121,7 @@ function enter(spec, text) {
 
 // Asks the engine for some handles by name.
 function turn(wanted) {
-  if (Object.keys(wanted).some((key) => key !== "roller")) trouble("");
+  if (Object.keys(wanted).some((key) => key !== "roller")) { trouble(""); $("note").textContent = ""; }
   const asked = Object.entries(wanted).map(([key, value]) => [lab.facts.specs.findIndex((spec) => spec.key === key), value]);
   const changed = asked.filter(([n, value]) => lab.handles[lab.facts.specs[n].key] !== value);
   if (!changed.length) return;
@@ -177,21 +191,34 @@ function run(on) {
   if (!on) lab.speed = null;
 }
 
+let wanted = -1;
+
 async function open(n) {
-  lab.opened = n;
+  wanted = n;
+  const bytes = await unpack(`bearing-${n}`);
+  // Another one may have been chosen meanwhile.
+  if (wanted !== n) return;
+  run(false);
+  trouble("");
+  Object.assign(lab, { opened: n, picture: null, spectra: {}, checked: null, balance: null, speed: null, askedRoller: null, askedSensor: null, displacement: new Float32Array(0) });
+  $("checked").textContent = $("note").textContent = "";
   lab.facts = lab.all.bearings[n];
   lab.scene = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, lab.facts.handles[i]]));
   lab.handles = { ...lab.scene };
   const f = lab.facts;
   $("lead").textContent = `${f.title}: ${f.rollers} rollers of ${shown(2 * f.roller, "m")}, raceways ${shown(2 * f.outer, "m")} and ${shown(2 * f.inner, "m")}, ${f.modes} modes below ${shown(f.highestHz * 1.02, "Hz")}`;
   buildHandles();
+  buildFixed();
   stage.open(f);
   lab.record = new Record(lab.layout.perSample, 1 << 17);
-  const bytes = await unpack(`bearing-${n}`);
-  lab.engine.send({ task: "open", bytes, step: f.interval });
+  lab.engine.send({ task: "open", bytes, step: f.interval, bearing: n });
 }
 
 function receive(message) {
+  if (message.of !== undefined && message.of >= 0 && message.of !== lab.opened) {
+    if (message.kind === "samples") lab.engine.send({ task: "read" });
+    return;
+  }
   const tasks = {
     still() {
       lab.handles = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, message.handles[i]]));
@@ -204,12 +231,22 @@ function receive(message) {
       if (message.opened) ready();
       lab.dirty = true;
     },
+    handles() {
+      lab.handles = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, message.handles[i]]));
+      showHandles();
+    },
     picture() { lab.picture = readPicture(message.picture, lab.layout); lab.displacement = message.displacement; lab.dirty = true; },
     samples() {
       lab.engine.send({ task: "read" });
       lab.record.add(message.samples);
       tasks.picture();
       if (message.speed) lab.speed = message.speed;
+      lab.memory = message.memory;
+    },
+    began() {
+      lab.record.clear();
+      lab.began = (lab.began || 0) + 1;
+      $("note").textContent = `The run has begun again at its equilibrium, because ${message.why}. A run of the program ends there.`;
     },
     stopped() { lab.running = false; $("run").textContent = "Run"; trouble(`The run has stopped: ${message.why}. “Start anew” begins again from the equilibrium.`); },
     refused() {
@@ -223,9 +260,9 @@ function receive(message) {
   tasks[message.kind]();
 }
 
-function showCheck({ alone, guided, largest, close, pieces, until, took }) {
+function showCheck({ alone, guided, largest, close, course, pieces, until, took }) {
   const share = (off) => (off === 0 ? "nothing" : `${(off / largest).toExponential(1)} of the largest force`);
-  lab.checked = { alone: alone / largest, guided: guided / largest, largest, close };
+  lab.checked = { alone: alone / largest, guided: guided / largest, largest, close, course: course.map((off) => off / largest) };
   const good = guided < 1e-9 * largest;
   $("checked").innerHTML = `<strong class="${good ? "good" : "bad"}">${share(guided)}</strong> is the largest difference, of forces of both raceways on all rollers up to ${shown(largest, "N")}, from ${pieces} states of the program’s run over ${shown(until / pieces, "s")} each. `
     + `In one piece from the start they agree to a billionth until ${shown(close, "s")} and differ by ${share(alone)} at most within ${shown(until, "s")}: two numbers are added at a time here and eight there, products are rounded on their own here, and a roller that strikes makes what that changes larger. (${shown(took / 1000, "s")} of computing.)`;
@@ -264,6 +301,13 @@ function markersOf(f) {
   return { list, add, f };
 }
 
+function defectMarks(add, f) {
+  add("BPFO", f.bpfo, "c-green", 5);
+  add("BPFI", f.bpfi, "c-orange", 3);
+  add("2 BSF", f.twoBsf, "c-purple", 2);
+  add("FTF", f.ftf, "c-grey", 1);
+}
+
 function drawTraces() {
   const n = Math.max(16, Math.round(Number($("span").value) / lab.facts.interval)), f = tones();
   const time = lab.record.last(0, n), x0 = time[0] ?? 0, dx = lab.facts.interval;
@@ -275,7 +319,7 @@ function drawTraces() {
   plots.trace.show({ range, series: cleaned
     ? [{ name: "as it is", colour: colourOf("c-grey"), y: raw, x0, dx }, { name: "behind the notch", colour: colourOf("c-blue"), y: cleaned, x0, dx, width: 1.6 }]
     : [{ name: "", colour: colourOf("c-blue"), y: raw, x0, dx }] });
-  $("force-name").textContent = `Force on roller ${lab.handles.roller + 1}`;
+  $("force-name").textContent = $("follow").checked && stage.spall() ? `Force on the roller at the spall, now no. ${lab.handles.roller + 1}` : `Force on roller ${lab.handles.roller + 1}`;
   plots.force.show({ range, series: [
     { name: "inner raceway", colour: colourOf("c-orange"), y: lab.record.last(4, n), x0, dx },
     { name: "outer raceway", colour: colourOf("c-blue"), y: lab.record.last(3, n), x0, dx }] });
@@ -288,9 +332,17 @@ function drawTraces() {
     series: [{ name: "", colour: colourOf("c-teal"), x: ox, y: oy, dot: true }] });
 }
 
-function drawSpectra() {
-  const rate = 1 / lab.facts.interval, f = tones(), signal = acceleration(lab.record.size);
+// Spectra are of so many samples at most: a page that computes for longer drops pictures.
+const SPECTRA = 1 << 16;
+
+function drawSpectra(which) {
+  const rate = 1 / lab.facts.interval, f = tones(), signal = acceleration(SPECTRA);
   if (signal.length < 2048) { $("tone").textContent = "The spectrum needs some milliseconds more."; lab.spectra = {}; return; }
+  if (which !== "envelope") drawSpectrum(signal, rate, f);
+  if (which !== "spectrum") drawEnvelope(signal, rate, f);
+}
+
+function drawSpectrum(signal, rate, f) {
   // A line is as wide as the record is short: half of what is there, up to a third of a second.
   let n = 1024;
   while (2 * n <= Math.min(signal.length, 32768)) n *= 2;
@@ -298,7 +350,7 @@ function drawSpectra() {
   const s = spectrum(used, rate, n), top = Math.min(0.5 * rate, Number($("reach").value));
   const { list, add } = markersOf(f);
   add(`${lab.handles.facets}·f_spin`, f.facets, "c-red", Math.floor(top / Math.max(1, f.facets)));
-  if (top < 3000 && lab.handles.spallRing) add(lab.handles.spallRing > 1 ? "BPFI" : "BPFO", lab.handles.spallRing > 1 ? f.bpfi : f.bpfo, "c-green", 8);
+  if (top < 3000) defectMarks(add, f);
   plots.spectrum.show({ range: [0, top], markers: list, note: `${shown(s.step, "Hz")} a line, ${s.segments} segment${s.segments > 1 ? "s" : ""}`,
     series: [{ name: "", colour: colourOf("c-blue"), y: s.amplitude, x0: 0, dx: s.step }] });
   const line = f.facets > 0 && f.facets < 0.5 * rate ? lineNear(s, f.facets, Math.max(3 * s.step, 0.005 * f.facets)) : null;
@@ -308,14 +360,14 @@ function drawSpectra() {
   // Where corners would pass, also where there are none.
   const corners = lab.handles.facets * f.spin;
   lab.spectra.corners = corners < 0.5 * rate ? lineNear(s, corners, Math.max(3 * s.step, 0.005 * corners)) : null;
+}
+
+function drawEnvelope(signal, rate, f) {
   const [low, high] = [1000 * Number($("low").value), 1000 * Number($("high").value)];
   const e = envelope(signal, rate, low, Math.min(high, 0.49 * rate));
   const es = spectrum(e, rate, e.length), end = Math.max(6 * f.bpfo, 40 * es.step);
   const marks = markersOf(f);
-  marks.add("BPFO", f.bpfo, "c-green", 5);
-  marks.add("BPFI", f.bpfi, "c-orange", 3);
-  marks.add("2 BSF", f.twoBsf, "c-purple", 2);
-  marks.add("FTF", f.ftf, "c-grey", 1);
+  defectMarks(marks.add, f);
   plots.envelope.show({ range: [0, end], markers: marks.list, note: low < high ? `${shown(es.step, "Hz")} a line` : "the band must begin below its end", series: [{ name: "", colour: colourOf("c-teal"), y: es.amplitude, x0: 0, dx: es.step }] });
   lab.spectra.bpfo = lineNear(es, f.bpfo, 2 * es.step + 0.01 * f.bpfo);
   lab.spectra.bpfoHz = f.bpfo;
@@ -369,15 +421,21 @@ let lastTraces = 0, lastSpectra = 0, frames = 0, lastCount = 0;
 
 function frame(now) {
   requestAnimationFrame(frame);
-  frames += 1;
   if (now - lastCount > 1000) { lab.framesPerSecond = 1000 * frames / (now - lastCount); frames = 0; lastCount = now; }
   if (!lab.picture || !lab.dirty) return;
   lab.dirty = false;
+  frames += 1;
   const length = Math.hypot(...loadVector()) || 1;
   stage.draw(lab.picture, lab.displacement, { handles: lab.handles, load: lab.handles.load, direction: loadVector().map((v) => v / length), caption: caption() });
   if (lab.running) followed();
   if (!lab.frozen && now - lastTraces > 60) { lastTraces = now; drawTraces(); }
-  if (!lab.frozen && now - lastSpectra > 400) { lastSpectra = now; drawSpectra(); showNumbers(); }
+  // One after the other, so that no picture waits for both; both where a control was turned.
+  if (!lab.frozen && now - lastSpectra > 250) {
+    drawSpectra(lastSpectra === 0 ? "both" : lab.turned ? "envelope" : "spectrum");
+    lab.turned = !lab.turned;
+    lastSpectra = now;
+    showNumbers();
+  }
   $("speed").textContent = lab.running && lab.speed ? `${shown(1000 * lab.speed.achieved)} ms of the bearing a second (${shown(1000 * lab.speed.possible)} possible), ${Math.round(lab.framesPerSecond || 0)} pictures a second` : lab.running ? "" : "paused";
 }
 
@@ -415,7 +473,7 @@ function connect() {
     else { trouble(`Roller ${$("roller").value}: must be a whole number between 1 and ${lab.facts.rollers}.`); $("roller").value = lab.handles.roller + 1; }
   });
   for (const id of ["component", "at-tone", "span", "reach", "low", "high"]) $(id).addEventListener("change", () => { lastTraces = lastSpectra = 0; lab.dirty = true; });
-  $("bearing").addEventListener("change", () => { run(false); open(Number($("bearing").value)).catch((error) => trouble(error.message)); });
+  $("bearing").addEventListener("change", () => { open(Number($("bearing").value)).catch((error) => trouble(error.message)); });
   addEventListener("hashchange", () => takePreset(decodeURIComponent(location.hash.slice(1))));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { lab.dirty = true; lastTraces = lastSpectra = 0; });
   addEventListener("resize", () => { lab.dirty = true; lastTraces = lastSpectra = 0; });
@@ -428,7 +486,7 @@ function connect() {
     const parts = ["stage", "inset", "trace", "force", "spectrum", "envelope", "orbit"].map((id) => ({ canvas: $(id), name: $(id).getAttribute("aria-label") }));
     save(`${name()}.png`, await poster(parts, `${lab.facts.title}: ${$("words").textContent.slice(0, 110)}…`, colourOf("paper"), colourOf("ink")), "image/png");
   });
-  $("ron").addEventListener("click", () => save(`${name()}.ron`, sceneText(lab.facts.ron, lab.scene, lab.handles), "text/plain"));
+  $("ron").addEventListener("click", () => save(`${name()}.ron`, sceneText(lab.facts, lab.scene, lab.handles), "text/plain"));
 }
 
 async function check() {
@@ -456,7 +514,6 @@ async function begin() {
     lab.engine.send({ task: "module", bytes });
     $("bearing").replaceChildren(...lab.all.bearings.map((b, n) => Object.assign(document.createElement("option"), { value: n, textContent: b.title })));
     $("bearing-label").hidden = lab.all.bearings.length < 2;
-    $("command").textContent = lab.all.command;
     $("about").textContent = `Stribeck ${lab.all.version}. The bearing is the reduced model: rings in their natural modes, rollers rigid with the facets that they are meshed with, contact with local compliance, cage, oil and friction. Nothing is fetched from a network.`;
     buildPresets();
     connect();

@@ -1,35 +1,38 @@
 // What the paper shows, each as a setting of the handles with two sentences. `set` gives handles by name.
 import { shown } from "./words.js";
 
+// The rate at which rollers pass the spall, by its name.
+const passing = (f, h) => (h.spallRing > 1 ? `BPFI, ${shown(f.bpfi, "Hz")}` : `BPFO, ${shown(f.bpfo, "Hz")}`);
+
 export const PRESETS = [
   {
     id: "noise", name: "Fig. 2: noise", roller: true,
     set: (scene) => ({ ...scene, arcs: 0 }), notch: false, view: "trace",
-    words: (f) => `Each time a roller leaves the spall the ring is struck, as often as rollers come by (BPFO, ${shown(f.bpfo, "Hz")}); but between these strikes the signal never rests. `
-      + "Circles that a mesh makes of straight facets are not round: what you see there is the mesh, and no bearing has it.",
+    words: (f, h) => `Whenever a roller leaves the spall it strikes the ring (${passing(f, h)}), and between two strikes a real bearing would be nearly quiet. `
+      + "This one never is: its circles are meshed with straight facets, and a polygon that rolls over a polygon knocks at every corner.",
   },
   {
     id: "facets", name: "Fig. 4: facets", roller: true,
     set: (scene) => ({ ...scene, arcs: 0, facets: Math.max(8, Math.round(0.1875 * scene.facets) * 4) }), notch: false, view: "spectrum",
-    words: (f, h) => `A roller of ${h.facets} facets turns ${shown(f.spin, "Hz")} against the cage, so that its corners pass the raceway ${h.facets} × ${f.spin.toFixed(2)} Hz = ${shown(f.facets, "Hz")}: the line with that mark. `
-      + "Change the number of facets or the speed, and the line goes with it, while lines of the ring stay where they are.",
+    words: (f, h) => `A roller with ${h.facets} facets turns about itself at ${f.spin.toFixed(2)} Hz, so its corners pass the raceway at ${h.facets} × ${f.spin.toFixed(2)} Hz = ${shown(f.facets, "Hz")}: the tone at the red mark of the spectrum. `
+      + "Change the facets or the speed and the tone moves with them; the resonances of the ring stay where they are.",
   },
   {
     id: "notch", name: "Fig. 6: notch", roller: true,
     set: (scene) => ({ ...scene, arcs: 0 }), notch: true, view: "trace",
-    words: (f) => `The paper's remedy is a notch at the tone of ${shown(f.facets, "Hz")}, of quality 15 and without delay: the thick line is what is left, the thin one what was there. `
-      + "It takes that one line away and nothing beside it, so the other tones of the mesh stay in the signal.",
+    words: (f) => `The paper's remedy is a notch filter at the tone of ${shown(f.facets, "Hz")}, of quality 15 and without delay: in the uppermost plot the thin line is the signal, the thick one what the filter leaves. `
+      + "It removes that tone alone; its multiples and all else that facets do stay in the signal.",
   },
   {
     id: "arcs", name: "The cure: arcs", roller: true,
     set: (scene) => ({ ...scene, arcs: 1 }), notch: false, view: "spectrum",
-    words: (f, h) => `The same mesh, but rollers and raceways touch as the arcs that their ${h.facets} facets stand for: nothing strikes any more when a corner comes by, and the tone is gone at its source. `
-      + "What is left between the strikes of the spall is the bearing: rollers that enter the load and leave it, and the ring that rings.",
+    words: (f, h) => `Here rollers and raceways touch as the arcs that the same ${h.facets} facets stand for: no corners pass, nothing knocks, and the tone is gone at its source. `
+      + "What is left between the strikes of the spall is the bearing itself: rollers that take up load and give it back, and the ring that rings.",
   },
   {
     id: "sound-bearing", name: "No spall", roller: true,
     set: (scene) => ({ ...scene, arcs: 1, spallRing: 0 }), notch: false, view: "spectrum",
-    words: (f) => `A bearing without a fault still moves its ring, because the rollers that carry the load pass by: ${shown(f.bpfo, "Hz")}, and that is all. `
-      + "Put the spall back by its length or its depth, and see from where on the marks of the envelope spectrum stand out.",
+    words: (f) => `A bearing without a fault moves its ring all the same, because rollers come under the load and leave it (BPFO, ${shown(f.bpfo, "Hz")}); that is all there is. `
+      + "Choose a ring under “Spall” to put one back, and the marks of the envelope spectrum stand out.",
   },
 ];

@@ -28,15 +28,24 @@ export class Stage {
     Object.assign(this, { canvas, inset, exaggeration: 0 });
     let dragging = false;
     const place = (event) => [(event.offsetX - this.cx) / this.scale, (this.cy - event.offsetY) / this.scale];
-    const sensorAt = ([x, y]) => onSensor((Math.atan2(y, x) * 360 / TAU + 360) % 360);
+    const sensorAt = (deg) => onSensor(((deg % 360) + 360) % 360), towards = ([x, y]) => sensorAt(Math.atan2(y, x) * 360 / TAU);
     canvas.addEventListener("pointerdown", (event) => {
       const at = place(event), radius = Math.hypot(...at), ring = this.facts.outer + this.facts.outerThickness;
-      if (radius > this.facts.outer && radius < ring * 1.25) { dragging = true; canvas.setPointerCapture(event.pointerId); sensorAt(at); return; }
+      if (radius > this.facts.outer && radius < ring * 1.25) { dragging = true; canvas.setPointerCapture(event.pointerId); towards(at); return; }
       const near = this.picture.rollers.findIndex((r) => Math.hypot(r.x - at[0], r.y - at[1]) < this.facts.roller);
       if (near >= 0) onRoller(near);
     });
-    canvas.addEventListener("pointermove", (event) => { if (dragging) sensorAt(place(event)); });
+    canvas.addEventListener("pointermove", (event) => { if (dragging) towards(place(event)); });
     canvas.addEventListener("pointerup", () => { dragging = false; });
+    // Arrows: the sensor around the ring, the watched roller to its neighbours.
+    canvas.tabIndex = 0;
+    canvas.addEventListener("keydown", (event) => {
+      const [round, next] = [{ ArrowLeft: 15, ArrowRight: -15 }[event.key], { ArrowUp: 1, ArrowDown: -1 }[event.key]], count = this.facts.rollers;
+      if (round) sensorAt(this.facts.sensors[this.handles.sensor].deg + round);
+      else if (next) onRoller((this.handles.roller + next + count) % count);
+      else return;
+      event.preventDefault();
+    });
   }
 
   open(facts) { this.facts = facts; this.largest = 0; }

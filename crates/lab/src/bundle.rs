@@ -10,7 +10,9 @@ use stribeck_modal::{
 };
 use stribeck_reduced::motion::{BearingInMotion, Saved};
 use stribeck_reduction::modal_bearing;
+use stribeck_run::guards::OUT_OF_PLACE;
 use stribeck_scene::{
+    advice,
     housing::HousingScene,
     kinematics::Kinematics,
     lubrication::loaded_films,
@@ -25,6 +27,7 @@ use crate::{
     content::{Content, Rates},
     error::Error,
     handles::{HANDLES, Handles, at},
+    limits::Limits,
     spall::Spall,
 };
 
@@ -73,7 +76,8 @@ fn with_sensors(scene: &Scene) -> Scene {
 
 /// Prepares a scene. `runs` is where its reduction may be kept.
 pub(crate) fn bundle(written: &Scene, runs: Option<&Path>) -> Result<Bundled, Error> {
-    let scene = with_sensors(&in_modes(written));
+    let own = in_modes(written);
+    let scene = with_sensors(&own);
     let resolved = scene.resolve();
     let Prepared { modal, steps_per_sample, bearing, start } = prepared(&resolved, runs)?;
     let spall = spall(&resolved)?;
@@ -82,11 +86,19 @@ pub(crate) fn bundle(written: &Scene, runs: Option<&Path>) -> Result<Bundled, Er
     let start = Saved::first(&bearing, start);
     let handles = handles(&resolved, &modal.parameters, spall.as_ref(), [time_step, rates.oil.viscosity]);
     let reduction = &modal.reduction;
-    let facts = facts(&scene, &resolved, reduction, &handles, time_step);
+    let facts = facts(&own, &resolved, reduction, &handles, time_step);
     let (reference, states) =
         reference(&resolved, steps_per_sample, BearingInMotion::new(bearing, start.clone()))?;
-    let content =
-        Content { modal, interval: resolved.interval, steps_per_sample, start, handles, spall, rates };
+    let content = Content {
+        modal,
+        interval: resolved.interval,
+        steps_per_sample,
+        start,
+        handles,
+        spall,
+        rates,
+        limits: limits(&resolved),
+    };
     Ok(Bundled { content, facts, reference, states })
 }
 
@@ -168,6 +180,28 @@ fn rates(scene: &Scene, modal: &stribeck_modal::ModalBearing) -> Result<Rates, E
     })
 }
 
+/// Where the program stops a run of the scene.
+fn limits(scene: &ResolvedScene) -> Limits {
+    let (written, radius) = (&scene.written, scene.roller_radius);
+    let [inner, outer] = [scene.inner_race_radius, scene.outer_race_radius];
+    let depth = written.spalls().iter().map(|spall| 1e-3 * spall.depth_mm).fold(0.0, f64::max);
+    let cage = scene.cage.as_ref().map(|cage| {
+        let room = (outer - cage.outer_radius).min(cage.outer_radius - cage.thickness - inner);
+        let pitch = 0.5 * (inner + outer);
+        if room > 0.0 { [(room + cage.thickness).min(pitch), room] } else { [pitch, f64::INFINITY] }
+    });
+    Limits {
+        energy_percent: written.guards.energy_stop_percent,
+        penetration_percent: written.guards.penetration_stop_percent,
+        element_size: scene.element_size,
+        annulus: [inner + radius - OUT_OF_PLACE * radius, outer - radius + depth + OUT_OF_PLACE * radius],
+        numbers: written.rollers_in_place().collect(),
+        roller_radius: radius,
+        cage,
+        holds_cage: advice::holds_cage(written),
+    }
+}
+
 /// Where the handles stand in the scene.
 fn handles(
     scene: &ResolvedScene,
@@ -220,8 +254,13 @@ fn facts(
         "" => scene.name.clone(),
         name => name.to_owned(),
     };
-    let sensors: Vec<Value> =
-        scene.output.sensors.iter().map(|s| json!({ "name": s.name, "deg": s.angle_deg })).collect();
+    let sensors: Vec<Value> = resolved
+        .written
+        .output
+        .sensors
+        .iter()
+        .map(|s| json!({ "name": s.name, "deg": s.angle_deg }))
+        .collect();
     let cage = resolved.cage.as_ref().map(|cage| {
         let path = resolved.path_radius();
         let [inner, outer] = cage.walls(path, resolved.roller_radius);
@@ -263,5 +302,38 @@ fn facts(
         "highestHz": reduction.squares.iter().copied().fold(0.0, f64::max).sqrt() / std::f64::consts::TAU,
         "varies": resolved.varying_duty().is_some(),
         "ron": scene.to_ron(),
+        "fixed": fixed(scene),
     })
+}
+
+/// What changes the reduction: its name in the page, how it stands in the scene, and a field that changes it
+/// with an example of a value.
+fn fixed(scene: &Scene) -> Value {
+    let (bearing, mesh) = (&scene.bearing, &scene.mesh);
+    let housing = match &scene.housing {
+        HousingScene::Adapter => "adapter",
+        HousingScene::Pedestal(_) => "pedestal",
+        HousingScene::Mesh(_) => "from a mesh",
+        HousingScene::Rigid(_) => "rigid",
+        HousingScene::Springs(_) => "springs",
+    };
+    let highest = match &scene.model {
+        ModelScene::Reduced(reduced) => format!("{} kHz", reduced.modes_khz),
+        ModelScene::Full => String::new(),
+    };
+    json!([
+        [
+            "Rollers",
+            format!("{} of {} mm", bearing.rollers, bearing.roller_diameter_mm),
+            "bearing.rollers=20"
+        ],
+        [
+            "Raceways",
+            format!("{} and {:.2} mm", bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm),
+            "bearing.outer_race_diameter_mm=200.02",
+        ],
+        ["Elements", format!("{} mm", mesh.size_mm), "mesh.size_mm=1"],
+        ["Housing", housing, "'housing=rigid(mass_kg: 3)'"],
+        ["Modes below", highest, "'model=reduced(modes_khz: 20)'"],
+    ])
 }

@@ -8,7 +8,7 @@ use stribeck_modal::{
 };
 use stribeck_reduced::motion::Saved;
 
-use crate::{error::Error, handles::Handles, spall::Spall};
+use crate::{error::Error, handles::Handles, limits::Limits, spall::Spall};
 
 /// A bearing in the page.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -27,6 +27,8 @@ pub struct Content {
     pub spall: Option<Spall>,
     /// What follows from handles.
     pub rates: Rates,
+    /// Where a run of the scene stops.
+    pub limits: Limits,
 }
 
 /// By how much numbers of the bearing grow with a handle.

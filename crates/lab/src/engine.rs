@@ -10,7 +10,8 @@ use crate::{
     dense,
     error::Error,
     handles::{self, HANDLES, Handles, at},
-    parameters::{course, modal},
+    limits::{Limits, Stop},
+    parameters::{course, limits, modal},
     readings::{self, PER_SAMPLE},
 };
 
@@ -30,16 +31,12 @@ pub struct Engine {
     /// stored [J].
     first: Option<f64>,
     most_stored: f64,
+    /// Where the run stops, with the handles as they are.
+    limits: Limits,
     samples: Vec<f64>,
     picture: Vec<f64>,
     displacement: Vec<f64>,
 }
-
-/// Imbalance of energy beyond which a run has gone wrong, over the most that rings and contacts have stored,
-/// over the heat, and over the energy of motion: those of a run of the program (`stribeck-simulation`).
-const OF_STORED: f64 = 0.25;
-const OF_HEAT: f64 = 0.01;
-const OF_MOTION: f64 = 1e-6;
 
 impl Engine {
     /// The bearing of the scene at its start.
@@ -62,6 +59,7 @@ impl Engine {
             energies: Energies::default(),
             first: None,
             most_stored: 0.0,
+            limits: content.limits.clone(),
             samples: Vec::new(),
             picture: Vec::new(),
             displacement: Vec::new(),
@@ -186,23 +184,35 @@ impl Engine {
         self.mean = mean_shape(&bearing);
         self.motion = BearingInMotion::new(bearing, start);
         self.steps_per_sample = steps;
+        self.limits = limits(&self.content, &self.asked);
         (self.first, self.most_stored, self.energies) = (None, 0.0, Energies::default());
     }
 
-    /// Takes so many samples, which are then in [`samples`](Self::samples).
+    /// Takes so many samples, which are then in [`samples`](Self::samples). Where the cage has left the place
+    /// that the model has for it, the run begins anew behind fewer of them, and the reason is returned: a run
+    /// of the program ends there.
     ///
     /// # Errors
     /// When the run has gone wrong.
-    pub fn run(&mut self, samples: usize) -> Result<(), Error> {
+    pub fn run(&mut self, samples: usize) -> Result<Option<String>, Error> {
         self.samples.clear();
         self.samples.reserve(samples * PER_SAMPLE);
         let watched = self.now[at::ROLLER] as usize;
         for _ in 0..samples {
             self.energies = self.motion.interval(self.steps_per_sample);
             readings::sample(&self.motion, watched, &self.mean, &mut self.samples);
-            self.guard()?;
+            match self.stop() {
+                None => {}
+                Some(Stop::Diverged(why)) => return Err(Error::Diverged(why)),
+                Some(Stop::CageLeft(why)) => {
+                    let samples = std::mem::take(&mut self.samples);
+                    self.restart()?;
+                    self.samples = samples;
+                    return Ok(Some(why));
+                }
+            }
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Energy that is stored and lost less the work that was put in, since the last change [J].
@@ -210,24 +220,12 @@ impl Engine {
         balance(&self.energies) - self.first.unwrap_or(0.0)
     }
 
-    fn guard(&mut self) -> Result<(), Error> {
+    fn stop(&mut self) -> Option<Stop> {
         let e = self.energies;
         self.first.get_or_insert(balance(&e));
         self.most_stored = self.most_stored.max(e.strain + e.contact);
-        let off = self.imbalance().abs();
-        let heat = e.friction + e.damping + e.contact_damping + e.film;
-        let of = |what: f64| off / what.max(f64::MIN_POSITIVE);
-        let apart = of(self.most_stored) > OF_STORED && of(heat) > OF_HEAT && of(e.kinetic) > OF_MOTION;
-        if apart || !off.is_finite() {
-            return Err(Error::Diverged(format!(
-                "energy is off by {:.3} % of the most that rings and contacts have stored at {:.4} ms. \
-                 Take a smaller time step, a larger `model.modes_khz`, or `model: full` to see which of the \
-                 two models is wrong",
-                100.0 * of(self.most_stored),
-                1e3 * self.motion.time()
-            )));
-        }
-        Ok(())
+        let off = [self.imbalance(), self.most_stored];
+        self.limits.reason(&self.motion, &e, off)
     }
 
     /// Samples of the last run, in rows of [`PER_SAMPLE`].

@@ -88,10 +88,16 @@ pub(crate) extern "C" fn lab_restart() -> u32 {
     with_engine(|engine| engine.restart().map(|()| 0))
 }
 
-/// Takes so many samples.
+/// Takes so many samples: 1 where the run has begun anew behind some of them, with the reason in the text.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_run(samples: usize) -> u32 {
-    with_engine(|engine| engine.run(samples).map(|()| 0))
+    with(|lab| {
+        let Some(engine) = &mut lab.engine else { return Ok(u32::MAX) };
+        let began = engine.run(samples)?;
+        let code = u32::from(began.is_some());
+        lab.text = began.unwrap_or_default();
+        Ok(code)
+    })
 }
 
 /// Samples of the last run.

@@ -13,6 +13,7 @@
 //! | What does the page hold of a bearing? | `content.rs` |
 //! | What can be turned, and how far? | `handles.rs` |
 //! | How does a bearing follow its handles? | `engine.rs`, `parameters.rs` |
+//! | When does a run stop? | `limits.rs` |
 //! | How does a raceway get another spall? | `spall.rs` |
 //! | What does the page read of it? | `readings.rs` |
 //! | What does the page call? | `exports.rs` |
@@ -21,6 +22,7 @@
 
 pub mod content;
 pub mod handles;
+pub mod limits;
 
 pub mod engine;
 mod parameters;

@@ -43,6 +43,14 @@ pub struct Page {
     pub bytes_of_module: usize,
 }
 
+/// The module that this program was built with, if it was (feature `embed`, `build.rs`).
+pub fn embedded() -> Option<&'static [u8]> {
+    #[cfg(embedded)]
+    return Some(include_bytes!(env!("STRIBECK_LAB_EMBEDDED")));
+    #[cfg(not(embedded))]
+    None
+}
+
 /// Whether these bytes are those of a module.
 pub fn is_module(bytes: &[u8]) -> bool {
     bytes.starts_with(MAGIC)

@@ -12,6 +12,7 @@ use crate::{
     content::{Content, Rates},
     error::Error,
     handles::{Handles, at},
+    limits::Limits,
     spall::{self, Spall},
 };
 
@@ -86,6 +87,15 @@ pub(crate) fn modal(content: &Content, to: &Handles, duty: Option<Duty>) -> Resu
         parameters.duty = duty;
     }
     Ok(modal)
+}
+
+/// Where a run of some handles stops: rollers go as deep as the spall is, and in as the inner raceway goes.
+pub(crate) fn limits(content: &Content, to: &Handles) -> Limits {
+    let mut limits = content.limits.clone();
+    let depth = |spall: Option<Spall>| spall.map_or(0.0, |spall| spall.depth);
+    limits.annulus[0] -= (0.5e-6 * (to[at::CLEARANCE] - content.handles[at::CLEARANCE])).max(0.0);
+    limits.annulus[1] += (depth(spall(to)) - depth(content.spall)).max(0.0);
+    limits
 }
 
 /// Leaves one sensor: others cost time.

@@ -12,7 +12,9 @@ use std::path::{Path, PathBuf};
 use devtools::Tab;
 use serde_json::Value;
 use stribeck_lab::page;
-use stribeck_scene::scene::{ModelScene, ReducedScene, Scene};
+use stribeck_scene::scene::{
+    ContactSurface, DefectRing, DefectScene, ModelScene, PocketWalls, ReducedScene, Scene,
+};
 use stribeck_testing::Scratch;
 
 /// Names under which Chromium is installed.
@@ -29,13 +31,21 @@ const TOOLS: &str = r#"
     if (!what()) throw new Error(`in vain: ${what}; the page says “${document.getElementById("trouble").textContent}”`);
   };
   const set = (id, value) => { const field = document.getElementById(id); field.value = value; field.dispatchEvent(new Event("change")); };
+  // What is saved and what is played is kept here.
+  const saved = [], played = [], urlOf = URL.createObjectURL.bind(URL);
+  URL.createObjectURL = (blob) => { saved.push(blob); return urlOf(blob); };
+  HTMLAnchorElement.prototype.click = () => {};
+  const start = AudioBufferSourceNode.prototype.start;
+  AudioBufferSourceNode.prototype.start = function (...with_) { played.push(this.buffer); return start.apply(this, with_); };
+  const press = async (id) => { const before = saved.length; document.getElementById(id).click(); await until(() => saved.length > before); return saved[before]; };
   const text = (id) => document.getElementById(id).textContent;
   await until(() => (lab && lab.ready) || !document.getElementById("trouble").hidden);
 "#;
 
-/// The paper's bearing, coarse.
+/// The paper's bearing, coarse, with a cage that its rollers hold.
 fn coarse() -> Scene {
     let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
+    scene.cage.as_mut().expect("the paper's").pocket = PocketWalls::Corners;
     scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 2.0 });
     scene.mesh.size_mm = 2.0;
     scene.mesh.roller_facets = 88;
@@ -96,7 +106,10 @@ fn example_the_page_runs_and_its_numbers_are_right() {
     let folder = Scratch::create("lab-browser");
     let file = written(&folder, "lab.html", &page_of(&coarse(), &module));
     let script = r#"
+      await until(() => lab.picture.time > 0.05);
+      const memory = lab.memory;
       await until(() => lab.picture.time > 0.2);
+      const grown = lab.memory - memory, pictures = lab.framesPerSecond;
       const started = lab.balance.off, bpfo = { ...lab.spectra.bpfo }, predicted = lab.spectra.bpfoHz;
       set("handle-load", "30000");
       await until(() => lab.handles.load === 30000);
@@ -111,11 +124,14 @@ fn example_the_page_runs_and_its_numbers_are_right() {
       document.getElementById("run").click();
       document.getElementById("check").click();
       await until(() => lab.checked);
-      return { started, bpfo: bpfo.hz, above: bpfo.above, predicted, loadedAt, carried: moved.carried, load: moved.load,
+      return { started, bpfo: bpfo.hz, above: bpfo.above, predicted, loadedAt, carried: moved.carried, load: moved.load, grown, pictures,
         refused, stillLoad: lab.handles.load, guided: lab.checked.guided, close: lab.checked.close, trouble: text("trouble"), worker: lab.engine.worker };
     "#;
     let said = asked(&browser, &folder, &format!("file://{}", file.display()), script);
     assert_eq!(said["trouble"], "", "{said}");
+    assert_eq!(number(&said, "grown"), 0.0, "memory while it steps: {said}");
+    // Thirty on a machine that is left alone; one that is shared draws fewer.
+    assert!(number(&said, "pictures") > 5.0, "{said}");
     assert!(number(&said, "loadedAt") > 0.2, "the load is turned while the bearing runs: {said}");
     // Forces sum to the load and the weight, before and after.
     assert!(number(&said, "started").abs() < 1e-3, "{said}");
@@ -181,4 +197,197 @@ fn refuses_a_browser_without_web_assembly() {
     let address = format!("file://{}", file.display());
     let said = asked(&browser, &folder, &address, "return text('trouble');");
     assert!(said.as_str().is_some_and(|words| words.contains("runs no WebAssembly")), "{said}");
+}
+
+/// A browser without vectors in WebAssembly gets a sentence.
+#[test]
+fn refuses_a_browser_without_vectors() {
+    let Some((browser, module)) = tools() else { return };
+    let folder = Scratch::create("lab-scalar");
+    let off = "<head><script>WebAssembly.validate = () => false</script>";
+    let file = written(&folder, "lab.html", &page_of(&coarse(), &module).replacen("<head>", off, 1));
+    let address = format!("file://{}", file.display());
+    let said = asked(&browser, &folder, &address, "return text('trouble');");
+    assert!(said.as_str().is_some_and(|words| words.contains("no vectors in WebAssembly (SIMD)")), "{said}");
+}
+
+/// A run that goes wrong stops with the words of the program, and starts anew from handles that are right.
+#[test]
+fn refuses_to_go_on_with_a_run_that_goes_wrong() {
+    let Some((browser, module)) = tools() else { return };
+    let folder = Scratch::create("lab-wrong");
+    let mut scene = coarse();
+    scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 5.0 });
+    let file = written(&folder, "lab.html", &page_of(&scene, &module));
+    let script = r#"
+      set("handle-speed", "20000");
+      await until(() => text("trouble") !== "");
+      const stopped = text("trouble"), running = lab.running;
+      set("handle-speed", "500");
+      document.getElementById("restart").click();
+      await until(() => lab.running && lab.picture.time > 0.01 && lab.picture.time < 0.5);
+      return { stopped, running, after: text("trouble") };
+    "#;
+    let said = asked(&browser, &folder, &format!("file://{}", file.display()), script);
+    let stopped = said["stopped"].as_str().expect("words");
+    assert!(stopped.contains("The run has stopped: energy is off by"), "{stopped}");
+    assert!(stopped.contains("Take a smaller `model.step_us`"), "{stopped}");
+    assert_eq!((&said["running"], &said["after"]), (&Value::from(false), &Value::from("")), "{said}");
+}
+
+/// Three bearings in one page: each runs with its own rollers, and is itself again when it is chosen again.
+#[test]
+fn example_a_page_with_three_bearings_goes_from_one_to_another() {
+    let Some((browser, module)) = tools() else { return };
+    let folder = Scratch::create("lab-three");
+    let small = |designation: &str| {
+        let text = format!(
+            "(name: \"{}\", bearing: \"{designation}\", model: reduced(modes_khz: 15.0), mesh: \
+             (size_mm: 1.5))",
+            designation.replace(' ', "")
+        );
+        Scene::parse(&text, "a scene").expect("a bearing of the catalogue")
+    };
+    let scenes = [coarse(), small("NU 205"), small("6205")];
+    let rollers = scenes.each_ref().map(|scene| scene.bearing.rollers as f64);
+    let html = page::page(&scenes, &module, None, "stribeck lab").expect("sound scenes").html;
+    let file = written(&folder, "lab.html", &html);
+    let script = r#"
+      const pick = document.getElementById("bearing"), seen = [];
+      for (const n of [1, 2, 0, 2, 1]) {
+        set("bearing", n);
+        await until(() => lab.opened === n && lab.picture && lab.picture.time > 0.02 && lab.record.count > 100);
+        seen.push({ n, title: lab.facts.title, rollers: lab.picture.rollers.length, load: lab.handles.load,
+          largest: Math.max(...lab.picture.rollers.map((r) => r.outer)), lead: text("lead"), running: lab.running });
+      }
+      // From one to the next before the first is there.
+      set("bearing", 0); set("bearing", 1); set("bearing", 2);
+      await until(() => lab.opened === 2 && lab.picture && lab.picture.time > 0.01);
+      return { seen, shown: !document.getElementById("bearing-label").hidden, names: [...pick.options].map((o) => o.textContent),
+        trouble: text("trouble"), errors: lab.errors, last: lab.picture.rollers.length };
+    "#;
+    let said = asked(&browser, &folder, &format!("file://{}", file.display()), script);
+    assert_eq!((&said["trouble"], &said["shown"]), (&Value::from(""), &Value::from(true)), "{said}");
+    assert_eq!(said["names"], serde_json::json!(["coarse", "NU 205", "6205"]));
+    for seen in said["seen"].as_array().expect("a list") {
+        let n = number(seen, "n") as usize;
+        assert_eq!(number(seen, "rollers"), rollers[n], "{seen}");
+        // The most loaded roller has more than its share of the load and less than all of it.
+        let share = number(seen, "largest") / number(seen, "load");
+        assert!(share > 1.0 / rollers[n] && share < 1.2, "{seen}");
+        assert!(
+            seen["lead"].as_str().is_some_and(|words| words.starts_with(["coarse:", "NU 205:", "6205:"][n])),
+            "{seen}"
+        );
+        assert_eq!(seen["running"], true);
+    }
+    assert_eq!(number(&said, "last"), rollers[2]);
+}
+
+/// What is saved is what is shown: samples, a picture, and the scene with its handles, which is read again.
+#[test]
+fn roundtrip_what_is_saved_and_what_is_heard() {
+    let Some((browser, module)) = tools() else { return };
+    let folder = Scratch::create("lab-saved");
+    let scene = coarse();
+    let file = written(&folder, "lab.html", &page_of(&scene, &module));
+    let script = r#"
+      const handles = { load: 41000, speed: 612.5, friction: 0.011, contactDamping: 0.25, massDamping: 120, clearance: 12,
+        viscosity: 0, arcs: 1, facets: 96, spallRing: 2, spallAngle: 77, spallLength: 8.5, spallDepth: 0.15, spallSlope: 60, step: 1.25 };
+      for (const [key, value] of Object.entries(handles)) { set(`handle-${key}`, String(value)); await until(() => lab.handles[key] === value || text("trouble")); }
+      await until(() => lab.picture.time > 0.05 && lab.record.count > 4000);
+      document.getElementById("listen").click();
+      const sounding = document.getElementById("listen").getAttribute("aria-pressed"), words = text("listen");
+      document.getElementById("listen").click();
+      document.getElementById("run").click();
+      await wait(300);
+      const csv = await (await press("csv")).text(), ron = await (await press("ron")).text(), png = await press("png");
+      const bitmap = await createImageBitmap(png), sound = played[0], data = sound.getChannelData(0);
+      set("handle-spallRing", "0");
+      await until(() => lab.handles.spallRing === 0);
+      set("handle-viscosity", "0.08");
+      await until(() => lab.handles.viscosity === 0.08);
+      const oiled = await (await press("ron")).text();
+      return { csv: csv.slice(0, 600), rows: csv.trim().split("\n").length - 1, count: lab.record.count, ron, oiled, trouble: text("trouble"),
+        last: csv.trim().split("\n").at(-1).split(",").map(Number), time: lab.picture.time,
+        wide: bitmap.width, high: bitmap.height, type: png.type, sounding, words,
+        seconds: sound.duration, rate: sound.sampleRate, loudest: data.reduce((most, v) => Math.max(most, Math.abs(v)), 0) };
+    "#;
+    let said = asked(&browser, &folder, &format!("file://{}", file.display()), script);
+    assert_eq!(said["trouble"], "", "{said}");
+    let csv = said["csv"].as_str().expect("text");
+    assert!(csv.starts_with("time_s,acceleration_x_m_s2,acceleration_y_m_s2,"), "{csv}");
+    assert!(number(&said, "rows") > 4000.0, "{said}");
+    let last = said["last"].as_array().expect("a row");
+    assert_eq!(last.len(), 10);
+    assert!(last.iter().all(|n| n.as_f64().is_some_and(f64::is_finite)), "{last:?}");
+    assert!(number(&said, "wide") > 1000.0 && number(&said, "high") > 500.0, "{said}");
+    assert_eq!((&said["type"], &said["sounding"]), (&Value::from("image/png"), &Value::from("true")));
+    assert!(said["words"].as_str().is_some_and(|words| words.contains("at true pitch")), "{said}");
+    // As long as what was recorded, at its rate or half of it, and not clipped.
+    assert!(number(&said, "seconds") > 0.03 && number(&said, "rate") >= 25e3, "{said}");
+    assert!((0.1..=1.0).contains(&number(&said, "loudest")), "{said}");
+    let read = |ron: &Value| {
+        let file = written(&folder, "saved.ron", ron.as_str().expect("text"));
+        Scene::read(&file).unwrap_or_else(|error| panic!("{error}\n{ron}"))
+    };
+    let mut wanted = scene.clone();
+    wanted.output.frames = None;
+    wanted.operation.load_n = 41_000.0;
+    wanted.operation.speed_rpm = 612.5;
+    wanted.contact.friction = 0.011;
+    wanted.contact.damping_ratio = 0.25;
+    wanted.solver.mass_damping_per_s = 120.0;
+    wanted.bearing.inner_race_diameter_mm -= 0.012;
+    wanted.film = None;
+    wanted.contact.surface = ContactSurface::Arc;
+    wanted.mesh.roller_facets = 96;
+    wanted.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 1.25 });
+    wanted.defect = Some(DefectScene {
+        ring: DefectRing::Inner,
+        length_mm: 8.5,
+        depth_mm: 0.15,
+        angle_deg: 77.0,
+        edge_slope_deg: 60.0,
+    });
+    assert_eq!(read(&said["ron"]).to_ron(), wanted.to_ron());
+    let oiled = read(&said["oiled"]);
+    assert_eq!(oiled.defect, None);
+    assert_eq!(oiled.film.map(|film| film.viscosity_pa_s), Some(0.08));
+}
+
+/// The page steps two scenes as the program does: forces from ten states of its run, a millisecond each,
+/// differ by rounding alone; in one piece they do until something strikes (docs/guide/src/lab.md).
+#[test]
+fn invariant_the_page_steps_as_the_program_does() {
+    // What vectors of another width and products that are rounded leave after 500 steps.
+    const ROUNDING: f64 = 1e-9;
+    let Some((browser, module)) = tools() else { return };
+    let folder = Scratch::create("lab-check");
+    let read = |name: &str| {
+        let file = format!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/{}.ron"), name);
+        Scene::read(file).expect("a scene of the repository")
+    };
+    let scenes = ["quick", "deep_groove"].map(read);
+    let html = page::page(&scenes, &module, None, "stribeck lab").expect("sound scenes").html;
+    let file = written(&folder, "lab.html", &html);
+    let script = r#"
+      const all = [];
+      for (const n of [0, 1]) {
+        set("bearing", n);
+        await until(() => lab.opened === n && lab.picture);
+        document.getElementById("run").click();
+        document.getElementById("check").click();
+        await until(() => lab.checked);
+        all.push({ guided: lab.checked.guided, first: Math.max(...lab.checked.course.slice(0, 30)), words: text("checked") });
+      }
+      return { all, trouble: text("trouble") };
+    "#;
+    let said = asked(&browser, &folder, &format!("file://{}", file.display()), script);
+    assert_eq!(said["trouble"], "", "{said}");
+    for checked in said["all"].as_array().expect("a list") {
+        assert!(number(checked, "guided") < ROUNDING, "{checked}");
+        assert!(number(checked, "first") < ROUNDING, "{checked}");
+        assert!(checked["words"].as_str().is_some_and(|words| words.contains("from 10 states")), "{checked}");
+    }
 }

@@ -1,5 +1,7 @@
 //! A bearing that follows its handles, on this machine: it is the bearing of the program until one is turned.
 
+use std::ops::ControlFlow;
+
 use stribeck_lab::{
     Engine,
     content::Content,
@@ -8,8 +10,15 @@ use stribeck_lab::{
     readings::PER_SAMPLE,
 };
 use stribeck_reduced::motion::{BearingInMotion, Saved};
-use stribeck_scene::scene::{ModelScene, ReducedScene, Scene};
-use stribeck_simulation::reduced::{Prepared, prepared};
+use stribeck_run::host::Host;
+use stribeck_scene::{
+    run_dir::RunDir,
+    scene::{ModelScene, ReducedScene, Scene},
+};
+use stribeck_simulation::{
+    reduced::{Prepared, prepared},
+    simulate,
+};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse.
@@ -165,4 +174,44 @@ fn refuses_handles_that_no_bearing_has() {
     assert!(refused.contains("floor"), "{refused}");
     assert_eq!(engine.handles(), &content.handles);
     engine.run(10).expect("a sound run");
+}
+
+/// A run that goes wrong stops at the same step as the program's, and says the same.
+#[test]
+fn issue_a_run_that_stops_says_what_the_program_says() {
+    let folder = Scratch::create("lab-stops");
+    let fast = |scene: &mut Scene| scene.operation.speed_rpm = 20_000.0;
+    let soft = |scene: &mut Scene| scene.guards.penetration_stop_percent = 1.0;
+    let loose = |scene: &mut Scene| scene.solver.duration_ms = 300.0;
+    let kinds: [(&str, &dyn Fn(&mut Scene)); 3] = [
+        ("energy is off by", &fast),
+        ("contact has sunk in by", &soft),
+        ("the cage has cut through a ring", &loose),
+    ];
+    for (n, (words, change)) in kinds.into_iter().enumerate() {
+        let mut scene = coarse(2.0);
+        scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, step_us: 5.0 });
+        change(&mut scene);
+        let dir = RunDir::create(folder.join(format!("run {n}"))).expect("a new folder");
+        let info =
+            simulate(&scene, &dir, &host(), &mut |_| ControlFlow::Continue(())).expect("a sound scene");
+        let said = info.stop_reason.expect("it stops");
+        assert!(said.contains(words), "{said}");
+        let content = page::content(&scene, Some(folder.path())).expect("a sound scene");
+        let mut engine = Engine::new(content).expect("a bearing");
+        let why = (0..30_000).find_map(|_| match engine.run(1) {
+            Ok(began) => began,
+            Err(error) => Some(error.to_string()),
+        });
+        assert_eq!(why.as_ref(), Some(&said));
+        // Where nothing but the cage was lost, the page begins again.
+        assert_eq!(engine.picture()[0] == 0.0, words.contains("cage"), "{words}");
+    }
+}
+
+/// A program around the run whose clocks stand still.
+fn host() -> Host<'static> {
+    let clock: &dyn Fn() -> f64 = &|| 0.0;
+    let [version, commit, machine] = ["test"; 3].map(String::from);
+    Host { threads: 1, version, commit, machine, wall_s: clock, cpu_s: clock, ranks: None }
 }

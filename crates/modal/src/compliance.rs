@@ -64,7 +64,12 @@ impl Compliance {
             let y = self.spacing * i as f64;
             integral - y.powi(4) * (0.5 * (first - slope * y) + 0.4 * slope * y)
         });
-        Curve { spacing: self.spacing, per_spacing: 1.0 / self.spacing, more: more.collect(), pieces }
+        let spans = pieces.iter().enumerate().map(|(i, [first, slope])| {
+            let next = if i + 1 < pieces.len() { (i + 1) as f64 } else { f64::INFINITY };
+            [self.spacing * i as f64, *first, *slope, self.spacing * next]
+        });
+        let (spans, more) = (spans.collect(), more.collect());
+        Curve { spacing: self.spacing, per_spacing: 1.0 / self.spacing, spans, more, pieces }
     }
 
     /// The largest load that the curve holds [N].
@@ -94,6 +99,8 @@ pub struct Curve {
     per_spacing: f64,
     /// g at the beginning of each piece [m/N], and by how much it grows with y.
     pieces: Vec<[f64; 2]>,
+    /// Of each piece: where it begins over y, g there, by how much it grows with y, and where it ends.
+    spans: Vec<[f64; 4]>,
     /// By how much ∫ C dF exceeds at each piece what it would be if all of the curve lay on that piece [J].
     more: Vec<f64>,
 }
@@ -109,6 +116,12 @@ impl Curve {
         force * force * (0.5 * intercept + 0.6 * slope * y) - self.more[piece]
     }
 
+    /// Where the first piece ends over y = √F [√N].
+    #[inline(always)]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
     /// Approach [m] and its derivative [m/N] at a force that is not negative [N], and the piece that it lies
     /// on.
     #[inline(always)]
@@ -122,11 +135,7 @@ impl Curve {
     /// ends.
     #[inline(always)]
     pub fn piece_at(&self, y: f64) -> [f64; 4] {
-        let last = self.pieces.len() - 1;
-        let piece = ((y * self.per_spacing) as usize).min(last);
-        let [first, slope] = self.pieces[piece];
-        let next = if piece < last { (piece + 1) as f64 } else { f64::INFINITY };
-        [self.spacing * piece as f64, first, slope, self.spacing * next]
+        self.spans[((y * self.per_spacing) as usize).min(self.spans.len() - 1)]
     }
 
     /// Approach and derivative, most likely on a piece that is known.

@@ -70,7 +70,9 @@ impl Bearing {
             Lubrication::new(oil, &raceways, rims, law.penalty, *thickness)
         });
         let seat = reduction.springs.as_ref();
-        let seat = seat.map(|seat| Springs::new(seat, reduction.padded, parameters.seat_friction, time_step));
+        let seat = seat.map(|seat| {
+            Springs::new(seat, reduction.padded, parameters.seat_friction, oil.is_some(), time_step)
+        });
         let cage = reduction.cage.zip(parameters.pockets.as_ref());
         let cage = cage.map(|((inertia, centre), pockets)| {
             Cage::new(pockets, inertia, centre, &reduction.wall_compliance)

@@ -1,13 +1,15 @@
 //! What films of oil do to rollers, and through them to modes and rings, in a step and at the start (THEORY
 //! §9.4, §9.5).
 
-use stribeck_simd::lanes::LANES;
+use pulp::Simd;
+use stribeck_film::side_by_side::PushedRows;
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     drive::RingRotation,
-    oil::{FilmStep, Films, Lubrication, RollerView},
+    oil::{FilmForces, FilmStep, Films, Lubrication, RollerView, SeenRollers},
     rollers::{Rollers, block::Block},
-    row::of_one,
+    row::{Rows, lanes, load, store},
     state::State,
 };
 
@@ -19,8 +21,9 @@ pub(crate) struct OilForces {
     pub(crate) stiffness: [f64; LANES],
     /// Moments that the drives of outer and inner ring make good [N m].
     pub(crate) drive: [f64; 2],
-    /// What their springs hold beside those of contact [J].
+    /// What their springs hold beside those of contact [J], and heat [J].
     pub(crate) stored: f64,
+    heat: f64,
 }
 
 impl Lubrication {
@@ -79,9 +82,10 @@ impl Lubrication {
 
     /// Adds the forces of films to those on eight rollers between the raceways, the outer and the inner one
     /// of which turn as given.
-    #[inline(never)]
-    pub(crate) fn add_film_forces(
+    #[inline(always)]
+    pub(crate) fn add_film_forces<S: Simd>(
         &self,
+        simd: S,
         rollers: &Rollers,
         films: &mut Films,
         block: &mut Block,
@@ -89,51 +93,148 @@ impl Lubrication {
         now: FilmStep,
     ) -> OilForces {
         let mut by_oil = OilForces::default();
-        for lane in 0..block.count {
-            let i = block.first + lane;
-            let rim = self.rim(rollers.rim_of[i]);
-            let [x, y] = of_one(&block.centre, lane);
-            let velocity @ [vx, vy] = of_one(&block.velocity, lane);
-            let ([bx, by], [mx, my]) = (of_one(&block.by, lane), of_one(&block.moving, lane));
-            let [tx, ty] = of_one(&block.tilt, lane);
-            let distance = block.distance[lane];
-            let orbit = (x * vy - y * vx) / (distance * distance);
-            // The outer raceway under the roller moves with the modes, and because the roller goes on to
-            // another place of it.
-            let from_raceway = [[x - bx, y - by], [x, y]];
-            let relative = [[vx - mx - orbit * tx, vy - my - orbit * ty], velocity];
-            for (k, race) in self.raceways.iter().enumerate() {
-                let ([x, y], [rx, ry]) = (from_raceway[k], relative[k]);
-                let RingRotation { rate, turned } = turning[k].unwrap_or(RingRotation::STILL);
-                let [rx, ry] = [rx + rate * y, ry - rate * x];
-                let contacts = &block.contacts[k];
-                let seen = RollerView {
-                    centre: of_one(&contacts.centre, lane),
-                    spin: of_one(&contacts.spin, lane),
-                    velocity: turned.back([rx, ry]),
-                    turning: block.spin[lane] - rate,
-                };
-                let now = FilmStep { felt: now.felt && k == 0, ..now };
-                let by_film = race.film_forces(rim, race.of_roller(&mut films.at[k], i), &seen, now);
-                let [fx, fy] = turned.forth(by_film.force);
-                block.force[k][0][lane] += fx;
-                block.force[k][1][lane] += fy;
-                block.moment[lane] += by_film.moment;
-                by_oil.drive[k] += x * fy - y * fx + by_film.moment;
-                by_oil.stored += by_film.stored;
-                films.heat += by_film.heat;
-                if k == 0 {
-                    // As of contact: downhill along a raceway that is displaced more or less (THEORY §9.3).
-                    let uphill = (fx * tx + fy * ty) / distance;
-                    let [rx, ry] = of_one(&block.radial, lane);
-                    block.downhill[0][lane] += uphill * ry;
-                    block.downhill[1][lane] -= uphill * rx;
-                    (by_oil.normal[lane], by_oil.stiffness[lane]) = (by_film.normal, by_film.stiffness);
+        let round = block.films.round();
+        for (k, race) in self.raceways.iter().enumerate() {
+            let turning = turning[k].unwrap_or(RingRotation::STILL);
+            let seen = SeenRollers::of(simd, block, k, turning);
+            let now = FilmStep { felt: now.felt && k == 0, ..now };
+            let mut force = Rows::default();
+            for land in 0..race.lands() {
+                let eight = &mut block.films.on[k][land];
+                let flown = eight.flow(simd, race, land, (&seen, self.radius(), round), now, &mut force);
+                if let Some(pushed) = flown {
+                    by_oil.add_eight(simd, &pushed, now);
+                }
+                // Rims that are not round, and films that there may be from now on.
+                let missing = if now.looks() { eight.missing(round) } else { 0 };
+                for lane in lanes((block.bits & !round) | missing) {
+                    let by_film = self.alone(rollers, films, block, [k, land, lane], &seen.one(lane), now);
+                    force[0][lane] += by_film.force[0];
+                    force[1][lane] += by_film.force[1];
+                    block.moment[lane] += by_film.moment;
+                    by_oil.add_one(k, lane, &by_film);
                 }
             }
+            by_oil.drive[k] += push_rollers(simd, block, k, turning, &force);
         }
+        films.heat += by_oil.heat;
         by_oil
     }
+
+    /// What the film of one roller on a land does, by itself: numbers of the raceway, of the land and of the
+    /// roller in its block are given.
+    #[inline(never)]
+    fn alone(
+        &self,
+        rollers: &Rollers,
+        films: &mut Films,
+        block: &mut Block,
+        [k, land, lane]: [usize; 3],
+        seen: &RollerView,
+        now: FilmStep,
+    ) -> FilmForces {
+        let (race, i) = (&self.raceways[k], block.first + lane);
+        let rim = self.rim(rollers.rim_of[i]);
+        let kept = &mut race.of_roller(&mut films.at[k], i)[land];
+        if (block.films.round() >> lane) & 1 == 0 {
+            return race.film_force(land, rim, kept, seen, now);
+        }
+        let eight = &mut block.films.on[k][land];
+        let mut film = eight.film(lane);
+        let by_film = race.film_force(land, rim, &mut film, seen, now);
+        eight.load(race, land, lane, &film);
+        by_film
+    }
+}
+
+impl OilForces {
+    /// Adds what films of eight rollers do.
+    #[inline(always)]
+    fn add_eight<S: Simd>(&mut self, simd: S, pushed: &PushedRows, now: FilmStep) {
+        let (mut heat, mut stored) = (Vector::all(simd, 0.0), Vector::all(simd, 0.0));
+        for at in vector_starts(simd) {
+            heat = heat + Vector::load(simd, &pushed.heat.0, at);
+            if now.last {
+                stored = stored + Vector::load(simd, &pushed.stored.0, at);
+            }
+            if now.felt {
+                let had = [Vector::load(simd, &self.normal, at), Vector::load(simd, &self.stiffness, at)];
+                (had[0] + Vector::load(simd, &pushed.force.0, at)).store(&mut self.normal, at);
+                (had[1] + Vector::load(simd, &pushed.stiffness.0, at)).store(&mut self.stiffness, at);
+            }
+        }
+        self.heat += heat.sum();
+        self.stored += stored.sum();
+    }
+
+    /// Adds what a film of one roller does at a raceway, but for its force.
+    fn add_one(&mut self, raceway: usize, lane: usize, by_film: &FilmForces) {
+        self.drive[raceway] += by_film.moment;
+        self.heat += by_film.heat;
+        self.stored += by_film.stored;
+        if raceway == 0 {
+            self.normal[lane] += by_film.normal;
+            self.stiffness[lane] += by_film.stiffness;
+        }
+    }
+}
+
+impl SeenRollers {
+    /// Of a block, by the outer (0) or the inner (1) raceway, which turns as given.
+    #[inline(always)]
+    fn of<S: Simd>(simd: S, block: &Block, raceway: usize, turning: RingRotation) -> Self {
+        let contacts = &block.contacts[raceway];
+        let mut seen = Self { centre: contacts.centre, spin: contacts.spin, ..Self::default() };
+        let rate = Vector::all(simd, turning.rate);
+        for at in vector_starts(simd) {
+            let ([x, y], [vx, vy]) = (load(simd, &block.centre, at), load(simd, &block.velocity, at));
+            let (mut from, mut relative) = ([x, y], [vx, vy]);
+            if raceway == 0 {
+                // The outer raceway under the roller moves with the modes, and because the roller goes on to
+                // another place of it.
+                let distance = Vector::load(simd, &block.distance, at);
+                let orbit = x.times_plus(vy, -(y * vx)) / (distance * distance);
+                let ([bx, by], [mx, my]) = (load(simd, &block.by, at), load(simd, &block.moving, at));
+                let [tx, ty] = load(simd, &block.tilt, at);
+                from = [x - bx, y - by];
+                relative = [vx - mx - orbit * tx, vy - my - orbit * ty];
+            }
+            let relative = [rate.times_plus(from[1], relative[0]), relative[1] - rate * from[0]];
+            store(turning.back(simd, relative), &mut seen.velocity, at);
+            (Vector::load(simd, &block.spin, at) - rate).store(&mut seen.turning, at);
+        }
+        seen
+    }
+}
+
+/// Adds forces of films at a raceway, given in its frame, to those on eight rollers. Returns the moment that
+/// its drive makes good [N m].
+#[inline(always)]
+fn push_rollers<S: Simd>(
+    simd: S,
+    block: &mut Block,
+    raceway: usize,
+    turning: RingRotation,
+    force: &Rows,
+) -> f64 {
+    let mut drive = Vector::all(simd, 0.0);
+    for at in vector_starts(simd) {
+        let [fx, fy] = turning.forth(simd, load(simd, force, at));
+        let [ox, oy] = load(simd, &block.force[raceway], at);
+        store([ox + fx, oy + fy], &mut block.force[raceway], at);
+        let [mut x, mut y] = load(simd, &block.centre, at);
+        if raceway == 0 {
+            let [bx, by] = load(simd, &block.by, at);
+            (x, y) = (x - bx, y - by);
+            // As of contact: downhill along a raceway that is displaced more or less (THEORY §9.3).
+            let [tx, ty] = load(simd, &block.tilt, at);
+            let uphill = fx.times_plus(tx, fy * ty) / Vector::load(simd, &block.distance, at);
+            let ([rx, ry], [dx, dy]) = (load(simd, &block.radial, at), load(simd, &block.downhill, at));
+            store([uphill.times_plus(ry, dx), dy - uphill * rx], &mut block.downhill, at);
+        }
+        drive = drive + x.times_plus(fy, -(y * fx));
+    }
+    drive.sum()
 }
 
 impl Rollers {

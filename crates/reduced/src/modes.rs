@@ -10,7 +10,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     drive::LoadChange,
-    row::{Numbers, Row, Single, in_single, largest_of},
+    row::{Numbers, Row, Single, closed_in_single, largest_of},
     seat::{RollerResponses, Springs},
     state::State,
     tally::Tally,
@@ -70,7 +70,7 @@ impl Modes {
 pub(crate) struct Structure {
     /// Groups of modes.
     groups: usize,
-    /// Shapes at the vertices of the outer raceway, in rows.
+    /// Shapes at the vertices of the outer raceway, in rows; the first vertex stands again after the last one.
     shapes: Vec<Single>,
     /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
     pub(crate) farthest: Vec<Row>,
@@ -88,7 +88,7 @@ impl Structure {
     pub(crate) fn new(reduction: &Reduction, damping: &Damping) -> Self {
         Self {
             groups: reduction.padded / LANES,
-            shapes: in_single(&reduction.shapes),
+            shapes: closed_in_single(&reduction.shapes, 2 * reduction.padded / LANES),
             farthest: largest_of::<2>(&reduction.shapes, reduction.padded),
             dampers: reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect(),
             mass_damping: damping.mass_of_modes,
@@ -97,22 +97,12 @@ impl Structure {
         }
     }
 
-    /// Vertices of the outer raceway.
-    #[inline(always)]
-    fn vertices(&self) -> usize {
-        self.shapes.len() / (2 * self.groups)
-    }
-
     /// The place on a facet with this share of its second vertex.
     #[inline(always)]
     pub(crate) fn raceway_point(&self, facet: usize, share: f64) -> RacewayPoint<'_> {
-        let second = if facet + 1 == self.vertices() { 0 } else { facet + 1 };
         let groups = self.groups;
-        let shapes = |vertex: usize| {
-            let both = &self.shapes[2 * groups * vertex..2 * groups * (vertex + 1)];
-            [&both[..groups], &both[groups..2 * groups]]
-        };
-        RacewayPoint { share, shapes: [shapes(facet), shapes(second)] }
+        let (first, second) = self.shapes[2 * groups * facet..][..4 * groups].split_at(2 * groups);
+        RacewayPoint { share, shapes: [first.split_at(groups).into(), second.split_at(groups).into()] }
     }
 
     /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity

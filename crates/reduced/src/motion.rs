@@ -103,7 +103,7 @@ impl BearingInMotion {
     /// A bearing that continues from `saved`.
     pub fn new(bearing: Bearing, saved: Saved) -> Self {
         let mut scratch = Scratch::new(&bearing);
-        scratch.load(&saved.state);
+        scratch.load(&bearing, &saved.state);
         let sensors = vec![SensorReading::default(); bearing.reduction.sensors.len()];
         Self { bearing, saved, scratch, sensors }
     }

@@ -5,6 +5,7 @@
 //! without oil has nothing of this.
 
 mod bodies;
+mod eight;
 mod nearest;
 
 use serde::{Deserialize, Serialize};
@@ -15,8 +16,10 @@ use stribeck_surface::Error as SurfaceError;
 use crate::{
     contact::{outline::Outline, raceway::Raceway},
     error::Error,
+    rollers::Rollers,
 };
 use bodies::BodySpring;
+pub(crate) use eight::{BlockFilms, SeenRollers};
 pub(crate) use nearest::RollerView;
 use nearest::{Curved, Nearest, Rim};
 
@@ -82,6 +85,13 @@ pub(crate) struct FilmStep {
     pub(crate) felt: bool,
 }
 
+impl FilmStep {
+    /// Whether films are looked for where there are none.
+    pub(crate) fn looks(&self) -> bool {
+        self.step.is_multiple_of(REST)
+    }
+}
+
 /// What films do to a roller in a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct FilmForces {
@@ -141,6 +151,19 @@ impl Lubrication {
         &self.rims[number as usize]
     }
 
+    /// The films of a block of rollers, the first and number of which are given.
+    pub(crate) fn block_films(&self, rollers: &Rollers, films: &Films, of: [usize; 2]) -> BlockFilms {
+        BlockFilms::of(&self.raceways, &self.rims, rollers, films, of)
+    }
+
+    /// Radius of rims that are round [m].
+    pub(crate) fn radius(&self) -> f64 {
+        match self.rims[..] {
+            [Rim::Round(radius), ..] => radius,
+            _ => 0.0,
+        }
+    }
+
     /// Whether films may be those of rollers with these rims.
     pub(crate) fn fits(&self, films: &Films, rim_of: &[u32]) -> bool {
         self.raceways.iter().zip(&films.at).all(|(race, films)| {
@@ -165,54 +188,54 @@ impl OiledRaceway {
         self.curved.lands.iter().map(move |land| Film { places: places(land), ..Film::default() })
     }
 
-    /// What the films of a roller do in a step.
-    pub(crate) fn film_forces(
+    /// What the film of a roller on one of the lands does in a step.
+    pub(crate) fn film_force(
         &self,
+        land: usize,
         rim: &Rim,
-        films: &mut [Film],
+        film: &mut Film,
         seen: &RollerView,
         now: FilmStep,
     ) -> FilmForces {
         let mut by_film = FilmForces::default();
-        for ((law, land), film) in self.films.iter().zip(&self.curved.lands).zip(films) {
-            if film.layer.is_none() {
-                if !now.step.is_multiple_of(REST) {
-                    continue;
-                }
-                // From anywhere: a land may come into reach at its other end.
-                film.places = nearest::begin(&self.curved, land, rim, seen);
-            } else if film.fixed && !now.step.is_multiple_of(FIXED) {
-                continue;
+        let (law, land) = (&self.films[land], &self.curved.lands[land]);
+        if film.layer.is_none() {
+            if !now.looks() {
+                return by_film;
             }
-            let nearest = Nearest::new(&self.curved, land, rim, seen, &mut film.places);
-            if nearest.gap > WIDEST {
-                film.layer = None;
-                continue;
+            // From anywhere: a land may come into reach at its other end.
+            film.places = nearest::begin(&self.curved, land, rim, seen);
+        } else if film.fixed && !now.step.is_multiple_of(FIXED) {
+            return by_film;
+        }
+        let nearest = Nearest::new(&self.curved, land, rim, seen, &mut film.places);
+        if nearest.gap > WIDEST {
+            film.layer = None;
+            return by_film;
+        }
+        let speed = nearest.speed(seen, land);
+        let pushed = match &mut film.layer {
+            Some(layer) => {
+                let share = law.share(nearest.ends, nearest.tilt, layer);
+                law.flow(layer, nearest.gap, speed, share, now.dt)
             }
-            let speed = nearest.speed(seen, land);
-            let pushed = match &mut film.layer {
-                Some(layer) => {
-                    let share = law.share(nearest.ends, nearest.tilt, layer);
-                    law.flow(layer, nearest.gap, speed, share, now.dt)
-                }
-                None => {
-                    let share = law.share(nearest.ends, nearest.tilt, &Layer::at(nearest.gap));
-                    let (layer, pushed) = law.settled(nearest.gap, speed, share);
-                    film.layer = Some(layer);
-                    pushed
-                }
-            };
-            film.fixed = pushed.fixed;
-            by_film.add(&nearest, &pushed);
-            if let (true, Some(layer)) = (now.felt, film.layer) {
-                // What dry contact would carry there responses by itself.
-                let [all, dry] =
-                    [layer.force, layer.force - pushed.force].map(|force| law.spring.stiffness(force));
-                by_film.stiffness += all - dry;
+            None => {
+                let share = law.share(nearest.ends, nearest.tilt, &Layer::at(nearest.gap));
+                let (layer, pushed) = law.settled(nearest.gap, speed, share);
+                film.layer = Some(layer);
+                pushed
             }
-            if now.last {
-                by_film.stored += law.stored(&pushed);
-            }
+        };
+        film.fixed = pushed.fixed;
+        by_film.add(&nearest, &pushed);
+        if let (true, Some(layer)) = (now.felt, film.layer) {
+            // What dry contact would carry there responds by itself.
+            let [all, dry] =
+                [layer.force, layer.force - pushed.force].map(|force| law.spring.stiffness(force));
+            by_film.stiffness += all - dry;
+        }
+        if now.last {
+            by_film.stored += law.stored(&pushed);
         }
         by_film
     }
@@ -237,6 +260,11 @@ impl OiledRaceway {
             }
         }
         by_film
+    }
+
+    /// Lands, each of which may hold a film of every roller.
+    pub(crate) fn lands(&self) -> usize {
+        self.films.len()
     }
 
     /// The films of a roller among those of all.

@@ -53,6 +53,14 @@ pub(crate) fn in_single(table: &[f64]) -> Vec<Single> {
     table.as_chunks::<LANES>().0.iter().map(|row| Single(row.map(|number| number as f32))).collect()
 }
 
+/// The same of a closed boundary, with the row or rows of its first vertex repeated after those of the last
+/// one, so that both ends of every facet lie one after the other.
+pub(crate) fn closed_in_single(table: &[f64], per_vertex: usize) -> Vec<Single> {
+    let mut rows = in_single(table);
+    rows.extend_from_within(..per_vertex.min(rows.len()));
+    rows
+}
+
 /// Numbers that belong together, in either precision.
 pub(crate) trait Numbers {
     /// Those in the lanes from `at` on.
@@ -139,33 +147,5 @@ impl Iterator for Lanes {
         let lane = self.0.trailing_zeros() as usize;
         self.0 &= self.0.wrapping_sub(1);
         if lane < LANES { Some(lane) } else { None }
-    }
-}
-
-/// The places of all bits that are set.
-#[inline(always)]
-pub(crate) fn bits(of: u128) -> impl Iterator<Item = usize> {
-    [(of as u64, 0), ((of >> u64::BITS) as u64, u64::BITS)]
-        .into_iter()
-        .flat_map(|(half, first)| Bits { half, first })
-}
-
-/// See [`bits`].
-struct Bits {
-    half: u64,
-    first: u32,
-}
-
-impl Iterator for Bits {
-    type Item = usize;
-
-    #[inline(always)]
-    fn next(&mut self) -> Option<usize> {
-        if self.half == 0 {
-            return None;
-        }
-        let place = self.first + self.half.trailing_zeros();
-        self.half &= self.half - 1;
-        Some(place as usize)
     }
 }

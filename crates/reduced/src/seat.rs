@@ -11,7 +11,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     roller_force::RollerForce,
-    row::{Numbers, Row, Single, in_single, largest_of},
+    row::{Numbers, Row, Single, closed_in_single, in_single, largest_of},
 };
 pub(crate) use responses::RollerResponses;
 pub use state::SeatState;
@@ -40,8 +40,8 @@ pub(crate) struct Springs {
     /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
     by_mode: Vec<Single>,
     by_spring: Vec<Single>,
-    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, and by those of
-    /// the preload.
+    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, the first one again
+    /// after the last, and by those of the preload.
     by_rollers: Vec<Single>,
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.
@@ -57,18 +57,20 @@ pub(crate) struct Springs {
     /// Largest displacement of any vertex of the raceway by a unit that each opens or slips [1].
     farthest: Vec<Row>,
     friction: f64,
+    /// Whether films make rollers press that hardly do.
+    with_oil: bool,
     at_rest: Passes,
     in_step: Passes,
 }
 
 impl Springs {
     /// Of a seat whose tables have been rounded to single precision.
-    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64, time_step: f64) -> Self {
+    pub(crate) fn new(seat: &Seat, modes: usize, friction: f64, with_oil: bool, time_step: f64) -> Self {
         let n = 2 * seat.padded;
         let rows =
             |values: &[f64]| -> Vec<Row> { values.as_chunks::<LANES>().0.iter().copied().map(Row).collect() };
         let by_mode = in_single(&seat.tension);
-        let by_rollers = in_single(&seat.by_rollers);
+        let by_rollers = closed_in_single(&seat.by_rollers, n / LANES);
         let stiffness = in_single(&seat.stiffness);
         let found = seat.tension.len() / n;
         let of =
@@ -97,6 +99,7 @@ impl Springs {
             pressed: rows(&seat.pressed),
             farthest: largest_of::<1>(&seat.by_rollers, n),
             friction,
+            with_oil,
             at_rest: Passes { most: 1000, still: STILL * mean },
             in_step: Passes { most: 200, still: STILL.max(STILL_IN_STEP * time_step * time_step) * mean },
         }
@@ -127,7 +130,7 @@ impl Springs {
             && panels
                 .pressed
                 .iter()
-                .all(|roller| (roller.facet as usize) < self.by_rollers.len() / self.rows())
+                .all(|roller| (roller.facet as usize + 1) < self.by_rollers.len() / self.rows())
     }
 
     /// Lets the seat open and slip where it does at rest, the modes being at `q`.
@@ -172,6 +175,9 @@ impl Springs {
         for (roller, by) in responses.rollers.iter().zip(responses.by.chunks_exact(self.rows())) {
             by_rollers += roller.force * dot(simd, by, panels.open.as_chunks().0);
         }
+        for &(vertex, force) in &responses.fixed {
+            by_rollers += force * dot(simd, self.at_vertex(vertex), panels.open.as_chunks().0);
+        }
         [heat, self.stored(simd, panels, tension) + by_rollers]
     }
 
@@ -205,12 +211,18 @@ impl Springs {
         sum.sum()
     }
 
+    /// Tensions by a unit force at a vertex.
+    #[inline(always)]
+    fn at_vertex(&self, vertex: usize) -> &[Single] {
+        let rows = self.rows();
+        &self.by_rollers[rows * vertex..][..rows]
+    }
+
     /// Tensions by a unit force at both vertices of a facet.
     #[inline(always)]
     fn ends(&self, facet: usize) -> [&[Single]; 2] {
         let groups = self.rows();
-        let second = if (facet + 1) * groups == self.by_rollers.len() { 0 } else { facet + 1 };
-        [&self.by_rollers[groups * facet..][..groups], &self.by_rollers[groups * second..][..groups]]
+        self.by_rollers[groups * facet..][..2 * groups].split_at(groups).into()
     }
 }
 
@@ -242,7 +254,7 @@ mod tests {
             at_sensors: Vec::new(),
             flexibility: vec![1e-6],
         };
-        let springs = Springs::new(&seat, LANES, friction, 1e-6);
+        let springs = Springs::new(&seat, LANES, friction, false, 1e-6);
         let panels = springs.at_rest(LANES, 0);
         (springs, panels)
     }

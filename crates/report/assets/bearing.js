@@ -153,7 +153,9 @@
         ctx.strokeStyle = colours.blue; ctx.lineWidth = 1; ctx.beginPath();
         for (let f = 0; f < spec.frames; f++) {
           const y = (v) => top + high * (1 - extremes[2 * f + v] / 65535);
-          ctx.moveTo(x(f), y(0) + 0.5); ctx.lineTo(x(f), y(1) - 0.5);
+          // Joined to the frame before: where a frame is one sample, its extremes are one point.
+          if (f) ctx.lineTo(x(f), y(0) + 0.5); else ctx.moveTo(x(f), y(0) + 0.5);
+          ctx.lineTo(x(f), y(1) - 0.5);
         }
         ctx.stroke();
       });

@@ -212,6 +212,7 @@
     const first = visibleMarks(spec.marks, from, to).map((m) => [pixels(m.x), widthOf(m.label)]);
     const rowLimit = Math.min(5, Math.max(-1, ...rowsOf(first)));
     const held = spec.levels.map((level) => level.y);
+    const cursors = spec.cursor && spectrumCursors(figure, spec, { theme, prefixOf, data });
     const fixed = (range) => {
       if (range) return { range: () => range };
       if (!held.length) return {};
@@ -238,7 +239,7 @@
       ],
       bands: pairsOf(spec.series.flatMap((s, i) => (s.edge ? [i + 1] : []))).map((pair) => (
         { series: pair, fill: () => theme(spec.series[pair[0] - 1].colour) + "40" })),
-      plugins: [decorate(spec, rowLimit), wheelZoom(holder, spec.sync), ...(spec.run_time ? [playhead] : [])],
+      plugins: [decorate(spec, rowLimit), wheelZoom(holder, spec.sync), ...(spec.run_time ? [playhead] : []), ...(cursors ? [cursors.plugin] : [])],
     }, data, holder);
     if (spec.x.range) chart.setScale("x", { min: from, max: to });
     // uPlot resets to the data; a figure with a fixed range resets to that.
@@ -261,6 +262,7 @@
       label();
       holder.after(button);
     }
+    if (cursors) cursors.attach(chart, holder);
     figure.classList.add("live");
     return chart;
   };

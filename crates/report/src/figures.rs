@@ -17,8 +17,9 @@ use super::course;
 use super::pictures::Pictures;
 use crate::Error;
 use crate::plot::{Axis, Band, Colour, Figure, Mark, Picture, Series, Tab};
+use stribeck_analysis::duty::{DutyFinding, turns as duty_turns};
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::measured::Course;
+use stribeck_analysis::measured::{Course, Varying};
 use stribeck_analysis::record::Record;
 
 /// Shortest record with a spectrogram [s].
@@ -56,11 +57,11 @@ impl Item {
         }
     }
 
-    /// Its place among figures behind tabs; pictures have none.
+    /// Its place among figures behind tabs.
     pub(super) fn tab(&self) -> Option<&Tab> {
         match self {
             Self::Chart(figure) => figure.tab.as_ref(),
-            Self::Picture(_) => None,
+            Self::Picture(picture) => picture.tab.as_ref(),
         }
     }
 
@@ -115,7 +116,7 @@ impl Figures {
             spectra: charts(spectra::raw(findings))
                 .chain(charts(spectra::notched(findings)))
                 .chain(charts(spectra::others(findings)))
-                .chain(drawn(spectrogram(findings)?))
+                .chain(drawn(over_time(record, findings)?))
                 .collect(),
             forces: charts(forces::crossings(findings)).collect(),
             bearing: drawn(pictures.load)
@@ -145,19 +146,53 @@ impl Figures {
     }
 }
 
-/// Spectra of the leading sensor over time, of a record that is long enough to have a course.
-fn spectrogram(findings: &Findings) -> Result<Vec<Picture>, Error> {
+/// Spectra of the leading sensor over time, of a record that is long enough to have a course; where the speed
+/// changes over speed and angle, too.
+fn over_time(record: &Record<'_>, findings: &Findings) -> Result<Vec<Picture>, Error> {
+    const TABS: &str = "course";
     let Some(leading) = findings.sensors.first() else { return Ok(Vec::new()) };
+    let rate_hz = 1.0 / findings.interval_s;
     if findings.interval_s * (leading.raw_g.len() as f64) < SPECTROGRAM_S {
         return Ok(Vec::new());
     }
-    let mut picture = course::picture(&Course::of(&leading.raw_g, 1.0 / findings.interval_s)?, "g");
+    let varying = varying(record, findings, &leading.raw_g, rate_hz)?;
+    let course = match &varying {
+        Some(varying) => varying.course.clone(),
+        None => Course::of(&leading.raw_g, rate_hz)?,
+    };
+    let mut picture = course::picture(&course, "g").tabbed(TABS, "spectrogram");
     picture.title = format!("Spectrogram of a_y at sensor “{}”", leading.name);
     // The picture begins at zero, where a stretch of a record does not.
     if findings.start_s > findings.interval_s {
         picture.note += &format!(" Time counts from {:.3} s of the run.", findings.start_s);
     }
-    Ok(vec![picture])
+    let mut pictures = vec![picture];
+    let speeds = varying.as_ref().map(|varying| varying.speeds_rpm.as_slice());
+    pictures.extend(course::waterfall(&course, "g", speeds).map(|picture| picture.tabbed(TABS, "waterfall")));
+    let orders = findings.summary.duty.as_ref().map_or(&[][..], |duty| &duty.orders);
+    pictures.extend(varying.as_ref().and_then(|varying| {
+        let map = course::order_map(varying.orders.as_ref()?, "g", varying.band_hz, orders);
+        Some(map.tabbed(TABS, "order map"))
+    }));
+    Ok(pictures)
+}
+
+/// Spectra over speed and angle, of a shaft that changes its speed and does not turn back.
+fn varying(
+    record: &Record<'_>,
+    findings: &Findings,
+    signal: &[f64],
+    rate_hz: f64,
+) -> Result<Option<Varying>, Error> {
+    let unsteady = findings.summary.duty.as_ref().is_some_and(DutyFinding::is_unsteady);
+    let Some(turns) = duty_turns(record).filter(|turns| unsteady && turns.len() == signal.len()) else {
+        return Ok(None);
+    };
+    if turns.windows(2).any(|pair| pair[1] < pair[0]) {
+        return Ok(None);
+    }
+    let band_hz = findings.summary.duty.as_ref().and_then(|duty| Some(duty.envelope.as_ref()?.band_hz));
+    Ok(Some(Varying::of(signal, rate_hz, &turns, band_hz.unwrap_or((0.05 * rate_hz, 0.45 * rate_hz)))?))
 }
 
 fn charts(figures: impl IntoIterator<Item = Figure>) -> impl Iterator<Item = Item> {

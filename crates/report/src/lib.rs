@@ -22,6 +22,7 @@
 //! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
+//! | several channels of one machine | [`write_joint`] | `joint.html`, `joint.json` |
 //!
 //! [`plot`] draws figures of any signal, for a page (zoomable) and for a document (SVG, PNG).
 
@@ -35,6 +36,7 @@ mod sound;
 mod answer;
 mod course;
 mod figures;
+mod kurtogram;
 mod moving;
 mod paper;
 mod pictures;
@@ -58,10 +60,10 @@ pub use campaign::{CampaignIndex, CampaignRun, write_campaign};
 pub use comparison::{MOST_COMPARED, answer as comparison_in_words, difference, mean, write_comparison};
 pub use ensemble::write_ensemble;
 pub use error::Error;
-pub use measured::write_measured;
+pub use measured::{Baseline, write_measured};
 pub use run::{write, write_between};
 pub use sources::write_sources;
-pub use trend::{TrendEntry, write_trend};
+pub use trend::{TrendEntry, write_joint, write_trend};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -6,34 +6,53 @@ use maud::{DOCTYPE, Markup, html};
 use stribeck_dsp::BandEnvelope;
 use stribeck_scene::run_dir::write_atomic;
 
-use crate::page::{head, json, sentence};
-use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
-use crate::{Error, course, sound};
+use crate::figures::Item;
+use crate::page::{self, head, json, sentence};
+use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
+use crate::{Error, course, kurtogram, sound};
 use stribeck_analysis::measured::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
 
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
 
-/// Writes `findings.json` and `report.html` of the record in `file` into `folder`, which is made.
+/// A record of the same machine when it was sound, drawn behind another one.
+#[derive(Debug, Clone)]
+pub struct Baseline {
+    /// Name of its file.
+    pub name: String,
+    /// What it shows.
+    pub analysis: Analysis,
+}
+
+/// Writes `findings.json` and `report.html` of the record in `file` into `folder`, which is made; over a
+/// `baseline` where there is one.
 ///
 /// # Errors
 /// [`Error::Write`] and [`Error::Run`] when the folder or its files cannot be written, [`Error::Drawing`].
-pub fn write_measured(folder: &Path, file: &str, analysis: &Analysis) -> Result<(), Error> {
+pub fn write_measured(
+    folder: &Path,
+    file: &str,
+    analysis: &Analysis,
+    baseline: Option<&Baseline>,
+) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
     write_atomic(&folder.join("findings.json"), json(&analysis.findings)?.as_bytes())?;
-    let page = page(file, analysis)?.into_string();
+    let page = page(file, analysis, baseline)?.into_string();
     write_atomic(&folder.join("report.html"), page.as_bytes())?;
     Ok(())
 }
 
-fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
+fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Markup, Error> {
     let findings = &analysis.findings;
     let unit = findings.unit.as_deref().unwrap_or("unit");
-    let drawn = |figures: Vec<Figure>| figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>();
-    let evidence = drawn(evidence(analysis)?)?;
-    let figures = drawn(figures(analysis, unit))?;
-    let course = course::picture(&analysis.course, unit).to_html()?;
+    let drawn = |figures: Vec<Figure>| {
+        page::figures(&figures.into_iter().map(|figure| Item::Chart(Box::new(figure))).collect::<Vec<_>>())
+    };
+    let evidence = drawn(evidence(analysis, baseline)?)?;
+    let figures = drawn(figures(analysis, unit, baseline))?;
+    let pictures: Vec<Item> = pictures(analysis, unit).into_iter().map(Item::Picture).collect();
+    let pictures = page::figures(&pictures)?;
     let title = format!("{file}, {}", findings.channel);
     let number = |x: f64| format!("{x:.4}");
     let health = &findings.health;
@@ -48,33 +67,112 @@ fn page(file: &str, analysis: &Analysis) -> Result<Markup, Error> {
                     @if let Some(rpm) = findings.speed_rpm { (format!("; the shaft turns at {rpm:.1} rpm")) }
                     @if let Some(bearing) = &findings.bearing { "; " (bearing) }
                     "."
+                    @if let Some(baseline) = baseline { " In grey behind it: " (baseline.name) "." }
                 }
                 p { strong { (findings.verdict) } }
                 @if let Some(zone) = &findings.zone { p { "Velocity: " (zone.to_string()) "." } }
                 @if let Some(words) = spall_in_words(findings) { p { (words) } }
                 h2 #evidence { "What the verdict rests on" }
-                @for figure in evidence { (figure) }
+                (evidence)
                 h3 { "What would change it" }
                 ul { @for words in what_would_change(findings) { li { (words) } } }
                 h2 #families { "Defect families" }
                 @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
                 h2 #signal { "Signal" }
                 table {
-                    tr { th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } th { "Spectral entropy" } @if findings.velocity_mm_s.is_some() { th { "Velocity, 10–1000 Hz (mm/s)" } } }
+                    tr { @if baseline.is_some() { th { "" } } th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } th { "Spectral entropy" } @if findings.velocity_mm_s.is_some() { th { "Velocity, 10–1000 Hz (mm/s)" } } }
                     tr {
+                        @if baseline.is_some() { td { "this record" } }
                         td { (number(health.mean)) } td { (number(health.rms)) } td { (number(health.peak)) } td { (number(health.crest_factor)) }
                         td { (number(health.kurtosis)) } td { (number(health.skewness)) } td { (number(health.impulse_factor)) }
                         td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
                     }
+                    @if let Some(baseline) = baseline { (levels_of(baseline, findings.velocity_mm_s.is_some())) }
                 }
                 (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz, findings.unit.as_deref().unwrap_or("")))
-                @for figure in figures { (figure) }
-                (course)
+                (figures)
+                h2 #course { "Bands and course" }
+                (pictures)
                 h2 #notes { "Notes" }
-                ul class="notes" { @for note in &findings.notes { li { (sentence(note)) } } }
+                ul class="notes" { @for note in &findings.notes { li { (page::with_code(&sentence(note))) } } }
             }
         }
     })
+}
+
+/// The levels of the baseline as a row of the table.
+fn levels_of(baseline: &Baseline, with_velocity: bool) -> Markup {
+    let findings = &baseline.analysis.findings;
+    let health = &findings.health;
+    let numbers = [
+        health.mean,
+        health.rms,
+        health.peak,
+        health.crest_factor,
+        health.kurtosis,
+        health.skewness,
+        health.impulse_factor,
+        health.spectral_entropy,
+    ];
+    html! {
+        tr {
+            td { (baseline.name) }
+            @for number in numbers { td { (format!("{number:.4}")) } }
+            @if with_velocity { td { (findings.velocity_mm_s.map_or("–".to_owned(), |v| format!("{v:.4}"))) } }
+        }
+    }
+}
+
+/// The kurtogram; the record over time, and where the speed varies over speed and angle.
+fn pictures(analysis: &Analysis, unit: &str) -> Vec<Picture> {
+    const TABS: &str = "course";
+    let findings = &analysis.findings;
+    let outlined = shown(&findings.families).into_iter().filter(|f| f.over.is_none()).filter_map(|f| {
+        let why = format!("where {} stands highest", f.name.shocks_name());
+        Some(kurtogram::Chosen { band_hz: f.band_hz?, why })
+    });
+    let mut pictures: Vec<Picture> =
+        kurtogram::picture(&analysis.bands, &outlined.collect::<Vec<_>>()).into_iter().collect();
+    match &analysis.varying {
+        Some(varying) => {
+            pictures.push(course::picture(&varying.course, unit).tabbed(TABS, "over time"));
+            let waterfall = course::waterfall(&varying.course, unit, Some(&varying.speeds_rpm));
+            pictures.extend(waterfall.map(|picture| picture.tabbed(TABS, "over speed")));
+            let orders: Vec<(String, f64)> = match findings.speed_rpm {
+                Some(rpm) => orders_of(&findings.families, rpm / 60.0),
+                None => Vec::new(),
+            };
+            pictures.extend(varying.orders.as_ref().map(|map| {
+                course::order_map(map, unit, varying.band_hz, &orders).tabbed(TABS, "over the angle")
+            }));
+        }
+        None => {
+            pictures.push(course::picture(&analysis.course, unit).tabbed(TABS, "spectrogram"));
+            let waterfall = course::waterfall(&analysis.course, unit, None);
+            pictures.extend(waterfall.map(|picture| picture.tabbed(TABS, "waterfall")));
+        }
+    }
+    pictures
+}
+
+/// Knocks of each family in a turn of the shaft.
+fn orders_of(families: &[Family], shaft_hz: f64) -> Vec<(String, f64)> {
+    let order = |f: &Family| {
+        let hz = f.measured_hz.unwrap_or(f.expected_hz);
+        (f.name.shocks_name().to_owned(), f.name.shocks_per_period() * hz / shaft_hz)
+    };
+    families.iter().map(order).collect()
+}
+
+/// A cursor with the families and the shaft of a record.
+fn cursor(findings: &MeasuredFindings) -> Cursor {
+    let family = |f: &Family| {
+        let hz = f.name.shocks_per_period() * f.measured_hz.unwrap_or(f.expected_hz);
+        (f.name.shocks_name().to_owned(), hz)
+    };
+    let mut known: Vec<(String, f64)> = findings.families.iter().map(family).collect();
+    known.extend(findings.speed_rpm.map(|rpm| ("shaft".to_owned(), rpm / 60.0)));
+    Cursor { known }
 }
 
 /// The length of a spall with its interval, or its bound.
@@ -116,7 +214,7 @@ fn families(families: &[Family]) -> Markup {
     }
 }
 
-fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
+fn figures(analysis: &Analysis, unit: &str, baseline: Option<&Baseline>) -> Vec<Figure> {
     let findings = &analysis.findings;
     let waveform = Figure::new("waveform", "Signal", Axis::si("Time", "s"), Axis::plain("Level", unit))
         .caption("The beginning of the record.")
@@ -129,22 +227,37 @@ fn figures(analysis: &Analysis, unit: &str) -> Vec<Figure> {
         ));
     let (frequencies, density) = &analysis.density;
     let step = frequencies.get(1).copied().unwrap_or(1.0);
-    let spectrum = Figure::new(
+    let mut spectrum = Figure::new(
         "density",
         "Power spectral density",
         Axis::si("Frequency", "Hz"),
         Axis::plain("Density", &format!("dB re 1 ({unit})²/Hz")),
     )
-    .caption("Welch's average over the whole record, Hann window.")
-    .with(Series::sampled(
+    .caption(match baseline {
+        Some(baseline) => format!("What stands above the grey curve is new since {}.", baseline.name),
+        None => "Steady lines are narrow peaks, resonances wide humps.".to_owned(),
+    })
+    .note("Welch's average over the whole record, Hann window.");
+    if let Some(Baseline { name, analysis }) = baseline {
+        let (frequencies, density) = &analysis.density;
+        let step = frequencies.get(1).copied().unwrap_or(1.0);
+        let values = density.iter().map(|p| decibel(*p)).collect();
+        spectrum = spectrum.with(Series::sampled(name, Colour::Grey, 0.0, step, values));
+    }
+    spectrum = spectrum.with(Series::sampled(
         "density",
         Colour::Blue,
         0.0,
         step,
         density.iter().map(|p| decibel(*p)).collect(),
     ));
+    spectrum.cursor = Some(cursor(findings));
     let mut figures = vec![waveform, spectrum];
-    figures.extend(analysis.enhanced.as_ref().map(|spectrum| enhanced(spectrum, &findings.families)));
+    figures.extend(analysis.enhanced.as_ref().map(|spectrum| {
+        let mut figure = enhanced(spectrum, &findings.families);
+        figure.cursor = Some(cursor(findings));
+        figure
+    }));
     figures
 }
 
@@ -165,19 +278,55 @@ fn shown(families: &[Family]) -> Vec<&Family> {
 
 /// Of each family that is shown its envelope spectrum, the combs that it is compared with and the mean over
 /// its period; without a family the envelope of the band that knocks most.
-fn evidence(analysis: &Analysis) -> Result<Vec<Figure>, Error> {
+fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figure>, Error> {
     let findings = &analysis.findings;
     let mut figures = Vec::new();
     for family in shown(&findings.families) {
-        figures.extend(analysis.band_of(family).map(|band| envelope(band, family, findings)));
+        figures.extend(
+            analysis
+                .band_of(family)
+                .map(|band| behind(envelope(band, family, findings), band, findings, baseline)),
+        );
         figures.extend(combs(family));
         figures.extend(synchronous(analysis, family)?.map(|means| period(family, &means)));
     }
     if figures.is_empty() {
         let most = analysis.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
-        figures.extend(most.map(|band| spectrum_of(band, "envelope", "Squared envelope spectrum", 500.0)));
+        figures.extend(most.map(|band| {
+            let mut figure = spectrum_of(band, "envelope", "Squared envelope spectrum", 500.0);
+            figure.cursor = Some(cursor(findings));
+            behind(figure, band, findings, baseline)
+        }));
     }
     Ok(figures)
+}
+
+/// An envelope spectrum over that of the same band of a baseline, at the speed of the record.
+fn behind(
+    mut figure: Figure,
+    band: &BandEnvelope,
+    findings: &MeasuredFindings,
+    baseline: Option<&Baseline>,
+) -> Figure {
+    let Some(Baseline { name, analysis }) = baseline else { return figure };
+    let close = |a: f64, b: f64| (a - b).abs() <= 0.02 * band.high_hz;
+    let same = |b: &&BandEnvelope| close(b.low_hz, band.low_hz) && close(b.high_hz, band.high_hz);
+    let Some(theirs) = analysis.bands.iter().find(same) else {
+        figure.note += &format!(" {name} has no such band: it was sampled at another rate.");
+        return figure;
+    };
+    let speeds = findings.speed_rpm.zip(analysis.findings.speed_rpm);
+    let stretch = speeds.map_or(1.0, |(here, there)| here / there);
+    let end_hz = figure.x_range().1;
+    let lines = ((end_hz / (stretch * theirs.grid_hz)) as usize + 1).min(theirs.values.len());
+    let values: Vec<f64> = theirs.values.iter().take(lines).skip(1).map(|v| decibel(*v)).collect();
+    let step = stretch * theirs.grid_hz;
+    figure.series.insert(0, Series::sampled(name, Colour::Grey, step, step, values));
+    figure.note += &format!(
+        " Grey: the same band of {name}{}.",
+        if (stretch - 1.0).abs() > 1e-3 { ", at the speed of this record" } else { "" }
+    );
+    figure
 }
 
 /// Height of the family's comb beside that of combs about unrelated fundamentals of the same spectrum.
@@ -316,6 +465,7 @@ fn envelope(band: &BandEnvelope, family: &Family, findings: &MeasuredFindings) -
             figure.marks.push(mark(at + side_hz, label("+"), Colour::Orange, true));
         }
     }
+    figure.cursor = Some(cursor(findings));
     let highest = family.controls.iter().max_by(|a, b| a.1.total_cmp(&b.1));
     if let Some((control_hz, _)) = highest {
         let inside = (1..=5).map(f64::from).filter(|n| n * control_hz < 5.6 * hz);

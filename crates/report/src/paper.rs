@@ -25,6 +25,8 @@ pub(crate) struct PaperCase<'a> {
     levels: &'a SensorLevels,
     sensor: &'a SensorSignal,
     beside: Vec<Beside>,
+    /// Whether the record is shorter than the paper's: what is missing then may lie behind its end.
+    short: bool,
 }
 
 impl<'a> PaperCase<'a> {
@@ -55,7 +57,14 @@ impl<'a> PaperCase<'a> {
             Some(paper::shown(&start.summary, here))
         };
         let numbers: Vec<_> = starts.iter().filter_map(of_start).collect();
-        Some(Self { starts, drawn, number, levels, sensor, beside: paper::beside(&numbers) })
+        let end_s = drawn.start_s + drawn.interval_s * sensor.raw_g.len() as f64;
+        let short = end_s < figures::RECORD_S.1 - 2.0 * drawn.interval_s;
+        Some(Self { starts, drawn, number, levels, sensor, beside: paper::beside(&numbers), short })
+    }
+
+    /// Whether a number is missing because the record ends before it can show.
+    fn is_behind_the_end(&self, b: &Beside) -> bool {
+        self.short && b.ours.is_none_or(|ours| ours.mean == 0.0)
     }
 
     /// The paper's figures 2, 3, 6, 7 and 8 with ours in them, in its order, and its figure 5 among them,
@@ -76,7 +85,7 @@ impl<'a> PaperCase<'a> {
             h2 #numbers { "The paper, figure by figure" }
             p { (self.verdict()) }
             (self.table())
-            p class="hint" { (self.about()) }
+            p class="hint" { (page::with_code(&self.about())) }
             (drawn)
             (more)
         })
@@ -84,20 +93,31 @@ impl<'a> PaperCase<'a> {
 
     /// What differs by more than the scatter, the farthest first, then what does not.
     fn verdict(&self) -> String {
-        let mut off: Vec<&Beside> = self.beside.iter().filter(|b| b.differs()).collect();
+        let missing = self.beside.iter().filter(|b| self.is_behind_the_end(b)).count();
+        let mut off: Vec<&Beside> =
+            self.beside.iter().filter(|b| b.differs() && !self.is_behind_the_end(b)).collect();
         off.sort_by(|a, b| b.distance().total_cmp(&a.distance()));
         let differing: Vec<String> =
             off.iter().map(|b| format!("{} (Fig. {})", told(b), b.shown.figure)).collect();
-        let (all, alike) = (self.beside.len(), self.beside.len() - off.len());
+        let all = self.beside.len() - missing;
+        let alike = all - off.len();
+        let short = if missing > 0 {
+            format!(
+                " {missing} more are not on record: it is shorter than the paper's {:.0} ms.",
+                1e3 * figures::RECORD_S.1
+            )
+        } else {
+            String::new()
+        };
         let scatter =
             if self.starts.len() > 1 { "starts scatter" } else { "one start is granted to scatter" };
         if differing.is_empty() {
             return format!(
-                "None of the {all} numbers of its figures differs from ours by more than {scatter}."
+                "None of {all} numbers of its figures differs from ours by more than {scatter}.{short}"
             );
         }
         format!(
-            "Different by more than {scatter}: {}. The other {alike} of {all} numbers agree.",
+            "Different by more than {scatter}: {}. The other {alike} of {all} numbers agree.{short}",
             differing.join("; ")
         )
     }
@@ -130,7 +150,7 @@ impl<'a> PaperCase<'a> {
                                 td class="n" { (printed(b)) }
                                 (cell(ours(b)))
                                 @if several { (cell(b.ours.map(|s| format!("{} to {}", number(s.least), number(s.most))))) }
-                                td { @if b.differs() { strong { "differs" } } @else { "agrees" } }
+                                td { @if self.is_behind_the_end(b) { "not on record" } @else if b.differs() { strong { "differs" } } @else { "agrees" } }
                             }
                         }
                     }
@@ -185,7 +205,8 @@ fn ours(b: &Beside) -> Option<String> {
     let ours = b.ours?;
     let interval = ours.high.map_or(String::new(), |high| format!(" ± {}", significant(high - ours.mean, 2)));
     let missing = if ours.count < b.of { format!(", in {} of {}", ours.count, b.of) } else { String::new() };
-    Some(format!("{}{interval} {}{missing}", number(ours.mean), b.shown.unit))
+    let unit = if ours.mean == 1.0 && b.shown.unit == "passages" { "passage" } else { b.shown.unit };
+    Some(format!("{}{interval} {unit}{missing}", number(ours.mean)))
 }
 
 /// A difference in a sentence.

@@ -60,8 +60,17 @@ pub struct Figure {
     pub run_time: bool,
     /// A wider range of the abscissa, one click away.
     pub wide: Option<(f64, f64)>,
+    /// Harmonic and sideband cursors of a spectrum.
+    pub cursor: Option<Cursor>,
     /// Where it is one of several that stand behind tabs.
     pub tab: Option<Tab>,
+}
+
+/// Cursors of a spectrum, for the reader: lines at multiples of a frequency, or about one at equal distances.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Cursor {
+    /// Names and frequencies to choose from [unit of the horizontal axis].
+    pub known: Vec<(String, f64)>,
 }
 
 /// A place among figures of which a page shows one at a time.
@@ -225,6 +234,7 @@ impl Figure {
             sync: None,
             run_time: false,
             wide: None,
+            cursor: None,
             tab: None,
         }
     }

@@ -10,7 +10,7 @@ use stribeck_analysis::defect::{Defect, Shocks};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
-use stribeck_scene::run_dir::{Run, write_atomic};
+use stribeck_scene::run_dir::{LAB, Run, write_atomic};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::ModelScene;
 
@@ -49,6 +49,8 @@ pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Erro
     let mut figures = Figures::of(&record, &findings, pictures)?;
     if let Some(case) = PaperCase::of_run(&run.scene.written, &findings) {
         figures.paper = case.figures(figures.paper);
+        // The same forces are its Fig. 8.
+        figures.forces.clear();
     }
     let all: Vec<&Item> = figures.all().collect();
     write_figures(&all, &run_dir.join("figures"))?;
@@ -87,12 +89,13 @@ fn page(
                     run.scene.written.model != ModelScene::Full,
                 ]))
                 @if let Some(moving) = moving { h2 #motion { "The bearing in motion" } (moving) }
+                (lab(run, run_dir))
                 @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
                 (section("acceleration", "Acceleration", html! {}, &figures.acceleration, tables::levels(summary), "No sensor was recorded.")?)
                 (sound::of_run(findings))
                 @if summary.duty.is_some() { (section("duty", "Speed and load", html! {}, &figures.duty, sections::duty(summary), "The angle of the shaft was not recorded.")?) }
                 (section("spectra", "Spectrum", html! {}, &figures.spectra, html! { (sections::envelope(summary, family)) (sections::diagnosis(summary)) h3 { "Lines of the mesh" } p { (answer::mesh(summary)) } (sections::families(summary)) }, "The record is too short for a spectrum.")?)
-                (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), "No roller crosses a defect.")?)
+                (section("forces", "Contact forces and events", tables::events(summary), &figures.forces, sections::spall(run, summary), if paper.is_some() && !findings.crossings.is_empty() { "The forces over time stand above, as the paper's Fig. 8." } else { "No roller crosses a defect." })?)
                 (section("bearing", "Load and slip", tables::kinematics(summary), &figures.bearing, tables::loads(summary, findings.prediction.standing_spalls().next().is_some()), "No roller was recorded.")?)
                 (section("stress", "Mesh and stress", html! {}, &figures.stress, html! {}, "No frames were kept: see the notes.")?)
                 (section("energy", "Energy", html! {}, &figures.energy, html! {}, "No energy was recorded.")?)
@@ -145,6 +148,25 @@ fn all_numbers(summary: &Summary) -> Markup {
             summary { "Each number of the paper, and ours" }
             (sections::paper(summary))
             (sections::readings(summary))
+        }
+    }
+}
+
+/// Leads to the page in which the bearing of a reduced run runs, or says how it is made.
+fn lab(run: &Run, run_dir: &Path) -> Markup {
+    if run.scene.written.model == ModelScene::Full {
+        return html! {};
+    }
+    html! {
+        p #lab {
+            @if run_dir.join(LAB).is_file() {
+                "This bearing runs in the " a href=(LAB) { "lab" } ": load, speed, spall, facets or arcs are \
+                 turned there while it runs, in the browser."
+            } @else {
+                code { "stribeck report --lab " (run_dir.file_name().unwrap_or_default().display()) }
+                " makes a page beside this one in which the bearing runs, with handles for load, speed, spall, \
+                 facets or arcs."
+            }
         }
     }
 }

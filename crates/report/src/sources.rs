@@ -25,7 +25,7 @@ pub fn write_sources(
     let mut entries = Vec::new();
     for (n, (component, analysis)) in sources.bearings.iter().enumerate() {
         let own = subfolder(n, component);
-        write_measured(&folder.join(&own), &format!("{file}: {component}"), analysis)?;
+        write_measured(&folder.join(&own), &format!("{file}: {component}"), analysis, None)?;
         entries.push(json!({
             "component": component.to_string(),
             "ratio": component.ratio,
@@ -71,6 +71,7 @@ pub fn write_sources(
 
 /// Folder of a bearing below that of the record.
 fn subfolder(n: usize, component: &Component) -> String {
-    let name = component.bearing().map_or(String::new(), |b| b.name.replace(|c: char| !c.is_alphanumeric(), "-"));
+    let name =
+        component.bearing().map_or(String::new(), |b| b.name.replace(|c: char| !c.is_alphanumeric(), "-"));
     format!("{}-{name}", n + 1)
 }

@@ -11,6 +11,7 @@ use crate::Error;
 use crate::page::{head, json};
 use crate::plot::{Axis, Colour, Figure, Level, Series};
 use stribeck_analysis::measured::alarm::{Judged, Limit, Quantity, State};
+use stribeck_analysis::measured::joint::Joint;
 use stribeck_analysis::measured::{Defect, Family, MeasuredFindings};
 
 /// One record of a trend.
@@ -40,6 +41,68 @@ pub fn write_trend(folder: &Path, entries: &[TrendEntry], limits: &[Limit]) -> R
     write_atomic(&folder.join("trend.json"), json(&entries)?.as_bytes())?;
     write_atomic(&folder.join("trend.html"), page(entries, limits)?.into_string().as_bytes())?;
     Ok(())
+}
+
+/// Writes `joint.json` and `joint.html` of several channels of one machine and their joint verdict into
+/// `folder`, which must be there.
+///
+/// # Errors
+/// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
+pub fn write_joint(folder: &Path, joint: &Joint, entries: &[TrendEntry]) -> Result<(), Error> {
+    write_atomic(&folder.join("joint.json"), json(&joint)?.as_bytes())?;
+    write_atomic(&folder.join("joint.html"), joint_page(joint, entries).into_string().as_bytes())?;
+    Ok(())
+}
+
+fn joint_page(joint: &Joint, entries: &[TrendEntry]) -> Markup {
+    let title = format!("{} channels together", entries.len());
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&title))
+            body {
+                h1 { (title) }
+                p class="lead" { (joint.verdict) }
+                @for note in &joint.notes { p class="hint" { (note) } }
+                h2 #shares { "What each channel hears" }
+                div class="scroll" { (heard(joint)) }
+                p class="hint" {
+                    "The part of each channel in the power that swings with a family, and the height of the family \
+                    in it; bold where the channel claims a defect by itself. The probability of a false alarm is \
+                    the smallest of all channels times their number, which holds however they depend on each other."
+                }
+                h2 #channels { "Channels" }
+                div class="scroll" { (table(entries)) }
+            }
+        }
+    }
+}
+
+/// A row a family, a column a channel.
+fn heard(joint: &Joint) -> Markup {
+    let number = |x: Option<f64>, unit: &str, factor: f64| {
+        x.map_or_else(|| "–".to_owned(), |x| format!("{:.0} {unit}", factor * x))
+    };
+    html! {
+        table {
+            tr {
+                th { "Family" } @for name in &joint.channels { th { (name) } }
+                th { "False alarm" } th { "Nearest" } th { "Verdict" }
+            }
+            @for family in &joint.families {
+                tr {
+                    td { (family.name) }
+                    @for heard in &family.channels {
+                        @let text = format!("{}, {}", number(heard.share, "%", 100.0), number(heard.height_db, "dB", 1.0));
+                        td { @if heard.claimed { strong { (text) } } @else { (text) } }
+                    }
+                    td { (format!("{:.1e}", family.p_value)) }
+                    td { (family.nearest.as_deref().unwrap_or("–")) }
+                    td { @if family.claimed { strong { "a defect" } } @else { "none" } }
+                }
+            }
+        }
+    }
 }
 
 fn page(entries: &[TrendEntry], limits: &[Limit]) -> Result<Markup, Error> {

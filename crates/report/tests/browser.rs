@@ -8,8 +8,12 @@ mod synthetic;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use stribeck_analysis::measured::{Analysis, Machine};
+use stribeck_formats::Channel;
 use stribeck_report as report;
+use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::run_info::Status;
+use stribeck_testing::Noise;
 use synthetic::Scratch;
 
 /// Time that scripts get [ms of the browser's own clock].
@@ -110,19 +114,152 @@ fn example_a_browser_draws_every_figure_of_an_ensemble() {
     draws_all(&browser, &folder);
 }
 
-/// Opens the report in `folder`, by day and by night.
-fn draws_all(browser: &Path, folder: &Scratch) {
+/// Knocks of an outer raceway of a 6205 at 1200 rpm, that ring at 3 kHz.
+fn knocks(height: f64) -> Channel {
+    let mut noise = Noise::new(7);
+    let samples = (0..65_536).map(|n| {
+        let since = (f64::from(n) / 12_800.0).rem_euclid(1.0 / 71.7);
+        noise.uniform() + height * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin()
+    });
+    Channel::held("housing", samples.collect()).in_unit(Some("g".to_owned()))
+}
+
+/// A measured record over one of the sound machine: kurtogram, spectrogram, waterfall, both curves.
+#[test]
+fn example_a_browser_draws_every_figure_of_a_measured_record() {
+    let folder = Scratch::new("browser-measured");
+    let machine = Machine {
+        speed_rpm: Some(1200.0),
+        bearing: Some(CatalogueBearing::parse("6205").expect("known")),
+        ..Machine::default()
+    };
+    let of = |height: f64| Analysis::of(&knocks(height), 12_800.0, &machine).expect("a signal");
+    let baseline = report::Baseline { name: "sound.mat".to_owned(), analysis: of(0.0) };
+    report::write_measured(&folder.0, "damaged.mat", &of(2.0), Some(&baseline)).expect("a page");
     let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
-    let figures = page.matches("<figure id=").count();
+    for words in
+        ["id=\"kurtogram\"", "id=\"waterfall\"", "In grey behind it: sound.mat", "new since sound.mat"]
+    {
+        assert!(page.contains(words), "{words}");
+    }
+    let Some(browser) = browser() else { return };
+    draws_all(&browser, &folder);
+    let probed = probed(&folder, HANDS_ON_A_SPECTRUM);
+    let said = title_of(&browser, &probed, &folder.0.join("profile"), false);
+    assert_eq!(said, "failed= errors=");
+}
+
+/// Buttons, keys and clicks on the page of a run: the bearing plays, goes by frames, follows a click on a
+/// trace; tabs, the whole band and files of figures.
+#[test]
+fn example_buttons_keys_and_clicks_move_the_page_of_a_run() {
+    let Some(browser) = browser() else { return };
+    let folder = Scratch::new("browser-hands");
+    synthetic::write(&folder.0, Status::Complete, 3000);
+    report::write(&folder.0).expect("a report");
+    let probed = probed(&folder, HANDS_ON_A_RUN);
+    let said = title_of(&browser, &probed, &folder.0.join("profile"), false);
+    assert_eq!(said, "failed= errors=");
+}
+
+/// What both pairs of hands need: a place for what failed, clicks and keys.
+const HANDS: &str = r##"<script>
+const failed = [];
+const check = (what, holds) => { if (!holds) failed.push(what); };
+const key = (on, name, more = {}) => on.dispatchEvent(new KeyboardEvent("keydown", { key: name, bubbles: true, cancelable: true, ...more }));
+const clickAt = (over, part, more = {}) => {
+  const box = over.getBoundingClientRect(), at = { clientX: box.left + part * box.width, clientY: box.top + 0.5 * box.height, bubbles: true, ...more };
+  over.dispatchEvent(new PointerEvent("pointerdown", at));
+  over.dispatchEvent(new MouseEvent("click", at));
+};
+const saved = [];
+HTMLAnchorElement.prototype.click = function () { saved.push(this.download); };
+addEventListener("load", () => setTimeout(() => {
+  try { hands(); } catch (why) { failed.push(String(why)); }
+  document.title = "PROBE failed=" + failed.join(";") + " errors=" + window.seenErrors.join(";") + " END";
+}, 500));
+</script>"##;
+
+const HANDS_ON_A_RUN: &str = r##"<script>
+const hands = () => {
+  const bearing = document.querySelector("figure.moving-bearing");
+  const play = bearing.querySelector(".play"), scrubber = bearing.querySelector("input[type=range]"), said = bearing.querySelector("output");
+  play.click(); check("plays", play.textContent.includes("Stop"));
+  play.click(); check("stops", play.textContent.includes("Play"));
+  key(bearing, "Home"); check("home", scrubber.value === "0");
+  key(bearing, "ArrowRight"); check("right", scrubber.value === "1");
+  key(bearing, "ArrowRight", { shiftKey: true }); check("right by ten", scrubber.value === "11");
+  key(bearing, "ArrowLeft"); check("left", scrubber.value === "10");
+  key(bearing, "End"); check("end", scrubber.value === scrubber.max);
+  key(bearing, " "); check("space plays", play.textContent.includes("Stop"));
+  key(bearing, " ");
+  scrubber.value = "5"; scrubber.dispatchEvent(new Event("input")); check("scrubs", said.textContent.includes("ms"));
+  const before = said.textContent;
+  clickAt(bearing.querySelector("canvas.strips"), 0.75); check("strip", said.textContent !== before);
+  // A click on a trace goes to that time, and the bearing shows its time on every trace.
+  const trace = document.querySelector("#acceleration .u-over") || document.querySelector("figure.plot .playhead").parentElement;
+  clickAt(trace, 0.25); const quarter = parseFloat(said.textContent);
+  clickAt(trace, 0.5); const half = parseFloat(said.textContent);
+  check(`click-to-time ${quarter} ${half}`, half > 1.5 * quarter && quarter > 0);
+  check("playhead", [...document.querySelectorAll(".playhead")].some((line) => line.style.display === "block"));
+  const tabs = document.querySelector(".tabs.live"), [one, two] = tabs.querySelectorAll('[role="tab"]');
+  two.click(); check("second tab", two.getAttribute("aria-selected") === "true" && tabs.querySelectorAll(".panel")[1].classList.contains("on"));
+  key(two, "ArrowLeft"); check("back by key", one.getAttribute("aria-selected") === "true");
+  const wide = document.querySelector("button.wide");
+  wide.click(); check("whole band", wide.textContent.startsWith("Only")); wide.click();
+  document.querySelectorAll("figure .save button").forEach((button) => { if (button.textContent === "SVG" || button.textContent === "PNG") button.click(); });
+  check("saves SVG", saved.some((name) => name.endsWith(".svg")));
+  const spectrum = document.querySelector("#spectrum");
+  const [harmonics] = spectrum.querySelectorAll(".cursors button");
+  harmonics.click(); check("harmonics of a run", spectrum.querySelector(".cursors output").textContent.includes("×"));
+};
+</script>"##;
+
+const HANDS_ON_A_SPECTRUM: &str = r##"<script>
+const hands = () => {
+  const figure = [...document.querySelectorAll("figure.plot")].find((one) => one.id.startsWith("envelope"));
+  const [harmonics, sidebands] = figure.querySelectorAll(".cursors button");
+  const said = figure.querySelector(".cursors output"), [carrier, base] = figure.querySelectorAll(".cursors input");
+  const over = figure.querySelector(".u-over"), holder = figure.querySelector(".chart");
+  check("off at first", said.hidden && base.closest("label").hidden);
+  harmonics.click();
+  check("pressed", harmonics.getAttribute("aria-pressed") === "true" && said.textContent.startsWith("1× "));
+  const known = figure.querySelector(".cursors select");
+  known.value = known.options[1].value; known.dispatchEvent(new Event("change"));
+  check("known " + base.value, Math.abs(base.value - 71.7) < 1);
+  const before = Number(base.value);
+  key(holder, "ArrowRight"); check("finer by key", Number(base.value) > before && Number(base.value) < before + 1);
+  base.value = "20"; base.dispatchEvent(new Event("input")); check("by hand", said.textContent.includes("1× 20 Hz"));
+  // A click takes the line that is there: 71.7 Hz lies at a fifth of 5.6 times itself.
+  clickAt(over, 1 / 5.6); check("clicked " + base.value, Math.abs(base.value - 71.7) < 1.5);
+  clickAt(over, 3 / 5.6, { shiftKey: true }); check("third by Shift " + base.value, Math.abs(base.value - 71.7) < 0.5);
+  sidebands.click();
+  clickAt(over, 2 / 5.6); check("carrier " + carrier.value, Math.abs(carrier.value - 143.4) < 2);
+  check("sidebands", said.textContent.includes("carrier") && said.textContent.includes("+1"));
+  sidebands.click(); check("off again", said.hidden);
+};
+</script>"##;
+
+/// The report in `folder` with scripts that watch it and do what hands would.
+fn probed(folder: &Scratch, hands: &str) -> PathBuf {
+    let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
     let watched = page.replacen("<head>", &format!("<head>{WATCH}"), 1).replacen(
         "</body>",
-        &format!("{PROBE}</body>"),
+        &format!("{hands}{}</body>", if hands == PROBE { "" } else { HANDS }),
         1,
     );
     assert_ne!(watched.len(), page.len());
     // Snap's Chromium sees no hidden folders and no /tmp of ours; the folder of the run is as good as any.
     let probed = folder.0.join("probed.html");
     std::fs::write(&probed, watched).expect("a writable folder");
+    probed
+}
+
+/// Opens the report in `folder`, by day and by night.
+fn draws_all(browser: &Path, folder: &Scratch) {
+    let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
+    let figures = page.matches("<figure id=").count();
+    let probed = probed(folder, PROBE);
     for dark in [false, true] {
         let said = title_of(browser, &probed, &folder.0.join("profile"), dark);
         assert_eq!(said, format!("figures={figures} undrawn= errors="), "dark: {dark}");

@@ -244,9 +244,6 @@ fn example_the_page_holds_every_figure_and_needs_no_network() {
         "spectrum-zoom",
         "spectrum-sensors",
         "spectrum-low",
-        "force-1",
-        "force-2",
-        "force-3",
         "load-distribution",
         "load-polar",
         "load-sum",
@@ -627,10 +624,12 @@ fn example_the_page_begins_with_the_answer() {
         "id=\"numbers\"",
         "id=\"acceleration\"",
         "id=\"spectrum\"",
-        "id=\"force-1\"",
+        "id=\"forces\"",
     ]
     .map(|what| page.find(what).unwrap_or_else(|| panic!("{what} is not in the page")));
     assert!(places.is_sorted(), "{places:?}");
+    // The forces stand once, as the paper's figure 8.
+    assert!(page.contains("id=\"paper-8a\"") && !page.contains("id=\"force-1\""));
     for odd in ["Ball pass", "Notch takes", "The same above"] {
         assert!(!page.contains(odd), "{odd}");
     }

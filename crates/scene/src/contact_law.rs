@@ -33,7 +33,9 @@ impl ContactLawKind {
         match self {
             Self::Line => "line contact in plane strain (Johnson 1985, \u{a7}5.6)",
             Self::Ball => "point contact of Hertz, grooves of 0.52 diameters (Hamrock and Brewe 1983)",
-            Self::Palmgren => "line contact by Palmgren, \u{3b4} = 3.84e-5 Q^0.9/l^0.8 in mm and N (Harris 2001)",
+            Self::Palmgren => {
+                "line contact by Palmgren, \u{3b4} = 3.84e-5 Q^0.9/l^0.8 in mm and N (Harris 2001)"
+            }
         }
     }
 }
@@ -54,9 +56,7 @@ impl ContactLaw {
     /// Of a scene's rolling elements.
     pub fn of(scene: &ResolvedScene, kind: ContactLawKind) -> Self {
         Self(match kind {
-            ContactLawKind::Line => {
-                Law::Line { contacts: LineContacts::of(scene), length: scene.thickness }
-            }
+            ContactLawKind::Line => Law::Line { contacts: LineContacts::of(scene), length: scene.thickness },
             ContactLawKind::Ball => {
                 let (r, groove) = (scene.roller_radius, 2.0 * CONFORMITY * scene.roller_radius);
                 let modulus = 2.0 * scene.material.contact_modulus();

@@ -74,6 +74,7 @@ pub mod mesh_file;
 pub mod mesh_text;
 pub mod paper;
 mod point_contact;
+pub mod records;
 pub mod resolved;
 pub mod ring_mesh;
 pub mod ring_stiffness;

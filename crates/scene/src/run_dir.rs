@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! runs/x/  scene.ron  run.json  trace.npy  energy.npy  mesh.vtu  checkpoint  frames/   written by the run
-//!          report.html  summary.json  figures/                                         written by the report
+//!          report.html  lab.html  summary.json  figures/                               written by the report
 //!          .lock                                                                       held while the run writes
 //! ```
 //!
@@ -50,6 +50,8 @@ const MESH: &str = "mesh.vtu";
 const CHECKPOINT: &str = "checkpoint";
 const REPORT: &str = "report.html";
 const SUMMARY: &str = "summary.json";
+/// The page in which the bearing of a run runs (`stribeck report --lab`).
+pub const LAB: &str = "lab.html";
 const FIGURES: &str = "figures";
 const FRAMES: &str = "frames";
 const LOCK: &str = ".lock";
@@ -59,7 +61,8 @@ const PARTIAL: &str = ".part";
 
 /// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no
 /// run, so it goes first and nothing half removed is taken for a result.
-const FILES: [&str; 10] = [INFO, ENSEMBLE, REPORT, SUMMARY, TRACE, SIGNALS, ENERGY, MESH, CHECKPOINT, SCENE];
+const FILES: [&str; 11] =
+    [INFO, ENSEMBLE, REPORT, LAB, SUMMARY, TRACE, SIGNALS, ENERGY, MESH, CHECKPOINT, SCENE];
 
 /// Folders that a run or its report fills, and what they write there.
 const FOLDERS: [(&str, &[&str]); 2] = [(FIGURES, &["svg", "png", "gif"]), (FRAMES, &["npy"])];

@@ -6,6 +6,7 @@ use crate::housing;
 
 pub use crate::deviation::DeviationScene;
 pub use crate::housing::HousingScene;
+pub use crate::records::RecordsScene;
 pub use crate::ring_mesh::RingMeshScene;
 
 /// A complete scene. Every field has a default; `()` in a file is the paper's bearing in oil, as
@@ -550,6 +551,10 @@ pub struct OutputScene {
     pub sensors: Vec<SensorScene>,
     /// Pictures of the stress about the defect; `None` writes none.
     pub frames: Option<FramesScene>,
+    /// What records of a machine tell of the passages over the defect; `None` for a run that is not to be held
+    /// against one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub records: Option<RecordsScene>,
 }
 
 /// Displacements of all nodes near the middle of the defect (the top of a sound bearing) at several times.
@@ -816,6 +821,7 @@ impl Default for OutputScene {
                 sensor("bottom", 270.0),
             ],
             frames: Some(FramesScene::default()),
+            records: None,
         }
     }
 }

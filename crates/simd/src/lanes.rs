@@ -9,6 +9,8 @@ use std::any::Any;
 use pulp::x86::{V3, V4};
 use pulp::{Simd, bytemuck};
 
+use crate::functions;
+
 /// Numbers in a line of cache. No vector is longer, and arrays are cut into groups of that many.
 pub const LANES: usize = 8;
 
@@ -28,6 +30,12 @@ pub trait Number:
 
     /// The square root.
     fn sqrt(self) -> Self;
+
+    /// The cube root of a number that is not negative: of vectors within 3·10⁻¹⁴ of it.
+    fn cube_root(self) -> Self;
+
+    /// The arcus tangent [rad].
+    fn arc_tangent(self) -> Self;
 
     /// The smaller of two numbers.
     fn min(self, other: Self) -> Self;
@@ -59,6 +67,16 @@ impl Number for f64 {
     #[inline(always)]
     fn sqrt(self) -> f64 {
         self.sqrt()
+    }
+
+    #[inline(always)]
+    fn cube_root(self) -> f64 {
+        self.cbrt()
+    }
+
+    #[inline(always)]
+    fn arc_tangent(self) -> f64 {
+        self.atan()
     }
 
     #[inline(always)]
@@ -154,6 +172,12 @@ static KEEP_LAST: [u64; LANES] = [0, 0, 0, 0, 0, 0, 0, u64::MAX];
 impl<S: Simd> Vector<S> {
     /// How many numbers it holds: 1, 2, 4 or 8.
     pub const LEN: usize = S::F64_LANES;
+
+    /// The instruction set.
+    #[inline(always)]
+    pub(crate) fn simd(self) -> S {
+        self.simd
+    }
 
     /// The same number in all lanes.
     #[inline(always)]
@@ -409,6 +433,16 @@ impl<S: Simd> Number for Vector<S> {
     }
 
     #[inline(always)]
+    fn cube_root(self) -> Self {
+        functions::cube_root(self)
+    }
+
+    #[inline(always)]
+    fn arc_tangent(self) -> Self {
+        functions::arc_tangent(self)
+    }
+
+    #[inline(always)]
     fn min(self, other: Self) -> Self {
         Self { lanes: self.simd.min_f64s(self.lanes, other.lanes), ..self }
     }
@@ -449,7 +483,7 @@ mod tests {
 
     use super::*;
 
-    /// Loads, sums, shifts and bits, for any instruction set.
+    /// Loads, sums, shifts, bits and functions, for any instruction set.
     struct Properties;
 
     impl WithSimd for Properties {
@@ -473,6 +507,18 @@ mod tests {
             let mut loaded = vec![0.0; len];
             Vector::load_single(simd, &single, 1).store(&mut loaded, 0);
             assert!(loaded.iter().zip(&single[1..]).all(|(loaded, single)| *loaded == f64::from(*single)));
+            for n in 0..4000 {
+                // From 10⁻³⁰ to 10³⁰ in size.
+                let number = 10.0_f64.powf(f64::from(n) * 0.015 - 30.0);
+                let of = |vector: Vector<S>| vector.largest();
+                let root = of(Vector::all(simd, number).cube_root());
+                assert!((root / number.cbrt() - 1.0).abs() < 3e-14, "{root} of {number}");
+                for number in [number, -number] {
+                    let angle = of(Vector::all(simd, number).arc_tangent());
+                    assert!((angle / number.atan() - 1.0).abs() < 5e-16, "{angle} of {number}");
+                }
+            }
+            assert_eq!(Vector::all(simd, 0.0).cube_root().largest(), 0.0);
             for bits in 0..1_u64 << len {
                 let ones = Vector::ones(simd, bits);
                 assert_eq!(ones.bits(), bits, "{len} lanes");

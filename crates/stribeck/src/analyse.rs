@@ -1,7 +1,10 @@
 //! `stribeck analyse`: what a measured record shows.
 
+mod baseline;
 mod components;
 mod gaps;
+mod together;
+mod turning;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -31,10 +34,10 @@ pub struct Options {
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
-    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU 205,
-    /// ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
+    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm,
+    /// "bearing=NU 205, ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
     #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
-        conflicts_with_all = ["bearing", "alarms", "reference"])]
+        conflicts_with_all = ["bearing", "alarms", "reference", "baseline", "together"])]
     components: Vec<Component>,
     /// Group of the machine by ISO 20816-3, for the zone of the velocity level: 1 above 300 kW, 2 from 15 to
     /// 300 kW
@@ -43,6 +46,13 @@ pub struct Options {
     /// What the machine stands on, for the zone of the velocity level
     #[arg(long, value_enum, requires = "iso_group")]
     foundation: Option<Standing>,
+    /// A record of the same machine when it was sound, or before: its spectra and levels are drawn behind. It
+    /// is read with the same flags and changes no verdict
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Its speed of the shaft [1/min] where that was another one
+    #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
+    baseline_rpm: Option<Speed>,
     /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
     /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
@@ -51,6 +61,10 @@ pub struct Options {
     /// those given
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
+    /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
+    /// several files, such as axes, or both ends of a shaft; says which part each hears, and which is nearest
+    #[arg(long, conflicts_with_all = ["alarms", "reference"])]
+    together: bool,
     /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
     /// -analysis]
     #[arg(long)]
@@ -100,16 +114,38 @@ pub(crate) struct Reading {
     /// Radial load of the bearing [N], a number or a range such as 50..150: how far it presses an element
     /// together belongs to the length of a spall [default: 0.2 to 10 % of the static rating]
     #[arg(long, value_name = "RANGE", value_parser = range)]
-    load_n: Option<(f64, f64)>,
+    pub(crate) load_n: Option<(f64, f64)>,
     /// Radial internal clearance in operation [µm], a number or a range [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
-    clearance_um: Option<(f64, f64)>,
+    pub(crate) clearance_um: Option<(f64, f64)>,
     /// What a sample is multiplied by, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
     /// Unit of the samples after that
     #[arg(long)]
     unit: Option<String>,
+}
+
+impl Reading {
+    /// Whether anything is known of a machine, or said of a file.
+    pub(crate) fn is_given(&self) -> bool {
+        let numbers = self.rate_hz.is_some() || self.load_n.is_some() || self.clearance_um.is_some();
+        let words = [&self.channel, &self.bearing, &self.tacho, &self.unit].iter().any(|word| word.is_some());
+        numbers || words || self.speed_rpm.is_some()
+    }
+
+    /// The same machine, for a file of one channel that says its rate.
+    pub(crate) fn of_one_channel(&self) -> Self {
+        Self {
+            rate_hz: None,
+            force_rate: false,
+            channel: None,
+            tacho: None,
+            scale: 1.0,
+            unit: None,
+            ..self.clone()
+        }
+    }
 }
 
 /// What a user knows of the speed [1/min].
@@ -171,6 +207,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     if !options.components.is_empty() {
         return components::run(options, place);
+    }
+    if options.together {
+        return together::run(options, place);
     }
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
@@ -286,7 +325,9 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     let mut analysis = examine(asked, &options.reading, place)?;
     analysis.findings.zone = zoned(options, &analysis);
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    write_measured(out, &name, &analysis)?;
+    let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
+    let baseline = baseline.transpose()?;
+    write_measured(out, &name, &analysis, baseline.as_ref())?;
     Ok(analysis)
 }
 
@@ -300,8 +341,8 @@ fn zoned(options: &Options, analysis: &Analysis) -> Option<Zoned> {
     let velocity = analysis.findings.velocity_mm_s;
     if velocity.is_none() {
         tell!(
-            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at 2000 Hz \
-             or faster for a second"
+            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at \
+             2000 Hz or faster for a second"
         );
     }
     Some(Zoned::of(velocity?, group, foundation))
@@ -318,12 +359,17 @@ struct Read {
     notes: Vec<String>,
     /// Whether it is a run's.
     of_run: bool,
+    /// The samples over time, their rate [Hz] and the turns of the shaft in samples, where its speed varies.
+    turning: Option<(Channel, f64, Vec<f64>)>,
 }
 
 /// Reads and analyses one record.
 pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
-    let Read { signal, rate_hz, machine, mut notes, of_run } = read(asked, options, place)?;
+    let Read { signal, rate_hz, machine, mut notes, of_run, turning } = read(asked, options, place)?;
     let mut analysis = Analysis::of(&signal, rate_hz, &machine)?;
+    if let Some((scaled, own_hz, pulses)) = turning {
+        analysis.varying = turning::varying(&analysis, &scaled, own_hz, &pulses)?;
+    }
     let claims = analysis.findings.families.iter().any(|family| family.claimed);
     if claims && of_run {
         notes.push(
@@ -340,21 +386,7 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
 
 /// Reads one record.
 fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
-    let mut file = place.locate(asked);
-    let mut scene = None;
-    if !file.exists() {
-        file = place.locate_run(asked);
-    }
-    if RunDir::is_ensemble(&file) {
-        RunDir::open(&file)?;
-    }
-    if file.is_dir() {
-        scene = Some(
-            Scene::read(file.join("scene.ron"))
-                .with_context(|| format!("`{}` is a folder, and no run", file.display()))?,
-        );
-        file = file.join("trace.npy");
-    }
+    let (file, scene) = located(asked, place)?;
     let recording = Recording::open(&file)?;
     let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
@@ -387,9 +419,9 @@ fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
     // Pulses count from the beginning of the file.
     let moved = |all: Vec<f64>| all.into_iter().map(|at| at - from as f64).filter(|at| *at >= 0.0).collect();
     let pulses: Option<Vec<f64>> = pulses.map(moved);
-    let over_angle = match pulses {
+    let over_angle = match &pulses {
         Some(pulses) => {
-            let even = over_angle(&scaled, rate_hz, &pulses)?;
+            let even = over_angle(&scaled, rate_hz, pulses)?;
             if even.is_none() {
                 notes.push(
                     "the record is too long to be taken over the angle: its lines are smeared".to_owned(),
@@ -399,17 +431,36 @@ fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
         }
         None => None,
     };
+    let mut turning = None;
     let (signal, rate_hz) = match over_angle {
-        Some((even, rate_hz)) => {
+        Some((even, even_hz)) => {
             notes.push(
                 "the record was taken over the angle of the shaft: frequencies are those at its mean speed"
                     .to_owned(),
             );
-            (even, rate_hz)
+            turning = pulses.map(|pulses| (scaled, rate_hz, pulses));
+            (even, even_hz)
         }
         None => (scaled, rate_hz),
     };
-    Ok(Read { signal, rate_hz, machine, notes, of_run: scene.is_some() })
+    Ok(Read { signal, rate_hz, machine, notes, of_run: scene.is_some(), turning })
+}
+
+/// The file of a record, and the scene where it is that of a run.
+fn located(asked: &Path, place: &Place) -> Result<(PathBuf, Option<Scene>)> {
+    let mut file = place.locate(asked);
+    if !file.exists() {
+        file = place.locate_run(asked);
+    }
+    if RunDir::is_ensemble(&file) {
+        RunDir::open(&file)?;
+    }
+    if !file.is_dir() {
+        return Ok((file, None));
+    }
+    let scene = Scene::read(file.join("scene.ron"))
+        .with_context(|| format!("`{}` is a folder, and no run", file.display()))?;
+    Ok((file.join("trace.npy"), Some(scene)))
 }
 
 /// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the

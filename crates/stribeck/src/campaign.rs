@@ -6,6 +6,7 @@
 //! same.
 
 mod datasheet;
+mod names;
 mod tables;
 
 use std::fs::File;
@@ -225,6 +226,7 @@ fn conclude(
     interrupt: &Interrupt,
     mine: impl Fn(&&Variant) -> bool,
 ) -> Result<ExitCode> {
+    names::link(folder, campaign);
     let mut stages = Vec::with_capacity(campaign.runs.len());
     let (mut left, mut left_here) = (0, 0);
     for variant in &campaign.runs {

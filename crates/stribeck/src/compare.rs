@@ -32,27 +32,35 @@ pub struct Options {
 const MARK: &str = "compare.json";
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let out = options.out.clone().unwrap_or_else(|| default_folder(&labels(&options.sides)));
+    let comparison = write(&options.sides, &options.reading, &out, place)?;
+    print(&comparison);
+    say!("page: {}", shown(&out.join("report.html")));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Compares sides and writes their page into `out`.
+pub(crate) fn write(asked: &[PathBuf], reading: &Reading, out: &Path, place: &Place) -> Result<Comparison> {
     ensure!(
-        options.sides.len() <= MOST_COMPARED,
+        asked.len() <= MOST_COMPARED,
         "{} sides were given, and the curves of {MOST_COMPARED} stay apart at most: compare fewer, or see \
          the course of many records by `{} analyse`",
-        options.sides.len(),
+        asked.len(),
         place.program
     );
-    let labels = labels(&options.sides);
-    let out = options.out.clone().unwrap_or_else(|| default_folder(&labels));
-    check_folder(&out, &[MARK])?;
+    let labels = labels(asked);
+    check_folder(out, &[MARK])?;
     let mut sides: Vec<Option<Side>> = Vec::new();
     let folders: Vec<Option<PathBuf>> =
-        options.sides.iter().map(|asked| folder(asked, place)).collect::<Result<_>>()?;
+        asked.iter().map(|asked| folder(asked, place)).collect::<Result<_>>()?;
     // Runs first: a record may be of the same machine.
     let mixed = folders.iter().any(Option::is_none);
     for (folder, label) in folders.iter().zip(&labels) {
-        let channel = options.reading.channel.as_deref();
+        let channel = reading.channel.as_deref();
         sides.push(folder.as_ref().map(|folder| of_folder(label, folder, channel, mixed)).transpose()?);
     }
-    let reading = completed(&options.reading, &sides);
-    for ((asked, label), side) in options.sides.iter().zip(&labels).zip(&mut sides) {
+    let reading = completed(reading, &sides);
+    for ((asked, label), side) in asked.iter().zip(&labels).zip(&mut sides) {
         if side.is_none() {
             tell!("{label} …");
             let examined = examine(asked, &reading.0, place);
@@ -63,10 +71,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
     }
     let comparison = Comparison::of(sides.into_iter().flatten().collect())?;
-    write_comparison(&out, &comparison)?;
-    print(&comparison);
-    say!("page: {}", shown(&out.join("report.html")));
-    Ok(ExitCode::SUCCESS)
+    write_comparison(out, &comparison)?;
+    Ok(comparison)
 }
 
 /// The folder of a run or ensemble; `None` for a file.

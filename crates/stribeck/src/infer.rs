@@ -6,6 +6,7 @@
 
 mod answer;
 mod outputs;
+mod record;
 mod rounds;
 
 use std::path::PathBuf;
@@ -18,6 +19,7 @@ use stribeck_report::inference::write_inference;
 use stribeck_scene::inference::Inference;
 use stribeck_scene::run_dir::{Keep, check_folder, write_atomic};
 
+use crate::analyse::Reading;
 use crate::campaign::{Shard, shard};
 use crate::interrupt::{self, Interrupt};
 use crate::many_runs::{Share, Stage, summary_of};
@@ -31,7 +33,17 @@ use rounds::{Point, Round, Rounds};
 #[derive(Debug, clap::Args)]
 pub struct Options {
     /// File with unknowns and targets, such as fixtures/infer/quick.ron
-    file: PathBuf,
+    #[arg(required_unless_present = "record")]
+    file: Option<PathBuf>,
+    /// Infers what made a measured record: the spall on the raceway that `analyse` finds damaged, its load and
+    /// clearance. Needs `--bearing` and `--speed-rpm`
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "emit"])]
+    record: Option<PathBuf>,
+    /// Runs for a record
+    #[arg(long, value_name = "N", requires = "record", default_value_t = 240, value_parser = runs)]
+    runs: usize,
+    #[command(flatten)]
+    reading: Reading,
     /// Folder of the inference [default: runs/NAME, the name of the inference]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -69,9 +81,24 @@ const LOOK: Duration = Duration::from_secs(2);
 const FILE: &str = "inference.ron";
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
-    let file = place.locate(&options.file);
+    let (file, measured) = match (&options.record, &options.file) {
+        (Some(record), _) => {
+            let out = options.out.clone().unwrap_or_else(|| place.runs().join(folder_of(record)));
+            let measured = record::prepare(record, options, &out, place)?;
+            (measured.file.clone(), Some((measured, out)))
+        }
+        (None, Some(file)) => {
+            ensure!(
+                !options.reading.is_given(),
+                "options of a record were given, and no record: `--record FILE` names it"
+            );
+            (place.locate(file), None)
+        }
+        (None, None) => bail!("give the file of an inference, or `--record FILE`"),
+    };
     let inference = Inference::read(&file)?;
-    let out = options.out.clone().unwrap_or_else(|| place.runs().join(&inference.name));
+    let of_record = measured.as_ref().map(|(_, out)| out.clone());
+    let out = of_record.or_else(|| options.out.clone()).unwrap_or_else(|| place.runs().join(&inference.name));
     if let Some(engine) = options.emit {
         let part = crate::emit::Part::new(options.shards.unwrap_or(crate::emit::MOST_PARTS), options.share);
         say!("{}", crate::emit::script(engine, "infer", &file, &out, part)?.trim_end());
@@ -98,8 +125,28 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     std::fs::rename(&beside, &draws).with_context(|| format!("cannot write `{}`", shown(&draws)))?;
     write_inference(&out, &answer)?;
     answer::tell(&answer);
+    if let Some((measured, out)) = &measured {
+        if let Some(page) = measured.beside(&known, options, out, place, &interrupt)? {
+            say!("the record beside one of the likeliest scene: {}", shown(&page));
+        }
+        if let Some(words) = record::in_words(&inference, &answer) {
+            say!("{words}");
+        }
+    }
     say!("report: {}", shown(&out.join("report.html")));
     Ok(ExitCode::SUCCESS)
+}
+
+/// Runs of the inference of a record.
+fn runs(text: &str) -> Result<usize, String> {
+    let runs = text.trim().parse().ok().filter(|runs| (60..=10_000).contains(runs));
+    runs.ok_or_else(|| "six unknowns take 60 to 10000 runs".to_owned())
+}
+
+/// Name of the folder of a record's inference.
+fn folder_of(record: &std::path::Path) -> String {
+    let stem = record.file_stem().map_or_else(|| "record".into(), |name| name.to_string_lossy());
+    format!("{stem}-inferred")
 }
 
 /// Makes the folder, or finds the same inference in it.

@@ -5,6 +5,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_lab::page::{self, is_module};
+use stribeck_scene::run_dir::{self, RunDir};
 use stribeck_scene::scene::Scene;
 
 use crate::out::say;
@@ -25,7 +26,8 @@ pub struct Options {
     /// Opens the page in the browser
     #[arg(long)]
     open: bool,
-    /// The module that steps the bearing, built by `cargo xtask lab` [default: the one that is found]
+    /// The module that steps the bearing, built by `cargo xtask lab-module` [default: the one that the
+    /// program was built with]
     #[arg(long, value_name = "FILE")]
     module: Option<PathBuf>,
 }
@@ -56,20 +58,27 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         "{} scenes in one page: at most {MOST_SCENES}. Make several pages",
         options.scenes.len()
     );
-    let module = module(options, place)?;
+    let module = module(options.module.as_deref(), place)?;
     let files = options.scenes.iter().map(|file| Some(file.as_path()));
     let files: Vec<Option<&Path>> = if options.scenes.is_empty() { vec![None] } else { files.collect() };
     let scenes: Vec<Scene> =
         files.iter().map(|file| place.scene(*file, &options.set)).collect::<Result<_>>()?;
+    write(&scenes, &module, &place.runs(), &again(options, place), &options.out)?;
+    if options.open {
+        open(&options.out)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes the page of some scenes; `runs` is where their reductions may be kept.
+fn write(scenes: &[Scene], module: &[u8], runs: &Path, command: &str, out: &Path) -> Result<()> {
     let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
     eprintln!("{}: meshed, brought to rest and reduced", names.join(", "));
-    let runs = place.runs();
-    let page = page::page(&scenes, &module, Some(&runs), &again(options, place))?;
-    if let Some(folder) = options.out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+    let page = page::page(scenes, module, Some(runs), command)?;
+    if let Some(folder) = out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", shown(folder)))?;
     }
-    std::fs::write(&options.out, &page.html)
-        .with_context(|| format!("cannot write `{}`", shown(&options.out)))?;
+    std::fs::write(out, &page.html).with_context(|| format!("cannot write `{}`", shown(out)))?;
     if page.html.len() > LARGEST {
         eprintln!(
             "warning: the page has {:.1} MB; --set mesh.size_mm=1 or a smaller \
@@ -77,11 +86,17 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             1e-6 * page.html.len() as f64
         );
     }
-    say!("lab: {} ({:.2} MB: {})", shown(&options.out), 1e-6 * page.html.len() as f64, parts(&names, &page));
-    if options.open {
-        open(&options.out)?;
-    }
-    Ok(ExitCode::SUCCESS)
+    say!("lab: {} ({:.2} MB: {})", shown(out), 1e-6 * page.html.len() as f64, parts(&names, &page));
+    Ok(())
+}
+
+/// Writes the page of a run's scene beside its report, with the module that was named or is found.
+pub(crate) fn beside_report(run: &RunDir, module_file: Option<&Path>, place: &Place) -> Result<()> {
+    let scene = Scene::read(run.scene())?;
+    let command = format!("{} lab {}", place.program, shown(&run.scene()));
+    let runs = run.path().parent().map_or_else(|| place.runs(), Path::to_owned);
+    let module = module(module_file, place)?;
+    write(std::slice::from_ref(&scene), &module, &runs, &command, &run.path().join(run_dir::LAB))
 }
 
 /// How large the parts of a page are.
@@ -98,25 +113,33 @@ fn again(options: &Options, place: &Place) -> String {
     format!("{} lab{}{}", place.program, scenes.collect::<String>(), set.collect::<String>())
 }
 
-/// The module: the one that was named, or the one that is found.
-fn module(options: &Options, place: &Place) -> Result<Vec<u8>> {
-    let named = options.module.clone().or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
-    let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(MODULE)));
-    let built = place.runs().with_file_name("target").join("lab").join(MODULE);
-    let file = match named {
-        Some(file) => file,
-        None => match beside.into_iter().chain([built]).find(|file| file.is_file()) {
-            Some(file) => file,
-            None => bail!(
-                "no {MODULE}, which steps the bearing in the page: `cargo xtask lab` builds it in the \
-                 repository of Stribeck (it needs `rustup target add wasm32-unknown-unknown`) and makes \
-                 the page. Elsewhere put the file beside the program, or name it with --module or {VARIABLE}"
-            ),
-        },
+/// The module: the one that was named, the one that the program carries, or the one that is found.
+fn module(named: Option<&Path>, place: &Place) -> Result<Vec<u8>> {
+    let named = named.map(Path::to_owned).or_else(|| std::env::var_os(VARIABLE).map(PathBuf::from));
+    let file = match (named, page::embedded()) {
+        (Some(file), _) => file,
+        (None, Some(module)) => return Ok(module.to_vec()),
+        (None, None) => found(place)?,
     };
     let bytes = std::fs::read(&file).with_context(|| format!("cannot read `{}`", shown(&file)))?;
     ensure!(is_module(&bytes), "`{}` is no WebAssembly module: `cargo xtask lab` builds one", shown(&file));
     Ok(bytes)
+}
+
+/// A module beside the program, or the last one of the repository.
+fn found(place: &Place) -> Result<PathBuf> {
+    let beside = std::env::current_exe().ok().and_then(|program| Some(program.parent()?.join(MODULE)));
+    let built = place.runs().with_file_name("target").join("lab").join(MODULE);
+    match beside.into_iter().chain([built]).find(|file| file.is_file()) {
+        Some(file) => Ok(file),
+        None => bail!(
+            "this program was built without {MODULE}, which steps the bearing in the page. In the repository \
+             of Stribeck `cargo xtask lab` builds it and makes the page, and `cargo xtask lab-module --embed` \
+             before `cargo install` gives it to the program; both need `rustup target add \
+             wasm32-unknown-unknown`. Elsewhere put the file beside the program, or name it with --module or \
+             {VARIABLE}"
+        ),
+    }
 }
 
 /// Opens a file with the browser of the system.

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::kinematics::Kinematics;
+use stribeck_scene::load_rating;
 use stribeck_scene::run_dir::write_atomic;
 use stribeck_scene::scene::Scene;
 
@@ -22,7 +23,7 @@ pub struct Options {
     /// Bearing of the catalogue, for example "NU 205" or 6205 [default: 6205]
     #[arg(long)]
     bearing: Option<String>,
-    /// Radial load [N] [default: 1000]
+    /// Radial load [N] [default: 1000, or a tenth of the static rating where that is less]
     #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true)]
     load_n: Option<f64>,
     /// Speed of the shaft [1/min] [default: 1500]
@@ -31,7 +32,7 @@ pub struct Options {
     /// Where a spall is, or none [default: outer]
     #[arg(long, value_enum)]
     defect: Option<Where>,
-    /// Length of the record [s] [default: 1]
+    /// Length of the record [s] [default: 1, longer where twenty passages over a defect take longer]
     #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     duration_s: Option<f64>,
     /// Asks nothing: what is not given has its default
@@ -131,6 +132,96 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
+/// What is allowed of a number: itself, or words on why not.
+type Limit<'a> = dyn Fn(f64) -> Result<f64, String> + 'a;
+
+/// Radial load where none is given [N].
+const USUAL_N: f64 = 1000.0;
+
+/// What a first scene of a bearing may have; what is beyond can be written into the file by hand.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    /// Static rating by ISO 76 [N].
+    rating_n: f64,
+    /// Pitch diameter [mm].
+    pitch_mm: f64,
+    /// Defects pass as often in a turn, the slowest of inner and outer raceway and of the elements.
+    passing: f64,
+}
+
+/// Pitch diameter times speed [mm/min] of the fastest bearings, of machine tools.
+const FASTEST_MM_RPM: f64 = 2.0e6;
+/// Pitch diameter times speed [mm/min] of the slowest, of slewing rings.
+const SLOWEST_MM_RPM: f64 = 10.0;
+/// Periods of the defect in a record, the least for an envelope, and the longest record [s].
+const PERIODS: f64 = 10.0;
+const LONGEST_S: f64 = 100.0;
+
+impl Limits {
+    fn of(bearing: &str) -> Result<Self> {
+        let scene = Scene::parse(&format!("(bearing: {bearing:?})"), bearing)?;
+        let k = Kinematics::of(&scene);
+        Ok(Self {
+            rating_n: load_rating::static_rating_n(&scene),
+            pitch_mm: 0.5 * (scene.bearing.outer_race_diameter_mm + scene.bearing.inner_race_diameter_mm),
+            passing: k.bpfo_hz.min(k.bpfi_hz).min(2.0 * k.bsf_hz) / k.shaft_hz,
+        })
+    }
+
+    /// 1000 N, or a tenth of what a smaller bearing carries [N].
+    fn usual_load_n(self) -> f64 {
+        let tenth = 0.1 * self.rating_n;
+        let digits = 10_f64.powf(tenth.max(1e-9).log10().floor() - 1.0);
+        if tenth < USUAL_N { (tenth / digits).round() * digits } else { USUAL_N }
+    }
+
+    /// A second, or twenty passages where those take longer [s].
+    fn usual_duration_s(self, speed_rpm: f64) -> f64 {
+        (2.0 * PERIODS * 60.0 / (self.passing * speed_rpm)).ceil().clamp(1.0, LONGEST_S)
+    }
+
+    /// Whether the bearing carries a load.
+    fn load(self, load_n: f64) -> Result<f64, String> {
+        let Self { rating_n, .. } = self;
+        if load_n <= rating_n {
+            return Ok(load_n);
+        }
+        Err(format!(
+            "{load_n} N: more than 0, at most {:.0} N, the bearing's static rating by ISO 76; above it steel \
+             yields, which the model does not. A tenth of it, {:.0} N, is a usual load",
+            rating_n.floor(),
+            0.1 * rating_n
+        ))
+    }
+
+    /// Whether a bearing of this size turns so fast.
+    fn speed(self, speed_rpm: f64) -> Result<f64, String> {
+        let [slowest, fastest] = [SLOWEST_MM_RPM, FASTEST_MM_RPM].map(|limit| limit / self.pitch_mm);
+        let slowest = slowest.max(PERIODS * 60.0 / (self.passing * LONGEST_S));
+        if (slowest..=fastest).contains(&speed_rpm) {
+            return Ok(speed_rpm);
+        }
+        Err(format!(
+            "{speed_rpm} rpm: {slowest:.1} to {fastest:.0} rpm at a pitch diameter of {:.1} mm. A slower \
+             shaft has no ten passages over a defect in {LONGEST_S} s, a faster one is faster than those of \
+             machine tools. 1500 rpm is usual",
+            self.pitch_mm,
+        ))
+    }
+
+    /// Whether a record shows something.
+    fn duration(self, speed_rpm: f64, duration_s: f64) -> Result<f64, String> {
+        let least_s = (1e3 * PERIODS * 60.0 / (self.passing * speed_rpm)).ceil() / 1e3;
+        if (least_s..=LONGEST_S).contains(&duration_s) {
+            return Ok(duration_s);
+        }
+        Err(format!(
+            "{duration_s} s: {least_s} to {LONGEST_S} s. The shortest record holds ten passages over a defect \
+             at {speed_rpm} rpm, the least for an envelope spectrum; the longest takes some 10 GB"
+        ))
+    }
+}
+
 /// Refuses to write over a file.
 fn free(file: &Path) -> Result<()> {
     ensure!(!file.exists(), "`{}` is there already and is kept: give another name", shown(file));
@@ -146,21 +237,35 @@ fn answers(options: &Options, asks: bool) -> Result<Answers> {
             None => Ok(named(default).map_err(anyhow::Error::msg)?),
         }
     };
-    let number = |given: Option<f64>, question: &str, default: f64| match given {
-        Some(given) => Ok(given),
-        None if asks => ask(question, &default, &positive),
-        None => Ok(default),
+    let number = |flag: &str, given: Option<f64>, question: &str, default: f64, limit: &Limit<'_>| match given
+    {
+        Some(given) => limit(given).map_err(|why| anyhow::anyhow!("{flag}: {why}")),
+        None if asks => ask(question, &default, &|text: &str| limit(positive(text)?)),
+        None => limit(default).map_err(|why| anyhow::anyhow!("{flag}, by default: {why}")),
     };
+    let bearing = from(options.bearing.clone(), "Bearing of the catalogue", "6205")?;
+    let limits = Limits::of(&bearing)?;
+    let usual_n = limits.usual_load_n();
+    let load_n = number("--load-n", options.load_n, "Radial load [N]", usual_n, &|n| limits.load(n))?;
+    let speed_rpm = number("--speed-rpm", options.speed_rpm, "Speed of the shaft [1/min]", 1500.0, &|rpm| {
+        limits.speed(rpm)
+    })?;
     Ok(Answers {
-        bearing: from(options.bearing.clone(), "Bearing of the catalogue", "6205")?,
-        load_n: number(options.load_n, "Radial load [N]", 1000.0)?,
-        speed_rpm: number(options.speed_rpm, "Speed of the shaft [1/min]", 1500.0)?,
+        bearing,
+        load_n,
+        speed_rpm,
         defect: match options.defect {
             Some(given) => given,
             None if asks => ask("Spall: outer, inner, roller or none", &"outer", &Where::parse)?,
             None => Where::Outer,
         },
-        duration_s: number(options.duration_s, "Length of the record [s]", 1.0)?,
+        duration_s: number(
+            "--duration-s",
+            options.duration_s,
+            "Length of the record [s]",
+            limits.usual_duration_s(speed_rpm),
+            &|s| limits.duration(speed_rpm, s),
+        )?,
     })
 }
 
@@ -260,6 +365,29 @@ mod tests {
                 assert_eq!(scene.faults().len(), usize::from(defect != Where::None), "{bearing} {defect:?}");
             }
         }
+    }
+
+    /// A load of 1e9 N was answered with a thickness of the bearing, and one of 20 kN on a 6205, which carries
+    /// 7.9 kN, was written.
+    #[test]
+    fn issue_numbers_that_no_bearing_has_are_refused_with_their_range() {
+        let limits = Limits::of("6205").expect("known");
+        assert!((7_800.0..8_000.0).contains(&limits.rating_n), "{limits:?}");
+        let says = |refused: Result<f64, String>, words: &str| {
+            let why = refused.expect_err(words);
+            assert!(why.contains(words), "{why}");
+        };
+        assert_eq!(limits.load(7_000.0), Ok(7_000.0));
+        says(limits.load(20_000.0), "at most 7887 N");
+        says(limits.load(1e9), "static rating");
+        says(limits.speed(1e6), "to 51230 rpm");
+        says(limits.speed(0.1), "1.7 to");
+        says(limits.duration(1500.0, 0.01), "0.112 to 100 s");
+        says(limits.duration(1500.0, 1e9), "0.112 to 100 s");
+        // What is written without flags can be, of small bearings and slow ones, too.
+        let small = Limits::of("618/8").or_else(|_| Limits::of("608")).expect("known");
+        assert!(small.load(small.usual_load_n()).is_ok(), "{small:?}");
+        assert!(limits.duration(20.0, limits.usual_duration_s(20.0)).is_ok());
     }
 
     #[test]

@@ -35,27 +35,51 @@ impl Place {
     /// # Errors
     /// What is wrong with it, or with the meshes that it names, with line and field.
     pub fn scene(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
-        let file = file.map(|file| self.locate(file));
-        if let Some(file) = &file {
-            detail!("scene `{}`", shown(file));
+        let scene = self.scene_quietly(file, overrides)?;
+        if let Some(file) = file.map(|file| self.locate(file)) {
+            detail!("scene `{}`", shown(&file));
+            Self::say_replaced(&file, &replaced_by_bearing(&file, overrides));
         }
+        Self::say_assumed(&scene);
+        Ok(scene)
+    }
+
+    /// As [`Place::scene`], without a word on what another bearing replaces or what of one is assumed: for who
+    /// reads a scene many times.
+    ///
+    /// # Errors
+    /// As [`Place::scene`].
+    pub fn scene_quietly(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
+        let file = file.map(|file| self.locate(file));
         let scene = match &file {
             Some(file) => Scene::read_with(file, overrides)?,
             None => Scene::singh2014().with_overrides(overrides)?,
         };
-        let replaced = file.as_deref().map_or(Vec::new(), |file| replaced_by_bearing(file, overrides));
-        if let (Some(file), false) = (&file, replaced.is_empty()) {
-            let told = replaced
-                .iter()
-                .map(|Replaced { field, written, now }| format!("`{field}` {now} instead of {written}"));
-            let told = told.collect::<Vec<_>>().join(", ");
-            caution!(
-                "with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
-                 --set what is to stay",
-                file.display()
-            );
-        }
         Self::with_sound_meshes(scene, file.as_deref(), overrides)
+    }
+
+    /// Says what of a scene file another bearing replaces.
+    fn say_replaced(file: &Path, replaced: &[Replaced]) {
+        if replaced.is_empty() {
+            return;
+        }
+        let told = replaced
+            .iter()
+            .map(|Replaced { field, written, now }| format!("`{field}` {now} instead of {written}"));
+        let told = told.collect::<Vec<_>>().join(", ");
+        caution!(
+            "with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
+             --set what is to stay",
+            file.display()
+        );
+    }
+
+    /// Says what of the scene's bearing is assumed. Of one of the catalogue the report says it.
+    pub(crate) fn say_assumed(scene: &Scene) {
+        let own = Some(&scene.bearing).filter(|bearing| !bearing.assumed.is_empty());
+        for note in own.into_iter().flat_map(catalogue::assumptions) {
+            eprintln!("note: {note}");
+        }
     }
 
     /// The scene that fields are without a file around them: the defaults under `overrides`.
@@ -63,7 +87,9 @@ impl Place {
     /// # Errors
     /// As [`Place::scene`].
     pub fn scene_of_fields(&self, overrides: &[String]) -> Result<Scene> {
-        Self::with_sound_meshes(Scene::default().with_overrides(overrides)?, None, overrides)
+        let scene = Self::with_sound_meshes(Scene::default().with_overrides(overrides)?, None, overrides)?;
+        Self::say_assumed(&scene);
+        Ok(scene)
     }
 
     /// A scene whose meshes can be read, before a folder is made for it.
@@ -74,11 +100,6 @@ impl Place {
             }
             other => anyhow!(other),
         })?;
-        // Of a bearing of the catalogue the report says it.
-        let own = Some(&scene.bearing).filter(|bearing| !bearing.assumed.is_empty());
-        for note in own.into_iter().flat_map(catalogue::assumptions) {
-            eprintln!("note: {note}");
-        }
         Ok(scene)
     }
 

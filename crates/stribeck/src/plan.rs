@@ -1,5 +1,6 @@
 //! `stribeck plan`: what to expect of a scene before it is run.
 
+mod json;
 mod trial;
 
 use std::path::PathBuf;
@@ -31,6 +32,9 @@ pub struct Options {
     /// Does not begin the run to see what it takes: the rest of the plan at once
     #[arg(long)]
     no_trial: bool,
+    /// Writes the plan to standard output as JSON
+    #[arg(long)]
+    json: bool,
 }
 
 /// A run of the reduced model that takes longer is worth a word [s].
@@ -48,6 +52,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let mesh =
         MeshFacts { counts: assembly.mesh_info(), element_time_step_s: assembly.element_time_step_s(&scene) };
     let mut plan = Plan::of(&scene, &mesh)?;
+    if options.json {
+        let trial = if options.no_trial { None } else { Some(trial::begin(&scene, &plan, place)?) };
+        plan.advice.extend(trial.as_ref().and_then(|trial| long(&scene, trial)));
+        say!("{}", serde_json::to_string_pretty(&json::of(&scene, &plan, trial.as_ref()))?);
+        return Ok(ExitCode::SUCCESS);
+    }
     say!("{}", scene.written.name);
     loads(&plan);
     contact_noise(&scene, &plan);
@@ -90,29 +100,42 @@ fn loads(plan: &Plan) {
     );
 }
 
+/// Steps of the whole run.
+fn steps(scene: &ResolvedScene, trial: &Trial) -> f64 {
+    (trial.info.steps_planned as f64 * scene.duration / trial.info.simulated_s.max(f64::MIN_POSITIVE)).round()
+}
+
+/// A machine on which a run takes so many times longer than where nothing else runs is busy.
+const BUSY: f64 = 1.2;
+
 /// What the run takes.
 fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
-    let steps = (trial.info.steps_planned as f64 * scene.duration
-        / trial.info.simulated_s.max(f64::MIN_POSITIVE))
-    .round();
     let what = match &trial.info.reduced {
         Some(reduced) => format!("{} modes of {} elements", reduced.modes, plan.elements),
         None => format!("{} elements", plan.elements),
     };
-    say!("  {what}, {steps:.0} steps of {:.3} µs", 1e6 * trial.info.time_step_s);
-    let modes = match trial.modes_s {
-        Some(s) if trial.kept => format!("; its modes took {}, and are kept for it", clock(s)),
-        Some(s) => format!(", {} of it for the modes, which are kept for further runs", clock(s)),
+    say!("  {what}, {:.0} steps of {:.3} µs", steps(scene, trial), 1e6 * trial.info.time_step_s);
+    let modes = match trial.modes {
+        Some(cost) if trial.kept => format!("; its modes took {}, and are kept for it", clock(cost.busy_s)),
+        Some(cost) => {
+            format!(", {} of it for the modes, which are kept for further runs", clock(cost.quiet_s))
+        }
         None => String::new(),
     };
-    let threads = if trial.info.reduced.is_some() { 1 } else { trial.threads };
+    let all = trial.run();
+    let busy = if all.busy_s > BUSY * all.quiet_s {
+        format!(", and {} as busy as it is now", clock(all.busy_s))
+    } else {
+        String::new()
+    };
     say!(
-        "  the run takes about {} on this machine as busy as it is now, {threads} thread{} (set-up \
-         {}{modes}), and \
-         its report some seconds more: {:.2} ms of it were tried",
-        clock(trial.run_s()),
-        if threads == 1 { "" } else { "s" },
-        clock(trial.run_s() - trial.loop_s),
+        "  the run takes about {} on {} thread{} of this machine{}{busy} (set-up {}{modes}), and its report \
+         some seconds more: {:.2} ms of it were tried",
+        clock(all.quiet_s),
+        trial.threads,
+        if trial.threads == 1 { "" } else { "s" },
+        if busy.is_empty() { "" } else { " where nothing else runs" },
+        clock(trial.before().quiet_s),
         1e3 * trial.info.simulated_s
     );
     for warning in &trial.info.warnings {
@@ -126,7 +149,7 @@ fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
 /// Advice where a reduced run takes hours.
 fn long(scene: &ResolvedScene, trial: &Trial) -> Option<String> {
     let ModelScene::Reduced(reduced) = &scene.written.model else { return None };
-    if trial.run_s() <= LONG_S {
+    if trial.run().quiet_s <= LONG_S {
         return None;
     }
     let dampers = match &scene.written.housing {

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use stribeck_scene::run_dir::{Run, RunDir};
 
+use crate::lab;
 use crate::out::{caution, detail, say};
 use crate::pdf;
 use crate::place::{Place, shown};
@@ -24,6 +25,26 @@ pub struct Options {
     /// Print the page as report.pdf, too, A4, through Chromium, Chrome or Edge where one is installed
     #[arg(long)]
     pdf: bool,
+    /// Make the page in which the bearing of the run runs, too, as lab.html beside the report, which leads to
+    /// it (`stribeck lab`)
+    #[arg(long)]
+    lab: bool,
+    /// The module of that page, where it was just built.
+    #[arg(skip)]
+    module: Option<PathBuf>,
+}
+
+impl Options {
+    /// Whether the page in which the bearing runs is wanted.
+    pub fn makes_lab(&self) -> bool {
+        self.lab
+    }
+
+    /// With the module of that page.
+    pub fn with_module(mut self, module: PathBuf) -> Self {
+        self.module = Some(module);
+        self
+    }
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
@@ -41,6 +62,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     );
     if RunDir::is_ensemble(&folder) {
         anyhow::ensure!(
+            !options.lab,
+            "`{}` is an ensemble: a lab is made of one run; name one of its starts",
+            shown(&folder)
+        );
+        anyhow::ensure!(
             time_s == (f64::NEG_INFINITY..f64::INFINITY),
             "`{}` is an ensemble: --from-s and --to-s choose from the record of one run; name one of its \
              starts",
@@ -54,6 +80,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let dir = RunDir::open(&folder)?;
     for missing in Run::read(dir.path())?.damage() {
         caution!("{missing}");
+    }
+    if options.lab {
+        lab::beside_report(&dir, options.module.as_deref(), place)?;
     }
     detail!("report of `{}`", shown(dir.path()));
     stribeck_report::write_between(dir.path(), time_s)?;

@@ -188,7 +188,16 @@ fn print(found: &BearingStiffness) {
     );
     say!(
         "{:>9} {:>9} {:>9} {:>7} {:>9} {:>10} {:>10} {:>8} {:>8} {:>10}",
-        "N", "rpm", "Hz", "", "N", "N/µm", "N/µm", "%", "%", "nm"
+        "N",
+        "rpm",
+        "Hz",
+        "",
+        "N",
+        "N/µm",
+        "N/µm",
+        "%",
+        "%",
+        "nm"
     );
     for p in &found.points {
         let (k, u) = (&p.stiffness_n_m, &p.shift_m);

@@ -1,15 +1,18 @@
 //! `stribeck sweep`: a few values of a few fields, each with every other, as a campaign with its page.
 
+use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::campaign::Campaign;
+use stribeck_scene::catalogue;
 use stribeck_scene::run_dir::{Keep, check_folder};
+use stribeck_scene::scene_file::replaced_by_bearing;
 
 use crate::campaign::{CAMPAIGN, MARKS, SCENES, carry_out};
 use crate::many_runs::Share;
-use crate::out::{say, tell};
+use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
 
 /// Flags of `sweep`.
@@ -127,21 +130,43 @@ fn parse(text: &str, out: &Path) -> Result<Campaign> {
 }
 
 /// Reads the scene under each value of each field by itself, so that what is wrong is said in the words of
-/// the command line; the name of the scene.
+/// the command line; the name of the scene. What other bearings replace, and what is assumed of them, is said
+/// once for all values.
 fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&Assigned]) -> Result<String> {
-    let scene = options.scene.as_deref();
+    let file = options.scene.as_deref();
     let argument = |a: &Assigned, value: &str| format!("{}={value}", a.field);
     let common: Vec<String> = fixed.iter().map(|a| argument(a, &a.values[0])).collect();
     let firsts: Vec<String> = swept.iter().map(|a| argument(a, &a.values[0])).collect();
-    let read = place.scene(scene, &[common.as_slice(), &firsts].concat())?;
+    let mut sets = vec![[common.as_slice(), &firsts].concat()];
     for (at, a) in swept.iter().enumerate() {
         for value in &a.values[1..] {
             let mut set = firsts.clone();
             set[at] = argument(a, value);
-            place.scene(scene, &[common.as_slice(), &set].concat())?;
+            sets.push([common.as_slice(), &set].concat());
         }
     }
-    Ok(read.name)
+    let (mut fields, mut notes, mut first) = (BTreeSet::new(), BTreeSet::new(), None);
+    for set in &sets {
+        let scene = place.scene_quietly(file, set)?;
+        let replaced = file.map_or(Vec::new(), |file| replaced_by_bearing(&place.locate(file), set));
+        fields.extend(replaced.into_iter().map(|replaced| format!("`{}`", replaced.field)));
+        if !scene.bearing.assumed.is_empty() {
+            notes.extend(catalogue::assumptions(&scene.bearing));
+        }
+        first.get_or_insert(scene.name);
+    }
+    if let (Some(file), false) = (file, fields.is_empty()) {
+        let fields = fields.into_iter().collect::<Vec<_>>().join(", ");
+        caution!(
+            "with each bearing goes what surrounds it, in the place of what `{}` says: {fields}. Give with \
+             --set what is to stay",
+            file.display()
+        );
+    }
+    for note in notes {
+        tell!("note: {note}");
+    }
+    first.context("no value to run")
 }
 
 /// The name of the folder: that of the scene with the last words of the fields.

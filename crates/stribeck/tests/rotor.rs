@@ -52,7 +52,8 @@ fn example_stiffness_as_table_json_and_for_ross() {
     let table = fs::read_to_string(desk.join("sound-stiffness/stiffness.csv")).expect("a table");
     assert_eq!(table.lines().count(), 1 + 6 * 64);
     // The mean of a column of the table is that of the file.
-    let rows = table.lines().skip(1).take(64).map(|row| row.split(',').nth(5).and_then(|k| k.parse::<f64>().ok()));
+    let rows =
+        table.lines().skip(1).take(64).map(|row| row.split(',').nth(5).and_then(|k| k.parse::<f64>().ok()));
     let mean = rows.map(|k| k.expect("a number")).sum::<f64>() / 64.0;
     let said = points[0]["stiffness_n_m"]["yy"]["mean"].as_f64().expect("a number");
     assert!((mean / said - 1.0).abs() < 1e-8, "{mean} {said}");
@@ -95,8 +96,8 @@ fn line(samples: &[f64], interval_s: f64, hz: f64) -> f64 {
     2.0 * re.hypot(im) / sum
 }
 
-/// ROSS 2.3.0 loads our bearing and runs a rotor on two of them: unbalance against m e ω²/|2k − M ω²|, and the
-/// line that the turning cage drives at BPFO beside our own simulation of the sound bearing.
+/// ROSS 2.3.0 loads our bearing and runs a rotor on two of them: unbalance against m e ω²/|2k − M ω²|, and
+/// the line that the turning cage drives at BPFO beside our own simulation of the sound bearing.
 #[test]
 fn peer_ross_runs_a_rotor_on_our_stiffness() {
     /// The shaft of ROSS's rotor bends, by 1 and 4 % of the bearings' shift.

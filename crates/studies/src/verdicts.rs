@@ -3,6 +3,7 @@
 //! a kurtogram.
 
 mod baseline;
+mod both_ends;
 mod records;
 mod tables;
 mod trial;
@@ -30,6 +31,9 @@ pub struct Options {
     /// Change one record in so many
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     changed_every: u32,
+    /// Only changes whose name contains this; may be repeated
+    #[arg(long, value_name = "TEXT")]
+    change: Vec<String>,
 }
 
 pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
@@ -45,16 +49,22 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     tables::verdicts(&mut sheet, &records, &judged);
     tables::choices(&mut sheet, &records, &judged);
     tables::sound(&mut sheet, &records, &judged)?;
+    let ends = both_ends::pairs(&records);
+    tables::both_ends(&mut sheet, &ends, &of_all(&ends, host, both_ends::judge)?);
     tables::lengths(&mut sheet, &records, &judged);
     if !options.unchanged {
         let every = options.changed_every as usize;
         let some: Vec<Labelled> = records.iter().step_by(every).cloned().collect();
         let mut changed = Vec::new();
-        for (name, change) in CHANGES {
+        let asked = |name: &str| {
+            options.change.is_empty() || options.change.iter().any(|text| name.contains(text.as_str()))
+        };
+        for (name, change) in CHANGES.into_iter().filter(|(name, _)| asked(name)) {
             host.say(name);
             changed.push((name, of_all(&some, host, |record| trial::judge(record, change))?));
         }
         tables::robustness(&mut sheet, &some, every, &changed);
+        tables::speeds(&mut sheet, &some, &changed);
     }
     tables::bounds(&mut sheet);
     tables::numbers(&mut sheet);
@@ -63,10 +73,10 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
 }
 
 /// The same for each record, on all cores, in their order.
-fn of_all<T: Send>(
-    records: &[Labelled],
+fn of_all<R: Sync, T: Send>(
+    records: &[R],
     host: &dyn Host,
-    judge: impl Fn(&Labelled) -> T + Sync,
+    judge: impl Fn(&R) -> T + Sync,
 ) -> Result<Vec<T>> {
     let next = AtomicUsize::new(0);
     let done: Vec<Mutex<Option<T>>> = records.iter().map(|_| Mutex::new(None)).collect();

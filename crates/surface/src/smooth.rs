@@ -1,5 +1,7 @@
 //! Smooth surfaces: how far the true curve stands off the chords of a polyline (THEORY §4.4).
 
+use stribeck_simd::lanes::Number;
+
 use crate::polyline::Vertices;
 
 /// What a polyline stands for.
@@ -31,20 +33,23 @@ pub type Rise = [f64; 2];
 
 /// Height [m] of the curve at a place.
 #[inline(always)]
-pub fn height([r0, r1]: Rise, s: f64) -> f64 {
-    s * (1.0 - s) * (r0 * (1.0 - s) - r1 * s)
+pub fn height<N: Number>([r0, r1]: [N; 2], s: N) -> N {
+    let rest = s.constant(1.0) - s;
+    s * rest * (r0 * rest - r1 * s)
 }
 
 /// Slope of the height [m per facet].
 #[inline(always)]
-pub fn slope([r0, r1]: Rise, s: f64) -> f64 {
-    r0 * (1.0 - s) * (1.0 - 3.0 * s) - r1 * s * (2.0 - 3.0 * s)
+pub fn slope<N: Number>([r0, r1]: [N; 2], s: N) -> N {
+    let (one, three) = (s.constant(1.0), s.constant(3.0));
+    r0 * (one - s) * (one - three * s) - r1 * s * (s.constant(2.0) - three * s)
 }
 
 /// Rate of the slope [m per facet, per facet].
-#[inline]
-pub fn bend([r0, r1]: Rise, s: f64) -> f64 {
-    r0 * (6.0 * s - 4.0) + r1 * (6.0 * s - 2.0)
+#[inline(always)]
+pub fn bend<N: Number>([r0, r1]: [N; 2], s: N) -> N {
+    let six = s.constant(6.0) * s;
+    r0 * (six - s.constant(4.0)) + r1 * (six - s.constant(2.0))
 }
 
 /// Rise of every facet of a polyline, given its corners.

@@ -28,7 +28,7 @@ const LAYERS: [(&str, &[&str]); 26] = [
     ("reduction", &["bearing", "mesh", "modal", "scene", "solver", "surface", "system"]),
     ("reduced", &["duty", "film", "modal", "simd", "surface"]),
     ("simulation", &["bearing", "mesh", "modal", "reduced", "reduction", "run", "scene", "solver", "system"]),
-    ("lab", &["duty", "modal", "reduced", "reduction", "scene", "simulation"]),
+    ("lab", &["duty", "modal", "reduced", "reduction", "run", "scene", "simulation"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 
+use super::test_names;
+
 /// Names the folder into which tests write their rows.
 pub(super) const FOLDER: &str = "STRIBECK_LEDGER";
 
@@ -29,12 +31,37 @@ struct Row {
 }
 
 /// Checks the document against the rows in the folder that the environment names, and writes it anew when
-/// they differ; nothing to check without one.
+/// they differ. Without one, checks that each row's test stands in the crate of its section: a test that has
+/// moved or another name is found without being run.
 pub(super) fn check(root: &Path) -> Result<Vec<String>> {
     match std::env::var_os(FOLDER) {
         Some(folder) => renew(root, &PathBuf::from(folder)),
-        None => Ok(Vec::new()),
+        None => {
+            let text = std::fs::read_to_string(document(root)).context("cannot read docs/VALIDATION.md")?;
+            let tests = test_names::all(root)?;
+            Ok(strays(&text, |package, name| {
+                let folder = format!("crates/{package}/");
+                tests.iter().any(|test| test.name == name && test.file.starts_with(&folder))
+            }))
+        }
     }
+}
+
+/// Rows of the document whose test does not stand in the crate of their section, as `stands` knows.
+fn strays(text: &str, stands: impl Fn(&str, &str) -> bool) -> Vec<String> {
+    let mut package = "";
+    let mut found = Vec::new();
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix("## ") {
+            package = name;
+        } else if let Some(test) = line.strip_suffix("` |").and_then(|row| row.rsplit('`').next()) {
+            let name = test.rsplit("::").next().unwrap_or(test);
+            if !stands(package, name) {
+                found.push(format!("docs/VALIDATION.md: the crate {package} has no test `{name}`"));
+            }
+        }
+    }
+    found
 }
 
 /// Writes the document anew when it differs from the rows in `folder` by more than rounding, and says so.
@@ -188,6 +215,16 @@ mod tests {
             `analytic_speed` |";
         assert!(text.contains("## solver") && text.contains(row), "{text}");
         assert_eq!([digits(0.0, 3), digits(1.5e-7, 3), digits(123_456.0, 2)], ["0", "1.50e-7", "123456"]);
+    }
+
+    #[test]
+    fn example_a_test_that_has_moved_is_found_without_being_run() {
+        let text = render(&[parse(LINE).expect("a row")]);
+        assert_eq!(strays(&text, |package, name| package == "solver" && name == "analytic_speed"), [""; 0]);
+        assert_eq!(
+            strays(&text, |package, _| package == "mesh"),
+            ["docs/VALIDATION.md: the crate solver has no test `analytic_speed`"]
+        );
     }
 
     #[test]

@@ -25,6 +25,7 @@ use crate::paper;
 use crate::prediction::Prediction;
 use crate::reading::CursorReading;
 use crate::record::Record;
+use crate::records::{self, RecordFinding};
 use crate::ring;
 use crate::rolling;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
@@ -239,6 +240,15 @@ impl<'a> Case<'a> {
         Ok(LeadingSpectrum { finding, fine })
     }
 
+    /// What would a machine's sensor tell, where the scene asks for it?
+    pub(super) fn records(
+        &self,
+        carried: &Carried,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<RecordFinding>, Error> {
+        records::of(&self.run.scene.written, carried.support_n(), self.record.sample_rate_hz(), notes)
+    }
+
     /// Which line of the leading sensor has which cause? None where the speed changes.
     pub(super) fn artefacts(
         &self,
@@ -319,6 +329,7 @@ impl<'a> Case<'a> {
             artefacts: answers.artefacts,
             envelope: answers.envelope.finding,
             diagnosis: answers.diagnosis,
+            records: answers.records,
             cursor,
             paper: Vec::new(),
             notes: answers.notes,

@@ -10,10 +10,10 @@ use super::pressed::Loading;
 use super::{Defect, Family, Interval, Machine};
 
 /// Events closer than this cannot be distinguished from the ringing of one [s].
-const SHORTEST_S: f64 = 0.4e-3;
+pub(crate) const SHORTEST_S: f64 = 0.4e-3;
 /// Longest spall over the distance of two rolling elements: with a longer one the next element enters before
 /// one leaves.
-const LONGEST: f64 = 0.45;
+pub(crate) const LONGEST: f64 = 0.45;
 /// A second event that is missed is nearer to the first than this part of what would have shown.
 const MISSED: f64 = 2.0;
 

@@ -1,5 +1,5 @@
-//! Lines that a sound machine has, whatever its bearing: multiples of its shafts, of a cage that stands, and of
-//! meshes of gears with their sidebands.
+//! Lines that a sound machine has, whatever its bearing: multiples of its shafts, of a cage that stands, and
+//! of meshes of gears with their sidebands.
 
 /// Multiples of the shaft and of the cage.
 #[derive(Debug, Clone, PartialEq)]
@@ -100,7 +100,14 @@ impl OwnLines {
 mod tests {
     use super::*;
 
-    const OWN: OwnLines = OwnLines { shaft_hz: 30.0, cage_hz: None, elements: 8.0, width_hz: 0.2, shafts_hz: Vec::new(), meshes_hz: Vec::new() };
+    const OWN: OwnLines = OwnLines {
+        shaft_hz: 30.0,
+        cage_hz: None,
+        elements: 8.0,
+        width_hz: 0.2,
+        shafts_hz: Vec::new(),
+        meshes_hz: Vec::new(),
+    };
 
     #[test]
     fn example_the_search_passes_over_multiples_of_the_shaft() {

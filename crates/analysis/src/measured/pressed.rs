@@ -44,10 +44,10 @@ impl Loading {
         load_n: Option<(f64, f64)>,
         clearance_um: Option<(f64, f64)>,
     ) -> (Self, bool) {
-        let rating = static_rating_n(bearing);
-        let usual = (USUAL.0 * rating, USUAL.1 * rating);
-        let loading =
-            Self { load_n: load_n.unwrap_or(usual), clearance_um: clearance_um.unwrap_or((0.0, 0.0)) };
+        let loading = Self {
+            load_n: load_n.unwrap_or_else(|| usual_load_n(bearing)),
+            clearance_um: clearance_um.unwrap_or((0.0, 0.0)),
+        };
         (loading, load_n.is_some())
     }
 
@@ -62,6 +62,12 @@ impl Loading {
         let middle_n = (self.load_n.0 * self.load_n.1).sqrt();
         (of(middle_n, 0.5 * (loose_um + tight_um)), MODEL.0 * least, MODEL.1 * most)
     }
+}
+
+/// Radial load that such a bearing usually carries, least and most [N]: 0.2 to 10 % of its static rating.
+pub fn usual_load_n(bearing: &CatalogueBearing) -> (f64, f64) {
+    let rating = static_rating_n(bearing);
+    (USUAL.0 * rating, USUAL.1 * rating)
 }
 
 fn elements(bearing: &CatalogueBearing) -> u32 {

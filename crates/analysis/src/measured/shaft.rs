@@ -39,11 +39,11 @@ impl Shaft {
     pub(super) fn is_told(&self) -> bool {
         self.height_db >= LEAST_DB && self.lead_db >= LEAST_LEAD_DB
     }
+}
 
-    /// Whether it lies farther from the given speed than need not be corrected.
-    pub(super) fn corrects(&self, given_hz: f64) -> bool {
-        self.is_told() && (self.hz / given_hz - 1.0).abs() > CORRECTED
-    }
+/// Whether a speed lies farther from the given one than need not be corrected.
+pub(super) fn is_correction(hz: f64, given_hz: f64) -> bool {
+    (hz / given_hz - 1.0).abs() > CORRECTED
 }
 
 /// The shaft's comb near `given_hz`; `None` for a record that does not resolve it.

@@ -1,8 +1,12 @@
 //! Deflection of roller and raceway under a film: penalty on a round contact in series with the local
 //! compliance (THEORY §9.3).
 
-use stribeck_film::Spring;
+use pulp::Simd;
+use stribeck_film::{Spring, SpringInLanes};
 use stribeck_modal::compliance::{Compliance, Curve};
+use stribeck_simd::lanes::{LANES, Number, Vector};
+
+use crate::row::lanes;
 
 /// Corrections of the force at a depth at most, and the share of it below which the last one leaves its
 /// square: nothing.
@@ -74,5 +78,53 @@ impl Spring for BodySpring {
         let force = self.force(depth);
         let root = force.cbrt();
         0.4 * self.softness * force * root * root + self.curve.energy(force)
+    }
+}
+
+impl SpringInLanes for BodySpring {
+    #[inline(always)]
+    fn depth_of<S: Simd>(&self, simd: S, root: Vector<S>) -> [Vector<S>; 2] {
+        let all = |value: f64| Vector::all(simd, value);
+        let square = root * root;
+        let force = square * root;
+        let y = force.sqrt();
+        // Most films press with next to nothing: on the first piece.
+        let [_, g, grows, _] = self.curve.piece_at(0.0);
+        let (mut knot, mut first, mut slope) = (all(0.0), all(g), all(grows));
+        let beyond = all(self.curve.spacing()).bits_below(y);
+        if beyond != 0 {
+            let mut roots = [0.0; LANES];
+            let mut columns = [[0.0; LANES], [g; LANES], [grows; LANES]];
+            y.store(&mut roots, 0);
+            for lane in lanes(beyond) {
+                let [knot, g, grows, _] = self.curve.piece_at(roots[lane]);
+                (columns[0][lane], columns[1][lane], columns[2][lane]) = (knot, g, grows);
+            }
+            knot = Vector::load(simd, &columns[0], 0);
+            first = Vector::load(simd, &columns[1], 0);
+            slope = Vector::load(simd, &columns[2], 0);
+        }
+        let g = slope.times_plus(y - knot, first);
+        let give = (all(0.5) * y).times_plus(slope, g);
+        let softness = all(self.softness);
+        let by_root = (all(2.0) * softness).times_plus(root, all(3.0) * square * give);
+        [softness.times_plus(square, force * g), by_root]
+    }
+
+    #[inline(always)]
+    fn largest_root<S: Simd>(&self, simd: S, depth: Vector<S>) -> Vector<S> {
+        (depth * Vector::all(simd, 1.0 / self.softness)).sqrt()
+    }
+
+    #[inline(always)]
+    fn energy_at<S: Simd>(&self, simd: S, root: Vector<S>) -> Vector<S> {
+        let square = root * root;
+        let mut forces = [0.0; LANES];
+        (square * root).store(&mut forces, 0);
+        let penalty = Vector::all(simd, 0.4 * self.softness) * square * square * root;
+        for force in &mut forces[..Vector::<S>::LEN] {
+            *force = self.curve.energy(*force);
+        }
+        penalty + Vector::load(simd, &forces, 0)
     }
 }

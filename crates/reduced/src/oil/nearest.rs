@@ -1,7 +1,7 @@
 //! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast
 //! both sweep past there.
 
-use stribeck_film::{Land, Place, Point};
+use stribeck_film::{FacetCurve, Land, Place, Point};
 use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};
 
 use crate::{contact::outline::Outline, error::Error, plane::Rotation};
@@ -97,8 +97,20 @@ impl Curved {
         land.begin(&self.surface, &self.x, &self.y, point)
     }
 
-    fn nearest(&self, land: &Land, point: [f64; 2], from: Place) -> Point {
+    pub(super) fn nearest(&self, land: &Land, point: [f64; 2], from: Place) -> Point {
         land.nearest(&self.surface, &self.x, &self.y, point, from)
+    }
+}
+
+impl Curved {
+    /// The curve of a facet of a land.
+    pub(super) fn curve(&self, land: &Land, facet: u32) -> FacetCurve {
+        land.curve(&self.surface, &self.x, &self.y, facet)
+    }
+
+    /// The facet of a land before or after another one.
+    pub(super) fn beside(&self, land: &Land, facet: u32, forward: bool) -> Option<u32> {
+        land.beside(&self.surface, facet, forward)
     }
 }
 

@@ -8,6 +8,7 @@ use crate::{
     contact::penetration::Penetration,
     contact::raceway::Raceway,
     contact::segments::Segments,
+    oil::{BlockFilms, Lubrication},
     row::{Row, Rows, lanes, of_one},
     state::State,
 };
@@ -56,6 +57,8 @@ pub(crate) struct Block {
     pub(crate) moved: [Row; 8],
     /// At outer and inner raceway.
     pub(crate) contacts: [Contacts; 2],
+    /// Films of oil; none without oil.
+    pub(crate) films: BlockFilms,
     /// At the two walls of each pocket.
     pub(crate) walls: [Walls; 2],
     /// Forces by outer raceway, inner raceway and cage in this step [N], and their moment [N m].
@@ -150,8 +153,11 @@ impl Block {
         }
     }
 
-    /// Takes the rollers from a state.
-    pub(crate) fn load(&mut self, state: &State) {
+    /// Takes the rollers from a state, with their films where there is oil.
+    pub(crate) fn load(&mut self, rollers: &Rollers, oil: Option<&Lubrication>, state: &State) {
+        if let (Some(oil), Some(films)) = (oil, &state.films) {
+            self.films = oil.block_films(rollers, films, [self.first, self.count]);
+        }
         for lane in 0..self.count {
             let i = self.first + lane;
             let of = |column: &mut Row, value: f64| column[lane] = value;
@@ -198,7 +204,7 @@ impl Block {
         }
     }
 
-    /// Shows the state what is sampled and looked at: places, angles and normal forces.
+    /// Shows the state what is sampled and looked at: places, angles, normal forces and films.
     pub(crate) fn show(&self, state: &mut State) {
         let (of, n) = (self.first..self.first + self.count, self.count);
         let columns = [
@@ -209,6 +215,9 @@ impl Block {
         let forces = state.force.iter_mut().zip(self.contacts.iter().map(|contacts| &contacts.force));
         for (column, row) in columns.into_iter().chain(forces) {
             column[of.clone()].copy_from_slice(&row[..n]);
+        }
+        if let Some(films) = &mut state.films {
+            self.films.store(self.first, n, films);
         }
     }
 

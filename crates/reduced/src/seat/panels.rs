@@ -60,6 +60,7 @@ impl Springs {
         add_all(simd, tension, &self.by_mode, modes);
         let rollers = responses.rollers.iter().map(|roller| roller.force).enumerate();
         add_all(simd, tension, &responses.by, rollers);
+        add_all(simd, tension, &self.by_rollers, responses.fixed.iter().copied());
         let moves = listed(&mut responses.moves, moved, |spring| panels.before[spring] - panels.open[spring]);
         add_all(simd, tension, &self.stiffness, moves);
     }

@@ -22,6 +22,9 @@ pub(crate) struct RollerResponses {
     pub(super) rollers: Vec<RollerResponse>,
     /// Tensions by a unit force of each, roller by roller.
     pub(super) by: Vec<Row>,
+    /// Forces of rollers that do not answer, at the vertices of the raceway, where films make all of them
+    /// press [N].
+    pub(super) fixed: Vec<(usize, f64)>,
     /// Springs that move, with their displacements: room for a list.
     pub(super) moves: Vec<(usize, f64)>,
 }
@@ -54,16 +57,24 @@ impl Springs {
     ) {
         let groups = self.rows();
         responses.rollers.clear();
-        responses.by.clear();
+        responses.fixed.clear();
+        responses.by.resize(groups * rollers.len(), Row::default());
+        let mut first = 0;
         for roller in rollers.iter().filter(|roller| roller.force != 0.0) {
+            let gain = roller.stiffness * self.flexibility[roller.facet as usize];
+            let expected = roller.next();
+            if self.with_oil && gain <= RESPONSIVE {
+                let (facet, of_second) = (roller.facet as usize, roller.share * expected);
+                responses.fixed.extend([(facet, expected - of_second), (facet + 1, of_second)]);
+                continue;
+            }
             let ends = self.ends(roller.facet as usize);
             let (a, b) = (Vector::all(simd, 1.0 - roller.share), Vector::all(simd, roller.share));
             let mut given = Vector::all(simd, 0.0);
-            let first = responses.by.len();
-            responses.by.resize(first + groups, Row::default());
             let gaps = panels.open.as_chunks::<LANES>().0;
             let both = ends[0].iter().zip(ends[1]);
-            for ((by, gap), (ahead, behind)) in responses.by[first..].iter_mut().zip(gaps).zip(both) {
+            for ((by, gap), (ahead, behind)) in responses.by[first..][..groups].iter_mut().zip(gaps).zip(both)
+            {
                 for at in vector_starts(simd) {
                     let (ahead, behind) = (ahead.load(simd, at), behind.load(simd, at));
                     let between = ahead.times_plus(a, behind * b);
@@ -71,10 +82,9 @@ impl Springs {
                     between.store(by, at);
                 }
             }
-            let expected = roller.next();
+            first += groups;
             let mut answer =
                 RollerResponse { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
-            let gain = roller.stiffness * self.flexibility[roller.facet as usize];
             if gain > RESPONSIVE {
                 // Where panels let go a change comes back times −gain, where they panels not at all: halfway
                 // between the two.

@@ -3,7 +3,7 @@
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-use crate::row::{Numbers, Row, bits};
+use crate::row::{Numbers, Row};
 
 /// Adds a multiple of some rows to others.
 #[inline(always)]
@@ -71,17 +71,24 @@ pub(super) fn listed(
     by: impl Fn(usize) -> f64,
 ) -> impl Iterator<Item = (usize, f64)> + Clone {
     list.clear();
-    list.extend(bits(moved).map(|spring| (spring, by(spring))));
+    for (half, first) in [(moved as u64, 0), ((moved >> u64::BITS) as u64, u64::BITS)] {
+        let mut rest = half;
+        while rest != 0 {
+            let spring = (first + rest.trailing_zeros()) as usize;
+            list.push((spring, by(spring)));
+            rest &= rest - 1;
+        }
+    }
     list.iter().copied()
 }
 
 /// Sum of the products of some rows with others.
 #[inline(always)]
-pub(super) fn dot<S: Simd>(simd: S, rows: &[Row], others: &[[f64; LANES]]) -> f64 {
+pub(super) fn dot<S: Simd, N: Numbers>(simd: S, rows: &[N], others: &[[f64; LANES]]) -> f64 {
     let mut sum = Vector::all(simd, 0.0);
     for (row, other) in rows.iter().zip(others) {
         for at in vector_starts(simd) {
-            sum = Vector::load(simd, row, at).times_plus(Vector::load(simd, other, at), sum);
+            sum = row.load(simd, at).times_plus(Vector::load(simd, other, at), sum);
         }
     }
     sum.sum()

@@ -58,7 +58,7 @@ impl Bearing {
                 );
             }
             self.law.push_rollers(simd, &self.raceways, block, drive, &mut sums);
-            let by_film = self.push_by_oil(state, block, drive, tally);
+            let by_film = self.push_by_oil(simd, state, block, drive, tally);
             self.push_modes(simd, scratch, b, by_film);
             let block = &mut scratch.blocks[b];
             for (raceway, contacts) in self.raceways.iter().zip(&block.contacts) {
@@ -83,8 +83,9 @@ impl Bearing {
     /// Adds the forces of oil films to those on a group of rollers. Returns normal forces [N] and stiffnesses
     /// [N/m] of the films at the outer raceway.
     #[inline(always)]
-    fn push_by_oil(
+    fn push_by_oil<S: Simd>(
         &self,
+        simd: S,
         state: &mut State,
         block: &mut Block,
         drive: &Drive,
@@ -93,7 +94,7 @@ impl Bearing {
         let (Some(oil), Some(films)) = (&self.oil, &mut state.films) else { return [[0.0; LANES]; 2] };
         let dt = self.time_step;
         let step = FilmStep { step: state.steps, dt, last: tally.last, felt: self.seat.is_some() };
-        let by_oil = oil.add_film_forces(&self.rollers, films, block, drive.rings(), step);
+        let by_oil = oil.add_film_forces(simd, &self.rollers, films, block, drive.rings(), step);
         tally.stored.contact += by_oil.stored;
         for (ring, moment) in drive.rings().into_iter().zip(by_oil.drive) {
             tally.spent.drive += ring.map_or(0.0, |ring| dt * ring.rate * moment);

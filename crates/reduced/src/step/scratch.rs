@@ -50,8 +50,9 @@ impl Scratch {
     }
 
     /// Takes the rollers from a state, before the first step here.
-    pub(crate) fn load(&mut self, state: &State) {
-        self.blocks.iter_mut().for_each(|block| block.load(state));
+    pub(crate) fn load(&mut self, bearing: &Bearing, state: &State) {
+        let Bearing { rollers, oil, .. } = bearing;
+        self.blocks.iter_mut().for_each(|block| block.load(rollers, oil.as_ref(), state));
         if let Some(hold) = &state.seat {
             self.roller_forces.clone_from(&hold.pressed);
         }

@@ -8,7 +8,7 @@ use std::f64::consts::SQRT_2;
 use stribeck_dsp::Spectrum;
 
 use super::{mark, spoken};
-use crate::plot::{Axis, Colour, Figure, Mark, Series};
+use crate::plot::{Axis, Colour, Cursor, Figure, Mark, Series};
 use stribeck_analysis::artefacts;
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::{FamilyFinding, SIDEBANDS};
@@ -55,6 +55,7 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
         })
         .note(legend(findings) + &stated(raw));
     figure.marks = harmonic_marks(findings);
+    figure.cursor = Some(cursor(findings));
     Some(figure)
 }
 
@@ -70,7 +71,10 @@ fn found(findings: &Findings) -> String {
     }
     let name = |f: &FamilyFinding| Some(format!("{} at {:.0} Hz", f.spoken(), f.carrier_hz?));
     let all: Vec<String> = findings.summary.families.iter().filter_map(name).collect();
-    if all.is_empty() {
+    let judged = |f: &FamilyFinding| f.predicted_hz.is_some();
+    if all.is_empty() && !findings.summary.families.iter().any(judged) {
+        "The record is too short to judge families of facet lines.".into()
+    } else if all.is_empty() {
         "No family of facet lines is there.".into()
     } else {
         format!("Mesh: {}, with sidebands at multiples of BPFO.", all.join(", "))
@@ -108,6 +112,7 @@ pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
             raw.resolution().width_6db_hz
         ));
     zoomed.marks = line_marks(findings);
+    zoomed.cursor = Some(cursor(findings));
     vec![whole, zoomed]
 }
 
@@ -191,6 +196,7 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     };
     figure = figure.caption(caption).note(legend(findings) + &stated(raw));
     figure.marks = physics_marks(findings, top);
+    figure.cursor = Some(cursor(findings));
     figure
 }
 
@@ -226,6 +232,7 @@ fn envelope(findings: &Findings) -> Option<Figure> {
             stated(spectrum)
         ));
     figure.marks = physics_marks(findings, top);
+    figure.cursor = Some(cursor(findings));
     Some(figure)
 }
 
@@ -326,6 +333,21 @@ pub(in super::super) fn loudest_in_words(findings: &Findings) -> Option<String> 
 fn over_frequency(id: &str, title: &str, (from, to): (f64, f64)) -> Figure {
     let density = Axis::plain("Power spectral density", "dB re 1 g²/Hz");
     Figure::new(id, title, Axis::si("Frequency", "Hz").over(from, to), density)
+}
+
+/// What a cursor of a run can be set to: the families of defects, the shaft, the facets.
+fn cursor(findings: &Findings) -> Cursor {
+    let k = &findings.prediction.kinematics;
+    let mut known = vec![
+        ("BPFO".to_owned(), k.bpfo_hz),
+        ("BPFI".to_owned(), k.bpfi_hz),
+        ("2×BSF".to_owned(), 2.0 * k.bsf_hz),
+        ("FTF".to_owned(), k.cage_hz),
+        ("shaft".to_owned(), k.shaft_hz),
+    ];
+    known.extend(findings.prediction.facet_lines.iter().map(|(name, hz)| (spoken(name), *hz)));
+    known.retain(|(_, hz)| *hz > 0.0);
+    Cursor { known }
 }
 
 /// A spectrum in decibels, cut [`DEPTH_DB`] below its highest value.

@@ -10,7 +10,7 @@ use crate::figures::{crossing_figures, density, mark, sampled, transient};
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 
 /// The paper's record [s].
-const RECORD_S: (f64, f64) = (0.0, 0.03);
+pub(super) const RECORD_S: (f64, f64) = (0.0, 0.03);
 /// Least half height of an acceleration [g]: the paper's impulses have room.
 const LEAST_G: f64 = 200.0;
 /// Spectra as far as the fifth harmonic [Hz].
@@ -216,7 +216,8 @@ fn numbers(case: &PaperCase<'_>, figure: &str) -> String {
     let of_figure = case.beside.iter().filter(|b| b.shown.figure == figure);
     let said: Vec<String> = of_figure
         .map(|b| {
-            let ours = ours(b).unwrap_or_else(|| "not found".to_owned());
+            let missing = if case.is_behind_the_end(b) { "not on record" } else { "not found" };
+            let ours = ours(b).unwrap_or_else(|| missing.to_owned());
             format!("{} {ours} (paper {})", b.shown.quantity, printed(b))
         })
         .collect();

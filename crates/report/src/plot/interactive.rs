@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
-use super::{Abscissa, Axis, Colour, Figure, Series, Style, Ticks, base64, decimate};
+use super::{Abscissa, Axis, Colour, Cursor, Figure, Series, Style, Ticks, base64, decimate};
 use crate::Error;
 
 /// Points sent to the page for one series; beyond that extremes are kept and the figure says so.
@@ -21,6 +21,7 @@ struct Sent<'a> {
     sync: Option<&'a str>,
     run_time: bool,
     wide: Option<(f64, f64)>,
+    cursor: Option<&'a Cursor>,
 }
 
 #[derive(Serialize)]
@@ -110,6 +111,7 @@ impl Figure {
             sync: self.sync.as_deref(),
             run_time: self.run_time,
             wide: self.wide,
+            cursor: self.cursor.as_ref(),
         };
         let text = serde_json::to_string(&sent)
             .map_err(|why| Error::Drawing { figure: self.id.clone(), why: why.to_string() })?;
@@ -195,6 +197,7 @@ pub fn script() -> Markup {
         (PreEscaped(concat!("<!-- uPlot:\n", include_str!("../../assets/uPlot.LICENSE"), "-->")))
         style { (PreEscaped(include_str!("../../assets/uPlot.min.css"))) }
         script { (PreEscaped(include_str!("../../assets/uPlot.iife.min.js"))) }
+        script { (PreEscaped(include_str!("../../assets/cursors.js"))) }
         script { (PreEscaped(include_str!("../../assets/plot.js"))) }
     }
 }

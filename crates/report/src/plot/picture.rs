@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use maud::{Markup, PreEscaped, html};
 
-use super::{Colour, base64, raster};
+use super::{Colour, Tab, base64, raster};
 use crate::Error;
 
 /// One picture and what the reader should see in it.
@@ -24,6 +24,8 @@ pub struct Picture {
     pub animation: Option<Vec<u8>>,
     /// True for drawings with so many lines that the page carries pixels instead.
     pub dense: bool,
+    /// Where it is one of several that stand behind tabs.
+    pub tab: Option<Tab>,
 }
 
 /// A drawing in pixels, x to the right and y down.
@@ -100,6 +102,16 @@ impl Sheet {
         );
     }
 
+    /// One line of text from below upwards, its middle at the point.
+    pub fn upright(&mut self, [x, y]: [f64; 2], size: f64, colour: &str, words: &str) {
+        let words = words.replace('&', "&amp;").replace('<', "&lt;");
+        let _ = write!(
+            self.body,
+            "<text transform=\"translate({x:.1} {y:.1}) rotate(-90)\" font-family=\"sans-serif\" \
+             font-size=\"{size}\" text-anchor=\"middle\" fill=\"{colour}\">{words}</text>"
+        );
+    }
+
     /// Draws what `draw` adds inside a rectangle only.
     pub fn clipped(&mut self, name: &str, at: [f64; 2], size: [f64; 2], draw: impl FnOnce(&mut Self)) {
         let ([x, y], [w, h]) = (at, size);
@@ -134,7 +146,14 @@ impl Picture {
             sheet,
             animation: None,
             dense: false,
+            tab: None,
         }
+    }
+
+    /// Puts the picture behind a tab of a group.
+    pub fn tabbed(mut self, group: &'static str, label: impl Into<String>) -> Self {
+        self.tab = Some(Tab { group, label: label.into() });
+        self
     }
 
     /// The picture for the page: drawing, caption and note.

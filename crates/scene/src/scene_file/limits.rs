@@ -9,8 +9,8 @@ use crate::deviation::{DeviationScene, FormScene, RollingSurface};
 use crate::duty::LONGEST_RUN_S;
 use crate::housing::HousingScene;
 use crate::scene::{
-    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene, RingMeshScene,
-    RotatingLoadScene, Scene, StructuralDampingScene,
+    FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, RecordsScene, ReducedScene,
+    RingMeshScene, RotatingLoadScene, Scene, StructuralDampingScene,
 };
 
 /// Longest run [ms].
@@ -92,6 +92,7 @@ fn with_everything() -> Scene {
     scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
     scene.defects = DeviationScene::of_every_form();
     scene.film = Some(FilmScene::default());
+    scene.output.records = Some(RecordsScene::default());
     scene.outer_ring_mesh = Some(RingMeshScene::default());
     scene.inner_ring_mesh = Some(RingMeshScene::default());
     // Between them they have the numbers of both kinds of profile.
@@ -364,6 +365,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("output.frames.to_ms", frames.to_ms, within(0.0, LONGEST_MS), "ms");
         add("output.frames.every_us", frames.every_us, positive(1e6), "µs");
         add("output.frames.half_width_mm", frames.half_width_mm, positive(20_000.0), "mm");
+    }
+    if let Some(records) = &output.records {
+        add("output.records.rate_hz", records.rate_hz, within(100.0, 1e6 / output.interval_us), "Hz");
+        for (i, noise) in records.noise_db.iter().enumerate() {
+            add(&format!("output.records.noise_db[{i}]"), *noise, within(-100.0, 60.0), "dB");
+        }
     }
     list
 }

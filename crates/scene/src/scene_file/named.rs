@@ -8,11 +8,15 @@ use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
 use crate::housing::{HousingScene, PedestalScene};
 use crate::line_contact::LineContacts;
+use crate::load_rating;
 use crate::point_contact;
 use crate::scene::{
     BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, ReducedScene,
     Scene,
 };
+
+/// Cylinders that stand for balls are no shorter [mm].
+const THINNEST_MM: f64 = 1e-3;
 
 /// Length of a roller over the width of its ring, between flanges.
 pub(super) const ROLLER_LENGTH: f64 = 0.6;
@@ -88,7 +92,17 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     surround(scene, Surrounded { bearing, pitch_mm: known.pitch_mm }, given);
     if known.element == Element::Ball {
         // By the load, which was chosen for cylinders as long as the balls' ring allows, if nobody gave one.
-        scene.bearing.thickness_mm = tidy(thickness_of_balls(scene));
+        let thickness_mm = tidy(thickness_of_balls(scene));
+        if thickness_mm < THINNEST_MM {
+            return Err(format!(
+                "the balls of `{}` are pressed flat under `operation.load_n` = {:e} N: its static rating is \
+                 {:.0} N by ISO 76, and no cylinder gives way as they would. Take less load",
+                known.name,
+                scene.operation.load_n,
+                load_rating::static_rating_n(scene)
+            ));
+        }
+        scene.bearing.thickness_mm = thickness_mm;
     }
     Ok(())
 }
@@ -197,8 +211,13 @@ pub(super) fn modes(scene: &mut Scene, given: &[String]) {
 }
 
 /// A penetration under the largest static force that is so many times smaller than what guards warn of stays
-/// below it when rollers knock.
-const KNOCKS: f64 = 2.0;
+/// below it when rollers knock: where four to ten rollers share the load, each takes its part at once and sinks
+/// in 2.1 times as deep (docs/results/own.md).
+const KNOCKS: f64 = 2.5;
+
+/// The same of so few rollers that one carries all at times: the ring falls from each onto the next.
+const KNOCKS_OF_FEW: f64 = 6.0;
+const FEW: usize = 6;
 
 /// Share of the load that the most loaded of many rollers carries between raceways with clearance, times
 /// their number: Stribeck's 5, and a fifth more for a clearance as wide as the rollers give way.
@@ -217,7 +236,8 @@ pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
     let depth = (0.75 * w / (g.penalty_stiffness * (2.0 * g.inner_contact_radius()).sqrt())).powf(2.0 / 3.0);
     let hertz = 0.5 * LineContacts::of(&g).approach(w).0;
     let warned = (0.5 * g.clearance).max(hertz).min(0.1 * g.element_size);
-    let stiffer = (KNOCKS * depth / warned).powf(1.5);
+    let knocks = if g.rollers <= FEW { KNOCKS_OF_FEW } else { KNOCKS };
+    let stiffer = (knocks * depth / warned).powf(1.5);
     if stiffer > 1.0 && stiffer.is_finite() {
         scene.contact.penalty_scale = to_digits(2, (stiffer * scene.contact.penalty_scale).min(3.0));
     }

@@ -5,12 +5,12 @@ use super::outline::Outline;
 use crate::deviation::DeviationScene;
 use crate::housing::HousingScene;
 use crate::scene::{
-    Assumed, FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, ReducedScene,
-    RingMeshScene, RotatingLoadScene, Scene, StructuralDampingScene,
+    Assumed, FilmScene, GradingScene, HarmonicScene, ModelScene, ProfileScene, RampScene, RecordsScene,
+    ReducedScene, RingMeshScene, RotatingLoadScene, Scene, StructuralDampingScene,
 };
 
 /// Groups that a scene may lack.
-const OPTIONAL_GROUPS: [&str; 9] = [
+const OPTIONAL_GROUPS: [&str; 10] = [
     "cage",
     "defect",
     "film",
@@ -18,6 +18,7 @@ const OPTIONAL_GROUPS: [&str; 9] = [
     "operation.rotating_load",
     "solver.structural_damping",
     "output.frames",
+    "output.records",
     "outer_ring_mesh",
     "inner_ring_mesh",
 ];
@@ -59,6 +60,7 @@ impl Schema {
         scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.push(0.0));
         scene.defects = DeviationScene::of_every_form();
         scene.film = Some(FilmScene::default());
+        scene.output.records = Some(RecordsScene::default());
         // One profile shows the fields of a ramp, the other those of a sine.
         scene.operation.speed_profile = Some(ProfileScene::Ramp(RampScene::default()));
         scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));

@@ -1,12 +1,16 @@
-//! What a run takes, by its beginning: a constant of another machine, or of one that is busy, would be wrong.
+//! What a run takes, by its beginning: a constant of another machine would be wrong.
+//!
+//! A machine that does something else, too, takes longer by the clock, and how busy it is when the run is made
+//! nobody knows. So each part has two times: by the clock, as busy as the machine is now, and by the processor
+//! time of its threads, which is what it takes where nothing else runs.
 
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 use anyhow::Result;
 use stribeck_analysis::plan::Plan;
+use stribeck_run::host::{Host, Progress};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::RunInfo;
@@ -17,24 +21,54 @@ use crate::host;
 use crate::place::Place;
 
 /// The loop is tried for about so long [s].
-const LOOP_S: f64 = 0.5;
+const LOOP_S: f64 = 1.0;
 /// Elements and steps of the full model in a second, and rollers and steps of the reduced one, to guess how
 /// many samples that is.
 const ELEMENT_STEPS: f64 = 3e8;
 const ROLLER_STEPS: f64 = 2e6;
 /// Samples at least.
-const SAMPLES: f64 = 3.0;
+const SAMPLES: f64 = 5.0;
+/// This part of the tried steps is left out: the first checkpoint is written before them, contact is searched
+/// for the first time, and the threads begin.
+const FIRST: f64 = 0.2;
+
+/// What something takes [s].
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Cost {
+    /// By the clock, as busy as the machine is now.
+    pub(super) busy_s: f64,
+    /// Where nothing else runs.
+    pub(super) quiet_s: f64,
+}
+
+impl Cost {
+    /// Of a clock and processor time, shared by some threads; a system that does not count the latter has the
+    /// clock alone.
+    fn of(wall_s: f64, cpu_s: f64, threads: usize) -> Self {
+        let own = cpu_s / threads.max(1) as f64;
+        // Processor time is counted in hundredths.
+        Self { busy_s: wall_s, quiet_s: if own > 0.0 { own.min(wall_s) } else { wall_s } }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { busy_s: self.busy_s + other.busy_s, quiet_s: self.quiet_s + other.quiet_s }
+    }
+
+    fn times(self, share: f64) -> Self {
+        Self { busy_s: self.busy_s * share, quiet_s: self.quiet_s * share }
+    }
+}
 
 /// A tried beginning.
 pub(super) struct Trial {
-    /// Making the modes [s]; `None` in the full model, and where an earlier run has kept them.
-    pub(super) modes_s: Option<f64>,
+    /// Making the modes; `None` in the full model, and where an earlier run has kept them.
+    pub(super) modes: Option<Cost>,
     /// Whether runs find these modes.
     pub(super) kept: bool,
-    /// From there to the first step [s].
-    pub(super) setup_s: f64,
-    /// All steps, from those that were tried [s].
-    pub(super) loop_s: f64,
+    /// From there to the first step.
+    pub(super) setup: Cost,
+    /// All steps, from those that were tried.
+    pub(super) steps: Cost,
     /// The account of the beginning.
     pub(super) info: RunInfo,
     /// Threads.
@@ -42,10 +76,14 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// What a run will take [s], its report left out.
-    pub(super) fn run_s(&self) -> f64 {
-        let modes = self.modes_s.filter(|_| !self.kept).unwrap_or(0.0);
-        modes + self.setup_s + self.loop_s
+    /// What a run will take before its first step.
+    pub(super) fn before(&self) -> Cost {
+        self.setup.plus(self.modes.filter(|_| !self.kept).unwrap_or_default())
+    }
+
+    /// What a run will take, its report left out.
+    pub(super) fn run(&self) -> Cost {
+        self.before().plus(self.steps)
     }
 }
 
@@ -62,17 +100,19 @@ impl Drop for Folder {
 /// for the run where there are runs.
 pub(super) fn begin(scene: &ResolvedScene, plan: &Plan, place: &Place) -> Result<Trial> {
     let written = &scene.written;
-    let threads = host::cores();
+    let reduced = matches!(written.model, ModelScene::Reduced(_));
+    let threads = if reduced { 1 } else { host::cores() };
     let runs = Some(place.runs()).filter(|runs| runs.is_dir());
     let own = Folder(std::env::temp_dir().join(format!("stribeck-plan-{}", std::process::id())));
     fs::create_dir_all(&own.0)?;
     let parent = runs.clone().unwrap_or_else(|| own.0.clone());
-    let mut modes_s = None;
-    if let ModelScene::Reduced(_) = &written.model {
+    let mut modes = None;
+    if reduced {
         eprintln!("modes …");
-        let began = Instant::now();
-        let made = simulation::make_modes(scene, Some(&parent))?;
-        modes_s = made.then(|| began.elapsed().as_secs_f64());
+        modes = host::with(1, |host| -> Result<Option<Cost>> {
+            let made = simulation::make_modes(scene, Some(&parent))?;
+            Ok(made.then(|| Cost::of((host.wall_s)(), (host.cpu_s)(), 1)))
+        })?;
     }
     let run = Folder(parent.join(format!(".plan-{}", std::process::id())));
     let interval_ms = 1e-3 * written.output.interval_us;
@@ -80,13 +120,13 @@ pub(super) fn begin(scene: &ResolvedScene, plan: &Plan, place: &Place) -> Result
     let mut beginning = written.clone();
     beginning.output.frames = None;
     beginning.solver.duration_ms = (samples * interval_ms).min(written.solver.duration_ms);
-    let info = run_in(&beginning, &run.0, threads)?;
+    let (info, rate) = run_in(&beginning, &run.0, threads)?;
     let share = written.solver.duration_ms / beginning.solver.duration_ms;
     Ok(Trial {
-        modes_s,
+        modes,
         kept: runs.is_some(),
-        setup_s: info.setup_s,
-        loop_s: info.wall_s * share,
+        setup: Cost::of(info.setup_s, info.cpu_s - info.loop_cpu_s, 1),
+        steps: rate.times(info.steps_planned as f64 * share),
         info,
         threads,
     })
@@ -105,9 +145,61 @@ fn samples(scene: &ResolvedScene, plan: &Plan) -> f64 {
     (LOOP_S / of_one).round().max(SAMPLES).min(all.max(SAMPLES))
 }
 
-fn run_in(scene: &Scene, folder: &Path, threads: usize) -> Result<RunInfo> {
+/// A moment of the loop.
+#[derive(Debug, Clone, Copy)]
+struct Mark {
+    step: u64,
+    wall_s: f64,
+    cpu_s: f64,
+}
+
+impl Mark {
+    fn now(step: u64, host: &Host<'_>) -> Self {
+        Self { step, wall_s: (host.wall_s)(), cpu_s: (host.cpu_s)() }
+    }
+}
+
+/// Runs a scene; its account, and what a step takes.
+fn run_in(scene: &Scene, folder: &Path, threads: usize) -> Result<(RunInfo, Cost)> {
     let dir = RunDir::create(folder)?;
-    Ok(host::with(threads, |host| {
-        simulation::simulate(scene, &dir, host, &mut |_| ControlFlow::Continue(()))
-    })?)
+    host::with(threads, |host| {
+        let (mut first, mut last) = (None, None);
+        let mut watch = |at: &Progress| {
+            let tried = at.step as f64 / at.steps.max(1) as f64;
+            if at.step > 0 && first.is_none() && tried >= FIRST {
+                first = Some(Mark::now(at.step, host));
+            } else if at.step > 0 && at.step >= at.steps {
+                last = Some(Mark::now(at.step, host));
+            }
+            ControlFlow::Continue(())
+        };
+        let info = simulation::simulate(scene, &dir, host, &mut watch)?;
+        let rate = match (first, last) {
+            (Some(a), Some(b)) if b.step > a.step => {
+                let steps = (b.step - a.step) as f64;
+                Cost::of(b.wall_s - a.wall_s, b.cpu_s - a.cpu_s, threads).times(1.0 / steps)
+            }
+            // It stopped, or is over at once.
+            _ => Cost::of(info.wall_s, info.loop_cpu_s, threads).times(1.0 / info.steps.max(1) as f64),
+        };
+        Ok((info, rate))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plan of a full model beside other work promised 8:45 for a run that took 3:17 on the machine alone.
+    #[test]
+    fn issue_a_busy_machine_is_told_from_a_slow_run() {
+        let cost = Cost::of(525.0, 394.0, 2);
+        assert_eq!((cost.busy_s, cost.quiet_s), (525.0, 197.0));
+        // Without a count of processor time there is the clock alone.
+        assert_eq!(Cost::of(5.0, 0.0, 2).quiet_s, 5.0);
+        // Nothing is faster than the clock.
+        assert_eq!(Cost::of(5.0, 11.0, 2).quiet_s, 5.0);
+        let all = cost.plus(Cost::of(1.0, 1.0, 1)).times(2.0);
+        assert_eq!((all.busy_s, all.quiet_s), (1052.0, 396.0));
+    }
 }

@@ -14,6 +14,8 @@ pub(super) enum Change {
     None,
     /// The speed that is given over the true one.
     Speed(f64),
+    /// No speed is given.
+    NoSpeed,
     /// A bearing that is none of the rigs'.
     Bearing(&'static str),
     /// Only the first seconds [s].
@@ -28,14 +30,18 @@ pub(super) enum Change {
     Reversed,
 }
 
+/// The change by which the speed has to be found.
+pub(super) const WITHOUT_SPEED: &str = "no speed";
+
 /// All changes, with their names and whether claims about them may be right.
-pub(super) const CHANGES: [(&str, Change); 13] = [
+pub(super) const CHANGES: [(&str, Change); 14] = [
     ("as it is", Change::None),
     ("speed −1.5 %", Change::Speed(0.985)),
     ("speed +1.5 %", Change::Speed(1.015)),
     ("speed −4 %", Change::Speed(0.96)),
     ("speed +4 %", Change::Speed(1.04)),
     ("speed × 2", Change::Speed(2.0)),
+    (WITHOUT_SPEED, Change::NoSpeed),
     ("another bearing", Change::Bearing("6305")),
     ("first 1 s", Change::First(1.0)),
     ("first 0.5 s", Change::First(0.5)),
@@ -44,6 +50,15 @@ pub(super) const CHANGES: [(&str, Change); 13] = [
     ("8 bits", Change::Bits(8)),
     ("reversed in time", Change::Reversed),
 ];
+
+/// The speed that is given after the change of a name; none where none is.
+pub(super) fn given_rpm(name: &str, rpm: f64) -> Option<f64> {
+    match CHANGES.iter().find(|(of, _)| *of == name)?.1 {
+        Change::NoSpeed => None,
+        Change::Speed(factor) => Some(factor * rpm),
+        _ => Some(rpm),
+    }
+}
 
 /// What `analyse` says of a record.
 #[derive(Debug, Clone)]
@@ -57,6 +72,8 @@ pub(super) struct Outcome {
     /// The family of the highest score.
     pub(super) choice: Defect,
     pub(super) p_values: [f64; 4],
+    /// The speed that was taken, or found [1/min].
+    pub(super) speed_rpm: Option<f64>,
     pub(super) spall_mm: Option<Interval>,
     /// Whether a single event bounds the length.
     pub(super) is_bounded: bool,
@@ -91,7 +108,7 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         (record.rate_hz, record.speed_rpm, record.bearing.clone());
     let mut samples = record.samples.clone();
     match change {
-        Change::None => {}
+        Change::None | Change::NoSpeed => {}
         Change::Speed(factor) => speed_rpm *= factor,
         Change::Bearing(name) => bearing = CatalogueBearing::parse(name).ok()?,
         Change::First(s) => samples.truncate((s * rate_hz) as usize),
@@ -104,7 +121,7 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         Change::Reversed => samples.reverse(),
     }
     let machine = Machine {
-        speed_rpm: Some(speed_rpm),
+        speed_rpm: (change != Change::NoSpeed).then_some(speed_rpm),
         bearing: Some(bearing),
         load_n: record.load_n,
         ..Machine::default()
@@ -123,6 +140,7 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         scores,
         choice: Defect::ALL[best],
         p_values: of(|f| f.p_value, 1.0),
+        speed_rpm: analysis.findings.speed_rpm,
         spall_mm: analysis.findings.spall_mm,
         is_bounded: analysis.findings.spall_below_mm.is_some(),
         verdict: analysis.findings.verdict,

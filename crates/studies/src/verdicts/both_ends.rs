@@ -1,0 +1,54 @@
+//! Both ends of a shaft with a damaged bearing at one of them: the joint verdict, and which end it names.
+
+use stribeck_analysis::measured::joint::Joint;
+use stribeck_analysis::measured::{Analysis, Defect, Machine};
+use stribeck_formats::Channel;
+
+use super::records::Labelled;
+
+/// A damaged record and the channel at the other end.
+pub(super) type Ends<'a> = (&'a Labelled, &'a Labelled);
+
+/// All records of which both ends are there.
+pub(super) fn pairs(records: &[Labelled]) -> Vec<Ends<'_>> {
+    let stem = |record: &Labelled| record.name.rsplit_once(' ').map(|(stem, _)| stem.to_owned());
+    let damaged = records.iter().filter(|r| r.truth.is_some());
+    let other = |r: &Labelled| records.iter().find(|o| o.beside && stem(o).is_some() && stem(o) == stem(r));
+    damaged.filter_map(|record| Some((record, other(record)?))).collect()
+}
+
+/// What both channels say together.
+#[derive(Debug, Clone)]
+pub(super) struct Told {
+    pub(super) claimed: Vec<Defect>,
+    /// Whether the end of the damage is named as the nearest; `None` where none is named.
+    pub(super) nearest_is_right: Option<bool>,
+    /// Whether the channel at the damaged end claims the defect by itself.
+    pub(super) alone: bool,
+}
+
+/// The bearing of the damaged end, looked for at both.
+pub(super) fn judge((damaged, other): &Ends<'_>) -> Option<Told> {
+    let machine = Machine {
+        speed_rpm: Some(damaged.speed_rpm),
+        bearing: Some(damaged.bearing.clone()),
+        load_n: damaged.load_n,
+        ..Machine::default()
+    };
+    let of = |record: &Labelled| {
+        let channel = Channel::held(record.name.clone(), record.samples.clone());
+        Analysis::of(&channel, record.rate_hz, &machine).ok()
+    };
+    let (here, there) = (of(damaged)?, of(other)?);
+    // The channel of the damage is not always the first.
+    let mut both = [(damaged.name.clone(), &here), (other.name.clone(), &there)];
+    both.sort_by(|a, b| a.0.cmp(&b.0));
+    let joint = Joint::of(&both)?;
+    let claimed = joint.families.iter().filter(|f| f.claimed);
+    let nearest = claimed.clone().find_map(|f| f.nearest.clone());
+    Some(Told {
+        claimed: claimed.map(|f| f.name).collect(),
+        nearest_is_right: nearest.map(|name| name == damaged.name),
+        alone: here.findings.families.iter().any(|f| f.claimed && Some(f.name) == damaged.truth),
+    })
+}
