@@ -34,8 +34,15 @@ pub struct Options {
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
-    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm,
-    /// "bearing=NU 205, ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
+    /// A record of the same machine when it was sound, or before: its spectra and levels are drawn behind. It
+    /// is read with the same flags and changes no verdict
+    #[arg(long, value_name = "FILE")]
+    baseline: Option<PathBuf>,
+    /// Its speed of the shaft [1/min] where that was another one
+    #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
+    baseline_rpm: Option<Speed>,
+    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU 205,
+    /// ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
     #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
         conflicts_with_all = ["bearing", "alarms", "reference", "baseline", "together"])]
     components: Vec<Component>,
@@ -46,13 +53,6 @@ pub struct Options {
     /// What the machine stands on, for the zone of the velocity level
     #[arg(long, value_enum, requires = "iso_group")]
     foundation: Option<Standing>,
-    /// A record of the same machine when it was sound, or before: its spectra and levels are drawn behind. It
-    /// is read with the same flags and changes no verdict
-    #[arg(long, value_name = "FILE")]
-    baseline: Option<PathBuf>,
-    /// Its speed of the shaft [1/min] where that was another one
-    #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
-    baseline_rpm: Option<Speed>,
     /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to
     /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
@@ -205,11 +205,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             options.files.len()
         );
     }
-    if !options.components.is_empty() {
-        return components::run(options, place);
-    }
     if options.together {
         return together::run(options, place);
+    }
+    if !options.components.is_empty() {
+        return components::run(options, place);
     }
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
@@ -359,16 +359,24 @@ struct Read {
     notes: Vec<String>,
     /// Whether it is a run's.
     of_run: bool,
-    /// The samples over time, their rate [Hz] and the turns of the shaft in samples, where its speed varies.
-    turning: Option<(Channel, f64, Vec<f64>)>,
+    /// Where the speed varies: the samples over time.
+    turning: Option<Turning>,
+}
+
+/// A record whose shaft changes its speed, over time.
+struct Turning {
+    signal: Channel,
+    rate_hz: f64,
+    /// Times of whole turns, in samples.
+    pulses: Vec<f64>,
 }
 
 /// Reads and analyses one record.
 pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
     let Read { signal, rate_hz, machine, mut notes, of_run, turning } = read(asked, options, place)?;
     let mut analysis = Analysis::of(&signal, rate_hz, &machine)?;
-    if let Some((scaled, own_hz, pulses)) = turning {
-        analysis.varying = turning::varying(&analysis, &scaled, own_hz, &pulses)?;
+    if let Some(Turning { signal, rate_hz, pulses }) = &turning {
+        analysis.varying = turning::varying(&analysis, signal, *rate_hz, pulses)?;
     }
     let claims = analysis.findings.families.iter().any(|family| family.claimed);
     if claims && of_run {
@@ -431,19 +439,16 @@ fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
         }
         None => None,
     };
-    let mut turning = None;
-    let (signal, rate_hz) = match over_angle {
-        Some((even, even_hz)) => {
-            notes.push(
-                "the record was taken over the angle of the shaft: frequencies are those at its mean speed"
-                    .to_owned(),
-            );
-            turning = pulses.map(|pulses| (scaled, rate_hz, pulses));
-            (even, even_hz)
-        }
-        None => (scaled, rate_hz),
+    let of_run = scene.is_some();
+    let Some((even, even_hz)) = over_angle else {
+        return Ok(Read { signal: scaled, rate_hz, machine, notes, of_run, turning: None });
     };
-    Ok(Read { signal, rate_hz, machine, notes, of_run: scene.is_some(), turning })
+    notes.push(
+        "the record was taken over the angle of the shaft: frequencies are those at its mean speed"
+            .to_owned(),
+    );
+    let turning = pulses.map(|pulses| Turning { signal: scaled, rate_hz, pulses });
+    Ok(Read { signal: even, rate_hz: even_hz, machine, notes, of_run, turning })
 }
 
 /// The file of a record, and the scene where it is that of a run.
