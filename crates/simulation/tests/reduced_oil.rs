@@ -45,8 +45,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 }
 
 /// A place in a vector of eight without a roller had a direction that was no number, and its film of no force
-/// made the work of the drive none: every bearing in oil stopped at its first sample, but for those with eight,
-/// sixteen or twenty-four rollers.
+/// made the work of the drive none: every bearing in oil stopped at its first sample, but for those with
+/// eight, sixteen or twenty-four rollers.
 #[test]
 fn issue_oil_of_rollers_that_fill_no_vector() {
     let folder = Scratch::create("oil-nine");
