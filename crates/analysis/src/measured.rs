@@ -94,6 +94,9 @@ pub struct Machine {
     pub load_n: Option<(f64, f64)>,
     /// Radial internal clearance in operation, least and most [µm]; `None` for none.
     pub clearance_um: Option<(f64, f64)>,
+    /// How far the outer ring and its housing give at the loaded place, least and most [µm/kN]; `None` for
+    /// not at all.
+    pub housing_um_per_kn: Option<(f64, f64)>,
     /// Other shafts, gears and bearings.
     pub around: sources::Surroundings,
 }
@@ -260,13 +263,17 @@ impl Analysis {
         };
         let shaft = shaft_by_lines(&kept, rate_hz, machine);
         let given_rpm = machine.speed_rpm;
-        let corrected_hz = corrected_speed(shaft, &kept, rate_hz, &bands, machine, &mut notes);
+        let sharp = sharp_speed(shaft, &kept, rate_hz, &bands, machine);
+        let corrected_hz = sharp.and_then(|sharp| sharp.correction(machine, &mut notes));
         let machine = &Machine {
             speed_rpm: corrected_hz.map_or(machine.speed_rpm, |hz| Some(60.0 * hz)),
             ..machine.clone()
         };
-        let speed_is_told = shaft.is_some_and(|shaft| shaft.is_told());
-        let mut judged = verdict::judge(&bands, machine, speed_is_told, record_s, segment_s);
+        let known = verdict::KnownSpeed {
+            sharp_hz: sharp.map(|sharp| sharp.hz),
+            by_its_lines: shaft.is_some_and(|shaft| shaft.is_told()),
+        };
+        let mut judged = verdict::judge(&bands, machine, &known, record_s, segment_s);
         let mut over = Vec::new();
         if let Some(first) = &judged.first {
             over = over_period(channel, rate_hz, segment, first.comb_hz)?;
@@ -328,35 +335,53 @@ impl Analysis {
     }
 }
 
-/// The speed [Hz] by which a given one is corrected, with a note: by the lines of the shaft, or, where they
-/// do not tell, by those of shaft and bearing together.
-fn corrected_speed(
+/// A speed that the lines of a record tell.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sharp {
+    hz: f64,
+    uncertainty_hz: f64,
+    /// Which lines.
+    by: &'static str,
+}
+
+impl Sharp {
+    /// The speed [Hz] where it corrects a given one, with a note.
+    fn correction(self, machine: &Machine, notes: &mut Vec<String>) -> Option<f64> {
+        let rpm = machine.speed_rpm?;
+        shaft::is_correction(self.hz, rpm / 60.0).then_some(())?;
+        notes.push(format!(
+            "{} stand at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were given, and are taken",
+            self.by,
+            60.0 * self.hz,
+            60.0 * self.uncertainty_hz,
+            100.0 * (60.0 * self.hz / rpm - 1.0)
+        ));
+        Some(self.hz)
+    }
+}
+
+/// The speed by the lines of the shaft, or, where they do not tell, by those of shaft and bearing together.
+/// One that is exact is only made sharper.
+fn sharp_speed(
     shaft: Option<shaft::Shaft>,
     samples: &[f64],
     rate_hz: f64,
     bands: &[BandEnvelope],
     machine: &Machine,
-    notes: &mut Vec<String>,
-) -> Option<f64> {
-    let rpm = machine.speed_rpm.filter(|rpm| *rpm > 0.0 && !machine.speed_is_exact)?;
-    let (hz, uncertainty_hz, what) = match shaft.filter(|shaft| shaft.is_told()) {
-        Some(shaft) => (shaft.hz, shaft.uncertainty_hz, "the lines of the shaft stand"),
-        None => {
-            let bearing = machine.bearing.as_ref().filter(|_| machine.outer_speed_rpm == 0.0)?;
-            samples.iter().all(|x| x.is_finite()).then_some(())?;
-            let told =
-                speed::near(samples, rate_hz, bands, bearing, rpm / 60.0).filter(|told| told.is_told)?;
-            (told.hz, told.uncertainty_hz, "the lines of the shaft and of the bearing together stand")
-        }
-    };
-    shaft::is_correction(hz, rpm / 60.0).then_some(())?;
-    notes.push(format!(
-        "{what} at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were given, and are taken",
-        60.0 * hz,
-        60.0 * uncertainty_hz,
-        100.0 * (60.0 * hz / rpm - 1.0)
-    ));
-    Some(hz)
+) -> Option<Sharp> {
+    let given_hz = machine.speed_rpm.filter(|rpm| *rpm > 0.0)? / 60.0;
+    if let Some(shaft) = shaft.filter(|shaft| shaft.is_told()) {
+        let sharp =
+            Sharp { hz: shaft.hz, uncertainty_hz: shaft.uncertainty_hz, by: "the lines of the shaft" };
+        return Some(sharp)
+            .filter(|sharp| !(machine.speed_is_exact && shaft::is_correction(sharp.hz, given_hz)));
+    }
+    let asked = !machine.speed_is_exact && machine.outer_speed_rpm == 0.0;
+    let bearing = machine.bearing.as_ref().filter(|_| asked)?;
+    samples.iter().all(|x| x.is_finite()).then_some(())?;
+    let told = speed::near(samples, rate_hz, bands, bearing, given_hz).filter(|told| told.is_told)?;
+    let by = "the lines of the shaft and of the bearing together";
+    Some(Sharp { hz: told.hz, uncertainty_hz: told.uncertainty_hz, by })
 }
 
 /// The speed by shaft and bearing together, where none is given; why not, in a note.
@@ -373,8 +398,8 @@ fn found_speed(
     let (rpm, next_rpm, lead) = (60.0 * told.hz, 60.0 * told.next_hz, told.lead);
     notes.push(if told.is_told {
         format!(
-            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} rpm, of \
-             all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} behind in the \
+            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} rpm, \
+             of all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} behind in the \
              logarithm of the likelihood, where {:.0} are asked",
             60.0 * told.uncertainty_hz,
             60.0 * speed::FROM_HZ,
@@ -383,8 +408,8 @@ fn found_speed(
         )
     } else {
         format!(
-            "the record does not tell the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain about as \
-             much of it"
+            "the record does not tell the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain about \
+             as much of it"
         )
     });
     told.is_told.then_some(told)

@@ -7,6 +7,7 @@ use stribeck_formats::{Channel, Recording};
 use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 use stribeck_testing::Noise;
 
+use stribeck_analysis::measured::joint::Joint;
 use stribeck_analysis::measured::{Analysis, Defect, Family, Machine, MeasuredFindings};
 
 const RATE_HZ: f64 = 12_800.0;
@@ -369,6 +370,75 @@ fn refuses_what_holds_no_signal() {
     let unknown =
         Analysis::of(&Channel::held("a", coloured(1, 5000)), RATE_HZ, &Machine::default()).unwrap().findings;
     assert!(unknown.families.is_empty() && unknown.verdict.starts_with("No verdict"));
+}
+
+/// A damaged inner raceway: its knocks go up and down once a turn of the shaft, which is out of balance.
+fn inner_raceway(shaft_hz: f64) -> Vec<f64> {
+    let order = CatalogueBearing::parse("6205").unwrap().orders().unwrap().bpfi;
+    let loaded = |at: f64| 1.0 + 0.8 * (TAU * shaft_hz * at).cos();
+    let knocks = knocks(order * shaft_hz, SAMPLES, loaded);
+    let turns = |n: usize| -> f64 {
+        let at = n as f64 / RATE_HZ;
+        (1..=4).map(|k| (TAU * f64::from(k) * shaft_hz * at + f64::from(k)).sin()).sum()
+    };
+    coloured(5, SAMPLES).iter().zip(knocks).enumerate().map(|(n, (a, b))| a + b + turns(n)).collect()
+}
+
+#[test]
+fn issue_the_speed_is_told_by_shaft_and_bearing_together() {
+    let unknown = Machine { speed_rpm: None, ..machine(0.0) };
+    let of = |samples| Analysis::of(&Channel::held("a", samples), RATE_HZ, &unknown).unwrap().findings;
+    // No whole number, and none of which another is a simple multiple within reach.
+    let shaft_hz = 23.71;
+    let findings = of(inner_raceway(shaft_hz));
+    let rpm = findings.speed_rpm.unwrap();
+    assert!((rpm / (60.0 * shaft_hz) - 1.0).abs() < 1e-3, "{rpm} {:?}", findings.notes);
+    assert!(findings.speed_uncertainty_rpm.is_some_and(|off| (rpm - 60.0 * shaft_hz).abs() < 2.0 * off));
+    assert_eq!(claimed(&findings), ["BPFI"], "{findings:?}");
+    // A speed that is 4 % off is corrected by the same lines.
+    let findings = analysed(inner_raceway(shaft_hz), 1.04 * 60.0 * shaft_hz);
+    // To 1.2 rpm, and no closer than what is not corrected.
+    assert!((findings.speed_rpm.unwrap() / (60.0 * shaft_hz) - 1.0).abs() < 2e-3, "{:?}", findings.notes);
+    assert_eq!(claimed(&findings), ["BPFI"], "{findings:?}");
+    // Noise tells none.
+    let findings = of(coloured(8, SAMPLES));
+    assert!(findings.speed_rpm.is_none() && findings.families.is_empty(), "{findings:?}");
+    assert!(
+        findings.notes.iter().any(|note| note.contains("does not tell the speed")),
+        "{:?}",
+        findings.notes
+    );
+}
+
+#[test]
+fn example_channels_together_name_the_nearest() {
+    let of = |samples| Analysis::of(&Channel::held("a", samples), RATE_HZ, &machine(1200.0)).unwrap();
+    let heard = |seed, part: f64| -> Vec<f64> {
+        let order = CatalogueBearing::parse("6205").unwrap().orders().unwrap().bpfo;
+        let knocks = knocks(order * 20.0, SAMPLES, |_| part);
+        coloured(seed, SAMPLES).iter().zip(knocks).map(|(a, b)| a + b).collect()
+    };
+    let (near, far, deaf) = (of(heard(1, 1.0)), of(heard(2, 0.5)), of(coloured(3, SAMPLES)));
+    let named = |all: &[&'static str], analyses: [&Analysis; 2]| {
+        let channels: Vec<_> = all.iter().map(|name| (*name).to_owned()).zip(analyses).collect();
+        Joint::of(&channels).unwrap()
+    };
+    for (other, analysis) in [("far", &far), ("deaf", &deaf)] {
+        let joint = named(&[other, "near"], [analysis, &near]);
+        let family = &joint.families[0];
+        assert!(family.claimed && family.name == Defect::Bpfo, "{joint:?}");
+        assert_eq!(family.nearest.as_deref(), Some("near"), "{joint:?}");
+        let shares: f64 = family.channels.iter().filter_map(|heard| heard.share).sum();
+        assert!((shares - 1.0).abs() < 1e-12, "{joint:?}");
+        // Bonferroni: twice the smaller of both.
+        let smaller = family.channels.iter().map(|heard| heard.p_value).fold(1.0, f64::min);
+        assert_eq!(family.p_value, 2.0 * smaller);
+        assert!(joint.families.iter().skip(1).all(|family| !family.claimed), "{joint:?}");
+    }
+    let joint = named(&["a", "b"], [&deaf, &deaf]);
+    assert!(joint.families.iter().all(|family| !family.claimed), "{joint:?}");
+    assert!(joint.verdict.contains("no defect"), "{}", joint.verdict);
+    assert!(Joint::of(&[("a".to_owned(), &near)]).is_none());
 }
 
 /// Folder of measured records that are not part of the project: the variable STRIBECK_MEASURED.

@@ -67,9 +67,10 @@ fn joint_page(joint: &Joint, entries: &[TrendEntry]) -> Markup {
                 h2 #shares { "What each channel hears" }
                 div class="scroll" { (heard(joint)) }
                 p class="hint" {
-                    "The part of each channel in the power that swings with a family, and the height of the family \
-                    in it; bold where the channel claims a defect by itself. The probability of a false alarm is \
-                    the smallest of all channels times their number, which holds however they depend on each other."
+                    "The part of each channel in the power that swings with a family, and the height of the \
+                    family in it; bold where the channel claims a defect by itself. The probability of a false \
+                    alarm is the smallest of all channels times their number, which holds however they depend \
+                    on each other."
                 }
                 h2 #channels { "Channels" }
                 div class="scroll" { (table(entries)) }
@@ -93,11 +94,12 @@ fn heard(joint: &Joint) -> Markup {
                 tr {
                     td { (family.name) }
                     @for heard in &family.channels {
-                        @let text = format!("{}, {}", number(heard.share, "%", 100.0), number(heard.height_db, "dB", 1.0));
+                        @let share = number(heard.share, "%", 100.0);
+                        @let text = format!("{share}, {}", number(heard.height_db, "dB", 1.0));
                         td { @if heard.claimed { strong { (text) } } @else { (text) } }
                     }
                     td { (format!("{:.1e}", family.p_value)) }
-                    td { (family.nearest.as_deref().unwrap_or("–")) }
+                    td { (family.nearest.as_deref().filter(|_| family.claimed).unwrap_or("–")) }
                     td { @if family.claimed { strong { "a defect" } } @else { "none" } }
                 }
             }

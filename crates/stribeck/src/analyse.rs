@@ -44,7 +44,7 @@ pub struct Options {
     /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU 205,
     /// ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
     #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
-        conflicts_with_all = ["bearing", "alarms", "reference"])]
+        conflicts_with_all = ["bearing", "alarms", "reference", "baseline", "together"])]
     components: Vec<Component>,
     /// Group of the machine by ISO 20816-3, for the zone of the velocity level: 1 above 300 kW, 2 from 15 to
     /// 300 kW
@@ -63,7 +63,7 @@ pub struct Options {
     reference: Option<usize>,
     /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
     /// several files, such as axes, or both ends of a shaft; says which part each hears, and which is nearest
-    #[arg(long, conflicts_with_all = ["alarms", "reference"])]
+    #[arg(long, conflicts_with_all = ["alarms", "reference", "components"])]
     together: bool,
     /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
     /// -analysis]
@@ -118,6 +118,10 @@ pub(crate) struct Reading {
     /// Radial internal clearance in operation [µm], a number or a range [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
     pub(crate) clearance_um: Option<(f64, f64)>,
+    /// How far the outer ring and its housing give at the loaded place [µm/kN], a number or a range: what
+    /// gives presses an element farther [default: 0]
+    #[arg(long, value_name = "RANGE", value_parser = range)]
+    housing_um_per_kn: Option<(f64, f64)>,
     /// What a sample is multiplied by, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
@@ -341,8 +345,8 @@ fn zoned(options: &Options, analysis: &Analysis) -> Option<Zoned> {
     let velocity = analysis.findings.velocity_mm_s;
     if velocity.is_none() {
         tell!(
-            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at 2000 Hz \
-             or faster for a second"
+            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at \
+             2000 Hz or faster for a second"
         );
     }
     Some(Zoned::of(velocity?, group, foundation))
@@ -614,10 +618,17 @@ fn machine(
     let nominal =
         matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.is_some());
     let speed_is_exact = scene.is_some() || options.tacho.is_some() || !nominal;
-    let (load_n, clearance_um) = (options.load_n, options.clearance_um);
-    let around = Default::default();
-    let known = Machine { speed_rpm, outer_speed_rpm, bearing, speed_is_exact, load_n, clearance_um, around };
-    Ok((known, pulses))
+    let machine = Machine {
+        speed_rpm,
+        outer_speed_rpm,
+        bearing,
+        speed_is_exact,
+        load_n: options.load_n,
+        clearance_um: options.clearance_um,
+        housing_um_per_kn: options.housing_um_per_kn,
+        ..Machine::default()
+    };
+    Ok((machine, pulses))
 }
 
 fn default_folder(file: &Path) -> PathBuf {

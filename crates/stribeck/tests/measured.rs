@@ -310,6 +310,32 @@ fn example_several_records_are_set_side_by_side() {
     assert!(desk.join("T/1-before/findings.json").exists());
 }
 
+#[test]
+fn example_channels_of_one_machine_make_one_verdict() {
+    let desk = Scratch::create("together");
+    let mut noise = Noise::new(9);
+    let knocks = knocks(12_800.0);
+    let far: Vec<f64> = knocks.iter().map(|x| 0.2 * x + 0.2 * noise.uniform()).collect();
+    let channels = [("drive_end", knocks), ("fan_end", far)];
+    let channels = channels.map(|(name, samples)| Channel::held(name, samples).at_rate(Some(12_800.0)));
+    mat5::write(&desk.join("both.mat"), &channels, &[]).unwrap();
+    mat5::write(&desk.join("one.mat"), &channels[..1], &[]).unwrap();
+    let of = |file: &str| {
+        let words = ["analyse", file, "--together", "--rate-hz=12800", "--bearing=6205", "--speed-rpm=1200"];
+        let output = stribeck(desk.path(), &[&words[..], &["--out=J"]].concat());
+        (output.status.success(), said(&output))
+    };
+    let (done, text) = of("both.mat");
+    assert!(done && text.contains("2 channels together show a defect of the outer raceway"), "{text}");
+    assert!(text.contains("drive_end is nearest"), "{text}");
+    let joint: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("J/joint.json")).unwrap()).unwrap();
+    assert_eq!(joint["families"][0]["nearest"], "drive_end");
+    assert!(desk.join("J/joint.html").exists() && desk.join("J/2-fan_end/findings.json").exists());
+    let (done, text) = of("one.mat");
+    assert!(!done && text.contains("takes two at least"), "{text}");
+}
+
 /// Knocks beside their times, as a table.
 fn table(head: &str, rate_hz: f64, time: impl Fn(f64) -> String) -> String {
     let row = |(n, x): (usize, f64)| format!("{},{x:.6}\n", time(n as f64 / rate_hz));

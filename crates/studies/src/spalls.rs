@@ -105,7 +105,10 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     let out = host.root().join("runs/study/spalls");
     let (mut told, mut failed) = (Vec::new(), Vec::new());
     for case in cases {
-        let Some(run) = runs.iter().find(|run| run.variant.name == case.variant.name) else { continue };
+        let Some(run) = runs.iter().find(|run| run.variant.name == case.variant.name) else {
+            failed.push(format!("`{}` is not on this page: it has not been run.", case.variant.name));
+            continue;
+        };
         if let Err(why) = &run.summary {
             failed.push(format!("`{}` has no numbers: {why}", case.variant.name));
             continue;

@@ -5,6 +5,7 @@
 mod baseline;
 mod both_ends;
 mod records;
+mod speeds;
 mod tables;
 mod trial;
 
@@ -50,7 +51,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     tables::choices(&mut sheet, &records, &judged);
     tables::sound(&mut sheet, &records, &judged)?;
     let ends = both_ends::pairs(&records);
-    tables::both_ends(&mut sheet, &ends, &of_all(&ends, host, both_ends::judge)?);
+    both_ends::table(&mut sheet, &ends, &of_all(&ends, host, both_ends::judge)?);
     tables::lengths(&mut sheet, &records, &judged);
     if !options.unchanged {
         let every = options.changed_every as usize;
@@ -64,7 +65,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
             changed.push((name, of_all(&some, host, |record| trial::judge(record, change))?));
         }
         tables::robustness(&mut sheet, &some, every, &changed);
-        tables::speeds(&mut sheet, &some, &changed);
+        speeds::table(&mut sheet, &some, &changed);
     }
     tables::bounds(&mut sheet);
     tables::numbers(&mut sheet);

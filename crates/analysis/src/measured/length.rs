@@ -73,15 +73,22 @@ fn of_two_events(
     machine: &Machine,
 ) -> SpallLength {
     let run = speed_mm_s * lag_s;
-    let (loading, is_given) = Loading::of(bearing, machine.load_n, machine.clearance_um);
+    let (loading, is_given) =
+        Loading::of(bearing, machine.load_n, machine.clearance_um, machine.housing_um_per_kn);
     let (pressed, least, most) = loading.pressed_mm(bearing, raceway);
     let advice = if is_given { "" } else { "; `--load-n` with a narrower range narrows the interval" };
+    let (stiff, soft) = loading.housing_um_per_kn;
+    let housing = if soft > 0.0 {
+        format!("a housing that gives {stiff:.0} to {soft:.0} µm/kN")
+    } else {
+        "a rigid housing".to_owned()
+    };
     let note = format!(
         "the length of the spall is the {run:.2} mm that the contact runs between two events and the \
-         {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in a rigid \
-         housing presses the element together{advice}. It holds for a spall shorter than half of the \
-         {apart_mm:.1} mm between two elements: one of {:.1} mm, whose exit and the entry of the next element \
-         are as far apart, would knock in the same rhythm",
+         {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in \
+         {housing} presses the element together{advice}. It holds for a spall shorter than half of the \
+         {apart_mm:.1} mm between two elements: one of {:.1} mm, whose exit and the entry of the next \
+         element are as far apart, would knock in the same rhythm",
         loading.load_n.0,
         loading.load_n.1,
         apart_mm - run + pressed
@@ -98,9 +105,9 @@ fn of_two_events(
 fn of_one_event(below_mm: f64, apart_mm: f64) -> SpallLength {
     let note = format!(
         "no second event follows each knock: if entry and exit both knock, the spall is shorter than \
-         {below_mm:.2} mm. One that is shallow, or crossed under so heavy a load that no element comes free, or \
-         whose entry is soft, knocks once whatever its length, up to the {apart_mm:.1} mm between two elements, \
-         and the record does not say which"
+         {below_mm:.2} mm. One that is shallow, or crossed under so heavy a load that no element comes \
+         free, or whose entry is soft, knocks once whatever its length, up to the {apart_mm:.1} mm between \
+         two elements, and the record does not say which"
     );
     SpallLength { below_mm: Some(below_mm), note, ..SpallLength::default() }
 }

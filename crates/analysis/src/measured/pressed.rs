@@ -35,6 +35,8 @@ const ELEMENTS: u32 = 9;
 pub(super) struct Loading {
     pub(super) load_n: (f64, f64),
     pub(super) clearance_um: (f64, f64),
+    /// How far the outer ring and its housing give at the loaded place [µm/kN].
+    pub(super) housing_um_per_kn: (f64, f64),
 }
 
 impl Loading {
@@ -43,24 +45,28 @@ impl Loading {
         bearing: &CatalogueBearing,
         load_n: Option<(f64, f64)>,
         clearance_um: Option<(f64, f64)>,
+        housing_um_per_kn: Option<(f64, f64)>,
     ) -> (Self, bool) {
         let loading = Self {
             load_n: load_n.unwrap_or_else(|| usual_load_n(bearing)),
             clearance_um: clearance_um.unwrap_or((0.0, 0.0)),
+            housing_um_per_kn: housing_um_per_kn.unwrap_or((0.0, 0.0)),
         };
         (loading, load_n.is_some())
     }
 
     /// D on a raceway [mm]: as it is expected, and its ends with the model's own error.
     pub(super) fn pressed_mm(&self, bearing: &CatalogueBearing, raceway: Defect) -> (f64, f64, f64) {
-        let of = |load_n: f64, clearance_um: f64| {
-            2.0 * (2.0 * effective_radius_mm(bearing, raceway) * approach_mm(bearing, load_n, clearance_um))
-                .sqrt()
+        // 1 µm/kN is 1e-6 mm/N.
+        let of = |load_n: f64, clearance_um: f64, um_per_kn: f64| {
+            let approach = approach_mm(bearing, load_n, clearance_um) + 1e-6 * um_per_kn * load_n;
+            2.0 * (2.0 * effective_radius_mm(bearing, raceway) * approach).sqrt()
         };
+        let (stiff, soft) = self.housing_um_per_kn;
         let (loose_um, tight_um) = (self.clearance_um.1, self.clearance_um.0);
-        let (least, most) = (of(self.load_n.0, loose_um), of(self.load_n.1, tight_um));
+        let (least, most) = (of(self.load_n.0, loose_um, stiff), of(self.load_n.1, tight_um, soft));
         let middle_n = (self.load_n.0 * self.load_n.1).sqrt();
-        (of(middle_n, 0.5 * (loose_um + tight_um)), MODEL.0 * least, MODEL.1 * most)
+        (of(middle_n, 0.5 * (loose_um + tight_um), 0.5 * (stiff + soft)), MODEL.0 * least, MODEL.1 * most)
     }
 }
 
@@ -150,12 +156,22 @@ mod tests {
     fn invariant_a_heavier_load_and_the_outer_raceway_press_farther() {
         let bearing = CatalogueBearing::parse("6205").unwrap();
         let at = |load_n: f64, raceway| {
-            let (loading, _) = Loading::of(&bearing, Some((load_n, load_n)), None);
+            let (loading, _) = Loading::of(&bearing, Some((load_n, load_n)), None, None);
             loading.pressed_mm(&bearing, raceway)
         };
         let (light, heavy, inner) = (at(50.0, Defect::Bpfo), at(400.0, Defect::Bpfo), at(50.0, Defect::Bpfi));
         // δ goes with the load to 2/3, D with its root.
         assert!((heavy.0 / light.0 - 2.0).abs() < 0.01 && inner.0 < light.0, "{light:?} {heavy:?} {inner:?}");
         assert!(light.1 < light.0 && light.0 < light.2);
+        // A housing that gives 10 µm under 1 kN sinks by 1 µm under 100 N, beside the 4.5 of the contacts.
+        let of = |housing| {
+            Loading::of(&bearing, Some((100.0, 100.0)), None, housing).0.pressed_mm(&bearing, Defect::Bpfo)
+        };
+        let (rigid, soft) = (of(None), of(Some((0.0, 10.0))));
+        let sunk = approach_mm(&bearing, 100.0, 0.0);
+        assert!(
+            (soft.2 / rigid.2 - (1.0 + 1e-3 / sunk).sqrt()).abs() < 1e-9 && soft.1 == rigid.1,
+            "{soft:?}"
+        );
     }
 }

@@ -9,7 +9,7 @@ use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::limits::{ALPHA, KNOCK, decibel};
 use super::unrelated::SLIP;
-use super::verdict::{Family, First, MODULATED, rank, sidebands_seen};
+use super::verdict::{Family, First, is_modulated, rank};
 use super::{Defect, Reason};
 
 /// Where a family knocks most over the period of the first.
@@ -88,7 +88,10 @@ fn beside(
     let remains = search(spectrum, first.comb_hz).map_or(0.0, |left| left.height);
     let own = match family.name {
         // A spot on an element comes under the load once a turn of the cage.
-        Defect::Bsf => sidebands_seen(spectrum, comb.fundamental_hz, first.cage_hz) >= MODULATED,
+        Defect::Bsf => {
+            is_modulated(spectrum, comb.fundamental_hz, first.cage_hz)
+                && !first.has_sideband(comb.fundamental_hz)
+        }
         // Sound elements pass as well, and may dominate once the louder family is removed: a second defect
         // must therefore knock in the whole range.
         Defect::Bpfo => {
@@ -110,7 +113,20 @@ fn beside(
     })
 }
 
+/// Lines within which two frequencies are one, each by its own comb.
+const SAME_LINES: f64 = 2.0;
+/// Sidebands of the shaft that a first family may have, either way.
+const SIDEBANDS: i32 = 3;
+
 impl First {
+    /// Whether `hz` is a sideband of the first family at the distance of the shaft.
+    fn has_sideband(&self, hz: f64) -> bool {
+        let beside = |k: i32| {
+            (hz - self.comb_hz - f64::from(k) * self.shaft_hz).abs() < SAME_LINES * self.resolution_hz
+        };
+        (-SIDEBANDS..=SIDEBANDS).any(beside)
+    }
+
     /// Whether `hz` is a multiple of the shaft's frequency.
     fn takes(&self, hz: f64) -> bool {
         let turns = (hz / self.shaft_hz).round();

@@ -24,21 +24,23 @@ const BESIDE: u32 = 3;
 const STANDS: f64 = 20.0;
 /// Probability that it is not there.
 const MISSING: f64 = 0.5;
-/// The evidence of a single line ends here [nats]: many lines must agree.
+/// The evidence of a single line ends here [nats], but for the logarithm of its height over that from which
+/// it does: many lines must agree.
 const MOST: f64 = 5.0;
+const MOST_FROM: f64 = 8.0;
 /// Slip of a family, either way, and steps in which it is tried.
 const SLIP: f64 = 0.02;
 const SLIP_STEPS: i32 = 20;
 /// Lead over all other speeds, but for simple multiples of the one that is found, from which it is told
-/// [nats]: on the records of bearings 6205 no wrong one leads by as much (docs/results/verdicts.md).
-pub(super) const LEAST_LEAD: f64 = 12.0;
+/// [nats]: on every second record of bearings 6205 no wrong one leads by more than 17.
+pub(super) const LEAST_LEAD: f64 = 20.0;
 /// Speeds nearer to one another than this part are one.
 const SAME: f64 = 0.02;
 /// Evidence of the lines between those of a speed, and part of them that must stand, for it to be a multiple
 /// of the true one, and what the true one may lack as a whole [nats].
 const BETWEEN: f64 = 4.0;
 const PART_BETWEEN: f64 = 0.6;
-const LACKS: f64 = 25.0;
+const LACKS: f64 = 40.0;
 /// How far a half or a third of a speed is looked for about its place, and in which steps.
 const ABOUT: f64 = 1e-3;
 const ABOUT_STEPS: i32 = 5;
@@ -46,9 +48,12 @@ const ABOUT_STEPS: i32 = 5;
 /// How far a given speed may be off, either way, and speeds that are one about it.
 const REACH: f64 = 0.07;
 const SAME_NEAR: f64 = 0.006;
-/// The lead over all others within reach from which a given speed is corrected [nats]: on every second record
-/// of bearings 6205, given 4 % off either way, none that leads by 6 is wrong.
-const LEAST_LEAD_NEAR: f64 = 10.0;
+/// The lead over all others within reach from which a given speed is corrected [nats].
+const LEAST_LEAD_NEAR: f64 = 20.0;
+/// Evidence of the shaft's own multiples in the spectrum without which no speed is told [nats], three lines
+/// that stand: a comb of the bearing alone is consistent with any speed from which slip, or another bearing,
+/// makes it a family.
+const LEAST_OF_SHAFT: f64 = 15.0;
 /// Turns that a record must hold: with fewer, the multiples of neighbouring speeds are not resolved.
 const TURNS: f64 = 50.0;
 const TURNS_NEAR: f64 = 100.0;
@@ -63,18 +68,19 @@ pub(super) struct Told {
     pub(super) lead: f64,
     /// The speed that comes next [Hz].
     pub(super) next_hz: f64,
-    /// Whether it leads far enough.
+    /// Whether it leads far enough, and the shaft itself shows.
     pub(super) is_told: bool,
 }
 
 impl Told {
     fn of(hz: f64, score: f64, next: (f64, f64), spectrum: &Evidence, least_lead: f64) -> Self {
+        let shaft_shows = spectrum.comb(hz, SHAFT) >= LEAST_OF_SHAFT;
         Self {
             hz,
             uncertainty_hz: 0.5 * spectrum.grid_hz / f64::from(SHAFT),
             lead: score - next.1,
             next_hz: next.0,
-            is_told: score - next.1 >= least_lead,
+            is_told: shaft_shows && score - next.1 >= least_lead,
         }
     }
 }
@@ -214,7 +220,7 @@ impl Evidence {
             let ratio = spectrum.at((n as f64 + 0.5) * spectrum.grid_hz());
             // Noise is exponential with a mean of 1; a line has a mean of `STANDS`, or is not there.
             let there = (ratio * (1.0 - 1.0 / STANDS)).min(2.0 * MOST + STANDS).exp() / STANDS;
-            (MISSING + (1.0 - MISSING) * there).ln().min(MOST)
+            (MISSING + (1.0 - MISSING) * there).ln().min(MOST) + (ratio / MOST_FROM).max(1.0).ln()
         };
         // The lines next to zero hold what the removal of the mean leaves.
         let lines = (0..spectrum.ratios().len()).map(|n| if n < 3 { 0.0 } else { of(n) }).collect();

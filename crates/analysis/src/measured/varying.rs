@@ -60,8 +60,8 @@ impl Varying {
     }
 }
 
-/// Turns of the shaft at each of `samples` samples from the places of `pulses` [samples], which are equal parts
-/// of `turns` turns altogether, and the samples between the first and the last pulse, which alone have some.
+/// Turns of the shaft at each of `samples` samples, and the samples that have some: those between the first
+/// and the last of `pulses` [samples], which are equal parts of `turns` turns altogether.
 pub fn turns_between(pulses: &[f64], turns: f64, samples: usize) -> (std::ops::Range<usize>, Vec<f64>) {
     let (Some(first), Some(last)) = (pulses.first(), pulses.last()) else { return (0..0, Vec::new()) };
     let range = first.ceil().max(0.0) as usize..((last.floor().max(0.0) as usize) + 1).min(samples);

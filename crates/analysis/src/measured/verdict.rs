@@ -140,14 +140,20 @@ const OWN_LINES: f64 = 1.5;
 /// Least and largest part by which a cage that skids is slower than rolling without slip.
 const SKID: (f64, f64) = (SLIP, 0.06);
 
+/// What is known of the speed beside that of the machine.
+pub(super) struct KnownSpeed {
+    /// The speed by the lines of the record, which places multiples of the shaft better than one that is
+    /// given [Hz].
+    pub(super) sharp_hz: Option<f64>,
+    /// The lines of the shaft stand at the speed of the machine, so that only slip can move a family.
+    pub(super) by_its_lines: bool,
+}
+
 /// The families, of which one at most is claimed; [`Verdicts::conclude`] says the rest.
-///
-/// `speed_is_told`: the lines of the shaft stand at the speed of `machine`, so that only slip can move a
-/// family.
 pub(super) fn judge(
     bands: &[BandEnvelope],
     machine: &Machine,
-    speed_is_told: bool,
+    known: &KnownSpeed,
     record_s: f64,
     segment_s: f64,
 ) -> Verdicts {
@@ -182,10 +188,11 @@ pub(super) fn judge(
     // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
     let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
     let width_hz = OWN_LINES / segment_s;
+    let sharp_hz = known.sharp_hz.unwrap_or(shaft_hz);
     let around = &machine.around;
-    let in_hz = |orders: &[f64]| orders.iter().map(|order| order * shaft_hz).collect();
+    let in_hz = |orders: &[f64]| orders.iter().map(|order| order * sharp_hz).collect();
     let mut own = OwnLines {
-        shaft_hz,
+        shaft_hz: sharp_hz,
         cage_hz: None,
         elements: f64::from(bearing.elements.unwrap_or(0)),
         width_hz,
@@ -208,7 +215,7 @@ pub(super) fn judge(
         }
     }
     let highest_hz = places[..2].iter().fold(0.0_f64, |most, hz| most.max(*hz));
-    let known: Vec<Known> = looked[..3]
+    let there: Vec<Known> = looked[..3]
         .iter()
         .filter(|(family, _)| family.noise_p_value < ALPHA)
         .filter_map(|(_, standing)| {
@@ -217,7 +224,7 @@ pub(super) fn judge(
         })
         .collect();
     let of_others = |hz: f64| around.may_be(hz / shaft_hz);
-    let stranger = unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &known, &of_others);
+    let stranger = unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
     let first = first(looked.iter().map(|(family, _)| family));
     let first_db = first.map_or(f64::NEG_INFINITY, |at| looked[at].0.height_db);
     let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
@@ -241,7 +248,7 @@ pub(super) fn judge(
     let higher = stranger.filter(|s| decibel(s.comb.height) > first_db);
     let mut unexplained = None;
     if let Some(found) = higher {
-        let skids = speed_is_told.then(|| skidding(&families, &found)).flatten();
+        let skids = known.by_its_lines.then(|| skidding(&families, &found)).flatten();
         match skids {
             Some(at) => {
                 let rank =
@@ -473,7 +480,7 @@ fn controls(
 
 /// Harmonics whose sidebands are looked for, and how many of both sides of all make a family modulated.
 const HARMONICS: usize = 3;
-pub(super) const MODULATED: usize = 3;
+const MODULATED: usize = 3;
 
 /// Number of sidebands above the noise, of the six beside the first three harmonics of a family.
 pub(crate) fn sidebands_seen(spectrum: &Whitened, fundamental_hz: f64, spacing_hz: f64) -> usize {
@@ -490,7 +497,22 @@ fn is_modulated_by_the_cage(families: &[Family], bands: &[(&BandEnvelope, Whiten
     let Some(hz) = element.measured_hz else { return false };
     let band = bands.iter().find(|(band, _)| element.band_hz == Some((band.low_hz, band.high_hz)));
     let spacing_hz = cage.measured_hz.unwrap_or(cage.expected_hz);
-    band.is_some_and(|(_, spectrum)| sidebands_seen(spectrum, 2.0 * hz, spacing_hz) >= MODULATED)
+    band.is_some_and(|(_, spectrum)| is_modulated(spectrum, 2.0 * hz, spacing_hz))
+}
+
+/// Spacings of sidebands over that of the cage at which no part of a bearing has any.
+const UNRELATED_SPACINGS: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.1, 1.2, 1.3, 1.4];
+/// Lines by which sidebands of two spacings must differ to be others.
+const OTHER_LINES: f64 = 2.0;
+
+/// Whether a comb has sidebands at a spacing [Hz], and more of them than at any unrelated one: beside a comb
+/// that is another part's, lines stand at any.
+pub(super) fn is_modulated(spectrum: &Whitened, comb_hz: f64, spacing_hz: f64) -> bool {
+    let seen = sidebands_seen(spectrum, comb_hz, spacing_hz);
+    let mut others = UNRELATED_SPACINGS
+        .iter()
+        .filter(|part| (*part - 1.0).abs() * spacing_hz > OTHER_LINES * spectrum.grid_hz());
+    seen >= MODULATED && others.all(|part| sidebands_seen(spectrum, comb_hz, part * spacing_hz) < seen)
 }
 
 /// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling

@@ -83,7 +83,8 @@ fn sources(files: &[PathBuf], reading: &Reading, place: &Place) -> Result<Vec<So
     let signals = signals(file, place)?;
     ensure!(
         signals.len() > 1,
-        "`{}` holds {} signal of its greatest length: `--together` takes two at least, of one file or of several",
+        "`{}` holds {} signal of its greatest length: `--together` takes two at least, of one file or \
+         of several",
         file.display(),
         signals.len()
     );
