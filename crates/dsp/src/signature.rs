@@ -184,7 +184,7 @@ fn running_mean(values: &[f64], half: usize) -> Vec<f64> {
         sums.push(sum);
     }
     let ends = |n: usize| (n.saturating_sub(half), (n + half + 1).min(values.len()));
-    (0..values.len()).map(|n| ends(n)).map(|(a, b)| (sums[b] - sums[a]) / (b - a) as f64).collect()
+    (0..values.len()).map(ends).map(|(a, b)| (sums[b] - sums[a]) / (b - a) as f64).collect()
 }
 
 /// Lines of the power of a piece.
