@@ -41,8 +41,8 @@ pub struct Options {
     /// Its speed of the shaft [1/min] where that was another one
     #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
     baseline_rpm: Option<Speed>,
-    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU 205,
-    /// ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
+    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm,
+    /// "bearing=NU 205, ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
     #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
         conflicts_with_all = ["bearing", "alarms", "reference", "baseline", "together"])]
     components: Vec<Component>,
