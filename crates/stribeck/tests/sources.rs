@@ -38,12 +38,16 @@ fn desk(name: &str) -> Scratch {
 #[test]
 fn example_components_of_a_record_are_told_apart() {
     let desk = desk("components");
-    let words = ["record.csv", "--speed-rpm=1500", "--iso-group=2", "--foundation=rigid", "--component"];
+    let words =
+        ["record.csv", "--speed-rpm=1500", "--unit=g", "--iso-group=2", "--foundation=rigid", "--component"];
     let words =
         [&words[..], &["bearing=6205", "--component=bearing=NU 205, elements=13, ratio=2.5"]].concat();
     let output = analyse(&desk, &[&words[..], &["--component", "gear=23"]].concat());
     assert!(output.status.success(), "{}", said(&output));
-    says(&output, &["6205 at 1 times the shaft: The record shows a defect of the outer raceway", "zone"]);
+    says(
+        &output,
+        &["6205 at 1 times the shaft: The record shows a defect of the outer raceway", "velocity: zone"],
+    );
     says(&output, &["NU 205 at 2.5 times the shaft: The record shows no defect"]);
     let text = fs::read_to_string(desk.join("record-analysis/findings.json")).expect("findings");
     let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
