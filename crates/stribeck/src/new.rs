@@ -378,9 +378,9 @@ mod tests {
             assert!(why.contains(words), "{why}");
         };
         assert_eq!(limits.load(7_000.0), Ok(7_000.0));
-        says(limits.load(20_000.0), "at most 7887 N");
+        says(limits.load(20_000.0), "at most 7886 N");
         says(limits.load(1e9), "static rating");
-        says(limits.speed(1e6), "to 51230 rpm");
+        says(limits.speed(1e6), "to 51221 rpm");
         says(limits.speed(0.1), "1.7 to");
         says(limits.duration(1500.0, 0.01), "0.112 to 100 s");
         says(limits.duration(1500.0, 1e9), "0.112 to 100 s");
