@@ -100,9 +100,10 @@ mod tests {
         let (first, last) = (found.speeds_rpm[0], found.speeds_rpm[found.speeds_rpm.len() - 1]);
         assert!((first - 600.0).abs() < 10.0 && (last - 1800.0).abs() < 10.0, "{first} {last}");
         let orders = found.orders.expect("enough turns");
+        // Knocks are short: their second harmonic is as high as the first, and beyond what is looked at.
+        let below = (5.4 / orders.grid_hz) as usize;
         for column in orders.values.chunks_exact(orders.lines) {
-            let highest =
-                (2..orders.lines / 4).max_by(|a, b| column[*a].total_cmp(&column[*b])).expect("lines");
+            let highest = (2..below).max_by(|a, b| column[*a].total_cmp(&column[*b])).expect("lines");
             assert!((highest as f64 * orders.grid_hz - 3.6).abs() <= 0.3, "{highest}");
         }
     }
