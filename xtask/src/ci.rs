@@ -3,6 +3,7 @@
 mod circles;
 mod code_map;
 mod documents;
+mod features;
 mod layers;
 mod lines;
 mod markdown;
@@ -32,6 +33,7 @@ type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 const CHECKS: &[Check] = &[
     ("crates depend on each other in one direction", layers::check),
     ("modules use each other in one direction", circles::check),
+    ("the program and xtask are made of the same libraries", features::check),
     ("only scene, bearing and above know bearings", sources::check_words),
     ("libraries never print and never read the clock", sources::check_silence),
     ("ARCHITECTURE names every crate", documents::check_architecture),

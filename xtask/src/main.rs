@@ -10,6 +10,7 @@ mod fields;
 mod fuzz;
 mod lab;
 mod study;
+mod wheel;
 mod workspace;
 
 use std::process::ExitCode;
@@ -41,6 +42,8 @@ enum Command {
     LabModule(lab::Options),
     /// Builds the documents as a book with mdBook, with a lab in its guide
     Book,
+    /// Builds the wheel of the Python module, which needs no Rust where it is installed
+    Wheel(wheel::Options),
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
         Command::Study(options) => study::run(&options),
         Command::Peers(options) => compare::run(&options),
         Command::LabModule(options) => lab::build_module(&options),
+        Command::Wheel(options) => wheel::build(&options),
         Command::Book => book::run(),
         Command::Fields(options) => fields::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),

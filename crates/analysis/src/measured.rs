@@ -398,9 +398,9 @@ fn found_speed(
     let (rpm, next_rpm, lead) = (60.0 * told.hz, 60.0 * told.next_hz, told.lead);
     notes.push(if told.is_told {
         format!(
-            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} rpm, \
-             of all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} behind in the \
-             logarithm of the likelihood, where {:.0} are asked",
+            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} \
+             rpm, of all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} \
+             behind in the logarithm of the likelihood, where {:.0} are asked",
             60.0 * told.uncertainty_hz,
             60.0 * speed::FROM_HZ,
             60.0 * speed::TO_HZ,

@@ -29,8 +29,8 @@ pub struct PassageSignature {
     pub clear_from: Option<f64>,
     /// Energy of the first event over that of the second [dB].
     pub first_over_second_db: Option<f64>,
-    /// Correlation of the power within a passage, at 24 lags from 0.03 to 0.45 of its period: a second event is
-    /// a hump at its distance.
+    /// Correlation of the power within a passage, at 24 lags from 0.03 to 0.45 of its period: a second event
+    /// is a hump at its distance.
     pub within: Vec<f64>,
     /// Correlation of the power with that one passage later.
     pub repeats: f64,
@@ -100,8 +100,8 @@ pub(crate) fn of(
     let needed = (PASSAGES / rhythm.passing_hz * rate_hz).ceil() as usize + 2;
     let Some(from) = force_n.len().checked_sub(needed) else {
         notes.push(format!(
-            "no records: the run holds {:.0} passages, and {PASSAGES} are needed; `solver.duration_ms` of {:.0} \
-             is enough",
+            "no records: the run holds {:.0} passages, and {PASSAGES} are needed; `solver.duration_ms` of \
+             {:.0} is enough",
             force_n.len() as f64 / rate_hz * rhythm.passing_hz,
             1e3 * duration_s(rhythm)
         ));

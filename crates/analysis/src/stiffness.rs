@@ -198,8 +198,8 @@ impl BearingStiffness {
         text
     }
 
-    /// A file that ROSS loads, `BearingElement.load(FILE)`, at node 0: the means of one load over the speed of
-    /// the shaft [rad/s].
+    /// A file that ROSS loads, `BearingElement.load(FILE)`, at node 0: the means of one load over the speed
+    /// of the shaft [rad/s].
     pub fn ross(&self, load_n: f64) -> Value {
         // ROSS interpolates over ascending frequencies.
         let mut points: Vec<&Point> = self.points.iter().filter(|p| p.load_n == load_n).collect();

@@ -20,8 +20,8 @@ const TEETH: f64 = 23.0;
 /// Draws, unless `STRIBECK_DRAWS` says another number: of 100, none is called what it is not, and 111 of 117
 /// defects are named (two minutes).
 const DRAWS: u64 = 12;
-/// Least part of the defects that is named: knocks are as weak as twice the noise, and a family that slip brings
-/// within a resolution of a multiple of a shaft cannot be told from it.
+/// Least part of the defects that is named: knocks are as weak as twice the noise, and a family that slip
+/// brings within a resolution of a multiple of a shaft cannot be told from it.
 const NAMED: f64 = 0.8;
 
 /// Which families the two bearings have; none where they are sound.
@@ -32,8 +32,8 @@ fn components() -> Vec<Component> {
     texts.iter().map(|text| Component::parse(text).expect("a component")).collect()
 }
 
-/// Knocks `hz` times a second that ring at `ring_hz`, each late or early by up to 1 % of a period, as strong as
-/// `strength` says at their time.
+/// Knocks `hz` times a second that ring at `ring_hz`, each late or early by up to 1 % of a period, as strong
+/// as `strength` says at their time.
 fn knocks(signal: &mut [f64], noise: &mut Noise, hz: f64, ring_hz: f64, strength: &dyn Fn(f64) -> f64) {
     let mut k = 0.0;
     while k / hz < signal.len() as f64 / RATE_HZ {

@@ -115,8 +115,8 @@ fn analytic_stiffness_of_a_6205() {
     compare("stiffness of a 6205 across 1 kN, rigid rings", source, "N/m", ours[1], across, ASKED);
 }
 
-/// Q = 8.06·10⁴ l^(8/9) δ^(10/9) in N and mm at each contact (Harris 2001, equation 6.12 solved for Q), two of
-/// them in series.
+/// Q = 8.06·10⁴ l^(8/9) δ^(10/9) in N and mm at each contact (Harris 2001, equation 6.12 solved for Q), two
+/// of them in series.
 #[test]
 fn analytic_stiffness_of_a_nu_2210() {
     let scene = scene("NU 2210, elements=17");

@@ -32,8 +32,8 @@ struct Resonance {
 pub struct Path(Vec<Resonance>);
 
 impl Path {
-    /// Twelve modes below `highest_hz`, evenly over the logarithm of the frequency, of any sign. `share` yields
-    /// numbers between 0 and 1, the same path for the same numbers.
+    /// Twelve modes below `highest_hz`, evenly over the logarithm of the frequency, of any sign. `share`
+    /// yields numbers between 0 and 1, the same path for the same numbers.
     pub fn drawn(highest_hz: f64, mut share: impl FnMut() -> f64) -> Self {
         let mut one = |_| Resonance {
             hz: highest_hz * LOWEST.powf(share()),

@@ -20,8 +20,8 @@ use crate::spacing::{EventSpacing, event_spacing};
 
 /// The band, over half of the sample rate.
 const BAND: (f64, f64) = (0.25, 1.0);
-/// Passages of a piece of a record: enough for their rhythm, few enough that a simulated bearing makes them in
-/// a second or two.
+/// Passages of a piece of a record: enough for their rhythm, few enough that a simulated bearing makes them
+/// in a second or two.
 pub const PASSAGES: f64 = 30.0;
 /// Lags within a passage at which the correlation is told.
 pub const WITHIN: usize = 24;
@@ -54,8 +54,8 @@ pub struct Rhythm {
 pub struct Signature {
     /// Time between the two events of a passage over its period; `None` where no second event shows.
     pub spacing: Option<f64>,
-    /// Time from which on a second event would have shown, over the period; `None` where one shows, or nothing
-    /// is told.
+    /// Time from which on a second event would have shown, over the period; `None` where one shows, or
+    /// nothing is told.
     pub clear_from: Option<f64>,
     /// Energy of the first event over that of the second [dB]; `None` where no second shows.
     pub first_over_second_db: Option<f64>,
@@ -184,7 +184,7 @@ fn running_mean(values: &[f64], half: usize) -> Vec<f64> {
         sums.push(sum);
     }
     let ends = |n: usize| (n.saturating_sub(half), (n + half + 1).min(values.len()));
-    (0..values.len()).map(|n| ends(n)).map(|(a, b)| (sums[b] - sums[a]) / (b - a) as f64).collect()
+    (0..values.len()).map(ends).map(|(a, b)| (sums[b] - sums[a]) / (b - a) as f64).collect()
 }
 
 /// Lines of the power of a piece.
@@ -207,7 +207,8 @@ impl Spectrum {
         Self { energy, grid_hz: rate_hz / count as f64, rate_hz, mean }
     }
 
-    /// Correlation coefficient at each lag in samples, of power averaged over `sharp_s`, up to half the piece.
+    /// Correlation coefficient at each lag in samples, of power averaged over `sharp_s`, up to half the
+    /// piece.
     fn correlation(&self, sharp_s: f64) -> Vec<f64> {
         let count = 2 * self.energy.len();
         let mut lines = vec![Complex::<f64>::default(); count];
@@ -258,7 +259,8 @@ mod tests {
         }
     }
 
-    /// Pairs of clicks 3 ms apart, never quite on time, the second one `louder_db` above the first, through a resonance, in noise.
+    /// Pairs of clicks 3 ms apart, never quite on time, the second one `louder_db` above the first, through a
+    /// resonance, in noise.
     fn record(hz: f64, louder_db: f64, slip: f64, depth: f64) -> Vec<f64> {
         let mut share = uniform(3);
         let mut force = vec![0.0; 2 * Signature::samples_of_piece(RATE_HZ, RHYTHM)];

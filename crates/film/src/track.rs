@@ -180,8 +180,8 @@ impl Land {
     }
 }
 
-/// The curve of a facet of a land, for those who take several at once: heights over its chord along the normal,
-/// which is the tangent turned clockwise by a right angle.
+/// The curve of a facet of a land, for those who take several at once: heights over its chord along the
+/// normal, which is the tangent turned clockwise by a right angle.
 #[derive(Debug, Clone, Copy)]
 pub struct FacetCurve {
     /// Its first node [m].

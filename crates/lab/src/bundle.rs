@@ -329,7 +329,7 @@ fn fixed(scene: &Scene) -> Value {
         ],
         [
             "Raceways",
-            format!("{} and {:.2} mm", bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm),
+            format!("{} / {:.2} mm", bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm),
             "bearing.outer_race_diameter_mm=200.02",
         ],
         ["Elements", format!("{} mm", mesh.size_mm), "mesh.size_mm=1"],

@@ -180,13 +180,11 @@ fn refuses_handles_that_no_bearing_has() {
 #[test]
 fn issue_a_run_that_stops_says_what_the_program_says() {
     let folder = Scratch::create("lab-stops");
-    let fast = |scene: &mut Scene| scene.operation.speed_rpm = 20_000.0;
-    let soft = |scene: &mut Scene| scene.guards.penetration_stop_percent = 1.0;
-    let loose = |scene: &mut Scene| scene.solver.duration_ms = 300.0;
-    let kinds: [(&str, &dyn Fn(&mut Scene)); 3] = [
-        ("energy is off by", &fast),
-        ("contact has sunk in by", &soft),
-        ("the cage has cut through a ring", &loose),
+    type Change = fn(&mut Scene);
+    let kinds: [(&str, Change); 3] = [
+        ("energy is off by", |scene| scene.operation.speed_rpm = 20_000.0),
+        ("contact has sunk in by", |scene| scene.guards.penetration_stop_percent = 1.0),
+        ("the cage has cut through a ring", |scene| scene.solver.duration_ms = 300.0),
     ];
     for (n, (words, change)) in kinds.into_iter().enumerate() {
         let mut scene = coarse(2.0);

@@ -1,8 +1,11 @@
 """What the Python module promises. Run with `python -m unittest discover crates/python/tests` where `stribeck` is installed."""
 
+import importlib.util
 import json
 import os
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
 import unittest
@@ -11,8 +14,82 @@ from pathlib import Path
 import numpy as np
 
 import stribeck
+import stribeck.learn
 
 QUICK = {"mesh": {"size_mm": 4.0}, "contact.method": "collocated"}
+
+
+class Learning(unittest.TestCase):
+    """Windows, splits by bearing, background, scores."""
+
+    @staticmethod
+    def records(kinds, seed=0, rate=12_800.0):
+        rng = np.random.default_rng(seed)
+        orders = stribeck.defect_orders("6205")
+        combs = {"outer": orders["bpfo"], "inner": orders["bpfi"], "ball": 2 * orders["bsf"]}
+        for n, kind in enumerate(kinds):
+            speed = rng.uniform(900, 1800)
+            time = np.arange(int(2 * rate)) / rate
+            signal = rng.normal(size=len(time))
+            if kind != "sound":
+                since = np.mod(time, 60 / (combs[kind] * speed))
+                signal += 6 * np.exp(-since / 1e-3) * np.sin(2 * np.pi * rng.uniform(1500, 5000) * since)
+            yield signal, rate, speed, kind, f"{kind} {n}"
+
+    def test_families_stand_in_the_features_of_their_class(self):
+        windows = stribeck.learn.Windows.of(self.records(["sound", "outer", "inner", "ball"] * 2), bearing="6205")
+        self.assertEqual(windows.features.shape, (len(windows), 4))
+        for n, row in zip(windows.labels, windows.features):
+            if n > 0:
+                self.assertEqual(np.argmax(row[:3]), n - 1, row)
+        features, label = windows[0]
+        self.assertEqual((features.dtype, label), (np.float32, 0))
+
+    def test_a_bearing_is_in_one_part_of_a_split(self):
+        names = [f"b{n // 4}" for n in range(48)]
+        seen = []
+        for train, test in stribeck.learn.by_bearing(names, [n // 4 % 4 for n in range(48)]):
+            self.assertFalse({names[n] for n in train} & {names[n] for n in test})
+            seen += list(test)
+        self.assertEqual(sorted(seen), list(range(48)))
+        with self.assertRaisesRegex(ValueError, "folds"):
+            next(stribeck.learn.by_bearing(["a", "a"], folds=2))
+
+    def test_background_has_its_stated_ratio(self):
+        windows = stribeck.learn.Windows.of(self.records(["outer"]), bearing="6205")
+        background = np.random.default_rng(5).normal(size=100_000)
+        mixed = windows.with_background(background, 25_600.0, ratio=2.0)
+        for before, after in zip(windows.samples, mixed.samples):
+            self.assertAlmostEqual(np.std(after - before) / np.std(before), 2.0, places=6)
+        with self.assertRaisesRegex(ValueError, "0 or more"):
+            windows.with_background(background, 25_600.0, ratio=-1)
+        with self.assertRaisesRegex(ValueError, "samples"):
+            windows.with_background(background[:50], 25_600.0, ratio=1)
+
+    def test_scores_by_hand(self):
+        # Class 0: 2 of 3 found and nothing else, F1 0.8; class 1: one found, and one too many, F1 2/3.
+        truth, said = [0, 0, 0, 1], [0, 0, 1, 1]
+        self.assertAlmostEqual(stribeck.learn.macro_f1(truth, said), (0.8 + 2 / 3) / 2)
+        low, high = stribeck.learn.interval(truth, said, ["a", "b", "c", "d"])
+        self.assertLessEqual(low, high)
+        with self.assertRaisesRegex(ValueError, "one of sound"):
+            stribeck.learn.Windows.of([(np.zeros(9000), 1e4, 1e3, "broken", "x")], bearing="6205")
+
+    @unittest.skipUnless(importlib.util.find_spec("sklearn"), "no scikit-learn")
+    def test_the_guide_trains_on_a_campaign(self):
+        root = Path(__file__).resolve().parents[3]
+        with tempfile.TemporaryDirectory() as folder:
+            small = Path(folder) / "small.ron"
+            text = (root / "fixtures/campaigns/learn6205.ron").read_text()
+            text = text.replace("count: 48", "count: 12").replace("../scenes", str(root / "fixtures/scenes"))
+            text = text.replace('"output.interval_us=20"', '"output.interval_us=20", "solver.duration_ms=510"')
+            small.write_text(text)
+            stribeck.campaign(small, out=Path(folder) / "sim")
+            script = root / "docs/guide/learn/sim_to_real.py"
+            self.assertLessEqual(len(script.read_text().splitlines()), 150)
+            done = subprocess.run([sys.executable, script, Path(folder) / "sim"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertEqual(done.stdout.count("simulated, split by bearing"), 3, done.stdout)
 
 
 class Runs(unittest.TestCase):
@@ -57,6 +134,47 @@ class Runs(unittest.TestCase):
             self.run_["time"]
         with self.assertRaises(FileNotFoundError):
             stribeck.load(self.folder.name)
+
+    def test_a_run_draws_and_describes_itself(self):
+        figure = self.run_.plot()
+        self.assertEqual([axis.get_ylabel() for axis in figure.axes], ["sensor.side.ax_m_s2", "sensor.side.ay_m_s2"])
+        table = self.run_._repr_html_()
+        self.assertIn("complete", table)
+        self.assertIn("100000 Hz", table)
+        with self.assertRaisesRegex(KeyError, "did you mean time_s"):
+            self.run_.plot("time")
+
+    def test_a_run_shows_its_progress_where_asked(self):
+        import contextlib
+        import io
+
+        for progress, told in ((True, True), (False, False), (None, False)):
+            with contextlib.redirect_stderr(io.StringIO()) as said:
+                stribeck.run(QUICK, duration_ms=0.05, out=Path(self.folder.name) / f"bar {progress}", progress=progress)
+            self.assertEqual("100.0 %" in said.getvalue() or "ms" in said.getvalue(), told, said.getvalue())
+
+    def test_a_file_is_analysed_as_its_samples_are(self):
+        file = Path(self.folder.name) / "record.csv"
+        rate, hz = 12_800, 71.7
+        time = np.arange(65_536) / rate
+        since = np.mod(time, 1 / hz)
+        noise = np.random.default_rng(1).uniform(-0.5, 0.5, len(time))
+        signal = noise + 2 * np.exp(-since / 1e-3) * np.sin(2 * np.pi * 3000 * since)
+        np.savetxt(file, np.column_stack([time, signal]), delimiter=",", header="time_s,a_m_s2", comments="", fmt="%.9g")
+        found = stribeck.analyse(file, bearing="6205", speed_rpm=1200)
+        self.assertEqual([family["name"] for family in found["families"] if family["claimed"]], ["BPFO"])
+        with self.assertRaisesRegex(ValueError, "9999999"):
+            stribeck.analyse(file, bearing="9999999", speed_rpm=1200)
+        with self.assertRaises(FileNotFoundError):
+            stribeck.analyse(Path(self.folder.name) / "none.csv", bearing="6205")
+        with self.assertRaisesRegex(TypeError, "tacho"):
+            stribeck.analyse(signal, rate, tacho="pulses")
+        with self.assertRaisesRegex(TypeError, "rate_hz"):
+            stribeck.analyse(signal)
+        npy = Path(self.folder.name) / "record.npy"
+        np.save(npy, signal)
+        with self.assertRaisesRegex(ValueError, "`rate_hz`"):
+            stribeck.analyse(npy)
 
     def test_ctrl_c_keeps_what_was_computed(self):
         out = Path(self.folder.name) / "interrupted"

@@ -70,7 +70,7 @@ impl Modes {
 pub(crate) struct Structure {
     /// Groups of modes.
     groups: usize,
-    /// Shapes at the vertices of the outer raceway, in rows; the first vertex stands again after the last one.
+    /// Shapes at the vertices of the outer raceway, in rows; the first vertex again after the last one.
     shapes: Vec<Single>,
     /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
     pub(crate) farthest: Vec<Row>,

@@ -16,7 +16,6 @@ use stribeck_surface::Error as SurfaceError;
 use crate::{
     contact::{outline::Outline, raceway::Raceway},
     error::Error,
-    rollers::Rollers,
 };
 use bodies::BodySpring;
 pub(crate) use eight::{BlockFilms, SeenRollers};
@@ -151,9 +150,9 @@ impl Lubrication {
         &self.rims[number as usize]
     }
 
-    /// The films of a block of rollers, the first and number of which are given.
-    pub(crate) fn block_films(&self, rollers: &Rollers, films: &Films, of: [usize; 2]) -> BlockFilms {
-        BlockFilms::of(&self.raceways, &self.rims, rollers, films, of)
+    /// The films of a block of rollers with these rims, the first and number of which are given.
+    pub(crate) fn block_films(&self, rim_of: &[u32], films: &Films, of: [usize; 2]) -> BlockFilms {
+        BlockFilms::of(&self.raceways, &self.rims, rim_of, films, of)
     }
 
     /// Radius of rims that are round [m].

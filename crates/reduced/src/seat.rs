@@ -40,8 +40,8 @@ pub(crate) struct Springs {
     /// Tension by a unit of each mode, mode by mode, and the same spring by spring.
     by_mode: Vec<Single>,
     by_spring: Vec<Single>,
-    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, the first one again
-    /// after the last, and by those of the preload.
+    /// Tension by a unit force of a roller at each vertex of the raceway, vertex by vertex, the first one
+    /// again after the last, and by those of the preload.
     by_rollers: Vec<Single>,
     at_preload: Vec<Row>,
     /// Loss of tension of all springs by a unit that one opens or slips.

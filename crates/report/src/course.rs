@@ -56,8 +56,8 @@ pub(super) fn picture(course: &Course, unit: &str) -> Picture {
 const ORDERS: f64 = 4.5;
 const LEAST_ORDERS: f64 = 12.0;
 
-/// The envelope of a band over the angle: `course` counts turns of the shaft in the place of seconds. Those of
-/// `orders` are marked.
+/// The envelope of a band over the angle: `course` counts turns of the shaft in the place of seconds. Those
+/// of `orders` are marked.
 pub(super) fn order_map(
     course: &Course,
     unit: &str,

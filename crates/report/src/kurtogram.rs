@@ -46,7 +46,7 @@ pub(super) fn picture(bands: &[BandEnvelope], chosen: &[Chosen]) -> Option<Pictu
     }
     for Chosen { band_hz: (low, top), .. } in chosen {
         let is_it = |b: &&BandEnvelope| b.low_hz == *low && b.high_hz == *top;
-        let Some(row) = levels.iter().position(|(_, level)| level.iter().any(|b| is_it(b))) else { continue };
+        let Some(row) = levels.iter().position(|(_, level)| level.iter().any(&is_it)) else { continue };
         let (y, left, right) = (AT[1] + high * row as f64, x(*low), x(*top));
         let frame = [[left, y], [right, y], [right, y + high], [left, y + high]];
         sheet.path(&frame, true, "fill:none;stroke:#b3202c;stroke-width:3");

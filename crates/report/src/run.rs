@@ -164,8 +164,8 @@ fn lab(run: &Run, run_dir: &Path) -> Markup {
                  turned there while it runs, in the browser."
             } @else {
                 code { "stribeck report --lab " (run_dir.file_name().unwrap_or_default().display()) }
-                " makes a page beside this one in which the bearing runs, with handles for load, speed, spall, \
-                 facets or arcs."
+                " makes a page beside this one in which the bearing runs, with handles for load, speed, \
+                 spall, facets or arcs."
             }
         }
     }

@@ -169,8 +169,10 @@ const check = (what, holds) => { if (!holds) failed.push(what); };
 const key = (on, name, more = {}) => on.dispatchEvent(new KeyboardEvent("keydown", { key: name, bubbles: true, cancelable: true, ...more }));
 const clickAt = (over, part, more = {}) => {
   const box = over.getBoundingClientRect(), at = { clientX: box.left + part * box.width, clientY: box.top + 0.5 * box.height, bubbles: true, ...more };
+  // All that a mouse does: uPlot takes a click without the rest for the end of a drag.
+  over.dispatchEvent(new MouseEvent("mousemove", at));
   over.dispatchEvent(new PointerEvent("pointerdown", at));
-  over.dispatchEvent(new MouseEvent("click", at));
+  for (const name of ["mousedown", "mouseup", "click"]) over.dispatchEvent(new MouseEvent(name, at));
 };
 const saved = [];
 HTMLAnchorElement.prototype.click = function () { saved.push(this.download); };

@@ -551,8 +551,8 @@ pub struct OutputScene {
     pub sensors: Vec<SensorScene>,
     /// Pictures of the stress about the defect; `None` writes none.
     pub frames: Option<FramesScene>,
-    /// What records of a machine tell of the passages over the defect; `None` for a run that is not to be held
-    /// against one.
+    /// What records of a machine tell of the passages over the defect; `None` for a run that is not to be
+    /// held against one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub records: Option<RecordsScene>,
 }

@@ -1,5 +1,7 @@
 //! Numbers that a kernel computes with: a single one, or a vector of them in the lanes of a register.
 
+mod functions;
+
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 #[cfg(target_arch = "x86_64")]
@@ -8,8 +10,6 @@ use std::any::Any;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::{V3, V4};
 use pulp::{Simd, bytemuck};
-
-use crate::functions;
 
 /// Numbers in a line of cache. No vector is longer, and arrays are cut into groups of that many.
 pub const LANES: usize = 8;

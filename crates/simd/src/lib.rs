@@ -71,12 +71,11 @@
 //! | Question | File |
 //! |---|---|
 //! | What can a kernel do with numbers? | `lanes.rs` |
-//! | How are cube roots and angles computed in vectors? | `functions.rs` |
+//! | How are cube roots and angles computed in vectors? | `lanes/functions.rs` |
 //! | How do values lie in memory, so that eight of them fill a line of cache? | `field.rs` |
 //! | How is work shared out over threads, and kept in their caches from step to step? | `threads.rs` |
 
 pub mod field;
-mod functions;
 pub mod lanes;
 #[cfg(not(target_arch = "wasm32"))]
 pub mod threads;

@@ -44,6 +44,23 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
+/// A place in a vector of eight without a roller had a direction that was no number, and its film of no force
+/// made the work of the drive none: every bearing in oil stopped at its first sample, but for those with
+/// eight, sixteen or twenty-four rollers.
+#[test]
+fn issue_oil_of_rollers_that_fill_no_vector() {
+    let folder = Scratch::create("oil-nine");
+    for rollers in [9, 23] {
+        let mut scene = coarse(0.5);
+        scene.bearing.rollers = rollers;
+        let name = format!("{rollers}");
+        let info = complete(&scene, &folder, &name);
+        assert!(info.energy.max_relative_error < 0.01, "{:?}", info.energy);
+        let trace = trace(&folder, &name);
+        assert!(channel(&trace, "roller.1.outer_fy_n").iter().all(|force| force.is_finite()));
+    }
+}
+
 /// In pieces: the same trace and ledger, films and all.
 #[test]
 fn invariant_a_run_with_oil_in_pieces_writes_the_same_bytes() {

@@ -41,10 +41,10 @@ pub struct Options {
     /// Its speed of the shaft [1/min] where that was another one
     #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
     baseline_rpm: Option<Speed>,
-    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU 205,
-    /// ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
+    /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU
+    /// 205, ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
     #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
-        conflicts_with_all = ["bearing", "alarms", "reference"])]
+        conflicts_with_all = ["bearing", "alarms", "reference", "baseline", "together"])]
     components: Vec<Component>,
     /// Group of the machine by ISO 20816-3, for the zone of the velocity level: 1 above 300 kW, 2 from 15 to
     /// 300 kW
@@ -345,8 +345,8 @@ fn zoned(options: &Options, analysis: &Analysis) -> Option<Zoned> {
     let velocity = analysis.findings.velocity_mm_s;
     if velocity.is_none() {
         tell!(
-            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at 2000 Hz \
-             or faster for a second"
+            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at \
+             2000 Hz or faster for a second"
         );
     }
     Some(Zoned::of(velocity?, group, foundation))

@@ -35,8 +35,8 @@ pub struct Options {
     /// File with unknowns and targets, such as fixtures/infer/quick.ron
     #[arg(required_unless_present = "record")]
     file: Option<PathBuf>,
-    /// Infers what made a measured record: the spall on the raceway that `analyse` finds damaged, its load and
-    /// clearance. Needs `--bearing` and `--speed-rpm`
+    /// Infers what made a measured record: the spall on the raceway that `analyse` finds damaged, its load
+    /// and clearance. Needs `--bearing` and `--speed-rpm`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "emit"])]
     record: Option<PathBuf>,
     /// Runs for a record

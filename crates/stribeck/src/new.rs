@@ -216,8 +216,8 @@ impl Limits {
             return Ok(duration_s);
         }
         Err(format!(
-            "{duration_s} s: {least_s} to {LONGEST_S} s. The shortest record holds ten passages over a defect \
-             at {speed_rpm} rpm, the least for an envelope spectrum; the longest takes some 10 GB"
+            "{duration_s} s: {least_s} to {LONGEST_S} s. The shortest record holds ten passages over a \
+             defect at {speed_rpm} rpm, the least for an envelope spectrum; the longest takes some 10 GB"
         ))
     }
 }
@@ -367,8 +367,8 @@ mod tests {
         }
     }
 
-    /// A load of 1e9 N was answered with a thickness of the bearing, and one of 20 kN on a 6205, which carries
-    /// 7.9 kN, was written.
+    /// A load of 1e9 N was answered with a thickness of the bearing, and one of 20 kN on a 6205, which
+    /// carries 7.9 kN, was written.
     #[test]
     fn issue_numbers_that_no_bearing_has_are_refused_with_their_range() {
         let limits = Limits::of("6205").expect("known");
@@ -378,9 +378,9 @@ mod tests {
             assert!(why.contains(words), "{why}");
         };
         assert_eq!(limits.load(7_000.0), Ok(7_000.0));
-        says(limits.load(20_000.0), "at most 7887 N");
+        says(limits.load(20_000.0), "at most 7886 N");
         says(limits.load(1e9), "static rating");
-        says(limits.speed(1e6), "to 51230 rpm");
+        says(limits.speed(1e6), "to 51221 rpm");
         says(limits.speed(0.1), "1.7 to");
         says(limits.duration(1500.0, 0.01), "0.112 to 100 s");
         says(limits.duration(1500.0, 1e9), "0.112 to 100 s");

@@ -44,8 +44,8 @@ impl Place {
         Ok(scene)
     }
 
-    /// As [`Place::scene`], without a word on what another bearing replaces or what of one is assumed: for who
-    /// reads a scene many times.
+    /// As [`Place::scene`], without a word on what another bearing replaces or what of one is assumed, to
+    /// read a scene many times.
     ///
     /// # Errors
     /// As [`Place::scene`].

@@ -141,6 +141,21 @@ fn refuses_what_cannot_be_compared() {
     assert!(!desk.0.join("other/compare.json").exists());
 }
 
+/// A plan for a script; the same numbers as for a person, and without a trial no cost.
+#[test]
+fn example_a_plan_is_written_for_scripts() {
+    let desk = Desk::with_scene("plan-json");
+    let plan = |words: &[&str]| json(&desk.succeeds(&[&["plan", "quick.ron", "--json"][..], words].concat()));
+    let bare = plan(&["--no-trial"]);
+    assert!(bare["cost"].is_null() && bare["loads"]["static_safety"].as_f64().is_some_and(|s| s > 5.0));
+    assert!((bare["families_hz"]["bpfo"].as_f64().expect("a number") - 90.1).abs() < 0.1, "{bare}");
+    let coarse = plan(&COARSE);
+    let of = |path: &str| coarse.pointer(path).and_then(serde_json::Value::as_f64).expect(path);
+    assert!(of("/cost/run/quiet_s") > 0.0 && of("/cost/run/busy_s") >= of("/cost/run/quiet_s"));
+    assert!((of("/cost/steps") * of("/cost/step_us") / 300.0 - 1.0).abs() < 1e-6, "{coarse}");
+    desk.refuses(&["plan", "absent.ron", "--json"], &["absent.ron"]);
+}
+
 /// Knocks of an outer raceway of a 6205 at 1200 rpm.
 fn knocks(height: f64, seed: u64) -> Vec<f64> {
     let mut noise = Noise::new(seed);
@@ -171,6 +186,21 @@ fn example_a_sound_and_a_damaged_record() {
     assert_eq!(json(&both).as_array().map(Vec::len), Some(2));
     let page = desk.text("damaged-analysis/report.html");
     assert!(page.contains("data:audio/wav;base64,"), "the record cannot be heard");
+    // The same over the sound one, and with the mistakes that are made with it.
+    let over = |baseline: &str, more: &[&str]| {
+        let own = ["analyse", "damaged.mat", "--out=over", "--baseline", baseline];
+        desk.run(&[&own[..], &machine, more].concat())
+    };
+    let output = over("sound.mat", &["--baseline-rpm=1188"]);
+    assert!(output.status.success(), "{}", said(&output));
+    says(&output, &["the baseline turned at 1188.0 rpm"]);
+    let page = desk.text("over/report.html");
+    assert!(page.contains("In grey behind it: sound.mat") && page.contains("at the speed of this record"));
+    says(&over("damaged.mat", &[]), &["no sound machine by its own verdict: it shows BPFO"]);
+    let output = over("absent.mat", &[]);
+    assert!(!output.status.success());
+    says(&output, &["--baseline absent.mat"]);
+    desk.refuses(&["analyse", "damaged.mat", "--baseline-rpm=900"], &["--baseline <FILE>"]);
 }
 
 #[test]
@@ -186,6 +216,14 @@ fn example_a_sweep_has_a_page_and_takes_further_values() {
     assert_eq!(runs(), 2);
     says(&sweep("20000,30000,40000"), &["3 runs, 1 of them to be run here", "3 of 3 runs are complete"]);
     assert_eq!(runs(), 3);
+    // Names that a person can read lead to the runs, and commands take them.
+    let named = |name: &str| desk.0.join(folder).join("by_name").join(name);
+    assert!(
+        named("2-load_n=30000").join("summary.json").exists()
+            || named("2-load_n=30000").join("run.json").exists()
+    );
+    let by_name = format!("{folder}/by_name/3-load_n=40000");
+    says(&desk.succeeds(&["report", &by_name]), &["report.html"]);
     let page = desk.text(&format!("{folder}/index.html"));
     assert!(page.contains("Root mean square over operation.load_n") && page.contains("runs.parquet"));
     let table = Recording::open(desk.0.join(folder).join("runs.parquet")).expect("a table");
@@ -193,6 +231,9 @@ fn example_a_sweep_has_a_page_and_takes_further_values() {
     // Its file is a campaign like any other.
     let campaign = format!("{folder}/campaign.ron");
     says(&desk.succeeds(&["campaign", &campaign, "--out", folder]), &["3 runs, 0 of them to be run here"]);
+    // Three bearings, one warning.
+    let printed = desk.succeeds(&["sweep", "quick.ron", "--set=bearing=NU 205,NU 206,NU 207", "--print"]);
+    assert_eq!(said(&printed).matches("warning:").count(), 1, "{}", said(&printed));
     let printed = desk.succeeds(&["sweep", "quick.ron", "--set=defect.ring=outer,inner", "--print"]);
     says(&printed, &["scene: \"quick.ron\"", "values: [outer, inner]"]);
 }
@@ -261,6 +302,9 @@ fn example_a_scene_of_ones_own_is_written_once() {
     desk.refuses(&["new", "mine.txt"], &["ends in `.ron`"]);
     desk.refuses(&["new", "--bearing=6x05"], &["no bearing `6x05`", "stribeck bearings"]);
     desk.refuses(&["new", "--load-n=-5"], &["no number above 0"]);
+    desk.refuses(&["new", "--load-n=1e9"], &["--load-n", "at most 7886 N", "static rating"]);
+    desk.refuses(&["new", "--speed-rpm=1e7"], &["--speed-rpm", "51221 rpm"]);
+    desk.refuses(&["new", "--duration-s=0.001"], &["--duration-s", "0.112 to 100 s"]);
     desk.refuses(&["new", "--defect=ouder"], &["outer", "inner", "roller", "none"]);
     assert_eq!(desk.text("nu205-inner.ron"), text);
     assert_eq!(fs::read_dir(desk.0.path()).expect("readable").count(), 1);

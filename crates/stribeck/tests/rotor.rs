@@ -96,8 +96,8 @@ fn line(samples: &[f64], interval_s: f64, hz: f64) -> f64 {
     2.0 * re.hypot(im) / sum
 }
 
-/// ROSS 2.3.0 loads our bearing and runs a rotor on two of them: unbalance against m e ω²/|2k − M ω²|, and the
-/// line that the turning cage drives at BPFO beside our own simulation of the sound bearing.
+/// ROSS 2.3.0 loads our bearing and runs a rotor on two of them: unbalance against m e ω²/|2k − M ω²|, and
+/// the line that the turning cage drives at BPFO beside our own simulation of the sound bearing.
 #[test]
 fn peer_ross_runs_a_rotor_on_our_stiffness() {
     /// The shaft of ROSS's rotor bends, by 1 and 4 % of the bearings' shift.

@@ -16,7 +16,7 @@ const LAYERS: [(&str, &[&str]); 26] = [
     ("solver", &["mesh", "simd"]),
     ("mpi", &["solver"]),
     ("surface", &["simd"]),
-    ("film", &["surface"]),
+    ("film", &["simd", "surface"]),
     ("contact", &["film", "mesh", "simd", "solver", "surface"]),
     ("duty", &[]),
     ("infer", &[]),

@@ -1,5 +1,5 @@
-//! Lines that a sound machine has, whatever its bearing: multiples of its shafts, of a cage that stands, and of
-//! meshes of gears with their sidebands.
+//! Lines that a sound machine has, whatever its bearing: multiples of its shafts, of a cage that stands, and
+//! of meshes of gears with their sidebands.
 
 /// Multiples of the shaft and of the cage.
 #[derive(Debug, Clone, PartialEq)]
@@ -84,8 +84,9 @@ impl OwnLines {
         taken.sort_by(f64::total_cmp);
         let (mut left, mut from) = (Vec::new(), low_hz);
         for hz in taken {
-            if hz - self.width_hz > from {
-                left.push((from, (hz - self.width_hz).min(high_hz)));
+            let to = (hz - self.width_hz).min(high_hz);
+            if to > from {
+                left.push((from, to));
             }
             from = from.max(hz + self.width_hz);
         }

@@ -92,8 +92,8 @@ impl fmt::Display for Zoned {
         let [ab, bc, cd] = self.limits_mm_s;
         write!(
             out,
-            "zone {:?} of ISO 20816-3:2022, {meaning}: {:.2} mm/s, limits {ab}, {bc} and {cd} mm/s for group {group} \
-             on a {foundation} foundation",
+            "zone {:?} of ISO 20816-3:2022, {meaning}: {:.2} mm/s, limits {ab}, {bc} and {cd} mm/s for group \
+             {group} on a {foundation} foundation",
             self.zone, self.velocity_mm_s
         )
     }

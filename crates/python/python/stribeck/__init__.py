@@ -30,8 +30,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Callable
 
-from . import _ron, _stribeck, dsp
-from ._program import Campaign, Inference, campaign, command, export, infer, validate
+from . import _progress, _ron, _stribeck, dsp
+from ._program import Campaign, Inference, _analysed, _python_words, campaign, command, export, infer, validate
 
 __all__ = [
     "Campaign",
@@ -145,10 +145,43 @@ class Run:
         return pandas.DataFrame(self._all).set_index("time_s")
 
     def resume(
-        self, duration_ms: float | None = None, *, threads: int | None = None, progress: Progress | None = None
+        self, duration_ms: float | None = None, *, threads: int | None = None, progress: Progress | bool | None = None
     ) -> "Run":
         """Continues the run to its end, or to another duration [ms]."""
-        return Run(_stribeck.resume(self.folder, duration_ms, threads, progress))
+        with _progress.shown(progress) as told, _python_words():
+            return Run(_stribeck.resume(self.folder, duration_ms, threads, told))
+
+    def plot(self, *channels: str) -> Any:
+        """Draws channels over the time and returns the matplotlib figure; without names, the accelerations of the first sensor."""
+        try:
+            from matplotlib.figure import Figure
+        except ImportError:
+            raise ImportError("run.plot() needs matplotlib: pip install matplotlib") from None
+        names = channels or tuple(name for name in self.channels if name.endswith(("ax_m_s2", "ay_m_s2")))[:2]
+        figure = Figure(figsize=(9, 1 + 1.8 * len(names)), layout="constrained")
+        axes = figure.subplots(len(names), 1, sharex=True, squeeze=False)[:, 0]
+        time_ms = 1e3 * self["time_s"]
+        for axis, name in zip(axes, names):
+            axis.plot(time_ms, self[name], linewidth=0.6)
+            axis.set_ylabel(name, fontsize=8)
+            axis.grid(True, linewidth=0.3)
+        axes[-1].set_xlabel("time (ms)")
+        figure.suptitle(self.folder.name, fontsize=10)
+        return figure
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        info = self.info
+        rows = {
+            "folder": str(self.folder),
+            "status": info.get("status", ""),
+            "simulated": f"{1e3 * info.get('simulated_s', 0.0):.2f} ms",
+            "samples": f"{len(self['time_s'])} at {self.rate_hz:g} Hz, {len(self.channels)} channels",
+        }
+        cells = "".join(f"<tr><th>{name}</th><td>{escape(value)}</td></tr>" for name, value in rows.items())
+        warnings = "".join(f"<li>{escape(str(warning))}</li>" for warning in info.get("warnings", []))
+        return f"<table>{cells}</table>" + (f"<ul>{warnings}</ul>" if warnings else "")
 
 
 def run(
@@ -159,7 +192,7 @@ def run(
     out: str | os.PathLike[str] | None = None,
     overwrite: bool = False,
     threads: int | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
 ) -> Run:
     """Simulates a scene and returns the run.
 
@@ -173,13 +206,15 @@ def run(
     out: folder of the run; without it ``runs/NAME``, numbered where there is one already.
     overwrite: replaces the run in ``out`` once the new one is complete.
     threads: worker threads; the results do not depend on it.
-    progress: is called some ten times a second with the phase, the share that is done and the simulated time [s].
+    progress: a function that is called some ten times a second with the phase, the share that is done and the simulated time [s];
+        without one a line in a terminal and a bar in a notebook, with False nothing.
 
     Ctrl-C ends the run in good order: what was computed is kept, and ``Run(folder).resume()`` goes on.
     A mistake in the scene is a ValueError that names line, field and range.
     """
     folder = Path(out) if out is not None else None
-    return Run(_stribeck.simulate(_asked(scene, fields, duration_ms), folder, overwrite, threads, progress))
+    with _progress.shown(progress) as told, _python_words():
+        return Run(_stribeck.simulate(_asked(scene, fields, duration_ms), folder, overwrite, threads, told))
 
 
 def load(folder: str | os.PathLike[str]) -> Run:
@@ -199,22 +234,37 @@ def scene(
 
 def analyse(
     signal: Any,
-    rate_hz: float,
+    rate_hz: float | None = None,
     *,
     bearing: str | None = None,
-    speed_rpm: float | None = None,
+    speed_rpm: float | str | None = None,
     unit: str | None = None,
     name: str = "signal",
+    channel: str | None = None,
+    tacho: str | None = None,
+    **options: Any,
 ) -> dict[str, Any]:
     """What a measured record shows: families of defects, a verdict, health figures, as in ``findings.json``.
 
-    signal: samples, one channel.
-    rate_hz: samples a second.
+    signal: samples of one channel, or the path of a file in any of the formats, or of a run.
+    rate_hz: samples a second; a file may say it.
     bearing: a name of the catalogue (``"6205"``) or numbers (``"elements=9, diameter_mm=7.94, pitch_mm=39"``).
-    speed_rpm: speed of the shaft; without it nothing can be said of a defect.
+    speed_rpm: speed of the shaft; without it nothing can be said of a defect. Of a file also a range, ``"1400..1600"``.
     unit: of the samples, for what is shown.
+    channel, tacho: of a file, the channel and that of a tachometer or of the angle of the shaft.
+    options: of a file, what ``stribeck analyse`` takes, such as ``pulses_per_turn=20`` or ``out="folder"``.
     """
-    return json.loads(_stribeck.analyse(dsp._samples(signal), rate_hz, bearing, speed_rpm, unit, name))
+    if isinstance(signal, (str, os.PathLike)):
+        asked = {"rate_hz": rate_hz, "bearing": bearing, "speed_rpm": speed_rpm, "unit": unit, "channel": channel, "tacho": tacho}
+        return _analysed(signal, {**asked, **options})
+    unfit = [name for name, value in {"channel": channel, "tacho": tacho, **options}.items() if value is not None]
+    if unfit:
+        raise TypeError(f"{', '.join(unfit)}: of a file alone; give its path instead of samples")
+    if rate_hz is None:
+        raise TypeError("analyse() of samples needs rate_hz, the samples a second")
+    speed = float(speed_rpm) if speed_rpm is not None else None
+    with _python_words():
+        return json.loads(_stribeck.analyse(dsp._samples(signal), rate_hz, bearing, speed, unit, name))
 
 
 def defect_orders(bearing: str) -> dict[str, float]:

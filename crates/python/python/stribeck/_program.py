@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import re
 import subprocess
 import sys
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +32,37 @@ def _done(arguments: list[str]) -> str:
     if done.returncode != 0:
         raise RuntimeError(f"stribeck {' '.join(arguments)} ended with {done.returncode}; its words stand above")
     return done.stdout
+
+
+def _in_python(words: str) -> str:
+    """A message with the names of arguments for flags of the program."""
+    return re.sub(r"(?<![\w-])--([a-z][a-z-]+)", lambda flag: flag[1].replace("-", "_"), words)
+
+
+@contextlib.contextmanager
+def _python_words() -> Iterator[None]:
+    """Mistakes speak of arguments, not of flags."""
+    try:
+        yield
+    except (ValueError, RuntimeError) as why:
+        said = _in_python(str(why))
+        if said == str(why):
+            raise
+        raise type(why)(said) from None
+
+
+def _analysed(file: str | os.PathLike[str], flags: Mapping[str, Any]) -> dict[str, Any]:
+    """Findings of a file by ``stribeck analyse``; a mistake is a ValueError."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = {} if flags.get("out") is not None else {"out": Path(folder) / "analysis"}
+        arguments = ["analyse", os.fspath(file), "--json", *_asked(**{**flags, **out})]
+        done = subprocess.run([sys.executable, "-m", "stribeck", *arguments], capture_output=True, text=True)
+    if done.returncode != 0:
+        said = done.stderr.strip().split("error: ", 1)[-1]
+        if not Path(file).exists():
+            raise FileNotFoundError(f"{os.fspath(file)}: no file and no run")
+        raise ValueError(_in_python(said))
+    return json.loads(done.stdout)
 
 
 class Campaign:

@@ -1,5 +1,5 @@
-//! Films of eight rollers on a land of a raceway, side by side (THEORY §4.6, §9.4): where they are nearest, and
-//! what their oil does.
+//! Films of eight rollers on a land of a raceway, side by side (THEORY §4.6, §9.4): where they are nearest,
+//! and what their oil does.
 
 use pulp::Simd;
 use stribeck_film::{
@@ -10,13 +10,10 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 use stribeck_surface::smooth::{bend, height, slope};
 
 use super::{FIXED, Film, FilmStep, Films, OiledRaceway, Rim, RollerView, nearest::Curved};
-use crate::{
-    rollers::Rollers,
-    row::{Row, Rows, lanes, load, of_one, store},
-};
+use crate::row::{Row, Rows, lanes, load, of_one, store};
 
-/// Corrections of the nearest place in a step: from that of the step before one leaves a millionth of a facet, by
-/// whose square the gap is off.
+/// Corrections of the nearest place in a step: from that of the step before one leaves a millionth of a
+/// facet, by whose square the gap is off.
 const CORRECTIONS: usize = 1;
 
 /// A place farther from its facet than this, in facets, is looked for facet by facet.
@@ -96,11 +93,11 @@ impl BlockFilms {
     pub(super) fn of(
         raceways: &[OiledRaceway; 2],
         rims: &[Rim],
-        rollers: &Rollers,
+        rim_of: &[u32],
         films: &Films,
         [first, count]: [usize; 2],
     ) -> Self {
-        let is_round = |lane: &usize| matches!(rims[rollers.rim_of[first + lane] as usize], Rim::Round(_));
+        let is_round = |lane: &usize| matches!(rims[rim_of[first + lane] as usize], Rim::Round(_));
         let mut block = Self {
             round: (0..count).filter(is_round).map(|lane| 1 << lane).sum(),
             on: raceways.each_ref().map(|race| vec![EightFilms::default(); race.lands()]),
@@ -212,7 +209,11 @@ impl EightFilms {
         for at in vector_starts(simd) {
             let size = Vector::load(simd, &pushed.force.0, at);
             let ([dx, dy], [fx, fy]) = (load(simd, &near.d, at), load(simd, force, at));
-            store([(-size).times_plus(dx, fx), (-size).times_plus(dy, fy)], force, at);
+            // Where there is no roller its direction is no number, and nothing times that is none either.
+            let (half, these) = (Vector::all(simd, 0.5), Vector::ones(simd, films >> at));
+            let pushed = [[dx, fx], [dy, fy]]
+                .map(|[d, had]| half.choose_below(these, (-size).times_plus(d, had), had));
+            store(pushed, force, at);
         }
         Some(pushed)
     }
@@ -238,8 +239,8 @@ impl EightFilms {
         }
     }
 
-    /// Where rollers with these `films` are nearest to their facets. Returns those that are far beyond an end of it, and
-    /// those between whom and the land no oil stays.
+    /// Where rollers with these `films` are nearest to their facets. Returns those that are far beyond an end
+    /// of it, and those between whom and the land no oil stays.
     #[inline(always)]
     fn nearest<S: Simd>(
         &mut self,

@@ -156,7 +156,7 @@ impl Block {
     /// Takes the rollers from a state, with their films where there is oil.
     pub(crate) fn load(&mut self, rollers: &Rollers, oil: Option<&Lubrication>, state: &State) {
         if let (Some(oil), Some(films)) = (oil, &state.films) {
-            self.films = oil.block_films(rollers, films, [self.first, self.count]);
+            self.films = oil.block_films(&rollers.rim_of, films, [self.first, self.count]);
         }
         for lane in 0..self.count {
             let i = self.first + lane;

@@ -211,7 +211,7 @@ pub(super) fn modes(scene: &mut Scene, given: &[String]) {
 }
 
 /// A penetration under the largest static force that is so many times smaller than what guards warn of stays
-/// below it when rollers knock: where four to ten rollers share the load, each takes its part at once and sinks
+/// below it when rollers knock: where some ten rollers share the load, each takes its part at once and sinks
 /// in 2.1 times as deep (docs/results/own.md).
 const KNOCKS: f64 = 2.5;
 

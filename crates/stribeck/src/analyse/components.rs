@@ -25,8 +25,8 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let read = super::read(file, &options.reading, place)?;
     ensure!(
         read.machine.speed_rpm.is_some(),
-        "no speed is known of the shaft whose ratio is 1: give `--speed-rpm`, or `--tacho` with the channel of a \
-         tachometer"
+        "no speed is known of the shaft whose ratio is 1: give `--speed-rpm`, or `--tacho` with the channel \
+         of a tachometer"
     );
     let mut found = sources::analyse(&read.signal, read.rate_hz, &read.machine, &options.components)?;
     for (_, analysis) in &mut found.bearings {

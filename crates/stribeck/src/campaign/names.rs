@@ -1,7 +1,7 @@
 //! Names that a person can read for the folders of runs, which are named by their scenes.
 //!
-//! `runs/HASH` stays what scripts and further parts find; beside it `by_name/3-load_n=2000` leads there. The names
-//! are a convenience: where links cannot be made there are none.
+//! `runs/HASH` stays what scripts and further parts find; beside it `by_name/3-load_n=2000` leads there. The
+//! names are a convenience: where links cannot be made there are none.
 
 use std::path::{Path, PathBuf};
 

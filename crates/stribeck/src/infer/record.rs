@@ -137,14 +137,14 @@ fn base(
     let interval_us = (1e6 / rate_hz).min(10.0);
     let noise: Vec<String> = NOISE_DB.iter().map(|db| format!("{db:?}")).collect();
     format!(
-        "// The bearing of a measured record between rings that do not bend: what sets of unknowns change.\n(\n    \
-         name: \"record\",\n    model: reduced(modes_khz: 30.0, step_us: {STEP_US:?}),\n    bearing: \
-         \"{bearing}\",\n    housing: rigid(),\n    defect: (ring: {}, length_mm: 1.0, depth_mm: 0.1, \
-         angle_deg: 90.0),\n    cage: (pocket: corners),\n    mesh: (size_mm: {size_mm:.4}, roller_facets: \
-         {FACETS}),\n    operation: (load_n: 100.0, speed_rpm: {rpm:?}),\n    contact: (surface: arc, friction: \
-         0.05),\n    film: None,\n    solver: (duration_ms: {:.1}, mass_damping_per_s: 5000.0, \
-         structural_damping: None),\n    output: (interval_us: {interval_us:?}, frames: None, records: \
-         (rate_hz: {rate_hz:?}, noise_db: [{}])),\n)\n",
+        "// The bearing of a measured record between rings that do not bend: what sets of unknowns \
+         change.\n(\n name: \"record\",\n    model: reduced(modes_khz: 30.0, step_us: {STEP_US:?}),\n    \
+         bearing: \"{bearing}\",\n    housing: rigid(),\n    defect: (ring: {}, length_mm: 1.0, depth_mm: \
+         0.1, angle_deg: 90.0),\n    cage: (pocket: corners),\n    mesh: (size_mm: {size_mm:.4}, \
+         roller_facets: {FACETS}),\n    operation: (load_n: 100.0, speed_rpm: {rpm:?}),\n    contact: \
+         (surface: arc, friction: 0.05),\n    film: None,\n    solver: (duration_ms: {:.1}, \
+         mass_damping_per_s: 5000.0, structural_damping: None),\n    output: (interval_us: {interval_us:?}, \
+         frames: None, records: (rate_hz: {rate_hz:?}, noise_db: [{}])),\n)\n",
         claim.ring,
         1e3 * duration_s(rhythm),
         noise.join(", "),

@@ -1,8 +1,8 @@
 //! What a run takes, by its beginning: a constant of another machine would be wrong.
 //!
-//! A machine that does something else, too, takes longer by the clock, and how busy it is when the run is made
-//! nobody knows. So each part has two times: by the clock, as busy as the machine is now, and by the processor
-//! time of its threads, which is what it takes where nothing else runs.
+//! A machine that does something else, too, takes longer by the clock, and how busy it is when the run is
+//! made nobody knows. So each part has two times: by the clock, as busy as the machine is now, and by the
+//! processor time of its threads, which is what it takes where nothing else runs.
 
 use std::fs;
 use std::ops::ControlFlow;

@@ -2,15 +2,15 @@
 
 use pulp::Simd;
 
-use crate::lanes::{LANES, Number, Vector};
+use super::{LANES, Number, Vector};
 
 /// Above this a number is turned by a quarter of a turn, and above [`NEAR`] by an eighth, before its arcus
 /// tangent is taken: tan 3π/8, and about tan π/5.
 const FAR: f64 = 2.414_213_562_373_095;
 const NEAR: f64 = 0.66;
 
-/// Polynomials in the square, highest power first, whose ratio times the cube the arcus tangent has beyond its
-/// argument up to [`NEAR`]. Source: S. L. Moshier, Methods and Programs for Mathematical Functions, Ellis
+/// Polynomials in the square, highest power first, whose ratio times the cube the arcus tangent has beyond
+/// its argument up to [`NEAR`]. Source: S. L. Moshier, Methods and Programs for Mathematical Functions, Ellis
 /// Horwood 1989 (Cephes, `atan.c`); peak error 1.8·10⁻¹⁶.
 const ABOVE: [f64; 5] = [
     -0.875_060_860_003_190_4,
@@ -47,7 +47,7 @@ fn polynomial<S: Simd, const N: usize>(coefficients: &[f64; N], at: Vector<S>) -
 
 /// Arcus tangent, to the last digit or two.
 #[inline(always)]
-pub(crate) fn arc_tangent<S: Simd>(of: Vector<S>) -> Vector<S> {
+pub(super) fn arc_tangent<S: Simd>(of: Vector<S>) -> Vector<S> {
     let (zero, one) = (of.constant(0.0), of.constant(1.0));
     let size = of.max(-of);
     let (near, far) = (of.constant(NEAR), of.constant(FAR));
@@ -67,7 +67,7 @@ pub(crate) fn arc_tangent<S: Simd>(of: Vector<S>) -> Vector<S> {
 
 /// Cube root of numbers that are not negative, within 3·10⁻¹⁴ of it.
 #[inline(always)]
-pub(crate) fn cube_root<S: Simd>(of: Vector<S>) -> Vector<S> {
+pub(super) fn cube_root<S: Simd>(of: Vector<S>) -> Vector<S> {
     let zero = of.constant(0.0);
     let smallest = of.constant(SMALLEST);
     let number = of.max(smallest);
