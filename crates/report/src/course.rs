@@ -331,7 +331,7 @@ mod tests {
     #[test]
     fn example_rows_of_a_waterfall_go_by_speed_where_there_is_one() {
         let rows = waterfall_rows(&course(), None);
-        assert_eq!((rows.len(), rows[0].0.as_str()), (10, "0.05 s"));
+        assert_eq!((rows.len(), rows[0].0.as_str()), (10, "50 ms"));
         // Columns of one speed are one row, whatever their time.
         let speeds = [600.0, 900.0, 600.0, 900.0, 600.0, 900.0, 600.0, 900.0, 1200.0, f64::NAN];
         let rows = waterfall_rows(&course(), Some(&speeds));
