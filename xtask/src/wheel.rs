@@ -18,8 +18,8 @@ pub(crate) struct Options {
     python: String,
 }
 
-/// What a wheel may have [bytes].
-const LARGEST: u64 = 10 << 20;
+/// What a wheel may have [bytes], as in `.ci/run`; 10 MiB are the goal.
+const LARGEST: u64 = 13 << 20;
 
 /// Oldest system that a wheel made with zig runs on: glibc 2.17.
 const POLICY: &str = "manylinux2014";

@@ -89,13 +89,14 @@ mod tests {
     #[test]
     fn example_a_family_stands_still_over_the_angle() {
         let rate_hz = 20_000.0;
-        let turns: Vec<f64> =
-            (0..80_000).map(|n| f64::from(n) / rate_hz).map(|t| 10.0 * t + 2.5 * t * t).collect();
-        let ring = |turns: &f64| {
-            let since = (3.6 * turns).rem_euclid(1.0);
-            (-since / 0.05).exp() * (TAU * 120.0 * since).sin()
+        let times: Vec<f64> = (0..80_000).map(|n| f64::from(n) / rate_hz).collect();
+        let turns: Vec<f64> = times.iter().map(|t| 10.0 * t + 2.5 * t * t).collect();
+        // A resonance that the speed does not move.
+        let ring = |(turns, t): (&f64, &f64)| {
+            let since_s = (3.6 * turns).rem_euclid(1.0) / (3.6 * (10.0 + 5.0 * t));
+            (-since_s / 1e-3).exp() * (TAU * 4_000.0 * since_s).sin()
         };
-        let signal: Vec<f64> = turns.iter().map(ring).collect();
+        let signal: Vec<f64> = turns.iter().zip(&times).map(ring).collect();
         let found = Varying::of(&signal, rate_hz, &turns, (2_000.0, 9_000.0)).expect("a signal");
         let (first, last) = (found.speeds_rpm[0], found.speeds_rpm[found.speeds_rpm.len() - 1]);
         assert!((first - 600.0).abs() < 10.0 && (last - 1800.0).abs() < 10.0, "{first} {last}");
