@@ -103,7 +103,11 @@ mod tests {
         let orders = found.orders.expect("enough turns");
         // Knocks are short: their second harmonic is as high as the first, and beyond what is looked at.
         let below = (5.4 / orders.grid_hz) as usize;
-        for column in orders.values.chunks_exact(orders.lines) {
+        let columns: Vec<&[f64]> = orders.values.chunks_exact(orders.lines).collect();
+        // A column into which no segment falls has no numbers.
+        let told: Vec<&&[f64]> = columns.iter().filter(|column| column[2].is_finite()).collect();
+        assert!(told.len() + 1 >= columns.len(), "{} of {}", told.len(), columns.len());
+        for column in told {
             let highest = (2..below).max_by(|a, b| column[*a].total_cmp(&column[*b])).expect("lines");
             assert!((highest as f64 * orders.grid_hz - 3.6).abs() <= 0.3, "{highest}");
         }
