@@ -36,7 +36,7 @@ pub struct Options {
     #[arg(required_unless_present = "record")]
     file: Option<PathBuf>,
     /// Infers what made a measured record: the spall on the raceway that `analyse` finds damaged, its load
-    /// and clearance. Needs `--bearing` and `--speed-rpm`
+    /// and clearance. Needs `--bearing`, and `--speed-rpm` where the record does not tell the speed
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "emit"])]
     record: Option<PathBuf>,
     /// Runs for a record

@@ -78,7 +78,8 @@ fn likeliest(field: &FieldFound) -> Vec<String> {
         .collect();
     if !rest.is_empty() {
         let sum: f64 = rest.iter().map(|choice| choice.probability).sum();
-        lines.push(format!("{:.0} %  {} others", 100.0 * sum, rest.len()));
+        let others = if rest.len() == 1 { "other" } else { "others" };
+        lines.push(format!("{:.0} %  {} {others}", 100.0 * sum, rest.len()));
     }
     lines
 }
