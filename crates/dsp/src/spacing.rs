@@ -53,6 +53,8 @@ pub enum EventSpacing {
 const BANDS: [(f64, f64); 2] = [(0.25, 0.5), (0.5, 1.0)];
 /// Length over which correlations are smoothed [s]: events are no sharper.
 const SMOOTHED_S: f64 = 0.3e-3;
+/// Distances from this many times one over the width of the narrower band are told, within an eighth of them.
+const RESOLVED: f64 = 4.0;
 /// Least correlation in one of the bands.
 const LEAST: f64 = 0.05;
 /// Least correlation in the other, at the same lag: it only confirms.
@@ -77,8 +79,8 @@ const CLEAR: f64 = 0.5;
 /// rhythm in which the pairs come.
 ///
 /// # Errors
-/// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered,
-/// [`Error::TooShort`] for a signal that is not four times as long as the longest, [`Error::NotFinite`].
+/// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered or the rate
+/// resolves none of them, [`Error::TooShort`] for a signal that is not four times as long as the longest, [`Error::NotFinite`].
 pub fn event_spacing(
     signal: &[f64],
     sample_rate_hz: f64,
@@ -124,6 +126,11 @@ pub fn passage_spacing(
     ))
 }
 
+/// Width of the narrower band [Hz].
+fn narrower_hz(sample_rate_hz: f64) -> f64 {
+    0.5 * sample_rate_hz * (BANDS[0].1 - BANDS[0].0)
+}
+
 /// Distances that are looked at [samples].
 fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) -> Result<Range<usize>> {
     check_positive("sample_rate_hz", sample_rate_hz)?;
@@ -132,7 +139,13 @@ fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) ->
         let why = "the longest distance must exceed the shortest";
         return Err(Error::Undefined { quantity: "distance of events", why });
     }
-    let lags = ((shortest_s * sample_rate_hz).ceil() as usize).max(2)..(longest_s * sample_rate_hz) as usize;
+    let resolved_s = RESOLVED / narrower_hz(sample_rate_hz);
+    let lags =
+        (shortest_s.max(resolved_s) * sample_rate_hz).ceil() as usize..(longest_s * sample_rate_hz) as usize;
+    if lags.is_empty() {
+        let why = "the sample rate resolves none below the longest";
+        return Err(Error::Undefined { quantity: "distance of events", why });
+    }
     check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
     Ok(lags)
 }
@@ -140,7 +153,7 @@ fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) ->
 /// A distance from those of two bands [samples], each by its weight.
 fn spacing(lags: [f64; 2], weights: [f64; 2], correlation: f64, sample_rate_hz: f64) -> Spacing {
     let lag = (weights[0] * lags[0] + weights[1] * lags[1]) / (weights[0] + weights[1]);
-    let narrower_hz = 0.5 * sample_rate_hz * (BANDS[0].1 - BANDS[0].0);
+    let narrower_hz = narrower_hz(sample_rate_hz);
     Spacing {
         lag_s: lag / sample_rate_hz,
         uncertainty_s: (0.5 * (lags[0] - lags[1]).abs() / sample_rate_hz).max(0.5 / narrower_hz),
