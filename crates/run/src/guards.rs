@@ -143,11 +143,12 @@ impl Guards {
     }
 
     fn rollers(&self, centres: &[[f64; 2]], when: &When) -> Option<String> {
+        let [inner, outer] = self.annulus;
         for (number, [x, y]) in self.numbers.iter().zip(centres) {
-            let radius = x.hypot(*y);
-            // A place that is no number lies in no range either.
-            if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
-                let through = if radius < self.annulus[0] { "inner" } else { "outer" };
+            // A place that is no number lies in no range either. A root would take longer than all the rest.
+            if !(inner * inner..=outer * outer).contains(&(x * x + y * y)) {
+                let radius = x.hypot(*y);
+                let through = if radius < inner { "inner" } else { "outer" };
                 return Some(format!(
                     "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from \
                      that of the outer ring {when}. Take a \
