@@ -143,11 +143,12 @@ impl Guards {
     }
 
     fn rollers(&self, centres: &[[f64; 2]], when: &When) -> Option<String> {
+        let [inner, outer] = self.annulus;
         for (number, [x, y]) in self.numbers.iter().zip(centres) {
-            let radius = x.hypot(*y);
-            // A place that is no number lies in no range either.
-            if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
-                let through = if radius < self.annulus[0] { "inner" } else { "outer" };
+            // A place that is no number lies in no range either. A root would take longer than all the rest.
+            if !(inner * inner..=outer * outer).contains(&(x * x + y * y)) {
+                let radius = x.hypot(*y);
+                let through = if radius < inner { "inner" } else { "outer" };
                 return Some(format!(
                     "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from \
                      that of the outer ring {when}. Take a \
@@ -213,5 +214,46 @@ impl When {
 impl Display for When {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(f, "at step {}, t = {:.5} ms", self.step, 1e3 * self.time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use stribeck_scene::scene::Scene;
+
+    use super::*;
+
+    /// The paper's rollers between their raceways, and one just beyond either end of where they may be, or
+    /// nowhere.
+    #[test]
+    fn refuses_a_roller_that_has_gone_through_a_raceway() {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes/singh2014.ron");
+        let scene = Scene::read(scene).expect("the paper's scene").resolve();
+        let guards = Guards::new(&scene, "`model.step_us`");
+        let when = When { step: 7, time: 14e-6 };
+        let [inner, outer] = guards.annulus;
+        let at = |number: usize, radius: f64| {
+            let (s, c) = (0.3 + number as f64).sin_cos();
+            [radius * c, radius * s]
+        };
+        for third in [inner * (1.0 + 1e-12), 0.5 * (inner + outer), outer * (1.0 - 1e-12)] {
+            let centres = [at(0, inner + 1e-6), at(1, outer - 1e-6), at(2, third)];
+            assert_eq!(guards.rollers(&centres, &when), None, "{third} m");
+        }
+        for (third, through) in [
+            (inner * (1.0 - 1e-12), "inner"),
+            (0.0, "inner"),
+            (outer * (1.0 + 1e-12), "outer"),
+            (f64::INFINITY, "outer"),
+        ] {
+            let centres = [at(0, inner + 1e-6), at(1, outer - 1e-6), at(2, third)];
+            let stop = guards.rollers(&centres, &when).expect("it is out of place");
+            let said = format!("roller 3 has gone through the {through} raceway");
+            assert!(stop.starts_with(&said), "{third} m: {stop}");
+        }
+        let centres = [at(0, inner + 1e-6), [f64::NAN, 0.0]];
+        assert!(guards.rollers(&centres, &when).is_some_and(|stop| stop.starts_with("roller 2 ")));
     }
 }

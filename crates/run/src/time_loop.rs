@@ -114,11 +114,15 @@ struct Saved {
 }
 
 impl Saved {
-    fn is_due(&self, sample: usize, wall_s: f64) -> bool {
-        let passed = wall_s - self.wall_s;
+    /// Whether it is time to save after a sample. The clock is read only when enough samples have passed.
+    fn is_due(&self, sample: usize, wall_s: impl FnOnce() -> f64) -> bool {
+        if sample - self.sample < SAVE_EVERY {
+            return false;
+        }
+        let passed = wall_s() - self.wall_s;
         // A clock that was set back, or that is none, must not put off saving.
         let counts = passed >= 0.0 && self.cost_s >= 0.0;
-        sample - self.sample >= SAVE_EVERY && (!counts || SAVE_SHARE * passed >= self.cost_s)
+        !counts || SAVE_SHARE * passed >= self.cost_s
     }
 }
 
@@ -215,7 +219,7 @@ impl<M: Motion> Run<M> {
                 self.info.stop_reason = Some(format!("interrupted at {:.4} ms", 1e3 * progress.time_s));
                 break;
             }
-            if saved.is_due(sample, (host.wall_s)()) {
+            if saved.is_due(sample, || (host.wall_s)()) {
                 note_times(&mut self.info);
                 self.save(dir, &mut saved, host)?;
             }

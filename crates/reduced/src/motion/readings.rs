@@ -91,7 +91,14 @@ impl BearingInMotion {
         &self.sensors
     }
 
+    /// Centres of the rollers in their order [m].
+    #[inline]
+    pub fn centres(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.saved.state.x.iter().zip(&self.saved.state.y).map(|(x, y)| [*x, *y])
+    }
+
     /// Rollers in their order.
+    #[inline]
     pub fn rollers(&self) -> impl Iterator<Item = RollerReading> {
         let (state, scratch) = (&self.saved.state, &self.scratch);
         let steps = scratch.summed as f64;

@@ -132,7 +132,7 @@ impl Guards {
     fn place(&mut self, bearing: &BearingInMotion) {
         let Placed { centres, carries, cage, penetration_share } = &mut self.placed;
         centres.clear();
-        centres.extend(bearing.rollers().map(|roller| roller.centre));
+        centres.extend(bearing.centres());
         *carries = bearing.largest_outer_force();
         *cage = bearing.cage_offset();
         *penetration_share = bearing.deepest() / self.element_size;
