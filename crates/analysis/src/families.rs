@@ -77,7 +77,7 @@ pub struct RollerTrack {
 
 /// Recorded motion, as all families need it.
 #[derive(Debug, Clone)]
-pub struct Motion {
+pub struct RecordedMotion {
     /// Sampling interval [s].
     pub interval_s: f64,
     /// Angular velocity of the inner ring [rad/s], counter-clockwise: negative.
@@ -176,7 +176,7 @@ pub(crate) fn too_early(samples: usize, interval_s: f64, bpfo_hz: f64) -> Option
 /// # Errors
 /// [`Error::Signal`] when the spectrum of a finite channel is refused.
 pub fn identify(
-    motion: &Motion,
+    motion: &RecordedMotion,
     candidates: &[Candidate],
     accelerations: &[Channel],
 ) -> Result<Vec<FamilyFinding>, Error> {
@@ -217,7 +217,7 @@ enum Verdict {
 }
 
 impl<'a> Case<'a> {
-    fn of(motion: &Motion, candidate: &'a Candidate, observed: &[usize]) -> Self {
+    fn of(motion: &RecordedMotion, candidate: &'a Candidate, observed: &[usize]) -> Self {
         let comb = BasebandComb::of(motion, candidate.source, observed);
         Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
     }
@@ -229,7 +229,7 @@ impl<'a> Case<'a> {
 }
 
 /// Tries all cases, accepts the best that stands, and tries the others on what it leaves, until none stands.
-fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
+fn judge(motion: &RecordedMotion, channels: &Channels, cases: &mut [Case<'_>]) {
     // The case that was accepted last, and those that explained as much before it was.
     let mut last: Option<(usize, Vec<(usize, Trial)>)> = None;
     loop {
@@ -281,7 +281,7 @@ fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
 
 /// The finding of case `n`.
 fn finding(
-    motion: &Motion,
+    motion: &RecordedMotion,
     accelerations: &[Channel],
     cases: &[Case<'_>],
     n: usize,
@@ -358,7 +358,7 @@ fn finding(
 }
 
 /// Why a case has no verdict.
-fn not_judged(motion: &Motion, case: &Case<'_>) -> String {
+fn not_judged(motion: &RecordedMotion, case: &Case<'_>) -> String {
     if motion.periods() < LEAST_PERIODS {
         return format!(
             "not judged: the record holds {:.1} periods of BPFO, a comb needs {LEAST_PERIODS}",
@@ -372,7 +372,7 @@ fn not_judged(motion: &Motion, case: &Case<'_>) -> String {
     format!("not judged: {why}")
 }
 
-impl Motion {
+impl RecordedMotion {
     fn samples(&self) -> usize {
         self.rollers.first().map_or(0, |r| r.orbit.len())
     }
@@ -406,7 +406,7 @@ impl Motion {
 
 impl Source {
     /// Phase of a roller's facets at its contacts, rising with time for a shaft that turns clockwise [rad].
-    fn phase(self, motion: &Motion, roller: &RollerTrack, n: usize) -> f64 {
+    fn phase(self, motion: &RecordedMotion, roller: &RollerTrack, n: usize) -> f64 {
         let (orbit, spin) = (roller.orbit[n], roller.spin[n]);
         match self {
             Self::RotatedVertices(count) => count * (spin - (orbit - roller.place)),

@@ -14,7 +14,7 @@ use self::case::Case;
 use self::passages::crossing_forces;
 use crate::Error;
 use crate::diagnosis;
-use crate::families::{Channel, Motion};
+use crate::families::{Channel, RecordedMotion};
 use crate::film::FilmFinding;
 use crate::filtering::Filter;
 use crate::load::Distribution;
@@ -70,7 +70,7 @@ pub struct Findings {
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
     /// Recorded motion and accelerations [g] that the families of facet lines were fitted to.
-    pub family_signals: (Motion, Vec<Channel>),
+    pub family_signals: (RecordedMotion, Vec<Channel>),
     filter: Option<Filter>,
 }
 

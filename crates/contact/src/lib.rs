@@ -31,7 +31,7 @@
 //! ```
 //! use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 //! use stribeck_mesh::{Mesh, Rectangle};
-//! use stribeck_solver::{Dynamics, Elastic, Model, Motion};
+//! use stribeck_solver::{Dynamics, Elastic, Model, NodeMotion};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (length, height, thickness, columns) = (0.1, 0.01, 0.02, 100);
@@ -42,7 +42,7 @@
 //! let steel = Elastic::new(208e9, 0.3, 7800.0)?;
 //! let mut model = Model::new(mesh, steel, thickness)?;
 //! // Sides held: plane waves, whose speed is √((λ + 2µ)/ρ).
-//! model.motion.fill(Motion::HeldY);
+//! model.motion.fill(NodeMotion::HeldY);
 //!
 //! // Contact pushes on the two faces that meet.
 //! let faces = [moving.surface("right"), resting.surface("left")].map(|face| face.expect("a rectangle has sides"));

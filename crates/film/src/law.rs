@@ -5,7 +5,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    reynolds::{EMPTY, Pressed, left_of_land},
+    reynolds::{EMPTY, FilmForce, left_of_land},
     spring::Spring,
 };
 
@@ -92,7 +92,7 @@ impl<S: Spring> FilmLaw<S> {
     /// A film of oil between surfaces of the relative radius R, over a `length` out of plane [m].
     pub fn new(oil: Oil, radius: f64, length: f64, spring: S) -> Self {
         let wedge = 4.0 * oil.viscosity * radius * length;
-        let (slope, steady) = (1.0 / (2.0 * radius).sqrt(), Pressed::until(STEADY).force);
+        let (slope, steady) = (1.0 / (2.0 * radius).sqrt(), FilmForce::until(STEADY).force);
         Self { radius, wedge, slope, least: oil.least, steady, spring }
     }
 
@@ -185,9 +185,9 @@ impl<S: Spring> FilmLaw<S> {
 
 /// Where the film ends that presses springs in by what is left of `room` [m] after it has opened for a time:
 /// at the force `lift` · G and the rate `opened` · q [m]. `None` when it cannot follow.
-fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, Pressed)> {
+fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, FilmForce)> {
     let need = |c: f64| {
-        let film: Pressed = Pressed::until(c);
+        let film: FilmForce = FilmForce::until(c);
         let (depth, by_force) = spring.depth(lift * film.force);
         let value = depth - opened * film.opening - room;
         (value, by_force * lift * film.force_slope - opened * film.opening_slope, film)
@@ -218,5 +218,5 @@ fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) ->
             2.0 * c.abs() + 1.0
         };
     }
-    Some((c, Pressed::until(c)))
+    Some((c, FilmForce::until(c)))
 }

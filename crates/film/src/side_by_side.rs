@@ -9,7 +9,7 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     law::{FAR, FIXED, FilmLaw, Layer, SLOWEST, STEADY},
-    reynolds::{EMPTY, Pressed, left_at_end, left_on_land},
+    reynolds::{EMPTY, FilmForce, left_at_end, left_on_land},
     spring::SpringInLanes,
 };
 
@@ -209,7 +209,7 @@ impl<P: SpringInLanes> FilmLaw<P> {
             if left == 0 {
                 break;
             }
-            let film = Pressed::until(c);
+            let film = FilmForce::until(c);
             let force = lift * film.force;
             let these = Vector::ones(simd, left);
             let root = half.choose_below(these, force.cube_root(), zero);

@@ -17,7 +17,7 @@ use crate::{
         sweep::{Scratch, StepEnergies},
         tile::{Tile, TileDamping, Turn},
     },
-    model::{Model, Motion, check_rate},
+    model::{Model, NodeMotion, check_rate},
     rigid::{RigidBody, RigidMotion, RigidState},
     route::Division,
     state::{Accumulated, Moment, NodeForces, State},
@@ -54,7 +54,7 @@ pub struct Dynamics {
     /// Work of what drives each rigid body in the last step [J].
     pub(crate) driven: Vec<f64>,
     mass: Field,
-    motion: Vec<Motion>,
+    motion: Vec<NodeMotion>,
     elements: Elements,
     pub(crate) forces: NodeForces,
     scratch: Vec<Scratch>,
@@ -134,10 +134,10 @@ impl Dynamics {
         };
         pad(&layout, &mut state);
 
-        let motion: Vec<Motion> = layout
+        let motion: Vec<NodeMotion> = layout
             .node_of_slot
             .iter()
-            .map(|n| n.map_or(Motion::Free, |n| model.motion[n as usize]))
+            .map(|n| n.map_or(NodeMotion::Free, |n| model.motion[n as usize]))
             .collect();
         let is_loaded: Vec<bool> =
             layout.node_of_slot.iter().map(|n| n.is_some_and(|n| loaded[n as usize])).collect();
@@ -219,10 +219,10 @@ impl Dynamics {
     /// Whether (x, y) of a slot answer to forces.
     pub(crate) fn free_components(&self, slot: usize) -> [bool; 2] {
         match self.motion[slot] {
-            Motion::Free => [true, true],
-            Motion::HeldX => [false, true],
-            Motion::HeldY => [true, false],
-            Motion::Held | Motion::Rotating { .. } => [false, false],
+            NodeMotion::Free => [true, true],
+            NodeMotion::HeldX => [false, true],
+            NodeMotion::HeldY => [true, false],
+            NodeMotion::Held | NodeMotion::Rotating { .. } => [false, false],
         }
     }
 
@@ -263,7 +263,7 @@ impl Dynamics {
     pub fn set_rotation_rate(&mut self, rate: f64) -> Result<(), Error> {
         check_rate(rate)?;
         for finish in self.tiles.iter_mut().flat_map(|tile| &mut tile.finish) {
-            if let Motion::Rotating { rate: old, .. } = &mut finish.motion {
+            if let NodeMotion::Rotating { rate: old, .. } = &mut finish.motion {
                 *old = rate;
             }
         }

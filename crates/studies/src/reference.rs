@@ -7,7 +7,7 @@
 
 use anyhow::{Result, ensure};
 use stribeck_solver::{
-    Behaviour, Dynamics, Model, Motion,
+    Behaviour, Dynamics, Model, NodeMotion,
     element::{QuadReference, Stiffness, TriangleReference, quad_forces, triangle_forces},
 };
 
@@ -103,7 +103,7 @@ impl Reference {
             "bulk viscosity = {viscosity}: must be zero or positive"
         );
         ensure!(!model.behaviour.contains(&Behaviour::Rigid), "a reference model has no rigid bodies");
-        let turning = |m: &Motion| matches!(m, Motion::Rotating { .. });
+        let turning = |m: &NodeMotion| matches!(m, NodeMotion::Rotating { .. });
         ensure!(!model.motion.iter().any(turning), "a reference model has no rotating nodes");
         let mesh = &model.mesh;
         // The solver checks the model and knows the masses.
@@ -139,10 +139,10 @@ impl Reference {
         });
         let inverse_mass = mass.iter().zip(&model.motion).flat_map(|(m, motion)| {
             let [x, y] = match motion {
-                Motion::Free => [1.0, 1.0],
-                Motion::HeldX => [0.0, 1.0],
-                Motion::HeldY => [1.0, 0.0],
-                Motion::Held | Motion::Rotating { .. } => [0.0, 0.0],
+                NodeMotion::Free => [1.0, 1.0],
+                NodeMotion::HeldX => [0.0, 1.0],
+                NodeMotion::HeldY => [1.0, 0.0],
+                NodeMotion::Held | NodeMotion::Rotating { .. } => [0.0, 0.0],
             };
             [x / m, y / m]
         });

@@ -18,7 +18,7 @@
 //! ```
 //! use stribeck_contact::Law;
 //! use stribeck_mesh::Rectangle;
-//! use stribeck_solver::{Elastic, Motion};
+//! use stribeck_solver::{Elastic, NodeMotion};
 //! use stribeck_system::{Pair, Plan};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -27,7 +27,7 @@
 //! let mut plan = Plan::new(0.01);
 //! plan.add("ground", &block, steel)?;
 //! plan.add("block", &block.translated(0.0, 0.01), steel)?;
-//! plan.constrain("ground.bottom", Motion::Held)?;
+//! plan.constrain("ground.bottom", NodeMotion::Held)?;
 //! plan.contact(Pair::new("block.bottom", "ground.top", Law::penalty(5e13)?))?;
 //!
 //! let mut system = plan.build(1)?;

@@ -2,7 +2,7 @@
 
 use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{Mesh, Part, Placed, Surface};
-use stribeck_solver::{Elastic, Force, Model, Motion, structural_damping::StructuralDamping};
+use stribeck_solver::{Elastic, Force, Model, NodeMotion, structural_damping::StructuralDamping};
 
 use crate::{
     error::Error,
@@ -160,7 +160,7 @@ impl Plan {
         self.names.bodies.clone_from(&mesh.bodies);
         materials.push(material);
         behaviour.push(stribeck_solver::Behaviour::Elastic);
-        motion.resize(mesh.x.len(), Motion::Free);
+        motion.resize(mesh.x.len(), NodeMotion::Free);
         for (surface, nodes) in &placed.surfaces {
             self.surface(&format!("{name}.{surface}"), nodes.clone())?;
         }
@@ -200,7 +200,7 @@ impl Plan {
     ///
     /// # Errors
     /// When nothing has that name.
-    pub fn constrain(&mut self, name: &str, motion: Motion) -> Result<(), Error> {
+    pub fn constrain(&mut self, name: &str, motion: NodeMotion) -> Result<(), Error> {
         self.names.nodes(name)?.iter().for_each(|&n| self.model.motion[n as usize] = motion);
         Ok(())
     }

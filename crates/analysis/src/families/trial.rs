@@ -2,7 +2,7 @@
 
 use super::comb::{BasebandComb, Columns, extend_basis, power, smoothed};
 use super::kernels::{Complex, dot};
-use super::{Channel, LEAST_LEAD, Motion};
+use super::{Channel, LEAST_LEAD, RecordedMotion};
 
 /// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99
 /// %, which follows the channel's noise.
@@ -79,7 +79,7 @@ impl Trial {
 }
 
 /// Numbers of the rollers whose forces are looked at, from 0, ascending.
-pub(super) fn observed(motion: &Motion) -> Vec<usize> {
+pub(super) fn observed(motion: &RecordedMotion) -> Vec<usize> {
     let mean = |n: usize| mean(&motion.rollers[n].load_n);
     let mut rollers: Vec<usize> = (0..motion.rollers.len()).collect();
     rollers.sort_by(|&a, &b| mean(b).total_cmp(&mean(a)));
@@ -94,7 +94,7 @@ impl Channels {
     /// The accelerations less their mean, and the forces on the rollers `observed` less their running mean
     /// over two periods of `slowest_hz`.
     pub(super) fn of(
-        motion: &Motion,
+        motion: &RecordedMotion,
         accelerations: &[Channel],
         observed: &[usize],
         slowest_hz: f64,
@@ -119,7 +119,7 @@ impl Channels {
     /// Tries a comb beside those that are in the fit with their offsets [Hz].
     pub(super) fn try_comb(
         &self,
-        motion: &Motion,
+        motion: &RecordedMotion,
         comb: &BasebandComb,
         in_fit: &[(&BasebandComb, f64)],
     ) -> Trial {
@@ -234,7 +234,7 @@ fn score(shares: &[f64]) -> f64 {
 }
 
 /// Offsets of the scan [Hz], ascending; `beside` combs in the fit they reach farther.
-fn offsets(motion: &Motion, beside: bool) -> Vec<f64> {
+fn offsets(motion: &RecordedMotion, beside: bool) -> Vec<f64> {
     let resolution_hz = motion.resolution_hz();
     let close = (CLOSE / CLOSE_STEP).round() as i32;
     let mut offsets: Vec<f64> = (-close..=close).map(|n| f64::from(n) * CLOSE_STEP * resolution_hz).collect();

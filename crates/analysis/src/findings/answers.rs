@@ -9,7 +9,7 @@ use crate::artefacts::Artefact;
 use crate::diagnosis::DiagnosisFinding;
 use crate::duty::DutyFinding;
 use crate::enveloping::EnvelopeFinding;
-use crate::families::{Channel, FamilyFinding, Motion};
+use crate::families::{Channel, FamilyFinding, RecordedMotion};
 use crate::film::FilmFinding;
 use crate::filtering::Filter;
 use crate::kinematics::KinematicsFinding;
@@ -35,7 +35,7 @@ pub(super) struct MeshLines {
     /// As found by their whole families.
     pub(super) families: Vec<FamilyFinding>,
     /// Motion and accelerations [g] that the families were fitted to.
-    pub(super) signals: (Motion, Vec<Channel>),
+    pub(super) signals: (RecordedMotion, Vec<Channel>),
 }
 
 /// The load between rigid rings.

@@ -7,7 +7,7 @@ use stribeck_simd::lanes::{Number, Vector};
 use super::ContactLaw;
 use crate::{
     contact::raceway::Raceway,
-    rollers::block::Contacts,
+    rollers::block::RacewayContacts,
     row::{lanes, load},
     state::Stored,
 };
@@ -38,7 +38,7 @@ impl ContactLaw {
         &self,
         simd: S,
         raceway: &Raceway,
-        contacts: &mut Contacts,
+        contacts: &mut RacewayContacts,
         at: usize,
         rolling: &Rolling<Vector<S>>,
         heat: &mut [Vector<S>; 2],
@@ -102,7 +102,12 @@ impl ContactLaw {
     }
 
     /// Energy of the contacts with a raceway that penalty, compliance and springs of friction store.
-    pub(crate) fn stored_in_contacts(&self, raceway: &Raceway, contacts: &Contacts, energy: &mut Stored) {
+    pub(crate) fn stored_in_contacts(
+        &self,
+        raceway: &Raceway,
+        contacts: &RacewayContacts,
+        energy: &mut Stored,
+    ) {
         for lane in lanes(contacts.near) {
             let (normal, overlap) = (contacts.normal[lane], &contacts.overlap);
             if normal > 0.0 && overlap.area[lane] > 0.0 {
@@ -117,7 +122,7 @@ impl ContactLaw {
 
     /// Deepest penetration of rollers in contact with a raceway [m].
     #[inline(always)]
-    pub(crate) fn deepest(contacts: &Contacts) -> f64 {
+    pub(crate) fn deepest(contacts: &RacewayContacts) -> f64 {
         let mut deepest = 0.0_f64;
         for lane in lanes(contacts.near) {
             deepest = deepest.max(contacts.overlap.deepest[lane]);

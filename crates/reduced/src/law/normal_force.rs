@@ -12,7 +12,7 @@ use crate::{
     contact::raceway::Raceway,
     contact::segments::Pose,
     law::ContactLaw,
-    rollers::{Rim, Rollers, block::Contacts},
+    rollers::{Rim, Rollers, block::RacewayContacts},
     row::{Row, lanes, load, of_one, store},
 };
 
@@ -69,7 +69,7 @@ impl ContactLaw {
         first: usize,
         top: &Row,
         present: u64,
-        contacts: &mut Contacts,
+        contacts: &mut RacewayContacts,
         parts: &mut [Penetration<Row>; LANES],
     ) {
         let all = |value: f64| Vector::all(simd, value);
@@ -125,7 +125,7 @@ impl ContactLaw {
     /// What the bodies flexibility way by at the forces that are expected, and how far from their middles
     /// contacts may reach then.
     #[inline(always)]
-    fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut Contacts) {
+    fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, half) = (all(0.0), all(0.5));
         for at in vector_starts(simd) {
@@ -175,7 +175,7 @@ impl ContactLaw {
         rollers: &Rollers,
         raceway: &Raceway,
         first: usize,
-        contacts: &mut Contacts,
+        contacts: &mut RacewayContacts,
         parts: &mut [Penetration<Row>; LANES],
     ) -> u64 {
         let mut alone = 0;
@@ -211,7 +211,7 @@ impl ContactLaw {
     /// Takes steps of Newton's method for the forces, with what each overlap becomes by a more shift.
     /// Returns those that have to be searched for more; their `normal` is what to begin with.
     #[inline(always)]
-    fn search<S: Simd>(&self, simd: S, contacts: &mut Contacts) -> u64 {
+    fn search<S: Simd>(&self, simd: S, contacts: &mut RacewayContacts) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(self.penalty));
         let mut again = 0;

@@ -56,7 +56,7 @@ pub(crate) struct Block {
     pub(crate) parts_of_motion: [[Row; 8]; LANES],
     pub(crate) moved: [Row; 8],
     /// At outer and inner raceway.
-    pub(crate) contacts: [Contacts; 2],
+    pub(crate) contacts: [RacewayContacts; 2],
     /// Films of oil; none without oil.
     pub(crate) films: BlockFilms,
     /// At the two walls of each pocket.
@@ -72,7 +72,7 @@ pub(crate) struct Block {
 
 /// Contacts of eight rollers with a raceway, in the frame of its outline.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Contacts {
+pub(crate) struct RacewayContacts {
     /// From the state: normal force of the last step and its growth [N], elastic
     /// slip [m], drag and damping force [N] and damping moment [N m], facets of roller and raceway.
     pub(crate) force: Row,
@@ -111,7 +111,7 @@ pub(crate) struct Contacts {
     pub(crate) overlap: Penetration<Row>,
 }
 
-impl Contacts {
+impl RacewayContacts {
     /// Stiffness of one contact as the raceway recedes and the roller stays [N/m].
     #[inline(always)]
     pub(crate) fn stiffness(&self, penalty: f64, lane: usize) -> f64 {

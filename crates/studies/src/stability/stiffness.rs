@@ -3,7 +3,7 @@
 use anyhow::Result;
 use stribeck_contact::Method;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_solver::{Elastic, Motion};
+use stribeck_solver::{Elastic, NodeMotion};
 use stribeck_system::Plan;
 
 use super::{Case, Chapter};
@@ -60,8 +60,8 @@ pub(super) fn collide(
         materials[1]
     };
     plan.contact(pair("a.right", "b.left", penalty(&softer, size, scale)?, method))?;
-    plan.constrain("a", Motion::HeldY)?;
-    plan.constrain("b", Motion::HeldY)?;
+    plan.constrain("a", NodeMotion::HeldY)?;
+    plan.constrain("b", NodeMotion::HeldY)?;
     let mut system = plan.build(1)?;
     system.set_time_step_factor(0.9)?;
     system.launch(a, [speed, 0.0], 0.0);
