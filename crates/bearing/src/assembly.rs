@@ -164,7 +164,7 @@ impl Assembly {
         &self.model.materials[self.inner.body]
     }
 
-    /// Critical time step of the stiffest element by itself [s], with stiffness and structural damping as if
+    /// Critical time step of the stiffest element alone [s], with stiffness and structural damping as if
     /// every body had them: an estimate before the solver has laid out the model.
     pub fn element_time_step_s(&self, scene: &ResolvedScene) -> f64 {
         let mesh = &self.model.mesh;

@@ -49,7 +49,7 @@ pub struct Rhythm {
     pub longest: f64,
 }
 
-/// What a record tells of passages that repeat.
+/// Numbers of repeated passages in a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Signature {
     /// Time between the two events of a passage over its period; `None` where no second event shows.
@@ -73,8 +73,8 @@ pub struct Signature {
 }
 
 impl Signature {
-    /// Of a whole record: the median over its pieces of [`PASSAGES`] passages; what a piece has not, if less
-    /// than half of them have it.
+    /// Of a whole record: the median over its pieces of [`PASSAGES`] passages; a number is absent where less
+    /// than half of the pieces have it.
     ///
     /// # Errors
     /// [`Error::TooShort`] for a record shorter than a piece, [`Error::NotFinite`], and those of
@@ -158,7 +158,7 @@ impl Signature {
 }
 
 /// Energy of the first of two events over that of the second [dB], from the third moments of the power at the
-/// two ends of their distance: one louder by a factor stands in one of them by its square.
+/// two ends of their distance: an event stronger by a factor enters one of them by the square of that factor.
 fn order_db(power: &[f64], lag: usize, half: usize) -> f64 {
     let smooth = running_mean(power, half);
     let floor = median(smooth.clone());
@@ -236,7 +236,7 @@ impl Spectrum {
         most.map_or(hz, |n| n as f64 * self.grid_hz)
     }
 
-    /// Mean square of what stands within `half_hz` of `hz`.
+    /// Mean square of the components within `half_hz` of `hz`.
     fn energy(&self, hz: f64, half_hz: f64) -> f64 {
         self.energy[self.bins(hz, half_hz)].iter().sum()
     }

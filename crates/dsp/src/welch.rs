@@ -81,7 +81,7 @@ impl Welch {
         Self::new(sample_rate_hz, record, &WelchOptions::for_grid(sample_rate_hz, record, grid_hz)?)
     }
 
-    /// What spectra of this plan can tell apart.
+    /// Resolution of the spectra of this plan.
     pub fn resolution(&self) -> &Resolution {
         &self.layout.resolution
     }
@@ -161,7 +161,7 @@ impl Welch {
         }
     }
 
-    /// Doubles what has a negative partner, or writes the partner.
+    /// Doubles values that have a partner at the negative frequency, or writes that partner.
     fn arrange_sides(&self, values: &mut [f64]) {
         for bin in (0..self.layout.positive_bins()).filter(|&bin| !self.layout.is_alone(bin)) {
             match self.layout.sides {

@@ -1,8 +1,8 @@
 //! Pressure between a cylinder and a plane that roll, close or part, in closed form (THEORY §4.6).
 //!
 //! Gaps are h + x²/2R, places X = x/√(2Rh). The film begins far in front, where both surfaces draw oil in,
-//! and ends where pressure and its slope vanish together (Reynolds' condition). Where that is, c = X there,
-//! says all the rest: the rate at which the film opens and its force are functions of c alone.
+//! and ends where pressure and its slope vanish together (Reynolds' condition). The place of that end, c = X,
+//! determines the rest: the rate at which the film opens and its force are functions of c alone.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -60,7 +60,7 @@ impl<N: Number> FilmForce<N> {
     }
 }
 
-/// What is left of the force at the very end of a land: see [`left_of_land`].
+/// Share of the force that remains at the very end of a land: see [`left_of_land`].
 const AT_END: f64 = 0.229_810_2;
 
 /// [`left_of_land`] with the closest approach on the land.
@@ -82,9 +82,9 @@ pub(crate) fn left_at_end<N: Number>(slope: N) -> N {
     of(AT_END) / (of(1.0) + slope * (of(2.07) + slope * inner))
 }
 
-/// What is left of a film's force where the land ends, at a place of the film thickness and radius `2Rh` of
-/// its square: with the closest approach on the land, `edge` = X of the end beyond it; with the closest
-/// approach at the end itself, minus the slope of the land there over √(2h/R).
+/// Share of a film's force that remains where the land ends, at a place of the film thickness and radius
+/// `2Rh` of its square: with the closest approach on the land, `edge` = X of the end beyond it; with the
+/// closest approach at the end itself, minus the slope of the land there over √(2h/R).
 ///
 /// Pure squeeze with no pressure at the end. Beyond the end a fit of the quadrature, good to 4 %.
 #[inline]
@@ -96,7 +96,7 @@ pub(crate) fn left_of_land(edge: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// What lies in front of the first place adds 3/|X| to the resistance, 3e-5, and next to nothing to the
+    /// The part in front of the first place adds 3/|X| = 3e-5 to the resistance, and next to nothing to the
     /// force.
     const QUADRATURE: f64 = 1e-4;
     const FIRST: f64 = -1e5;
@@ -179,7 +179,7 @@ mod tests {
             let film = FilmForce::until(c);
             assert!(film.force > 0.0 && film.force < last.force, "{c}: {film:?}");
             assert!(film.opening > last.opening && resistance(c) > 0.0, "{c}: {film:?}");
-            // What the surfaces put in is at least what they get back: u ∫h dp − W ḣ, here over 4√2 ηu²L
+            // The work of the surfaces is not below the work returned: u ∫h dp − W ḣ, here over 4√2 ηu²L
             // √(R/h).
             let heat = resistance(c) - 0.5 * film.force * film.opening;
             assert!(heat > 0.0, "{c}: {heat}");

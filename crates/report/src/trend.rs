@@ -1,5 +1,4 @@
-//! The page of several measured records side by side: how health and defect families went from one to the
-//! next.
+//! The page of several measured records side by side: levels and defect families from one record to the next.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What the first of several ranks sends the others before a run.
+//! The order that the first of several ranks sends the others before a run.
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use stribeck_scene::scene::Scene;
@@ -16,7 +16,7 @@ struct Order<S> {
     checkpoint: Option<Checkpoint<S>>,
 }
 
-/// Lets all other ranks take part in a run of the scene, from its start or from a checkpoint.
+/// Sends all other ranks the order to take part in a run of the scene, from its start or from a checkpoint.
 ///
 /// # Errors
 /// When the order cannot be encoded.

@@ -1,8 +1,9 @@
-//! Frames: where the nodes about the defect are at chosen times, one file each, for pictures of the stress.
+//! Frames: positions of the nodes about the defect at chosen times, one file each, for pictures of the
+//! stress.
 //!
 //! `frames/000042.npy` belongs to sample 42. Its rows are the nodes in a window, with their displacements
-//! from the stress-free mesh that the scene makes; its first column repeats the time. A run that goes on from
-//! a checkpoint writes the frames after it once more, to the same bytes.
+//! from the stress-free mesh that the scene makes; its first column repeats the time. A run continued from a
+//! checkpoint writes the later frames again, to the same bytes.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};

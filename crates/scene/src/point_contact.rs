@@ -1,4 +1,4 @@
-//! Approach of two bodies that touch in a point, after Hertz: what a ball does on its raceways.
+//! Approach of two bodies in point contact, after Hertz: a ball on its raceways.
 
 use std::f64::consts::PI;
 

@@ -40,7 +40,7 @@ pub struct Scene {
     pub cage: Option<CageScene>,
     /// The block that carries the load to the outer ring.
     pub adapter: AdapterScene,
-    /// What holds the outer ring and takes the load; absent for `adapter`.
+    /// Housing, which holds the outer ring and takes the load; absent for `adapter`.
     #[serde(skip_serializing_if = "HousingScene::is_adapter")]
     pub housing: HousingScene,
     /// The mesh of the outer ring from a file; absent for one that the program makes.
@@ -65,9 +65,9 @@ pub struct Scene {
     pub film: Option<FilmScene>,
     /// Time integration.
     pub solver: SolverScene,
-    /// What is recorded.
+    /// Sampling, sensors and frames.
     pub output: OutputScene,
-    /// What is watched.
+    /// Limits of the guards.
     pub guards: GuardsScene,
 }
 
@@ -75,7 +75,7 @@ pub struct Scene {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ModelScene {
-    /// All bodies of finite elements.
+    /// All bodies in finite elements.
     #[default]
     Full,
     /// Outer ring and housing in their modes below a frequency, rollers and cage rigid with local compliance:

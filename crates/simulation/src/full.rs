@@ -33,7 +33,7 @@ pub(crate) struct Full {
     bearing: BearingSystem,
 }
 
-/// What a checkpoint holds of it.
+/// Its state in a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Saved {
     system: Snapshot,
@@ -50,14 +50,14 @@ impl Full {
         Ok(Self { assembly, bearing })
     }
 
-    /// Mass of the outer ring and of what holds it [kg].
+    /// Mass of the outer ring and its housing [kg].
     fn carried_mass(&self) -> f64 {
         let system = &self.bearing.system;
         let mass = |body: usize| system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
         std::iter::once(self.bearing.outer).chain(self.bearing.housing).map(mass).sum()
     }
 
-    /// In motion under its duty, its ranks and what is watched of it.
+    /// The model in motion, with its duty, ranks and guards.
     fn moving(self, with: &Preparation<'_>, recorder: Recorder) -> FullMotion {
         let Self { assembly, mut bearing } = self;
         let (scene, host) = (with.scene, with.host);

@@ -1,4 +1,4 @@
-//! A run as the report sees it.
+//! A run as a report reads it.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::run_info::RunInfo;
 use crate::scene::Scene;
 use crate::trace::TraceFile;
 
-/// A run as the report sees it.
+/// A run as a report reads it.
 #[derive(Debug)]
 pub struct Run {
     /// The complete scene, in SI.
@@ -23,7 +23,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// What is missing of the run: samples that `run.json` counts and the files no longer hold.
+    /// Samples that `run.json` counts and the files do not hold, in words.
     pub fn damage(&self) -> Vec<String> {
         let wanted = self.info.samples;
         let short = |(name, found): (&str, usize)| {
@@ -37,7 +37,7 @@ impl Run {
         [(TRACE, self.trace.len()), (ENERGY, self.energy.len())].into_iter().filter_map(short).collect()
     }
 
-    /// Refuses a run whose `scene.ron` is no longer what was simulated.
+    /// Refuses a run whose `scene.ron` differs from the simulated scene.
     ///
     /// # Errors
     ///

@@ -9,7 +9,7 @@ use crate::housing;
 #[serde(default, deny_unknown_fields)]
 pub struct BearingScene {
     /// Designation; a scene that says `bearing: "NU 205"` has all numbers from the catalogue
-    /// ([`catalogue`](crate::catalogue)), and one that gives them may say here what it is.
+    /// ([`catalogue`](crate::catalogue)), and one that gives them may name the bearing here.
     pub designation: String,
     /// Diameter of the outer raceway [mm].
     pub outer_race_diameter_mm: f64,
@@ -19,9 +19,9 @@ pub struct BearingScene {
     pub inner_race_diameter_mm: f64,
     /// Radial thickness of the inner ring [mm].
     pub inner_ring_thickness_mm: f64,
-    /// What fits, temperature or an adjustment add to the diametral clearance that the diameters leave [µm];
-    /// below zero they take from it, and beyond it they press the rollers between the raceways. The inner
-    /// raceway has it; absent for 0.
+    /// Change of the diametral clearance by fits, temperature or adjustment [µm], added to that of the
+    /// diameters; negative reduces it, and beyond it preloads the rollers. It is applied to the inner
+    /// raceway; absent for 0.
     #[serde(skip_serializing_if = "housing::is_zero")]
     pub clearance_change_um: f64,
     /// Number of rolling elements.
@@ -33,25 +33,25 @@ pub struct BearingScene {
     /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow
     /// counter-clockwise.
     pub first_roller_deg: f64,
-    /// Pitch diameter [mm], in the place of a raceway: a bearing of one's own may give this and the next
-    /// three, from which reading a scene completes the fields above; absent then.
+    /// Pitch diameter [mm], instead of a raceway: a bearing that is not of the catalogue may give this and
+    /// the next three, from which reading a scene completes the fields above; absent afterwards.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pitch_mm: Option<f64>,
-    /// Bore [mm], in the place of the inner ring's thickness.
+    /// Bore [mm], instead of the inner ring's thickness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bore_mm: Option<f64>,
-    /// Outside diameter [mm], in the place of the outer ring's thickness.
+    /// Outside diameter [mm], instead of the outer ring's thickness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outside_mm: Option<f64>,
-    /// Width of the rings [mm], in the place of `thickness_mm`: rollers are usually 0.6 of it long.
+    /// Width of the rings [mm], instead of `thickness_mm`: rollers are usually 0.6 of it long.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub width_mm: Option<f64>,
-    /// What nobody gave of a bearing of one's own and was assumed; the program writes it.
+    /// Dimensions that the user did not give and the program assumed; written by the program.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub assumed: Vec<Assumed>,
 }
 
-/// A number of a bearing of one's own that nobody gave.
+/// A dimension of a bearing that the user did not give.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Assumed {
@@ -65,7 +65,7 @@ pub enum Assumed {
     InnerRing,
     /// The number of rollers: with a fifth of the pitch circle free between them.
     Rollers,
-    /// The length of the rollers: 0.6 of the width, or where that is not known their diameter.
+    /// The length of the rollers: 0.6 of the width, or, where that is unknown, their diameter.
     Length,
 }
 
@@ -90,11 +90,11 @@ pub struct CageScene {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PocketWalls {
-    /// That which lies between the cage's diameters. Off the pitch circle corners touch rollers above or
-    /// below their centres, and push them across their track too.
+    /// The part between the cage's diameters. Off the pitch circle the corners touch rollers above or below
+    /// their centres, and push them radially, too.
     Corners,
-    /// Their flanks: walls reach across the pitch circle, and push along the track alone. The mass of the
-    /// cage is that of its diameters.
+    /// The flanks: walls extend across the pitch circle, and push tangentially only. The mass of the cage is
+    /// that between its diameters.
     Straight,
 }
 

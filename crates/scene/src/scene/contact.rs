@@ -6,9 +6,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ContactScene {
-    /// Where the penalty acts.
+    /// Points at which the penalty acts.
     pub method: ContactMethod,
-    /// What the facets of raceways and rollers stand for.
+    /// Curve that the facets of raceways and rollers represent.
     pub surface: ContactSurface,
     /// How the surfaces of raceways and rollers move with their nodes.
     pub interpolation: ContactInterpolation,
@@ -16,9 +16,9 @@ pub struct ContactScene {
     pub points_per_facet: usize,
     /// Whose points are evaluated where rollers touch.
     pub passes: ContactPasses,
-    /// By which formula stiffness and critical damping are reckoned.
+    /// Formula of stiffness and critical damping.
     pub formula: ContactFormula,
-    /// Penalty stiffness as a multiple of what the formula names [-].
+    /// Penalty stiffness as a multiple of that of the formula [-].
     pub penalty_scale: f64,
     /// Gap at which contact of rollers sets in [µm]: up to as deep a penetration the pressure rises as a
     /// parabola, beyond it in proportion. Zero for a sharp corner.
@@ -31,8 +31,7 @@ pub struct ContactScene {
     pub seat_friction: f64,
 }
 
-/// By which formula the stiffness and the critical damping of contact are reckoned, for squares of the mesh's
-/// size.
+/// Formula of the stiffness and the critical damping of contact, for squares of the mesh's size.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactFormula {
@@ -47,12 +46,12 @@ pub enum ContactFormula {
     LsdynaSegment,
 }
 
-/// What the facets of raceways and rollers stand for. Corners (walls of the defect, cage) stay sharp in any
-/// case.
+/// Curve that the facets of raceways and rollers represent. Corners (walls of the defect, cage) stay sharp in
+/// any case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactSurface {
-    /// Themselves: contact is with the chords.
+    /// The chords themselves.
     Facet,
     /// Arcs about the centre of the ring or roller.
     Arc,
@@ -66,8 +65,8 @@ pub enum ContactSurface {
 pub enum ContactInterpolation {
     /// Every facet with its own two nodes.
     Linear,
-    /// As a cubic spline of smoothed nodes, six to a facet: a load that rolls over it does not see where
-    /// nodes are.
+    /// As a cubic spline of smoothed nodes, six to a facet: a rolling load does not depend on its position
+    /// between nodes.
     Spline,
 }
 
@@ -92,7 +91,7 @@ pub enum ContactMethod {
     Integrated,
 }
 
-/// Oil between rollers and raceways, as much as they take up.
+/// Oil between rollers and raceways, fully flooded.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct FilmScene {

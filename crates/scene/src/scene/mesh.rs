@@ -12,7 +12,7 @@ pub struct MeshScene {
     pub roller_facets: usize,
     /// Orientation of the 24 copies of the roller mesh.
     pub roller_copies: RollerCopies,
-    /// Angle by which every roller's mesh is turned about its own centre, on top of that [°].
+    /// Angle by which every roller's mesh is turned about its own centre, in addition [°].
     pub roller_phase_deg: f64,
     /// Facets of the outer raceway; `None` takes the circumference divided by the size.
     pub outer_facets: Option<usize>,
@@ -48,7 +48,7 @@ pub enum RollerCopies {
 }
 
 /// Side of the squares inside a graded roller, in facets of its rim. With longer ones the triangles between
-/// rim and core become needles, and nothing is left to save: most elements of a roller lie along its rim.
+/// rim and core become needles, and little more is saved: most elements of a roller lie along its rim.
 const CORE_FACETS: f64 = 3.0;
 
 impl GradingScene {

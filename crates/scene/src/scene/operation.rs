@@ -1,4 +1,4 @@
-//! The operating point: load, speed, gravity, and how load and speed vary over time.
+//! The operating point: load, speed, gravity, and the courses of load and speed over time.
 
 use serde::{Deserialize, Serialize};
 
@@ -23,13 +23,13 @@ pub struct OperationScene {
     pub outer_speed_rpm: f64,
     /// Gravity, downwards [m/s²].
     pub gravity_m_s2: f64,
-    /// How the speed goes over time, in rpm; absent for `speed_rpm` all the time.
+    /// Course of the speed over time [rpm]; absent for a constant `speed_rpm`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_profile: Option<ProfileScene>,
-    /// How the speed of the outer ring goes over time, in rpm; absent for `outer_speed_rpm` all the time.
+    /// Course of the outer ring's speed over time [rpm]; absent for a constant `outer_speed_rpm`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub outer_speed_profile: Option<ProfileScene>,
-    /// How the load goes over time, in N; absent for `load_n` all the time.
+    /// Course of the load over time [N]; absent for a constant `load_n`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub load_profile: Option<ProfileScene>,
     /// A force that turns with the inner ring, on top of the load; absent for none.
@@ -37,7 +37,7 @@ pub struct OperationScene {
     pub rotating_load: Option<RotatingLoadScene>,
 }
 
-/// How speed or load goes over time ([`duty`](crate::duty)). Values have the unit of the field that they
+/// Course of a speed or load over time ([`duty`](crate::duty)). Values have the unit of the field that they
 /// vary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]

@@ -1,21 +1,21 @@
-//! What a run records, and the limits of its guards.
+//! Sampling, sensors and frames of a run, and the limits of its guards.
 
 use serde::{Deserialize, Serialize};
 
 use crate::records::RecordsScene;
 
-/// What is recorded.
+/// Sampling, sensors and frames.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct OutputScene {
     /// Sampling interval [µs]; 10 µs is 100 kHz.
     pub interval_us: f64,
-    /// Sensors on the outer surface of the outer ring; the first is the one that the report leads with.
+    /// Sensors on the outer surface of the outer ring; the report leads with the first.
     pub sensors: Vec<SensorScene>,
     /// Pictures of the stress about the defect; `None` writes none.
     pub frames: Option<FramesScene>,
-    /// What records of a machine tell of the passages over the defect; `None` for a run that is not to be
-    /// held against one.
+    /// Synthetic records of a machine's sensor, whose signatures of the passages over the defect can be
+    /// compared with a measured record's; `None` without.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub records: Option<RecordsScene>,
 }
@@ -26,11 +26,11 @@ pub struct OutputScene {
 pub struct FramesScene {
     /// Time of the first frame [ms].
     pub from_ms: f64,
-    /// No frame is later [ms].
+    /// Latest time of a frame [ms].
     pub to_ms: f64,
     /// Time between two frames [µs], rounded to whole samples.
     pub every_us: f64,
-    /// Half the side of the square that is kept, about the path of the rollers' centres [mm].
+    /// Half the side of the recorded square, about the path of the rollers' centres [mm].
     pub half_width_mm: f64,
 }
 
@@ -44,7 +44,7 @@ pub struct SensorScene {
     pub angle_deg: f64,
 }
 
-/// What is watched at every sample, and when a run is warned of or stopped (`guards.rs`).
+/// Limits of the guards, which are checked at every sample (`guards.rs`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuardsScene {
@@ -58,8 +58,8 @@ pub struct GuardsScene {
     pub hourglass_warning_percent: f64,
     /// Penetration over the element size above which the run carries a warning [%].
     pub penetration_warning_percent: f64,
-    /// … and above which it stops [%]; at 200 % contact takes a point for one on the far side of a body and
-    /// lets go.
+    /// … and above which it stops [%]; at 200 % contact takes a point as lying on the far side of the body,
+    /// and its force vanishes.
     pub penetration_stop_percent: f64,
     /// Area of an element over its area at rest below which the run stops [%].
     pub area_stop_percent: f64,

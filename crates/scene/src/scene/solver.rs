@@ -8,13 +8,13 @@ use serde::{Deserialize, Serialize};
 pub struct SolverScene {
     /// Simulated time [ms].
     pub duration_ms: f64,
-    /// Fraction of the critical time step that is used [-]; above 1 a run diverges, and stops by itself.
+    /// Time step over the critical one [-]; above 1 a run diverges, and the guards stop it.
     pub time_step_factor: f64,
     /// Hourglass stiffness as a multiple of the exact bending stiffness of a square [-].
     pub hourglass_scale: f64,
     /// Mass-proportional damping [1/s]; 2·ζ·ω for a damping ratio ζ at ω.
     pub mass_damping_per_s: f64,
-    /// What the mass damping is relative to.
+    /// Motion relative to which the mass damping acts.
     pub damping_frame: DampingFrame,
     /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs time
     /// step.
@@ -57,12 +57,12 @@ pub enum DampedBody {
     Rollers,
 }
 
-/// Motion that mass-proportional damping leaves alone.
+/// Motion that mass-proportional damping does not affect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum DampingFrame {
-    /// A roller's motion along the raceways and its spin: what drives and brakes rolling stays friction
-    /// alone, while rattling across the clearance is damped, as oil would. Outer ring and adapter: rest.
+    /// A roller's motion along the raceways and its spin: rolling is driven and braked by friction alone,
+    /// while rattling across the clearance is damped, as by oil. Outer ring and adapter: rest.
     Rolling,
     /// The rigid motion of each body: only its vibration is damped.
     RigidMotion,

@@ -1,6 +1,5 @@
 //! Bodies that cannot exist: rollers that overlap the rings or each other, a cage outside its gap, a defect
-//! deeper than the ring. Each relation says for every field in it what the field may be while the others
-//! stay.
+//! deeper than the ring. Each relation names for every field in it the values allowed while the others stay.
 
 mod bounds;
 mod cage;
@@ -154,7 +153,7 @@ fn clearance_change(scene: &Scene) -> Option<Finding> {
     ))
 }
 
-/// Something left inside the inner ring.
+/// A bore within the inner ring.
 fn bore(scene: &Scene) -> Option<Finding> {
     let (thickness, diameter) = (scene.bearing.inner_ring_thickness_mm, scene.bearing.inner_race_diameter_mm);
     if 2.0 * thickness < diameter {

@@ -66,7 +66,7 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     found
 }
 
-/// What the number at `path` may be, `3 to 400`; `None` for a field that is no number.
+/// Range of the number at `path`, `3 to 400`; `None` for a field that is no number.
 pub(crate) fn allowed(path: &str) -> Option<String> {
     let mut scene = with_everything();
     allowed_in(&scene, path).or_else(|| {
@@ -100,7 +100,7 @@ fn with_everything() -> Scene {
     scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
     scene.operation.outer_speed_profile.clone_from(&scene.operation.speed_profile);
     scene.operation.rotating_load = Some(RotatingLoadScene::default());
-    // Not written where they are what they are by default.
+    // Not written where they have their defaults.
     (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (90.0, 100.0);
     scene.bearing.clearance_change_um = -10.0;
     let b = &mut scene.bearing;
@@ -108,11 +108,11 @@ fn with_everything() -> Scene {
     scene
 }
 
-/// What speeds [rpm] and loads [N] may be.
+/// Ranges of speeds [rpm] and loads [N].
 const SPEED: Range = within(-100_000.0, 100_000.0);
 const LOAD: Range = positive(1e9);
 
-/// What a value of the profile at `path` may be, in words, where `value` is not.
+/// Range of the values of the profile at `path`, in words, where `value` is outside.
 pub(crate) fn refuses_in_profile(path: &str, value: f64) -> Option<String> {
     let (range, unit) = if path == LOAD_PROFILE { (LOAD, "N") } else { (SPEED, "rpm") };
     (!range.contains(value)).then(|| format!("{range} {unit}"))
@@ -152,7 +152,7 @@ fn in_profile(
     }
 }
 
-/// One number of the scene and what it may be.
+/// One number of the scene and its range.
 struct Number {
     path: String,
     value: f64,
@@ -338,7 +338,7 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("film.roughness_um", film.roughness_um, within(0.01, 10.0), "µm");
     }
     add("solver.duration_ms", solver.duration_ms, positive(LONGEST_MS), "ms");
-    // Above 1 a run diverges and says so: wanted by studies of stability.
+    // Above 1 a run diverges and is stopped: used by studies of stability.
     add("solver.time_step_factor", solver.time_step_factor, positive(1.5), "");
     add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
     add("solver.mass_damping_per_s", solver.mass_damping_per_s, within(0.0, 1e6), "1/s");

@@ -1,4 +1,4 @@
-//! Frames are written: where the nodes about the defect are at chosen times ([`stribeck_scene::frames`]).
+//! Frames: positions of the nodes about the defect at chosen times ([`stribeck_scene::frames`]).
 
 use std::path::PathBuf;
 
@@ -9,7 +9,7 @@ use stribeck_scene::trace::TraceWriter;
 use stribeck_bearing::assembly::{Assembly, BearingSystem};
 use stribeck_run::error::Error;
 
-/// Which samples become frames, and of what.
+/// Samples that become frames, and the nodes in them.
 #[derive(Debug)]
 pub(super) struct Frames {
     folder: PathBuf,
@@ -21,7 +21,7 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// What a scene asks for; `None` when it asks for nothing.
+    /// The frames of a scene; `None` without any.
     pub(super) fn of(scene: &ResolvedScene, folder: PathBuf) -> Option<Self> {
         let wanted = scene.written.output.frames.as_ref()?;
         // Of the numbers as written: a quotient of seconds may fall short of a whole number of samples.

@@ -1,4 +1,4 @@
-//! What is watched of the full model beside [the guards of all models](stribeck_run::guards).
+//! Guards of the full model besides [the guards of all models](stribeck_run::guards).
 //!
 //! | watched | warning | stop |
 //! |---|---|---|
@@ -10,7 +10,7 @@
 //! | critical time step over that of a square cell | below [`SMALL_STEP`] | |
 //! | the housing's height above the outer ring | | [`OUT_OF_PLACE`] |
 //!
-//! [`System::look`] watches what can go wrong with any bodies in motion and says it in the scene's words
+//! [`System::look`] watches the limits that apply to any bodies in motion, with messages in the scene's words
 //! ([`arm`]).
 
 use stribeck_bearing::assembly::{Assembly, BearingSystem};
@@ -90,7 +90,7 @@ impl Guards {
         let mut stop = None;
         for finding in bearing.system.look() {
             if finding.stops {
-                // The first reason is the one given.
+                // The first reason is reported.
                 stop.get_or_insert(finding.message);
             } else {
                 info.warnings.push(finding.message);
@@ -106,7 +106,7 @@ impl Guards {
         stop.or(place).or_else(|| self.housing(info, bearing))
     }
 
-    /// Where rollers and cage are, and what they carry.
+    /// Positions of rollers and cage, and the largest load.
     fn place(&mut self, bearing: &BearingSystem) {
         let system = &bearing.system;
         let ring = centre(system, bearing.outer);
@@ -138,7 +138,7 @@ impl Guards {
     }
 }
 
-/// Sets what the system watches, and what its messages call the fields of the scene.
+/// Sets the limits of the system's guards, and the scene's field names for its messages.
 pub(super) fn arm(scene: &ResolvedScene, system: &mut System) {
     let GuardsScene {
         energy_warning_percent,
@@ -150,7 +150,7 @@ pub(super) fn arm(scene: &ResolvedScene, system: &mut System) {
         unsupported_warning_ms: _,
     } = scene.written.guards;
     system.limits = Limits {
-        // All that turns would hide what matters.
+        // The kinetic energy of the rotating bodies would hide an imbalance.
         energy_scale: Scale::StrainEnergy,
         energy_warning_percent,
         energy_stop_percent,

@@ -21,7 +21,7 @@ pub(super) struct Recorder {
     sample: Sample,
 }
 
-/// What a sample needs of the one before: the recorder's part of a checkpoint.
+/// State between samples: the recorder's part of a checkpoint.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Memory {
     /// Node of each sensor, chosen at the start.
@@ -66,7 +66,7 @@ impl Recorder {
         }
     }
 
-    /// What it takes to continue after a sample.
+    /// State to continue from after a sample.
     pub(super) fn memory(&self) -> &Memory {
         &self.memory
     }

@@ -2,7 +2,7 @@
 
 use crate::scene_file::wording::{number, round_down, round_up};
 
-/// Digits of the ends of a range, and what rounding has left of them.
+/// Significant digits of the ends of a range, and their relative rounding error.
 const DIGITS: i32 = 5;
 
 const DUST: f64 = 1e-12;
@@ -17,7 +17,7 @@ pub(super) fn upper(end: f64) -> String {
     number(round_down(end * (1.0 + DUST), DIGITS))
 }
 
-/// `17.1 to 18 mm`, or a word where no value is left.
+/// `17.1 to 18 mm`, or a text where no value is possible.
 pub(super) fn between(low: f64, high: f64) -> String {
     if high <= low || high <= 0.0 {
         return NOTHING.to_owned();
@@ -37,5 +37,5 @@ pub(super) fn at_most(high: f64, unit: &str) -> String {
     if high <= 0.0 { NOTHING.to_owned() } else { format!("at most {} {unit}", upper(high)) }
 }
 
-/// What a field may be when it cannot mend matters by itself.
+/// Text for a field that no value of its own can repair.
 pub(super) const NOTHING: &str = "no value while the other dimensions stay";

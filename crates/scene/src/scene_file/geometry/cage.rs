@@ -75,7 +75,7 @@ fn without_cage() -> Remedy {
 
 /// Pockets that cut through the cage, and leave something of it between two of them.
 pub(super) fn pockets(scene: &Scene) -> Option<Finding> {
-    // What is wrong with the cage's or the rollers' place would only be said again.
+    // A wrong position of cage or rollers is reported already.
     if cage(scene).is_some() || pitch_circle(scene).is_some() {
         return None;
     }
@@ -175,7 +175,7 @@ fn pockets_miss(cage: &CageScene, roller: f64, pitch: f64) -> Finding {
     )
 }
 
-/// A place in its pocket for every roller, or for none.
+/// An offset in its pocket for every roller, or for none.
 pub(super) fn places(scene: &Scene) -> Option<Finding> {
     const OFFSETS: &str = "cage.roller_offsets_um";
     let cage = scene.cage.as_ref()?;
