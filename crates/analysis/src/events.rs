@@ -1,14 +1,14 @@
 //! When a roller unloads at the leading edge of a defect and when it is loaded again at the trailing edge.
 //!
 //! **The rule.** The normal force of the spall's raceway on the roller (compression positive) is passed
-//! through a running median as wide as one facet period, at most a tenth of the traverse: a median keeps
-//! steps where they are, and takes out both the facet tone and shocks shorter than half its width. The level
-//! before the defect is the median over half a traverse before the expected entry, less its last tenth. The
-//! record around the passage is split where the roller is in the middle of the defect. *Entry* is the start
-//! of the longest stretch below half that level in the first part (from half a traverse before the expected
-//! entry), *exit* the end of the longest such stretch in the second part (up to half a traverse after the
-//! expected exit). Splitting keeps impacts and rebounds on the floor of the defect from being picked. A
-//! stretch counts from an eighth of a traverse on.
+//! through a running median as wide as one facet period, at most a tenth of the traverse: a median keeps the
+//! times of steps, and removes both the facet tone and shocks shorter than half its width. The level before
+//! the defect is the median over half a traverse before the expected entry, less its last tenth. The record
+//! around the passage is split where the roller is in the middle of the defect. *Entry* is the start of the
+//! longest stretch below half that level in the first part (from half a traverse before the expected entry),
+//! *exit* the end of the longest such stretch in the second part (up to half a traverse after the expected
+//! exit). Splitting excludes impacts and rebounds on the floor of the defect. A stretch counts from an eighth
+//! of a traverse on.
 
 use std::ops::Range;
 

@@ -15,8 +15,8 @@ pub struct LoadFinding {
     /// Mean over the record of the force between rollers and outer ring along the load [N], positive when it
     /// supports the load.
     pub mean_n: Option<f64>,
-    /// What it must be: the load, in the mean over the record where it changes, plus the weight of housing
-    /// and outer ring along it [N].
+    /// Expected value: the load, its mean over the record where it changes, plus the weight of housing and
+    /// outer ring along it [N].
     pub expected_n: f64,
     /// `mean_n / expected_n − 1`.
     pub relative_error: Option<f64>,

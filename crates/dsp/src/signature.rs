@@ -1,7 +1,6 @@
-//! What a record tells of passages that repeat, one or two events each, whatever lies between the place where
-//! they happen and the sensor.
+//! Numbers of repeated passages, of one or two events each, that do not depend on the path to the sensor.
 //!
-//! A path changes how loud each frequency is, not when something strikes, how often and in which order. All
+//! A path changes the magnitude of each frequency, not the times, the rate and the order of impacts. All
 //! numbers here are of the power of the pre-whitened signal, and have no unit: times are parts of the period
 //! of the passages, levels ratios of one record. Source: own; the pre-whitening is that of N. Sawalhi and R.
 //! B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870.

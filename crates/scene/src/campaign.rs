@@ -131,9 +131,9 @@ impl Campaign {
     /// Reads a campaign's file and makes its scenes. Paths in it count from its folder.
     ///
     /// # Errors
-    /// What is wrong with the file, with its line: its own fields, those of a scene that it names, and the
-    /// scene that it starts from, and values that their field cannot have. A scene that cannot be is no error
-    /// here: its variant says why.
+    /// Mistakes in the file, with line and field: in its own fields, in fields of scenes that it names, in
+    /// the scene that it starts from, and values of the wrong type. An impossible scene is no error here: its
+    /// variant carries the reason.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text =

@@ -289,7 +289,7 @@ impl CatalogueBearing {
     /// numbers, or both: `NU 205, elements=13`.
     ///
     /// # Errors
-    /// What is not understood, with the names and numbers that are.
+    /// Parts that are not understood, with the valid names and numbers.
     pub fn parse(text: &str) -> Result<Self, String> {
         let numbers = "`--bearing \"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
         Self::parse_or_advise(text, &format!("give its numbers, {numbers}"))

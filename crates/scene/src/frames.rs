@@ -63,7 +63,7 @@ impl Window {
 /// All frames in the folder, in the order of time; none when there is no such folder.
 ///
 /// # Errors
-/// What is wrong with the first file that cannot be read.
+/// The error of the first file that cannot be read.
 pub fn read_all(folder: &Path) -> Result<Vec<Frame>, Error> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(Vec::new()) };
     let mut files: Vec<PathBuf> =

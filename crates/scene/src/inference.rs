@@ -195,8 +195,8 @@ impl Inference {
     /// Reads the file of an inference. Paths in it count from its folder.
     ///
     /// # Errors
-    /// What is wrong with the file, with its line: its own fields, those of a scene that it names, values
-    /// that their field cannot have, and quantities that cannot be read.
+    /// Mistakes in the file, with line and field: in its own fields, in fields of scenes that it names,
+    /// values of the wrong type, and quantities that cannot be read.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text =

@@ -14,8 +14,8 @@ const HALF_BAND: f64 = 8.0;
 /// Samples of the band signal in the length of the low-pass filter, and of the baseband that it is made from.
 const OVERLAP: usize = 4;
 const FINE: usize = 8 * OVERLAP;
-/// Columns shorter than this part of the longest, after what they share with the others is taken off, carry
-/// nothing new.
+/// Least norm of a column, over that of the longest, after orthogonalisation: shorter ones are dropped as
+/// dependent.
 const INDEPENDENT: f64 = 1e-6;
 /// Steps in a resolution in which the carrier is sought.
 const CARRIER_STEPS: f64 = 20.0;
@@ -258,7 +258,7 @@ pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
     basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
 }
 
-/// Adds what `columns` hold beyond `basis` to it, orthonormal.
+/// Extends `basis` by the part of `columns` that is orthogonal to it, normalised.
 pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex>]) {
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
     for column in columns {

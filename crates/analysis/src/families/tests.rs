@@ -25,7 +25,7 @@ struct Sound {
     source: Source,
     /// Moves its lines [Hz].
     detuned_hz: f64,
-    /// What a roller under the largest load does to a sensor [g].
+    /// Amplitude at a sensor by a roller under the largest load [g].
     gain_g: f64,
 }
 

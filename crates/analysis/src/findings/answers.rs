@@ -19,7 +19,7 @@ use crate::records::RecordFinding;
 use crate::summary::{Event, LevelsFinding, SpectrumFinding};
 use crate::tones::{PredictedLine, Tone};
 
-/// What one pass over all rollers yields.
+/// Results of one pass over all rollers.
 pub(super) struct Rollers<'a> {
     pub(super) motion: KinematicsFinding,
     pub(super) carried: Carried,
@@ -59,7 +59,7 @@ pub(super) struct LeadingSpectrum {
     pub(super) fine: Option<Spectrum>,
 }
 
-/// The envelope spectrum of the leading sensor [g⁴] and what stands in it.
+/// The envelope spectrum of the leading sensor [g⁴] and its lines.
 #[derive(Default)]
 pub(super) struct EnvelopeAnswer {
     pub(super) spectrum: Option<Spectrum>,
@@ -67,7 +67,7 @@ pub(super) struct EnvelopeAnswer {
 }
 
 impl EnvelopeAnswer {
-    /// A note says why there is none.
+    /// A note gives the reason where there is none.
     pub(super) fn with_note(enveloped: Option<Enveloped>, notes: &mut Vec<String>) -> Self {
         match enveloped {
             Some(Ok((spectrum, finding))) => Self { spectrum: Some(spectrum), finding: Some(finding) },

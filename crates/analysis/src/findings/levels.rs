@@ -1,5 +1,5 @@
-//! Levels about and between the passages of rollers, and the lines of the facets, sensor by sensor: each as
-//! if it were the only one of the scene.
+//! Levels about and between the passages of rollers, and the lines of the facets, sensor by sensor: each
+//! sensor independently of the others.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::levels::{self, Phase, SignalLevel, Visit};
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, RecordLevels, SensorLevels};
 use crate::tones::{self, NearestLine, PredictedLine};
 
-/// Multiple of the facet tone that the paper sees beside it.
+/// Multiple of the facet tone that the paper reports.
 const FIFTH: f64 = 5.0;
 
 /// Parts of a record.
@@ -28,7 +28,7 @@ struct Spans<'a> {
 struct Heard {
     impulse: Option<SignalLevel>,
     between: Option<SignalLevel>,
-    /// In the gaps behind the notch, its transient left out.
+    /// Level of the gaps behind the notch, without its transient.
     filtered: Option<SignalLevel>,
 }
 
@@ -88,7 +88,7 @@ impl<'a> Spans<'a> {
         }
     }
 
-    /// What is said of the leading sensor alone.
+    /// Numbers of the leading sensor alone.
     fn leading(&self, sensor: &SensorSignal, heard: &Heard) -> LevelsFinding {
         let Heard { impulse, between, filtered } = heard;
         LevelsFinding {

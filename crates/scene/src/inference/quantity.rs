@@ -80,10 +80,10 @@ const TAKES: [(&str, Take); 7] = [
 ];
 
 impl Quantity {
-    /// Reads what the file says.
+    /// Parses the path in the file.
     ///
     /// # Errors
-    /// When it is no path, in words.
+    /// In words, when it is not a path.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let (take, path) = match text.split_once('(') {

@@ -51,11 +51,11 @@ impl Run {
     }
 
     /// Reads the run in the folder `path`, also one that was interrupted, killed or is still going. Its
-    /// samples stay on disk until they are asked for.
+    /// samples stay on disk until they are read.
     ///
     /// # Errors
     ///
-    /// [`Error::NotARun`], or what is wrong with the first file that cannot be read.
+    /// [`Error::NotARun`], or the error of the first file that cannot be read.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let dir = RunDir::open(path)?;
         Ok(Self {

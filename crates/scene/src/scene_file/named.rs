@@ -1,8 +1,8 @@
-//! `bearing: "NU 205"`: all numbers of a bearing from its designation, and of all that surrounds it unless
-//! the file says otherwise.
+//! `bearing: "NU 205"`: all dimensions of a bearing from its designation, and its surroundings unless the
+//! file gives them.
 //!
-//! What no catalogue prints follows the paper's bearing in proportion: the mesh has as many facets, contact
-//! the same pressure.
+//! Dimensions that no catalogue prints are in proportion to the paper's bearing: the mesh has as many facets,
+//! contact the same pressure.
 
 use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
@@ -62,11 +62,11 @@ pub(super) const OFF_RACE: f64 = 0.22;
 /// Friction of steel on steel in oil. With that of the paper's scene, a tenth of it, small bearings skid.
 const FRICTION: f64 = 0.05;
 
-/// Puts the bearing into the scene, and around it what the user did not write; `given` has the paths of what
-/// was.
+/// Sets the bearing of the scene, and its surroundings as far as the user did not write them; `given` has the
+/// paths of written fields.
 ///
 /// # Errors
-/// Words on what is not known of the bearing, or why a plane model has no such bearing.
+/// In words: unknown dimensions of the bearing, or why a plane model has no such bearing.
 pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
     let fields = "give it by its fields, `bearing: (rollers: 13, roller_diameter_mm: 7.5, …)`";
     let known = CatalogueBearing::parse_or_advise(name, fields)?;
