@@ -1,7 +1,7 @@
 //! Names that a person can read for the folders of runs, which are named by their scenes.
 //!
-//! `runs/HASH` stays what scripts and further parts find; beside it `by_name/3-load_n=2000` leads there. The
-//! names are a convenience: where links cannot be made there are none.
+//! Scripts and further parts use `runs/HASH`; `by_name/3-load_n=2000` is a link to it. The names are a
+//! convenience: where links cannot be made there are none.
 
 use std::path::{Path, PathBuf};
 
@@ -67,7 +67,7 @@ fn name(campaign: &Campaign, variant: &Variant) -> String {
     name
 }
 
-/// A value without what shells and file systems take for something else.
+/// A value without characters that are special to shells and file systems.
 fn plain(value: &str) -> String {
     let kept = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
     let text: String = value.trim_matches('"').chars().map(|c| if kept(c) { c } else { '_' }).collect();

@@ -1,4 +1,4 @@
-//! WAV files to listen to, and those that a recorder writes.
+//! WAV files: for listening, and as a recorder writes them.
 
 use std::path::{Path, PathBuf};
 
@@ -62,7 +62,7 @@ pub(super) fn write(dir: &RunDir, run: &Run, options: &Options, path: &Path) -> 
     Ok(path.to_owned())
 }
 
-/// The channel that was asked for; otherwise the vertical acceleration of the first sensor.
+/// The requested channel; otherwise the vertical acceleration of the first sensor.
 fn pick<'a>(recording: &'a Recording, asked: &[String]) -> Result<&'a Channel> {
     let contains = |c: &Channel| asked.iter().any(|part| c.name.contains(part));
     let leading = |c: &Channel| c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2");

@@ -162,8 +162,7 @@ fn sticking() -> Result<Case> {
         stop = stop_reason(system.run(800_000, 100, |_, _| ())?);
     }
     let crept = (place(&system) - early).abs();
-    // What a sliding block would have done in that time under the hundredth of its weight that friction
-    // leaves over.
+    // Path of a sliding block in that time under the hundredth of its weight that friction does not balance.
     let time = 0.8 * system.time();
     let free = 0.5 * 9.81 * slope.sin() * time * time;
     let right = crept < 1e-3 * free;

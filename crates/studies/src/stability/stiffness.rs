@@ -12,7 +12,7 @@ use crate::rig::{THICKNESS, pair, penalty, rectangle, steel, stop_reason, touchi
 /// Length of a bar [m] and its cells.
 const BAR: (f64, usize) = (0.02, 40);
 
-/// A collision of two bars and what came of it.
+/// A collision of two bars and its outcome.
 pub(super) struct Collision {
     pub(super) energy: f64,
     pub(super) stop: Option<String>,
@@ -26,7 +26,7 @@ pub(super) struct Collision {
 }
 
 impl Collision {
-    /// Drift of momentum over what was exchanged.
+    /// Drift of momentum over the exchanged momentum.
     pub(super) fn momentum(&self) -> f64 {
         let of = |v: [f64; 2]| self.mass[0] * v[0] + self.mass[1] * v[1];
         let exchanged = self.mass[0] * (self.after[0] - self.before[0]).abs();

@@ -13,7 +13,7 @@ use crate::reference::{Choice, Precision, Reference, Rule};
 use crate::rig::{THICKNESS, rectangle, steel};
 use crate::stability::split;
 
-/// What is compared: name, triangles or not, element, integrator.
+/// A compared variant: name, triangles or not, element, integrator.
 pub(super) type Way = (&'static str, bool, Choice, Scheme);
 
 const CENTRAL: Scheme = Scheme::CentralDifference;
