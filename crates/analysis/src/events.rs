@@ -12,6 +12,8 @@
 
 use std::ops::Range;
 
+use stribeck_dsp::median;
+
 /// Shortest unloaded stretch that counts, as a fraction of the traverse.
 const SHORTEST_STRETCH: f64 = 0.125;
 /// Half of the level before the defect is the threshold of both events.
@@ -136,16 +138,6 @@ pub fn running_median(time_s: &[f64], values: &[f64], width_s: f64) -> Vec<f64> 
             median(&mut window)
         })
         .collect()
-}
-
-/// Median; zero of nothing. Sorts in place.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
-    }
 }
 
 /// Longest run of samples below `threshold` inside `within`, if it lasts `least` seconds.

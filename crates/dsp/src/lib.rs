@@ -85,6 +85,7 @@
 //! # }
 //! ```
 
+mod averages;
 mod error;
 mod window;
 
@@ -124,6 +125,7 @@ mod sound;
 
 pub mod statistics;
 
+pub use averages::{median, running_mean};
 pub use angle::{OverAngle, means_over_angle, order_track};
 pub use band_envelopes::{Autocorrelation, BandEnvelope, BandEnvelopes};
 pub use cepstrum::cepstral_prewhitening;

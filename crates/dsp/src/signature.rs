@@ -98,10 +98,10 @@ impl Signature {
     }
 
     fn median(pieces: &[Self]) -> Self {
-        let of = |number: &dyn Fn(&Self) -> f64| median(pieces.iter().map(number).collect());
+        let of = |number: &dyn Fn(&Self) -> f64| upper_median(pieces.iter().map(number).collect());
         let seen = |number: &dyn Fn(&Self) -> Option<f64>| {
             let all: Vec<f64> = pieces.iter().filter_map(number).collect();
-            (2 * all.len() >= pieces.len()).then(|| median(all))
+            (2 * all.len() >= pieces.len()).then(|| upper_median(all))
         };
         Self {
             spacing: seen(&|s| s.spacing),
@@ -159,8 +159,8 @@ impl Signature {
 /// Energy of the first of two events over that of the second [dB], from the third moments of the power at the
 /// two ends of their distance: an event stronger by a factor enters one of them by the square of that factor.
 fn order_db(power: &[f64], lag: usize, half: usize) -> f64 {
-    let smooth = running_mean(power, half);
-    let floor = median(smooth.clone());
+    let smooth = centred_mean(power, half);
+    let floor = upper_median(smooth.clone());
     let above: Vec<f64> = smooth.iter().map(|p| (p - floor).max(0.0)).collect();
     let pairs = || above.iter().zip(&above[lag.min(above.len())..]);
     let first: f64 = pairs().map(|(a, b)| a * a * b).sum();
@@ -168,14 +168,15 @@ fn order_db(power: &[f64], lag: usize, half: usize) -> f64 {
     10.0 * ((first + f64::MIN_POSITIVE) / (second + f64::MIN_POSITIVE)).log10()
 }
 
-/// The middle one; 0 of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
+/// The middle value, of an even number the upper of the two; 0 of none. A value that a piece has, which the
+/// mean of two would not be.
+fn upper_median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Mean over `half` samples on either side.
-fn running_mean(values: &[f64], half: usize) -> Vec<f64> {
+/// Mean over `half` samples on either side, fewer at the ends: as many values as samples.
+fn centred_mean(values: &[f64], half: usize) -> Vec<f64> {
     let mut sums = vec![0.0];
     let mut sum = 0.0;
     for value in values {

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 
+use crate::averages::median;
 use crate::error::{check_len, check_positive, check_signal};
 use crate::spectrum::Layout;
 use crate::{Averaging, Detrend, Resolution, Result, Scaling, Sides, Spectrum, WelchOptions};
@@ -226,13 +227,6 @@ fn median_bias(count: usize) -> f64 {
         let even = 2.0 * half as f64;
         sum + 1.0 / (even + 1.0) - 1.0 / even
     })
-}
-
-/// Median; sorts in place.
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let upper = values.len() / 2;
-    if values.len() % 2 == 1 { values[upper] } else { 0.5 * (values[upper - 1] + values[upper]) }
 }
 
 #[cfg(test)]

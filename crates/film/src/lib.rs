@@ -24,7 +24,7 @@
 //! ```
 //! use stribeck_film::{Bed, FilmLaw, Oil};
 //!
-//! // A roller of 9 mm, 30 mm long, on a plane, in an oil of 50 mPa s at an entrainment speed of 2.4 m/s.
+//! // A cylinder of 9 mm radius, 30 mm long, on a plane, in an oil of 50 mPa s at an entrainment speed of 2.4 m/s.
 //! let (radius, length, viscosity, speed) = (9e-3, 30e-3, 0.05, 2.4);
 //! let oil = Oil { viscosity, least: 0.5e-6 };
 //! let law = FilmLaw::new(oil, radius, length, Bed::new(2e13 * length, radius));

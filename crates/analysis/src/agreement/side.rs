@@ -1,12 +1,12 @@
 //! One run, reduced to the quantities that are compared.
 
-use stribeck_dsp::{Detrend, Scaling, Sensor, Welch, WelchOptions};
+use stribeck_dsp::{Detrend, Scaling, Sensor, Welch, WelchOptions, running_mean};
 use stribeck_scene::run_dir::Run;
 
 use super::{FROM_S, LEAST_MEANS, MEAN_S, thirds};
 use crate::Error;
 use crate::findings::Findings;
-use crate::load::{running_mean, support};
+use crate::load::support;
 use crate::record::Record;
 use crate::summary::Summary;
 

@@ -24,8 +24,8 @@ struct Spans<'a> {
     quiet: Vec<Range<usize>>,
 }
 
-/// Levels of one sensor.
-struct Heard {
+/// Levels of one sensor [g]: of the impulses at the exits, and of the gaps between events.
+struct SensorLevels {
     impulse: Option<SignalLevel>,
     between: Option<SignalLevel>,
     /// Level of the gaps behind the notch, without its transient.
@@ -47,15 +47,15 @@ pub(super) fn level_finding(
     let spans = Spans::of(time, events);
     let mut finding = LevelsFinding::default();
     for (number, sensor) in sensors.iter().enumerate() {
-        let heard = spans.heard(sensor);
+        let found = spans.levels(sensor);
         if number == 0 {
-            finding = spans.leading(sensor, &heard);
+            finding = spans.leading(sensor, &found);
             for event in events.iter_mut() {
                 let span = event.left_ms().map(|t| levels::impulse_span(time, 1e-3 * t));
                 event.impulse_g = span.and_then(|s| levels::level(&sensor.raw_g, &[s])).map(|l| l.peak);
             }
         }
-        finding.sensors.push(spans.of_sensor(sensor, &heard, facet_lines(sensor, tone)?));
+        finding.sensors.push(spans.of_sensor(sensor, &found, facet_lines(sensor, tone)?));
     }
     if let Some(filter) = filter.filter(|_| !sensors.is_empty() && finding.between_filtered_g.is_none()) {
         notes.push(format!(
@@ -77,11 +77,11 @@ impl<'a> Spans<'a> {
         Self { time, phases, impulses, quiet }
     }
 
-    fn heard(&self, sensor: &SensorSignal) -> Heard {
+    fn levels(&self, sensor: &SensorSignal) -> SensorLevels {
         let start = self.time.first().copied().unwrap_or(0.0);
         let settled = start + sensor.notch.as_ref().map_or(0.0, Filter::transient_s);
         let quiet_settled = levels::gap_spans(self.time, &self.phases, settled);
-        Heard {
+        SensorLevels {
             impulse: levels::level(&sensor.raw_g, &self.impulses),
             between: levels::level(&sensor.raw_g, &self.quiet),
             filtered: levels::level(&sensor.filtered_g, &quiet_settled),
@@ -89,8 +89,8 @@ impl<'a> Spans<'a> {
     }
 
     /// Numbers of the leading sensor alone.
-    fn leading(&self, sensor: &SensorSignal, heard: &Heard) -> LevelsFinding {
-        let Heard { impulse, between, filtered } = heard;
+    fn leading(&self, sensor: &SensorSignal, found: &SensorLevels) -> LevelsFinding {
+        let SensorLevels { impulse, between, filtered } = found;
         LevelsFinding {
             sensor: Some(sensor.name.clone()),
             phases: by_phase(&sensor.raw_g, &self.phases),
@@ -110,10 +110,10 @@ impl<'a> Spans<'a> {
     fn of_sensor(
         &self,
         sensor: &SensorSignal,
-        heard: &Heard,
+        found: &SensorLevels,
         [tone, fifth]: [NearestLine; 2],
     ) -> SensorLevels {
-        let Heard { impulse, between, filtered } = heard;
+        let SensorLevels { impulse, between, filtered } = found;
         SensorLevels {
             sensor: sensor.name.clone(),
             angle_deg: sensor.angle_deg,

@@ -356,7 +356,7 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
             let Some(at) = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b])) else {
                 continue;
             };
-            let before = events::median(&mut force[..during.start].to_vec());
+            let before = stribeck_dsp::median(&mut force[..during.start].to_vec());
             let gain = force[at] / before;
             if before > 0.0 && force[at] > before && most.is_none_or(|(_, most, _)| gain >= most) {
                 most = Some((time[at], gain, force[at]));

@@ -5,8 +5,8 @@ use std::f64::consts::TAU;
 
 use crate::Error;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
+use stribeck_dsp::running_mean;
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::load::running_mean;
 use stribeck_analysis::record::Record;
 
 /// Rates are means over this time [s]; at most a tenth of the record.
