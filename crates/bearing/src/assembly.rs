@@ -18,7 +18,6 @@ use stribeck_solver::{
 use crate::{error::Error, housing::housing};
 pub use parts::{CAGE_ELEMENT_MM, MeshedParts};
 use parts::{cage_part, facets_around, formed};
-pub(crate) use system::{ACROSS, LOADED};
 pub use system::{BearingSystem, Pairs, Roller, load};
 
 /// The bodies of a scene, meshed, placed, and with their constraints; nothing touches yet.

@@ -125,8 +125,8 @@ mod sound;
 
 pub mod statistics;
 
-pub use averages::{median, running_mean};
 pub use angle::{OverAngle, means_over_angle, order_track};
+pub use averages::{median, running_mean};
 pub use band_envelopes::{Autocorrelation, BandEnvelope, BandEnvelopes};
 pub use cepstrum::cepstral_prewhitening;
 pub use comb::{Comb, CombTest, Whitened};

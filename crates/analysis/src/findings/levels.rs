@@ -25,7 +25,7 @@ struct Spans<'a> {
 }
 
 /// Levels of one sensor [g]: of the impulses at the exits, and of the gaps between events.
-struct SensorLevels {
+struct QuietAndImpulse {
     impulse: Option<SignalLevel>,
     between: Option<SignalLevel>,
     /// Level of the gaps behind the notch, without its transient.
@@ -77,11 +77,11 @@ impl<'a> Spans<'a> {
         Self { time, phases, impulses, quiet }
     }
 
-    fn levels(&self, sensor: &SensorSignal) -> SensorLevels {
+    fn levels(&self, sensor: &SensorSignal) -> QuietAndImpulse {
         let start = self.time.first().copied().unwrap_or(0.0);
         let settled = start + sensor.notch.as_ref().map_or(0.0, Filter::transient_s);
         let quiet_settled = levels::gap_spans(self.time, &self.phases, settled);
-        SensorLevels {
+        QuietAndImpulse {
             impulse: levels::level(&sensor.raw_g, &self.impulses),
             between: levels::level(&sensor.raw_g, &self.quiet),
             filtered: levels::level(&sensor.filtered_g, &quiet_settled),
@@ -89,8 +89,8 @@ impl<'a> Spans<'a> {
     }
 
     /// Numbers of the leading sensor alone.
-    fn leading(&self, sensor: &SensorSignal, found: &SensorLevels) -> LevelsFinding {
-        let SensorLevels { impulse, between, filtered } = found;
+    fn leading(&self, sensor: &SensorSignal, found: &QuietAndImpulse) -> LevelsFinding {
+        let QuietAndImpulse { impulse, between, filtered } = found;
         LevelsFinding {
             sensor: Some(sensor.name.clone()),
             phases: by_phase(&sensor.raw_g, &self.phases),
@@ -110,10 +110,10 @@ impl<'a> Spans<'a> {
     fn of_sensor(
         &self,
         sensor: &SensorSignal,
-        found: &SensorLevels,
+        found: &QuietAndImpulse,
         [tone, fifth]: [NearestLine; 2],
     ) -> SensorLevels {
-        let SensorLevels { impulse, between, filtered } = found;
+        let QuietAndImpulse { impulse, between, filtered } = found;
         SensorLevels {
             sensor: sensor.name.clone(),
             angle_deg: sensor.angle_deg,

@@ -29,10 +29,10 @@ const INNER_RACEWAY: &str = "inner raceway";
 const SEAT: &str = "seat";
 
 /// Name of the surface that takes the load, and of that load.
-pub(crate) const LOADED: &str = "loaded surface";
+const LOADED: &str = "loaded surface";
 
 /// Name of the component of a rotating load that acts across the static one.
-pub(crate) const ACROSS: &str = "load across";
+const ACROSS: &str = "load across";
 
 /// A bearing in motion: the system, and which body and contact pair of it is which. Bodies are numbered as in
 /// the mesh.

@@ -88,8 +88,8 @@ impl Wall {
     }
 }
 
-/// A wall or a corner of it that presses on a roller.
-struct WallForce {
+/// Normal contact of a roller with a wall or a corner of it.
+struct NormalContact {
     /// From the roller towards it.
     n: [f64; 2],
     /// Force [N], stiffness of the penalty [N/m], and the part of an approach that it takes.
@@ -217,7 +217,7 @@ impl InPockets<'_> {
         let pressed = if t > 0.0 && t < 1.0 {
             // The foot goes along the wall with the roller, so that the force stands on the wall.
             let shape = if *round { Shape::Circle(top) } else { Shape::Polygon(&rollers.polygon, own_d) };
-            flat::press(shape, distance, law.penalty, &cage.curve).map(|on| WallForce {
+            flat::press(shape, distance, law.penalty, &cage.curve).map(|on| NormalContact {
                 n: d,
                 force: on.force,
                 stiffness: law.penalty * on.length,
@@ -231,7 +231,7 @@ impl InPockets<'_> {
             // The normal of the roller's facet.
             let n = Rotation::to([level, tilt]).forth(d);
             let [force, stiffness, stored] = cage.corners[usize::from(t > 0.5)].press(law.penalty, depth);
-            (depth > 0.0).then_some(WallForce { n, force, stiffness, part: 1.0, stored, couple: 0.0 })
+            (depth > 0.0).then_some(NormalContact { n, force, stiffness, part: 1.0, stored, couple: 0.0 })
         };
         if pressed.is_none() && *passive == [0.0; 2] {
             *slip = 0.0;
@@ -252,7 +252,7 @@ impl InPockets<'_> {
         let (closing, sliding) = (dot(relative, n), dot(relative, t));
         tally.spent.heat[0] -= passive[0] * sliding;
         tally.spent.heat[1] += passive[1] * closing;
-        let Some(WallForce { force, stiffness, part, stored, couple, .. }) = pressed else {
+        let Some(NormalContact { force, stiffness, part, stored, couple, .. }) = pressed else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use crate::Error;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
-use stribeck_dsp::running_mean;
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
+use stribeck_dsp::running_mean;
 
 /// Rates are means over this time [s]; at most a tenth of the record.
 const SMOOTHING_S: f64 = 0.5e-3;
