@@ -1,4 +1,6 @@
-//! One pass: the points of a secondary surface against the facets of a primary one.
+//! One pass of a contact pair: the points of a secondary surface against the facets of a primary one. Between
+//! searches ([`broad_phase`](crate::broad_phase)) it tracks the points' feet and evaluates the law
+//! ([`kernel`](crate::kernel)).
 
 use std::sync::Arc;
 

@@ -38,7 +38,7 @@ const LEAST_WORK: usize = 4000;
 /// A model in motion.
 #[derive(Debug)]
 pub struct Dynamics {
-    /// What changes in time.
+    /// State in time.
     pub state: State,
     /// Place and motion of each rigid body, in the order of the mesh.
     pub rigid: Vec<RigidState>,
@@ -51,7 +51,7 @@ pub struct Dynamics {
     /// Whether a step reads more than second-level caches hold, so that strips prefetch.
     fetch: bool,
     pub(crate) rigid_bodies: Vec<RigidBody>,
-    /// Work of what drives each rigid body in the last step [J].
+    /// Work of the drive of each rigid body in the last step [J].
     pub(crate) driven: Vec<f64>,
     mass: Field,
     motion: Vec<NodeMotion>,
@@ -105,7 +105,7 @@ pub(crate) struct ElasticBody {
 }
 
 impl Dynamics {
-    /// Lays the model out for `threads` workers. `loaded` says which nodes other forces may push.
+    /// Lays the model out for `threads` workers. `loaded` are the nodes that other forces may push.
     ///
     /// # Errors
     /// When the model holds impossible numbers, elements or nodes.
@@ -210,7 +210,7 @@ impl Dynamics {
         &self.rigid_bodies
     }
 
-    /// Own slots of elastic bodies: what moves by mass and force.
+    /// Own slots of elastic bodies, which move by mass and force.
     pub(crate) fn elastic_slots(&self) -> Vec<usize> {
         let tiles = self.tiles.iter().filter(|t| t.elastic);
         tiles.flat_map(|t| t.slots.start..t.slots.start + t.own).filter(|&n| self.mass[n] > 0.0).collect()

@@ -1,9 +1,9 @@
 //! Explicit dynamics of plane-strain finite elements, and the static equilibrium to start from.
 //!
-//! The crate knows bodies, not machines: a [`Model`] is a mesh, what its bodies are made of and how their
-//! nodes may move. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on nodes
-//! (loads, contact) is a [`Force`], given to each step as a list. A model pays only for the forces in its
-//! list.
+//! The crate is about bodies, not machines: a [`Model`] is a mesh with materials, elastic or rigid bodies,
+//! and the motion of nodes. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on
+//! nodes (loads, contact) is a [`Force`], given to each step as a list. A model pays only for the forces in
+//! its list.
 //!
 //! # Conventions
 //!

@@ -1,4 +1,4 @@
-//! What the user of the solver gives: a mesh, what its bodies are made of, and how nodes may move.
+//! Input of the solver: a mesh, materials, elastic or rigid bodies, and the motion of nodes.
 
 use std::f64::consts::PI;
 

@@ -1,8 +1,8 @@
 //! Bodies in motion with contact, loads and the ledger of their energy, in node numbers and surface names.
 //!
-//! A [`Plan`] says what there is: bodies, materials, constraints, which surfaces may touch, what pushes.
-//! [`Plan::build`] makes it a [`System`], which finds equilibrium, takes steps, balances its energy and says
-//! when something goes wrong. Where nodes lie in the solver's memory concerns this crate alone.
+//! A [`Plan`] has the bodies, materials, constraints, contact pairs and loads. [`Plan::build`] makes it a
+//! [`System`], which finds equilibrium, takes steps, balances its energy and says when something goes wrong.
+//! Where nodes lie in the solver's memory concerns this crate alone.
 //!
 //! # Conventions
 //!

@@ -1,4 +1,4 @@
-//! What the user gives: bodies, which of their surfaces may touch, what pushes on them.
+//! Input of a system: bodies, contact pairs of their surfaces, and loads.
 
 use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{Mesh, Part, Placed, Surface};
@@ -41,7 +41,7 @@ pub struct Pair {
     pub first: String,
     /// Name of the other.
     pub second: String,
-    /// What acts between them.
+    /// Law between them.
     pub law: Law,
     /// Where it acts.
     pub method: Method,
@@ -196,7 +196,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Says how the nodes of a body, a surface or a mark may move.
+    /// Constrains the nodes of a body, a surface or a mark.
     ///
     /// # Errors
     /// When nothing has that name.
@@ -205,7 +205,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Lets two surfaces touch.
+    /// Adds a contact pair of two surfaces.
     ///
     /// Two threads take pairs from either end of the list. The pair with by far the most work had better come
     /// first, and those of one body together.

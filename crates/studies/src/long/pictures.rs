@@ -15,7 +15,8 @@ const ABOUT_HZ: f64 = 250.0;
 /// Upper end of the pictures of the defect's family [Hz].
 const FAMILY_TOP_HZ: f64 = 1000.0;
 
-/// The whole spectrum, the facet lines resolved, the low frequencies.
+/// Adds three pictures of the leading sensor's spectrum to the sheet: whole, about the facet lines, and at
+/// low frequencies.
 ///
 /// # Errors
 /// When a picture cannot be written.
