@@ -1,4 +1,4 @@
-//! A preloaded bearing taken apart: which node is what, where nodes are, and the forces on them.
+//! A preloaded bearing taken apart: sets of nodes, their positions, and the forces on them.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use stribeck_system::Parts;
 
 use crate::error::Error;
 
-/// Node numbers, while the system still knows them by name.
+/// Node numbers, found by name while there is a system.
 pub(crate) struct Nodes {
     /// Outer raceway, counter-clockwise.
     pub(crate) outer: Vec<u32>,
@@ -43,7 +43,7 @@ pub(crate) struct Inertia {
     pub(crate) centre: [f64; 2],
 }
 
-/// What is known of a bearing at its preload before it is taken apart.
+/// Data of a bearing at its preload, read before it is taken apart.
 pub(crate) struct Extraction {
     pub(crate) nodes: Nodes,
     /// Places of all nodes [m], and contact forces on them [N].
@@ -144,7 +144,7 @@ impl Preload {
         let elastic = parts.dynamics.elastic_energy();
         let elastic = elastic.strain + elastic.hourglass;
         let count = parts.dynamics.state.x.len();
-        // In the undeformed mesh springs of the housing do not push: what is left is the load.
+        // In the undeformed mesh springs of the housing are free of force: only the load remains.
         let mut load = NodeForces::zeros(count);
         let mut undeformed = parts.dynamics.state.clone();
         for (n, &slot) in extraction.slot_of.iter().enumerate() {

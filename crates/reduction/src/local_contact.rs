@@ -15,8 +15,8 @@ pub struct LocalContact<'a> {
     pub penalty: f64,
 }
 
-/// An integration point: the gap between the undeformed surfaces [m], and the nodes that move it, with their
-/// shares: two of each surface.
+/// An integration point: the gap between the undeformed surfaces [m], and the nodes whose displacements
+/// change it, with their shares: two of each surface.
 struct Point {
     gap: f64,
     nodes: [(usize, f64); 4],

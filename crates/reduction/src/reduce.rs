@@ -26,7 +26,7 @@ use crate::{
 /// A mesh that has been preloaded and reduced: the same for every start, speed and duration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReducedMesh {
-    /// What rings, rollers and cage became.
+    /// The reduced rings, rollers and cage.
     pub reduction: Reduction,
     /// Rings and a roller as they were meshed.
     pub parts: MeshedParts,

@@ -1,4 +1,4 @@
-//! Names that a person can read for the folders of runs, which are named by their scenes.
+//! Readable names for the folders of runs, which are named by the hashes of their scenes.
 //!
 //! Scripts and further parts use `runs/HASH`; `by_name/3-load_n=2000` is a link to it. The names are a
 //! convenience: where links cannot be made there are none.
@@ -14,8 +14,8 @@ pub(super) const BY_NAME: &str = "by_name";
 /// A name is no longer than this [bytes]: file systems take 255.
 const LONGEST: usize = 120;
 
-/// Makes the names of all runs that have a folder; those of earlier texts of the campaign, whose runs others
-/// may be now, are made anew.
+/// Makes links to all runs that have a folder, and removes earlier ones, which may belong to a former text of
+/// the campaign.
 pub(super) fn link(folder: &Folder, campaign: &Campaign) {
     let names = folder.path().join(BY_NAME);
     remove_links(&names);
