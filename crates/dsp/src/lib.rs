@@ -38,7 +38,7 @@
 //! | the pulses behind a resonance | [`momeda`] |
 //! | how a record changes | [`spectrogram`], [`Spectrograph`] for records of any length, [`ridge`] |
 //! | whether there is a family of harmonics, with a false-alarm rate | [`CombTest`] on a [`Whitened`] spectrum |
-//! | how far apart two events are that follow each other | [`event_spacing`] |
+//! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
 //! | the times of impacts behind an unknown path | [`prewhitened_power`] |
 //! | the record of a sensor behind a random path, or behind the path of a record | [`Path`], [`coloured_like`] |
 //! | numbers of repeated passages that do not depend on the path to the sensor | [`Signature`] |
@@ -148,7 +148,7 @@ pub use sensor::Sensor;
 pub use separation::{Separated, separate};
 pub use signature::{PASSAGES, Rhythm, Signature, WITHIN};
 pub use sound::Sound;
-pub use spacing::{EventSpacing, Spacing, event_spacing};
+pub use spacing::{EventSpacing, Spacing, event_spacing, passage_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;
