@@ -69,8 +69,8 @@ pub fn band_rms(signal: &[f64], sample_rate_hz: f64, low_hz: f64, high_hz: f64) 
     welch.ok()?.estimate(signal).ok()?.band_rms(low_hz, high_hz).ok()
 }
 
-/// Largest magnitude of the running mean over `width_s` [s]: the height of a peak behind that low pass; `None`
-/// where the signal is shorter.
+/// Largest magnitude of the running mean over `width_s` [s]: the height of a peak behind that low pass;
+/// `None` where the signal is shorter.
 pub fn smoothed_peak(signal: &[f64], interval_s: f64, width_s: f64) -> Option<f64> {
     let width = samples(width_s, interval_s);
     let means = (width <= signal.len()).then(|| running_mean(signal, width))?;

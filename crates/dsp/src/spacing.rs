@@ -3,9 +3,9 @@
 //!
 //! Pre-whitening makes both broad-banded and equally sharp. Where the rate of the passages is known, the mean
 //! power about the strongest event of each passage shows a second one ([`passage_spacing`]); where it is not,
-//! the squared envelope is correlated with itself ([`event_spacing`]). A distance is taken for one only if two
-//! bands agree on it: ringing has another lag in every band. Where there is none, the correlation yields the
-//! distance from which on a second event would have shown.
+//! the squared envelope is correlated with itself ([`event_spacing`]). A distance is taken for one only if
+//! two bands agree on it: ringing has another lag in every band. Where there is none, the correlation yields
+//! the distance from which on a second event would have shown.
 //!
 //! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, who look for it in
 //! the cepstrum of the enhanced signal; the comparison of bands is ours.

@@ -15,8 +15,8 @@ use crate::{error::Error, grading, own_mesh};
 /// Element size of the cage [mm]. It moves as one piece: its elements carry mass only and may be coarse.
 pub const CAGE_ELEMENT_MM: f64 = 2.0;
 
-/// Meshes of the rings and of one roller, kept because meshing takes time. They have grooves, but no deviations
-/// from round yet; the roller lies at the origin, not rotated.
+/// Meshes of the rings and of one roller, kept because meshing takes time. They have grooves, but no
+/// deviations from round yet; the roller lies at the origin, not rotated.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MeshedParts {
     pub(super) outer: Part,

@@ -73,8 +73,8 @@ pub struct Roller {
 }
 
 /// Numbers of the contact pairs, from the outside in: the seat, then each roller on the outer raceway, in its
-/// pocket, and on the inner raceway (the order of [`Plan::contact`]). The resultant of a pair with a roller is
-/// the force on the roller.
+/// pocket, and on the inner raceway (the order of [`Plan::contact`]). The resultant of a pair with a roller
+/// is the force on the roller.
 #[derive(Debug, Clone, Copy)]
 pub struct Pairs {
     /// 1 where the outer ring sits in a seat, else 0.
@@ -269,7 +269,8 @@ impl Assembly {
     }
 }
 
-/// Sets the load on the housing at a time [s]; `load_n` is the load [N] that a scale factor of one stands for.
+/// Sets the load on the housing at a time [s]; `load_n` is the load [N] that a scale factor of one stands
+/// for.
 ///
 /// # Errors
 /// When the system has no load of that name.
