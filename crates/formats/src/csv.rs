@@ -28,7 +28,7 @@ const PREAMBLE: usize = 200;
 const SAMPLE: usize = 60;
 /// Samples handed on at a time.
 const BLOCK: usize = 1 << 14;
-/// Of so many fields of a column one may be no number.
+/// One in this many fields of a column may be something other than a number.
 const FEW: u64 = 100;
 
 /// One column of a table in a file.
@@ -45,7 +45,7 @@ pub(crate) struct Column {
     origin_s: i64,
 }
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Debug, Default)]
 struct Census {
     numbers: u64,
@@ -135,7 +135,7 @@ fn columns(rows: &[String], dialect: Dialect) -> usize {
     counts.max().unwrap_or(0)
 }
 
-/// What the columns hold, the number of rows, and what is odd about them.
+/// Content of the columns, the number of rows, and irregularities.
 fn census(
     path: &Path,
     coding: Coding,

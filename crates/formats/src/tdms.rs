@@ -33,10 +33,10 @@ pub(crate) enum Property {
     Text(String),
 }
 
-/// What is known of a channel.
+/// Metadata of a channel.
 #[derive(Debug, Clone, Default)]
 struct Object {
-    /// How its numbers are stored; `None` for what is no real number.
+    /// Storage of its numbers; `None` for values that are not real numbers.
     number: Option<Number>,
     /// Values in a chunk, and the bytes that they take.
     count: u64,
@@ -78,7 +78,7 @@ pub fn open(path: &Path) -> Result<Recording> {
             return Err(Error::Unsupported { path: path.to_owned(), format: FORMAT, what, advice });
         }
         let long = |from: usize| lead[from..from + 8].try_into().map_or(0, u64::from_le_bytes);
-        // The last segment of a file that was not closed says that its length is unknown.
+        // The last segment of a file that was not closed has no valid length.
         let behind = size - at - LEAD_IN;
         let (next, raw) = (long(12).min(behind), long(20));
         if long(12) > behind {
@@ -231,7 +231,7 @@ impl Metadata<'_> {
                     object.count = count;
                     object.bytes = match number {
                         Some(number) => count.checked_mul(number.kind.bytes() as u64)?,
-                        // Texts say how many bytes they take; times take 16 each.
+                        // Texts carry their length in bytes; times take 16 each.
                         None if kind == TEXT => self.long()?,
                         None => count.checked_mul(width(kind)? as u64)?,
                     };

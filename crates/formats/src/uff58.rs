@@ -129,7 +129,7 @@ fn e13(x: f64) -> String {
     format!("{:>13}", exponent(x, 5))
 }
 
-/// `1.25E+02`: FORTRAN wants a sign and two digits.
+/// `1.25E+02`: FORTRAN requires a sign and two digits.
 fn exponent(x: f64, digits: usize) -> String {
     if !x.is_finite() {
         return "NaN".to_owned();
@@ -262,7 +262,7 @@ impl Lines<'_> {
         Ok(values)
     }
 
-    /// Numbers as bytes, as many as the first line of the dataset says.
+    /// Numbers as bytes, as many as in the first line of the dataset.
     fn binary(&mut self, kind: &str, double: bool, even: bool) -> std::result::Result<Vec<f64>, String> {
         let fields: Vec<u64> = kind.split_whitespace().skip(1).map(|w| w.parse().unwrap_or(0)).collect();
         let [order, format, _, bytes, ..] = fields[..] else {

@@ -20,7 +20,7 @@ use stribeck_scene::{
 
 /// A model of a bearing in motion: what the time loop drives from sample to sample.
 pub trait Motion: Send {
-    /// What it takes to go on from a sample.
+    /// State from which it continues after a sample.
     type Saved: Serialize + DeserializeOwned;
 
     /// Takes the steps of one sampling interval; the last one is accounted for.
@@ -53,7 +53,7 @@ pub trait Motion: Send {
         Ok(())
     }
 
-    /// What it takes to go on.
+    /// State to continue from.
     fn saved(&self) -> Self::Saved;
 }
 
@@ -89,9 +89,9 @@ fn columns(scene: &ResolvedScene) -> Vec<&'static str> {
 
 /// A run in its time loop.
 pub struct Run<M> {
-    /// What `run.json` says.
+    /// Content of `run.json`.
     pub info: RunInfo,
-    /// What its checkpoints belong to.
+    /// Identity of its checkpoints.
     identity: String,
     motion: M,
     channels: Channels,
@@ -103,7 +103,7 @@ pub struct Run<M> {
     oiled: bool,
 }
 
-/// When a run was last saved, and what that cost.
+/// Time of the last checkpoint, and how long writing it took.
 #[derive(Default)]
 struct Saved {
     sample: usize,
@@ -120,7 +120,7 @@ impl Saved {
             return false;
         }
         let passed = wall_s() - self.wall_s;
-        // A clock that was set back, or that is none, must not put off saving.
+        // A clock that was set back, or that stands still, must not postpone saving.
         let counts = passed >= 0.0 && self.cost_s >= 0.0;
         !counts || SAVE_SHARE * passed >= self.cost_s
     }

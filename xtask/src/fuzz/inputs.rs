@@ -124,7 +124,7 @@ fn scene(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     if let Some(scene) = scene.filter(|scene| small(scene) && dice.one_in(20)).map(|scene| scene.resolve())
         && let (_, Some(assembly)) = answered(Assembly::new(&scene))?
     {
-        answered(assembly.machine(&scene, 1))?;
+        answered(assembly.build(&scene, 1))?;
     }
     Ok(answer)
 }

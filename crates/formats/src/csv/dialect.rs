@@ -1,22 +1,21 @@
-//! How a table is written: what splits its columns, which sign is the decimal point, where its rows of
-//! numbers begin.
+//! How a table is written: separator of columns, decimal sign, first row of numbers.
 
 use super::stamp::stamp;
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Dialect {
-    /// What splits columns; a space stands for any run of white space.
+    /// Separator of columns; a space stands for any run of white space.
     pub(crate) separator: char,
     pub(crate) decimal_comma: bool,
 }
 
-/// What a field is.
+/// Kind of a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Field {
     Number(f64),
     Stamp(i64, i32),
-    /// Nothing, or a word for what is missing.
+    /// Empty, or a word for a missing value.
     Missing,
     Text,
 }
@@ -107,7 +106,7 @@ impl Dialect {
         line.chars().all(|c| c.is_whitespace() || c == self.separator || c == '"')
     }
 
-    /// What a field is.
+    /// Kind of a field.
     pub(crate) fn field(&self, field: &str) -> Field {
         const MISSING: [&str; 10] = ["", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "nil"];
         if let Some(number) = self.number(field) {
@@ -138,7 +137,7 @@ impl Dialect {
 }
 
 /// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line
-/// above has no comma, or the first part is `-0`, or what is behind the comma has always the same digits,
+/// above has no comma, or the first part is `-0`, or the part behind the comma always has the same digits,
 /// zeros at its beginning, too.
 fn is_one_column(head: &[String], rows: &[String]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());

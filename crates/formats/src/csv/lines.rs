@@ -16,7 +16,7 @@ const LONGEST: u64 = 1 << 24;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coding {
     encoding: &'static Encoding,
-    /// What ends a line; `\r` alone is that of old Macintoshes.
+    /// End of a line; `\r` alone is that of old Macintoshes.
     end: u8,
 }
 

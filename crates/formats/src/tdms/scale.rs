@@ -1,4 +1,4 @@
-//! Scales of TDMS channels: `NI_Scale[n]_…` say how stored counts become physical values.
+//! Scales of TDMS channels: `NI_Scale[n]_…` define the conversion of stored counts to physical values.
 //!
 //! A scale works on the stored numbers or on the result of another one; the last is what LabVIEW shows.
 
