@@ -85,6 +85,9 @@ pub fn open(path: &Path) -> Result<Recording> {
         first += 1;
     }
     let columns = columns(&start[first..], dialect);
+    while first > 0 && is_damaged_row(&start[first - 1], dialect, columns) {
+        first -= 1;
+    }
     let (names, units) = head::names(&start[..first], dialect, columns);
     let (census, rows, mut notes) = census(path, coding, dialect, first as u64, columns)?;
     let mut channels = Vec::new();
@@ -126,6 +129,17 @@ fn counts_columns(rows: &[String], dialect: Dialect) -> bool {
     !named.is_empty()
         && named.iter().enumerate().all(|(n, field)| *field == n.to_string())
         && dialect.split(second).into_iter().any(fraction)
+}
+
+/// Whether a line above the table is a row of it with a few fields that are no numbers: names of columns are
+/// no fractions.
+fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
+    let fields = dialect.split(line);
+    let fractions = fields.iter().filter(|field| {
+        field.contains(if dialect.decimal_comma { ',' } else { '.' })
+            && matches!(dialect.field(field), Field::Number(_))
+    });
+    columns > 1 && fields.len() == columns && 2 * fractions.count() >= columns
 }
 
 /// Columns of the first rows.

@@ -84,6 +84,10 @@ pub fn open(path: &Path) -> Result<Recording> {
         if long(12) > behind {
             notes.push("the file was not closed, or is cut off: its last samples may be missing".to_owned());
         }
+        if raw > next && long(12) > behind && at > 0 {
+            // The recorder stopped in the middle of the metadata: what is before is sound.
+            break;
+        }
         if raw > next || raw > MAX_METADATA {
             return Err(damaged(format!("its metadata take {raw} of {next} bytes")));
         }
@@ -99,7 +103,9 @@ pub fn open(path: &Path) -> Result<Recording> {
         }
         if contents & RAW_DATA != 0 {
             let data = (at + LEAD_IN + raw, next - raw);
-            place(path, data, contents & INTERLEAVED != 0, &active, &mut objects);
+            let (interleaved, is_cut) = (contents & INTERLEAVED != 0, long(12) > behind);
+            let odd = place(path, data, (interleaved, is_cut), &active, &mut objects);
+            notes.extend(odd.map(|what| format!("segment at byte {at}: {what}")));
         }
         at += LEAD_IN + next;
     }
@@ -137,20 +143,24 @@ pub fn open(path: &Path) -> Result<Recording> {
 }
 
 /// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value
-/// by value.
+/// by value. Says what is odd about them.
 fn place(
     path: &Path,
     (start, held): (u64, u64),
-    interleaved: bool,
+    (interleaved, is_cut): (bool, bool),
     active: &[String],
     objects: &mut HashMap<String, Object>,
-) {
-    let chunk: u64 = active.iter().filter_map(|name| objects.get(name)).map(|o| o.bytes).sum();
+) -> Option<String> {
+    // Far more chunks than any recorder writes would be a damaged count.
+    const MOST: u64 = 10_000_000;
+    let chunk = active.iter().filter_map(|name| objects.get(name)).try_fold(0_u64, |sum, o| {
+        sum.checked_add(o.bytes)
+    });
+    let Some(chunk) = chunk else { return Some("its sizes are no sizes: it is left out".to_owned()) };
     if chunk == 0 {
-        return;
+        return None;
     }
-    // A chunk that is not whole is dropped.
-    let chunks = held / chunk;
+    let (chunks, rest) = (held / chunk, held % chunk);
     let widths = active.iter().filter_map(|name| objects.get(name)?.number).map(|n| n.kind.bytes());
     let row: usize = widths.sum();
     let mut offset = 0;
@@ -166,15 +176,19 @@ fn place(
         if interleaved {
             object.pieces.push((piece(start + offset, row), chunks * count));
             offset += width as u64;
-        } else {
-            // Far more chunks than any recorder writes would be a damaged count.
-            const MOST: u64 = 10_000_000;
-            for k in 0..chunks.min(MOST) {
-                object.pieces.push((piece(start + k * chunk + offset, width), count));
-            }
-            offset += bytes;
+            continue;
         }
+        for k in 0..chunks.min(MOST) {
+            object.pieces.push((piece(start + k * chunk + offset, width), count));
+        }
+        // Where the recorder was stopped, the last chunk holds what was written until then.
+        let left = rest.saturating_sub(offset).min(bytes) / width as u64;
+        if is_cut && left > 0 {
+            object.pieces.push((piece(start + chunks * chunk + offset, width), left));
+        }
+        offset += bytes;
     }
+    (rest > 0 && !is_cut).then(|| format!("{rest} bytes at its end are no whole chunk and are left out"))
 }
 
 struct Metadata<'a> {

@@ -86,8 +86,9 @@ impl Dialect {
         if self.separator == ' ' {
             return line.split_whitespace().map(clean).collect();
         }
-        if !line.contains('"') {
-            return line.split(self.separator).map(str::trim).collect();
+        // A quote without its other half takes no separator along.
+        if line.matches('"').count() % 2 == 1 || !line.contains('"') {
+            return line.split(self.separator).map(clean).collect();
         }
         let (mut fields, mut from, mut quoted) = (Vec::new(), 0, false);
         for (at, c) in line.char_indices() {
@@ -139,18 +140,21 @@ impl Dialect {
 
 /// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line
 /// above has no comma, or the first part is `-0`, or what is behind the comma has always the same digits,
-/// zeros at its beginning, too.
+/// zeros at its beginning, too. One line in ten may be damaged.
 fn is_one_column(head: &[String], rows: &[String]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let pairs: Option<Vec<(&str, &str)>> = rows
-        .iter()
-        .map(|line| line.trim().trim_matches('"'))
-        .filter(|line| !line.is_empty())
-        .map(|line| {
-            line.split_once(',').filter(|(a, b)| digits(a.trim_start_matches(['-', '+'])) && digits(b))
-        })
-        .collect();
-    let Some(pairs) = pairs.filter(|pairs| !pairs.is_empty()) else { return false };
+    // `1,25e-3` is a number, too.
+    let mantissa = |text: &str| text.split_once(['e', 'E', 'd', 'D']).map(|(before, _)| before.len());
+    let lines = rows.iter().map(|line| line.trim().trim_matches('"')).filter(|line| !line.is_empty());
+    let (mut count, mut pairs): (usize, Vec<(&str, &str)>) = (0, Vec::new());
+    for line in lines {
+        count += 1;
+        let pair = line.split_once(',').map(|(a, b)| (a, &b[..mantissa(b).unwrap_or(b.len())]));
+        pairs.extend(pair.filter(|(a, b)| digits(a.trim_start_matches(['-', '+'])) && digits(b)));
+    }
+    if pairs.is_empty() || 10 * (count - pairs.len()) > count {
+        return false;
+    }
     if let Some(name) = head.iter().rev().find(|line| !line.trim().is_empty()) {
         return !name.contains(',');
     }

@@ -113,6 +113,8 @@ pub(super) fn table(dice: &mut Dice) -> Made {
         text += &form.row(&std::iter::once(unit.0.to_owned()).chain(others).collect::<Vec<_>>());
         skipped.push(above + 1);
     }
+    // What pandas is told of the head must stay true.
+    let head = text.len();
     let missing = dice.one_in(6).then(|| dice.pick(&["", "NaN", "nan", "N/A"]).to_owned());
     for n in 0..ROWS {
         let signal = |k: usize| form.number(((n * (37 + 2 * k) % 101) as f64 - 50.0) / 50.0);
@@ -125,7 +127,7 @@ pub(super) fn table(dice: &mut Dice) -> Made {
         }
         text += &form.row(&row);
     }
-    let (encoding, bytes) = encoded(&text, dice);
+    let (encoding, bytes, head) = encoded(&text, head, dice);
     // A rate follows from times that have the digits.
     let fine = timed && named && (form.exponent || second.1 < 1.0 || form.digits > 6);
     let separator = if form.separator == ' ' { r"\s+".to_owned() } else { form.separator.to_string() };
@@ -139,24 +141,34 @@ pub(super) fn table(dice: &mut Dice) -> Made {
     });
     let (done, bytes) = match dice.below(4) {
         0 | 1 => ("nothing: its dialect", bytes),
-        2 => damage::fields(&bytes, dice),
-        _ => lines(&bytes, dice),
+        2 => behind(&bytes, head, damage::fields, dice),
+        _ => behind(&bytes, head, lines, dice),
     };
     let rate_hz = (fine && done.starts_with("nothing")).then_some(RATE_HZ);
     Made { kind: "csv", from: format!("a table split by {:?}", form.separator), done, bytes, told: Some(told), rate_hz }
 }
 
-/// The text in one of the encodings that programs write.
-fn encoded(text: &str, dice: &mut Dice) -> (&'static str, Vec<u8>) {
+/// The text in one of the encodings that programs write, and the bytes of its first `head` ones.
+fn encoded(text: &str, head: usize, dice: &mut Dice) -> (&'static str, Vec<u8>, usize) {
+    let latin = |text: &str| text.chars().map(|c| c as u32 as u8).collect::<Vec<u8>>();
+    let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
     match dice.below(8) {
-        0 => ("utf-8-sig", ["\u{feff}".as_bytes(), text.as_bytes()].concat()),
-        1 => ("cp1252", text.chars().map(|c| c as u32 as u8).collect()),
-        2 => {
-            let wide = text.encode_utf16().flat_map(u16::to_le_bytes);
-            ("utf-16", [0xff, 0xfe].into_iter().chain(wide).collect())
-        }
-        _ => ("utf-8", text.as_bytes().to_vec()),
+        0 => ("utf-8-sig", ["\u{feff}".as_bytes(), text.as_bytes()].concat(), head + 3),
+        1 => ("cp1252", latin(text), latin(&text[..head]).len()),
+        2 => ("utf-16", [vec![0xff, 0xfe], wide(text)].concat(), wide(&text[..head]).len() + 2),
+        _ => ("utf-8", text.as_bytes().to_vec(), head),
     }
+}
+
+/// Damages what stands behind the first `head` bytes.
+fn behind(
+    bytes: &[u8],
+    head: usize,
+    damaged: impl Fn(&[u8], &mut Dice) -> (&'static str, Vec<u8>),
+    dice: &mut Dice,
+) -> (&'static str, Vec<u8>) {
+    let (done, rest) = damaged(&bytes[head..], dice);
+    (done, [&bytes[..head], &rest].concat())
 }
 
 /// Damages lines of a text: what an editor, an export or a copy that broke off does.

@@ -58,7 +58,7 @@ pub(super) fn judge(ours: &Reading, theirs: &Reading) -> Verdict {
 
 /// In what two channels are not the same.
 fn unlike(own: &Held, of: &Held) -> Option<&'static str> {
-    let same = |a: f64, b: f64, part: f64| (a - b).abs() <= part * a.abs().max(b.abs());
+    let same = |a: f64, b: f64, part: f64| a.is_finite() && (a - b).abs() <= part * a.abs().max(b.abs());
     if of.len.is_some() && own.len != of.len {
         return Some("samples");
     }

@@ -12,7 +12,6 @@ pub(super) struct Seen {
     pub(super) seed: u64,
     pub(super) made: Made,
     pub(super) ours: Reading,
-    pub(super) theirs: Reading,
     pub(super) verdict: Verdict,
 }
 
@@ -66,8 +65,9 @@ fn reader(kind: &str) -> &'static str {
     }
 }
 
-/// Differences that were looked at and lie with the other program: format, in what, and why.
-const EXPLAINED: [(&str, &str, &str); 0] = [];
+/// Differences that were looked at and lie with the other program: format, in what (all where it is empty), by
+/// what damage (all where it is empty), and why.
+const EXPLAINED: [(&str, &str, &str, &str); 0] = [];
 
 impl Tables {
     pub(super) fn took(&mut self, time: Duration) {
@@ -110,7 +110,7 @@ impl Tables {
 
     /// Differences that no line of [`EXPLAINED`] speaks of.
     pub(super) fn unexplained(&self) -> u64 {
-        self.kinds.iter().filter(|((kind, what, _), _)| explained(kind, what).is_none()).map(|(_, k)| k.count).sum()
+        self.kinds.iter().filter(|((kind, what, done), _)| explained(kind, what, done).is_none()).map(|(_, k)| k.count).sum()
     }
 
     pub(super) fn page(&self, files: u64, first: u64, versions: &str) -> String {
@@ -150,7 +150,7 @@ impl Tables {
                      |---|---|---|---|---|---|---|\n";
         }
         for ((kind, what, done), k) in &self.kinds {
-            let why = explained(kind, what).unwrap_or("**not explained**");
+            let why = explained(kind, what, done).unwrap_or("**not explained**");
             let _ = writeln!(
                 page,
                 "| {kind} | {what} | {done} | {} | {}, {} | {} | {why} |",
@@ -171,8 +171,10 @@ impl Tables {
     }
 }
 
-fn explained(kind: &str, what: &str) -> Option<&'static str> {
-    EXPLAINED.iter().find(|(of, in_what, _)| *of == kind && *in_what == what).map(|(.., why)| *why)
+fn explained(kind: &str, what: &str, done: &str) -> Option<&'static str> {
+    let any = |own: &str, of: &str| own.is_empty() || own == of;
+    let found = EXPLAINED.iter().find(|of| of.0 == kind && any(of.1, what) && any(of.2, done));
+    found.map(|of| of.3)
 }
 
 /// A message without the path of its file, its numbers and its quotes: messages of one kind are one.

@@ -128,7 +128,7 @@ pub(crate) fn against(wanted: &Wanted<'_>, folder: &Path) -> Result<ExitCode> {
             if let (Some(keep), Verdict::Differ(..) | Verdict::OursRefuses) = (wanted.keep, &verdict) {
                 keep_file(keep, seed, &made, &path, &format!("{verdict:?}\n{found:?}\n{theirs:?}"))?;
             }
-            tables.take(Seen { seed, made, ours: found, theirs, verdict });
+            tables.take(Seen { seed, made, ours: found, verdict });
             std::fs::remove_file(path).ok();
         }
         from = until;
