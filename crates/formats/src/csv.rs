@@ -90,6 +90,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     let (names, units) = head::names(&start[..first], dialect, columns);
     let (census, rows, mut notes) = census(path, coding, dialect, first as u64, columns)?;
+    let rate_hz = head::rate_hz(&start[..first], dialect);
     let mut channels = Vec::new();
     for (at, (name, census)) in names.into_iter().zip(census).enumerate() {
         if let Some(why) = census.refusal() {
@@ -113,7 +114,8 @@ pub fn open(path: &Path) -> Result<Recording> {
         let column = Column { path: path.to_owned(), at, preamble: first as u64, dialect, coding, origin_s };
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
         let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
-        channels.push(Channel::text(name, rows, column).in_unit(unit.filter(|unit| !unit.is_empty())));
+        let channel = Channel::text(name, rows, column).at_rate(rate_hz);
+        channels.push(channel.in_unit(unit.filter(|unit| !unit.is_empty())));
     }
     Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
 }

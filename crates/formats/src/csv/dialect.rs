@@ -120,22 +120,46 @@ impl Dialect {
         stamp(field).map_or(Field::Text, |(s, ns)| Field::Stamp(s, ns))
     }
 
-    fn number(&self, field: &str) -> Option<f64> {
+    /// A number with the decimal sign of the table, and with its thousands in groups.
+    pub(super) fn number(&self, field: &str) -> Option<f64> {
         // Rust takes words for numbers that are none here.
         if !field.contains(|c: char| c.is_ascii_digit()) {
             return None;
         }
+        // Some write a minus that is no hyphen.
+        let field = field.replace('\u{2212}', "-");
         let plain = |text: &str| text.parse::<f64>().ok();
         let number = |text: &str| {
             // FORTRAN writes D for the exponent of a double.
             plain(text).or_else(|| plain(&text.replace(['d', 'D'], "e")))
         };
+        let (point, group) = if self.decimal_comma { (',', '.') } else { ('.', ',') };
+        let grouped = |sign: char| ungrouped(&field, point, sign).and_then(|text| plain(&text));
         if self.decimal_comma && field.contains(',') {
-            number(&field.replace(',', "."))
+            number(&field.replace(',', ".")).or_else(|| grouped(group))
         } else {
-            number(field)
+            number(&field).or_else(|| grouped(group))
         }
+        .or_else(|| ['\'', '\u{2019}', '\u{a0}', '\u{202f}', ' '].into_iter().find_map(grouped))
     }
+}
+
+/// `1.234.567,5` without the signs between its thousands, and with a decimal point. Without a fraction a
+/// single sign may be the decimal one: then it is none.
+fn ungrouped(field: &str, point: char, group: char) -> Option<String> {
+    let (whole, fraction) = match field.split_once(point) {
+        Some((whole, fraction)) => (whole, Some(fraction)),
+        None => (field, None),
+    };
+    let mut groups = whole.trim_start_matches(['-', '+']).split(group);
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let first = groups.next().filter(|text| digits(text) && text.len() <= 3)?;
+    let rest: Vec<&str> = groups.collect();
+    let is_grouped = rest.iter().all(|text| text.len() == 3 && digits(text))
+        && fraction.is_none_or(digits)
+        && rest.len() >= if fraction.is_some() { 1 } else { 2 };
+    let sign = if whole.starts_with('-') { "-" } else { "" };
+    is_grouped.then(|| format!("{sign}{first}{}.{}", rest.concat(), fraction.unwrap_or("0")))
 }
 
 /// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line
@@ -150,7 +174,8 @@ fn is_one_column(head: &[String], rows: &[String]) -> bool {
     for line in lines {
         count += 1;
         let pair = line.split_once(',').map(|(a, b)| (a, &b[..mantissa(b).unwrap_or(b.len())]));
-        pairs.extend(pair.filter(|(a, b)| digits(a.trim_start_matches(['-', '+'])) && digits(b)));
+        let whole = |a: &str| digits(a) || ungrouped(&format!("{a},0"), ',', '.').is_some();
+        pairs.extend(pair.filter(|(a, b)| whole(a.trim_start_matches(['-', '+'])) && digits(b)));
     }
     if pairs.is_empty() || 10 * (count - pairs.len()) > count {
         return false;
