@@ -141,7 +141,19 @@ fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
         field.contains(if dialect.decimal_comma { ',' } else { '.' })
             && matches!(dialect.field(field), Field::Number(_))
     });
-    columns > 1 && fields.len() == columns && 2 * fractions.count() >= columns
+    let fractions = fractions.count();
+    let alone = || {
+        // A single column has no neighbours that would tell: signs of numbers alone, and no date.
+        let signs = fields[0].chars().all(|c| c.is_ascii_digit() || ".,+-eE".contains(c));
+        signs && fields[0].len() > 4 && dialect.field(fields[0]) == Field::Text
+    };
+    fields.len() == columns
+        && match columns {
+            0 => false,
+            1 => alone(),
+            2 => fractions > 0,
+            _ => 2 * fractions > columns,
+        }
 }
 
 /// Columns of the first rows.

@@ -106,7 +106,7 @@ pub fn open(path: &Path) -> Result<Recording> {
             let data = (at + LEAD_IN + raw, next - raw);
             let (interleaved, is_cut) = (contents & INTERLEAVED != 0, long(12) > behind);
             let odd = if contents & DAQMX != 0 {
-                daqmx::place(path, data, &active, &mut objects)
+                daqmx::place(path, data, is_cut, &active, &mut objects)
             } else {
                 place(path, data, (interleaved, is_cut), &active, &mut objects)
             };

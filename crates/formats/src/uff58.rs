@@ -277,16 +277,11 @@ impl Lines<'_> {
                 columns.push(word);
                 rest = behind;
             }
-            // Many programs do not keep to the columns; in those of others numbers touch each other.
-            let count = columns.len();
+            // Many programs do not keep to the columns; in those of others, of 80 signs, numbers touch.
             let fixed = columns.into_iter().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
             let free = line.split_whitespace().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
-            let row = match (free, fixed) {
-                (Ok(free), Ok(_)) if free.len() == count => free,
-                (_, Ok(fixed)) => fixed,
-                (Ok(free), Err(_)) => free,
-                _ => return Err(format!("`{}` is no row of numbers", line.trim())),
-            };
+            let fixed = fixed.ok().filter(|_| line.trim_end().len() <= 80);
+            let row = free.ok().or(fixed).ok_or_else(|| format!("`{}` is no row of numbers", line.trim()))?;
             values.extend(row);
         }
         Ok(values)
@@ -309,6 +304,9 @@ impl Lines<'_> {
         let ends = behind.trim_ascii_start().starts_with(b"-1");
         if data.len() as u64 == bytes && !ends && !behind.trim_ascii().is_empty() {
             return Err(format!("no delimiter stands behind its {bytes} bytes"));
+        }
+        if (data.len() as u64) < bytes && data.trim_ascii_end().ends_with(b"    -1") {
+            return Err(format!("it promises {bytes} bytes, and a delimiter stands before their end"));
         }
         let number = |kind| Number { kind, big_endian: order == 2 };
         let (single, ordinate) = (number(Kind::F32), number(if double { Kind::F64 } else { Kind::F32 }));

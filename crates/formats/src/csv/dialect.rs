@@ -140,7 +140,11 @@ impl Dialect {
         } else {
             number(&field).or_else(|| grouped(group))
         }
-        .or_else(|| ['\'', '\u{2019}', '\u{a0}', '\u{202f}', ' '].into_iter().find_map(grouped))
+        .or_else(|| {
+            let signs = ['\'', '\u{2019}', '\u{a0}', '\u{202f}', ' '];
+            let point = if field.contains(point) { point } else { '.' };
+            signs.into_iter().find_map(|sign| plain(&ungrouped(&field, point, sign)?))
+        })
     }
 }
 

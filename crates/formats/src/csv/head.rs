@@ -62,7 +62,11 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
         let rest = rest.trim_matches(|c: char| c.is_whitespace() || "\";,:=".contains(c));
         let end = rest.find(|c: char| !(c.is_ascii_digit() || ".,+-eE".contains(c)));
         let (number, behind) = rest.split_at(end.unwrap_or(rest.len()));
-        let value = number.parse().ok().or_else(|| dialect.number(number.trim_end_matches([',', '.'])))?;
+        let number = number.trim_end_matches([',', '.']);
+        // The head may have another decimal sign than the table.
+        let plain = |text: &str| text.parse().ok();
+        let value = plain(number).or_else(|| dialect.number(number));
+        let value = value.or_else(|| plain(&number.replacen(',', ".", 1)))?;
         let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || word.ends_with("Hz"));
         // A word that is no unit may be one that is not known; a sentence goes on behind a comma or a point.
         let alone = behind.trim().is_empty() || unit.is_some() || behind.starts_with(['\t', ';', ',']);

@@ -76,6 +76,7 @@ impl Scaler {
 pub(super) fn place(
     path: &Path,
     (start, held): (u64, u64),
+    is_cut: bool,
     active: &[String],
     objects: &mut HashMap<String, Object>,
 ) -> Option<String> {
@@ -94,8 +95,17 @@ pub(super) fn place(
     // Far more chunks than any recorder writes would be a damaged count.
     const MOST: u64 = 10_000_000;
     let (chunks, rest) = ((held / chunk).min(MOST), held % chunk);
-    // Of one card what was written of the last chunk can be told.
-    let last = if widths.len() == 1 { rest / widths[0] } else { 0 };
+    // Where the recorder was stopped, the last chunk holds what was written until then, card after card.
+    let mut unread = if is_cut { rest } else { 0 };
+    let last: Vec<u64> = sizes
+        .iter()
+        .zip(&widths)
+        .map(|(size, width)| {
+            let here = unread.min(*size);
+            unread -= here;
+            here.checked_div(*width).unwrap_or(0)
+        })
+        .collect();
     for name in active {
         let Some(object) = objects.get_mut(name) else { continue };
         let Some(scaler) = object.scaler.clone() else { continue };
@@ -107,9 +117,10 @@ pub(super) fn place(
             object.pieces.push((strided, count));
         };
         (0..chunks).for_each(|k| piece(start + k * chunk, scaler.count));
+        let last = last[scaler.buffer].min(scaler.count);
         if last > 0 {
-            piece(start + chunks * chunk, last.min(scaler.count));
+            piece(start + chunks * chunk, last);
         }
     }
-    (rest > 0 && last == 0).then(|| format!("{rest} bytes at its end are no whole chunk and are left out"))
+    (rest > 0 && !is_cut).then(|| format!("{rest} bytes at its end are no whole chunk and are left out"))
 }
