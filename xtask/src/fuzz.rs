@@ -170,7 +170,8 @@ mod tests {
 
     #[test]
     fn survives_generated_bad_inputs_with_an_answer() {
-        let code = run(&Options { cases: 800, seed: 7, kind: None, peers: None, seconds: 0, keep: None }).expect("a folder for temporary files");
+        let code = run(&Options { cases: 800, seed: 7, kind: None, peers: None, seconds: 0, keep: None })
+            .expect("a folder for temporary files");
         assert_eq!(code, ExitCode::SUCCESS);
     }
 }

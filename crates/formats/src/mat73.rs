@@ -265,8 +265,7 @@ impl Found {
 /// The line from stored to physical values that netCDF's conventions write beside a set.
 fn scale(attributes: &HashMap<String, AttrValue>) -> Option<Curve> {
     let [slope, offset] = ["scale_factor", "add_offset"].map(|name| attributes.get(name).and_then(number));
-    (slope.is_some() || offset.is_some())
-        .then(|| Curve::linear(offset.unwrap_or(0.0), slope.unwrap_or(1.0)))
+    (slope.is_some() || offset.is_some()).then(|| Curve::linear(offset.unwrap_or(0.0), slope.unwrap_or(1.0)))
 }
 
 /// The number of an attribute.

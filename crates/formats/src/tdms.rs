@@ -165,9 +165,8 @@ fn place(
 ) -> Option<String> {
     // Far more chunks than any recorder writes would be a damaged count.
     const MOST: u64 = 10_000_000;
-    let chunk = active.iter().filter_map(|name| objects.get(name)).try_fold(0_u64, |sum, o| {
-        sum.checked_add(o.bytes)
-    });
+    let chunk =
+        active.iter().filter_map(|name| objects.get(name)).try_fold(0_u64, |sum, o| sum.checked_add(o.bytes));
     let Some(chunk) = chunk else { return Some("its sizes are no sizes: it is left out".to_owned()) };
     if chunk == 0 {
         return None;

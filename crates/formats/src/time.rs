@@ -57,7 +57,8 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     let channels = &mut recording.channels;
     let courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
     for (channel, course) in channels.iter_mut().zip(&courses) {
-        channel.is_time |= course.as_ref().is_some_and(|course| course.is_even() || says_time(own_name(channel)));
+        channel.is_time |=
+            course.as_ref().is_some_and(|course| course.is_even() || says_time(own_name(channel)));
         if let (true, Unit::Time(unit, _)) = (channel.is_time, unit_of(channel)) {
             channel.unit = Some(unit.to_owned());
         }

@@ -26,7 +26,8 @@ fn says(found: &Recording, words: &str) {
 #[test]
 fn issue_a_damaged_row_of_a_text_costs_its_fields() {
     let desk = Scratch::create("formats-damaged-text");
-    let good: Vec<String> = (0..100).map(|n| format!("\"{}.5\"|\"{}\"|\"{:.2}\"", n, signal(n), -signal(n))).collect();
+    let good: Vec<String> =
+        (0..100).map(|n| format!("\"{}.5\"|\"{}\"|\"{:.2}\"", n, signal(n), -signal(n))).collect();
     let damaged = |at: usize, row: &str| {
         let mut rows = good.clone();
         row.clone_into(&mut rows[at]);

@@ -176,9 +176,14 @@ fn issue_thousands_minus_signs_and_times_with_their_unit() {
     let desk = Scratch::create("formats-kinds-thousands");
     let value = |n: usize| 1500.0 * signal(n);
     let grouped = |n: usize, group: &str| {
-        let (whole, cents) = ((value(n).abs() * 100.0).round() as u64 / 100, (value(n).abs() * 100.0).round() as u64 % 100);
+        let (whole, cents) =
+            ((value(n).abs() * 100.0).round() as u64 / 100, (value(n).abs() * 100.0).round() as u64 % 100);
         let sign = if value(n) < 0.0 { "-" } else { "" };
-        let text = if whole > 999 { format!("{}{group}{:03}", whole / 1000, whole % 1000) } else { whole.to_string() };
+        let text = if whole > 999 {
+            format!("{}{group}{:03}", whole / 1000, whole % 1000)
+        } else {
+            whole.to_string()
+        };
         (format!("{sign}{text}"), format!("{cents:02}"))
     };
     let row = |n: usize, sign: char, group: &str, quote: &str, split: char| {
@@ -199,7 +204,8 @@ fn issue_thousands_minus_signs_and_times_with_their_unit() {
     // A single group without a fraction may be a decimal point: no number.
     let found = Recording::open({
         let path = desk.join("b.csv");
-        std::fs::write(&path, "t [ms];acc\n".to_owned() + &lines(|n| format!("{n};1,{:03}", 100 + n))).unwrap();
+        std::fs::write(&path, "t [ms];acc\n".to_owned() + &lines(|n| format!("{n};1,{:03}", 100 + n)))
+            .unwrap();
         path
     });
     let read = found.unwrap().channels.iter().find(|c| c.name == "acc").map(|c| c.read().unwrap()[1]);
@@ -208,7 +214,10 @@ fn issue_thousands_minus_signs_and_times_with_their_unit() {
     for (unit, second) in [(" sec", 1.0), (" ms", 1e-3), ("ms", 1e-3), (" min", 60.0)] {
         let text = lines(|n| format!("{:.9}{unit},{}", n as f64 / RATE_HZ / second, signal(n)));
         let (rate_hz, found) = samples(&desk, &("Time,Acc\n".to_owned() + &text));
-        assert!((rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-3 && found[7] == signal(7), "{unit}: {rate_hz:?}");
+        assert!(
+            (rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-3 && found[7] == signal(7),
+            "{unit}: {rate_hz:?}"
+        );
     }
 }
 

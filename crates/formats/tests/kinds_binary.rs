@@ -586,11 +586,8 @@ fn issue_properties_and_channels_of_tdms_say_the_rate() {
     for (name, second) in [("Time", 1.0), ("t [ms]", 1e-3)] {
         let times: Vec<u8> = (0..COUNT).flat_map(|n| (n as f64 / RATE_HZ / second).to_le_bytes()).collect();
         let time = tdms_object(&format!("/'g'/'{name}'"), &Index::Of(F64, COUNT as u64), &[]);
-        let segment = tdms_segment(
-            &[time, of(Index::Of(F64, COUNT as u64))],
-            true,
-            &[times, data.clone()].concat(),
-        );
+        let segment =
+            tdms_segment(&[time, of(Index::Of(F64, COUNT as u64))], true, &[times, data.clone()].concat());
         let found = opened(&desk, "a.tdms", &segment);
         let hz = found.channel("g/acc").unwrap().rate_hz.unwrap_or_else(|| panic!("{:?}", found.notes));
         assert!((hz / RATE_HZ - 1.0).abs() < 1e-6, "{name}: {hz}");

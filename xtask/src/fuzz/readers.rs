@@ -107,11 +107,8 @@ impl Shelf {
         let of: Vec<_> = self.files.iter().filter(|(has, ..)| has == kind).collect();
         let (_, name, good) = of[dice.below(of.len())];
         let text = matches!(kind, "inp" | "msh" | "uff") && !name.starts_with("binary");
-        let (done, bytes) = if text && !dice.one_in(4) {
-            forms::lines(good, dice)
-        } else {
-            damage::fields(good, dice)
-        };
+        let (done, bytes) =
+            if text && !dice.one_in(4) { forms::lines(good, dice) } else { damage::fields(good, dice) };
         Made { kind, from: name.clone(), done, bytes, told: None, rate_hz: None }
     }
 }

@@ -82,12 +82,14 @@ pub(super) fn place(
 ) -> Option<String> {
     let scalers: Vec<&Scaler> = active.iter().filter_map(|name| objects.get(name)?.scaler.as_ref()).collect();
     let widths = scalers.first()?.widths.clone();
-    let others = active.iter().filter_map(|name| objects.get(name)).any(|o| o.scaler.is_none() && o.bytes > 0);
+    let others =
+        active.iter().filter_map(|name| objects.get(name)).any(|o| o.scaler.is_none() && o.bytes > 0);
     if others || scalers.iter().any(|scaler| scaler.widths != widths) {
         return Some("its channels do not agree in how a row is made: it is left out".to_owned());
     }
     let rows = |card: usize| scalers.iter().filter(|s| s.buffer == card).map(|s| s.count).max().unwrap_or(0);
-    let sizes: Option<Vec<u64>> = (0..widths.len()).map(|card| rows(card).checked_mul(widths[card])).collect();
+    let sizes: Option<Vec<u64>> =
+        (0..widths.len()).map(|card| rows(card).checked_mul(widths[card])).collect();
     let chunk = sizes.as_ref().and_then(|all| all.iter().try_fold(0_u64, |sum, n| sum.checked_add(*n)));
     let (Some(sizes), Some(chunk)) = (sizes, chunk.filter(|n| *n > 0)) else {
         return Some("its sizes are no sizes: it is left out".to_owned());
@@ -113,7 +115,8 @@ pub(super) fn place(
         let mut piece = |chunk_start: u64, count: u64| {
             let start = chunk_start + before + scaler.offset;
             let stride = widths[scaler.buffer] as usize;
-            let strided = Strided { path: path.to_owned(), start, stride, number: scaler.number, factor: 1.0 };
+            let strided =
+                Strided { path: path.to_owned(), start, stride, number: scaler.number, factor: 1.0 };
             object.pieces.push((strided, count));
         };
         (0..chunks).for_each(|k| piece(start + k * chunk, scaler.count));

@@ -145,7 +145,14 @@ pub(super) fn table(dice: &mut Dice) -> Made {
         _ => behind(&bytes, head, lines, dice),
     };
     let rate_hz = (fine && done.starts_with("nothing")).then_some(RATE_HZ);
-    Made { kind: "csv", from: format!("a table split by {:?}", form.separator), done, bytes, told: Some(told), rate_hz }
+    Made {
+        kind: "csv",
+        from: format!("a table split by {:?}", form.separator),
+        done,
+        bytes,
+        told: Some(told),
+        rate_hz,
+    }
 }
 
 /// The text in one of the encodings that programs write, and the bytes of its first `head` ones.

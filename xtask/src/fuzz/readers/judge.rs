@@ -51,7 +51,10 @@ pub(super) fn judge(ours: &Reading, theirs: &Reading) -> Verdict {
             let pairs = rest.iter().flat_map(|own| only_theirs.iter().map(move |of| (own, of)));
             let pair = pairs.into_iter().find(|(own, of)| last(&own.name) == last(&of.name));
             let (own, of) = pair.unwrap_or((own, first));
-            Verdict::Differ(unlike(own, of).unwrap_or("samples"), format!("{}; theirs {}", words(own), words(of)))
+            Verdict::Differ(
+                unlike(own, of).unwrap_or("samples"),
+                format!("{}; theirs {}", words(own), words(of)),
+            )
         }
     }
 }
@@ -78,7 +81,8 @@ fn unlike(own: &Held, of: &Held) -> Option<&'static str> {
 /// A channel in words.
 fn words(of: &Held) -> String {
     let rate = of.rate_hz.map_or(String::new(), |hz| format!(", {hz:.6} Hz"));
-    format!("`{}` {} of {:?}, rms {:.6e}{rate}", of.name, of.numbers, of.len, of.rms)
+    let len = of.len.map_or(String::new(), |len| format!(" of {len}"));
+    format!("`{}` {}{len}, rms {:.6e}{rate}", of.name, of.numbers, of.rms)
 }
 
 #[cfg(test)]
@@ -101,7 +105,9 @@ mod tests {
         assert_eq!(judge(&one(), &two()), Verdict::OursHasFewer);
         assert_eq!(judge(&two(), &one()), Verdict::TheirsHasFewer);
         for (other, what) in [(held("a", 8, 1.0), "samples"), (held("a", 9, 1.1), "rms")] {
-            assert!(matches!(judge(&one(), &Ok(vec![other])), Verdict::Differ(in_what, _) if in_what == what));
+            assert!(
+                matches!(judge(&one(), &Ok(vec![other])), Verdict::Differ(in_what, _) if in_what == what)
+            );
         }
         let fast = Held { rate_hz: Some(9.0), ..held("a", 9, 1.0) };
         let slow = Held { rate_hz: Some(8.0), ..held("a", 9, 1.0) };

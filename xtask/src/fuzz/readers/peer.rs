@@ -145,9 +145,7 @@ pub(crate) fn against(wanted: &Wanted<'_>, folder: &Path) -> Result<ExitCode> {
 }
 
 fn with_rate(theirs: Reading, rate_hz: Option<f64>) -> Reading {
-    theirs.map(|all| {
-        all.into_iter().map(|held| Held { rate_hz: held.rate_hz.or(rate_hz), ..held }).collect()
-    })
+    theirs.map(|all| all.into_iter().map(|held| Held { rate_hz: held.rate_hz.or(rate_hz), ..held }).collect())
 }
 
 /// Keeps a file with what was said of it, for a closer look.
