@@ -173,6 +173,8 @@ fn census(
 ) -> Result<(Vec<Census>, u64, Vec<String>)> {
     let mut all: Vec<Census> = (0..columns).map(|_| Census::default()).collect();
     let (mut rows, mut notes, mut short) = (0, Vec::new(), None);
+    // Rows that hold more than there are columns, and the first of them.
+    let mut longer: (u64, u64) = (0, 0);
     let mut lines = Lines::open(path, coding)?;
     while let Some(line) = lines.next(path)? {
         if lines.read <= preamble || dialect.is_empty(&line) {
@@ -181,10 +183,19 @@ fn census(
         rows += 1;
         let fields = dialect.split(&line);
         short = (fields.len() < columns).then_some(lines.read);
+        if fields.iter().skip(columns).any(|field| !field.is_empty()) {
+            longer = (longer.0 + 1, if longer.0 == 0 { lines.read } else { longer.1 });
+        }
         for (at, census) in all.iter_mut().enumerate() {
             let field = fields.get(at).copied().unwrap_or_default();
             census.take(dialect.field(field), field, lines.read);
         }
+    }
+    if let (count @ 1.., line) = longer {
+        notes.push(format!(
+            "rows with more than {columns} fields: {count}, the first in line {line}; what is too many is \
+             left out"
+        ));
     }
     if let Some(line) = short {
         notes.push(format!("line {line}, the last, is cut off and left out"));

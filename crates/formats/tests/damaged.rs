@@ -42,6 +42,10 @@ fn issue_a_damaged_row_of_a_text_costs_its_fields() {
     let found = damaged(40, "\"40\"0.5\"|\"-0.5\"|\"0.5\"");
     let all: Vec<Vec<f64>> = found.channels.iter().map(|c| c.read().unwrap()).collect();
     assert!(all[0][40].is_nan() && all[1][40] == -0.5 && all[2][40] == 0.5, "{:?}", found.notes);
+    // What a row has too many is said.
+    let found = damaged(40, "\"40.5\"|\"-0.5\"|\"0.5\"|\"41.5\"");
+    assert_eq!((found.channels.len(), found.channels[0].len), (3, 100));
+    says(&found, "rows with more than 3 fields: 1, the first in line 41");
     // One line that ends otherwise than the others.
     let old = good.join("\r").replacen("|\"-", "|\"-", 1) + "\r\n\r";
     let found = opened(&desk, "b.csv", old.as_bytes());

@@ -146,15 +146,15 @@ fn lines(row: impl Fn(usize) -> String) -> String {
 fn issue_one_column_with_decimal_commas_however_its_numbers_are_written() {
     let desk = Scratch::create("formats-kinds-column");
     let comma = |text: String| text.replace('.', ",");
-    let exact = |n: usize| (1e3 * signal(n) - 0.5 * (n % 2) as f64, 1e-9);
+    let exact = |n: usize| 1e3 * signal(n) - 0.5 * (n % 2) as f64;
     for (text, factor) in [
-        (lines(|n| comma(format!("{:.6e}", exact(n).0))), 1.0),
-        ("acc\n".to_owned() + &lines(|n| comma(format!("{:.2}", exact(n).0))), 1.0),
-        ("acc\n".to_owned() + &lines(|n| format!("\"{}\"", comma(format!("{:.2}", exact(n).0)))), 1.0),
+        (lines(|n| comma(format!("{:.6e}", exact(n)))), 1.0),
+        ("acc\n".to_owned() + &lines(|n| comma(format!("{:.2}", exact(n)))), 1.0),
+        ("acc\n".to_owned() + &lines(|n| format!("\"{}\"", comma(format!("{:.2}", exact(n))))), 1.0),
         // Thousands in groups; in every tenth row and more there is one.
         (
             "acc\n".to_owned()
-                + &lines(|n| comma(format!("{:.2}", exact(n).0 + 500.0)).replace("1010,", "1.010,")),
+                + &lines(|n| comma(format!("{:.2}", exact(n) + 500.0)).replace("1010,", "1.010,")),
             0.0,
         ),
     ] {
@@ -162,12 +162,15 @@ fn issue_one_column_with_decimal_commas_however_its_numbers_are_written() {
         let text = if text.starts_with("acc") { text } else { "Messung 7\n".to_owned() + &text };
         let (_, found) = samples(&desk, &text);
         let shift = if factor == 0.0 { 500.0 } else { 0.0 };
-        let good = found.iter().enumerate().all(|(n, x)| (x - exact(n).0 - shift).abs() < 1e-6);
+        let good = found.iter().enumerate().all(|(n, x)| (x - exact(n) - shift).abs() < 1e-6);
         assert!(good && found.len() == 300, "{}", &text[..80]);
     }
     // One row that is damaged does not split the others.
     let row = |n: usize| if n == 3 { "-0;x6".to_owned() } else { comma(format!("{:.2}", signal(n))) };
     let (_, found) = samples(&desk, &("acc\n".to_owned() + &lines(row)));
+    // Nor without a name above.
+    let short = lines(|n| if n == 3 { "0,1".to_owned() } else { comma(format!("{:.2}", signal(n).abs())) });
+    assert_eq!(samples(&desk, &short).1[3..5], [0.1, 0.06]);
     assert!(found[3].is_nan() && found[7] == 0.01 * (100.0 * signal(7)).round(), "{:?}", &found[..8]);
 }
 
@@ -230,7 +233,8 @@ fn issue_lines_above_a_table_say_its_rate() {
         "Sampling Frequency: 12.8 kHz\nacc\n",
         "Record Length,300\nSample Interval,7.8125e-05\nacc\n",
         "Delta_X\t7,8125E-5\nacc\n",
-        "Audacity Sample Data Export\nSample Rate: 12800 Hz. Sample values on linear scale. 1 channel (mono).\n\n",
+        "Audacity Sample Data Export\nSample Rate: 12800 Hz. Sample values on linear scale. 1 channel \
+         (mono).\n\n",
     ] {
         let (rate_hz, found) = samples(&desk, &(head.to_owned() + &lines(|n| format!("{:.4}", signal(n)))));
         assert_eq!((rate_hz, found.len(), found[7]), (Some(RATE_HZ), 300, signal(7)), "{head}");

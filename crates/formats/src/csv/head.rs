@@ -53,8 +53,8 @@ fn is_row_of_units(row: &[String]) -> bool {
     !some.is_empty() && (2 * known > some.len() || known > 0 && time)
 }
 
-/// The sample rate [Hz] that a line above the table says: `fs = 12800`, `Sample rate: 12.8 kHz`, `Delta_X` and
-/// the step behind a separator. Lines that contradict each other say nothing.
+/// The sample rate [Hz] that a line above the table says: `fs = 12800`, `Sample rate: 12.8 kHz`, `Delta_X`
+/// and the step behind a separator. Lines that contradict each other say nothing.
 pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
     let mut said = head.iter().filter_map(|line| {
         let line = line.trim_start_matches(|c: char| c.is_whitespace() || "#%\"".contains(c));

@@ -1,8 +1,8 @@
-//! Raw data of NI-DAQmx in TDMS: the rows of one or more cards, in which each channel has its place. The scales
-//! of a channel make volts and units of them.
+//! Raw data of NI-DAQmx in TDMS: the rows of one or more cards, in which each channel has its place. The
+//! scales of a channel make volts and units of them.
 //!
-//! Source: *TDMS File Format Internal Structure*, National Instruments, with the values that files have for the
-//! two sorts of scalers.
+//! Source: *TDMS File Format Internal Structure*, National Instruments, with the values that files have for
+//! the two sorts of scalers.
 
 use std::collections::HashMap;
 use std::path::Path;

@@ -67,35 +67,31 @@ fn reader(kind: &str) -> &'static str {
 
 /// Differences that were looked at and lie with the other program: format, in what (all where it is empty), by
 /// what damage (all where it is empty), and why.
-const EXPLAINED: [(&str, &str, &str, &str); 7] = [
+const EXPLAINED: [(&str, &str, &str, &str); 8] = [
     (
         "csv",
         "",
         "it is cut off",
-        "pandas keeps the row that breaks off, with what is left of its last number; we leave it out, with a note",
+        "pandas keeps the row that breaks off, with what is left of its last number; we leave it out, \
+         with a note",
     ),
-    (
-        "csv",
-        "",
-        "",
-        "a quote or the end of a line is damaged: pandas lets a quoted field run over lines and ends rows at any of \
-         CR, LF and both; we keep to lines, and to the end that most of them have",
-    ),
+    ("csv", "samples", "", LINES),
+    ("csv", "numbers among the samples", "", LINES),
     ("inp", "samples", "", SAME_ELEMENT),
     ("msh", "samples", "", SAME_ELEMENT),
     (
         "tdms",
         "samples",
         "",
-        "npTDMS shares a chunk that is not whole among the channels in the midst of a file, too, where no recorder \
-         writes one; we leave it out, with a note",
+        "npTDMS shares a chunk that is not whole among the channels in the midst of a file, too, where no \
+         recorder writes one; we leave it out, with a note",
     ),
     (
         "uff",
         "samples",
         "",
-        "pyuff takes all numbers up to the delimiter, whatever the head promises; we take those that are promised, \
-         with a note",
+        "pyuff takes all numbers up to the delimiter, whatever the head promises; we take those that are \
+         promised, with a note",
     ),
     (
         "uff",
@@ -105,8 +101,11 @@ const EXPLAINED: [(&str, &str, &str, &str); 7] = [
     ),
 ];
 
-const SAME_ELEMENT: &str = "an element that stands twice, with one number and the same nodes, is one of ours and \
-    two of meshio's; a quadrilateral with a corner twice is a triangle of ours";
+const LINES: &str = "a quote or the end of a line is damaged: pandas lets a quoted field run over lines and \
+    ends rows at any of CR, LF and both; we keep to lines, and to the end that most of them have";
+
+const SAME_ELEMENT: &str = "an element that stands twice, with one number and the same nodes, is one of ours \
+    and two of meshio's; a quadrilateral with a corner twice is a triangle of ours";
 
 impl Tables {
     pub(super) fn took(&mut self, time: Duration) {
@@ -189,7 +188,8 @@ impl Tables {
         if self.kinds.is_empty() {
             page += "Nowhere.\n";
         } else {
-            page += "| format | in what | what was done | files | smallest: bytes, seed | ours; theirs | why |\n\
+            page += "| format | in what | what was done | files | smallest: bytes, seed | ours; theirs | \
+             why |\n\
                      |---|---|---|---|---|---|---|\n";
         }
         for ((kind, what, done), k) in &self.kinds {
@@ -203,7 +203,8 @@ impl Tables {
                 cell(&k.example)
             );
         }
-        page += "\n## What we refuse and they read\n\n| format | files | why, with an example (bytes, seed) |\n\
+        page += "\n## What we refuse and they read\n\n| format | files | why, with an example (bytes, \
+         seed) |\n\
                  |---|---|---|\n";
         let mut all: Vec<_> = self.refusals.iter().collect();
         all.sort_by_key(|((kind, _), k)| (*kind, std::cmp::Reverse(k.count)));
@@ -221,7 +222,8 @@ fn explained(kind: &str, what: &str, done: &str) -> Option<&'static str> {
     found.map(|of| of.3)
 }
 
-/// A message without the path of its file, what it quotes and words with digits: messages of one kind are one.
+/// A message without the path of its file, what it quotes and words with digits: messages of one kind are
+/// one.
 fn gist(why: &str) -> String {
     let mut quoted = false;
     let plain = |c: &char| {

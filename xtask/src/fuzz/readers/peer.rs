@@ -42,8 +42,8 @@ impl Peer {
         from.read_line(&mut line)?;
         let versions: serde_json::Map<String, Value> = serde_json::from_str(&line).with_context(|| {
             format!(
-                "`{python}` lacks one of numpy, scipy, h5py, npTDMS, asammdf, pandas, pyarrow, pyuff, soundfile, \
-                 meshio"
+                "`{python}` lacks one of numpy, scipy, h5py, npTDMS, asammdf, pandas, pyarrow, pyuff, \
+                 soundfile,                  meshio"
             )
         })?;
         let named = versions.iter().map(|(name, v)| format!("{name} {}", v.as_str().unwrap_or("?")));
