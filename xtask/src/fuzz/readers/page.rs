@@ -65,8 +65,8 @@ fn reader(kind: &str) -> &'static str {
     }
 }
 
-/// Differences that were looked at and lie with the other program: format, in what (all where it is empty), by
-/// what damage (all where it is empty), and why.
+/// Differences of which examples were looked at and lie with the other program: format, in what (all where it
+/// is empty), by what damage (all where it is empty), and why.
 const EXPLAINED: [(&str, &str, &str, &str); 8] = [
     (
         "csv",
