@@ -12,6 +12,7 @@ use hdf5_pure::{
     Group, Layout,
 };
 
+use crate::curve::Curve;
 use crate::hdf5_links::{self, Links};
 use crate::number::{Kind, Number};
 use crate::recording::{Strided, left_out};
@@ -189,6 +190,7 @@ impl Found {
             return Ok(());
         };
         let rate_hz = rates(&attributes, "").first().map(|(_, hz)| *hz);
+        let scale = scale(&attributes);
         let unit = ["unit", "units", "Unit", "Units", "unit_string"].into_iter();
         let unit = unit.filter_map(|key| attributes.get(key)?.as_str().map(str::to_owned)).next();
         let axes = Some(axes);
@@ -216,7 +218,7 @@ impl Found {
                 (_, true, _) => format!("{name}({},:)", k + 1),
             };
             channel.group = name.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
-            channel.at_rate(rate_hz).in_unit(unit.clone())
+            channel.at_rate(rate_hz).in_unit(unit.clone()).along(scale.clone())
         }));
         Ok(())
     }
@@ -260,9 +262,15 @@ impl Found {
     }
 }
 
-/// The sample rates [Hz] in attributes of a group or a set.
-fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, f64)> {
-    let number = |value: &AttrValue| match value {
+/// The line from stored to physical values that netCDF's conventions write beside a set.
+fn scale(attributes: &HashMap<String, AttrValue>) -> Option<Curve> {
+    let [slope, offset] = ["scale_factor", "add_offset"].map(|name| attributes.get(name).and_then(number));
+    (slope.is_some() || offset.is_some()).then(|| Curve::linear(offset.unwrap_or(0.0), slope.unwrap_or(1.0)))
+}
+
+/// The number of an attribute.
+fn number(value: &AttrValue) -> Option<f64> {
+    match value {
         AttrValue::F32(x) => Some(f64::from(*x)),
         AttrValue::F64(x) => Some(*x),
         AttrValue::I16(x) => Some(f64::from(*x)),
@@ -276,7 +284,11 @@ fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, 
         AttrValue::I64Array(all) if all.len() == 1 => all.first().map(|x| *x as f64),
         AttrValue::I32Array(all) if all.len() == 1 => all.first().map(|x| f64::from(*x)),
         other => other.as_str()?.trim().parse().ok(),
-    };
+    }
+}
+
+/// The sample rates [Hz] in attributes of a group or a set.
+fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, f64)> {
     let mut found: Vec<(String, f64)> = attributes
         .iter()
         .filter_map(|(name, value)| Some((name.clone(), units::rate_hz(name, None, number(value)?)?)))

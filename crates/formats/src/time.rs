@@ -57,7 +57,8 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     let channels = &mut recording.channels;
     let courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
     for (channel, course) in channels.iter_mut().zip(&courses) {
-        channel.is_time |= course.as_ref().is_some_and(|course| course.is_even() || says_time(&channel.name));
+        channel.is_time |=
+            course.as_ref().is_some_and(|course| course.is_even() || says_time(own_name(channel)));
         if let (true, Unit::Time(unit, _)) = (channel.is_time, unit_of(channel)) {
             channel.unit = Some(unit.to_owned());
         }
@@ -79,7 +80,7 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
             let inside = channels[n].group == group;
             let rank = match unit_of(&channels[n]) {
                 Unit::Time(..) => 0,
-                Unit::Unsaid if says_time(&channels[n].name) => 1,
+                Unit::Unsaid if says_time(own_name(&channels[n])) => 1,
                 Unit::Unsaid if asked && first == Some(n) => 2,
                 _ => return None,
             };
@@ -158,7 +159,14 @@ pub fn says_time(name: &str) -> bool {
 }
 
 fn unit_of(channel: &Channel) -> Unit {
-    Unit::of(&channel.name, channel.unit.as_deref())
+    Unit::of(own_name(channel), channel.unit.as_deref())
+}
+
+/// The name without the group of TDMS before it: `rig/t/ms` of the group `/'rig'` is `t/ms`.
+fn own_name(channel: &Channel) -> &str {
+    let group = channel.group.trim_start_matches('/').trim_matches('\'').replace("''", "'");
+    let own = channel.name.strip_prefix(&group).and_then(|rest| rest.strip_prefix('/'));
+    own.filter(|_| !group.is_empty()).unwrap_or(&channel.name)
 }
 
 impl Course {

@@ -27,6 +27,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
     let mut lines = Lines { bytes: &bytes, at: 0, line: 0 };
     let (mut channels, mut notes): (Vec<Channel>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut broken = None;
     while let Some(line) = lines.next() {
         if line.trim() != "-1" {
             continue;
@@ -34,15 +35,15 @@ pub fn open(path: &Path) -> Result<Recording> {
         let Some(kind) = lines.next() else { break };
         let begins = lines.line;
         if kind.trim() == "58" || kind.trim_start().starts_with("58b") {
-            let function = lines.function(&kind).map_err(|what| {
-                Error::damaged(
-                    path,
-                    FORMAT,
-                    format!("dataset of line {begins}, near line {}: {what}", lines.line),
-                )
-            })?;
-            match function {
-                Ok(mut channel) => {
+            match lines.function(&kind) {
+                // One dataset that is damaged does not spoil the others.
+                Err(what) => {
+                    let what = format!("dataset of line {begins}, near line {}: {what}", lines.line);
+                    notes.push(format!("the {what}: it is left out"));
+                    broken.get_or_insert(what);
+                }
+                Ok(Ok((mut channel, odd))) => {
+                    notes.extend(odd.map(|odd| format!("`{}`: {odd}", channel.name)));
                     let twins =
                         channels.iter().filter(|c| c.name.split(" #").next() == Some(&channel.name)).count();
                     if twins > 0 {
@@ -50,7 +51,7 @@ pub fn open(path: &Path) -> Result<Recording> {
                     }
                     channels.push(channel);
                 }
-                Err(why) => notes.push(format!("the dataset of line {begins} is left out: {why}")),
+                Ok(Err(why)) => notes.push(format!("the dataset of line {begins} is left out: {why}")),
             }
         } else {
             notes.push(format!(
@@ -60,6 +61,9 @@ pub fn open(path: &Path) -> Result<Recording> {
         }
         // To the delimiter that ends the dataset.
         while lines.next().is_some_and(|line| line.trim() != "-1") {}
+    }
+    if let (Some(what), true) = (broken, channels.is_empty()) {
+        return Err(Error::damaged(path, FORMAT, what));
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
@@ -155,9 +159,12 @@ impl Lines<'_> {
         Some(String::from_utf8_lossy(&rest[..end]).trim_end_matches('\r').to_owned())
     }
 
-    /// The dataset behind its first line: a channel, or why it is none.
+    /// The dataset behind its first line: a channel and what is odd about it, or why it is none.
     #[allow(clippy::type_complexity)]
-    fn function(&mut self, kind: &str) -> std::result::Result<std::result::Result<Channel, String>, String> {
+    fn function(
+        &mut self,
+        kind: &str,
+    ) -> std::result::Result<std::result::Result<(Channel, Option<String>), String>, String> {
         let head: Vec<String> = (0..HEAD).filter_map(|_| self.next()).collect();
         if head.len() < HEAD {
             return Err("it ends inside its head".to_owned());
@@ -186,12 +193,19 @@ impl Lines<'_> {
         } else {
             self.text(count * width, double, even)?
         };
-        if values.len() < count * width {
-            return Err(format!(
-                "it promises {count} values of {width} numbers, and {} numbers follow",
-                values.len()
-            ));
+        let there = (values.len() / width).min(count);
+        if there == 0 && count > 0 {
+            return Err(format!("it promises {count} values, and none follow"));
         }
+        let more = self.rows_left();
+        let odd = if there < count {
+            Some(format!("it promises {count} values, and {there} are there: it was cut off"))
+        } else {
+            (more > 0).then(|| {
+                format!("it promises {count} values, and {more} lines more follow: they are left out")
+            })
+        };
+        let count = there;
         if complex {
             return Ok(Err("its values are complex: it is no signal in time".to_owned()));
         }
@@ -222,7 +236,18 @@ impl Lines<'_> {
         let round = (rate_hz * 10.0).round() / 10.0;
         let rate_hz = if (rate_hz / round - 1.0).abs() < 5e-6 { round } else { rate_hz };
         let rate_hz = Some(rate_hz).filter(|hz| hz.is_finite() && *hz > 0.0);
-        Ok(Ok(Channel::held(name, samples).at_rate(rate_hz).in_unit(unit)))
+        Ok(Ok((Channel::held(name, samples).at_rate(rate_hz).in_unit(unit), odd)))
+    }
+
+    /// Lines up to the delimiter that ends the dataset, which stays.
+    fn rows_left(&mut self) -> usize {
+        let (at, line) = (self.at, self.line);
+        let mut rows = 0;
+        while let Some(line) = self.next().filter(|line| line.trim() != "-1") {
+            rows += usize::from(!line.trim().is_empty());
+        }
+        (self.at, self.line) = (at, line);
+        rows
     }
 
     /// Numbers in columns: 13 wide, 20 wide for doubles; uneven doubles have their abscissae 13 wide.
@@ -252,12 +277,12 @@ impl Lines<'_> {
                 columns.push(word);
                 rest = behind;
             }
-            let fixed: std::result::Result<Vec<f64>, _> = columns.into_iter().map(parse).collect();
-            // Many programs do not keep to the columns.
-            let free = || line.split_whitespace().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
-            values.extend(
-                fixed.or_else(|_| free()).map_err(|_| format!("`{}` is no row of numbers", line.trim()))?,
-            );
+            // Many programs do not keep to the columns; in those of others, of 80 signs, numbers touch.
+            let fixed = columns.into_iter().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
+            let free = line.split_whitespace().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
+            let fixed = fixed.ok().filter(|_| line.trim_end().len() <= 80);
+            let row = free.ok().or(fixed).ok_or_else(|| format!("`{}` is no row of numbers", line.trim()))?;
+            values.extend(row);
         }
         Ok(values)
     }
@@ -271,11 +296,18 @@ impl Lines<'_> {
         if format != 2 {
             return Err(format!("its floating point format is {format}; IEEE (2) is read"));
         }
-        let data = self.at.checked_add(bytes as usize).and_then(|end| self.bytes.get(self.at..end));
-        let data = data.ok_or_else(|| {
-            format!("it promises {bytes} bytes, and {} follow", self.bytes.len().saturating_sub(self.at))
-        })?;
-        self.at += bytes as usize;
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let data = &rest[..rest.len().min(usize::try_from(bytes).unwrap_or(usize::MAX))];
+        self.at += data.len();
+        // Bytes that are missing would take those of the delimiter for numbers.
+        let behind = &rest[data.len()..];
+        let ends = behind.trim_ascii_start().starts_with(b"-1");
+        if data.len() as u64 == bytes && !ends && !behind.trim_ascii().is_empty() {
+            return Err(format!("no delimiter stands behind its {bytes} bytes"));
+        }
+        if (data.len() as u64) < bytes && data.trim_ascii_end().ends_with(b"    -1") {
+            return Err(format!("it promises {bytes} bytes, and a delimiter stands before their end"));
+        }
         let number = |kind| Number { kind, big_endian: order == 2 };
         let (single, ordinate) = (number(Kind::F32), number(if double { Kind::F64 } else { Kind::F32 }));
         let width = ordinate.kind.bytes();

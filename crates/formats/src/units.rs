@@ -87,9 +87,11 @@ const RATES: [&str; 26] = [
 ];
 
 /// Names of the time between two samples; a unit of time may follow.
-const STEPS: [&str; 16] = [
+const STEPS: [&str; 18] = [
     "dt",
+    "ts",
     "deltat",
+    "deltax",
     "deltatime",
     "tstep",
     "timestep",
