@@ -41,6 +41,7 @@
 //! | how far apart two events are that follow each other | [`event_spacing`] |
 //! | when something struck, behind an unknown path | [`prewhitened_power`] |
 //! | what a sensor records behind a random path, or the path of a record | [`Path`], [`coloured_like`] |
+//! | what a sensor shows behind a measured response or some modes, and what was before them | [`Response`] |
 //! | what passages tell, whatever the path to the sensor | [`Signature`] |
 //! | what is locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | a smooth density of a short record | [`multitaper`] |
@@ -112,6 +113,7 @@ mod multitaper;
 mod path;
 mod prewhitened;
 mod resample;
+mod response;
 mod ridge;
 mod separation;
 mod signature;
@@ -141,6 +143,7 @@ pub use path::{Path, at_rate, coloured_like};
 pub use peak::{Peak, Sinusoid};
 pub use prewhitened::prewhitened_power;
 pub use resample::resample_poly;
+pub use response::{Mode, Response, Undone};
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use separation::{Separated, separate};

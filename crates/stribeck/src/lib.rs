@@ -33,6 +33,7 @@ mod side_by_side;
 mod simulate;
 mod stiffness;
 mod sweep;
+mod transfer;
 mod validate;
 
 use std::process::ExitCode;
