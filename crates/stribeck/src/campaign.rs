@@ -77,8 +77,10 @@ const DATASHEET: &str = "DATASHEET.md";
 const INDEX: &str = "index.html";
 
 /// The folder of a campaign is known by the former from the first moment of its first part on, and by the
-/// latter when it is done.
-pub(crate) const MARKS: [&str; 2] = [TURN, "runs.parquet"];
+/// second when it is done; that of a growth by its table before that.
+pub(crate) const MARKS: [&str; 3] = [TURN, tables::RUNS, GROWTH_TABLE];
+/// The table of the records of a growth.
+pub(crate) const GROWTH_TABLE: &str = "growth.csv";
 
 /// Where the things of a campaign are.
 struct Folder(ManyRuns);
