@@ -32,9 +32,12 @@
 
 pub mod alarm;
 mod angular;
+mod controls;
 mod course;
+mod decision;
 mod enhanced;
 pub mod evidence;
+mod family;
 mod halves;
 pub mod joint;
 mod length;
@@ -46,9 +49,12 @@ mod pressed;
 pub mod ridge;
 mod screening;
 mod second;
+mod sentence;
 mod shaft;
+mod sidebands;
 pub mod sources;
 mod speed;
+mod standing;
 pub mod tacho;
 mod unexplained;
 mod unit;
@@ -68,16 +74,16 @@ pub use crate::defect::Defect;
 pub use angular::over_angle;
 pub use course::Course;
 pub use enhanced::Enhanced;
+pub use family::{Family, Reason};
 pub(crate) use length::{LONGEST, SHORTEST_S};
 use pass::Pass;
 pub use pressed::usual_load_n;
 pub use screening::Health;
+pub(crate) use sidebands::sidebands_seen;
 pub use unexplained::Unexplained;
 pub use unit::AccelerationUnit;
 pub use varying::Varying;
 use velocity::VelocityLevel;
-pub(crate) use verdict::sidebands_seen;
-pub use verdict::{Family, Reason};
 
 /// Speed and bearing of the machine, as far as they are known.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -156,6 +162,10 @@ pub struct MeasuredFindings {
     pub verdict: String,
     /// Length of a spall, from two events a passage [mm].
     pub spall_mm: Option<Interval>,
+    /// Length of a spall longer than half of the distance of two elements, whose exit and the entry of the
+    /// next element are as far apart as these events [mm].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spall_otherwise_mm: Option<Interval>,
     /// Time between these events [ms].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub event_spacing_ms: Option<f64>,
@@ -305,6 +315,7 @@ impl Analysis {
                 unexplained: judged.unexplained,
                 verdict: judged.verdict,
                 spall_mm: spall.length_mm,
+                spall_otherwise_mm: spall.otherwise_mm,
                 event_spacing_ms: spall.spacing_ms,
                 spall_below_mm: spall.below_mm,
                 notes,

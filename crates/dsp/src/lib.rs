@@ -38,7 +38,7 @@
 //! | the pulses behind a resonance | [`momeda`] |
 //! | how a record changes | [`spectrogram`], [`Spectrograph`] for records of any length, [`ridge`] |
 //! | whether a family of harmonics is there, and how sure that is | [`CombTest`] on a [`Whitened`] spectrum |
-//! | how far apart two events are that follow each other | [`event_spacing`] |
+//! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
 //! | when something struck, behind an unknown path | [`prewhitened_power`] |
 //! | what a sensor records behind a random path, or the path of a record | [`Path`], [`coloured_like`] |
 //! | what a sensor shows behind a measured response or some modes, and what was before them | [`Response`] |
@@ -149,7 +149,7 @@ pub use sensor::Sensor;
 pub use separation::{Separated, separate};
 pub use signature::{PASSAGES, Rhythm, Signature, WITHIN};
 pub use sound::Sound;
-pub use spacing::{EventSpacing, Spacing, event_spacing};
+pub use spacing::{EventSpacing, Spacing, event_spacing, passage_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};
 pub use spectrum::{Resolution, Scaling, Sides, Spectrum};
 pub use welch::Welch;

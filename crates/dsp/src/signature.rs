@@ -16,7 +16,7 @@ use crate::Error;
 use crate::Result;
 use crate::error::{check_positive, check_signal};
 use crate::prewhitened::prewhitened_power;
-use crate::spacing::{EventSpacing, event_spacing};
+use crate::spacing::{EventSpacing, passage_spacing};
 
 /// The band, over half of the sample rate.
 const BAND: (f64, f64) = (0.25, 1.0);
@@ -78,7 +78,7 @@ impl Signature {
     ///
     /// # Errors
     /// [`Error::TooShort`] for a record shorter than a piece, [`Error::NotFinite`], and those of
-    /// [`event_spacing`].
+    /// [`passage_spacing`].
     pub fn of(samples: &[f64], rate_hz: f64, rhythm: Rhythm) -> Result<Self> {
         check_positive("sample_rate_hz", rate_hz)?;
         check_positive("passing_hz", rhythm.passing_hz)?;
@@ -118,7 +118,6 @@ impl Signature {
 
     fn of_piece(samples: &[f64], rate_hz: f64, rhythm: Rhythm) -> Result<Self> {
         let expected_s = 1.0 / rhythm.passing_hz;
-        let events = event_spacing(samples, rate_hz, rhythm.shortest_s, rhythm.longest * expected_s)?;
         let power = prewhitened_power(samples, BAND);
         let spectrum = Spectrum::of(&power, rate_hz);
         let correlation = spectrum.correlation(SHARP * expected_s);
@@ -126,11 +125,13 @@ impl Signature {
             let ends = [1.0 - SLIP, 1.0 + SLIP].map(|part| (part * passages * expected_s * rate_hz) as usize);
             correlation[ends[0]..=ends[1].min(correlation.len() - 1)].iter().copied().fold(f64::MIN, f64::max)
         };
+        let line = spectrum.highest(rhythm.passing_hz, SLIP * rhythm.passing_hz);
+        let longest_s = (rhythm.longest * expected_s).min(0.5 / line);
+        let events = passage_spacing(samples, rate_hz, line, rhythm.shortest_s, longest_s)?;
         let lag_s = match events {
             EventSpacing::Pairs(spacing) => Some(spacing.lag_s),
             _ => None,
         };
-        let line = spectrum.highest(rhythm.passing_hz, SLIP * rhythm.passing_hz);
         let width_hz = LINE * rhythm.passing_hz;
         let carried = spectrum.energy(line, width_hz);
         let beside = |hz: f64| {

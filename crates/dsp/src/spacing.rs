@@ -1,13 +1,18 @@
 //! Two events that follow each other at a fixed distance, as when something enters and leaves a gap: how far
 //! apart?
 //!
-//! Pre-whitening makes both broad-banded and equally sharp; the squared envelope of what is left is
-//! correlated with itself. A distance is taken for one only if two bands agree on it: ringing has another lag
-//! in every band. Where there is none, the correlation says from which distance on a second event would have
-//! shown.
+//! Pre-whitening makes both broad-banded and equally sharp. Where their rhythm is known, the mean power about
+//! the strongest event of each passage shows a second one ([`passage_spacing`]); where it is not, the squared
+//! envelope is correlated with itself ([`event_spacing`]). A distance is taken for one only if two bands agree
+//! on it: ringing has another lag in every band. Where there is none, the correlation says from which distance
+//! on a second event would have shown.
 //!
 //! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, who look for it in
 //! the cepstrum of the enhanced signal; the comparison of bands is ours.
+
+mod passages;
+
+use std::ops::Range;
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -21,6 +26,9 @@ use crate::{Error, Result};
 pub struct Spacing {
     /// Distance [s].
     pub lag_s: f64,
+    /// How far it may be off [s]: half of what two bands differ by, and no less than half of one over the
+    /// width of the narrower one, in which no event is sharper.
+    pub uncertainty_s: f64,
     /// Correlation of the squared envelope at that lag.
     pub correlation: f64,
 }
@@ -65,7 +73,8 @@ const RINGS: f64 = 0.1;
 /// Ringing that lasts longer than this part of the longest distance leaves too little to look at.
 const CLEAR: f64 = 0.5;
 
-/// The distance between `shortest_s` and `longest_s` that pairs of events keep, if there is one.
+/// The distance between `shortest_s` and `longest_s` that pairs of events keep, if there is one, whatever the
+/// rhythm in which the pairs come.
 ///
 /// # Errors
 /// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered,
@@ -76,6 +85,47 @@ pub fn event_spacing(
     shortest_s: f64,
     longest_s: f64,
 ) -> Result<EventSpacing> {
+    let lags = lags(signal, sample_rate_hz, shortest_s, longest_s)?;
+    let powers = BANDS.map(|band| prewhitened_power(signal, band));
+    let bands = powers.each_ref().map(|power| correlation(power, sample_rate_hz, lags.end));
+    Ok(by_correlation(&bands, sample_rate_hz, &lags))
+}
+
+/// The distance between `shortest_s` and `longest_s` of two events of passages that come `passing_hz` times a
+/// second, however much weaker one of them is; where no second event stands out of the mean over passages,
+/// what [`event_spacing`] says.
+///
+/// # Errors
+/// As [`event_spacing`], and [`Error::Undefined`] where `longest_s` is more than half of the time between
+/// passages, so that the next passage would be taken for a second event.
+pub fn passage_spacing(
+    signal: &[f64],
+    sample_rate_hz: f64,
+    passing_hz: f64,
+    shortest_s: f64,
+    longest_s: f64,
+) -> Result<EventSpacing> {
+    check_positive("passing_hz", passing_hz)?;
+    let lags = lags(signal, sample_rate_hz, shortest_s, longest_s)?;
+    if longest_s * passing_hz > 0.5 {
+        let why = "the longest distance is more than half of the time between passages";
+        return Err(Error::Undefined { quantity: "distance of events", why });
+    }
+    let powers = BANDS.map(|band| prewhitened_power(signal, band));
+    let bands = powers.each_ref().map(|power| correlation(power, sample_rate_hz, lags.end));
+    let search = passages::Search { period: sample_rate_hz / passing_hz, lags: lags.clone(), sample_rate_hz };
+    let found = search.second_events(&powers.map(|power| smoothed(&power, sample_rate_hz)));
+    Ok(found.map_or_else(
+        || by_correlation(&bands, sample_rate_hz, &lags),
+        |at| {
+            let lag = (0.5 * (at[0] + at[1])).round() as usize;
+            EventSpacing::Pairs(spacing(at, [1.0; 2], bands[0][lag].max(bands[1][lag]), sample_rate_hz))
+        },
+    ))
+}
+
+/// Distances that are looked at [samples].
+fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) -> Result<Range<usize>> {
     check_positive("sample_rate_hz", sample_rate_hz)?;
     check_positive("shortest_s", shortest_s)?;
     if longest_s.is_nan() || longest_s <= shortest_s {
@@ -84,37 +134,50 @@ pub fn event_spacing(
     }
     let lags = ((shortest_s * sample_rate_hz).ceil() as usize).max(2)..(longest_s * sample_rate_hz) as usize;
     check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
-    let bands = BANDS.map(|band| correlation(signal, band, sample_rate_hz, lags.end));
+    Ok(lags)
+}
+
+/// A distance from those of two bands [samples], each by its weight.
+fn spacing(lags: [f64; 2], weights: [f64; 2], correlation: f64, sample_rate_hz: f64) -> Spacing {
+    let lag = (weights[0] * lags[0] + weights[1] * lags[1]) / (weights[0] + weights[1]);
+    let narrower_hz = 0.5 * sample_rate_hz * (BANDS[0].1 - BANDS[0].0);
+    Spacing {
+        lag_s: lag / sample_rate_hz,
+        uncertainty_s: (0.5 * (lags[0] - lags[1]).abs() / sample_rate_hz).max(0.5 / narrower_hz),
+        correlation,
+    }
+}
+
+/// What the correlations of both bands say.
+fn by_correlation(bands: &[Vec<f64>; 2], sample_rate_hz: f64, lags: &Range<usize>) -> EventSpacing {
     let found = bands.each_ref().map(|band| peak(band, lags.clone()));
-    Ok(match agreed(&found) {
-        Some((lag, correlation)) => EventSpacing::Pairs(Spacing { lag_s: lag / sample_rate_hz, correlation }),
+    match agreed(&found) {
+        Some([low, high]) => {
+            EventSpacing::Pairs(spacing([low.0, high.0], [low.1, high.1], low.1.max(high.1), sample_rate_hz))
+        }
         None if found.iter().flatten().all(|peak| peak.1 < LEAST) => {
             // A band in which no event stands above the noise says nothing.
             let heard = bands.iter().filter(|band| shows_events(band, sample_rate_hz));
-            let clear = heard.map(|band| clear_from(band, &lags)).try_fold(0, |most, n| Some(n?.max(most)));
+            let clear = heard.map(|band| clear_from(band, lags)).try_fold(0, |most, n| Some(n?.max(most)));
             match clear {
                 None | Some(0) => EventSpacing::Unknown,
                 Some(n) => EventSpacing::Alone { clear_from_s: n as f64 / sample_rate_hz },
             }
         }
         None => EventSpacing::Unknown,
-    })
+    }
 }
 
-/// Lag and correlation on which both bands agree, each by how well it shows: either has one peak of its own,
-/// and one of them is sure of it.
-fn agreed(found: &[Option<(f64, f64)>; 2]) -> Option<(f64, f64)> {
+/// Lags and correlations of both bands where they agree: either has one peak of its own, and one of them is
+/// sure of it.
+fn agreed(found: &[Option<(f64, f64)>; 2]) -> Option<[(f64, f64); 2]> {
     let [Some(low), Some(high)] = *found else { return None };
     let same = (high.0 / low.0 - 1.0).abs() < AGREED;
-    (same && low.1.max(high.1) >= LEAST)
-        .then(|| ((low.0 * low.1 + high.0 * high.1) / (low.1 + high.1), low.1.max(high.1)))
+    (same && low.1.max(high.1) >= LEAST).then_some([low, high])
 }
 
 /// Places and heights of all peaks among `lags`.
-fn peaks<'a>(
-    values: &'a [f64],
-    lags: &std::ops::Range<usize>,
-) -> impl Iterator<Item = (usize, f64)> + use<'a> {
+fn peaks<'a>(values: &'a [f64], lags: &Range<usize>) -> impl Iterator<Item = (usize, f64)> + use<'a> {
     let end = lags.end.min(values.len() - 1);
     let rises = |n: &usize| values[*n] > values[n - 1] && values[*n] >= values[n + 1];
     (lags.start.max(1)..end).filter(rises).map(|n| (n, values[n]))
@@ -129,7 +192,7 @@ fn shows_events(values: &[f64], sample_rate_hz: f64) -> bool {
 
 /// The lag from which on a second event would have shown, where there is none; `None` where one might have
 /// been missed. Two events of energies 1 and a correlate with a/(1 + a²) of what each does with itself.
-fn clear_from(values: &[f64], lags: &std::ops::Range<usize>) -> Option<usize> {
+fn clear_from(values: &[f64], lags: &Range<usize>) -> Option<usize> {
     let last = (0..lags.end).rev().find(|n| values[*n] >= LEAST)?;
     let clear = (last + 1).max(lags.start);
     ((clear as f64) < CLEAR * lags.end as f64).then_some(clear)
@@ -140,11 +203,32 @@ fn smoothing(sample_rate_hz: f64) -> usize {
     ((0.5 * SMOOTHED_S * sample_rate_hz) as usize).max(1)
 }
 
-/// Correlation of the squared envelope of the pre-whitened signal in a band, over half the sample rate,
-/// smoothed, for lags up to `longest`.
-fn correlation(signal: &[f64], band: (f64, f64), sample_rate_hz: f64, longest: usize) -> Vec<f64> {
-    let mut lines: Vec<Complex<f64>> =
-        prewhitened_power(signal, band).into_iter().map(|e| Complex::new(e, 0.0)).collect();
+/// Weights of the smoothing, from `−smoothing` to `+smoothing` samples, whose sum is 1.
+fn weights(sample_rate_hz: f64) -> Vec<f64> {
+    let half = smoothing(sample_rate_hz);
+    let weight =
+        |k: usize| 0.5 + 0.5 * (std::f64::consts::PI * (k as f64 - half as f64) / (half + 1) as f64).cos();
+    let sum: f64 = (0..=2 * half).map(weight).sum();
+    (0..=2 * half).map(|k| weight(k) / sum).collect()
+}
+
+/// A power over time, smoothed; as if it were nothing before and after the record.
+fn smoothed(power: &[f64], sample_rate_hz: f64) -> Vec<f64> {
+    let (weights, half) = (weights(sample_rate_hz), smoothing(sample_rate_hz));
+    let at = |n: usize| {
+        let (first, last) = (n.saturating_sub(half), (n + half).min(power.len() - 1));
+        power[first..=last]
+            .iter()
+            .zip(&weights[first + half - n..])
+            .map(|(power, weight)| power * weight)
+            .sum()
+    };
+    (0..power.len()).map(at).collect()
+}
+
+/// Correlation of a power with itself, smoothed, for lags up to `longest`.
+fn correlation(power: &[f64], sample_rate_hz: f64, longest: usize) -> Vec<f64> {
+    let mut lines: Vec<Complex<f64>> = power.iter().map(|e| Complex::new(*e, 0.0)).collect();
     let count = lines.len();
     let mean = lines.iter().map(|z| z.re).sum::<f64>() / count as f64;
     lines.iter_mut().for_each(|z| z.re -= mean);
@@ -153,18 +237,16 @@ fn correlation(signal: &[f64], band: (f64, f64), sample_rate_hz: f64, longest: u
     forward.process(&mut lines);
     lines.iter_mut().for_each(|z| *z = Complex::new(z.norm_sqr(), 0.0));
     inverse.process(&mut lines);
-    let power = lines[0].re;
-    let half = smoothing(sample_rate_hz);
-    let weight =
-        |k: usize| 0.5 + 0.5 * (std::f64::consts::PI * (k as f64 - half as f64) / (half + 1) as f64).cos();
-    let sum: f64 = (0..=2 * half).map(weight).sum();
-    let smooth =
-        |lag: usize| (0..=2 * half).map(|k| weight(k) * lines[(lag + k).abs_diff(half)].re).sum::<f64>();
-    (0..=longest).map(|lag| if power > 0.0 { smooth(lag) / (sum * power) } else { 0.0 }).collect()
+    let all = lines[0].re;
+    let (weights, half) = (weights(sample_rate_hz), smoothing(sample_rate_hz));
+    let smooth = |lag: usize| {
+        weights.iter().enumerate().map(|(k, weight)| weight * lines[(lag + k).abs_diff(half)].re).sum::<f64>()
+    };
+    (0..=longest).map(|lag| if all > 0.0 { smooth(lag) / all } else { 0.0 }).collect()
 }
 
 /// The place of the highest peak, between samples, and its height, when it is one and no other comes near it.
-fn peak(values: &[f64], lags: std::ops::Range<usize>) -> Option<(f64, f64)> {
+fn peak(values: &[f64], lags: Range<usize>) -> Option<(f64, f64)> {
     let peaks: Vec<usize> = peaks(values, &lags).map(|peak| peak.0).collect();
     let best = *peaks.iter().max_by(|a, b| values[**a].total_cmp(&values[**b]))?;
     let apart = |n: &&usize| (**n as f64 / best as f64 - 1.0).abs() > SAME;
@@ -196,12 +278,17 @@ mod tests {
     /// Pairs of bursts `apart_s` from one another that ring at two frequencies and die away with `decay_s`,
     /// 60 times a second and never quite on time, in noise.
     fn pairs(apart_s: f64, decay_s: f64) -> Vec<f64> {
+        unequal(apart_s, decay_s, 1.5)
+    }
+
+    /// The same, the second burst `louder` times the first.
+    fn unequal(apart_s: f64, decay_s: f64, louder: f64) -> Vec<f64> {
         let mut uniform = uniform(11);
         let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();
         for k in 1..170 {
             let at = (f64::from(k) + 0.02 * uniform()) / 60.0;
             let rings = [(at, 3.0, 9_000.0), (at, 2.0, 13_000.0)];
-            let again = rings.map(|(at, strength, hz)| (at + apart_s, 1.5 * strength, hz));
+            let again = rings.map(|(at, strength, hz)| (at + apart_s, louder * strength, hz));
             for (start, strength, hz) in rings.into_iter().chain(again) {
                 let first = (start * RATE_HZ).ceil() as usize;
                 for n in first..(first + 80).min(signal.len()) {
@@ -221,6 +308,38 @@ mod tests {
             // Bursts rise within a quarter of a period, and not alike: a few samples.
             assert!((found.lag_s - apart_s).abs() < 0.1e-3, "{found:?}");
         }
+    }
+
+    /// A second event of a twenty-fifth of the first one’s energy drowns in the correlation.
+    #[test]
+    fn example_a_weak_second_event_shows_where_the_rhythm_is_known() {
+        for louder in [0.2, 5.0] {
+            let signal = unequal(3.1e-3, 0.2e-3, louder);
+            let blind = event_spacing(&signal, RATE_HZ, 0.5e-3, 7e-3).unwrap();
+            assert!(!matches!(blind, EventSpacing::Pairs(_)), "{blind:?}");
+            let found = passage_spacing(&signal, RATE_HZ, 60.0, 0.5e-3, 7e-3).unwrap();
+            let EventSpacing::Pairs(found) = found else { panic!("{louder}: {found:?}") };
+            assert!((found.lag_s - 3.1e-3).abs() < 0.1e-3 && found.uncertainty_s >= 0.1e-3, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn example_a_known_rhythm_makes_no_second_event() {
+        let signal = pairs(0.0, 0.6e-3);
+        let blind = event_spacing(&signal, RATE_HZ, 0.5e-3, 7e-3).unwrap();
+        assert_eq!(passage_spacing(&signal, RATE_HZ, 60.0, 0.5e-3, 7e-3).unwrap(), blind);
+        // Of noise alone nothing is made, whatever rhythm is looked for.
+        let mut uniform = uniform(5);
+        for seed in 0..20 {
+            let noise: Vec<f64> = (0..40_000 + 977 * seed).map(|_| uniform()).collect();
+            let found = passage_spacing(&noise, RATE_HZ, 50.0 + seed as f64, 0.5e-3, 7e-3).unwrap();
+            assert_eq!(found, EventSpacing::Unknown, "{seed}");
+        }
+    }
+
+    #[test]
+    fn refuses_a_distance_beyond_half_of_a_period() {
+        assert!(passage_spacing(&pairs(3e-3, 0.2e-3), RATE_HZ, 60.0, 0.5e-3, 9e-3).is_err());
     }
 
     #[test]

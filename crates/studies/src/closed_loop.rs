@@ -63,6 +63,8 @@ pub(crate) struct Found {
     pub(crate) claimed: Vec<String>,
     /// Length of the spall from two events a passage: value, lower and upper end [mm].
     pub(crate) spall_mm: Option<[f64; 3]>,
+    /// The same of a spall longer than half of the distance of two elements, in the same rhythm [mm].
+    pub(crate) otherwise_mm: Option<[f64; 3]>,
     /// Time between these events [s].
     pub(crate) spacing_s: Option<f64>,
     /// Bound of the length from one event a passage [mm].
@@ -138,11 +140,14 @@ pub(crate) fn analyse(
     let findings: Value = serde_json::from_str(&text).context("findings.json")?;
     let families = findings["families"].as_array().cloned().unwrap_or_default();
     let name = |f: &Value| f["name"].as_str().unwrap_or_default().to_owned();
-    let spall = &findings["spall_mm"];
-    let [value, low, high] = ["value", "low", "high"].map(|key| spall[key].as_f64());
+    let interval = |name: &str| {
+        let [value, low, high] = ["value", "low", "high"].map(|key| findings[name][key].as_f64());
+        Some([value?, low?, high?])
+    };
     Ok(Found {
         claimed: families.iter().filter(|f| f["claimed"] == true).map(name).collect(),
-        spall_mm: value.zip(low).zip(high).map(|((value, low), high)| [value, low, high]),
+        spall_mm: interval("spall_mm"),
+        otherwise_mm: interval("spall_otherwise_mm"),
         spacing_s: findings["event_spacing_ms"].as_f64().map(|ms| 1e-3 * ms),
         below_mm: findings["spall_below_mm"].as_f64(),
         hz: families.iter().find(|f| name(f) == family).and_then(|f| f["measured_hz"].as_f64()),

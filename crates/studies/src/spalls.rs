@@ -179,8 +179,14 @@ impl Told {
         self.found.below_mm.is_some()
     }
 
+    /// Estimate, lower and upper end [mm] of the reading for spalls of this length, shorter or longer than half
+    /// of the distance of two elements: the record tells both, and not which.
+    fn reading_mm(&self) -> Option<[f64; 3]> {
+        if self.is_short() { self.found.spall_mm } else { self.found.otherwise_mm }
+    }
+
     fn holds(&self) -> bool {
-        self.found.spall_mm.is_some_and(|[_, low, high]| (low..=high).contains(&self.case.length_mm))
+        self.reading_mm().is_some_and(|[_, low, high]| (low..=high).contains(&self.case.length_mm))
     }
 
     /// Whether the spall is one that §7.9 speaks of: shorter than half of the distance of two elements.
@@ -234,7 +240,7 @@ fn table(sheet: &mut Sheet, told: &[Told]) {
                 seen(floor),
                 t.by_load_mm().map_or_else(none, mm),
             ];
-            match t.found.spall_mm {
+            match t.reading_mm() {
                 Some([value, low, high]) => row.extend([
                     mm(value),
                     format!("{} to {}", mm(low), mm(high)),
@@ -268,7 +274,7 @@ fn table(sheet: &mut Sheet, told: &[Told]) {
         let name = &t.case.variant.name;
         sheet.value("lengths", name, "true mm", Some(t.case.length_mm));
         for (n, what) in ["estimate mm", "low mm", "high mm"].into_iter().enumerate() {
-            sheet.value("lengths", name, what, t.found.spall_mm.map(|all| all[n]));
+            sheet.value("lengths", name, what, t.reading_mm().map(|all| all[n]));
         }
         sheet.value("lengths", name, "by load mm", t.by_load_mm());
         for (n, what) in ["passages", "unloads", "floor"].into_iter().enumerate() {
@@ -285,7 +291,7 @@ fn counts(sheet: &mut Sheet, told: &[Told]) {
         let all: Vec<&Told> = told.iter().filter(of).collect();
         let held = all.iter().filter(|t| t.holds()).count();
         let mut off: Vec<f64> =
-            all.iter().filter_map(|t| Some((t.found.spall_mm?[0] / t.case.length_mm - 1.0).abs())).collect();
+            all.iter().filter_map(|t| Some((t.reading_mm()?[0] / t.case.length_mm - 1.0).abs())).collect();
         off.sort_by(f64::total_cmp);
         let median = off.get(off.len() / 2).map_or("–".to_owned(), |x| number(100.0 * x, 0));
         lines.push(vec![what.to_owned(), all.len().to_string(), held.to_string(), median]);
@@ -303,13 +309,11 @@ fn counts(sheet: &mut Sheet, told: &[Told]) {
     line("no length given; no defect is claimed", &|t| t.found.spall_mm.is_none() && !t.is_claimed());
     sheet.table(&["record", "records", "interval holds the length", "median off, %"], &lines);
     sheet.say(
-        "A length holds for a spall shorter than half of the distance of two elements; a note in \
-         `findings.json` says so, with the longer one that would knock in the \
-         same rhythm. In a longer spall the shorter time is the one from its exit to the entry of the next \
-         element, and the record does not say which of two \
-         events comes first: in measured records with a second event the louder one is now the first and now \
-         the second. One knock an element gives no length, only \
-         a bound. Elements come free some way behind the first edge and are caught before the second one (*by \
-         load*); what rings press them together is added for it (THEORY §7.9). Why some records, of which the elements do unload, show neither a second event nor its absence is open.",
+        "Two events of a passage have two readings, and the record does not say which: a spall shorter than half \
+         of the distance of two elements, or a longer one, from whose exit to the entry of the next element it \
+         is as far (`spall_otherwise_mm` in `findings.json`). The table gives the reading of the true one. One \
+         knock an element gives no length, only a bound. Elements come free some way behind the first edge and \
+         are caught before the second one (*by load*); what rings press them together is added for it (THEORY \
+         §7.9).",
     );
 }

@@ -3,9 +3,9 @@
 
 use stribeck_dsp::Envelope;
 
+use super::controls::MOST_AS_HIGH;
 use super::limits::{ALPHA, KNOCK};
 use super::unrelated::unrelated_hz;
-use super::verdict::MOST_AS_HIGH;
 use super::{Analysis, Family, MeasuredFindings};
 use crate::Error;
 

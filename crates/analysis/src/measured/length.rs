@@ -3,7 +3,7 @@
 
 use std::f64::consts::PI;
 
-use stribeck_dsp::{EventSpacing, event_spacing};
+use stribeck_dsp::{EventSpacing, Spacing, passage_spacing};
 use stribeck_scene::catalogue::CatalogueBearing;
 
 use super::pressed::Loading;
@@ -22,6 +22,8 @@ const MISSED: f64 = 2.0;
 pub(super) struct SpallLength {
     /// From two events a passage [mm].
     pub(super) length_mm: Option<Interval>,
+    /// Of a spall longer than half of the distance of two elements that would knock in the same rhythm [mm].
+    pub(super) otherwise_mm: Option<Interval>,
     /// Time between them [ms].
     pub(super) spacing_ms: Option<f64>,
     /// From one event a passage: the spall is shorter than this, if entry and exit both knock [mm].
@@ -52,9 +54,9 @@ pub(super) fn estimate(samples: &[f64], rate_hz: f64, machine: &Machine, familie
         return SpallLength::none("the first samples are not all numbers");
     }
     let apart_mm = speed / passing_hz;
-    match event_spacing(samples, rate_hz, SHORTEST_S, LONGEST / passing_hz) {
+    match passage_spacing(samples, rate_hz, passing_hz, SHORTEST_S, LONGEST / passing_hz) {
         Ok(EventSpacing::Pairs(spacing)) => {
-            of_two_events(spacing.lag_s, speed, apart_mm, bearing, family.name, machine)
+            of_two_events(spacing, speed, apart_mm, bearing, family.name, machine)
         }
         Ok(EventSpacing::Alone { clear_from_s }) => of_one_event(MISSED * speed * clear_from_s, apart_mm),
         Ok(EventSpacing::Unknown) => SpallLength::none(
@@ -65,14 +67,14 @@ pub(super) fn estimate(samples: &[f64], rate_hz: f64, machine: &Machine, familie
 }
 
 fn of_two_events(
-    lag_s: f64,
+    spacing: Spacing,
     speed_mm_s: f64,
     apart_mm: f64,
     bearing: &CatalogueBearing,
     raceway: Defect,
     machine: &Machine,
 ) -> SpallLength {
-    let run = speed_mm_s * lag_s;
+    let (run, off) = (speed_mm_s * spacing.lag_s, speed_mm_s * spacing.uncertainty_s);
     let (loading, is_given) =
         Loading::of(bearing, machine.load_n, machine.clearance_um, machine.housing_um_per_kn);
     let (pressed, least, most) = loading.pressed_mm(bearing, raceway);
@@ -83,19 +85,20 @@ fn of_two_events(
     } else {
         "a rigid housing".to_owned()
     };
+    let longer = |run: f64| Interval { value: run + pressed, low: run + least - off, high: run + most + off };
+    let otherwise = longer(apart_mm - run);
     let note = format!(
-        "the length of the spall is the {run:.2} mm that the contact runs between two events and the \
+        "the length of the spall is the {run:.2} ± {off:.2} mm that the contact runs between two events and the \
          {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in \
          {housing} presses the element together{advice}. It holds for a spall shorter than half of the \
-         {apart_mm:.1} mm between two elements: one of {:.1} mm, whose exit and the entry of the next \
-         element are as far apart, would knock in the same rhythm",
-        loading.load_n.0,
-        loading.load_n.1,
-        apart_mm - run + pressed
+         {apart_mm:.1} mm between two elements: one of {:.1} mm ({:.1} to {:.1}), whose exit and the entry of \
+         the next element are as far apart, would knock in the same rhythm, and the record does not say which",
+        loading.load_n.0, loading.load_n.1, otherwise.value, otherwise.low, otherwise.high
     );
     SpallLength {
-        length_mm: Some(Interval { value: run + pressed, low: run + least, high: run + most }),
-        spacing_ms: Some(1e3 * lag_s),
+        length_mm: Some(longer(run)),
+        otherwise_mm: Some(otherwise),
+        spacing_ms: Some(1e3 * spacing.lag_s),
         below_mm: None,
         note,
     }

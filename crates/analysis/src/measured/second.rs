@@ -7,9 +7,12 @@
 
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
+use super::controls::rank;
+use super::family::Family;
 use super::limits::{ALPHA, KNOCK, decibel};
+use super::sidebands::is_modulated;
 use super::unrelated::SLIP;
-use super::verdict::{Family, First, is_modulated, rank};
+use super::verdict::First;
 use super::{Defect, Reason};
 
 /// Where a family knocks most over the period of the first.

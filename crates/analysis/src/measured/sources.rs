@@ -10,7 +10,7 @@ use stribeck_formats::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 
 use super::unrelated::SLIP;
-use super::{Analysis, Defect, Family, Machine, verdict};
+use super::{Analysis, Defect, Family, Machine, sentence};
 use crate::Error;
 
 /// A part of a machine that makes lines, and how fast its shaft turns.
@@ -179,7 +179,7 @@ pub fn analyse(
     let mut all = Vec::new();
     for (component, analysis) in &mut bearings {
         let findings = &mut analysis.findings;
-        findings.verdict = verdict::conclude(&findings.families, findings.unexplained.as_ref());
+        findings.verdict = sentence::conclude(&findings.families, findings.unexplained.as_ref());
         all.push(format!("{component}: {}", findings.verdict));
     }
     Ok(Sources { bearings, verdict: all.join(" ") })

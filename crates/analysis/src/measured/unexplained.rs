@@ -49,8 +49,8 @@ const BESIDE_CAGE: i32 = 2;
 /// Probability of a false alarm at which such a comb is named.
 const NAMED: f64 = 1e-9;
 
-/// The highest comb that is no multiple of the shaft or the cage, no multiple, fraction or sideband of a
-/// higher family, is far beyond noise, and knocks. `of_others` says whether a frequency [Hz] is another
+/// The highest comb that is no multiple of the shaft or the cage, no multiple or fraction of a
+/// family, no sideband of a higher one, is far beyond noise, and knocks. `of_others` says whether a frequency [Hz] is another
 /// bearing's.
 pub(super) fn strongest(
     bands: &[(&BandEnvelope, Whitened)],
@@ -96,7 +96,11 @@ fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[Known]) -
     near_shaft
         || families.iter().any(|family| {
             let f = family.comb_hz;
-            let fraction = (1..=5).any(|q| (1..=5).any(|p| is(f * f64::from(p) / f64::from(q))));
+            // A multiple or an even part of a family is the family's, however high it stands; of two combs
+            // that share some lines only, the higher one is no part of the lower.
+            let part = (1..=5).any(|n| is(f * f64::from(n)) || is(f / f64::from(n)));
+            let shared = (2..=5).any(|q| (2..=5).any(|p| is(f * f64::from(p) / f64::from(q))));
+            let fraction = part || (shared && family.height >= comb.height);
             let by_shaft = (-BESIDE_SHAFT..=BESIDE_SHAFT)
                 .any(|k| (1..=2).any(|m| is(f64::from(m) * f + f64::from(k) * own.shaft_hz)));
             let by_cage = (-BESIDE_CAGE..=BESIDE_CAGE)

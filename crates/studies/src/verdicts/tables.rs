@@ -6,7 +6,7 @@ use stribeck_report::plot::{Abscissa, Axis, Colour, Figure, Level, Series, Style
 
 use super::baseline::{self, Scores};
 use super::records::{Labelled, Part, SETS};
-use super::trial::{Outcome, Standing};
+use super::trial::{self, Outcome, Standing};
 use crate::Sheet;
 use crate::table::number;
 
@@ -196,7 +196,8 @@ fn area_under_roc(scores: &[(f64, bool)]) -> Option<f64> {
 pub(super) fn choices(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]) {
     sheet.heading("Without a threshold");
     sheet.say(
-        "*Choice* counts the damaged bearings whose part has the highest score of the four families. The \
+        "*Choice* counts the damaged bearings whose part has the highest score of the four families, that \
+         of the cage read as a rolling element, which comes under the load once a turn of the cage. The \
          *area* under the ROC curve is over all families of all records, sound ones too: the probability \
          that a family of a damaged part scores higher than one of a part that is not.",
     );
@@ -219,7 +220,7 @@ pub(super) fn choices(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]
                     let asked = is_asked(record);
                     if asked {
                         count += 1;
-                        right += usize::from(Some(baseline::choice(&own).0) == record.truth);
+                        right += usize::from(Some(trial::choice(&own)) == record.truth);
                     }
                     if asked || record.truth.is_none() {
                         let all = Defect::ALL.into_iter().zip(own);

@@ -69,7 +69,7 @@ pub(super) struct Outcome {
     pub(super) or: Vec<Defect>,
     /// Score of each family [dB].
     pub(super) scores: [f64; 4],
-    /// The family of the highest score.
+    /// The part that is named where one must be ([`choice`]).
     pub(super) choice: Defect,
     pub(super) p_values: [f64; 4],
     /// The speed that was taken, or found [1/min].
@@ -132,19 +132,25 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         Defect::ALL.map(|name| families.iter().find(|f| f.name == name).map_or(none, value))
     };
     let scores = of(|f| f.score_db(), f64::NEG_INFINITY);
-    let best = (0..4).max_by(|a, b| scores[*a].total_cmp(&scores[*b])).unwrap_or(0);
     let claims = families.iter().filter(|f| f.claimed);
     Some(Outcome {
         claimed: claims.clone().map(|f| f.name).collect(),
         or: claims.filter_map(|f| f.not_told_apart_from).collect(),
         scores,
-        choice: Defect::ALL[best],
+        choice: choice(&scores),
         p_values: of(|f| f.p_value, 1.0),
         speed_rpm: analysis.findings.speed_rpm,
         spall_mm: analysis.findings.spall_mm,
         is_bounded: analysis.findings.spall_below_mm.is_some(),
         verdict: analysis.findings.verdict,
     })
+}
+
+/// The part whose family has the highest score. One rolling element that is damaged comes under the load once
+/// a turn of the cage, and cages fail more rarely: the cage's family is read as a rolling element.
+pub(super) fn choice(scores: &[f64; 4]) -> Defect {
+    let best = (0..4).max_by(|a, b| scores[*a].total_cmp(&scores[*b])).unwrap_or(0);
+    if Defect::ALL[best] == Defect::Ftf { Defect::Bsf } else { Defect::ALL[best] }
 }
 
 /// Adds normal noise, whose rms is `share` of the record's.

@@ -1,0 +1,162 @@
+//! The second event of passages whose rhythm is known, from the mean power about the strongest event of each.
+//!
+//! A correlation of the power with itself needs two events of about equal energy: one that is weaker by a
+//! factor `a` stands in it by `a/(1 + a²)`, beneath the ringing of the other. The mean over passages, each
+//! counted from its own strongest event, shows a second one as soon as it stands above what lies between
+//! passages, however much weaker than the first it is. Source: own.
+
+use std::ops::Range;
+
+use super::{AGREED, smoothing};
+
+/// Passages that share one phase: within them slip moves an event by less than the quarter of a period in
+/// which it is looked for.
+const SHARED: f64 = 40.0;
+/// Steps of a period in which the place of the strongest event is looked for, and how many of them, on either
+/// side, the power is summed over.
+const STEPS: usize = 100;
+const BESIDE: usize = 2;
+/// Part of a period about that place in which an event belongs to a passage, on either side.
+const OWN: f64 = 0.25;
+/// Fewest passages of a mean.
+const FEWEST: usize = 8;
+/// Least power of a second event over the median between passages: in the mean of all of them, and in that of
+/// either half, every other passage.
+const ABOVE: f64 = 2.0;
+const ABOVE_IN_HALF: f64 = 1.5;
+/// Between the second and the strongest event the power falls to this part of the second's, or it is the
+/// ringing of the strongest.
+const VALLEY: f64 = 0.7;
+/// A second event is the highest within this part of its distance, on either side.
+const ALONE: f64 = 0.05;
+
+/// What is looked for in a record.
+pub(super) struct Search {
+    /// Time between passages [samples].
+    pub(super) period: f64,
+    /// Distances of the second event [samples].
+    pub(super) lags: Range<usize>,
+    pub(super) sample_rate_hz: f64,
+}
+
+/// A second event in one band.
+struct Second {
+    /// Distance from the strongest event, before or after it [samples].
+    lag: f64,
+    /// Its power over the median between passages.
+    height: f64,
+}
+
+impl Search {
+    /// Distances in samples at which both of two bands have the second event; `None` where they have none, or
+    /// do not agree. `bands` are smoothed powers over time.
+    pub(super) fn second_events(&self, bands: &[Vec<f64>; 2]) -> Option<[f64; 2]> {
+        let both: Vec<f64> = bands[0].iter().zip(&bands[1]).map(|(low, high)| low + high).collect();
+        let strongest = self.strongest(&both);
+        if strongest.len() < FEWEST {
+            return None;
+        }
+        let [low, high] = bands.each_ref().map(|power| self.seconds(power, &strongest));
+        // Events are no sharper than what they were smoothed with.
+        let sharp = smoothing(self.sample_rate_hz) as f64;
+        let agree =
+            |a: &Second, b: &Second| (a.lag - b.lag).abs() < (AGREED * a.lag.max(b.lag)).max(0.5 * sharp);
+        let pairs = low.iter().flat_map(|a| high.iter().filter(move |b| agree(a, b)).map(move |b| (a, b)));
+        let weaker = |(a, b): &(&Second, &Second)| a.height.min(b.height);
+        let best = pairs.max_by(|one, other| weaker(one).total_cmp(&weaker(other)))?;
+        Some([best.0.lag, best.1.lag])
+    }
+
+    /// Places of the strongest event of each passage, but of those too near to an end of the record.
+    fn strongest(&self, power: &[f64]) -> Vec<usize> {
+        let mut places = Vec::new();
+        let shared = (SHARED * self.period) as usize;
+        for (n, part) in power.chunks(shared).enumerate() {
+            let centre = self.phase(part);
+            let of = |passage: usize, off: f64| {
+                (((passage as f64 + centre + off) * self.period).max(0.0)) as usize
+            };
+            let ends = (0..).map(|passage| of(passage, -OWN)..of(passage, OWN));
+            for within in ends.take_while(|within| within.end <= part.len()) {
+                let place = n * shared + highest(part, within);
+                if place >= self.lags.end && place + self.lags.end < power.len() {
+                    places.push(place);
+                }
+            }
+        }
+        places
+    }
+
+    /// Part of a period at which the power is highest, over all passages of a part of the record.
+    fn phase(&self, power: &[f64]) -> f64 {
+        let mut steps = [0.0; STEPS];
+        for (n, power) in power.iter().enumerate() {
+            steps[((n as f64 / self.period).fract() * STEPS as f64) as usize % STEPS] += power;
+        }
+        let about = |step: usize| {
+            (step + STEPS - BESIDE..=step + STEPS + BESIDE).map(|near| steps[near % STEPS]).sum::<f64>()
+        };
+        let best = (0..STEPS).max_by(|a, b| about(*a).total_cmp(&about(*b))).unwrap_or(0);
+        (best as f64 + 0.5) / STEPS as f64
+    }
+
+    /// Second events of a band.
+    fn seconds(&self, power: &[f64], strongest: &[usize]) -> Vec<Second> {
+        let reach = self.lags.end;
+        let of = |from: usize, step: usize| self.mean_about(power, strongest.iter().skip(from).step_by(step));
+        let (all, halves) = (of(0, 1), [of(0, 2), of(1, 2)]);
+        let stands = |n: usize| {
+            let apart = n.abs_diff(reach);
+            let alone = ((ALONE * apart as f64) as usize).max(1);
+            let near = &all[n.saturating_sub(alone)..(n + alone + 1).min(all.len())];
+            let between = if n < reach { &all[n..reach] } else { &all[reach..n] };
+            self.lags.contains(&apart)
+                && all[n] >= ABOVE
+                && halves.iter().all(|half| half[n] >= ABOVE_IN_HALF)
+                && near.iter().all(|power| *power <= all[n])
+                && between.iter().any(|power| *power <= VALLEY * all[n])
+        };
+        (1..all.len() - 1)
+            .filter(|n| stands(*n))
+            .map(|n| Second {
+                lag: n.abs_diff(reach) as f64 + between_samples(&all, n, reach),
+                height: all[n],
+            })
+            .collect()
+    }
+
+    /// Mean power about the strongest events, from the greatest distance before them to as much after, over
+    /// its median beyond the least distance.
+    fn mean_about<'a>(&self, power: &[f64], strongest: impl Iterator<Item = &'a usize>) -> Vec<f64> {
+        let reach = self.lags.end;
+        let mut mean = vec![0.0; 2 * reach + 1];
+        for place in strongest {
+            mean.iter_mut().zip(&power[place - reach..]).for_each(|(sum, power)| *sum += power);
+        }
+        let mut between: Vec<f64> = mean
+            .iter()
+            .enumerate()
+            .filter(|(n, _)| self.lags.contains(&n.abs_diff(reach)))
+            .map(|x| *x.1)
+            .collect();
+        let middle = between.len() / 2;
+        let (_, median, _) = between.select_nth_unstable_by(middle, f64::total_cmp);
+        let median = median.max(f64::MIN_POSITIVE);
+        mean.iter_mut().for_each(|power| *power /= median);
+        mean
+    }
+}
+
+/// The place of the highest value of a range that holds one.
+fn highest(values: &[f64], within: Range<usize>) -> usize {
+    let from = within.start;
+    within.max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(from)
+}
+
+/// By how much the top of a parabola through three values about `n` lies farther from `reach` [samples].
+fn between_samples(values: &[f64], n: usize, reach: usize) -> f64 {
+    let (left, right) = (values[n - 1], values[n + 1]);
+    let bend = left - 2.0 * values[n] + right;
+    let offset = if bend < 0.0 { 0.5 * (left - right) / bend } else { 0.0 };
+    if n < reach { -offset } else { offset }
+}
