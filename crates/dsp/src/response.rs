@@ -58,8 +58,7 @@ impl Mode {
     pub fn accelerance(&self, hz: f64) -> Complex<f64> {
         let omega = TAU * hz;
         let (m, k) = (self.mass_kg, self.stiffness_n_m);
-        let below =
-            Complex::new(k - omega * omega * m, 2.0 * self.damping_ratio * omega * (k * m).sqrt());
+        let below = Complex::new(k - omega * omega * m, 2.0 * self.damping_ratio * omega * (k * m).sqrt());
         Complex::new(-omega * omega, 0.0) / below
     }
 

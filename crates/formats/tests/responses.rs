@@ -48,10 +48,26 @@ fn refuses_functions_that_are_no_responses() {
     let text = String::from_utf8_lossy(&whole[..end]).into_owned();
     let text = text.rsplit_once("    -1\n    58").expect("its head").0.to_owned();
     for (from, to, told) in [
-        ("    4         0    0         0    HOUSING", "    6         0    0         0    HOUSING", "coherence"),
-        ("        13    0    0    0 NONE                 N   ", "        13    0    0    0 NONE                 bar ", "`bar`"),
-        ("        12    0    0    0 NONE                 m/s^2", "        12    0    0    0 NONE                 m/s  ", "contradicts"),
-        ("        12    0    0    0 NONE                 m/s^2", "        12    0    0    0 NONE                 V    ", "`V`"),
+        (
+            "    4         0    0         0    HOUSING",
+            "    6         0    0         0    HOUSING",
+            "coherence",
+        ),
+        (
+            "        13    0    0    0 NONE                 N   ",
+            "        13    0    0    0 NONE                 bar ",
+            "`bar`",
+        ),
+        (
+            "        12    0    0    0 NONE                 m/s^2",
+            "        12    0    0    0 NONE                 m/s  ",
+            "contradicts",
+        ),
+        (
+            "        12    0    0    0 NONE                 m/s^2",
+            "        12    0    0    0 NONE                 V    ",
+            "`V`",
+        ),
         ("        18    0    0    0", "        17    0    0    0", "18 is the frequency"),
         ("         6        81", "         4        81", "without its phase"),
     ] {

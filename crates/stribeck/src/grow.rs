@@ -160,7 +160,8 @@ fn table(file: &File, planned: &[Planned]) -> String {
 
 /// A row a record, with the truth.
 fn columns(findings: &GrowthFindings) -> Vec<Column> {
-    let rows = || findings.units.iter().flat_map(|unit| unit.records.iter().map(move |record| (unit, record)));
+    let rows =
+        || findings.units.iter().flat_map(|unit| unit.records.iter().map(move |record| (unit, record)));
     macro_rules! column {
         ($name:literal, $kind:ident, $of:expr) => {
             Column { name: $name.to_owned(), values: Values::$kind(rows().map($of).collect()) }

@@ -68,8 +68,7 @@ impl Transfer {
             .with_context(|| format!("`{}` of line {}", chosen.name, chosen.line))?;
         let (low, high) = response.band_hz().unwrap_or_default();
         let notes: String = chosen.notes.iter().map(|note| format!("; {note}")).collect();
-        let words =
-            format!("`{}`, known from {low} to {high} Hz, nothing beyond{notes}", chosen.name);
+        let words = format!("`{}`, known from {low} to {high} Hz, nothing beyond{notes}", chosen.name);
         Ok(Self { response, per: chosen.per, words })
     }
 

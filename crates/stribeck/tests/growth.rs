@@ -64,7 +64,11 @@ fn refuses_growths_that_cannot_be() {
     for (from, to, told) in [
         ("units: 3", "units: 0", ["`units` is 0", "1 to 10000"]),
         ("from: 1.0, to: 4.0", "from: 4.0, to: 1.0", ["goes from 4 to 1", "grows"]),
-        ("life: (revolutions: 4e6", "life: (revolutions: -4e6", ["`life.revolutions` is -4000000", "between"]),
+        (
+            "life: (revolutions: 4e6",
+            "life: (revolutions: -4e6",
+            ["`life.revolutions` is -4000000", "between"],
+        ),
         ("on: outer", "on: cage", ["cage", "outer"]),
         ("most_depth_mm", "most_deep_mm", ["most_deep_mm", "line"]),
         ("defect=None", "defects=None", ["defects", ""]),
@@ -81,7 +85,8 @@ fn refuses_growths_that_cannot_be() {
 fn example_a_path_leads_the_force_to_a_sensor_and_back() {
     let desk = Scratch::create("path");
     let scene = format!("{ROOT}/fixtures/scenes/first_look.ron");
-    let output = stribeck(&desk, &["simulate", &scene, "--set", "solver.duration_ms=100", "--out", "run", "--quiet"]);
+    let output =
+        stribeck(&desk, &["simulate", &scene, "--set", "solver.duration_ms=100", "--out", "run", "--quiet"]);
     assert!(output.status.success(), "{}", said(&output));
     let mode = "mass=12, stiffness=2e8, damping=0.02";
     let uff = format!("{ROOT}/fixtures/signals/responses.uff");

@@ -192,6 +192,8 @@ fn reference(
     };
     let known = KNOWN.iter().find(|(name, ..)| *name == unit);
     known.map(|(_, per, factor)| (*per, *factor)).ok_or_else(|| {
-        format!("its reference is in `{unit}`; known are N, kN, mN, lbf, and m/s^2 and g of a transmissibility")
+        format!(
+            "its reference is in `{unit}`; known are N, kN, mN, lbf, and m/s^2 and g of a transmissibility"
+        )
     })
 }

@@ -111,9 +111,15 @@ impl File {
     }
 
     fn parse(text: &str) -> Result<Self> {
-        let dialect = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+        let dialect =
+            ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
         let file: Self = dialect.from_str(text).map_err(|why| {
-            anyhow::anyhow!("line {}, column {}: {}; {EXAMPLE}", why.span.start.line, why.span.start.col, why.code)
+            anyhow::anyhow!(
+                "line {}, column {}: {}; {EXAMPLE}",
+                why.span.start.line,
+                why.span.start.col,
+                why.code
+            )
         })?;
         file.check()?;
         Ok(file)
@@ -216,7 +222,11 @@ mod tests {
         for (from, to, told) in [
             ("units: 3", "units: 0", "`units` is 0"),
             ("to: 3.0", "to: 0.5", "a spall grows"),
-            ("revolutions: 2e6, scatter: 0.3", "revolutions: -2e6, scatter: 0.3", "`onset.revolutions` is -2000000"),
+            (
+                "revolutions: 2e6, scatter: 0.3",
+                "revolutions: -2e6, scatter: 0.3",
+                "`onset.revolutions` is -2000000",
+            ),
             ("on: outer", "on: cage", "cage"),
             ("units: 3", "unit: 3", "unit"),
             ("most_depth_mm: 0.08", "most_depth_mm: 0.08, wander: 9", "`wander` is 9"),

@@ -156,7 +156,8 @@ fn unit_findings(
     }
     let first: Vec<f64> = records.iter().take(LEAST_RECORDS).filter_map(|record| record.rms).collect();
     let alarm = Limit::from_reference(Quantity::Rms, &first).map(|limit| limit.alarm);
-    let above = |record: &&RecordFindings| alarm.is_some_and(|alarm| record.rms.is_some_and(|rms| rms >= alarm));
+    let above =
+        |record: &&RecordFindings| alarm.is_some_and(|alarm| record.rms.is_some_and(|rms| rms >= alarm));
     UnitFindings {
         unit,
         onset,
