@@ -13,7 +13,18 @@ use syn::{Attribute, Expr, ExprLit, Fields, GenericArgument, Item, Lit, Meta, Pa
 use crate::workspace;
 
 /// Where the types of a scene stand.
-const SOURCES: [&str; 4] = ["scene.rs", "deviation.rs", "housing.rs", "ring_mesh.rs"];
+const SOURCES: [&str; 10] = [
+    "scene.rs",
+    "scene/bearing.rs",
+    "scene/contact.rs",
+    "scene/mesh.rs",
+    "scene/operation.rs",
+    "scene/output.rs",
+    "scene/solver.rs",
+    "deviation.rs",
+    "housing.rs",
+    "ring_mesh.rs",
+];
 
 /// The page.
 const PAGE: &str = "docs/guide/src/fields.md";

@@ -3,6 +3,7 @@
 
 mod damage;
 mod inputs;
+mod readers;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
@@ -32,9 +33,21 @@ pub(crate) struct Options {
     /// Where the sequence of inputs begins; a failure names the seed of its input
     #[arg(long, default_value_t = 0)]
     seed: u64,
-    /// Only inputs of this kind: scene, override, table, campaign, trace, checkpoint, run-info, mesh, shape
+    /// Only inputs of this kind: scene, override, table, campaign, trace, checkpoint, run-info, mesh, shape,
+    /// reader
     #[arg(long)]
     kind: Option<String>,
+    /// Compares our readings of files of signals and meshes, most of them damaged, with those of the programs
+    /// that this Python has (numpy, scipy, h5py, npTDMS, asammdf, pandas, pyarrow, pyuff, soundfile, meshio),
+    /// and writes docs/results/readers.md
+    #[arg(long, value_name = "PYTHON", conflicts_with = "kind")]
+    peers: Option<String>,
+    /// With --peers: begins no further batch of files after so many seconds
+    #[arg(long, value_name = "S", default_value_t = 600, requires = "peers")]
+    seconds: u64,
+    /// With --peers: keeps the files that are read differently, or by the other program alone
+    #[arg(long, value_name = "FOLDER", requires = "peers")]
+    keep: Option<std::path::PathBuf>,
 }
 
 /// How an input was answered.
@@ -58,7 +71,19 @@ struct Tally {
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let folder = std::env::temp_dir().join(format!("stribeck-fuzz-{}", std::process::id()));
     std::fs::create_dir_all(&folder).context("cannot make a folder for the inputs")?;
-    let done = all(options, &Inputs::new(&folder)?);
+    let done = match &options.peers {
+        Some(python) => readers::against(
+            &readers::Wanted {
+                python,
+                keep: options.keep.as_deref(),
+                time: Duration::from_secs(options.seconds),
+                first: options.seed,
+                cases: options.cases,
+            },
+            &folder,
+        ),
+        None => all(options, &Inputs::new(&folder)?),
+    };
     std::fs::remove_dir_all(&folder).ok();
     done
 }
@@ -145,7 +170,8 @@ mod tests {
 
     #[test]
     fn survives_generated_bad_inputs_with_an_answer() {
-        let code = run(&Options { cases: 800, seed: 7, kind: None }).expect("a folder for temporary files");
+        let code = run(&Options { cases: 800, seed: 7, kind: None, peers: None, seconds: 0, keep: None })
+            .expect("a folder for temporary files");
         assert_eq!(code, ExitCode::SUCCESS);
     }
 }

@@ -1,9 +1,9 @@
-//! How far the reduced model of a scene is from the full one: the same starts by both, quantity by quantity.
+//! The reduced model of a scene beside the full one: the same starts by both, quantity by quantity.
 //!
-//! Each quantity has a limit, which is what a user of the reduced model may count on, and a verdict. Pairs of
-//! runs have the same start, so they differ by the model and by chance, because small differences grow: the
-//! waveform of one impact is chaotic, which is why accelerations are compared by the power of third octaves
-//! over all starts.
+//! Each quantity has a limit, up to which a user of the reduced model must expect differences, and a verdict.
+//! Pairs of runs have the same start, so they differ by the model and by chance, because small differences
+//! grow: the waveform of one impact is chaotic, which is why accelerations are compared by the power of third
+//! octaves over all starts.
 
 mod octaves;
 mod row;
@@ -153,7 +153,8 @@ impl Agreement {
     }
 }
 
-/// What samples of the full model that lie too far apart do to its third octaves; `None` where they do not.
+/// A note where samples of the full model lie so far apart that aliases enter its third octaves; `None`
+/// elsewhere.
 fn fold_down_note(sampled_s: f64) -> Option<String> {
     (sampled_s > 1.01 * FINE_S).then(|| {
         format!(
@@ -189,7 +190,7 @@ fn over_starts(values: impl Iterator<Item = Option<f64>>, of: usize) -> Option<S
     Statistic::of(&there, of)
 }
 
-/// Root mean square over rollers and time of what the forces differ by, of the largest force.
+/// Root mean square, over rollers and time, of the difference of forces, over the largest force [-].
 fn forces(sides: &[[Side; 2]]) -> Option<Row> {
     let off = |[full, reduced]: &[Side; 2]| {
         let (mut sum, mut count) = (0.0, 0.0);

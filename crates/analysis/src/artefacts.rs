@@ -1,4 +1,5 @@
-//! The ledger of lines: which belong to the bearing, which to its mesh, and how each stands in the spectrum.
+//! The ledger of lines: which belong to the bearing, which to its mesh, and the level of each in the
+//! spectrum.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, PeriodCount, Spectrum};
@@ -11,7 +12,7 @@ use crate::prediction::Prediction;
 use crate::ring;
 use crate::tones::{self, PredictedLine, Tone};
 
-/// Where a line comes from.
+/// Origin of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Origin {
@@ -28,7 +29,7 @@ pub enum Origin {
 /// One line of the ledger.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Artefact {
-    /// Where it comes from.
+    /// Its origin.
     pub family: Origin,
     /// Name in words.
     pub name: String,

@@ -21,7 +21,7 @@ pub use side::{Kind, Member, Sampled, Shape, Side};
 /// Contents of `compare.json`.
 #[derive(Debug, Clone, Serialize)]
 pub struct Comparison {
-    /// What is compared; the first is what the others are compared with.
+    /// The compared sides; the first is the reference of the others.
     pub sides: Vec<Side>,
     /// Fields in which the scenes differ.
     pub fields: Vec<FieldDifference>,
@@ -110,8 +110,8 @@ impl Comparison {
         })
     }
 
-    /// Whether all sides whose speed is known turn equally fast, so that their families stand at the same
-    /// frequencies where their bearings are the same.
+    /// Whether all sides whose speed is known turn equally fast, so that equal bearings have equal defect
+    /// frequencies.
     pub fn is_of_one_speed(&self) -> bool {
         const SAME: f64 = 1e-3;
         let known: Vec<f64> = self.sides.iter().filter_map(|side| side.shaft_hz).collect();
@@ -173,8 +173,8 @@ fn mean(curves: &[&[f64]]) -> Vec<f64> {
     (0..length).map(at).collect()
 }
 
-/// Numbers that stand alone in the summaries of all runs and are not the same in all; those of lists are left
-/// to the runs' own pages.
+/// Numbers outside of lists in the summaries of all runs that are not equal in all; numbers in lists are on
+/// the runs' own pages.
 fn numbers(sides: &[Side]) -> Result<Vec<Row>, Error> {
     let merged: Vec<Merged> = sides.iter().map(Side::merged).collect::<Result<_, _>>()?;
     let mut all: BTreeMap<String, Vec<Option<Statistic>>> = BTreeMap::new();
@@ -195,7 +195,7 @@ fn flatten(merged: &Merged, path: &str, take: &mut impl FnMut(String, Statistic)
     match merged {
         Merged::Number(statistic) => take(path.to_owned(), *statistic),
         Merged::Group(fields) => {
-            // What a run cost belongs to the machine.
+            // The cost of a run depends on the computer.
             for (name, inner) in fields.iter().filter(|(name, _)| !(path.is_empty() && *name == "run")) {
                 let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
                 flatten(inner, &path, take);

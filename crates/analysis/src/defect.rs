@@ -1,4 +1,4 @@
-//! Which part of a bearing a family of lines belongs to.
+//! The damaged part that a family of lines belongs to.
 
 use std::fmt;
 

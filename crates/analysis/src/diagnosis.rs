@@ -172,11 +172,11 @@ fn from_motion(
 ) -> Option<f64> {
     match defect {
         Defect::Bpfo => motion.bpfo_hz,
-        // They pass either raceway as often as the shaft takes them round, less what they pass the other.
+        // The rates of passing both raceways add up to the shaft's rate times the number of rollers.
         Defect::Bpfi => motion.bpfo_hz.map(|bpfo| motion.pockets() * motion.relative_hz - bpfo),
-        // A spot strikes in the load zone, and there in the rhythm of the spin under load. From one turn of
-        // the cage to the next its phase goes on by all that its roller has turned, outside the load zone as
-        // well: lines stand at the mean spin.
+        // A spot strikes in the load zone, at the spin rate under load. From one turn of the cage to the next
+        // its phase advances by the whole rotation of its roller, outside the load zone as well: lines lie at
+        // multiples of the mean spin rate.
         Defect::Bsf if in_passages => motion.roller_spin_hz,
         Defect::Bsf => {
             let damaged = |roller: &&RollerMotion| present.contains(&RollingSurface::Roller(roller.roller));

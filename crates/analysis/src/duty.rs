@@ -1,9 +1,9 @@
 //! Speed and load over time, and the defect's family over the angle of the shaft (THEORY §7.11).
 //!
 //! Where the speed changes, a family has no frequency: it has an order, its number of periods in a turn of
-//! the shaft. The squared envelope of the leading sensor, whose resonances stay where they are in time, is
-//! averaged over equal steps of the shaft's angle, which the run records as a tachometer would; its spectrum
-//! then has the family's lines at their orders.
+//! the shaft. The squared envelope of the leading sensor, whose resonances are constant in time, is averaged
+//! over equal steps of the shaft's angle, which the run records as a tachometer would; its spectrum then has
+//! the family's lines at their orders.
 //!
 //! Families of raceways and rollers are in proportion to the difference of both rings' speeds. Where the
 //! outer ring turns, too, their orders count turns of the shaft against it, and the angle is that between the
@@ -57,8 +57,8 @@ pub struct DutyFinding {
     pub load_n: (f64, f64),
     /// Turns of the shaft against the outer ring on record, both ways counted.
     pub turns: f64,
-    /// Name and order of each family: how often it comes in a turn of the shaft against the outer ring,
-    /// without slip.
+    /// Name and order of each family: periods in a turn of the shaft relative to the outer ring, without
+    /// slip.
     pub orders: Vec<(String, f64)>,
     /// The defect's family over the angle; `None` with the reason in `notes`.
     pub envelope: Option<OrderEnvelope>,
@@ -202,8 +202,8 @@ pub fn turns(record: &Record<'_>) -> Option<Vec<f64>> {
     Some(angle.iter().map(|rad| turn * rad).collect())
 }
 
-/// Order of a family by the recorded motion: rollers pass either raceway as often as the shaft takes them
-/// round, less what they pass the other.
+/// Order of a family by the recorded motion: the rates of passing both raceways add up to the relative speed
+/// of the rings times the number of rollers.
 pub fn moved(defect: Defect, motion: &KinematicsFinding) -> Option<f64> {
     let outer = motion.bpfo_hz? / motion.relative_hz;
     let order = match defect {
@@ -214,8 +214,8 @@ pub fn moved(defect: Defect, motion: &KinematicsFinding) -> Option<f64> {
     Some(order).filter(|order| order.is_finite())
 }
 
-/// Order spectrum of the squared envelope of `signal_g` [g⁴], its frequencies orders, and what stands at the
-/// orders of `family`; the reason when there is none. `turns` is the angle of the shaft against the outer
+/// Order spectrum of the squared envelope of `signal_g` [g⁴], with orders as frequencies, and the lines at
+/// the orders of `family`; the reason when there is none. `turns` is the angle of the shaft against the outer
 /// ring at each sample.
 ///
 /// # Errors

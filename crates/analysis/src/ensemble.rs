@@ -39,7 +39,7 @@ pub struct EnsembleSummary {
     pub scene: String,
     /// Seed of the draws.
     pub seed: u64,
-    /// Every start that was asked for.
+    /// Every requested start.
     pub starts: Vec<StartSummary>,
     /// The summaries of all complete starts as one: in place of each number its statistic over the starts, in
     /// place of yes and no the share of yes. Items of lists are matched by name; a text is kept where all

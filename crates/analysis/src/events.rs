@@ -1,16 +1,18 @@
 //! When a roller unloads at the leading edge of a defect and when it is loaded again at the trailing edge.
 //!
 //! **The rule.** The normal force of the spall's raceway on the roller (compression positive) is passed
-//! through a running median as wide as one facet period, at most a tenth of the traverse: a median keeps
-//! steps where they are, and takes out both the facet tone and shocks shorter than half its width. The level
-//! before the defect is the median over half a traverse before the expected entry, less its last tenth. The
-//! record around the passage is split where the roller is in the middle of the defect. *Entry* is the start
-//! of the longest stretch below half that level in the first part (from half a traverse before the expected
-//! entry), *exit* the end of the longest such stretch in the second part (up to half a traverse after the
-//! expected exit). Splitting keeps impacts and rebounds on the floor of the defect from being picked. A
-//! stretch counts from an eighth of a traverse on.
+//! through a running median as wide as one facet period, at most a tenth of the traverse: a median keeps the
+//! times of steps, and removes both the facet tone and shocks shorter than half its width. The level before
+//! the defect is the median over half a traverse before the expected entry, less its last tenth. The record
+//! around the passage is split where the roller is in the middle of the defect. *Entry* is the start of the
+//! longest stretch below half that level in the first part (from half a traverse before the expected entry),
+//! *exit* the end of the longest such stretch in the second part (up to half a traverse after the expected
+//! exit). Splitting excludes impacts and rebounds on the floor of the defect. A stretch counts from an eighth
+//! of a traverse on.
 
 use std::ops::Range;
+
+use stribeck_dsp::median;
 
 /// Shortest unloaded stretch that counts, as a fraction of the traverse.
 const SHORTEST_STRETCH: f64 = 0.125;
@@ -136,16 +138,6 @@ pub fn running_median(time_s: &[f64], values: &[f64], width_s: f64) -> Vec<f64> 
             median(&mut window)
         })
         .collect()
-}
-
-/// Median; zero of nothing. Sorts in place.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => 0.5 * (values[n / 2 - 1] + values[n / 2]),
-    }
 }
 
 /// Longest run of samples below `threshold` inside `within`, if it lasts `least` seconds.

@@ -1,29 +1,29 @@
 //! Combs of lines, fitted to the recorded motion of the rollers: which polygon makes the tone.
 //!
-//! Facets that pass the loaded contacts make no single line. The contribution of roller j to a sensor is
-//! proportional to its load Q_j, depends on its place θ_j, and its phase Ψ_j is that of its own facets: N_v
-//! times its spin seen from the contact, N_o times its way along the outer raceway, or N_i times that along
-//! the inner one. The sum over the rollers,
+//! Facets that pass the loaded contacts do not make a single line. The contribution of roller j to a sensor
+//! is proportional to its load Q_j, depends on its place θ_j, and its phase Ψ_j is that of its own facets:
+//! N_v times its spin seen from the contact, N_o times its way along the outer raceway, or N_i times that
+//! along the inner one. The sum over the rollers,
 //!
 //! ```text
 //! Σ_j Q_j(t) [c₀ + Σ_q a_q cos 2qθ_j + b_q sin 2qθ_j] exp iΨ_j(t)          q = 1 … 3
 //! ```
 //!
 //! repeats whenever a roller has taken the place of the next one: a comb of lines BPFO apart. All of Q, θ and
-//! Ψ are recorded, so only the seven complex weights are fitted: to each acceleration by itself, and to the
-//! forces on the fullest rollers all at once. A roller's force has its own term of the sum alone, and all
+//! Ψ are recorded, so only the seven complex weights are fitted: to each acceleration separately, and to the
+//! forces on the most loaded rollers together. A roller's force has its own term of the sum alone, and all
 //! rollers have one set of weights, because the effect of facets at a place does not depend on the roller
 //! that is there.
 //!
 //! **The test.** A fit explains the share R² of a channel, in a band about the mean rate of Ψ. Its *score* is
 //! the mean of −ln(1 − R² + 0.02) over the accelerations plus that over the forces, its best within half a
-//! resolution (one over the length of the record) of the recorded motion. Whatever else may explain the same
-//! channels is a *rival*: the same comb where it does not belong, 5 to 20 BPFO away, and the combs of the
+//! resolution (one over the length of the record) of the recorded motion. Other explanations of the same
+//! channels are *rivals*: the same comb where it does not belong, 5 to 20 BPFO away, and the combs of the
 //! other families. A family is **found** when its score leads every rival by [`LEAST_LEAD`], and is highest
-//! where it belongs. Families that lead all detuned combs but not each other are **not told apart**. One that
-//! was found stays in the fit while the others are tried on what it leaves; there a comb must lead its own
-//! copies next to its place, too, because what a fit misses lies about the lines that it fits. Where the lead
-//! comes from, and how often noise reaches it: THEORY §7.7.
+//! where it belongs. Families that lead all detuned combs but not each other are **not resolved**. One that
+//! was found stays in the fit while the others are tried on the residual; there a comb must also lead its own
+//! copies at neighbouring frequencies, because the residual of a fit concentrates about the fitted lines.
+//! Source of the limit, and how often noise reaches it: THEORY §7.7.
 
 mod comb;
 mod kernels;
@@ -36,8 +36,8 @@ use self::comb::BasebandComb;
 use self::trial::{Channels, Trial};
 use crate::Error;
 
-/// The least lead of a score that counts: what a comb leaves of the channels is then 26 % less than what any
-/// rival leaves. On records that were not used to choose it, one false comb in some hundreds leads by it
+/// The least lead of a score that counts: its residual is then 26 % smaller than that of any rival. On
+/// records that were not used to choose it, one false comb in some hundreds leads by it
 /// (docs/results/families.md).
 pub const LEAST_LEAD: f64 = 0.3;
 /// Periods of BPFO that a record must hold: with fewer, a comb cannot be distinguished from a single line.
@@ -77,7 +77,7 @@ pub struct RollerTrack {
 
 /// Recorded motion, as all families need it.
 #[derive(Debug, Clone)]
-pub struct Motion {
+pub struct RecordedMotion {
     /// Sampling interval [s].
     pub interval_s: f64,
     /// Angular velocity of the inner ring [rad/s], counter-clockwise: negative.
@@ -127,13 +127,13 @@ pub struct FamilyFinding {
     pub offset_scatter_resolutions: Option<f64>,
     /// True when the record holds this family and no other explains its lines as well.
     pub found: bool,
-    /// Families that explain the same lines as well: at least one of them and this one is there, and the
-    /// record does not tell which.
+    /// Families that explain the same lines as well: at least one of them and this one is present, and the
+    /// record does not resolve which.
     pub not_told_apart_from: Vec<String>,
     /// How far the score leads that of the best rival; negative when a rival explains more.
     pub lead: Option<f64>,
     /// Share of the accelerations in the band that the comb explains, mean over sensors and components; of
-    /// what is left of them once families that were found earlier are in the fit.
+    /// their residual once families found earlier are in the fit.
     pub explained: Option<f64>,
     /// The same of the forces on the loaded rollers.
     pub explained_forces: Option<f64>,
@@ -176,7 +176,7 @@ pub(crate) fn too_early(samples: usize, interval_s: f64, bpfo_hz: f64) -> Option
 /// # Errors
 /// [`Error::Signal`] when the spectrum of a finite channel is refused.
 pub fn identify(
-    motion: &Motion,
+    motion: &RecordedMotion,
     candidates: &[Candidate],
     accelerations: &[Channel],
 ) -> Result<Vec<FamilyFinding>, Error> {
@@ -217,7 +217,7 @@ enum Verdict {
 }
 
 impl<'a> Case<'a> {
-    fn of(motion: &Motion, candidate: &'a Candidate, observed: &[usize]) -> Self {
+    fn of(motion: &RecordedMotion, candidate: &'a Candidate, observed: &[usize]) -> Self {
         let comb = BasebandComb::of(motion, candidate.source, observed);
         Self { name: &candidate.name, comb, trial: None, verdict: Verdict::Open }
     }
@@ -228,8 +228,8 @@ impl<'a> Case<'a> {
     }
 }
 
-/// Tries all cases, accepts the best that stands, and tries the others on what it leaves, until none stands.
-fn judge(motion: &Motion, channels: &Channels, cases: &mut [Case<'_>]) {
+/// Tries all cases, accepts the best one that leads its rivals, and repeats on the residual until none does.
+fn judge(motion: &RecordedMotion, channels: &Channels, cases: &mut [Case<'_>]) {
     // The case that was accepted last, and those that explained as much before it was.
     let mut last: Option<(usize, Vec<(usize, Trial)>)> = None;
     loop {
@@ -281,7 +281,7 @@ fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
 
 /// The finding of case `n`.
 fn finding(
-    motion: &Motion,
+    motion: &RecordedMotion,
     accelerations: &[Channel],
     cases: &[Case<'_>],
     n: usize,
@@ -358,7 +358,7 @@ fn finding(
 }
 
 /// Why a case has no verdict.
-fn not_judged(motion: &Motion, case: &Case<'_>) -> String {
+fn not_judged(motion: &RecordedMotion, case: &Case<'_>) -> String {
     if motion.periods() < LEAST_PERIODS {
         return format!(
             "not judged: the record holds {:.1} periods of BPFO, a comb needs {LEAST_PERIODS}",
@@ -372,7 +372,7 @@ fn not_judged(motion: &Motion, case: &Case<'_>) -> String {
     format!("not judged: {why}")
 }
 
-impl Motion {
+impl RecordedMotion {
     fn samples(&self) -> usize {
         self.rollers.first().map_or(0, |r| r.orbit.len())
     }
@@ -406,7 +406,7 @@ impl Motion {
 
 impl Source {
     /// Phase of a roller's facets at its contacts, rising with time for a shaft that turns clockwise [rad].
-    fn phase(self, motion: &Motion, roller: &RollerTrack, n: usize) -> f64 {
+    fn phase(self, motion: &RecordedMotion, roller: &RollerTrack, n: usize) -> f64 {
         let (orbit, spin) = (roller.orbit[n], roller.spin[n]);
         match self {
             Self::RotatedVertices(count) => count * (spin - (orbit - roller.place)),

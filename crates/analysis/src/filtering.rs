@@ -14,12 +14,12 @@ pub const PAPER_BEAT_HZ: f64 = 4545.0;
 /// The transient counts as gone when the filter's ringing has fallen by this much [dB].
 const SETTLED_DB: f64 = 60.0;
 
-/// How a tone comes out of the notch, in the summary.
+/// Attenuation of a tone by the notch, for the summary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NotchFinding {
     /// Centre [Hz]: the measured dominant facet tone, or the predicted one when none is measured anywhere.
     pub centre_hz: f64,
-    /// Centre of the paper's notch [Hz]; this and what is said of 4545 Hz belong to the paper's scene alone.
+    /// Centre of the paper's notch [Hz]; this and the numbers at 4545 Hz exist for the paper's scene only.
     pub paper_centre_hz: Option<f64>,
     /// Quality factor.
     pub q: f64,
@@ -129,7 +129,7 @@ impl Filter {
 
 /// Highest density [dB] within half a resolution of `centre_hz`, the record as one segment, padded fourfold.
 fn at_centre(sample_rate_hz: f64, centre_hz: f64, window: Window, signal: &[f64]) -> Option<f64> {
-    // Fewer periods of the tone than this and there is no line to speak of.
+    // Least number of periods of a tone that count as a line.
     const LEAST_PERIODS: f64 = 8.0;
     let samples = signal.len();
     if (samples as f64) < LEAST_PERIODS * sample_rate_hz / centre_hz {
@@ -158,7 +158,7 @@ mod tests {
         assert!((found.paper_4545_db.unwrap() - 3.96).abs() < 0.005, "{:?}", found.paper_4545_db);
         assert!((found.time_constant_s - 1.02e-3).abs() < 0.01e-3);
         assert!((found.transient_s - 7.07e-3).abs() < 0.05e-3, "{}", found.transient_s);
-        // A clean tone gives 29 dB with a boxcar and 56 dB with Hann (computed with scipy over 30 ms).
+        // A clean tone has 29 dB with a boxcar and 56 dB with Hann (computed with scipy over 30 ms).
         assert!(
             (found.attenuation_boxcar_db.unwrap() - 29.0).abs() < 1.5,
             "{:?}",

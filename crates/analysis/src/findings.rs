@@ -14,7 +14,7 @@ use self::case::Case;
 use self::passages::crossing_forces;
 use crate::Error;
 use crate::diagnosis;
-use crate::families::{Channel, Motion};
+use crate::families::{Channel, RecordedMotion};
 use crate::film::FilmFinding;
 use crate::filtering::Filter;
 use crate::load::Distribution;
@@ -25,7 +25,7 @@ use crate::tones;
 
 /// Grid of the spectra [Hz]: the paper's 3 Hz. The resolution is that of the record.
 const GRID_HZ: f64 = 3.0;
-/// Harmonics of each facet line that are looked for; the paper sees the fifth.
+/// Harmonics of each facet line that are searched; the paper reports the fifth.
 const HARMONICS: usize = 6;
 /// Shortest record for a spectrum [samples].
 const SHORTEST_SPECTRUM: usize = 64;
@@ -70,7 +70,7 @@ pub struct Findings {
     /// Static roller force by angle, when rigid rings find one.
     pub static_curve: Option<StaticCurve>,
     /// Recorded motion and accelerations [g] that the families of facet lines were fitted to.
-    pub family_signals: (Motion, Vec<Channel>),
+    pub family_signals: (RecordedMotion, Vec<Channel>),
     filter: Option<Filter>,
 }
 
@@ -131,11 +131,11 @@ impl SensorSignal {
 }
 
 impl Findings {
-    /// Analyses a record. An interrupted or diverged run yields what its samples hold.
+    /// Analyses a record. An interrupted or diverged run is analysed as far as it has samples.
     ///
     /// # Errors
     /// [`Error::Run`] when the trace cannot be read, [`Error::Signal`] when a finite recorded signal is
-    /// refused all the same.
+    /// refused nevertheless.
     pub fn of(record: &Record<'_>) -> Result<Self, Error> {
         let case = Case::of(record);
         let mut notes = case.caveats();

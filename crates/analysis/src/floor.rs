@@ -1,14 +1,15 @@
 //! Event #2: a roller strikes the floor of a defect.
 //!
-//! **The rule.** Between the edges a roller is free of the load, and what presses it on the floor is its own
-//! centrifugal force and its weight, m (ω²r + g) at the most, wherever the spall lies. A body that is laid on
-//! a spring without speed presses on it with twice its weight at the most; a larger force takes a speed of
-//! approach. So a force counts from twice m (ω²r + g) on: 7 N for the rollers of the paper's bearing, which
-//! carry 12 kN before. No force needs to be larger because of noise: a dry contact without penetration
-//! exerts exactly none, and a film that floats the roller exerts m (ω²r + g). The force is sought where the
-//! edges cannot carry the roller, [`Edge::floor_m`](crate::spall::Edge::floor_m) away from either. (Own.)
+//! **The rule.** Between the edges a roller is free of the load, and only its centrifugal force and its
+//! weight, m (ω²r + g) at the most, press it on the floor, wherever the spall lies. A body released onto a
+//! spring without speed presses on it with twice its weight at the most; a larger force requires a speed of
+//! approach. So a force counts as an impact from twice m (ω²r + g) on: 7 N for the rollers of the paper's
+//! bearing, which carry 12 kN before. No force needs to be larger because of noise: a dry contact without
+//! penetration exerts exactly none, and a film that floats the roller exerts m (ω²r + g). The force is sought
+//! where the edges cannot carry the roller, [`Edge::floor_m`](crate::spall::Edge::floor_m) away from either.
+//! (Own.)
 //!
-//! The touch is one of metal where the film is at its least, which the tips of the roughness or the stiffened
+//! The contact is metallic where the film is at its least, which the tips of the roughness or the stiffened
 //! oil of a loaded contact hold (THEORY §4.6), at any time while the roller presses with more than that, and
 //! in a dry bearing; otherwise the oil alone stops the roller.
 
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::events::span;
 
-/// A force beyond so many times that of a roller at rest on the floor takes a speed of approach [-].
+/// Factor of the force of a roller at rest on the floor above which it must have had a speed of approach [-].
 const SUDDENLY_LAID: f64 = 2.0;
 
 /// A film that is no more than this much thicker than its least carries through the surfaces [-].
@@ -59,7 +60,7 @@ pub struct Strike {
     pub at_s: f64,
     /// Its force then [N], mean over the sampling interval.
     pub force_n: f64,
-    /// Through what.
+    /// Medium of the touch: metal or oil.
     pub by: FloorContact,
 }
 
@@ -105,7 +106,7 @@ impl OverFloor<'_> {
         })
     }
 
-    /// Force that counts as a touch [N], from the speed with which the roller goes round meanwhile.
+    /// Force that counts as a touch [N], from the orbital speed of the roller meanwhile.
     fn least_n(&self, inside: &Range<usize>) -> f64 {
         let (first, last) = (inside.start, inside.end - 1);
         let taken_s = self.time_s[last] - self.time_s[first];
@@ -115,7 +116,7 @@ impl OverFloor<'_> {
         SUDDENLY_LAID * self.mass_kg * (outwards + self.gravity_m_s2)
     }
 
-    /// What the roller touches through while it presses about its largest force, at sample `at`.
+    /// Medium of the touch about the largest force, which is at sample `at`.
     fn by(&self, inside: &Range<usize>, at: usize, least_n: f64) -> FloorContact {
         let Some(film) = self.film else { return FloorContact::Metal };
         let pressed = |n: &usize| self.force_n[*n] > least_n;
@@ -175,8 +176,8 @@ mod tests {
 
     #[test]
     fn analytic_a_roller_that_lies_on_the_floor_does_not_strike_it() {
-        // By hand: 0.0599 kg · (23.585² · 0.091 + 9.81) m/s² = 3.62 N. A load that is applied suddenly is
-        // felt twice (S. Timoshenko, Strength of Materials, part I, 1955).
+        // By hand: 0.0599 kg · (23.585² · 0.091 + 9.81) m/s² = 3.62 N. A load that is applied suddenly has
+        // twice the static effect (S. Timoshenko, Strength of Materials, part I, 1955).
         let samples = force(0.0);
         let least_n = over(&samples, None).least_n(&(200..400));
         assert!((least_n - 2.0 * 3.62).abs() < 0.02, "{least_n}");

@@ -1,4 +1,4 @@
-//! How fast cage and rollers really turned, beside rolling without slip.
+//! Measured speeds of cage and rollers, beside rolling without slip.
 
 use std::borrow::Cow;
 use std::f64::consts::TAU;
@@ -114,8 +114,7 @@ impl<'a> Turning<'a> {
         turning
     }
 
-    /// An angle as it would be beside an outer ring that keeps its mean speed: what rollers and cage do, they
-    /// do on it.
+    /// An angle as it would be if the outer ring had its mean speed: rollers and cage move relative to it.
     fn steadied<'b>(&self, angle: &'b [f64]) -> Cow<'b, [f64]> {
         match &self.ahead {
             Some(ahead) => angle.iter().zip(ahead).map(|(angle, ahead)| angle - ahead).collect(),
@@ -186,8 +185,8 @@ impl KinematicsFinding {
     }
 }
 
-/// Times [s], or where the angle of the shaft was recorded those at which rings of constant speed would have
-/// come so far against each other: rates are then those at that speed, whatever the true one did.
+/// Times [s], or, where the angle of the shaft was recorded, the times at which rings of constant speed would
+/// have had the same relative angle: rates then refer to that speed.
 fn clock<'a>(record: &'a Record<'_>, expected: &Kinematics) -> Cow<'a, [f64]> {
     let against = expected.shaft_rad_s - expected.outer_rad_s;
     match record.relative_angle() {

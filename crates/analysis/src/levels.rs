@@ -1,14 +1,13 @@
-//! How strong a signal is, phase by phase: start-up, entry into the defect, in it, exit, and the gaps
-//! between.
+//! Levels of a signal, phase by phase: start-up, entry into the defect, in it, exit, and the gaps between.
 //!
-//! Every sample of a record belongs to one [`Phase`]. *Start-up* reaches from the first sample to the window
-//! of the first entry, [`START_UP_S`] at the most: the preload is released and rollers find their places in
-//! the cage, which no bearing that has been running does. *Entry* reaches from [`BEFORE_ENTRY_S`] before a
-//! roller's centre passes the leading edge or the roller unloads, whichever comes first, to
-//! [`AFTER_UNLOADING_S`] after it has unloaded; *exit* from [`IMPULSE_HALF_WIDTH_S`] before it is loaded
-//! again to [`AFTER_EXIT_S`] after that or after its centre has passed the trailing edge, whichever comes
-//! last; the time between the two is *in the defect*, and all else is *gap*. Where windows of two rollers
-//! overlap, an exit counts before an entry, and an entry before the time in the defect.
+//! Every sample of a record belongs to one [`Phase`]. *Start-up* extends from the first sample to the window
+//! of the first entry, [`START_UP_S`] at the most: the preload is released and rollers settle in the cage,
+//! unlike in a bearing that has been running. *Entry* extends from [`BEFORE_ENTRY_S`] before a roller's
+//! centre passes the leading edge or the roller unloads, whichever is first, to [`AFTER_UNLOADING_S`] after
+//! it has unloaded; *exit* from [`IMPULSE_HALF_WIDTH_S`] before it is loaded again to [`AFTER_EXIT_S`] after
+//! that or after its centre has passed the trailing edge, whichever is last; the time between the two is *in
+//! the defect*, and the rest is *gap*. Where windows of two rollers overlap, an exit counts before an entry,
+//! and an entry before the time in the defect.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! What a bearing's vibration shows: kinematics, events, loads, tones, levels and defect families.
+//! Analysis of a bearing's vibration: kinematics, events, loads, tones, levels and defect families.
 //!
 //! [`findings::Findings::of`] analyses a run directory; [`measured::Analysis::of`] a measured record. The
 //! steps on the way are public and take plain slices. Nothing here meshes, simulates or draws: the crate
@@ -20,22 +20,22 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | What does a run hold, and what does geometry predict? | [`record`], [`prediction`], [`plan`] |
-//! | How do speed and load change, and at which orders does a defect stand? | [`duty`] |
-//! | Which lines are there, and what makes them? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
+//! | Which channels has a run, and what does geometry predict? | [`record`], [`prediction`], [`plan`] |
+//! | How do speed and load change, and which orders has a defect? | [`duty`] |
+//! | Which lines are there, and from which source? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
 //! | When does a roller unload and strike, how long is the defect? | [`events`], [`floor`], [`spall`] |
 //! | How large is a signal, before and behind the notch, and where in the spectrum? | [`levels`], [`loudest`], [`filtering`], [`signal`], [`noise`] |
 //! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What differs between runs or records, and is it more than scatter? | [`comparison`] |
-//! | What does a measured record show, and may one call it a defect? | [`measured`] |
-//! | What would such a record tell of a run, behind an unknown path and in noise? | [`records`] |
+//! | Which defect families has a measured record, and may a defect be claimed? | [`measured`] |
+//! | Which numbers of a run survive in such a record, behind an unknown path and in noise? | [`records`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
 //!
 //! # A measured gearbox
 //!
 //! A pinion with 37 teeth turns at 24.9 Hz, so its teeth mesh at 921.3 Hz. Is that line in an accelerometer's
-//! record, how strong is it, and is it told apart from the 50 Hz mains?
+//! record, how strong is it, and is it resolved from the harmonics of the 50 Hz mains?
 //!
 //! ```
 //! use std::f64::consts::TAU;

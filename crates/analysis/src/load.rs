@@ -2,6 +2,7 @@
 //! bearing.
 
 use serde::{Deserialize, Serialize};
+use stribeck_dsp::running_mean;
 
 use crate::kinematics::mean;
 use crate::record::{Record, Roller};
@@ -15,8 +16,8 @@ pub struct LoadFinding {
     /// Mean over the record of the force between rollers and outer ring along the load [N], positive when it
     /// supports the load.
     pub mean_n: Option<f64>,
-    /// What it must be: the load, in the mean over the record where it changes, plus the weight of housing
-    /// and outer ring along it [N].
+    /// Expected value: the load, its mean over the record where it changes, plus the weight of housing and
+    /// outer ring along it [N].
     pub expected_n: f64,
     /// `mean_n / expected_n − 1`.
     pub relative_error: Option<f64>,
@@ -165,33 +166,4 @@ fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
 
 fn mean_vector(x: &[f64], y: &[f64]) -> Option<[f64; 2]> {
     Some([mean(x.iter().copied())?, mean(y.iter().copied())?])
-}
-
-/// Mean over every whole window of `width` samples; the mean of all when there are fewer.
-pub fn running_mean(values: &[f64], width: usize) -> Vec<f64> {
-    /// Sums that grow side by side, each in the order of its window.
-    const SIDE_BY_SIDE: usize = 1024;
-    let width = width.clamp(1, values.len().max(1));
-    let mut means = vec![0.0; (values.len() + 1).saturating_sub(width)];
-    for (at, sums) in means.chunks_mut(SIDE_BY_SIDE).enumerate() {
-        for n in 0..width {
-            sums.iter_mut().zip(&values[at * SIDE_BY_SIDE + n..]).for_each(|(sum, value)| *sum += value);
-        }
-        sums.iter_mut().for_each(|sum| *sum /= width as f64);
-    }
-    means
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn example_running_mean_removes_a_whole_period() {
-        let tone: Vec<f64> =
-            (0..400).map(|n| 10.0 + (std::f64::consts::TAU * n as f64 / 20.0).sin()).collect();
-        assert!(running_mean(&tone, 20).iter().all(|v| (v - 10.0).abs() < 1e-12));
-        assert_eq!(running_mean(&[1.0, 3.0], 5), [2.0]);
-        assert!(running_mean(&[], 5).is_empty());
-    }
 }

@@ -1,4 +1,4 @@
-//! The part of a spectrum that holds most of a signal.
+//! The band of a spectrum with most of a signal's power.
 
 use stribeck_dsp::Spectrum;
 
@@ -19,7 +19,7 @@ pub struct LoudestBand {
 }
 
 /// Finds it: of 25 equal parts up to half the sampling rate the strongest, with the neighbours that hold at
-/// least a quarter of its power. `None` for an empty or silent spectrum, or one that is no density.
+/// least a quarter of its power. `None` for an empty or zero spectrum, or one that is not a density.
 pub fn loudest(density: &Spectrum) -> Option<LoudestBand> {
     let part_hz = 0.5 * density.sample_rate_hz() / PARTS as f64;
     let edge = |n: usize| n as f64 * part_hz;

@@ -1,15 +1,14 @@
-//! How strong a facet tone must be by the simplest model: rigid rings on springs whose ends follow the
-//! polygons.
+//! Level of a facet tone by the simplest model: rigid rings on springs whose ends follow the polygons.
 //!
 //! A facet of length ℓ on a roller of radius r leaves a gap whose first harmonic is h₁ = ℓ²/(2π²r) high
-//! (THEORY §5.2). A contact of half-width b averages over it; a pressure like √(1 − x²/b²) leaves
+//! (THEORY §5.2). A contact of half-width b averages over it; a pressure like √(1 − x²/b²) reduces it to
 //!
 //! ```text
 //! g(u) = (2/π) ∫ √(1 − x²) cos(u x) dx  = 2 J₁(u)/u          u = 2πb/ℓ
 //! ```
 //!
 //! Vertices meet the outer raceway with the phase N_v θ_j at the roller j and the inner one with N_v (θ_j +
-//! π): in step for an even count, against each other for an odd one. Copies in one orientation have the phase
+//! π): in phase for an even count, in opposite phase for an odd one. Copies in one orientation have the phase
 //! N_v θ_j; copies turned with the pattern all have the same. With equal springs under all loaded rollers the
 //! outer ring follows
 //!
@@ -17,8 +16,8 @@
 //! y = |Σ sin θ_j g(u_j) (1 + e^{iπN_v}) e^{iN_vθ_j}| h₁ / Σ sin² θ_j          a = (2π f_v)² y
 //! ```
 //!
-//! Neither the ring's bending nor its mass is in this: it compares levels of scenes and does not predict
-//! those of a sensor (own).
+//! The ring's bending and mass are neglected: the result compares scenes and does not predict the level at a
+//! sensor (own).
 
 use std::f64::consts::{PI, TAU};
 
@@ -105,9 +104,9 @@ impl Lumped {
 /// Where the strongest line of the roller vertices stands [Hz] when rollers turn at `spin_hz` against a cage
 /// of `cage_hz`.
 ///
-/// Copies turned with the pattern all have the phase of N_v times the spin. Of copies in one orientation what
-/// sounds is a sum over places that repeats whenever a roller takes the place of the next one: lines at the
-/// vertices' rate seen from outside and multiples of BPFO on top, strongest where the rate along the load
+/// Copies turned with the pattern all have the phase of N_v times the spin. For copies in one orientation the
+/// tone is a sum over places that repeats whenever a roller takes the place of the next one: lines at the
+/// vertices' rate relative to the housing plus multiples of BPFO, strongest where the rate along the load
 /// zone is lowest (THEORY §5.5).
 pub fn pattern_hz(scene: &ResolvedScene, spin_hz: f64, cage_hz: f64) -> f64 {
     let (facets, rollers) = (scene.written.mesh.roller_facets as f64, scene.written.bearing.rollers as f64);

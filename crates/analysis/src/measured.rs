@@ -1,6 +1,6 @@
-//! A measured signal: is it sound, which defect families does it hold, and what may be concluded?
+//! A measured signal: is it valid, which defect families does it hold, and what may be concluded?
 //!
-//! [`Analysis::of`] goes once through the samples, block by block, so that a record of hours takes no more
+//! [`Analysis::of`] passes once over the samples, block by block, so that a record of hours takes no more
 //! memory than one of seconds. Source: THEORY §7.9.
 //!
 //! ```
@@ -96,12 +96,12 @@ pub struct Machine {
     pub bearing: Option<CatalogueBearing>,
     /// The speed is measured, or that of a run: the lines of the shaft do not correct it.
     pub speed_is_exact: bool,
-    /// Radial load, least and most [N]; `None` for what such bearings usually carry.
+    /// Radial load, least and most [N]; `None` for the usual loads of such bearings.
     pub load_n: Option<(f64, f64)>,
     /// Radial internal clearance in operation, least and most [µm]; `None` for none.
     pub clearance_um: Option<(f64, f64)>,
-    /// How far the outer ring and its housing give at the loaded place, least and most [µm/kN]; `None` for
-    /// not at all.
+    /// Compliance of the outer ring and its housing at the loaded place, least and most [µm/kN]; `None` for a
+    /// rigid one.
     pub housing_um_per_kn: Option<(f64, f64)>,
     /// Other shafts, gears and bearings.
     pub around: sources::Surroundings,
@@ -134,10 +134,10 @@ pub struct MeasuredFindings {
     pub duration_s: f64,
     /// Speed of the shaft that was taken [1/min].
     pub speed_rpm: Option<f64>,
-    /// The speed that was given, where the lines of the shaft correct it [1/min].
+    /// The user's speed, where the lines of the shaft correct it [1/min].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_given_rpm: Option<f64>,
-    /// How far a speed that the record tells without any that was given may be off [1/min].
+    /// Uncertainty of a speed that was found in the record alone [1/min].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub speed_uncertainty_rpm: Option<f64>,
     /// The bearing, in words.
@@ -177,7 +177,7 @@ pub struct MeasuredFindings {
 }
 
 impl MeasuredFindings {
-    /// The unit of the channel; `None` where it is not known, or no acceleration.
+    /// The unit of the channel; `None` where it is unknown, or not an acceleration.
     pub fn acceleration_unit(&self) -> Option<AccelerationUnit> {
         self.unit.as_deref().and_then(AccelerationUnit::parse)
     }
@@ -209,7 +209,8 @@ pub struct Analysis {
     pub over: Vec<BandEnvelope>,
     /// Density over time.
     pub course: Course,
-    /// Spectra over speed and angle where the speed varies; who knows the turns puts them there.
+    /// Spectra over speed and angle where the speed varies; filled by the caller, who has the times of the
+    /// turns.
     pub varying: Option<Varying>,
     /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
     pub enhanced: Option<Enhanced>,
@@ -346,7 +347,7 @@ impl Analysis {
     }
 }
 
-/// A speed that the lines of a record tell.
+/// A speed found by the lines of a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sharp {
     hz: f64,
@@ -371,8 +372,8 @@ impl Sharp {
     }
 }
 
-/// The speed by the lines of the shaft, or, where they do not tell, by those of shaft and bearing together.
-/// One that is exact is only made sharper.
+/// The speed by the lines of the shaft, or, where these do not decide, by those of shaft and bearing
+/// together. An exact one is only refined.
 fn sharp_speed(
     shaft: Option<shaft::Shaft>,
     samples: &[f64],
@@ -395,7 +396,7 @@ fn sharp_speed(
     Some(Sharp { hz: told.hz, uncertainty_hz: told.uncertainty_hz, by })
 }
 
-/// The speed by shaft and bearing together, where none is given; why not, in a note.
+/// The speed by shaft and bearing together, where the user gives none; a note where it is not found.
 fn found_speed(
     samples: &[f64],
     rate_hz: f64,

@@ -108,7 +108,7 @@ fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str
 }
 
 impl PaperRow {
-    /// A row of words with the number that they tell.
+    /// A row of words with its number.
     fn telling(self, ours_value: Option<f64>, unit: &str) -> Self {
         Self { ours_value, unit: unit.into(), ..self }
     }

@@ -1,5 +1,5 @@
-//! Before a run: which lines of contact noise to expect and how strong, how fine in time and space it is,
-//! what it costs, and how long a record must be. Nothing is simulated.
+//! Before a run: expected lines of contact noise and their levels, resolution in time and space, cost, and
+//! the necessary length of a record. Nothing is simulated.
 
 mod loads;
 
@@ -28,7 +28,7 @@ pub use loads::Loads;
 pub struct MeshFacts {
     /// Its counts.
     pub counts: MeshInfo,
-    /// Critical time step of its stiffest element by itself [s].
+    /// Critical time step of its stiffest element alone [s].
     pub element_time_step_s: f64,
 }
 
@@ -66,7 +66,7 @@ pub struct Plan {
     /// the defect, of several the slowest, without one BPFO; `None` where the rings do not turn against each
     /// other.
     pub envelope: Option<(&'static str, f64)>,
-    /// What will go wrong, each with its reason.
+    /// Problems to expect, each with its reason.
     pub dangers: Vec<String>,
     /// Recommended changes, each with its reason.
     pub advice: Vec<String>,
@@ -348,8 +348,8 @@ mod tests {
         scene.contact.interpolation = ContactInterpolation::Spline;
         let smooth = of(&scene);
         assert!(smooth.advice.iter().all(|a| !a.contains("contact.")), "{:?}", smooth.advice);
-        // Eight points a facet sound at 37.4 kHz, which 100 kHz can show; with the onset asked for they do
-        // not.
+        // Eight points a facet make a line at 37.4 kHz, below half of 100 kHz; with the proposed onset they
+        // do not.
         scene.contact.points_per_facet = 8;
         let sounding = of(&scene);
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));
@@ -369,7 +369,7 @@ mod tests {
         for words in ["damping_frame=rigid_motion", "film.roughness_um"] {
             assert!(oiled.advice.iter().any(|a| a.contains(words)), "{:?}", oiled.advice);
         }
-        // THEORY §4.2, on the paper's mesh: the penalty goes with its size.
+        // THEORY §4.2, on the paper's mesh: the penalty is in proportion to its size.
         scene.mesh.size_mm = 0.5;
         let loads = Loads { largest_n: 10950.0, ..quiet.loads.clone() };
         let step = Plan { loads, ..quiet }.point_step_m(&scene.resolve(), 8);

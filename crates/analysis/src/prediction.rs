@@ -30,7 +30,7 @@ pub struct Prediction {
     pub shocks: Option<Shocks>,
 }
 
-/// A spall of a raceway, and who should cross it when.
+/// A spall of a raceway, and the expected passages of rollers over it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpallCourse {
     /// The spall.
@@ -60,8 +60,8 @@ pub struct DefectEdges {
 pub struct StaticCurve {
     /// Angles [°], 0 to 360, ascending.
     pub angle_deg: Vec<f64>,
-    /// Radial force on a roller that stands there [N], the mean over the positions of the cage that put one
-    /// there; zero over the defect.
+    /// Radial force on a roller there [N], the mean over the positions of the cage with a roller there; zero
+    /// over the defect.
     pub force_n: Vec<f64>,
     /// Largest force on a roller [N].
     pub largest_n: f64,
@@ -152,8 +152,8 @@ impl Prediction {
         self.spalls.first().map_or(&[], |spall| &spall.passages)
     }
 
-    /// The defect's frequency in a bearing whose rollers were seen to pass the outer raceway at `bpfo_hz`:
-    /// they pass either raceway as often as the shaft takes them round, less what they pass the other.
+    /// The defect's frequency in a bearing whose rollers passed the outer raceway at `bpfo_hz`: the rates of
+    /// passing both raceways add up to the relative speed of the rings times the number of rollers.
     pub fn moved(&self, bpfo_hz: Option<f64>) -> Option<f64> {
         let k = &self.kinematics;
         let shocks = self.shocks?;
@@ -328,7 +328,7 @@ mod tests {
         assert!(at(105.0) > 0.97 * curve.largest_sound_n, "{}", at(105.0));
     }
 
-    /// Every roller comes to every place, whoever is missing beside it: the curve is as smooth as that of a
+    /// Every roller passes every place, also with missing neighbours: the curve is as smooth as that of a
     /// full bearing.
     #[test]
     fn issue_a_missing_roller_makes_no_sawtooth_of_the_static_curve() {

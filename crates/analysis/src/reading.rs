@@ -31,8 +31,8 @@ pub struct CursorReading {
     pub share_in_equation_3: f64,
     /// The most common distance of its peaks [samples] and its share.
     pub equation_3_common: (usize, f64),
-    /// Its carrier, the mean of its tones [Hz]: what peaks within a swell follow. At each node of the beat
-    /// one peak more slips in, so that peaks are as many as periods of the higher tone.
+    /// Its carrier, the mean of its tones [Hz]: the rate of peaks within a swell. At each node of the beat
+    /// there is one more peak, so that peaks are as many as periods of the higher tone.
     pub equation_3_carrier_hz: f64,
 }
 
@@ -78,7 +78,8 @@ impl Gaps {
 }
 
 impl CursorReading {
-    /// How `read_hz` comes about at this sample rate, for a tone at `tone_hz` and the paper's pair of tones.
+    /// How the reading `read_hz` arises at this sample rate, for a tone at `tone_hz` and the paper's pair of
+    /// tones.
     pub fn of(read_hz: f64, sample_rate_hz: f64, tone_hz: f64, pair_hz: (f64, f64)) -> Option<Self> {
         // Long enough that shares are those of the tones, not of their phases.
         const SAMPLES: usize = 100_000;

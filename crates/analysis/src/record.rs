@@ -1,4 +1,4 @@
-//! The samples of a run, cut where they stop being numbers, and its channels under their names.
+//! The samples of a run, up to the first that is not a number, and its channels under their names.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -195,7 +195,7 @@ impl<'a> Record<'a> {
         self.len == 0
     }
 
-    /// True when samples before or behind these are left out.
+    /// True when samples before or after these are left out.
     pub fn is_part(&self) -> bool {
         self.len + self.discarded < self.run.trace.len()
     }
@@ -222,7 +222,7 @@ impl<'a> Record<'a> {
 
     /// Sampling rate [Hz].
     pub fn sample_rate_hz(&self) -> f64 {
-        // A tenth of a hertz is far below what the file's rounding of times can move.
+        // The file's rounding of times moves the rate by far less than a tenth of a hertz.
         (10.0 / self.interval_s()).round() / 10.0
     }
 

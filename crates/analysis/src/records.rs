@@ -1,5 +1,4 @@
-//! What records of a run would tell, if a sensor of a machine had made them: behind a path that nobody knows,
-//! in noise.
+//! Signatures of a run's force as a machine's sensor would record it: behind an unknown path, in noise.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{PASSAGES, Path, Rhythm, Signature, statistics};
@@ -10,7 +9,7 @@ use stribeck_scene::scene::{DefectRing, Scene};
 use crate::Error;
 use crate::measured::{LONGEST, SHORTEST_S};
 
-/// One record: what its passages tell, and the noise that was put in.
+/// One record: the signature of its passages, and the noise that was added.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RecordFinding {
     /// Power of the noise over that of the rest [dB].
@@ -20,7 +19,8 @@ pub struct RecordFinding {
     pub signature: PassageSignature,
 }
 
-/// What passages over a spall tell behind any path. Times are parts of the period of the passages.
+/// Signature of passages over a spall, which does not depend on the path. Times are parts of the period of
+/// the passages.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PassageSignature {
     /// Time between the two events of a passage; `None` where no second one shows.
@@ -76,7 +76,7 @@ pub fn rhythm_of(scene: &Scene) -> Option<Rhythm> {
     Some(rhythm(passing_hz, kinematics.shaft_hz, kinematics.cage_hz))
 }
 
-/// A run as long as this holds what one record needs, and some passages before [s].
+/// Duration of a run that has the passages of one record, and some before them [s].
 pub fn duration_s(rhythm: Rhythm) -> f64 {
     (PASSAGES + BEFORE) / rhythm.passing_hz
 }

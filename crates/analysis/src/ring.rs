@@ -2,7 +2,7 @@
 //!
 //! Source: A. E. H. Love, *A Treatise on the Mathematical Theory of Elasticity*, §293, in plane strain. The
 //! bearing's ring sits in its adapter and on its rollers, and is not thin: its own frequencies differ, so
-//! these are places to look at.
+//! these only suggest where to look.
 
 use std::f64::consts::PI;
 
@@ -57,7 +57,7 @@ mod tests {
         }
         let rigid = Scene { housing: HousingScene::Rigid(RigidHousingScene::default()), ..scene.clone() };
         assert_eq!(outer_ring_modes(&rigid.resolve(), 5), []);
-        // The paper says 97.
+        // The paper has 97.
         let waves = elements_per_wavelength(&scene.resolve(), 40_000.0);
         assert!((waves - 97.6).abs() < 0.1, "{waves}");
     }

@@ -16,9 +16,9 @@ use crate::words::significant;
 /// tenths of a per cent.
 const SLIDING: f64 = 0.02;
 
-/// The support [N] under which one passage of the load zone just spins a roller up from rest, when
-/// `support_n` gives the distribution `curve` (THEORY §5.4): under less, rollers that have lost their spin do
-/// not roll again. `None` when nothing turns or nothing is loaded, infinite without friction.
+/// The support [N] under which one passage of the load zone just spins a roller up from rest, where `curve`
+/// is the distribution under `support_n` (THEORY §5.4): under less, rollers that have lost their spin do not
+/// roll again. `None` when nothing turns or nothing is loaded, infinite without friction.
 pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f64) -> Option<f64> {
     let motion = Kinematics::at_mean_speed(&scene.written);
     let radius = scene.roller_radius;
@@ -274,10 +274,10 @@ mod tests {
         };
         let curve = Prediction::of(&scene.resolve(), &mesh).static_curve(&scene.resolve(), 50e3).unwrap();
         let least_n = least_support_n(&scene.resolve(), &curve, 50e3).unwrap();
-        // The spin in space is 2π · 37.96 Hz = 238.5 rad/s, so I ω = 5.79e-4 N m s. A roller's passage gives
+        // The spin in space is 2π · 37.96 Hz = 238.5 rad/s, so I ω = 5.79e-4 N m s. A roller's passage adds
         // at most 2 · 0.005 · 9 mm times its load over time. All rollers carry 50 kN along y; by the cosine
-        // the mean load of a place times the 24 rollers is 4/π · 50 kN or less, so a turn of 266 ms gives a
-        // roller 600 to 710 N s, and 53 to 64 mN m s.
+        // the mean load of a place times the 24 rollers is 4/π · 50 kN or less, so in a turn of 266 ms a
+        // roller has 600 to 710 N s, and 53 to 64 mN m s.
         assert!((430.0..560.0).contains(&least_n), "{least_n}");
         let rolling = KinematicsFinding {
             expected_roller_spin_hz: 41.7,

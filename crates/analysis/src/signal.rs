@@ -1,6 +1,6 @@
 //! One line, or one band, of any signal.
 
-use stribeck_dsp::{Spectrum, Welch, WelchOptions, Window};
+use stribeck_dsp::{Spectrum, Welch, WelchOptions, Window, running_mean};
 
 use crate::Error;
 
@@ -69,10 +69,12 @@ pub fn band_rms(signal: &[f64], sample_rate_hz: f64, low_hz: f64, high_hz: f64) 
     welch.ok()?.estimate(signal).ok()?.band_rms(low_hz, high_hz).ok()
 }
 
-/// Largest magnitude of the running mean over `width_s`: the height of a peak behind that low pass.
+/// Largest magnitude of the running mean over `width_s` [s]: the height of a peak behind that low pass;
+/// `None` where the signal is shorter.
 pub fn smoothed_peak(signal: &[f64], interval_s: f64, width_s: f64) -> Option<f64> {
     let width = samples(width_s, interval_s);
-    running_mean(signal, width).map(f64::abs).max_by(f64::total_cmp)
+    let means = (width <= signal.len()).then(|| running_mean(signal, width))?;
+    means.into_iter().map(f64::abs).max_by(f64::total_cmp)
 }
 
 /// Root mean square over `span_s` from sample `first` on of the running mean over `width_s` about each
@@ -81,16 +83,12 @@ pub fn smoothed_rms(signal: &[f64], interval_s: f64, first: usize, span_s: f64, 
     let [count, width] = [span_s, width_s].map(|time| samples(time, interval_s));
     let from = first.checked_sub((width - 1) / 2)?;
     let about = signal.get(from..from + count + width - 1)?;
-    Some((running_mean(about, width).map(|m| m * m).sum::<f64>() / count as f64).sqrt())
+    Some((running_mean(about, width).iter().map(|m| m * m).sum::<f64>() / count as f64).sqrt())
 }
 
 /// Samples in a time, at least one.
 fn samples(time_s: f64, interval_s: f64) -> usize {
     (time_s / interval_s).round().max(1.0) as usize
-}
-
-fn running_mean(signal: &[f64], width: usize) -> impl Iterator<Item = f64> {
-    signal.windows(width).map(move |w| w.iter().sum::<f64>() / width as f64)
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
-//! How long a defect is, from the times at which a roller is unloaded and loaded again.
+//! Length of a defect, from the times at which a roller is unloaded and loaded again.
 //!
-//! Between the two the contact has run `v (t_exit − t_entry)`. That is too short: a roller pressed together
-//! by δ is not free when its centre stands over the edge. The rings hold the sum of all approaches; with the
-//! centre at the distance s behind the edge the contact with the spall's raceway is a strip that ends at the
-//! edge,
+//! Between the two the contact has travelled `v (t_exit − t_entry)`. That is too short: a roller with the
+//! approach δ is not free when its centre is over the edge. The rings hold the sum of all approaches; with
+//! the centre at the distance s behind the edge the contact with the spall's raceway is a strip that ends at
+//! the edge,
 //!
 //! ```text
 //! δ(Q) = e(q) + d_i(q) + d            d_i(q) = (3q / (4k √(2R_i)))^⅔ at the other raceway
@@ -11,8 +11,8 @@
 //! ```
 //!
 //! with the line load q = Q/t, the penalty stiffness k, e the elastic approach of both contacts (THEORY
-//! §6.2), and R the effective radii. The event is picked where half of the load is left; that is at s½. The
-//! same happens in front of the other edge, so the estimate is
+//! §6.2), and R the effective radii. The event is taken at half of the load; that is at s½. The same holds in
+//! front of the other edge, so the estimate is
 //!
 //! ```text
 //! L = v (t_exit − t_entry) + 2 s½
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn analytic_a_stiff_contact_rolls_over_a_sharp_edge() {
-        // Without penalty compliance the roller sinks by s²/2R, so half of its load is left at √(2R (δ(Q) −
+        // Without penalty compliance the roller sinks by s²/2R, so half of its load remains at √(2R (δ(Q) −
         // δ(Q/2))).
         let mut scene = Scene::default();
         scene.bearing.thickness_mm = 20.0;
@@ -118,7 +118,7 @@ mod tests {
         let sunk = edge.rings.approach_m(10_400.0) - edge.rings.approach_m(5_200.0);
         let expected = (2.0 * 9.890e-3 * sunk).sqrt();
         let s = edge.half_load_m(10_400.0);
-        // What is left of penetration and strip at 10⁴ E/h.
+        // Remainder of penetration and strip at 10⁴ E/h.
         assert!((s / expected - 1.0).abs() < 0.02, "{s} {expected}");
         assert!((edge.length_m(9e-3, 10_400.0) - 9e-3 - 2.0 * s).abs() < 1e-15);
         assert_eq!(edge.half_load_m(0.0), 0.0);

@@ -6,12 +6,12 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 /// Probability with which an interval covers the true value.
 pub const CONFIDENCE: f64 = 0.95;
 
-/// Nobody will run more.
+/// More are never worth it.
 pub const MOST_STARTS: usize = 2000;
 
 /// One number over many starts.
 ///
-/// The interval is that of the mean, at 95 % and by Student's t: it says how well the mean is known, and
+/// The interval is that of the mean, at 95 % and by Student's t: it is the uncertainty of the mean, and
 /// narrows with more starts. The quantiles describe single starts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Statistic {
@@ -92,9 +92,9 @@ impl Statistic {
         Some(students_t((n - 1.0).max(1.0)) * self.deviation? * (1.0 + 1.0 / n).sqrt())
     }
 
-    /// Where the true difference of this mean less that of `other` lies with [`CONFIDENCE`], by Welch's
-    /// interval for unequal variances; where one of them is a single start, by what a further start of the
-    /// other may do. `None` where neither has a scatter. Source: B. L. Welch, Biometrika 34 (1947) 28–35.
+    /// Interval of the true difference of this mean less that of `other` at [`CONFIDENCE`], by Welch for
+    /// unequal variances; where one of them is a single start, the prediction interval of a further start of
+    /// the other. `None` where neither has a scatter. Source: B. L. Welch, Biometrika 34 (1947) 28–35.
     pub fn less(&self, other: &Self) -> Option<[f64; 2]> {
         let difference = self.mean - other.mean;
         let variance = |s: &Self| Some(s.deviation?.powi(2) / s.count as f64);
@@ -112,8 +112,8 @@ impl Statistic {
         Some([difference - half, difference + half])
     }
 
-    /// How many starts it takes for a mean that is known to this `part` of itself, by the scatter seen so
-    /// far; `None` without a scatter, or when it takes more than [`MOST_STARTS`].
+    /// Number of starts for an interval of the mean of this `part` of itself, by the scatter so far; `None`
+    /// without a scatter, or when it takes more than [`MOST_STARTS`].
     pub fn starts_for(&self, part: f64) -> Option<usize> {
         let scatter = self.deviation? / self.mean.abs();
         (2..=MOST_STARTS).find(|&n| students_t(n as f64 - 1.0) * scatter <= part * (n as f64).sqrt())
@@ -209,7 +209,7 @@ mod tests {
     }
 
     /// Two scatters of one variance and three starts each have four degrees of freedom, so that the interval
-    /// is t√(2/3) wide to either side. A single start beside three has what a fourth of them may do.
+    /// is t√(2/3) wide to either side. A single start beside three has the prediction interval of a fourth.
     /// Source: Welch (1947); the table of `analytic_students_t_of_the_table`.
     #[test]
     fn analytic_interval_of_a_difference() {
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn peer_coverage_of_the_interval_of_ten_starts() {
         const SAMPLES: usize = 20_000;
-        // Four standard errors of a share of 93 % in so many samples, and four of the peer's.
+        // Four standard errors of a share of 93 % in this number of samples, and four of the peer's.
         const FOUR_ERRORS: f64 = 0.0072 + 0.0016;
         let mut dice = Dice::new(3);
         let mut normal = || {

@@ -37,7 +37,7 @@ pub struct BearingStiffness {
     pub scene: String,
     /// Designation of the bearing; empty where it has none.
     pub bearing: String,
-    /// What it was computed with, in words.
+    /// The model behind it, in words.
     pub model: String,
     /// Law of contact, in words.
     pub contact: String,

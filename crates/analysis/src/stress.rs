@@ -1,4 +1,4 @@
-//! Von Mises stress of every element, from where its nodes are.
+//! Von Mises stress of every element, from the positions of its nodes.
 //!
 //! The deformation gradient at the centre of an element (THEORY §2.1), the second Piola–Kirchhoff stress of
 //! the St. Venant–Kirchhoff material, pushed forward to Cauchy stress. Plane strain: σ_zz is λ times the

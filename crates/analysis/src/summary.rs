@@ -50,7 +50,7 @@ pub struct Summary {
     pub film: Option<FilmFinding>,
     /// Facet lines at every sensor: the leading sensor first, fundamentals first.
     pub tones: Vec<Tone>,
-    /// Impulses and what lies between them, at the leading sensor.
+    /// Levels of the impulses and of the gaps between them, at the leading sensor.
     pub levels: LevelsFinding,
     /// The notch at the facet tone.
     pub notch: Option<NotchFinding>,
@@ -63,7 +63,7 @@ pub struct Summary {
     /// Blind diagnosis from the leading sensor; `None` when the record is too short.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub diagnosis: Option<DiagnosisFinding>,
-    /// What records of a machine's sensor would tell, one for each level of noise that the scene names.
+    /// Signatures of synthetic records of a machine's sensor, one for each level of noise in the scene.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<RecordFinding>,
     /// Possible readings behind the paper's 4545 Hz at this sample rate.
@@ -175,8 +175,8 @@ pub struct Event {
     pub path_exit_ms: Option<f64>,
     /// Force before the defect [N].
     pub level_n: Option<f64>,
-    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or of the
-    /// recorded centre over the trailing edge where the roller never came free.
+    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or where the
+    /// roller never unloaded, of its recorded centre over the trailing edge.
     pub impulse_g: Option<f64>,
     /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch
     /// it.
@@ -400,7 +400,7 @@ impl EnergyFinding {
 }
 
 impl RunCost {
-    /// Cost from the run's own account and what of it can be used.
+    /// Cost by the run's own account, and the usable part of the run.
     pub fn of(info: &RunInfo, samples: usize, simulated_s: f64) -> Self {
         let elements = (info.mesh.quads + info.mesh.triangles) as f64;
         let work = info.steps as f64 * elements;

@@ -1,17 +1,17 @@
-//! Predicted facet-passing lines and what the spectrum shows where they should stand.
+//! Predicted facet-passing lines, and the levels of the spectrum at their frequencies.
 //!
-//! Lines closer than a spectrum can tell apart are searched as one and say so: a record of 30 ms merges what
-//! is within 67 Hz, and the passing of roller vertices and of raceway nodes often is.
+//! Lines closer than the resolution are searched as one and marked so: a record of 30 ms merges what is
+//! within 67 Hz, and the passing of roller vertices and of raceway nodes often is.
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, Resolution, Spectrum};
 
 use crate::Error;
 
-/// A line that must be there if the geometry is what it is.
+/// A line that follows from the geometry.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PredictedLine {
-    /// What passes what, in words.
+    /// Facets and the place that they pass, in words.
     pub name: String,
     /// Multiple of the fundamental, from 1.
     pub harmonic: usize,
@@ -26,7 +26,7 @@ pub struct PredictedLine {
 pub struct Tone {
     /// Sensor.
     pub sensor: String,
-    /// What passes what, in words.
+    /// Facets and the place that they pass, in words.
     pub name: String,
     /// Multiple of the fundamental, from 1.
     pub harmonic: usize,
@@ -41,7 +41,7 @@ pub struct Tone {
     pub level_g: Option<f64>,
     /// How far the highest peak within reach stands above the median of its surroundings [dB], line or not.
     pub prominence_db: Option<f64>,
-    /// Other predicted lines that this spectrum cannot tell from this one.
+    /// Other predicted lines that this spectrum does not resolve from this one.
     pub unresolved_from: Vec<String>,
 }
 
@@ -96,8 +96,7 @@ pub fn unresolved(lines: &[PredictedLine], resolution: &Resolution) -> Vec<Vec<u
 /// order.
 ///
 /// # Errors
-/// None for a line that is not there: that tone says `None`. [`Error::Signal`] when the spectrum cannot be
-/// searched.
+/// None for an absent line, whose tone is `None`. [`Error::Signal`] when the spectrum cannot be searched.
 pub fn measure(sensor: &str, lines: &[PredictedLine], spectrum: &Spectrum) -> Result<Vec<Tone>, Error> {
     let resolution = spectrum.resolution();
     let mut tones: Vec<Tone> = lines.iter().map(|line| Tone::unmeasured(sensor, line)).collect();
@@ -206,7 +205,7 @@ pub fn clearest(tones: &[Tone]) -> Option<&Tone> {
 }
 
 impl PredictedLine {
-    /// Where the line may stand [Hz]: without slip and, when known, by the recorded motion.
+    /// Expected frequencies of the line [Hz]: without slip and, when known, by the recorded motion.
     fn expected_hz(&self) -> impl Iterator<Item = f64> {
         [Some(self.predicted_hz), self.from_motion_hz].into_iter().flatten()
     }

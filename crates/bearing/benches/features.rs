@@ -10,7 +10,7 @@ mod motion;
 use std::path::Path;
 use std::time::Instant;
 
-use motion::{CLOSING, machine};
+use motion::{CLOSING, bearing};
 use stribeck_contact::Contacts;
 use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface, SpallScene, WavinessScene};
 use stribeck_scene::scene::Scene;
@@ -93,14 +93,14 @@ fn variants(scene: &Scene) -> Vec<Variant> {
 
 impl Moving {
     fn new(variant: Variant) -> Self {
-        let (mut machine, elements) = machine(&variant.scene, 1);
+        let (mut bearing, elements) = bearing(&variant.scene, 1);
         if let Some(rate) = variant.mass_damping {
-            let held = std::iter::once(machine.outer).chain(machine.housing);
+            let held = std::iter::once(bearing.outer).chain(bearing.housing);
             let mut frames: Vec<_> = held.map(|body| (body, Frame::Rest)).collect();
-            frames.extend(machine.rollers.iter().map(|r| (r.body, Frame::Tangential { centre: [0.0; 2] })));
-            machine.system.set_mass_damping(&MassDamping::new(rate, frames).expect("a possible rate"));
+            frames.extend(bearing.rollers.iter().map(|r| (r.body, Frame::Tangential { centre: [0.0; 2] })));
+            bearing.system.set_mass_damping(&MassDamping::new(rate, frames).expect("a possible rate"));
         }
-        let Parts { dynamics, mut contacts, others, .. } = machine.system.into_parts();
+        let Parts { dynamics, mut contacts, others, .. } = bearing.system.into_parts();
         contacts = contacts.filter(|_| variant.contact);
         let before = Velocities::default();
         let mut moving =

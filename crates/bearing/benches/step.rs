@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use motion::{CLOSING, machine};
+use motion::{CLOSING, bearing};
 use stribeck_scene::scene::Scene;
 use stribeck_solver::Force;
 use stribeck_solver::state::NodeForces;
@@ -28,7 +28,7 @@ fn step(criterion: &mut Criterion) {
             .measurement_time(Duration::from_secs(2));
         for threads in [1, 2] {
             let workers = Workers::new(threads).expect("threads");
-            let (mut m, elements) = machine(scene, threads);
+            let (mut m, elements) = bearing(scene, threads);
             group.throughput(Throughput::Elements(elements as u64));
             let system = &mut m.system;
             let step = |system: &mut System| system.step().expect("a time step is set");

@@ -21,7 +21,7 @@ pub enum Error {
         field: String,
         /// Its name in the scene.
         file: String,
-        /// What is wrong, and what there is.
+        /// Problem, and the names that exist.
         what: String,
     },
 
@@ -37,10 +37,10 @@ pub enum Error {
     #[error("system: {0}")]
     System(stribeck_system::Error),
 
-    /// The system gives no threads.
+    /// The operating system provides no threads.
     #[error("cannot start {threads} worker threads: {source}. Try fewer with --threads")]
     Threads {
-        /// How many were asked for.
+        /// Number of threads requested.
         threads: usize,
         /// The system's answer.
         source: std::io::Error,

@@ -1,4 +1,4 @@
-//! How coarse the bodies become where nothing rolls.
+//! Grading: element sizes away from the rolling contacts.
 
 use stribeck_mesh::{Circle, Grading};
 

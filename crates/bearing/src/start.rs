@@ -3,7 +3,7 @@
 use stribeck_solver::damping::{Frame, MassDamping};
 use stribeck_system::{Preload, UndecidedMotion};
 
-use crate::{assembly::Machine, error::Error};
+use crate::{assembly::BearingSystem, error::Error};
 use stribeck_scene::{kinematics::Kinematics, resolved::ResolvedScene, scene::DampingFrame};
 
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
@@ -11,10 +11,10 @@ const CLEARANCE: f64 = 40e-6;
 
 /// Accelerations [m/s²] of every node in rolling without slip: the inner ring turns, the rollers run and
 /// spin.
-fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
-    let system = &machine.system;
+fn rolling_acceleration(bearing: &BearingSystem, k: &Kinematics) -> Vec<[f64; 2]> {
+    let system = &bearing.system;
     let mut acceleration = vec![[0.0; 2]; system.node_count()];
-    for (body, rate) in [(machine.inner, k.shaft_rad_s), (machine.outer, k.outer_rad_s)] {
+    for (body, rate) in [(bearing.inner, k.shaft_rad_s), (bearing.outer, k.outer_rad_s)] {
         let square = rate * rate;
         if square > 0.0 {
             for n in system.nodes_of(body) {
@@ -24,7 +24,7 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
         }
     }
     let (orbit, spin) = (k.cage_rad_s * k.cage_rad_s, k.roller_rad_s * k.roller_rad_s);
-    for roller in &machine.rollers {
+    for roller in &bearing.rollers {
         let [cx, cy] = system.position(roller.centre);
         for n in system.nodes_of(roller.body) {
             let [x, y] = system.position(n);
@@ -34,36 +34,36 @@ fn rolling_acceleration(machine: &Machine, k: &Kinematics) -> Vec<[f64; 2]> {
     acceleration
 }
 
-/// Brings the machine to equilibrium under load, gravity and the inertia of rolling; a warning when it came
+/// Brings the bearing to equilibrium under load, gravity and the inertia of rolling; a warning when it came
 /// only near.
 ///
 /// # Errors
 /// When there is no equilibrium to be found.
 pub fn preload(
-    machine: &mut Machine,
+    bearing: &mut BearingSystem,
     scene: &ResolvedScene,
     k: &Kinematics,
 ) -> Result<Option<String>, Error> {
     let mut undecided = Vec::new();
     // A ring that sits without friction may turn.
-    if machine.pairs.seat().is_some() {
-        undecided.push(UndecidedMotion { body: machine.outer, along: None, rotation: true });
+    if bearing.pairs.seat().is_some() {
+        undecided.push(UndecidedMotion { body: bearing.outer, along: None, rotation: true });
     }
-    for roller in &machine.rollers {
+    for roller in &bearing.rollers {
         let (s, c) = scene.roller_angle(roller.pocket).sin_cos();
         undecided.push(UndecidedMotion { body: roller.body, along: Some([-s, c]), rotation: true });
     }
     let mut preload = Preload {
         load: Some(scene.duty.load_n(0.0).max(1.0)),
         undecided,
-        acceleration: rolling_acceleration(machine, k),
+        acceleration: rolling_acceleration(bearing, k),
         ..Preload::default()
     };
     // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between
     // them. Rollers in a wide clearance feel its sides from farther away.
     let wide = (scene.clearance / CLEARANCE).max(1.0);
     preload.softness.iter_mut().for_each(|softness| *softness *= wide);
-    let settled = machine.system.settle(&preload)?;
+    let settled = bearing.system.settle(&preload)?;
     Ok(settled.unbalanced.map(|force| {
         format!(
             "the preload left a force of {force:.2e} N unbalanced, {:.1e} of the load: the start rings a \
@@ -75,15 +75,15 @@ pub fn preload(
 }
 
 /// Gives every body its rolling velocity, half a step before the start.
-pub fn launch(machine: &mut Machine, k: &Kinematics) {
-    let acceleration = rolling_acceleration(machine, k);
-    let half = 0.5 * machine.system.time_step();
-    let system = &mut machine.system;
-    for n in system.nodes_of(machine.inner) {
+pub fn launch(bearing: &mut BearingSystem, k: &Kinematics) {
+    let acceleration = rolling_acceleration(bearing, k);
+    let half = 0.5 * bearing.system.time_step();
+    let system = &mut bearing.system;
+    for n in system.nodes_of(bearing.inner) {
         let [x, y] = system.position(n);
         system.set_velocity(n, [-k.shaft_rad_s * y, k.shaft_rad_s * x]);
     }
-    for roller in &machine.rollers {
+    for roller in &bearing.rollers {
         let [cx, cy] = system.position(roller.centre);
         for n in system.nodes_of(roller.body) {
             let [x, y] = system.position(n);
@@ -97,7 +97,7 @@ pub fn launch(machine: &mut Machine, k: &Kinematics) {
         let [vx, vy] = system.velocity(n as u32);
         system.set_velocity(n as u32, [vx - half * a[0], vy - half * a[1]]);
     }
-    if let Some(cage) = machine.cage {
+    if let Some(cage) = bearing.cage {
         system.launch(cage, [0.0; 2], k.cage_rad_s);
     }
 }
@@ -106,7 +106,7 @@ pub fn launch(machine: &mut Machine, k: &Kinematics) {
 ///
 /// # Errors
 /// When its rate is no damping.
-pub fn damp(scene: &ResolvedScene, machine: &mut Machine) -> Result<(), Error> {
+pub fn damp(scene: &ResolvedScene, bearing: &mut BearingSystem) -> Result<(), Error> {
     let rate = scene.written.solver.mass_damping_per_s;
     if rate == 0.0 {
         return Ok(());
@@ -117,9 +117,9 @@ pub fn damp(scene: &ResolvedScene, machine: &mut Machine) -> Result<(), Error> {
         DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
     };
     // The inner ring's bore is driven: what is damped there would only be fed in again.
-    let held = std::iter::once(machine.outer).chain(machine.housing);
+    let held = std::iter::once(bearing.outer).chain(bearing.housing);
     let mut frames: Vec<(usize, Frame)> = held.map(|body| (body, standing)).collect();
-    frames.extend(machine.rollers.iter().map(|r| (r.body, rolling)));
-    machine.system.set_mass_damping(&MassDamping::new(rate, frames)?);
+    frames.extend(bearing.rollers.iter().map(|r| (r.body, rolling)));
+    bearing.system.set_mass_damping(&MassDamping::new(rate, frames)?);
     Ok(())
 }

@@ -91,7 +91,7 @@ fn off_from_rigid_rings(scene: &Scene) -> (f64, f64) {
     let scene = scene.resolve();
     let bearing = &scene.written.name;
     let assembly = Assembly::new(&scene).expect("a mesh");
-    let mut machine = assembly.machine(&scene, 1).expect("a machine");
+    let mut machine = assembly.build(&scene, 1).expect("a machine");
     let warning = preload(&mut machine, &scene, &assembly.kinematics).expect("an equilibrium");
     assert_eq!(warning, None, "{bearing}");
     let _ = machine.system.contact_forces();

@@ -8,7 +8,7 @@ use std::error::Error;
 
 use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 use stribeck_mesh::{Mesh, Rectangle};
-use stribeck_solver::{Dynamics, Elastic, Model, Motion};
+use stribeck_solver::{Dynamics, Elastic, Model, NodeMotion};
 
 const LENGTH: f64 = 0.1;
 const THICKNESS: f64 = 0.02;
@@ -54,7 +54,7 @@ fn collide(columns: usize, method: Method) -> Result<Outcome, Box<dyn Error>> {
     let faces = [faces[0].ok_or("no right side")?, faces[1].ok_or("no left side")?];
     let mut model = Model::new(mesh, steel, THICKNESS)?;
     // Sides held: plane waves.
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
 
     // Contact pushes on the two faces that meet.
     let mut pushed = vec![false; model.mesh.x.len()];

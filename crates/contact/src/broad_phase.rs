@@ -2,8 +2,8 @@
 //!
 //! The bounding-volume trees are those of [parry2d](https://parry.rs): built once for a surface, refitted at
 //! every search, and walked two at a time for the facets whose boxes overlap. Boxes are grown by half a skin,
-//! so that a search holds for as many steps as two points need to come through the skin (THEORY §4.1). What
-//! follows from step to step is our own, see [`narrow_phase`](crate::narrow_phase).
+//! so that a search holds for as many steps as two points need to cross the skin (THEORY §4.1). Tracking from
+//! step to step is our own, see [`narrow_phase`](crate::narrow_phase).
 
 use parry2d_f64::{
     bounding_volume::Aabb,

@@ -29,7 +29,7 @@ pub struct PairSpec {
     pub first: usize,
     /// Index of the other.
     pub second: usize,
-    /// What acts between them.
+    /// Law between them.
     pub law: Law,
     /// Where it acts.
     pub method: Method,
@@ -46,7 +46,7 @@ pub enum Sides {
     First,
 }
 
-/// What one pair does now.
+/// State of one pair.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Resultant {
     /// Force on the first surface's body [N].
@@ -55,7 +55,7 @@ pub struct Resultant {
     pub penetration: f64,
 }
 
-/// What contact remembers from step to step, for checkpoints: continued from it, contact gives the same bits.
+/// State of contact from step to step, for checkpoints: continued from it, contact computes the same bits.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
     /// Of each pass of each pair.
@@ -72,7 +72,7 @@ struct Schedule {
     next: u64,
     /// Fastest approach of two points [m/s].
     fastest: f64,
-    /// Whether nothing holds by then that is known of points: Newton's method jumps.
+    /// Whether the states of points are void: Newton's method moves nodes by jumps.
     afresh: bool,
 }
 
@@ -108,8 +108,8 @@ struct Pair {
     result: PairResult,
 }
 
-/// What a pair came to in the last step. It lies together, and an idle pair leaves it alone: one thread reads
-/// that of all pairs, and lines that another has written are slow to come.
+/// Results of a pair in the last step, in one place and not written by an idle pair: one thread reads those
+/// of all pairs, and cache lines written by another core are slow to load.
 #[derive(Debug, Default)]
 struct PairResult {
     /// Nothing acts before this step.
@@ -142,8 +142,8 @@ impl Patterns {
     }
 }
 
-/// Points that are spaced by three quarters of the nodes' distance, one of them on a node, give it this much
-/// more than the mean; no other spacing gives more.
+/// Points that are spaced by three quarters of the nodes' distance, one of them on a node, load it by this
+/// factor of the mean; no other spacing has a larger one.
 const CLUSTERING: f64 = 1.125;
 
 /// The square of the gap's gradient exceeds one by at most this times the square of a curve's slope: once for
@@ -222,13 +222,13 @@ impl Contacts {
 
     /// For a static preload: leaves damping and friction out and rounds the corner of the penalty law over a
     /// gap of `softness` [m] (zero for the sharp law), so that Newton's method sees bodies before they touch.
-    /// `None` takes everything in again.
+    /// `None` restores the full law.
     pub fn set_preload(&mut self, softness: Option<f64>) {
         self.preload = softness;
         (self.search.next, self.search.afresh) = (0, true);
     }
 
-    /// What each pair does, in the order given.
+    /// State of each pair, in the order of their specification.
     pub fn resultants(&self) -> impl Iterator<Item = Resultant> {
         self.pairs.iter().map(|p| {
             let [a, b] = &p.result.sum;
@@ -244,7 +244,7 @@ impl Contacts {
         self.surfaces.iter().flat_map(|s| s.slots.iter().copied())
     }
 
-    /// What contact remembers.
+    /// State of contact, for a checkpoint.
     pub fn state(&self) -> ContactState {
         ContactState {
             passes: self.passes().map(|pass| pass.memory.clone()).collect(),
@@ -254,8 +254,7 @@ impl Contacts {
         }
     }
 
-    /// Resumes from what contact remembered; false when it belongs to other contacts, and nothing is changed
-    /// then.
+    /// Restores a state; false when it belongs to other contacts, and nothing is changed then.
     pub fn restore(&mut self, state: ContactState) -> bool {
         let fits = |(pass, memory): (&Pass, &Memory)| pass.can_remember(memory, &self.surfaces);
         if self.passes().count() != state.passes.len() || !self.passes().zip(&state.passes).all(fits) {
@@ -370,7 +369,7 @@ impl Pair {
 /// Less work than this is not worth another thread: a fork and join takes some microseconds.
 const LEAST_WORK: usize = 400;
 
-/// Checks what the fields allow but contact cannot do.
+/// Checks combinations of fields that contact cannot compute.
 fn check(surfaces: &[Surface], pairs: &[PairSpec], thickness: f64, slots: usize) -> Result<(), Error> {
     if !(thickness > 0.0 && thickness.is_finite()) {
         return Err(Error::OutOfRange { field: "thickness [m]", value: thickness, allowed: "positive" });
@@ -460,7 +459,7 @@ impl Force for Contacts {
             for (this, that) in [(pair.spec.first, pair.spec.second), (pair.spec.second, pair.spec.first)] {
                 let surface = &self.surfaces[this];
                 let held = points(this).map(|p| p.on_nodes(surface));
-                // Points of the other surface are dealt out over this one's nodes as they fall.
+                // Points of the other surface load this one's nodes wherever they lie.
                 let other = points(that).map(Points::largest_weight);
                 let uneven = surface.unevenness();
                 for (v, (&slot, length)) in surface.slots.iter().zip(surface.tributary()).enumerate() {

@@ -1,9 +1,8 @@
-//! Oil between round bodies and what they roll on: squeeze and rolling entrainment, without suction (THEORY
-//! §4.6).
+//! Oil between round bodies and their tracks: squeeze and rolling entrainment, without suction (THEORY §4.6).
 //!
-//! A film is one more force on nodes. It lies in series with the springs of contact: the gap that the nodes
-//! leave is the film's thickness less what the surfaces give under its pressure. So its force hangs on
-//! positions alone, never pulls, and is no stiffer than contact.
+//! A film is one more force on nodes. It lies in series with the springs of contact: the gap between the
+//! nodes' curves is the film's thickness less the deflection of the surfaces under its pressure. So its force
+//! depends on positions alone, is never tensile, and is no stiffer than contact.
 
 mod divided;
 
@@ -43,12 +42,11 @@ pub struct FilmSpec {
     pub oil: Oil,
     /// Penalty stiffness of the contact of the two [Pa/m].
     pub stiffness: f64,
-    /// Entrainment speed [m/s] before any motion was seen: half the sum of the speeds of both surfaces
-    /// against the contact.
+    /// Initial entrainment speed [m/s]: half the sum of the speeds of both surfaces relative to the contact.
     pub speed: f64,
 }
 
-/// What a film does.
+/// State of a film.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmResultant {
     /// Force on the round body [N].
@@ -57,7 +55,7 @@ pub struct FilmResultant {
     pub thickness: f64,
 }
 
-/// What films remember: all that changes in time.
+/// State of all films: everything that changes in time.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FilmState {
     films: Vec<Memory>,
@@ -88,25 +86,24 @@ struct Film {
     lands: [Land; 2],
     law: FilmLaw<Bed>,
     memory: Memory,
-    /// Nodes that it hangs on, which follow from its places.
+    /// Nodes that it depends on, which follow from its places.
     nodes: [u32; 4],
-    /// What it does in the last step.
+    /// Results of the last step.
     pushed: Pushed,
     /// Whether this rank computes it.
     here: bool,
 }
 
-/// What a film remembers from step to step.
+/// State of a film from step to step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct Memory {
     /// The oil; `None` where there is no film.
     layer: Option<Layer>,
     /// Entrainment speed [m/s].
     speed: f64,
-    /// Places of the film on the track and on the round body, and what they were when the speed was last
-    /// taken.
+    /// Places of the film on the track and on the round body, and at the last evaluation of the speed.
     places: [Place; 2],
-    /// Where a unit of force goes, node by node: two of the track, two of the round body.
+    /// Distribution of a unit force over nodes: two of the track, two of the round body.
     shares: [[f64; 2]; 4],
     /// The gap when each node stands at the origin [m]: it grows as the force would move nodes.
     offset: f64,
@@ -139,7 +136,7 @@ impl Films {
             if value.is_finite() && ok { Ok(()) } else { Err(Error::OutOfRange { field, value, allowed }) }
         };
         check("thickness [m]", thickness, thickness > 0.0)?;
-        // Polygons would be felt through a film that is thinner than their sag.
+        // Through a film thinner than the sag of its facets a polygon would load the body.
         let surfaces: Vec<Surface> =
             surfaces.into_iter().map(|s| s.smoothed(Smoothing::Nagata, x, y)).collect::<Result<_, _>>()?;
         let lands: Vec<Vec<Land>> = surfaces.iter().map(|s| Land::of(s, x, y)).collect();
@@ -190,7 +187,7 @@ impl Films {
         self.films.iter_mut().for_each(|film| (film.memory.layer, film.memory.next_look) = (None, 0));
     }
 
-    /// What each film does, in the order given.
+    /// State of each film, in the order of their specification.
     pub fn resultants(&self) -> impl Iterator<Item = FilmResultant> {
         self.first.windows(2).map(|of_spec| {
             let mut sum = FilmResultant { force: [0.0; 2], thickness: WIDEST };
@@ -205,12 +202,12 @@ impl Films {
         })
     }
 
-    /// What films remember.
+    /// State of the films, for a checkpoint.
     pub fn state(&self) -> FilmState {
         FilmState { films: self.films.iter().map(|film| film.memory).collect(), heat: self.heat }
     }
 
-    /// Resumes from what films remembered; false when it belongs to other films, and nothing is changed then.
+    /// Restores a state; false when it belongs to other films, and nothing is changed then.
     pub fn restore(&mut self, state: &FilmState) -> bool {
         let fits = |(film, memory): (&Film, &Memory)| self.fits(film, memory);
         if state.films.len() != self.films.len() || !self.films.iter().zip(&state.films).all(fits) {
@@ -255,7 +252,7 @@ impl Memory {
 }
 
 impl Film {
-    /// Goes on from a memory.
+    /// Continues from a state.
     fn take_over(&mut self, memory: &Memory, surfaces: &[Surface]) {
         self.memory = *memory;
         let [track, round] = memory.places;
@@ -285,9 +282,9 @@ impl Film {
         // them, so that forces along it turn nothing, on average between two looks.
         let normal = round.normal.map(|n| -n);
         let gap = normal[0] * (round.at[0] - track.at[0]) + normal[1] * (round.at[1] - track.at[1]);
-        // The film stays at these points until the next look, so they lie where it is half-way till then.
-        // Points that fall behind turn what rolls, with a gap that opens while bodies roll away from it and
-        // closes at the next look: energy from nowhere.
+        // The film stays at these points until the next update, so they are placed where it is half-way till
+        // then. Points that lag behind would exert a couple on a rolling body, with a gap that opens as
+        // bodies roll away from it and closes at the next update: a gain of energy.
         let half = 0.5 * LOOK_EVERY as f64 * at.dt;
         let [on_track, on_round] = [0, 1].map(|i| m.places[i].ahead(both[i], at.x, at.y, half * m.swept[i]));
         let ([a, b], [c, d]) = (on_track.shares(round.normal), on_round.shares(normal));
@@ -370,7 +367,7 @@ impl Force for Films {
     }
 
     fn stiffness_bound(&self, _dt: f64, bound: &mut [f64]) {
-        // As in contact, (a − b)² ≤ 2a² + 2b², and a surface holds one film at a place. All of it may hang on
+        // As in contact, (a − b)² ≤ 2a² + 2b², and a surface holds one film at a place. All of it may load
         // one node.
         let mut own = vec![0.0_f64; bound.len()];
         for film in &self.films {
@@ -392,7 +389,8 @@ impl Force for Films {
             let [depth, dry] = pushed.pressed.map(|depth| law.spring.stiffness(depth));
             let mut stiffness = depth;
             if self.preload && pushed.force > 0.0 {
-                // The film gives, too: in steady rolling its force is in inverse proportion to its thickness.
+                // The film is compliant, too: in steady rolling its force is in inverse proportion to its
+                // thickness.
                 stiffness = 1.0 / (1.0 / depth + law.thickness(layer) / layer.force);
             }
             let stiffness = stiffness - dry;

@@ -1,7 +1,7 @@
 //! Interactions of surfaces, shared out over ranks that run one model together.
 //!
 //! Each is computed by every rank that moves a node which it may push, as elements on a seam are: forces need
-//! not be sent. One of these ranks, its *leader*, tells all others what it came to.
+//! not be sent. One of these ranks, its *leader*, sends all others its results.
 
 use stribeck_solver::{ranks::Shared, state::Moment};
 
@@ -17,7 +17,7 @@ pub trait Interactions {
     /// Whether [`Interactions::look`] has to see all nodes of surfaces before this step.
     fn is_due(&self, step: u64) -> bool;
 
-    /// Looks for what may interact, as the next step would do by itself.
+    /// Searches for interactions, as the next step would.
     fn look(&mut self, at: Moment<'_>);
 
     /// Adds the slots of all nodes that one may read or push until the next look; none where it does nothing.
@@ -26,13 +26,13 @@ pub trait Interactions {
     /// About how long one took in the last step [ns].
     fn work(&self, which: usize) -> f64;
 
-    /// Says which ones are computed here; [`Interactions::add_up`] is then called after every step.
+    /// Selects those that are computed here; [`Interactions::add_up`] is then called after every step.
     fn compute(&mut self, here: Vec<bool>);
 
-    /// Numbers that one tells after a step.
+    /// Length of the report of one after a step.
     fn report_length(&self) -> usize;
 
-    /// Tells what one came to in the last step.
+    /// Writes the report of one on the last step.
     fn report(&self, which: usize, to: &mut Shared);
 
     /// Takes a report over.
@@ -41,13 +41,13 @@ pub trait Interactions {
     /// Counts the energies of the last step, once all is known.
     fn add_up(&mut self);
 
-    /// What the chosen ones remember.
+    /// States of the chosen ones.
     fn memories(&self, which: &[usize]) -> Vec<u8>;
 
-    /// Takes over what they remember on the rank that has computed them; false when that is something else.
+    /// Restores their states from the rank that has computed them; false when they do not fit.
     fn remember(&mut self, which: &[usize], memories: &[u8]) -> bool;
 
-    /// Slots of all nodes that [`Interactions::look`] sees.
+    /// Slots of all nodes that [`Interactions::look`] reads.
     fn nodes(&self) -> Vec<u32>;
 }
 
@@ -55,7 +55,7 @@ pub trait Interactions {
 pub(crate) fn within_reach(marked: &[bool], closed: bool, vertices: usize) -> impl Iterator<Item = usize> {
     let mut near = vec![false; vertices];
     for facet in (0..marked.len()).filter(|&facet| marked[facet]) {
-        // All round, a walk back by the reach is one forwards by what is left.
+        // On a closed surface a walk back by the reach is one forwards by the rest.
         let back = if closed { vertices.saturating_sub(REACH % vertices) } else { 0 };
         let first = if closed { facet + back } else { facet.saturating_sub(REACH) };
         let last = if closed { first + 2 * REACH + 1 } else { facet + REACH + 1 };

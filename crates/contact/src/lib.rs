@@ -6,15 +6,14 @@
 //!
 //! 1. a [`Surface`] for each boundary that may touch: a polyline of nodes, which may stand for a smooth curve
 //!    ([`Surface::smoothed`]) and move as a spline of its nodes ([`Surface::splined`]);
-//! 2. a [`PairSpec`] for each two surfaces that may touch, with a [`Law`] and a [`Method`], which says where
-//!    the law acts: at nodes, or at points on every facet;
+//! 2. a [`PairSpec`] for each two surfaces that may touch, with a [`Law`] and a [`Method`], for the points at
+//!    which the law acts: nodes, or points on every facet;
 //! 3. [`Contacts::new`] with all of them; the result goes into the list of forces of every step.
 //!
 //! Each pair is evaluated in two passes of half the stiffness, the points of either surface against the
-//! facets of the other. A pass searches now and then (broad phase: bounding-volume trees of
-//! [parry2d](https://parry.rs)), follows the closest points of what may touch from step to step (narrow
-//! phase), and leaves points inactive that cannot touch yet. [`project`] answers for a single point: its gap
-//! to a surface, and where.
+//! facets of the other. A pass searches at intervals (broad phase: bounding-volume trees of
+//! [parry2d](https://parry.rs)), tracks closest points from step to step (narrow phase), and skips points
+//! that cannot touch yet. [`project`] projects a single point: its gap to a surface, and the foot.
 //!
 //! # Conventions
 //!
@@ -26,12 +25,12 @@
 //! # Example: two blocks collide
 //!
 //! A block at 2 m/s hits an equal one at rest. The compression wave runs to the far end of each and back, so
-//! they part after 2L/c; the momentum goes over whole.
+//! they part after 2L/c; the whole momentum is transferred.
 //!
 //! ```
 //! use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 //! use stribeck_mesh::{Mesh, Rectangle};
-//! use stribeck_solver::{Dynamics, Elastic, Model, Motion};
+//! use stribeck_solver::{Dynamics, Elastic, Model, NodeMotion};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let (length, height, thickness, columns) = (0.1, 0.01, 0.02, 100);
@@ -42,7 +41,7 @@
 //! let steel = Elastic::new(208e9, 0.3, 7800.0)?;
 //! let mut model = Model::new(mesh, steel, thickness)?;
 //! // Sides held: plane waves, whose speed is √((λ + 2µ)/ρ).
-//! model.motion.fill(Motion::HeldY);
+//! model.motion.fill(NodeMotion::HeldY);
 //!
 //! // Contact pushes on the two faces that meet.
 //! let faces = [moving.surface("right"), resting.surface("left")].map(|face| face.expect("a rectangle has sides"));
@@ -93,21 +92,21 @@
 //! | Where does the law act? | `points.rs` |
 //! | Which facets are near each other? | `broad_phase.rs` |
 //! | How does a facet move, and gather forces? | `moving_facet.rs` |
-//! | What does a pass do, and remember from step to step? | `pass.rs`, `memory.rs` |
-//! | How does it all become one force? | `contacts.rs` |
+//! | What does a pass do, and what is its state from step to step? | `pass.rs`, `memory.rs` |
+//! | How do all pairs become one force? | `contacts.rs` |
 //! | And oil between surfaces? | `film.rs`, by the law of the crate [`stribeck_film`] |
 //!
-//! What is hot lies in `kernel/`:
+//! The hot loop is in `kernel/`:
 //!
 //! | Question | File |
 //! |---|---|
-//! | What acts at a point in contact? | `law.rs` |
+//! | What is the law at a point in contact? | `law.rs` |
 //! | What does one evaluation of a pass do? | `evaluate.rs` |
 //! | How are the points of a facet done in vectors? | `row.rs`, on chords `chord_row.rs`, on splines `patch_row.rs` |
 //! | And those of facets with few points, a facet in each lane? | `chord_band.rs`, `chord_lanes.rs` |
-//! | What do points of one chord see of another chord? | `chord_pair.rs` |
+//! | How do points of one chord meet another chord? | `chord_pair.rs` |
 //! | What about points near ends and corners? | `single_points.rs` |
-//! | From which facet does a point set out after a search? | `nearest_chord.rs` |
+//! | At which facet does a point start after a search? | `nearest_chord.rs` |
 //!
 //! The mathematics stands once, over a [`Number`](stribeck_simd::lanes::Number): `f64` for single points, a
 //! vector for rows and bands of them.

@@ -1,4 +1,4 @@
-//! What a pass remembers from step to step, and how it lies in memory.
+//! State of a pass from step to step, and its layout in memory.
 
 use std::ops::Range;
 
@@ -7,9 +7,9 @@ use stribeck_simd::{field::Field, lanes::LANES};
 
 use crate::points::Pattern;
 
-/// What a pass remembers from step to step: of the points of its candidates alone, as its [`Arrangement`]
-/// says, so that what is read in every step lies close together. Facets of many points have whole vectors of
-/// room, each in a line of cache; behind the last point there is room for a vector that reads on.
+/// State of a pass from step to step, of the points of its candidates alone, laid out by its [`Arrangement`],
+/// so that data of every step lie close together. Facets of many points have whole vectors, each in a line of
+/// cache; after the last point there is padding for a vector.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Memory {
     pub(crate) candidates: Vec<Candidate>,
@@ -18,7 +18,7 @@ pub(crate) struct Memory {
     /// Steps after the search before which each point cannot touch; it is looked at again in the step that
     /// holds the last of them.
     pub(crate) inactive_until: Field,
-    /// What points in contact remember; `None` without damping and friction.
+    /// History of points in contact; `None` without damping and friction.
     pub(crate) history: Option<Histories>,
     /// Fastest that a point of the pass opened or closed of late [m/s].
     pub(crate) pace: f64,
@@ -34,7 +34,7 @@ pub(crate) struct Candidate {
     /// Not looked at before this step.
     pub(crate) active_from: u64,
     pub(crate) facet: u32,
-    /// First of its points in what the pass remembers.
+    /// First of its points in the state of the pass.
     pub(crate) first: u32,
     pub(crate) pattern: Pattern,
     /// Slots of its ends.
@@ -42,14 +42,14 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Its points in what the pass remembers, where it remembers them row by row.
+    /// Its points in the state of the pass, where that is row by row.
     #[inline(always)]
     pub(crate) fn range(&self) -> Range<usize> {
         self.first as usize..(self.first + self.pattern.points) as usize
     }
 }
 
-/// How what a pass remembers of points lies in memory.
+/// Layout of the state of points in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Arrangement {
     /// Facet by facet.
@@ -85,7 +85,7 @@ impl Arrangement {
     }
 }
 
-/// What points in contact remember of the step before, one array a field.
+/// History of points in contact from the step before, one array a field.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Histories {
     /// Elastic part of the tangential displacement [m].
@@ -149,7 +149,7 @@ impl Memory {
         first
     }
 
-    /// Sets a point; one that was `known` as number `i` of another memory takes its history along.
+    /// Sets a point; one that was `known` as number `i` of another memory keeps its history.
     pub(crate) fn set(
         &mut self,
         point: usize,

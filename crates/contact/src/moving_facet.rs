@@ -1,4 +1,4 @@
-//! A facet while a pass is evaluated: how it moves, and the forces that gather on it.
+//! A facet while a pass is evaluated: its motion, and the forces that accumulate on it.
 
 use stribeck_solver::state::Moment;
 use stribeck_surface::{
@@ -54,7 +54,7 @@ impl<F: Facet> MovingFacet<F> {
         self.used = true;
     }
 
-    /// Adds forces on many points: what each coefficient gets.
+    /// Adds the forces of many points to each coefficient.
     #[inline(always)]
     pub(crate) fn push_all(&mut self, forces: &F::Coefficients) {
         self.forces.add_all(forces);

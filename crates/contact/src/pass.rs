@@ -1,4 +1,6 @@
-//! One pass: the points of a secondary surface against the facets of a primary one.
+//! One pass of a contact pair: the points of a secondary surface against the facets of a primary one. Between
+//! searches ([`broad_phase`](crate::broad_phase)) it tracks the points' feet and evaluates the law
+//! ([`kernel`](crate::kernel)).
 
 use std::sync::Arc;
 
@@ -24,7 +26,7 @@ use crate::{
     points::{FEW_POINTS, Points},
 };
 
-/// Most nodes that a facet hangs on.
+/// Most nodes that a facet depends on.
 const MOST_NODES: usize = 6;
 
 /// One pass of a pair.
@@ -37,7 +39,7 @@ pub(crate) struct Pass {
     pub(crate) memory: Memory,
     /// Deeper penetrations than this are not contacts but other sides of a body [m].
     pub(crate) deepest: f64,
-    /// Apart, so that what every step reads lies close together.
+    /// Separate, so that data read in every step lie close together.
     room: Box<Room>,
 }
 
@@ -107,15 +109,15 @@ impl Pass {
             && memory.nearest.iter().all(|&facet| (facet as usize) < facets)
     }
 
-    /// Goes on from a memory.
+    /// Continues from a state.
     pub(crate) fn remember(&mut self, memory: Memory) {
         self.memory = memory;
     }
 
     /// Takes new candidates from pairs (secondary facet, primary facet), ascending. Points of facets that
-    /// were candidates before go on from what they remember, but where another part of the primary surface
-    /// has come nearer; they stay inactive for as much less time as the fastest approach was `slower` in the
-    /// search before.
+    /// were candidates before keep their state, except where another part of the primary surface has come
+    /// nearer; they stay inactive for as much less time as the fastest approach was `slower` in the search
+    /// before.
     pub(crate) fn take(&mut self, pairs: &[(u32, u32)], surfaces: &[Surface], at: &Moment<'_>, slower: f64) {
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let Self { points, arrangement, memory, room, .. } = self;
@@ -193,8 +195,8 @@ impl Pass {
         self.memory.candidates.iter().map(|c| MOST_NODES * (1 + c.pattern.points as usize)).sum()
     }
 
-    /// Fetches what an evaluation of rows begins with, of all active facets: between two steps the elements
-    /// push it out of the near caches, and so it is on its way while the first facets are evaluated.
+    /// Prefetches the first data of a row's evaluation, of all active facets: between two steps the elements
+    /// evict it from the near caches, and so it loads while the first facets are evaluated.
     pub(crate) fn fetch(&self, surfaces: &[Surface], at: &Moment<'_>) {
         let Memory { nearest, inactive_until, history, candidates, idle_until, .. } = &self.memory;
         // Facets with few points follow one another in memory as they are read.
@@ -248,8 +250,8 @@ impl Pass {
         .dispatch()
     }
 
-    /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient;
-    /// what the gradient itself changes by is left out.
+    /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient; the
+    /// derivative of the gradient is neglected.
     pub(crate) fn tangent(
         &self,
         surfaces: &[Surface],

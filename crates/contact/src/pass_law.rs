@@ -1,19 +1,19 @@
 //! The law of a pair as one pass applies it: its share of the stiffness, the static preload's rounded corner,
-//! and the speeds that inactive points count on (THEORY §3.2, §4.1).
+//! and the speeds assumed for inactive points (THEORY §3.2, §4.1).
 
 use stribeck_surface::{Law, law::Onset};
 
 /// Speeds are allowed for with this margin until the next look.
 pub(crate) const SPEED_MARGIN: f64 = 2.0;
 
-/// Least speed allowed for until then [m/s]: what an impact may give to a surface at rest.
+/// Least speed assumed until then [m/s]: that of a surface at rest after an impact.
 pub(crate) const LEAST_SPEED: f64 = 2.0;
 
 /// A point allows for this part of the fastest approach too: bodies turn by less than a tenth while it is
 /// inactive.
 const FASTEST_OVER: f64 = 16.0;
 
-/// What is left of a pass's pace from one evaluation to the next.
+/// Decay factor of a pass's pace from one evaluation to the next.
 pub(crate) const PACE_KEPT: f64 = 0.99;
 
 /// Longest time between two searches or looks at a point, in steps: speeds may change meanwhile.

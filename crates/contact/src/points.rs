@@ -1,5 +1,4 @@
-//! Contact points of a secondary surface: where the penalty is evaluated, and how much surface each stands
-//! for.
+//! Contact points of a secondary surface: where the penalty is evaluated, and the area of each.
 
 use std::ops::Range;
 
@@ -21,15 +20,15 @@ pub enum Method {
 }
 
 impl Method {
-    /// Most points on a facet: a point on every thirtieth of a facet sees nothing new.
+    /// Most points on a facet: more than thirty resolve nothing new.
     pub const MOST_POINTS: usize = 32;
 }
 
 /// Facets with more points than this fill vectors of their own; others share vectors with their neighbours.
 pub(crate) const FEW_POINTS: usize = 4;
 
-/// Contact points. Facets whose points lie and weigh alike share a pattern, so that what all rows of points
-/// read stays in cache. Behind the last one each field has room for a vector that reads on.
+/// Contact points. Facets with points of equal places and weights share a pattern, so that data of all rows
+/// stay in cache. After the last one each field is padded for a vector.
 #[derive(Debug)]
 pub(crate) struct Points {
     /// Place on the facet, 0 … 1.

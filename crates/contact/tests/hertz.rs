@@ -45,7 +45,7 @@ mod common;
 use common::*;
 use stribeck_contact::{Law, Method, Smoothing};
 use stribeck_mesh::Part;
-use stribeck_solver::{Force, Motion, force::NodalLoad, state::NodeForces};
+use stribeck_solver::{Force, NodeMotion, force::NodalLoad, state::NodeForces};
 use stribeck_testing::{assert_close, ledger};
 
 /// Radius of the curved face [m]: strains are b/R = 0.6 %, small enough for linear elasticity to hold to as
@@ -101,11 +101,11 @@ fn pressed_by(columns: usize, method: Method, splines: bool, stiffness: f64) -> 
     scene.pair(upper, lower, Law::penalty(stiffness).expect("a positive stiffness"), method);
     let mut model = scene.model();
     let row = columns + 1;
-    model.motion[..row].fill(Motion::Held);
+    model.motion[..row].fill(NodeMotion::Held);
     let first = model.mesh.bodies[upper].nodes.start;
     // The middle column may not move sideways, which holds the upper block upright.
     for n in (first + columns / 2..model.mesh.x.len()).step_by(row) {
-        model.motion[n] = Motion::HeldX;
+        model.motion[n] = NodeMotion::HeldX;
     }
     let (mut d, mut contacts) = if splines {
         scene.lay_out_smooth(&model, &[(Smoothing::Nagata, true); 2])

@@ -9,7 +9,7 @@ mod common;
 use common::*;
 use stribeck_contact::{Contacts, Law, Method, Smoothing};
 use stribeck_mesh::{Annulus, Part};
-use stribeck_solver::{Force, Motion, force::NodalLoad, state::NodeForces};
+use stribeck_solver::{Force, NodeMotion, force::NodalLoad, state::NodeForces};
 
 /// The paper's roller and outer raceway [m].
 const RADIUS: f64 = 9e-3;
@@ -82,7 +82,7 @@ fn force(kind: Ground, recipe: Recipe, turn: f64, shift: f64) -> f64 {
             Ground::Raceway => x.hypot(y) > RACEWAY + 5.9e-3 || y > 0.0 || x.abs() > 0.02,
         };
         if held {
-            model.motion[n] = Motion::Held;
+            model.motion[n] = NodeMotion::Held;
         }
     }
     let (mut d, mut contacts) = if recipe.smooth {

@@ -44,9 +44,9 @@ pub fn order_track(signal: &[f64], pulses: &[f64], samples_per_turn: usize) -> R
 
 /// Means of `signal`, taken at a constant rate, over equal steps of a shaft's angle: `steps_per_turn` of
 /// them, as many as the record holds. `turns` is the angle at each sample, in turns, never falling; between
-/// samples signal and angle follow straight lines. Nothing between the steps is left out however slowly the
-/// shaft turns, so that an envelope is safe from aliases from rest on; what is heard while it stands counts
-/// for nothing. A line of `n` waves a turn loses the factor sin x/x with x = π n/`steps_per_turn`.
+/// samples signal and angle follow straight lines. Every sample enters a mean, so that an envelope has no
+/// aliases at any speed from rest on; samples taken at standstill have no weight. A line of `n` waves a turn
+/// loses the factor sin x/x with x = π n/`steps_per_turn`.
 ///
 /// # Errors
 /// [`Error::TooShort`] for a record without a whole step, [`Error::WrongLength`], [`Error::NotFinite`],
@@ -98,8 +98,8 @@ impl OverAngle {
         self.values.len() / self.samples_per_turn
     }
 
-    /// Time-synchronous average: the mean turn. What is not locked to the shaft falls as one over the root of
-    /// the turns.
+    /// Time-synchronous average: the mean turn. Components not locked to the shaft decrease as one over the
+    /// square root of the turns.
     pub fn average(&self) -> Vec<f64> {
         let mut mean = vec![0.0; self.samples_per_turn];
         for turn in self.values.chunks_exact(self.samples_per_turn) {
@@ -110,7 +110,7 @@ impl OverAngle {
         mean
     }
 
-    /// What the average leaves: everything that is not locked to the shaft.
+    /// The signal less its average: everything not locked to the shaft.
     pub fn residual(&self) -> Vec<f64> {
         let mean = self.average();
         self.values.iter().zip(mean.iter().cycle()).map(|(x, m)| x - m).collect()
@@ -176,7 +176,7 @@ mod tests {
         assert!(means_over_angle(&signal, &[0.0, 1.0, 0.5, 2.0], 8).is_err());
         assert!(means_over_angle(&signal, &[0.0, 1.0], 8).is_err());
         assert!(means_over_angle(&signal, &[0.0, 0.01, 0.02, 0.03], 8).is_err());
-        // A shaft that waits loses nothing.
+        // A pause of the shaft changes nothing.
         assert_eq!(means_over_angle(&signal, &[0.0, 1.0, 1.0, 2.0], 2).unwrap(), [1.0; 4]);
     }
 

@@ -26,12 +26,12 @@ pub struct BandEnvelopes {
     spectrum: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
     bands: Vec<Band>,
-    /// What the power is taken over, if it is.
+    /// Period over whose mean course the power is taken, if any.
     cycle: Option<Cycle>,
     work: Work,
 }
 
-/// What is computed of one band after the other, as long as the longest needs it.
+/// Scratch for one band after the other, sized for the longest.
 #[derive(Default)]
 struct Work {
     analytic: Vec<Complex<f64>>,
@@ -52,7 +52,7 @@ struct Band {
     sums: [f64; 2],
 }
 
-/// What one band of a record shows.
+/// Statistics and squared envelope spectrum of one band.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BandEnvelope {
     /// Lower end [Hz].
@@ -147,9 +147,9 @@ impl BandEnvelopes {
     }
 
     /// The same with the power of each band in each segment over its own mean course in a period of
-    /// `frequency_hz`, so that what repeats with it is gone. What its power goes up and down with is left at
-    /// its own frequency, and not beside the lines that are gone. A band in which a period holds fewer than
-    /// four samples is left out.
+    /// `frequency_hz`, which removes what repeats with it. A modulation of that course remains at its own
+    /// frequency, without sidebands of the removed lines. A band in which a period holds fewer than four
+    /// samples is left out.
     ///
     /// # Errors
     /// [`Error::NotPositive`].
@@ -202,7 +202,7 @@ impl BandEnvelopes {
         Ok(())
     }
 
-    /// What the bands show, in the order of the plan; nothing before a segment was added. A band without
+    /// Results of the bands, in the order of the plan; empty before a segment was added. A band without
     /// signal is left out.
     pub fn bands(&self) -> Vec<BandEnvelope> {
         let grid_hz = self.sample_rate_hz / self.segment as f64;
@@ -267,7 +267,7 @@ impl Band {
 
 impl BandEnvelope {
     /// How deep the power of the band is modulated at `frequency_hz`, `d` of `1 + d cos`: 0 for none, 1 when
-    /// it falls to zero in between, 2 for short bursts. What stands within two lines counts.
+    /// it falls to zero in between, 2 for short bursts. Power within two lines of it counts.
     pub fn depth(&self, frequency_hz: f64) -> f64 {
         const REACH: usize = 2;
         /// Equivalent noise bandwidth of the Hann window [lines].
@@ -279,7 +279,7 @@ impl BandEnvelope {
     }
 }
 
-/// How like itself something is after a time.
+/// An autocorrelation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Autocorrelation {
     /// Distance of the values [s].
@@ -289,9 +289,9 @@ pub struct Autocorrelation {
 }
 
 impl BandEnvelope {
-    /// How like itself the power of the band is after a time, less its mean: the transform of the spectrum,
-    /// which knows events that keep their distance for a while and no longer. Values lie half a period of the
-    /// spectrum's end apart; a lag must be short beside a segment.
+    /// Autocorrelation of the band's power less its mean, from the transform of the spectrum: it finds events
+    /// whose spacing holds for a while only. Values lie half a period of the spectrum's end apart; a lag must
+    /// be short beside a segment.
     ///
     /// # Errors
     /// [`Error::TooShort`] for a spectrum of fewer than four lines, [`Error::Undefined`] for power that does

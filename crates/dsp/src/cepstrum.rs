@@ -1,5 +1,4 @@
-//! Cepstral pre-whitening: all lines and resonances of a record become equally strong, and what is left are
-//! its impulses.
+//! Cepstral pre-whitening: all lines of a record's spectrum become equally strong, which leaves its impulses.
 
 use rustfft::num_complex::Complex;
 

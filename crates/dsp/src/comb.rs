@@ -18,7 +18,7 @@ pub struct Whitened {
     ratios: Vec<f64>,
 }
 
-/// What makes a family.
+/// Definition of a family.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CombTest {
     /// Harmonics looked at.
@@ -44,7 +44,7 @@ pub struct Comb {
 const BLOCK: usize = 101;
 /// Distance of blocks.
 const HOP: usize = 25;
-/// Lines next to zero that hold what the removal of the mean leaves.
+/// Lines next to zero, disturbed by the removal of the mean.
 const SKIPPED: usize = 3;
 
 impl Whitened {

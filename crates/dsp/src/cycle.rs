@@ -1,9 +1,9 @@
-//! Power over its own mean course in a period: what repeats with the period is gone, what comes and goes
-//! beside it is left.
+//! Power over its own mean course in a period, which removes what repeats with the period and keeps
+//! everything else.
 //!
-//! Where the power is `a(t) (1 + m(t)) + b(t)` with a course `a` that repeats and is the larger part, what is
-//! left is `1 + m + b/a`: the modulator of the course at its own frequency and not about the lines of the
-//! course, and everything else, loudest where the course is silent.
+//! Where the power is `a(t) (1 + m(t)) + b(t)` with a repeating course `a` as the larger part, the quotient
+//! is `1 + m + b/a`: the modulator at its own frequency instead of about the lines of the course, and the
+//! rest, weighted most where the course is weak.
 //!
 //! Source: means over a period, P. D. McFadden, Mech. Syst. Signal Process. 1 (1987) 83–95; to divide by them
 //! is our own.
@@ -51,7 +51,7 @@ impl Cycle {
         }
         for (n, value) in power.iter_mut().enumerate() {
             let (sum, times) = parts[part(n)];
-            // No power in any period: none is left.
+            // No power in any period: the quotient is zero.
             *value = if sum > 0.0 { *value * f64::from(times) / sum } else { 0.0 };
         }
     }
@@ -72,7 +72,7 @@ mod tests {
         let mut power: Vec<f64> =
             (0..SAMPLES).map(|n| (1.0 + 0.8 * (TAU * 100.0 * at(n)).cos()) * modulator(n)).collect();
         Cycle::new(100.0, SAMPLES).unwrap().divide(&mut power, 1.0);
-        // A mean over 100 values of the modulator, seven whole periods, is exact; round-off is left.
+        // A mean over 100 values of the modulator, seven whole periods, is exact; only round-off remains.
         let worst = power.iter().enumerate().map(|(n, p)| (p - modulator(n)).abs()).fold(0.0, f64::max);
         assert!(worst < 1e-9, "{worst}");
     }

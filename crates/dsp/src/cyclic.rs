@@ -1,4 +1,4 @@
-//! Spectral correlation and coherence: at which cyclic frequency does which part of the spectrum come and go?
+//! Spectral correlation and coherence: at which cyclic frequency is which part of the spectrum modulated?
 
 use std::f64::consts::TAU;
 
@@ -9,7 +9,7 @@ use rustfft::num_complex::Complex;
 use crate::error::{check_band, check_positive, check_signal};
 use crate::{Error, Result, Window};
 
-/// What is divided out of a spectral correlation.
+/// Normalisation of a spectral correlation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cyclic {
     /// Nothing: the spectral correlation [unit²/Hz].
@@ -43,8 +43,8 @@ pub struct SpectralCorrelation {
 /// fs)`,
 ///
 /// p from 0 to `highest_hz/Δf`, rounded up, and `R_w` the transform of the squared window. It is the
-/// correlation of what stands at f with what stands at f − α. For the coherence every X is divided by the
-/// root of its mean power first. Memory: 16 bytes × cyclic × (window/2 + 1).
+/// correlation of the components at f and at f − α. For the coherence every X is divided by the root of its
+/// mean power first. Memory: 16 bytes × cyclic × (window/2 + 1).
 ///
 /// Source: J. Antoni, G. Xin and N. Hamzaoui, Mech. Syst. Signal Process. 92 (2017) 248–277.
 ///
@@ -103,8 +103,8 @@ pub fn spectral_correlation(
     for line in 0..lines {
         products.fill(Complex::<f64>::default());
         for shift in 0..=shifts {
-            // f − pΔf below zero is the conjugate of its mirror image, and what the Nyquist line mirrors
-            // comes again.
+            // f − pΔf below zero is the conjugate of its mirror image, and beyond the Nyquist line values
+            // repeat.
             let below = line as isize - shift as isize;
             let place = below.rem_euclid(window as isize) as usize;
             let (place, mirrored) = if place < lines { (place, false) } else { (window - place, true) };

@@ -1,4 +1,5 @@
-//! The way from a defect to the sensor, undone: which filter turns a record into pulses of a known period?
+//! Deconvolution of the path from a defect to the sensor: which filter turns a record into pulses of a known
+//! period?
 
 use crate::error::{check_positive, check_signal};
 use crate::{Error, Result};

@@ -1,4 +1,4 @@
-//! The envelope of a modulated signal and its spectrum: at what rate does something knock?
+//! The envelope of a modulated signal and its spectrum: at what rate do impulses repeat?
 
 use std::fmt;
 use std::sync::Arc;
@@ -12,8 +12,8 @@ use crate::{Detrend, Error, Resolution, Result, Scaling, Spectrum, Welch, WelchO
 
 /// A planned Hilbert envelope, `abs(scipy.signal.hilbert(x))`, for records of one length.
 ///
-/// The record is taken as periodic, so the ends are not to be trusted. Its mean stays in the envelope: remove
-/// it, or choose a band.
+/// The record is taken as periodic, so values near its ends are unreliable. Its mean stays in the envelope:
+/// remove it, or choose a band.
 pub struct Envelope {
     forward: Arc<dyn RealToComplex<f64>>,
     inverse: Arc<dyn Fft<f64>>,
@@ -54,7 +54,7 @@ impl Envelope {
         })
     }
 
-    /// Plans the envelope of what lies between two frequencies [Hz], both included: everything else is set to
+    /// Plans the envelope of the band between two frequencies [Hz], both included: everything else is set to
     /// zero in the transform. That is a band-pass with infinitely steep flanks, and it rings by about one
     /// over its width.
     ///
@@ -139,7 +139,7 @@ impl EnvelopeSpectrum {
         Ok(Self { envelope, squared: vec![0.0; record], welch })
     }
 
-    /// What the spectrum can tell apart.
+    /// Resolution of the spectrum.
     pub fn resolution(&self) -> &Resolution {
         self.welch.resolution()
     }
@@ -161,7 +161,7 @@ impl EnvelopeSpectrum {
     }
 }
 
-/// Whether a record is long enough to speak of a repetition rate.
+/// Whether a record is long enough to resolve a repetition rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PeriodVerdict {
     /// Below ten periods: an envelope spectrum would mislead.

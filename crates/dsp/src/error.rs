@@ -1,4 +1,4 @@
-//! What can be wrong with a signal or a request, and the checks that find it.
+//! Errors of signals and of requests, and the checks that find them.
 
 /// Result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -16,7 +16,7 @@ pub enum Error {
         len: usize,
         /// Smallest number that would do.
         least: usize,
-        /// What the samples are wanted for.
+        /// Purpose of the samples.
         purpose: &'static str,
     },
     /// A sample is infinite or not a number.
@@ -173,7 +173,7 @@ pub enum Error {
     Undefined {
         /// Which quantity.
         quantity: &'static str,
-        /// The reason, and what to try.
+        /// Reason and remedy.
         why: &'static str,
     },
 }

@@ -1,6 +1,6 @@
 //! The infogram: which band holds impulses, which holds what repeats, and which both?
 //!
-//! A kurtogram is drawn to one accidental impulse as to a hundred that repeat. Two negentropies tell them
+//! A kurtogram responds to one accidental impulse as to a hundred that repeat. Two negentropies tell them
 //! apart: that of the squared envelope grows with impulses, that of its spectrum with lines at a rate and its
 //! multiples.
 //!
@@ -23,7 +23,7 @@ pub struct InfogramBand {
     pub high_hz: f64,
     /// Negentropy of the squared envelope ε, `⟨ε²/⟨ε²⟩ ln(ε²/⟨ε²⟩)⟩`: how impulsive.
     pub of_envelope: f64,
-    /// The same of the squared envelope's spectrum, its line at zero left out: how much it repeats.
+    /// Negentropy of the squared envelope's spectrum without its line at zero: how cyclic it is.
     pub of_spectrum: f64,
 }
 

@@ -1,8 +1,8 @@
-//! The fast kurtogram: in which band does a signal knock most?
+//! The fast kurtogram: which band of a signal is most impulsive?
 //!
-//! A tree of analytic filters halves bands and cuts them in three; the kurtosis of the complex envelope says
-//! how impulsive each is. Filters, delays and trimming are those of the author's program, so that the bands
-//! and values agree with it.
+//! A tree of analytic filters halves bands and cuts them in three; the kurtosis of the complex envelope
+//! measures how impulsive each is. Filters, delays and trimming are those of the author's program, so that
+//! the bands and values agree with it.
 //!
 //! Source: J. Antoni, Mech. Syst. Signal Process. 21 (2007) 108–124.
 
@@ -55,7 +55,8 @@ pub fn fast_kurtogram(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Resul
     Ok(bands)
 }
 
-/// Gives the settled coefficients of every band to `take`, with the number of such bands and its ends [Hz].
+/// Passes the settled coefficients of every band to `take`, with the number of bands of its level and its
+/// ends [Hz].
 pub(crate) fn for_each_band(
     signal: &[f64],
     sample_rate_hz: f64,
@@ -88,7 +89,7 @@ pub(crate) fn for_each_band(
     }
 }
 
-/// Refuses what is too short for a tree of so many levels.
+/// Refuses a signal that is too short for this many levels.
 pub(crate) fn check_levels(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Result<()> {
     check_positive("sample_rate_hz", sample_rate_hz)?;
     let purpose = "a tree of bands of so many levels";

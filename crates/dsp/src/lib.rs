@@ -1,7 +1,7 @@
 //! Spectra, notch filters, envelopes and statistics of evenly sampled real signals, in double precision.
 //!
-//! The crate knows nothing of where a signal comes from: a simulated acceleration and a measured voltage
-//! enter through the same `&[f64]`. Nothing is printed; every refusal is an [`Error`] that says what to try.
+//! The origin of a signal does not matter: a simulated acceleration and a measured voltage enter through the
+//! same `&[f64]`. Nothing is printed; every refusal is an [`Error`] with a remedy.
 //!
 //! # Conventions
 //!
@@ -9,7 +9,7 @@
 //!
 //! - **Window**: the Hann window is the periodic one. MATLAB's symmetric windows are offered by that name.
 //! - **Welch**: 50 % overlap and removal of each segment's mean by default; a tail too short for one more
-//!   segment is left out, and [`Resolution::unused_s`] says how much that was.
+//!   segment is left out, and [`Resolution::unused_s`] is its length.
 //! - **Scaling**: [`Scaling::Density`] is in unit²/Hz, `2|X|²/(fs Σw²)`; [`Scaling::Spectrum`] is in unit²,
 //!   `2|X|²/(Σw)²`, where a sinusoid of amplitude A reads A²/2. The factor 2 is that of a one-sided spectrum;
 //!   zero frequency and, for an even transform length, half the sample rate go without it.
@@ -29,24 +29,24 @@
 //! | what frequencies a record holds, and how strong | [`Welch`]: [`Welch::for_grid`] for one record, [`Welch::new`] for averages |
 //! | the frequency and amplitude of a line, and whether it stands out | [`Spectrum::peak`], [`Spectrum::sinusoid`], [`Spectrum::stands_above_db`] |
 //! | how much there is in a band | [`Spectrum::band_rms`], [`Spectrum::velocity_rms`] |
-//! | what can be told apart at all | [`Resolution`] |
-//! | what is left without one tone | [`Notch`]: `filter` as an instrument does it, `filtfilt` without delay |
-//! | how often something knocks | [`EnvelopeSpectrum`], after [`PeriodCount`] has said that the record is long enough |
-//! | in which band it knocks | [`fast_kurtogram`], [`infogram`], [`BandEnvelopes`] for records of any length, [`cepstral_prewhitening`] |
-//! | at what rate which part of the spectrum comes and goes | [`spectral_correlation`] |
-//! | what repeats exactly, and what slips | [`separate`] |
+//! | which frequencies can be resolved | [`Resolution`] |
+//! | a record without one tone | [`Notch`]: `filter` as an instrument does it, `filtfilt` without delay |
+//! | the repetition rate of impulses | [`EnvelopeSpectrum`], where [`PeriodCount`] finds the record long enough |
+//! | the band of impulses | [`fast_kurtogram`], [`infogram`], [`BandEnvelopes`] for records of any length, [`cepstral_prewhitening`] |
+//! | the rate at which a part of the spectrum is modulated | [`spectral_correlation`] |
+//! | components that repeat exactly, and the rest, which slips | [`separate`] |
 //! | the pulses behind a resonance | [`momeda`] |
 //! | how a record changes | [`spectrogram`], [`Spectrograph`] for records of any length, [`ridge`] |
-//! | whether a family of harmonics is there, and how sure that is | [`CombTest`] on a [`Whitened`] spectrum |
+//! | whether there is a family of harmonics, with a false-alarm rate | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
-//! | when something struck, behind an unknown path | [`prewhitened_power`] |
-//! | what a sensor records behind a random path, or the path of a record | [`Path`], [`coloured_like`] |
-//! | what a sensor shows behind a measured response or some modes, and what was before them | [`Response`] |
-//! | what passages tell, whatever the path to the sensor | [`Signature`] |
-//! | what is locked to a shaft | [`order_track`], [`OverAngle::average`] |
+//! | the times of impacts behind an unknown path | [`prewhitened_power`] |
+//! | the record of a sensor behind a random path, or behind the path of a record | [`Path`], [`coloured_like`] |
+//! | the signal of a sensor behind a measured response or some modes, and the signal before them | [`Response`] |
+//! | numbers of repeated passages that do not depend on the path to the sensor | [`Signature`] |
+//! | components locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | a smooth density of a short record | [`multitaper`] |
 //! | the record at another rate | [`resample_poly`] |
-//! | what a sensor and its recorder would have made of a computed signal | [`Sensor`] |
+//! | a computed signal as a sensor and its recorder would have recorded it | [`Sensor`] |
 //! | how a signal sounds | [`Sound`] |
 //! | root mean square, crest factor, kurtosis | [`statistics`] |
 //!
@@ -54,8 +54,8 @@
 //!
 //! # A measured sine
 //!
-//! An accelerometer sampled at 100 kHz for 30 ms sees 50 m/s² at 4671 Hz. Where is the line, how strong is
-//! it, what may be said about its frequency, and what is left of it behind a notch?
+//! An accelerometer sampled at 100 kHz for 30 ms sees 50 m/s² at 4671 Hz. What are the frequency and the
+//! amplitude of the line, how well is its frequency resolved, and what remains of it behind a notch?
 //!
 //! ```
 //! use stribeck_dsp::{Notch, Welch};
@@ -86,6 +86,7 @@
 //! # }
 //! ```
 
+mod averages;
 mod error;
 mod window;
 
@@ -127,6 +128,7 @@ mod sound;
 pub mod statistics;
 
 pub use angle::{OverAngle, means_over_angle, order_track};
+pub use averages::{median, running_mean};
 pub use band_envelopes::{Autocorrelation, BandEnvelope, BandEnvelopes};
 pub use cepstrum::cepstral_prewhitening;
 pub use comb::{Comb, CombTest, Whitened};

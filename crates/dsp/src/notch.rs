@@ -47,7 +47,7 @@ impl Notch {
             return Err(Error::NotchTooWide { quality, least });
         }
         // The biquad crate follows R. Bristow-Johnson's cookbook, β = sin ω₀/(2Q), which is narrower than
-        // asked for near half the sample rate. This quality makes its β the one above.
+        // specified near half the sample rate. This quality makes its β the one above.
         let omega = TAU * centre_hz / sample_rate_hz;
         let cookbook = omega.sin() / (2.0 * (omega / (2.0 * quality)).tan());
         let too_narrow = || Error::Undefined {
@@ -114,8 +114,8 @@ impl Notch {
         -1.0 / (self.sample_rate_hz * self.largest_pole().ln())
     }
 
-    /// Samples after which the free ringing has fallen by `decibels` (positive). What stands before them in a
-    /// filtered record is partly the filter's own answer to the start.
+    /// Samples after which the free ringing has fallen by `decibels` (positive). Before them a filtered
+    /// record is partly the filter's own response to the start.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for the number of decibels.

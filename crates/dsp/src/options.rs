@@ -24,7 +24,8 @@ pub enum Averaging {
     /// Arithmetic mean.
     Mean,
     /// Median divided by its bias for Gaussian noise (B. Allen et al., Phys. Rev. D 85 (2012) 122006,
-    /// appendix B): a few loud segments do not change it. Keeps all periodograms, so it needs more memory.
+    /// appendix B): a few segments with transients do not change it. Keeps all periodograms, so it needs more
+    /// memory.
     Median,
 }
 
@@ -68,9 +69,9 @@ impl WelchOptions {
 
     /// The same for a wanted grid spacing [Hz]: `nfft` is the sample rate over the grid spacing, rounded.
     ///
-    /// A record of at most `nfft` samples becomes one segment, padded with zeros: the grid is what was asked
-    /// for, the resolution is what the record allows. A longer record is cut into segments of `nfft` samples
-    /// with 50 % overlap.
+    /// A record of at most `nfft` samples becomes one segment, padded with zeros: the grid is the requested
+    /// one, the resolution that of the record. A longer record is cut into segments of `nfft` samples with 50
+    /// % overlap.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for the sample rate or the grid spacing, [`Error::TransformLength`] for a grid

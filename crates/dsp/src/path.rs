@@ -1,4 +1,4 @@
-//! Paths from a force to a sensor: resonances drawn at random, and the one that a record shows.
+//! Paths from a force to a sensor: random resonances, or the path that a record's spectrum implies.
 
 use std::f64::consts::PI;
 
@@ -52,8 +52,8 @@ impl Path {
         self.0.iter().map(of).sum()
     }
 
-    /// What the sensor records of a force that is sampled `rate_hz` times a second, at the lower rate
-    /// `to_hz`: without a mean, faded in and out.
+    /// Acceleration at the sensor under a force sampled at `rate_hz`, resampled to the lower rate `to_hz`:
+    /// without a mean, faded in and out.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for a rate, [`Error::Undefined`] for a record faster than the force,
@@ -63,8 +63,8 @@ impl Path {
     }
 }
 
-/// `signal` with the power density of a record, behind a path that rings no longer than it must: a causal one
-/// of minimum phase. The density is at even steps from 0 to half the sample rate of the signal.
+/// `signal` with the power density of a record, behind a causal path of minimum phase, the shortest ringing
+/// with that density. The density is at even steps from 0 to half the sample rate of the signal.
 ///
 /// # Errors
 /// [`Error::TooShort`] for fewer than 16 samples or densities, [`Error::NotFinite`].
@@ -73,7 +73,7 @@ pub fn coloured_like(signal: &[f64], density: &[f64]) -> Result<Vec<f64>> {
     check_signal(density, 16, "a density")?;
     let white = whitened(&faded(signal), density.len());
     let filter = minimum_phase(density);
-    // The filter is short; the signal is longer than it by zeros, so that nothing comes round.
+    // The filter is short; the signal is longer than it by zeros, so that nothing wraps around.
     let count = signal.len() + filter.len();
     let padded = |values: &[f64]| -> Vec<f64> {
         values.iter().copied().chain(std::iter::repeat(0.0)).take(count).collect()
@@ -217,7 +217,7 @@ mod tests {
 
     #[test]
     fn invariant_a_coloured_signal_has_the_density_and_begins_when_it_does() {
-        // A click takes the path's ringing, not earlier than it comes; noise takes the path's density.
+        // A click takes on the path's ringing, which is causal; noise takes on the path's density.
         let density: Vec<f64> =
             (0..257).map(|n| 1.0 / (1e-3 + (f64::from(n) / 256.0 - 0.3).powi(2))).collect();
         let mut share = uniform(5);

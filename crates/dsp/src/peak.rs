@@ -60,10 +60,10 @@ impl Spectrum {
     /// Frequency and amplitude of the sinusoid that would make `peak`, corrected for the window.
     ///
     /// The ratio of the two highest values of the grid fixes where between them the line stands, and the
-    /// transform of the window there says how much too low they read. For one steady sinusoid without noise
-    /// this is exact up to the leakage of its mirror image at the negative frequency. Noise of density S
-    /// [unit²/Hz] under the line shakes the amplitude read from one segment by about √(S · noise bandwidth).
-    /// A line that comes and goes reads as the root of its mean power.
+    /// transform of the window gives the factor by which they read too low. For one steady sinusoid without
+    /// noise this is exact up to the leakage of its mirror image at the negative frequency. Noise of density
+    /// S [unit²/Hz] under the line shakes the amplitude read from one segment by about √(S · noise
+    /// bandwidth). An intermittent line reads as the root of its mean power.
     ///
     /// # Errors
     /// [`Error::Undefined`] for a peak at zero or half the sample rate, where a line and its mirror image

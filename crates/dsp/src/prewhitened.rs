@@ -1,14 +1,14 @@
 //! Power of a signal over time, with all of its lines brought to one magnitude.
 //!
-//! A path from where something strikes to where it is heard changes the magnitude of every line, and its
-//! phase slowly: behind pre-whitening, events that were equally sharp are so again, whatever the path.
+//! A path from an impact to the sensor changes the magnitude of every line, and its phase slowly:
+//! pre-whitening makes events equally sharp again, whatever the path.
 //!
 //! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870.
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
-/// The power is cut off above this quantile, so that a few loud events do not decide.
+/// The power is cut off above this quantile, so that a few strong events do not dominate.
 const LOUDEST: f64 = 0.999;
 
 /// Squared envelope of the pre-whitened signal in a band, whose ends are parts of half the sample rate: as
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn invariant_a_path_does_not_change_when_events_are() {
-        // Two clicks through two paths of one resonance each: the power stands at the clicks all the same.
+        // Two clicks through two paths of one resonance each: the power is at the clicks nevertheless.
         let through = |hz: f64, at: [usize; 2]| -> Vec<f64> {
             let ring =
                 |since: f64| if since < 0.0 { 0.0 } else { (-40.0 * since).exp() * (TAU * hz * since).sin() };

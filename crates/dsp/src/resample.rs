@@ -1,4 +1,4 @@
-//! Another sample rate, by a filter of many phases.
+//! Resampling by a polyphase filter.
 
 use std::f64::consts::PI;
 
@@ -14,8 +14,8 @@ const LANES: usize = 8;
 
 /// `signal` at `up/down` times its rate: `scipy.signal.resample_poly(x, up, down)` with its default filter, a
 /// Kaiser window of β = 5 over ten zeros of the sinc on either side, without delay. Half of the amplitude is
-/// left at half of the slower rate, so what lies right above it folds over; beyond its ends the signal counts
-/// as zero.
+/// left at half of the slower rate, so components just above it are aliased; beyond its ends the signal
+/// counts as zero.
 ///
 /// # Errors
 /// [`Error::TooShort`] for an empty signal, [`Error::NotFinite`], [`Error::Undefined`] for a ratio of or with

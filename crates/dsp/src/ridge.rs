@@ -18,7 +18,7 @@ pub struct Ridge {
 ///
 /// The sum of the power's logarithm along the line is the largest that there is (dynamic programming over all
 /// lines at once, so that no bad start is followed to the end); between lines of the grid the parabola
-/// through the logarithms of three neighbours says where the top is. `spectrogram` should hold only the
+/// through the logarithms of three neighbours gives the maximum. `spectrogram` should hold only the
 /// frequencies to be searched: see [`Spectrogram::between`].
 ///
 /// Source: the penalised ridges of R. A. Carmona, W. L. Hwang and B. Torrésani, IEEE Trans. Signal Process.
@@ -42,7 +42,7 @@ pub fn ridge(spectrogram: &Spectrogram, steepest_hz_s: f64) -> Result<Ridge> {
     if largest <= 0.0 {
         return Err(Error::Undefined { quantity: "the ridge", why: "the spectrogram is zero" });
     }
-    // A row of silence must not outweigh all others.
+    // A row without signal must not outweigh all others.
     let levels: Vec<f64> = spectrogram.values.iter().map(|p| p.max(1e-20 * largest).ln()).collect();
     let grid_hz = spectrogram.frequencies_hz[1] - spectrogram.frequencies_hz[0];
     let step_s = spectrogram.times_s[1] - spectrogram.times_s[0];
@@ -104,7 +104,7 @@ impl Ridge {
 
     /// Times of whole turns of the shaft, in samples, for [`order_track`](crate::order_track): the line is
     /// the shaft's `order`-th. Between the middles of segments the frequency is straight, and before the
-    /// first and after the last it is constant. Where within a turn the first stands is not known.
+    /// first and after the last it is constant. The angle within the turn of the first one is unknown.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for rate or order, [`Error::TooShort`] for a record without two whole turns.

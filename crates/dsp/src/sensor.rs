@@ -1,4 +1,4 @@
-//! What a sensor and its recorder make of a signal: mounting resonance, anti-alias filter, rate, noise,
+//! A signal as a sensor and its recorder record it: mounting resonance, anti-alias filter, rate, noise,
 //! range, steps.
 
 use std::f64::consts::{PI, TAU};
@@ -33,8 +33,7 @@ impl Sensor {
         Self { rate_hz, resonance: None, noise_density: 0.0, range: f64::INFINITY, bits: None, seed: 0 }
     }
 
-    /// What is recorded of `signal`, sampled `sample_rate_hz` times a second; the first sample is at the same
-    /// time.
+    /// The record of `signal`, which is sampled at `sample_rate_hz`; both begin at the same time.
     ///
     /// # Errors
     /// [`Error::NotPositive`], [`Error::TooShort`] for fewer than 16 samples, [`Error::NotFinite`],

@@ -1,4 +1,4 @@
-//! What repeats exactly and what does not: discrete lines apart from random parts.
+//! Separation of discrete lines, which repeat exactly, from random parts.
 
 use realfft::RealFftPlanner;
 use rustfft::num_complex::Complex;
@@ -11,12 +11,12 @@ use crate::{Error, Result, Window};
 pub struct Separated {
     /// Lines: gears, shafts, mains.
     pub discrete: Vec<f64>,
-    /// The rest: noise and what slips, as bearings do.
+    /// The rest: noise, and sources that slip, as rolling elements do.
     pub random: Vec<f64>,
 }
 
-/// Parts `signal` by what can be foretold of it: an earlier stretch of the signal, through the filter of
-/// `filter` taps that foretells best, is its discrete part.
+/// Separates `signal` into a predictable part and the rest: an earlier stretch of the signal, through the
+/// filter of `filter` taps that foretells best, is its discrete part.
 ///
 /// The filter's response is `⟨X_d* X⟩/⟨|X_d|²⟩` over half-overlapping Hann segments of `filter` samples, X_d
 /// being those that end `delay` samples before the others begin: two segments that share samples would

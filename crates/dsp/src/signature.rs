@@ -1,7 +1,6 @@
-//! What a record tells of passages that repeat, one or two events each, whatever lies between the place where
-//! they happen and the sensor.
+//! Numbers of repeated passages, of one or two events each, that do not depend on the path to the sensor.
 //!
-//! A path changes how loud each frequency is, not when something strikes, how often and in which order. All
+//! A path changes the magnitude of each frequency, not the times, the rate and the order of impacts. All
 //! numbers here are of the power of the pre-whitened signal, and have no unit: times are parts of the period
 //! of the passages, levels ratios of one record. Source: own; the pre-whitening is that of N. Sawalhi and R.
 //! B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870.
@@ -49,7 +48,7 @@ pub struct Rhythm {
     pub longest: f64,
 }
 
-/// What a record tells of passages that repeat.
+/// Numbers of repeated passages in a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Signature {
     /// Time between the two events of a passage over its period; `None` where no second event shows.
@@ -73,8 +72,8 @@ pub struct Signature {
 }
 
 impl Signature {
-    /// Of a whole record: the median over its pieces of [`PASSAGES`] passages; what a piece has not, if less
-    /// than half of them have it.
+    /// Of a whole record: the median over its pieces of [`PASSAGES`] passages; a number is absent where less
+    /// than half of the pieces have it.
     ///
     /// # Errors
     /// [`Error::TooShort`] for a record shorter than a piece, [`Error::NotFinite`], and those of
@@ -99,10 +98,10 @@ impl Signature {
     }
 
     fn median(pieces: &[Self]) -> Self {
-        let of = |number: &dyn Fn(&Self) -> f64| median(pieces.iter().map(number).collect());
+        let of = |number: &dyn Fn(&Self) -> f64| upper_median(pieces.iter().map(number).collect());
         let seen = |number: &dyn Fn(&Self) -> Option<f64>| {
             let all: Vec<f64> = pieces.iter().filter_map(number).collect();
-            (2 * all.len() >= pieces.len()).then(|| median(all))
+            (2 * all.len() >= pieces.len()).then(|| upper_median(all))
         };
         Self {
             spacing: seen(&|s| s.spacing),
@@ -159,10 +158,10 @@ impl Signature {
 }
 
 /// Energy of the first of two events over that of the second [dB], from the third moments of the power at the
-/// two ends of their distance: one louder by a factor stands in one of them by its square.
+/// two ends of their distance: an event stronger by a factor enters one of them by the square of that factor.
 fn order_db(power: &[f64], lag: usize, half: usize) -> f64 {
-    let smooth = running_mean(power, half);
-    let floor = median(smooth.clone());
+    let smooth = centred_mean(power, half);
+    let floor = upper_median(smooth.clone());
     let above: Vec<f64> = smooth.iter().map(|p| (p - floor).max(0.0)).collect();
     let pairs = || above.iter().zip(&above[lag.min(above.len())..]);
     let first: f64 = pairs().map(|(a, b)| a * a * b).sum();
@@ -170,14 +169,15 @@ fn order_db(power: &[f64], lag: usize, half: usize) -> f64 {
     10.0 * ((first + f64::MIN_POSITIVE) / (second + f64::MIN_POSITIVE)).log10()
 }
 
-/// The middle one; 0 of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
+/// The middle value, of an even number the upper of the two; 0 of none. A value that a piece has, which the
+/// mean of two would not be.
+fn upper_median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }
 
-/// Mean over `half` samples on either side.
-fn running_mean(values: &[f64], half: usize) -> Vec<f64> {
+/// Mean over `half` samples on either side, fewer at the ends: as many values as samples.
+fn centred_mean(values: &[f64], half: usize) -> Vec<f64> {
     let mut sums = vec![0.0];
     let mut sum = 0.0;
     for value in values {
@@ -237,7 +237,7 @@ impl Spectrum {
         most.map_or(hz, |n| n as f64 * self.grid_hz)
     }
 
-    /// Mean square of what stands within `half_hz` of `hz`.
+    /// Mean square of the components within `half_hz` of `hz`.
     fn energy(&self, hz: f64, half_hz: f64) -> f64 {
         self.energy[self.bins(hz, half_hz)].iter().sum()
     }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use crate::error::{check_positive, check_signal};
 use crate::{Error, Result, resample_poly};
 
-/// Largest sample over full scale: a decibel is left for what a player adds.
+/// Largest sample over full scale: a decibel of headroom for the player.
 const LOUDEST: f64 = 0.891;
 /// Fade at either end [s], so that neither clicks.
 const FADE_S: f64 = 5e-3;
@@ -13,14 +13,14 @@ const FADE_S: f64 = 5e-3;
 /// millionth.
 const MOST: u64 = 4_000;
 
-/// A signal without its mean, at the rate of a sound card, as loud as 16 bits hold.
+/// A signal without its mean, at the rate of a sound card, scaled to 16 bits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sound {
     /// Samples a second [Hz].
     pub rate_hz: u32,
     /// The samples.
     pub samples: Vec<i16>,
-    /// What a sample of full scale stands for [unit].
+    /// Value of a sample at full scale [unit].
     pub full_scale: f64,
 }
 
@@ -82,7 +82,7 @@ fn nearest_ratio(x: f64) -> Option<(usize, usize)> {
         if above.0 > 0 {
             found = Some((above.0 as usize, below.0 as usize));
         }
-        // Rounding makes an endless fraction of what ends.
+        // Rounding would turn a finite decimal into an endless one.
         if (above.0 as f64 / below.0 as f64 / x - 1.0).abs() < 1e-12 {
             break;
         }

@@ -1,11 +1,11 @@
 //! Two events that follow each other at a fixed distance, as when something enters and leaves a gap: how far
 //! apart?
 //!
-//! Pre-whitening makes both broad-banded and equally sharp. Where their rhythm is known, the mean power about
-//! the strongest event of each passage shows a second one ([`passage_spacing`]); where it is not, the squared
-//! envelope is correlated with itself ([`event_spacing`]). A distance is taken for one only if two bands agree
-//! on it: ringing has another lag in every band. Where there is none, the correlation says from which distance
-//! on a second event would have shown.
+//! Pre-whitening makes both broad-banded and equally sharp. Where the rate of the passages is known, the mean
+//! power about the strongest event of each passage shows a second one ([`passage_spacing`]); where it is not,
+//! the squared envelope is correlated with itself ([`event_spacing`]). A distance is taken for one only if
+//! two bands agree on it: ringing has another lag in every band. Where there is none, the correlation yields
+//! the distance from which on a second event would have shown.
 //!
 //! Source: N. Sawalhi and R. B. Randall, Mech. Syst. Signal Process. 25 (2011) 846–870, who look for it in
 //! the cepstrum of the enhanced signal; the comparison of bands is ours.
@@ -33,7 +33,7 @@ pub struct Spacing {
     pub correlation: f64,
 }
 
-/// What a record says of the distance of two events.
+/// Distance of two events in a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum EventSpacing {
     /// Events come in pairs.
@@ -44,7 +44,7 @@ pub enum EventSpacing {
         /// Where ringing has died away.
         clear_from_s: f64,
     },
-    /// The record cannot tell: it is too noisy, it rings too long, or its bands contradict each other.
+    /// The record does not decide it: it is too noisy, it rings too long, or its bands contradict each other.
     Unknown,
 }
 
@@ -53,6 +53,8 @@ pub enum EventSpacing {
 const BANDS: [(f64, f64); 2] = [(0.25, 0.5), (0.5, 1.0)];
 /// Length over which correlations are smoothed [s]: events are no sharper.
 const SMOOTHED_S: f64 = 0.3e-3;
+/// Distances from this many times one over the width of the narrower band are told, within an eighth of them.
+const RESOLVED: f64 = 4.0;
 /// Least correlation in one of the bands.
 const LEAST: f64 = 0.05;
 /// Least correlation in the other, at the same lag: it only confirms.
@@ -77,8 +79,8 @@ const CLEAR: f64 = 0.5;
 /// rhythm in which the pairs come.
 ///
 /// # Errors
-/// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered,
-/// [`Error::TooShort`] for a signal that is not four times as long as the longest, [`Error::NotFinite`].
+/// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered or the rate
+/// resolves none of them, [`Error::TooShort`] for a signal that is not four times as long as the longest, [`Error::NotFinite`].
 pub fn event_spacing(
     signal: &[f64],
     sample_rate_hz: f64,
@@ -124,6 +126,11 @@ pub fn passage_spacing(
     ))
 }
 
+/// Width of the narrower band [Hz].
+fn narrower_hz(sample_rate_hz: f64) -> f64 {
+    0.5 * sample_rate_hz * (BANDS[0].1 - BANDS[0].0)
+}
+
 /// Distances that are looked at [samples].
 fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) -> Result<Range<usize>> {
     check_positive("sample_rate_hz", sample_rate_hz)?;
@@ -132,7 +139,13 @@ fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) ->
         let why = "the longest distance must exceed the shortest";
         return Err(Error::Undefined { quantity: "distance of events", why });
     }
-    let lags = ((shortest_s * sample_rate_hz).ceil() as usize).max(2)..(longest_s * sample_rate_hz) as usize;
+    let resolved_s = RESOLVED / narrower_hz(sample_rate_hz);
+    let lags =
+        (shortest_s.max(resolved_s) * sample_rate_hz).ceil() as usize..(longest_s * sample_rate_hz) as usize;
+    if lags.is_empty() {
+        let why = "the sample rate resolves none below the longest";
+        return Err(Error::Undefined { quantity: "distance of events", why });
+    }
     check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
     Ok(lags)
 }
@@ -140,7 +153,7 @@ fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) ->
 /// A distance from those of two bands [samples], each by its weight.
 fn spacing(lags: [f64; 2], weights: [f64; 2], correlation: f64, sample_rate_hz: f64) -> Spacing {
     let lag = (weights[0] * lags[0] + weights[1] * lags[1]) / (weights[0] + weights[1]);
-    let narrower_hz = 0.5 * sample_rate_hz * (BANDS[0].1 - BANDS[0].0);
+    let narrower_hz = narrower_hz(sample_rate_hz);
     Spacing {
         lag_s: lag / sample_rate_hz,
         uncertainty_s: (0.5 * (lags[0] - lags[1]).abs() / sample_rate_hz).max(0.5 / narrower_hz),
@@ -156,7 +169,7 @@ fn by_correlation(bands: &[Vec<f64>; 2], sample_rate_hz: f64, lags: &Range<usize
             EventSpacing::Pairs(spacing([low.0, high.0], [low.1, high.1], low.1.max(high.1), sample_rate_hz))
         }
         None if found.iter().flatten().all(|peak| peak.1 < LEAST) => {
-            // A band in which no event stands above the noise says nothing.
+            // A band in which no event rises above the noise is skipped.
             let heard = bands.iter().filter(|band| shows_events(band, sample_rate_hz));
             let clear = heard.map(|band| clear_from(band, lags)).try_fold(0, |most, n| Some(n?.max(most)));
             match clear {
@@ -191,7 +204,7 @@ fn shows_events(values: &[f64], sample_rate_hz: f64) -> bool {
 }
 
 /// The lag from which on a second event would have shown, where there is none; `None` where one might have
-/// been missed. Two events of energies 1 and a correlate with a/(1 + a²) of what each does with itself.
+/// been missed. Two events of energies 1 and a have a peak of a/(1 + a²) of the one at zero lag.
 fn clear_from(values: &[f64], lags: &Range<usize>) -> Option<usize> {
     let last = (0..lags.end).rev().find(|n| values[*n] >= LEAST)?;
     let clear = (last + 1).max(lags.start);
@@ -350,7 +363,7 @@ mod tests {
             matches!(found, EventSpacing::Alone { clear_from_s } if (0.5e-3..1.5e-3).contains(&clear_from_s)),
             "{found:?}"
         );
-        // Ringing that lasts beyond half of what is looked at hides a second event.
+        // Ringing longer than half of the examined lags hides a second event.
         let found = event_spacing(&pairs(0.0, 0.6e-3), RATE_HZ, 0.5e-3, 0.9e-3).unwrap();
         assert_eq!(found, EventSpacing::Unknown);
     }

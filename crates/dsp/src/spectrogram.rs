@@ -1,4 +1,4 @@
-//! Spectra over time: how a record's lines move and its bursts come.
+//! Spectra over time: the course of a record's lines and bursts.
 
 use crate::error::check_signal;
 use crate::{Averaging, Result, Sides, Spectrum, Welch, WelchOptions};
@@ -15,8 +15,7 @@ pub struct Spectrogram {
     pub values: Vec<f64>,
 }
 
-/// A planned spectrogram of a record that comes in pieces: each segment's spectrum is handed over and not
-/// kept.
+/// A planned spectrogram of a record that comes in pieces: each segment's spectrum is passed on and not kept.
 pub struct Spectrograph {
     welch: Welch,
     spectrum: Spectrum,
@@ -59,12 +58,12 @@ impl Spectrograph {
         self.waiting.clear();
     }
 
-    /// Adds samples and gives every segment that they complete to `take`: the time of its middle [s] and its
+    /// Adds samples and passes every segment that they complete to `take`: the time of its middle [s] and its
     /// spectrum.
     ///
     /// # Errors
     /// [`NotFinite`](crate::Error::NotFinite) for a bad sample, counted within its segment:
-    /// [`skip`](Self::skip) what holds it.
+    /// [`skip`](Self::skip) that segment.
     pub fn add(&mut self, mut samples: &[f64], mut take: impl FnMut(f64, &[f64])) -> Result<()> {
         while !samples.is_empty() {
             let (now, later) = samples.split_at((self.segment - self.waiting.len()).min(samples.len()));
@@ -135,7 +134,7 @@ impl Spectrogram {
         &self.values[time * width..][..width]
     }
 
-    /// What lies between two frequencies [Hz], both included.
+    /// The part between two frequencies [Hz], both included.
     pub fn between(&self, low_hz: f64, high_hz: f64) -> Self {
         let first = self.frequencies_hz.partition_point(|hz| *hz < low_hz);
         let end = self.frequencies_hz.partition_point(|hz| *hz <= high_hz).max(first);

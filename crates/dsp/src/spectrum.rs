@@ -1,4 +1,4 @@
-//! A spectrum and the statement of what it can tell apart.
+//! A spectrum and its resolution.
 
 use std::fmt;
 
@@ -24,7 +24,7 @@ pub enum Sides {
     Two,
 }
 
-/// What a spectrum can tell apart, and on what grid it is drawn. The two are never the same thing.
+/// Resolution of a spectrum, and the grid that it is drawn on. The two must not be confused.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resolution {
     /// Length of the record [s].
@@ -85,7 +85,7 @@ pub(crate) struct Layout {
     pub(crate) nfft: usize,
     pub(crate) scaling: Scaling,
     pub(crate) sides: Sides,
-    /// What a steady line is divided by in the average: 1 for the mean, the median's bias for the median.
+    /// Divisor of a steady line in the average: 1 for the mean, the median's bias for the median.
     pub(crate) line_bias: f64,
     pub(crate) resolution: Resolution,
 }
@@ -118,7 +118,7 @@ impl Layout {
     }
 }
 
-/// An estimated spectrum: frequencies, values, and what they can tell apart.
+/// An estimated spectrum: frequencies, values and resolution.
 #[derive(Debug, Clone)]
 pub struct Spectrum {
     pub(crate) layout: Layout,
@@ -158,7 +158,7 @@ impl Spectrum {
         self.layout.sample_rate_hz
     }
 
-    /// What the spectrum can tell apart.
+    /// Resolution of the spectrum.
     pub fn resolution(&self) -> &Resolution {
         &self.layout.resolution
     }
@@ -166,8 +166,8 @@ impl Spectrum {
     /// Root mean square [unit] of the part of the signal between two frequencies [Hz], both included.
     ///
     /// It is the square root of the density summed over the band times the grid spacing. Leakage moves the
-    /// ends of the band by about the line width, so the band should be much wider than that. What detrending
-    /// removed is not in it.
+    /// ends of the band by about the line width, so the band should be much wider than that. It excludes the
+    /// mean or trend that detrending removed.
     ///
     /// # Errors
     /// [`Error::Band`] for a band that leaves the spectrum, [`Error::BandTooNarrow`] for one without a grid
@@ -192,7 +192,7 @@ impl Spectrum {
 
     /// Bins from `low_hz` to `high_hz`, at least `least` of them.
     pub(crate) fn band(&self, low_hz: f64, high_hz: f64, least: usize) -> Result<std::ops::Range<usize>> {
-        // A bound that was meant to lie on the grid may miss it by rounding.
+        // Tolerance of a bound that lies on the grid but for rounding.
         const ON_GRID: f64 = 1e-9;
         check_band(low_hz, high_hz, self.layout.sample_rate_hz)?;
         let grid_hz = self.layout.resolution.grid_hz;

@@ -1,4 +1,4 @@
-//! Numbers that describe a whole record. All need a signal without infinite or missing samples.
+//! Statistics of a whole record. All need a signal without infinite or missing samples.
 
 use crate::error::check_signal;
 use crate::{Error, Result};

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 
+use crate::averages::median;
 use crate::error::{check_len, check_positive, check_signal};
 use crate::spectrum::Layout;
 use crate::{Averaging, Detrend, Resolution, Result, Scaling, Sides, Spectrum, WelchOptions};
@@ -81,7 +82,7 @@ impl Welch {
         Self::new(sample_rate_hz, record, &WelchOptions::for_grid(sample_rate_hz, record, grid_hz)?)
     }
 
-    /// What spectra of this plan can tell apart.
+    /// Resolution of the spectra of this plan.
     pub fn resolution(&self) -> &Resolution {
         &self.layout.resolution
     }
@@ -161,7 +162,7 @@ impl Welch {
         }
     }
 
-    /// Doubles what has a negative partner, or writes the partner.
+    /// Doubles values that have a partner at the negative frequency, or writes that partner.
     fn arrange_sides(&self, values: &mut [f64]) {
         for bin in (0..self.layout.positive_bins()).filter(|&bin| !self.layout.is_alone(bin)) {
             match self.layout.sides {
@@ -226,13 +227,6 @@ fn median_bias(count: usize) -> f64 {
         let even = 2.0 * half as f64;
         sum + 1.0 / (even + 1.0) - 1.0 / even
     })
-}
-
-/// Median; sorts in place.
-fn median(values: &mut [f64]) -> f64 {
-    values.sort_unstable_by(f64::total_cmp);
-    let upper = values.len() / 2;
-    if values.len() % 2 == 1 { values[upper] } else { 0.5 * (values[upper - 1] + values[upper]) }
 }
 
 #[cfg(test)]

@@ -17,9 +17,10 @@
 //! assert!((duty.relative_turns(0.03) - (0.01 * 500.0 + 0.02 * 1000.0) / 60.0).abs() < 1e-12);
 //! ```
 //!
-//! A ring follows the angle of its profile, θ(t) = −∫ω dt with the speed ω clockwise positive. What turns it
-//! in steps is given the mean speed of each step, whose sum is that angle: nothing drifts. The mean is formed
-//! within the step and not as a difference of two angles, whose rounding would shake the ring.
+//! A ring follows the angle of its profile, θ(t) = −∫ω dt with the speed ω clockwise positive. Whoever
+//! rotates it in steps uses the mean speed of each step, the sum of which is that angle, so that nothing
+//! drifts. The mean is formed within the step and not as a difference of two angles, whose rounding would
+//! shake the ring.
 //!
 //! Rollers follow the difference of both speeds. Functions of the rings *against each other* give that
 //! difference; with an outer ring that stands still it is the speed of the shaft.
@@ -99,8 +100,7 @@ impl Duty {
         -TAU / 60.0 * self.speed.mean(from_s, to_s)
     }
 
-    /// By what angle the inner ring has turned at a time [s] since the start [rad], counter-clockwise
-    /// positive.
+    /// Angle of rotation of the inner ring [rad] since the start at a time [s], counter-clockwise positive.
     pub fn shaft_rad(&self, time_s: f64) -> f64 {
         -TAU / 60.0 * self.speed.integral(time_s)
     }
@@ -110,26 +110,25 @@ impl Duty {
         -TAU / 60.0 * self.outer.mean(from_s, to_s)
     }
 
-    /// By what angle the outer ring has turned at a time [s] since the start [rad], counter-clockwise
-    /// positive.
+    /// Angle of rotation of the outer ring [rad] since the start at a time [s], counter-clockwise positive.
     pub fn outer_rad(&self, time_s: f64) -> f64 {
         -TAU / 60.0 * self.outer.integral(time_s)
     }
 
-    /// Load on the housing at a time [s] in its direction [N]: with the part along it of what turns with the
-    /// shaft.
+    /// Load on the housing at a time [s] in its direction [N]: including the component of a rotating load
+    /// along it.
     pub fn load_n(&self, time_s: f64) -> f64 {
         self.load.value(time_s) + self.rotating_along(self.along, time_s).unwrap_or(0.0)
     }
 
-    /// The part of what turns with the shaft that acts a quarter of a turn ahead of the load at a time [s]
-    /// [N]; `None` where nothing turns, and where the housing is guided: the guide takes it then.
+    /// Component [N] of the rotating load a quarter of a turn ahead of the static load, at a time [s]; `None`
+    /// without a rotating load, and where the housing is guided: the guide then takes that component.
     pub fn load_across_n(&self, time_s: f64) -> Option<f64> {
         let [x, y] = self.along;
         self.rotating_along([-y, x], time_s).filter(|_| !self.guided)
     }
 
-    /// What turns with the shaft, along a direction [N].
+    /// Component of the rotating load along a direction [N].
     fn rotating_along(&self, [x, y]: [f64; 2], time_s: f64) -> Option<f64> {
         self.rotating.map(|(force, angle)| {
             let (s, c) = (angle + self.shaft_rad(time_s)).sin_cos();
@@ -137,7 +136,7 @@ impl Duty {
         })
     }
 
-    /// Mean load until a time [s] [N]; what rotates has none.
+    /// Mean load until a time [s] [N]; a rotating load has a mean of zero.
     pub fn mean_load_n(&self, until_s: f64) -> f64 {
         self.load.mean(0.0, until_s)
     }
@@ -173,7 +172,8 @@ impl Duty {
         (self.speed.integral(time_s) - self.outer.integral(time_s)) / 60.0
     }
 
-    /// Least and largest load until a time [s] [N]; what rotates is taken as if it stood along the load once.
+    /// Least and largest load until a time [s] [N]; a rotating load counts with its whole amplitude, as if it
+    /// were along the load once.
     pub fn load_range_n(&self, until_s: f64) -> [f64; 2] {
         let [least, most] = self.load.range(0.0, until_s);
         let rotating = self.rotating.map_or(0.0, |(force, _)| force);
@@ -198,9 +198,9 @@ impl Duty {
         [outer + (sum / f64::from(SAMPLES)).copysign(inner - outer), outer]
     }
 
-    /// When rings that turn one way against each other have made so many turns [s], within `until_s` [s]; a
-    /// negative number of turns counts back from the start at the mean speed. `None` for rings that do not
-    /// come so far.
+    /// Time [s], within `until_s` [s], at which the rings have made this many turns relative to each other,
+    /// in one direction; a negative number of turns counts back from the start at the mean speed. `None` for
+    /// rings that make fewer.
     pub fn time_of_turns(&self, turns: f64, until_s: f64) -> Option<f64> {
         let made = |time_s: f64| self.relative_turns(time_s).abs();
         let all = made(until_s);

@@ -1,19 +1,18 @@
-//! What one film does: how thick it gets, what it carries and how much heat it makes, from the gap that the
-//! surfaces leave and the speed at which they draw in oil (THEORY §4.6). Where the gap comes from it does not
-//! know.
+//! The law of one film: thickness, force and heat from the gap between the surfaces and the entrainment speed
+//! (THEORY §4.6), whatever the geometry behind the gap.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    reynolds::{EMPTY, Pressed, left_of_land},
+    reynolds::{EMPTY, FilmForce, left_of_land},
     spring::Spring,
 };
 
 /// Wider gaps hold no film [m].
 pub const WIDEST: f64 = 1e-3;
 
-/// Bodies that roll more slowly than this count as rolling at it [m/s]: enough to divide by, and a
-/// ten-thousandth of what a bearing does.
+/// Least entrainment speed [m/s], used below it, too: large enough to divide by, a ten-thousandth of a
+/// bearing's.
 pub(crate) const SLOWEST: f64 = 1e-3;
 
 /// Where a film ends that neither opens nor closes.
@@ -22,26 +21,26 @@ pub(crate) const STEADY: f64 = 0.475_131;
 /// A land that ends this many film widths away has no end.
 pub(crate) const FAR: f64 = 20.0;
 
-/// A contact that carries so many times what its film can lift stays as it is for some steps.
+/// A contact whose force is this many times the film's stays solid for some steps.
 pub(crate) const FIXED: f64 = 4.0;
 
-/// Share of the way that is left when the end of a film is found. The next step makes up for it.
+/// Relative accuracy of the end of a film; the next step removes the remainder.
 const ACCURACY: f64 = 1e-6;
 
 /// Most corrections of the place where a film ends.
 const MOST_CORRECTIONS: usize = 30;
 
-/// What lies between two surfaces.
+/// The lubricant between two surfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Oil {
     /// Dynamic viscosity η [Pa s].
     pub viscosity: f64,
-    /// Least film thickness [m]: that of a loaded contact, where the oil is as good as solid and contact
-    /// alone acts.
+    /// Least film thickness [m]: that of a loaded contact, where the oil acts as a solid and only contact
+    /// changes the force.
     pub least: f64,
 }
 
-/// The law of a film between two surfaces that give way as `S` says.
+/// The law of a film between two surfaces with the compliance `S`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FilmLaw<S> {
     /// Relative radius R [m].
@@ -53,11 +52,11 @@ pub struct FilmLaw<S> {
     pub(crate) least: f64,
     /// Force of a film that neither opens nor closes, over 4ηuRL/h [-].
     pub(crate) steady: f64,
-    /// What the surfaces give under the film.
+    /// Compliance of the surfaces under the film.
     pub spring: S,
 }
 
-/// What a film remembers from step to step.
+/// State of a film from step to step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Layer {
     /// Thickness above the least [m].
@@ -68,7 +67,7 @@ pub struct Layer {
     pub force: f64,
 }
 
-/// What a film does in a step.
+/// Result of a step of one film.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pushed {
     /// Force that drives the surfaces apart, beside that of dry contact [N].
@@ -92,7 +91,7 @@ impl<S: Spring> FilmLaw<S> {
     /// A film of oil between surfaces of the relative radius R, over a `length` out of plane [m].
     pub fn new(oil: Oil, radius: f64, length: f64, spring: S) -> Self {
         let wedge = 4.0 * oil.viscosity * radius * length;
-        let (slope, steady) = (1.0 / (2.0 * radius).sqrt(), Pressed::until(STEADY).force);
+        let (slope, steady) = (1.0 / (2.0 * radius).sqrt(), FilmForce::until(STEADY).force);
         Self { radius, wedge, slope, least: oil.least, steady, spring }
     }
 
@@ -101,8 +100,8 @@ impl<S: Spring> FilmLaw<S> {
         layer.above + self.least
     }
 
-    /// Share of the force that is left where the land ends so far off on both sides [m]; `tilt` is the sine
-    /// of the angle between the film's normal and that of the land.
+    /// Share of the force that remains on a land whose ends lie at these distances on both sides [m]; `tilt`
+    /// is the sine of the angle between the film's normal and that of the land.
     pub fn share(&self, ends: [f64; 2], tilt: f64, layer: &Layer) -> f64 {
         let per_metre = self.slope / self.thickness(layer).sqrt();
         ends.map(|end| {
@@ -140,8 +139,8 @@ impl<S: Spring> FilmLaw<S> {
         (layer, Pushed { force, pressed: [depth, dry], ..Pushed::default() })
     }
 
-    /// Lets a time step `dt` [s] pass at a gap [m] and an entrainment speed [m/s], where the land leaves a
-    /// share of the force.
+    /// Advances a film by a time step `dt` [s] at a gap [m] and an entrainment speed [m/s]; `share` [-] of
+    /// the force remains on its land.
     pub fn flow(&self, layer: &mut Layer, gap: f64, speed: f64, share: f64, dt: f64) -> Pushed {
         let above = layer.above;
         let dry = (-gap).max(0.0);
@@ -176,18 +175,18 @@ impl<S: Spring> FilmLaw<S> {
         Pushed { force, pressed: [depth, dry], heat, fixed: false }
     }
 
-    /// Energy in its springs, beside what contact has [J].
+    /// Energy in its springs beyond that of dry contact [J].
     pub fn stored(&self, pushed: &Pushed) -> f64 {
         let [depth, dry] = pushed.pressed.map(|depth| self.spring.energy(depth));
         depth - dry
     }
 }
 
-/// Where the film ends that presses springs in by what is left of `room` [m] after it has opened for a time:
-/// at the force `lift` · G and the rate `opened` · q [m]. `None` when it cannot follow.
-fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, Pressed)> {
+/// End of the film whose force `lift` · G [N] presses the springs in by `room` less its opening `opened` · q
+/// [m]. `None` when no film can follow.
+fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, FilmForce)> {
     let need = |c: f64| {
-        let film: Pressed = Pressed::until(c);
+        let film: FilmForce = FilmForce::until(c);
         let (depth, by_force) = spring.depth(lift * film.force);
         let value = depth - opened * film.opening - room;
         (value, by_force * lift * film.force_slope - opened * film.opening_slope, film)
@@ -218,5 +217,5 @@ fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) ->
             2.0 * c.abs() + 1.0
         };
     }
-    Some((c, Pressed::until(c)))
+    Some((c, FilmForce::until(c)))
 }

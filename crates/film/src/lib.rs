@@ -2,15 +2,15 @@
 //!
 //! Between two rounded surfaces that roll, oil is drawn into the narrowing gap and carries load. Reynolds'
 //! equation has a closed form there (THEORY §4.6). The film lies in series with a [`Spring`]: the gap between
-//! the undeformed surfaces is the film's thickness less what the surfaces give under its pressure. So the
-//! force depends on positions, is never tensile and is no stiffer than the spring.
+//! the undeformed surfaces is the film's thickness less the deflection of the surfaces under its pressure. So
+//! the force depends on positions, is never tensile and is no stiffer than the spring.
 //!
-//! The crate knows neither nodes in motion nor a time loop: who steps a model asks
+//! The crate has neither nodes in motion nor a time loop. A time loop uses
 //!
 //! 1. a [`Land`], the part of a surface between two corners, for the [`Point`] nearest to a body, and how far
 //!    off the land ends;
-//! 2. a [`FilmLaw`] for what the film does in a time step ([`FilmLaw::flow`]) or in steady rolling
-//!    ([`FilmLaw::settled`]), with the [`Layer`] that it remembers.
+//! 2. a [`FilmLaw`] for the film in a time step ([`FilmLaw::flow`]) or in steady rolling
+//!    ([`FilmLaw::settled`]), with its state, a [`Layer`].
 //!
 //! # Conventions
 //!
@@ -24,7 +24,7 @@
 //! ```
 //! use stribeck_film::{Bed, FilmLaw, Oil};
 //!
-//! // A roller of 9 mm, 30 mm long, on a plane, in an oil of 50 mPa s at an entrainment speed of 2.4 m/s.
+//! // A cylinder of 9 mm radius, 30 mm long, on a plane, in an oil of 50 mPa s at an entrainment speed of 2.4 m/s.
 //! let (radius, length, viscosity, speed) = (9e-3, 30e-3, 0.05, 2.4);
 //! let oil = Oil { viscosity, least: 0.5e-6 };
 //! let law = FilmLaw::new(oil, radius, length, Bed::new(2e13 * length, radius));
@@ -38,10 +38,10 @@
 //! | Question | File |
 //! |---|---|
 //! | Where does a film lie? | `track.rs` |
-//! | How thick is it, what does it carry, how much heat does it make? | `law.rs` |
-//! | How are eight films taken at once? | `side_by_side.rs` |
+//! | What are its thickness, force and heat? | `law.rs` |
+//! | How are eight films computed at once? | `side_by_side.rs` |
 //! | Which forces and speeds of opening does Reynolds' equation give? | `reynolds.rs` |
-//! | What do the surfaces give under it? | `spring.rs` |
+//! | What is the deflection of the surfaces under it? | `spring.rs` |
 
 // Units stand in brackets, as in "gap [m]", and are no links.
 #![allow(rustdoc::broken_intra_doc_links)]

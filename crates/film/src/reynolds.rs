@@ -1,8 +1,8 @@
 //! Pressure between a cylinder and a plane that roll, close or part, in closed form (THEORY §4.6).
 //!
 //! Gaps are h + x²/2R, places X = x/√(2Rh). The film begins far in front, where both surfaces draw oil in,
-//! and ends where pressure and its slope vanish together (Reynolds' condition). Where that is, c = X there,
-//! says all the rest: the rate at which the film opens and its force are functions of c alone.
+//! and ends where pressure and its slope vanish together (Reynolds' condition). The place of that end, c = X,
+//! determines the rest: the rate at which the film opens and its force are functions of c alone.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -14,7 +14,7 @@ pub(crate) const EMPTY: f64 = -5.0;
 
 /// The film that ends at a place c, or several of them side by side.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Pressed<N = f64> {
+pub(crate) struct FilmForce<N = f64> {
     /// Force over 4ηuRL/h [-]: 1.2237 when the film neither opens nor closes.
     pub(crate) force: N,
     /// Its derivative by c.
@@ -39,7 +39,7 @@ fn moments<N: Number>(c: N) -> ([N; 4], N) {
     ([zeroth, -quarter, second, quarter - half * inverse], angle)
 }
 
-impl<N: Number> Pressed<N> {
+impl<N: Number> FilmForce<N> {
     /// The film that ends at `c`, from [`EMPTY`] on.
     ///
     /// The slope of the pressure is (X − c)(X + c + q)/(1 + X²)³ with the opening q. It must integrate to
@@ -60,7 +60,7 @@ impl<N: Number> Pressed<N> {
     }
 }
 
-/// What is left of the force at the very end of a land: see [`left_of_land`].
+/// Share of the force that remains at the very end of a land: see [`left_of_land`].
 const AT_END: f64 = 0.229_810_2;
 
 /// [`left_of_land`] with the closest approach on the land.
@@ -82,9 +82,9 @@ pub(crate) fn left_at_end<N: Number>(slope: N) -> N {
     of(AT_END) / (of(1.0) + slope * (of(2.07) + slope * inner))
 }
 
-/// What is left of a film's force where the land ends, at a place of the film thickness and radius `2Rh` of
-/// its square: with the closest approach on the land, `edge` = X of the end beyond it; with the closest
-/// approach at the end itself, minus the slope of the land there over √(2h/R).
+/// Share of a film's force that remains where the land ends, at a place of the film thickness and radius
+/// `2Rh` of its square: with the closest approach on the land, `edge` = X of the end beyond it; with the
+/// closest approach at the end itself, minus the slope of the land there over √(2h/R).
 ///
 /// Pure squeeze with no pressure at the end. Beyond the end a fit of the quadrature, good to 4 %.
 #[inline]
@@ -96,7 +96,7 @@ pub(crate) fn left_of_land(edge: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// What lies in front of the first place adds 3/|X| to the resistance, 3e-5, and next to nothing to the
+    /// The part in front of the first place adds 3/|X| = 3e-5 to the resistance, and next to nothing to the
     /// force.
     const QUADRATURE: f64 = 1e-4;
     const FIRST: f64 = -1e5;
@@ -133,7 +133,7 @@ mod tests {
 
     /// Resistance to rolling, ∫ h dp, over 4√2 ηuL √(R/h) [-].
     fn resistance(c: f64) -> f64 {
-        let opening = Pressed::until(c).opening;
+        let opening = FilmForce::until(c).opening;
         let inverse = 1.0 / (1.0 + c * c);
         let half = 0.5 * (FRAC_PI_2 + c.atan());
         3.0 * ((half - 0.5 * c * inverse)
@@ -148,7 +148,7 @@ mod tests {
     fn analytic_films_agree_with_reynolds_equation() {
         for q in [-60.0, -20.0, -4.0, -1.0, 0.0, 1.0, 4.0] {
             let [c, force, rolling] = marched(q);
-            let ours = Pressed::until(c);
+            let ours = FilmForce::until(c);
             for (ours, theirs) in [(ours.opening, q), (ours.force, force), (resistance(c), rolling)] {
                 assert!(
                     (ours - theirs).abs() < QUADRATURE * (1.0 + theirs.abs()),
@@ -162,29 +162,29 @@ mod tests {
     /// squeeze 12π η V (R/2h)^{3/2}: Cameron 1966, chapter 7.
     #[test]
     fn analytic_rolling_alone_and_squeeze_alone() {
-        let rest = Pressed::until(0.475_130);
+        let rest = FilmForce::until(0.475_130);
         assert!(rest.opening.abs() < 1e-5, "{}", rest.opening);
         assert!((4.0 * rest.force - 4.895).abs() < 1e-3, "{}", 4.0 * rest.force);
         // V = −q u √(h/2R): 4ηuR/h · G = 12π ηV (R/2h)^{3/2} is G = −(3π/4) q.
-        let squeezed = Pressed::until(1e4);
+        let squeezed = FilmForce::until(1e4);
         let squeeze = -0.75 * std::f64::consts::PI * squeezed.opening;
         assert!((squeezed.force / squeeze - 1.0).abs() < 1e-6, "{squeezed:?}");
     }
 
     #[test]
     fn invariant_the_force_falls_as_the_film_opens_and_never_pulls() {
-        let mut last = Pressed::until(1e5);
+        let mut last = FilmForce::until(1e5);
         for n in 0..2000 {
             let c = EMPTY + 1e5 * (-f64::from(n) * 0.012).exp();
-            let film = Pressed::until(c);
+            let film = FilmForce::until(c);
             assert!(film.force > 0.0 && film.force < last.force, "{c}: {film:?}");
             assert!(film.opening > last.opening && resistance(c) > 0.0, "{c}: {film:?}");
-            // What the surfaces put in is at least what they get back: u ∫h dp − W ḣ, here over 4√2 ηu²L
+            // The work of the surfaces is not below the work returned: u ∫h dp − W ḣ, here over 4√2 ηu²L
             // √(R/h).
             let heat = resistance(c) - 0.5 * film.force * film.opening;
             assert!(heat > 0.0, "{c}: {heat}");
             let h = 1e-6 * (1.0 + c.abs());
-            let (low, high) = (Pressed::until(c - h), Pressed::until(c + h));
+            let (low, high) = (FilmForce::until(c - h), FilmForce::until(c + h));
             for (slope, difference) in
                 [(film.force_slope, high.force - low.force), (film.opening_slope, high.opening - low.opening)]
             {

@@ -1,15 +1,15 @@
 //! Films of eight bodies on one track, side by side in vectors: the law of [`FilmLaw::flow`].
 //!
 //! Each step takes one step of Newton's method from where the film ended in the last one, and further ones
-//! only where it goes far. What that leaves, less than a ten-thousandth of the force, the next step makes up
-//! for.
+//! only after a large correction. The remainder, less than a ten-thousandth of the force, is removed by the
+//! next step.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     law::{FAR, FIXED, FilmLaw, Layer, SLOWEST, STEADY},
-    reynolds::{EMPTY, Pressed, left_at_end, left_on_land},
+    reynolds::{EMPTY, FilmForce, left_at_end, left_on_land},
     spring::SpringInLanes,
 };
 
@@ -30,7 +30,7 @@ const ENOUGH: f64 = 1e-5;
 #[repr(align(64))]
 pub struct Eight(pub [f64; LANES]);
 
-/// What eight films remember, as [`Layer`] of one.
+/// State of eight films, as [`Layer`] of one.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Layers {
     above: Eight,
@@ -44,24 +44,24 @@ pub struct Layers {
 pub struct Gaps {
     /// Negative where the bodies overlap.
     pub gap: Eight,
-    /// Half of what both surfaces sweep past the closest approach.
+    /// Half the sum of the speeds of both surfaces past the closest approach.
     pub speed: Eight,
     /// One where the land ends far off.
     pub share: Eight,
 }
 
-/// What is asked of a step.
+/// Parameters of a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
     /// Length of the step [s].
     pub dt: f64,
     /// The films that are there, a bit for each.
     pub films: u64,
-    /// Whether energies are asked for.
+    /// Whether energies are computed.
     pub energy: bool,
 }
 
-/// What eight films do in a step; zero where there is none.
+/// Results of a step of eight films; zero where there is none.
 #[derive(Debug, Clone, Default)]
 pub struct PushedRows {
     /// Force that drives the surfaces apart, beside that of dry contact [N].
@@ -70,7 +70,7 @@ pub struct PushedRows {
     pub heat: Eight,
     /// Decrease of that force as the surfaces recede and the film stays as thick as it is [N/m].
     pub stiffness: Eight,
-    /// Energy in the springs beside what contact has [J], where it is asked for.
+    /// Energy in the springs beyond that of dry contact [J], where it is computed.
     pub stored: Eight,
     /// Those so thin and so pressed that nothing can change for some steps, a bit for each.
     pub fixed: u64,
@@ -89,7 +89,7 @@ impl Layers {
     }
 }
 
-/// What one vector of films has come to.
+/// Solution of one vector of films.
 struct Found<S: Simd> {
     above: Vector<S>,
     end: Vector<S>,
@@ -110,7 +110,7 @@ struct Dry<S: Simd> {
 }
 
 impl<P: SpringInLanes> FilmLaw<P> {
-    /// Lets a time step pass for eight films, as [`FilmLaw::flow`] does for one.
+    /// Advances eight films by a time step, as [`FilmLaw::flow`] does one.
     #[inline(always)]
     pub fn flow_eight<S: Simd>(
         &self,
@@ -144,7 +144,7 @@ impl<P: SpringInLanes> FilmLaw<P> {
         }
     }
 
-    /// One of eight films, by itself.
+    /// One of eight films in scalar arithmetic.
     #[inline(never)]
     fn flow_alone(
         &self,
@@ -209,14 +209,15 @@ impl<P: SpringInLanes> FilmLaw<P> {
             if left == 0 {
                 break;
             }
-            let film = Pressed::until(c);
+            let film = FilmForce::until(c);
             let force = lift * film.force;
             let these = Vector::ones(simd, left);
             let root = half.choose_below(these, force.cube_root(), zero);
             let [depth, by_root] = self.spring.depth_of(simd, root);
             let stiff = three * root * root / by_root;
             let grows = lift * film.force_slope;
-            // Depth that the force takes less what the film leaves, times the stiffness.
+            // Residual of Newton's method: depth under the force less that left by the film, times the
+            // stiffness.
             let over = (depth - opened.times_plus(film.opening, room)) * stiff;
             let slope = grows - opened * film.opening_slope * stiff;
             let change = -(over / slope);
@@ -285,8 +286,8 @@ impl<P: SpringInLanes> FilmLaw<P> {
         }
     }
 
-    /// Shares of the forces that are left where the land ends so far off on both sides [m], as
-    /// [`FilmLaw::share`] says, of the films from `start` on.
+    /// Shares of the forces that remain on lands whose ends lie at these distances [m], as
+    /// [`FilmLaw::share`], of the films from `start` on.
     #[inline(always)]
     pub fn shares<S: Simd>(
         &self,

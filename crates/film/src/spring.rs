@@ -1,13 +1,14 @@
-//! What the surfaces give under a film.
+//! Deflection of the surfaces under a film.
 
 use pulp::Simd;
 use stribeck_simd::lanes::Vector;
 
-/// Deepest indentation at which the force follows the growing contact; beyond it the force rises straight, so
-/// that the time step knows a stiffest [m]. A film that presses so hard is gone within microseconds.
+/// Deepest indentation at which the force follows the growing contact; beyond it the force is linear, so that
+/// the stiffness has a bound for the critical time step [m]. A film that presses so hard is gone within
+/// microseconds.
 const DEEPEST: f64 = 2e-6;
 
-/// What two surfaces give under a film between them.
+/// Compliance of two surfaces under a film between them.
 pub trait Spring {
     /// Force [N] at a depth of zero or more [m].
     fn force(&self, depth: f64) -> f64;
@@ -28,12 +29,12 @@ pub trait Spring {
     fn energy(&self, depth: f64) -> f64;
 }
 
-/// What surfaces give under several films side by side.
+/// Compliance of surfaces under several films side by side.
 pub trait SpringInLanes: Spring {
     /// Depths [m] under forces whose cube roots these are [N^⅓], and the derivatives by the roots.
     fn depth_of<S: Simd>(&self, simd: S, root: Vector<S>) -> [Vector<S>; 2];
 
-    /// What the cube root of the force at a depth of zero or more [m] cannot exceed.
+    /// Upper bound of the cube root of the force [N^⅓] at a depth of zero or more [m].
     fn largest_root<S: Simd>(&self, simd: S, depth: Vector<S>) -> Vector<S>;
 
     /// Energies [J] under forces whose cube roots these are.

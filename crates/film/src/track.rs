@@ -13,10 +13,10 @@ use stribeck_surface::{
 /// A land of fewer facets is a wall or a chamfer, and carries no film.
 const LEAST_FACETS: usize = 3;
 
-/// Parts of a facet that do not matter; so close to a joint a place belongs to either facet.
+/// Tolerance at a joint, as a share of a facet: within it a place belongs to either facet.
 const JOINT: f64 = 1e-12;
 
-/// Corrections of a place at most.
+/// Most corrections of a place.
 const CORRECTIONS: usize = 8;
 
 /// Facets between two corners of a surface.
@@ -44,7 +44,7 @@ pub struct Place {
 pub struct Point {
     /// Where on the surface.
     pub place: Place,
-    /// Slots of the nodes that it hangs on.
+    /// Slots of the two nodes of its facet.
     pub ends: [u32; 2],
     /// Position [m].
     pub at: [f64; 2],
@@ -111,7 +111,7 @@ impl Land {
         Place { facet: nearest as u32, along: 0.5 }
     }
 
-    /// The place nearest to `p`, walking on from another; ends are never passed.
+    /// The place nearest to `p` [m], by walking from another one; the walk stops at the ends of the land.
     #[inline]
     pub fn nearest(&self, surface: &Surface, x: &[f64], y: &[f64], p: [f64; 2], from: Place) -> Point {
         let (mut facet, mut before) = (from.facet as usize, None);
@@ -159,7 +159,7 @@ impl Land {
         self.neighbour(surface, facet as usize, forward).map(|facet| facet as u32)
     }
 
-    /// Whether it goes all around.
+    /// Whether it is closed: a whole circumference without corners.
     pub fn is_closed(&self) -> bool {
         self.closed
     }
@@ -173,15 +173,15 @@ impl Land {
         let whole = surface.facets();
         let before = (place.facet as usize + whole - self.first) % whole;
         let mean = surface.lengths()[place.facet as usize];
-        // Ends that are many facets away need not be known to the last digit.
+        // The mean facet length serves for ends that are many facets away.
         let first = (before as f64 + place.along) * mean;
         let last = ((self.facets - before) as f64 - place.along) * mean;
         [first, last]
     }
 }
 
-/// The curve of a facet of a land, for those who take several at once: heights over its chord along the
-/// normal, which is the tangent turned clockwise by a right angle.
+/// The curve of a facet of a land, as data for vector loads: heights over its chord along the normal, which
+/// is the tangent turned clockwise by a right angle.
 #[derive(Debug, Clone, Copy)]
 pub struct FacetCurve {
     /// Its first node [m].
@@ -190,7 +190,7 @@ pub struct FacetCurve {
     pub length: f64,
     /// See `length`.
     pub tangent: [f64; 2],
-    /// Heights, as [`stribeck_surface::smooth::height`] says.
+    /// Heights, as of [`stribeck_surface::smooth::height`].
     pub rise: Rise,
     /// Facets of the land before it, and those from it on.
     pub before: f64,
@@ -225,7 +225,7 @@ impl Arc {
         }
     }
 
-    /// Where the curve, which goes on beyond its ends, is nearest to `p`.
+    /// Foot of `p` on the curve, which is extended beyond its ends.
     #[inline]
     fn nearest(&self, p: [f64; 2]) -> f64 {
         let from = minus(p, self.origin);
@@ -272,7 +272,7 @@ impl Point {
 }
 
 impl Place {
-    /// The point so far on along the facet's curve [m], which goes on beyond its ends.
+    /// The point at a distance [m] along the facet's curve, which is extended beyond its ends.
     #[inline]
     pub fn ahead(self, surface: &Surface, x: &[f64], y: &[f64], by: f64) -> Point {
         let facet = self.facet as usize;

@@ -28,7 +28,7 @@ const PREAMBLE: usize = 200;
 const SAMPLE: usize = 60;
 /// Samples handed on at a time.
 const BLOCK: usize = 1 << 14;
-/// Of so many fields of a column one may be no number.
+/// One in this many fields of a column may be something other than a number.
 const FEW: u64 = 100;
 
 /// One column of a table in a file.
@@ -45,7 +45,7 @@ pub(crate) struct Column {
     origin_s: i64,
 }
 
-/// What a column holds.
+/// Content of a column.
 #[derive(Debug, Default)]
 struct Census {
     numbers: u64,
@@ -85,8 +85,12 @@ pub fn open(path: &Path) -> Result<Recording> {
         first += 1;
     }
     let columns = columns(&start[first..], dialect);
+    while first > 0 && is_damaged_row(&start[first - 1], dialect, columns) {
+        first -= 1;
+    }
     let (names, units) = head::names(&start[..first], dialect, columns);
     let (census, rows, mut notes) = census(path, coding, dialect, first as u64, columns)?;
+    let rate_hz = head::rate_hz(&start[..first], dialect);
     let mut channels = Vec::new();
     for (at, (name, census)) in names.into_iter().zip(census).enumerate() {
         if let Some(why) = census.refusal() {
@@ -110,7 +114,8 @@ pub fn open(path: &Path) -> Result<Recording> {
         let column = Column { path: path.to_owned(), at, preamble: first as u64, dialect, coding, origin_s };
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
         let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
-        channels.push(Channel::text(name, rows, column).in_unit(unit.filter(|unit| !unit.is_empty())));
+        let channel = Channel::text(name, rows, column).at_rate(rate_hz);
+        channels.push(channel.in_unit(unit.filter(|unit| !unit.is_empty())));
     }
     Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
 }
@@ -128,6 +133,29 @@ fn counts_columns(rows: &[String], dialect: Dialect) -> bool {
         && dialect.split(second).into_iter().any(fraction)
 }
 
+/// Whether a line above the table is a row of it with a few fields that are no numbers: names of columns are
+/// no fractions.
+fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
+    let fields = dialect.split(line);
+    let fractions = fields.iter().filter(|field| {
+        field.contains(if dialect.decimal_comma { ',' } else { '.' })
+            && matches!(dialect.field(field), Field::Number(_))
+    });
+    let fractions = fractions.count();
+    let alone = || {
+        // A single column has no neighbours that would tell: signs of numbers alone, and no date.
+        let signs = fields[0].chars().all(|c| c.is_ascii_digit() || ".,+-eE".contains(c));
+        signs && fields[0].len() > 4 && dialect.field(fields[0]) == Field::Text
+    };
+    fields.len() == columns
+        && match columns {
+            0 => false,
+            1 => alone(),
+            2 => fractions > 0,
+            _ => 2 * fractions > columns,
+        }
+}
+
 /// Columns of the first rows.
 fn columns(rows: &[String], dialect: Dialect) -> usize {
     let counts =
@@ -135,7 +163,7 @@ fn columns(rows: &[String], dialect: Dialect) -> usize {
     counts.max().unwrap_or(0)
 }
 
-/// What the columns hold, the number of rows, and what is odd about them.
+/// Content of the columns, the number of rows, and irregularities.
 fn census(
     path: &Path,
     coding: Coding,
@@ -145,6 +173,8 @@ fn census(
 ) -> Result<(Vec<Census>, u64, Vec<String>)> {
     let mut all: Vec<Census> = (0..columns).map(|_| Census::default()).collect();
     let (mut rows, mut notes, mut short) = (0, Vec::new(), None);
+    // Rows that hold more than there are columns, and the first of them.
+    let mut longer: (u64, u64) = (0, 0);
     let mut lines = Lines::open(path, coding)?;
     while let Some(line) = lines.next(path)? {
         if lines.read <= preamble || dialect.is_empty(&line) {
@@ -153,10 +183,19 @@ fn census(
         rows += 1;
         let fields = dialect.split(&line);
         short = (fields.len() < columns).then_some(lines.read);
+        if fields.iter().skip(columns).any(|field| !field.is_empty()) {
+            longer = (longer.0 + 1, if longer.0 == 0 { lines.read } else { longer.1 });
+        }
         for (at, census) in all.iter_mut().enumerate() {
             let field = fields.get(at).copied().unwrap_or_default();
             census.take(dialect.field(field), field, lines.read);
         }
+    }
+    if let (count @ 1.., line) = longer {
+        notes.push(format!(
+            "rows with more than {columns} fields: {count}, the first in line {line}; what is too many is \
+             left out"
+        ));
     }
     if let Some(line) = short {
         notes.push(format!("line {line}, the last, is cut off and left out"));

@@ -1,4 +1,4 @@
-//! What stored numbers mean: straight lines, polynomials, quotients and tables, one after the other.
+//! From stored to physical values: straight lines, polynomials, quotients and tables, one after the other.
 
 /// A law from stored to physical values. LabVIEW and MDF files bring theirs along.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,11 @@
-//! What can be wrong with a file of signals.
+//! Errors of files of signals.
 
 use std::path::{Path, PathBuf};
 
 /// Result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why a file cannot be read or written. Each message names the file and what to try.
+/// Why a file cannot be read or written. Each message names the file and a remedy.
 #[non_exhaustive]
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
@@ -16,7 +16,7 @@ pub enum Error {
         action: &'static str,
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// The file is none of the known formats.
@@ -28,7 +28,7 @@ pub enum Error {
     Unknown {
         /// The file.
         path: PathBuf,
-        /// What it looks like.
+        /// Likely kind of file.
         seen: String,
     },
     /// The file contradicts its format.
@@ -39,7 +39,7 @@ pub enum Error {
         path: PathBuf,
         /// Its format.
         format: &'static str,
-        /// What is wrong, and where.
+        /// Problem, with its place.
         what: String,
     },
     /// The file holds something that its format allows and this crate does not read.
@@ -49,9 +49,9 @@ pub enum Error {
         path: PathBuf,
         /// Its format.
         format: &'static str,
-        /// What it holds.
+        /// Content that is not supported.
         what: String,
-        /// What to try.
+        /// Remedy.
         advice: &'static str,
     },
     /// A text that should be a number.
@@ -68,7 +68,7 @@ pub enum Error {
         column: usize,
         /// Channel in that column.
         channel: String,
-        /// What stands there.
+        /// The text at that place.
         text: String,
     },
     /// There is no such channel.
@@ -76,19 +76,19 @@ pub enum Error {
     NoChannel {
         /// The file.
         path: PathBuf,
-        /// What was asked for.
+        /// The requested name.
         asked: String,
-        /// What there is.
+        /// The existing names.
         has: String,
     },
-    /// What is to be written does not fit the format.
+    /// The data do not fit the format.
     #[error("`{}` cannot be written as {format}: {what}", .path.display())]
     DoesNotFit {
         /// The file.
         path: PathBuf,
         /// The format.
         format: &'static str,
-        /// What does not fit, and what to try.
+        /// Problem and remedy.
         what: String,
     },
 }

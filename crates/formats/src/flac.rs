@@ -80,7 +80,7 @@ fn reader(path: &Path) -> Result<FlacReader<BufReader<File>>> {
     FlacReader::new(BufReader::new(file)).map_err(|why| broken(path, why))
 }
 
-/// Gives every block to `take` until it returns false.
+/// Passes every block to `take` until it returns false.
 fn blocks(path: &Path, mut take: impl FnMut(&claxon::Block) -> bool) -> Result<()> {
     let mut reader = reader(path)?;
     let mut blocks = reader.blocks();

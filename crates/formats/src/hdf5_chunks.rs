@@ -25,14 +25,13 @@ const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const FLETCHER: u16 = 3;
 
-/// What all channels of a set have in common.
+/// Properties that all channels of a set share.
 #[derive(Debug)]
 struct Set {
     path: PathBuf,
     format: &'static str,
     number: Number,
-    /// What was done to each chunk, in the order of writing: a filter's number and the size of what it
-    /// shuffled.
+    /// Filters of each chunk, in the order of writing: number, and element size of the shuffle filter.
     filters: Vec<(u16, usize)>,
     /// Bytes of a whole chunk.
     bytes: usize,
@@ -192,7 +191,8 @@ impl Set {
     }
 }
 
-/// Elements whose bytes were stored by their place in the element; what fills no element stays at the end.
+/// Elements whose bytes were stored by their place in the element; a remainder that fills no element stays at
+/// the end.
 fn unshuffled(bytes: &[u8], element: usize) -> Vec<u8> {
     let count = bytes.len().checked_div(element).unwrap_or(0);
     let mut out = Vec::with_capacity(bytes.len());

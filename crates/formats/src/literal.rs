@@ -67,7 +67,7 @@ impl Literal {
         pairs.find(|pair| pair[0].text() == Some(key)).map(|pair| &pair[1])
     }
 
-    /// What a tuple, a list or a dictionary holds; nothing of others.
+    /// Items of a tuple, a list or a dictionary; empty for others.
     pub(crate) fn items(&self) -> &[Self] {
         if let Self::Items(items) = self { items } else { &[] }
     }

@@ -17,10 +17,10 @@ const HEADER: u64 = 20;
 /// Longest name.
 const NAME: u32 = 64;
 
-/// What stands before a matrix.
+/// Header of a matrix.
 struct Header {
     big_endian: bool,
-    /// How numbers are stored, and what they mean: 0 numbers, 1 text, 2 sparse.
+    /// Storage of numbers, and the kind of matrix: 0 numbers, 1 text, 2 sparse.
     stored: u32,
     sort: u32,
     rows: u32,
@@ -39,7 +39,7 @@ impl Header {
             };
             Some([word(0)?, word(1)?, word(2)?, word(3)?, word(4)?])
         };
-        // The thousands of the type say the byte order.
+        // The thousands digit of the type is the byte order.
         [false, true].into_iter().find_map(|big_endian| {
             let [kind, rows, columns, imaginary, name] = five(big_endian)?;
             let fits = kind / 1000 == u32::from(big_endian)

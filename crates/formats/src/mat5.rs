@@ -39,7 +39,7 @@ pub(crate) fn recognise(start: &[u8]) -> bool {
 }
 
 /// Opens a file. Real vectors that are not deflated stay in the file. Members of structs are called
-/// `name.member`, cells `name{1}`; texts and what else is no real number are left out.
+/// `name.member`, cells `name{1}`; texts and other values that are not real numbers are left out.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].
@@ -93,7 +93,7 @@ pub fn open(path: &Path) -> Result<Recording> {
                     }
                 }
             }
-            // What MATLAB keeps for itself.
+            // MATLAB's internal data.
             _ => {}
         }
         at += 8 + length;
@@ -188,7 +188,7 @@ struct Element<'a> {
     data: &'a [u8],
 }
 
-/// What a file has yielded so far.
+/// Channels found so far.
 struct Found {
     big_endian: bool,
     channels: Vec<Channel>,
@@ -225,7 +225,7 @@ impl Found {
         if self.big_endian { u32::from_be_bytes(four) } else { u32::from_le_bytes(four) }
     }
 
-    /// The element at the start of `bytes`, and what follows it.
+    /// The element at the start of `bytes`, and the rest.
     fn element<'a>(&self, bytes: &'a [u8]) -> Parsed<(Element<'a>, &'a [u8])> {
         if bytes.len() < 8 {
             return Err(format!("an element begins in its last {} bytes", bytes.len()));
@@ -281,7 +281,7 @@ impl Found {
     /// A variable whose numbers can stay in the file; `None` for others. `start` is the beginning of its
     /// bytes, of which there are `length`.
     fn plain(&self, start: &[u8], length: u64) -> Parsed<Option<Plain>> {
-        // Its head may be longer than what was read: then it is parsed whole.
+        // Its head may be longer than the bytes read: then it is parsed whole.
         let Ok(head) = self.head(start) else { return Ok(None) };
         if !(DOUBLE..=UINT64).contains(&head.class) || head.complex || head.rest.len() < 8 {
             return Ok(None);
@@ -299,7 +299,7 @@ impl Found {
         Ok(Some(Plain { name, rows, columns, number, start: at }))
     }
 
-    /// Takes what an array in memory holds.
+    /// Adds the channels of an array in memory.
     fn matrix(&mut self, bytes: &[u8], parent: &str, depth: usize) -> Parsed<()> {
         if bytes.is_empty() {
             return Ok(());

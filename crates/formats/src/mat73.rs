@@ -12,6 +12,7 @@ use hdf5_pure::{
     Group, Layout,
 };
 
+use crate::curve::Curve;
 use crate::hdf5_links::{self, Links};
 use crate::number::{Kind, Number};
 use crate::recording::{Strided, left_out};
@@ -82,18 +83,18 @@ struct Found {
     /// Numbers held so far.
     numbers: u64,
     notes: Vec<String>,
-    /// Rates that attributes say, each with the prefix of the names it is for.
+    /// Sample rates from attributes, each with the prefix of the names that it applies to.
     rates: Vec<(String, f64)>,
 }
 
 impl Found {
-    /// Takes what a group holds; what cannot be read is noted, and does not spoil the rest.
+    /// Adds the channels of a group; unreadable ones are noted, and do not affect the rest.
     fn group(&mut self, group: &Group, prefix: &str, depth: usize, links: Option<&Links>) {
         let names = match (group.datasets(), group.groups()) {
             (Ok(sets), Ok(groups)) => (sets, groups),
             (Err(why), _) | (_, Err(why)) => {
-                // A link to another object spoils the library's list of an old group; each name by itself can
-                // be opened.
+                // A link to another object spoils the library's list of an old group; each name alone can be
+                // opened.
                 let Some(links) = links else {
                     self.notes.push(left_out(&format!("{prefix}*"), &why.to_string()));
                     return;
@@ -115,7 +116,7 @@ impl Found {
             }
         }
         for name in names.1 {
-            // What cells and objects point to has no name of its own.
+            // Data referenced by cells and objects have no names.
             if depth >= DEEPEST || name.starts_with('#') {
                 continue;
             }
@@ -189,6 +190,7 @@ impl Found {
             return Ok(());
         };
         let rate_hz = rates(&attributes, "").first().map(|(_, hz)| *hz);
+        let scale = scale(&attributes);
         let unit = ["unit", "units", "Unit", "Units", "unit_string"].into_iter();
         let unit = unit.filter_map(|key| attributes.get(key)?.as_str().map(str::to_owned)).next();
         let axes = Some(axes);
@@ -216,7 +218,7 @@ impl Found {
                 (_, true, _) => format!("{name}({},:)", k + 1),
             };
             channel.group = name.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
-            channel.at_rate(rate_hz).in_unit(unit.clone())
+            channel.at_rate(rate_hz).in_unit(unit.clone()).along(scale.clone())
         }));
         Ok(())
     }
@@ -260,9 +262,15 @@ impl Found {
     }
 }
 
-/// The rates [Hz] that attributes of a group or a set say.
-fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, f64)> {
-    let number = |value: &AttrValue| match value {
+/// The line from stored to physical values that netCDF's conventions write beside a set.
+fn scale(attributes: &HashMap<String, AttrValue>) -> Option<Curve> {
+    let [slope, offset] = ["scale_factor", "add_offset"].map(|name| attributes.get(name).and_then(number));
+    (slope.is_some() || offset.is_some()).then(|| Curve::linear(offset.unwrap_or(0.0), slope.unwrap_or(1.0)))
+}
+
+/// The number of an attribute.
+fn number(value: &AttrValue) -> Option<f64> {
+    match value {
         AttrValue::F32(x) => Some(f64::from(*x)),
         AttrValue::F64(x) => Some(*x),
         AttrValue::I16(x) => Some(f64::from(*x)),
@@ -276,21 +284,25 @@ fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, 
         AttrValue::I64Array(all) if all.len() == 1 => all.first().map(|x| *x as f64),
         AttrValue::I32Array(all) if all.len() == 1 => all.first().map(|x| f64::from(*x)),
         other => other.as_str()?.trim().parse().ok(),
-    };
+    }
+}
+
+/// The sample rates [Hz] in attributes of a group or a set.
+fn rates(attributes: &HashMap<String, AttrValue>, prefix: &str) -> Vec<(String, f64)> {
     let mut found: Vec<(String, f64)> = attributes
         .iter()
         .filter_map(|(name, value)| Some((name.clone(), units::rate_hz(name, None, number(value)?)?)))
         .collect();
     found.sort_by(|a, b| a.0.cmp(&b.0));
-    // Attributes that contradict each other say nothing.
+    // Attributes that contradict each other are ignored.
     let same = found.iter().all(|(_, hz)| (hz / found[0].1 - 1.0).abs() < 1e-3);
     found.truncate(usize::from(same));
     found.into_iter().map(|(_, hz)| (prefix.to_owned(), hz)).collect()
 }
 
-/// Why chunks cannot be unpacked, where a filter is not known.
+/// Why chunks cannot be unpacked, where a filter is unknown.
 fn unknown_filter(dataset: &Dataset) -> Option<String> {
-    /// Deflate, shuffle, Fletcher's checksum, szip, n-bit, scale-offset, LZF: what the library has.
+    /// Deflate, shuffle, Fletcher's checksum, szip, n-bit, scale-offset, LZF: the filters of the library.
     const KNOWN: [u16; 7] = [1, 2, 3, 4, 5, 6, 32_000];
     let id = dataset.filters().into_iter().find(|id| !KNOWN.contains(id))?;
     let name = match id {

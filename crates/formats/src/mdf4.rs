@@ -1,8 +1,8 @@
 //! MDF 4 (ASAM): channels of whole bytes in sorted groups, in plain, listed or deflated blocks. Read only.
 //!
-//! Each channel is called by its name; the rate is that of its group's master, stored or virtual. A sample
-//! whose invalidation bit is set is no number. Channels of bits, of texts and with conversions to texts are
-//! left out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
+//! Each channel has its name; the rate is that of its group's master, stored or virtual. A sample whose
+//! invalidation bit is set is no number. Channels of bits, of texts and with conversions to texts are left
+//! out with a note. Samples stay in the file; deflated blocks are unpacked one by one.
 
 mod channel;
 

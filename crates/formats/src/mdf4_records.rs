@@ -31,7 +31,7 @@ pub(crate) struct Stretch {
 pub(crate) enum Packing {
     Plain,
     Deflated,
-    /// Rows of so many bytes were written column by column before they were deflated.
+    /// Rows of this many bytes were written column by column before they were deflated.
     Transposed(usize),
 }
 
@@ -45,7 +45,7 @@ pub(crate) struct Field {
     pub(crate) width: usize,
     pub(crate) place: usize,
     pub(crate) number: Number,
-    /// Byte and bit of a record that say whether its sample is invalid.
+    /// Byte and bit of a record that mark its sample as invalid.
     pub(crate) invalid: Option<(usize, u8)>,
 }
 
@@ -115,8 +115,8 @@ impl Field {
     }
 }
 
-/// Rows of `columns` bytes, whose columns were stored one after the other; what fills no row stays at the
-/// end.
+/// Rows of `columns` bytes, whose columns were stored one after the other; a remainder that fills no row
+/// stays at the end.
 fn transposed(bytes: &[u8], columns: usize) -> Vec<u8> {
     let rows = bytes.len().checked_div(columns).unwrap_or(0);
     let mut out = Vec::with_capacity(bytes.len());
@@ -178,7 +178,7 @@ mod tests {
         let all = read(&field).unwrap();
         let expected = |n: i32| if n == 7 { f64::NAN } else { 3.0 * f64::from(n) };
         assert_eq!(format!("{all:?}"), format!("{:?}", (0..39).map(expected).collect::<Vec<_>>()));
-        // A block that holds less than it says.
+        // A block that is shorter than its header states.
         let mut short = field.stretches.to_vec();
         short[1].full += 1;
         let why = read(&Field { stretches: Arc::new(short), ..field }).unwrap_err();

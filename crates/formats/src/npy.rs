@@ -15,10 +15,10 @@ const FORMAT: &str = "NumPy .npy";
 /// Longest header that is read.
 const MAX_HEADER: usize = 1 << 20;
 
-/// What a header says.
+/// Content of a header.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layout {
-    /// What is read of a record; a plain array has one field without a name.
+    /// Fields of a record that are read; a plain array has one without a name.
     fields: Vec<Field>,
     record: usize,
     shape: Vec<u64>,
@@ -45,7 +45,7 @@ struct Field {
 pub(crate) enum Refusal {
     /// It cannot be understood, and why.
     Damaged(String),
-    /// It promises what is no table of real numbers.
+    /// It describes something other than a table of real numbers.
     Foreign(String),
 }
 
@@ -69,7 +69,7 @@ impl std::fmt::Display for Refusal {
     }
 }
 
-/// What to save instead of what is not read.
+/// Advice for arrays that are not read.
 const ADVICE: &str = "vectors, tables and records of real numbers are read: bool, int8 to uint64, float32 \
     and float64; save it as one of them";
 
@@ -77,7 +77,7 @@ const ADVICE: &str = "vectors, tables and records of real numbers are read: bool
 ///
 /// # Errors
 /// [`Error::Damaged`] for a header that cannot be understood or data that end early, [`Error::Unsupported`]
-/// for what is no table of real numbers, [`Error::Io`].
+/// for anything but a table of real numbers, [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let mut file = File::open(path).map_err(|e| Error::read(path, e))?;
     let mut head = Vec::new();
@@ -148,7 +148,7 @@ impl Layout {
             let repeats: Option<Vec<u64>> = repeats.collect();
             let count = repeats.ok_or_else(unclear)?.iter().try_fold(1_u64, |n, by| n.checked_mul(*by));
             match number(kind) {
-                // What aligns the next field.
+                // Padding that aligns the next field.
                 _ if name.is_empty() => {}
                 Some((number, unit)) if count == Some(1) => {
                     fields.push(Field { name, place: record, number, unit });

@@ -14,8 +14,8 @@ const FORMAT: &str = "NumPy .npz";
 /// Longest array that is unpacked [bytes].
 const MAX_UNPACKED: u64 = 1 << 32;
 
-/// Opens an archive. Arrays that are stored without compression stay in the file; texts and what else is no
-/// real number are left out with a note.
+/// Opens an archive. Arrays that are stored without compression stay in the file; texts and other values that
+/// are not real numbers are left out with a note.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].

@@ -34,7 +34,7 @@ pub enum Kind {
 pub struct Number {
     /// Width and sort.
     pub kind: Kind,
-    /// True when the most significant byte comes first.
+    /// True when the most significant byte is first.
     pub big_endian: bool,
 }
 

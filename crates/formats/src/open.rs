@@ -1,4 +1,4 @@
-//! A file is opened: which format it has is told by its first bytes, and then by its name.
+//! Opening a file: its format is recognised by its first bytes, and then by its name.
 
 use std::fs::File;
 use std::io::Read;
@@ -10,7 +10,7 @@ use crate::{
 
 impl Recording {
     /// Opens a file, by its first bytes and then by its name. Samples of plain numbers stay in the file.
-    /// Times are told from signals, and give them the sample rate that the file does not say otherwise.
+    /// Times are distinguished from signals, and define the sample rate where the file does not state it.
     ///
     /// # Errors
     /// [`Error::Unknown`] for a file of another kind, [`Error::Damaged`] for one that contradicts its format,

@@ -25,7 +25,7 @@ const FORMAT: &str = "Parquet";
 /// Rows that are read at a time.
 const BATCH: usize = 1 << 16;
 
-/// The values of a column; what is missing is null.
+/// The values of a column; missing ones are null.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
     /// Numbers.
@@ -120,11 +120,11 @@ impl Writer {
         Ok(Self { path: path.to_owned(), schema: columns.iter().map(blank).collect(), file })
     }
 
-    /// Adds a group of rows: the columns of the file, equally long. Each is asked for when the one before is
+    /// Adds a group of rows: the columns of the file, equally long. Each is requested after the one before is
     /// written, so that they need not be in memory together.
     ///
     /// # Errors
-    /// [`Error::DoesNotFit`] for other columns, [`Error::Io`]. The file is then of no use.
+    /// [`Error::DoesNotFit`] for other columns, [`Error::Io`]. The file is then unusable.
     pub fn add(&mut self, columns: impl IntoIterator<Item = impl Borrow<Column>>) -> Result<()> {
         let Self { path, schema, file } = self;
         let refused = |e: ParquetError| refused(path, &e);
@@ -187,8 +187,8 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     write_table(path, &columns?, &texts)
 }
 
-/// Opens a table: its columns of numbers are channels, others are left out with a note. A number that is
-/// missing is not a number. Values stay in the file.
+/// Opens a table: its columns of numbers are channels, others are left out with a note. A missing number
+/// becomes NaN. Values stay in the file.
 ///
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].
@@ -218,7 +218,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// What the stored values of a column mean.
+/// Conversion of the stored values of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Meaning {
     Number,
@@ -292,7 +292,7 @@ impl Meaning {
     }
 }
 
-/// The unit of what counts the time.
+/// The unit of a column of times.
 fn unit_of_time(unit: &TimeUnit) -> Option<String> {
     let unit = match unit {
         TimeUnit::MILLIS => "ms",
@@ -362,7 +362,7 @@ impl Stored {
     }
 }
 
-/// What the library reads. A damaged file must not take the program along, whatever the library thinks of it.
+/// Calls the library so that a panic on a damaged file becomes an error.
 fn guarded<T>(
     read: impl FnOnce() -> std::result::Result<T, ParquetError>,
 ) -> std::result::Result<T, ParquetError> {
@@ -370,7 +370,7 @@ fn guarded<T>(
         .unwrap_or_else(|_| Err(ParquetError::General("its structure contradicts itself".to_owned())))
 }
 
-/// Gives all values of a column of one group of rows; false when no more are wanted.
+/// Passes on all values of a column of one group of rows; false when `take` wants no more.
 fn each<T: parquet::data_type::DataType>(
     reader: &mut parquet::column::reader::ColumnReaderImpl<T>,
     defined: i16,
@@ -427,7 +427,7 @@ fn write_column(
     column.close()
 }
 
-/// What the library refuses on the way out.
+/// An error of the library while writing.
 fn refused(path: &Path, error: &ParquetError) -> Error {
     match error {
         ParquetError::External(source) if source.downcast_ref::<std::io::Error>().is_some() => {

@@ -19,7 +19,7 @@ pub struct Recording {
     /// Its channels, in the order of the file. Numbers that stand alone (a speed, a sensitivity) are channels
     /// of one sample.
     pub channels: Vec<Channel>,
-    /// What was odd about the file.
+    /// Irregularities of the file.
     pub notes: Vec<String>,
 }
 
@@ -28,9 +28,9 @@ pub struct Recording {
 pub struct Channel {
     /// Its name in the file.
     pub name: String,
-    /// Its unit, where the file says it.
+    /// Its unit, where the file states it.
     pub unit: Option<String>,
-    /// Samples a second [Hz], where the file says it.
+    /// Sample rate [Hz], where the file states it.
     pub rate_hz: Option<f64>,
     /// Number of samples.
     pub len: u64,
@@ -38,9 +38,9 @@ pub struct Channel {
     pub is_time: bool,
     /// Channels of one group have one clock; empty where the format has no groups.
     pub(crate) group: String,
-    /// What stored samples mean, where they are no values themselves.
+    /// Conversion of stored samples to values, where they differ.
     pub(crate) curve: Option<Arc<Curve>>,
-    /// What values are multiplied by.
+    /// Factor of values.
     scale: f64,
     source: Source,
 }
@@ -70,7 +70,7 @@ pub(crate) struct Strided {
     /// Bytes from one number to the next.
     pub(crate) stride: usize,
     pub(crate) number: Number,
-    /// What a stored number is multiplied by.
+    /// Factor of a stored number.
     pub(crate) factor: f64,
 }
 
@@ -87,7 +87,7 @@ impl Recording {
         if let Some(channel) = self.channels.iter().find(|c| c.name == name) {
             return Ok(channel);
         }
-        // A table may be headed by counts from 0, or by names that nobody types.
+        // The headings of a table may be counts from 0, or names that are hard to type.
         let number = name.strip_prefix("column ").and_then(|n| n.trim().parse::<usize>().ok());
         let is_column = |c: &&Channel| matches!(&c.source, Source::Text(of) if Some(of.number()) == number);
         if let Some(channel) = self.channels.iter().find(is_column) {
@@ -166,7 +166,7 @@ impl Channel {
         Self::new(name, len, Source::Stored(column))
     }
 
-    /// The same channel with its samples taken from `bytes`, which hold what a file would.
+    /// The same channel with its samples taken from `bytes`, the content of a file.
     pub(crate) fn held_from(&self, bytes: &[u8]) -> Self {
         let Source::Strided(s) = &self.source else { return self.clone() };
         let first = usize::try_from(s.start).unwrap_or(usize::MAX).min(bytes.len());
@@ -204,7 +204,7 @@ impl Channel {
         self
     }
 
-    /// Gives all samples to `take`, a block at a time, in order; `take` returns false to stop.
+    /// Passes all samples to `take`, a block at a time, in order; `take` returns false to stop.
     ///
     /// # Errors
     /// [`Error::Io`], [`Error::Number`], [`Error::Damaged`] for a file that ends early.

@@ -1,5 +1,5 @@
 //! Arrays as channels, by one rule for all formats: extents of one do not count, the longer of two others is
-//! the time, and an array of more extents is no signal, because nothing says which of them is the time.
+//! the time, and an array of more extents is no signal, because it is ambiguous which of them is the time.
 
 /// Most channels of one array.
 pub(crate) const MOST_CHANNELS: u64 = 100_000;

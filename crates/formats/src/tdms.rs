@@ -2,6 +2,7 @@
 //!
 //! Source: *TDMS File Format Internal Structure*, National Instruments.
 
+mod daqmx;
 mod scale;
 
 use std::collections::{BTreeMap, HashMap};
@@ -11,7 +12,7 @@ use std::path::Path;
 
 use crate::number::{Kind, Number};
 use crate::recording::{Strided, left_out};
-use crate::{Channel, Error, Recording, Result};
+use crate::{Channel, Error, Recording, Result, units};
 
 const FORMAT: &str = "TDMS";
 /// Bytes of a segment's lead-in.
@@ -33,27 +34,32 @@ pub(crate) enum Property {
     Text(String),
 }
 
-/// What is known of a channel.
+/// Metadata of a channel.
 #[derive(Debug, Clone, Default)]
 struct Object {
-    /// How its numbers are stored; `None` for what is no real number.
+    /// Storage of its numbers; `None` for values that are not real numbers.
     number: Option<Number>,
     /// Values in a chunk, and the bytes that they take.
     count: u64,
     bytes: u64,
     increment_s: Option<f64>,
+    /// What a property such as `SamplingRate` says [Hz].
+    rate_hz: Option<f64>,
     unit: Option<String>,
     /// Properties of its scales, by name.
     scales: BTreeMap<String, Property>,
     pieces: Vec<(Strided, u64)>,
     /// A file may change the type of a channel: then it is left out.
     mixed: bool,
+    /// Its place in the rows of DAQmx, or why it has none.
+    scaler: Option<daqmx::Scaler>,
+    foreign: Option<String>,
 }
 
 /// Opens a file; a channel is called `group/channel`. Samples stay in the file.
 ///
 /// # Errors
-/// [`Error::Damaged`], [`Error::Unsupported`] for raw data of DAQmx, [`Error::Io`].
+/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let io = |e| Error::read(path, e);
     let mut file = BufReader::new(File::open(path).map_err(io)?);
@@ -72,17 +78,16 @@ pub fn open(path: &Path) -> Result<Recording> {
             return Err(damaged("it does not begin with `TDSm`".to_owned()));
         }
         let contents = u32::from_le_bytes([lead[4], lead[5], lead[6], lead[7]]);
-        if contents & DAQMX != 0 && contents & RAW_DATA != 0 {
-            let what = "unscaled data of DAQmx".to_owned();
-            let advice = "let LabVIEW convert it (TDMS Defragment), or save scaled values";
-            return Err(Error::Unsupported { path: path.to_owned(), format: FORMAT, what, advice });
-        }
         let long = |from: usize| lead[from..from + 8].try_into().map_or(0, u64::from_le_bytes);
-        // The last segment of a file that was not closed says that its length is unknown.
+        // The last segment of a file that was not closed has no valid length.
         let behind = size - at - LEAD_IN;
         let (next, raw) = (long(12).min(behind), long(20));
         if long(12) > behind {
             notes.push("the file was not closed, or is cut off: its last samples may be missing".to_owned());
+        }
+        if raw > next && long(12) > behind && at > 0 {
+            // The recorder stopped in the middle of the metadata: what is before is sound.
+            break;
         }
         if raw > next || raw > MAX_METADATA {
             return Err(damaged(format!("its metadata take {raw} of {next} bytes")));
@@ -99,7 +104,13 @@ pub fn open(path: &Path) -> Result<Recording> {
         }
         if contents & RAW_DATA != 0 {
             let data = (at + LEAD_IN + raw, next - raw);
-            place(path, data, contents & INTERLEAVED != 0, &active, &mut objects);
+            let (interleaved, is_cut) = (contents & INTERLEAVED != 0, long(12) > behind);
+            let odd = if contents & DAQMX != 0 {
+                daqmx::place(path, data, is_cut, &active, &mut objects)
+            } else {
+                place(path, data, (interleaved, is_cut), &active, &mut objects)
+            };
+            notes.extend(odd.map(|what| format!("segment at byte {at}: {what}")));
         }
         at += LEAD_IN + next;
     }
@@ -108,13 +119,19 @@ pub fn open(path: &Path) -> Result<Recording> {
     let of_file = objects.get("/").map(|o| o.scales.clone()).unwrap_or_default();
     let groups: HashMap<String, BTreeMap<String, Property>> =
         objects.iter().map(|(name, o)| (name.clone(), o.scales.clone())).collect();
+    let said: HashMap<String, f64> =
+        objects.iter().filter_map(|(name, o)| Some((name.clone(), o.rate_hz?))).collect();
     for path_in_file in known {
         let Some(object) = objects.remove(&path_in_file).filter(|o| o.count > 0 || !o.pieces.is_empty())
         else {
             continue;
         };
         let name = spoken(&path_in_file);
-        if object.number.is_none() || object.mixed {
+        if let Some(why) = &object.foreign {
+            notes.push(left_out(&name, why));
+            continue;
+        }
+        if object.scaler.is_none() && object.number.is_none() || object.mixed {
             notes.push(left_out(&name, "its values are no real numbers of one type"));
             continue;
         }
@@ -122,14 +139,15 @@ pub fn open(path: &Path) -> Result<Recording> {
         let none = BTreeMap::new();
         let of_group = groups.get(group).unwrap_or(&none);
         let scales = [&object.scales, of_group, &of_file].into_iter().find(|s| scale::count(s) > 0);
-        let curve = match scale::curve(scales.unwrap_or(&none)) {
+        let curve = match scale::curve(scales.unwrap_or(&none), object.scaler.as_ref().map(|s| s.id)) {
             Ok(curve) => curve,
             Err(why) => {
                 notes.push(left_out(&name, &why));
                 continue;
             }
         };
-        let rate_hz = object.increment_s.filter(|s| *s > 0.0).map(|s| 1.0 / s).map(rounded);
+        let step = object.increment_s.filter(|s| *s > 0.0).map(|s| 1.0 / s).map(rounded);
+        let rate_hz = step.or(object.rate_hz).or_else(|| said.get(group).or(said.get("/")).copied());
         let channel = Channel::pieces(name, object.pieces).at_rate(rate_hz).in_unit(object.unit);
         channels.push(channel.along(curve).of_group(group));
     }
@@ -137,20 +155,23 @@ pub fn open(path: &Path) -> Result<Recording> {
 }
 
 /// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value
-/// by value.
+/// by value. Says what is odd about them.
 fn place(
     path: &Path,
     (start, held): (u64, u64),
-    interleaved: bool,
+    (interleaved, is_cut): (bool, bool),
     active: &[String],
     objects: &mut HashMap<String, Object>,
-) {
-    let chunk: u64 = active.iter().filter_map(|name| objects.get(name)).map(|o| o.bytes).sum();
+) -> Option<String> {
+    // Far more chunks than any recorder writes would be a damaged count.
+    const MOST: u64 = 10_000_000;
+    let chunk =
+        active.iter().filter_map(|name| objects.get(name)).try_fold(0_u64, |sum, o| sum.checked_add(o.bytes));
+    let Some(chunk) = chunk else { return Some("its sizes are no sizes: it is left out".to_owned()) };
     if chunk == 0 {
-        return;
+        return None;
     }
-    // A chunk that is not whole is dropped.
-    let chunks = held / chunk;
+    let (chunks, rest) = (held / chunk, held % chunk);
     let widths = active.iter().filter_map(|name| objects.get(name)?.number).map(|n| n.kind.bytes());
     let row: usize = widths.sum();
     let mut offset = 0;
@@ -166,15 +187,19 @@ fn place(
         if interleaved {
             object.pieces.push((piece(start + offset, row), chunks * count));
             offset += width as u64;
-        } else {
-            // Far more chunks than any recorder writes would be a damaged count.
-            const MOST: u64 = 10_000_000;
-            for k in 0..chunks.min(MOST) {
-                object.pieces.push((piece(start + k * chunk + offset, width), count));
-            }
-            offset += bytes;
+            continue;
         }
+        for k in 0..chunks.min(MOST) {
+            object.pieces.push((piece(start + k * chunk + offset, width), count));
+        }
+        // Where the recorder was stopped, the last chunk holds what was written until then.
+        let left = rest.saturating_sub(offset).min(bytes) / width as u64;
+        if is_cut && left > 0 {
+            object.pieces.push((piece(start + chunks * chunk + offset, width), left));
+        }
+        offset += bytes;
     }
+    (rest > 0 && !is_cut).then(|| format!("{rest} bytes at its end are no whole chunk and are left out"))
 }
 
 struct Metadata<'a> {
@@ -223,15 +248,24 @@ impl Metadata<'_> {
             let object = objects.entry(name.clone()).or_default();
             let index = self.word()?;
             if index != NONE {
-                if index != 0 {
+                if matches!(index, daqmx::NUMBERS | daqmx::LINES) {
+                    let read = daqmx::Scaler::read(self, index)?;
+                    object.mixed |= object.number.is_some();
+                    object.count = object.count.max(1);
+                    (object.scaler, object.foreign) = match read {
+                        Ok(scaler) => (Some(scaler), None),
+                        Err(why) => (None, Some(why)),
+                    };
+                } else if index != 0 {
                     let (kind, _, count) = (self.word()?, self.word()?, self.long()?);
                     let number = number(kind, self.big_endian);
+                    object.mixed |= object.scaler.take().is_some();
                     object.mixed |= object.number.is_some() && object.number != number;
                     object.number = number;
                     object.count = count;
                     object.bytes = match number {
                         Some(number) => count.checked_mul(number.kind.bytes() as u64)?,
-                        // Texts say how many bytes they take; times take 16 each.
+                        // Texts carry their length in bytes; times take 16 each.
                         None if kind == TEXT => self.long()?,
                         None => count.checked_mul(width(kind)? as u64)?,
                     };
@@ -257,8 +291,11 @@ impl Metadata<'_> {
                 } else {
                     let number = number(kind, self.big_endian);
                     let bytes = self.take(width(kind)?)?;
+                    let value = number.map(|n| n.decode(bytes));
                     if property == "wf_increment" {
-                        object.increment_s = number.map(|n| n.decode(bytes));
+                        object.increment_s = value;
+                    } else if let Some(hz) = value.and_then(|x| units::rate_hz(&property, None, x)) {
+                        object.rate_hz = Some(hz);
                     } else if let (Some(number), true) = (number, property.starts_with("NI_")) {
                         let value = Property::Number(number.decode(bytes));
                         object.scales.insert(property, value);

@@ -1,8 +1,8 @@
 //! Which channels are times, and the sample rate that they say.
 //!
 //! Times rise evenly from sample to sample, to their last digit, and so do counts, and the angle of a shaft
-//! that turns steadily: none of them is a signal. All samples are looked at, a stretch at a time, because a
-//! record that was interrupted, or put together, shows it nowhere else.
+//! that turns steadily: none of them is a signal. All samples are checked, a stretch at a time, because an
+//! interruption of the record, or a joint, shows nowhere else.
 
 use crate::units::{self, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result};
@@ -11,7 +11,7 @@ use crate::{Channel, Recording, Result};
 const STRETCH: usize = 1000;
 /// Fewest samples that show how a channel rises.
 const LEAST: usize = 10;
-/// Of so many steps one may be a gap.
+/// One in this many steps may be a gap.
 const RARE: usize = 250;
 /// Rates that differ by less than this part are one: clocks drift.
 const SAME_RATE: f64 = 1e-3;
@@ -25,7 +25,7 @@ struct Course {
     even: usize,
     uneven: usize,
     gaps: Vec<Gap>,
-    /// What all gaps add to the steps there.
+    /// Sum of all gaps beyond their steps.
     jumped: f64,
     /// Where it first rises otherwise than before.
     change: Option<(f64, f64)>,
@@ -36,7 +36,7 @@ struct Course {
 struct Gap {
     /// Place and value before it.
     after: (f64, f64),
-    /// What it is more than a step.
+    /// Its excess over a step.
     by: f64,
 }
 
@@ -48,8 +48,8 @@ struct Stretch {
     gaps: Vec<Gap>,
 }
 
-/// Marks the channels that are no signals, and gives the others the rate that the file says: as a number
-/// beside them, or by the times.
+/// Marks the channels that are no signals, and sets the rate of the others from the file: as a number beside
+/// them, or by the times.
 ///
 /// # Errors
 /// As [`Channel::for_each_block`], for times.
@@ -57,7 +57,8 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     let channels = &mut recording.channels;
     let courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
     for (channel, course) in channels.iter_mut().zip(&courses) {
-        channel.is_time |= course.as_ref().is_some_and(|course| course.is_even() || says_time(&channel.name));
+        channel.is_time |=
+            course.as_ref().is_some_and(|course| course.is_even() || says_time(own_name(channel)));
         if let (true, Unit::Time(unit, _)) = (channel.is_time, unit_of(channel)) {
             channel.unit = Some(unit.to_owned());
         }
@@ -79,7 +80,7 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
             let inside = channels[n].group == group;
             let rank = match unit_of(&channels[n]) {
                 Unit::Time(..) => 0,
-                Unit::Unsaid if says_time(&channels[n].name) => 1,
+                Unit::Unsaid if says_time(own_name(&channels[n])) => 1,
                 Unit::Unsaid if asked && first == Some(n) => 2,
                 _ => return None,
             };
@@ -111,8 +112,8 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     Ok(recording)
 }
 
-/// The rates [Hz] that stand as numbers of their own, each with the struct that it is in; those that
-/// contradict each other are noted, and say nothing.
+/// Sample rates [Hz] that are numbers of their own, each with its struct; contradictory ones are noted and
+/// ignored.
 fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Vec<(String, f64)> {
     let mut said: Vec<(String, f64, &str)> = Vec::new();
     for channel in channels.iter().filter(|c| c.len == 1) {
@@ -146,7 +147,7 @@ fn member(name: &str) -> &str {
     name.rsplit('.').next().unwrap_or(name)
 }
 
-/// Whether a name says that it is the time's.
+/// Whether a name is that of a time.
 pub fn says_time(name: &str) -> bool {
     let word: String = member(name).chars().take_while(|c| c.is_alphabetic()).collect();
     let word = word.to_lowercase();
@@ -158,7 +159,14 @@ pub fn says_time(name: &str) -> bool {
 }
 
 fn unit_of(channel: &Channel) -> Unit {
-    Unit::of(&channel.name, channel.unit.as_deref())
+    Unit::of(own_name(channel), channel.unit.as_deref())
+}
+
+/// The name without the group of TDMS before it: `rig/t/ms` of the group `/'rig'` is `t/ms`.
+fn own_name(channel: &Channel) -> &str {
+    let group = channel.group.trim_start_matches('/').trim_matches('\'').replace("''", "'");
+    let own = channel.name.strip_prefix(&group).and_then(|rest| rest.strip_prefix('/'));
+    own.filter(|_| !group.is_empty()).unwrap_or(&channel.name)
 }
 
 impl Course {
@@ -175,7 +183,7 @@ impl Course {
                     held.push((row, value));
                 }
                 row += 1.0;
-                // What is left for the last stretch shows how it rises, too.
+                // The last stretch is long enough to show its slope, too.
                 if held.len() > STRETCH + LEAST {
                     rises = course.add(&held[..=STRETCH], &mut step);
                     // The next begins with the last of this one.
@@ -188,7 +196,7 @@ impl Course {
             rises
         });
         if course.even == 0 && read.is_err() {
-            // What cannot be read is told where it is needed.
+            // Unreadable samples are reported where they are needed.
             return Ok(None);
         }
         read?;
@@ -228,7 +236,8 @@ impl Course {
         self.even > self.uneven
     }
 
-    /// The rate [Hz] that times say, with what is odd about them, also about their unit if it is `asked` for.
+    /// The sample rate [Hz] from times, with notes on irregularities, also on their unit if it is `asked`
+    /// for.
     fn rate_hz(&self, times: &Channel, asked: bool, notes: &mut Vec<String>) -> Option<f64> {
         let (name, unit) = (&times.name, unit_of(times));
         let (spelt, second) = if let Unit::Time(spelt, second) = unit { (spelt, second) } else { ("", 1.0) };
@@ -313,7 +322,7 @@ impl Stretch {
         let over = |w: &[(f64, f64)]| w[1].1 - w[0].1 - step * (w[1].0 - w[0].0);
         // Rounding moves many steps, gaps are rare.
         let usual = middle(values.windows(2).map(|w| over(w).abs()).collect(), RARE)?;
-        // What a late sample adds the next step takes back.
+        // A late sample is followed by a shorter step.
         let is_late =
             |n: usize| values.get(n..n + 3).is_some_and(|w| w[2].1 - w[0].1 < step * (w[2].0 - w[0].0 + 0.5));
         let is_gap = |n: &usize| {

@@ -28,6 +28,7 @@ pub(crate) fn recognise(start: &[u8]) -> bool {
 /// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let (mut channels, mut notes): (Vec<Channel>, Vec<String>) = (Vec::new(), Vec::new());
+    let mut broken = None;
     for (begins, found) in datasets(path)? {
         let dataset = match found {
             Found::Function(dataset) => dataset,
@@ -35,9 +36,16 @@ pub fn open(path: &Path) -> Result<Recording> {
                 notes.push(format!("the dataset of line {begins} has the number {kind}, not 58"));
                 continue;
             }
+            // One dataset that is damaged does not spoil the others.
+            Found::Damaged(what) => {
+                notes.push(format!("the {what}: it is left out"));
+                broken.get_or_insert(what);
+                continue;
+            }
         };
         match dataset.channel() {
             Ok(mut channel) => {
+                notes.extend(dataset.odd.map(|odd| format!("`{}`: {odd}", channel.name)));
                 let twins =
                     channels.iter().filter(|c| c.name.split(" #").next() == Some(&channel.name)).count();
                 if twins > 0 {
@@ -48,6 +56,9 @@ pub fn open(path: &Path) -> Result<Recording> {
             Err(why) => notes.push(format!("the dataset of line {begins} is left out: {why}")),
         }
     }
+    if let (Some(what), true) = (broken, channels.is_empty()) {
+        return Err(Error::damaged(path, FORMAT, what));
+    }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
@@ -56,6 +67,8 @@ enum Found {
     Function(Dataset),
     /// Another one than 58: its number.
     Other(String),
+    /// What is wrong with it, and where.
+    Damaged(String),
 }
 
 /// All datasets of a file with the line in which each begins.
@@ -70,14 +83,13 @@ fn datasets(path: &Path) -> Result<Vec<(usize, Found)>> {
         let Some(kind) = lines.next() else { break };
         let begins = lines.line;
         if kind.trim() == "58" || kind.trim_start().starts_with("58b") {
-            let dataset = lines.dataset(&kind).map_err(|what| {
-                Error::damaged(
-                    path,
-                    FORMAT,
-                    format!("dataset of line {begins}, near line {}: {what}", lines.line),
-                )
-            })?;
-            all.push((begins, Found::Function(dataset)));
+            let found = match lines.dataset(&kind) {
+                Ok(dataset) => Found::Function(dataset),
+                Err(what) => {
+                    Found::Damaged(format!("dataset of line {begins}, near line {}: {what}", lines.line))
+                }
+            };
+            all.push((begins, found));
         } else {
             all.push((begins, Found::Other(kind.trim().chars().take(20).collect())));
         }
@@ -152,7 +164,7 @@ fn e13(x: f64) -> String {
     format!("{:>13}", exponent(x, 5))
 }
 
-/// `1.25E+02`: FORTRAN wants a sign and two digits.
+/// `1.25E+02`: FORTRAN requires a sign and two digits.
 fn exponent(x: f64, digits: usize) -> String {
     if !x.is_finite() {
         return "NaN".to_owned();
@@ -179,6 +191,8 @@ struct Dataset {
     increment: f64,
     /// Abscissa where uneven, real part, imaginary part where complex; value by value.
     values: Vec<f64>,
+    /// What is odd about it.
+    odd: Option<String>,
 }
 
 impl Dataset {
@@ -260,13 +274,30 @@ impl Lines<'_> {
         } else {
             self.text(count * width, double, complex, even)?
         };
-        if values.len() < count * width {
-            return Err(format!(
-                "it promises {count} values of {width} numbers, and {} numbers follow",
-                values.len()
-            ));
+        let there = (values.len() / width).min(count);
+        if there == 0 && count > 0 {
+            return Err(format!("it promises {count} values, and none follow"));
         }
-        Ok(Dataset { head, count, complex, even, first, increment, values })
+        let more = self.rows_left();
+        let odd = if there < count {
+            Some(format!("it promises {count} values, and {there} are there: it was cut off"))
+        } else {
+            (more > 0).then(|| {
+                format!("it promises {count} values, and {more} lines more follow: they are left out")
+            })
+        };
+        Ok(Dataset { head, count: there, complex, even, first, increment, values, odd })
+    }
+
+    /// Lines up to the delimiter that ends the dataset, which stays.
+    fn rows_left(&mut self) -> usize {
+        let (at, line) = (self.at, self.line);
+        let mut rows = 0;
+        while let Some(line) = self.next().filter(|line| line.trim() != "-1") {
+            rows += usize::from(!line.trim().is_empty());
+        }
+        (self.at, self.line) = (at, line);
+        rows
     }
 
     /// Numbers in columns: 13 wide, 20 wide for doubles; uneven doubles have their abscissae 13 wide.
@@ -303,17 +334,17 @@ impl Lines<'_> {
                 columns.push(word);
                 rest = behind;
             }
-            let fixed: std::result::Result<Vec<f64>, _> = columns.into_iter().map(parse).collect();
-            // Many programs do not keep to the columns.
-            let free = || line.split_whitespace().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
-            values.extend(
-                fixed.or_else(|_| free()).map_err(|_| format!("`{}` is no row of numbers", line.trim()))?,
-            );
+            // Many programs do not keep to the columns; in those of others, of 80 signs, numbers touch.
+            let fixed = columns.into_iter().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
+            let free = line.split_whitespace().map(parse).collect::<std::result::Result<Vec<f64>, _>>();
+            let fixed = fixed.ok().filter(|_| line.trim_end().len() <= 80);
+            let row = free.ok().or(fixed).ok_or_else(|| format!("`{}` is no row of numbers", line.trim()))?;
+            values.extend(row);
         }
         Ok(values)
     }
 
-    /// Numbers as bytes, as many as the first line of the dataset says.
+    /// Numbers as bytes, as many as in the first line of the dataset.
     fn binary(
         &mut self,
         kind: &str,
@@ -333,13 +364,21 @@ impl Lines<'_> {
         let parts = 1 + usize::from(complex);
         let needed = count.saturating_mul(parts * width + if even { 0 } else { 4 });
         // pyuff counts a complex value once, whose two parts follow all the same.
-        let halved = complex && (bytes as usize) < needed && self.bytes.len() - self.at >= needed;
+        let there = self.bytes.len().saturating_sub(self.at);
+        let halved = complex && bytes < needed as u64 && there >= needed;
         let bytes = if halved { needed as u64 } else { bytes };
-        let data = self.at.checked_add(bytes as usize).and_then(|end| self.bytes.get(self.at..end));
-        let data = data.ok_or_else(|| {
-            format!("it promises {bytes} bytes, and {} follow", self.bytes.len().saturating_sub(self.at))
-        })?;
-        self.at += bytes as usize;
+        let rest = self.bytes.get(self.at..).unwrap_or_default();
+        let data = &rest[..rest.len().min(usize::try_from(bytes).unwrap_or(usize::MAX))];
+        self.at += data.len();
+        // Bytes that are missing would take those of the delimiter for numbers.
+        let behind = &rest[data.len()..];
+        let ends = behind.trim_ascii_start().starts_with(b"-1");
+        if data.len() as u64 == bytes && !ends && !behind.trim_ascii().is_empty() {
+            return Err(format!("no delimiter stands behind its {bytes} bytes"));
+        }
+        if (data.len() as u64) < bytes && data.trim_ascii_end().ends_with(b"    -1") {
+            return Err(format!("it promises {bytes} bytes, and a delimiter stands before their end"));
+        }
         let number = |kind| Number { kind, big_endian: order == 2 };
         let (single, ordinate) = (number(Kind::F32), number(if double { Kind::F64 } else { Kind::F32 }));
         if even {

@@ -87,9 +87,11 @@ const RATES: [&str; 26] = [
 ];
 
 /// Names of the time between two samples; a unit of time may follow.
-const STEPS: [&str; 16] = [
+const STEPS: [&str; 18] = [
     "dt",
+    "ts",
     "deltat",
+    "deltax",
     "deltatime",
     "tstep",
     "timestep",
@@ -106,15 +108,15 @@ const STEPS: [&str; 16] = [
     "tsample",
 ];
 
-/// Endings of names of what rises evenly and is no time.
+/// Endings of names of channels that rise evenly and are not times.
 const TURNS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
 
-/// What a unit says.
+/// Meaning of a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unit {
     /// Time: its usual spelling, and how many seconds it has.
     Time(&'static str, f64),
-    /// Something else, or nothing that is known: no time can be told from it.
+    /// Another or an unknown unit, which is not one of time.
     Other,
     /// There is none.
     Unsaid,
@@ -146,7 +148,7 @@ pub(crate) fn is_unit(field: &str) -> bool {
 }
 
 impl Unit {
-    /// What the unit of a channel says, or its name where there is none: `t [ms]`, `t (ms)`, `t/ms`,
+    /// Meaning of the unit of a channel, or of its name where there is none: `t [ms]`, `t (ms)`, `t/ms`,
     /// `time_ms`, `Time, ms`.
     pub(crate) fn of(name: &str, unit: Option<&str>) -> Self {
         let time = |unit: &str| seconds(unit).map(|(name, s)| Self::Time(name, s));
@@ -162,8 +164,8 @@ impl Unit {
     }
 }
 
-/// The sample rate [Hz] that a number under a name says, where the name is that of a rate or of a time step;
-/// its unit may stand in the name or beside it.
+/// The sample rate [Hz] of a number under a name, where the name is that of a rate or of a time step; its
+/// unit may stand in the name or beside it.
 pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64> {
     /// Units of frequency [Hz].
     const FREQUENCIES: [(&str, f64); 4] = [("khz", 1e3), ("mhz", 1e6), ("ksps", 1e3), ("hz", 1.0)];
@@ -172,7 +174,7 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     let plain = |key: &str| RATES.contains(&key) && key != "rate";
     let rate = if plain(&key) {
         let of_unit = FREQUENCIES.iter().find(|(unit, _)| *unit == beside).map(|(_, hz)| *hz);
-        // In a unit that is not known it says nothing.
+        // In an unknown unit it is ignored.
         Some(value * if beside.is_empty() { 1.0 } else { of_unit? })
     } else {
         let of_name = FREQUENCIES.iter().find_map(|(unit, hz)| Some((key.strip_suffix(unit)?, *hz)));
@@ -181,7 +183,7 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     let step = || {
         if STEPS.contains(&key.as_str()) {
             let second = if beside.is_empty() { 1.0 } else { seconds(&beside)?.1 };
-            // A step that was meant in another unit than seconds is not taken for one.
+            // A step in another unit than seconds is not used.
             return (!beside.is_empty() || value <= SLOWEST_S).then_some(value * second);
         }
         let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
@@ -192,8 +194,8 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
 }
 
-/// A step from which on numbers without a unit are no seconds: nobody listens to a bearing less than a
-/// thousand times a second, and times in milliseconds look the same.
+/// A step from which on numbers without a unit are no seconds: bearings are sampled faster than a thousand
+/// times a second, and times in milliseconds look the same.
 pub(crate) const SLOWEST_S: f64 = 1e-3;
 
 /// A rate is a round number more often than the digits of a step are exact.

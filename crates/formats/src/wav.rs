@@ -70,7 +70,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     Err(damaged("it ends before its samples"))
 }
 
-/// What the piece `fmt` says.
+/// Content of the chunk `fmt`.
 #[derive(Debug, Clone, Copy)]
 struct Format {
     sort: u16,
@@ -125,7 +125,7 @@ pub enum Whole {
 }
 
 impl Whole {
-    /// The smallest that holds so many bits; `None` for more than 32.
+    /// The smallest that holds this number of bits; `None` for more than 32.
     pub fn holding(bits: u32) -> Option<Self> {
         match bits {
             0..=16 => Some(Self::Of16),
@@ -196,7 +196,7 @@ fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
         return Err(Error::damaged(path, FORMAT, "it has no channels or no sample rate"));
     }
     let (held, notes) = data.held();
-    // Eight bits have no sign: 128 is silence.
+    // Eight bits have no sign: 128 is zero.
     let curve = (kind == Kind::U8).then(|| Curve::linear(-1.0, 1.0));
     let stride = usize::from(channels) * kind.bytes();
     let all = (0..usize::from(channels)).map(|n| {
@@ -210,8 +210,8 @@ fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
 }
 
 impl Data {
-    /// Bytes of samples, and what is to be said of them. A recorder that streams, or was cut off, leaves 0 or
-    /// the largest number where the size would be.
+    /// Bytes of samples, with notes. A recorder that streams, or was cut off, leaves 0 or the largest number
+    /// in place of the size.
     fn held(self) -> (u64, Vec<String>) {
         let Self { there, length, long_data, .. } = self;
         let unsaid = length == 0 || length == u64::from(u32::MAX) && long_data.is_none_or(|n| n == 0);

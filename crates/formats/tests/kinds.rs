@@ -128,3 +128,125 @@ fn issue_wav_without_its_size_is_read_to_its_end() {
         }
     }
 }
+
+/// Samples of the only channel that is no time.
+fn samples(desk: &Scratch, text: &str) -> (Option<f64>, Vec<f64>) {
+    let found = opened(desk, "a.csv", text.as_bytes());
+    let mut signals = found.channels.iter().filter(|c| !c.is_time);
+    let channel = signals.next().unwrap_or_else(|| panic!("{:?}", found.notes));
+    assert!(signals.next().is_none(), "{}", found.names());
+    (channel.rate_hz, channel.read().unwrap())
+}
+
+fn lines(row: impl Fn(usize) -> String) -> String {
+    (0..300).map(|n| row(n) + "\n").collect()
+}
+
+#[test]
+fn issue_one_column_with_decimal_commas_however_its_numbers_are_written() {
+    let desk = Scratch::create("formats-kinds-column");
+    let comma = |text: String| text.replace('.', ",");
+    let exact = |n: usize| 1e3 * signal(n) - 0.5 * (n % 2) as f64;
+    for (text, factor) in [
+        (lines(|n| comma(format!("{:.6e}", exact(n)))), 1.0),
+        ("acc\n".to_owned() + &lines(|n| comma(format!("{:.2}", exact(n)))), 1.0),
+        ("acc\n".to_owned() + &lines(|n| format!("\"{}\"", comma(format!("{:.2}", exact(n))))), 1.0),
+        // Thousands in groups; in every tenth row and more there is one.
+        (
+            "acc\n".to_owned()
+                + &lines(|n| comma(format!("{:.2}", exact(n) + 500.0)).replace("1010,", "1.010,")),
+            0.0,
+        ),
+    ] {
+        // The first is without a name above: exponents and zeros show it.
+        let text = if text.starts_with("acc") { text } else { "Messung 7\n".to_owned() + &text };
+        let (_, found) = samples(&desk, &text);
+        let shift = if factor == 0.0 { 500.0 } else { 0.0 };
+        let good = found.iter().enumerate().all(|(n, x)| (x - exact(n) - shift).abs() < 1e-6);
+        assert!(good && found.len() == 300, "{}", &text[..80]);
+    }
+    // One row that is damaged does not split the others.
+    let row = |n: usize| if n == 3 { "-0;x6".to_owned() } else { comma(format!("{:.2}", signal(n))) };
+    let (_, found) = samples(&desk, &("acc\n".to_owned() + &lines(row)));
+    // Nor without a name above.
+    let short = lines(|n| if n == 3 { "0,1".to_owned() } else { comma(format!("{:.2}", signal(n).abs())) });
+    assert_eq!(samples(&desk, &short).1[3..5], [0.1, 0.06]);
+    assert!(found[3].is_nan() && found[7] == 0.01 * (100.0 * signal(7)).round(), "{:?}", &found[..8]);
+}
+
+#[test]
+fn issue_thousands_minus_signs_and_times_with_their_unit() {
+    let desk = Scratch::create("formats-kinds-thousands");
+    let value = |n: usize| 1500.0 * signal(n);
+    let grouped = |n: usize, group: &str| {
+        let (whole, cents) =
+            ((value(n).abs() * 100.0).round() as u64 / 100, (value(n).abs() * 100.0).round() as u64 % 100);
+        let sign = if value(n) < 0.0 { "-" } else { "" };
+        let text = if whole > 999 {
+            format!("{}{group}{:03}", whole / 1000, whole % 1000)
+        } else {
+            whole.to_string()
+        };
+        (format!("{sign}{text}"), format!("{cents:02}"))
+    };
+    let row = |n: usize, sign: char, group: &str, quote: &str, split: char| {
+        let ((whole, cents), t) = (grouped(n, group), format!("{:.5}", 1e3 * n as f64 / RATE_HZ));
+        format!("{}{split}{quote}{whole}{sign}{cents}{quote}", t.replace('.', &sign.to_string()))
+    };
+    for text in [
+        lines(|n| row(n, ',', ".", "", ';')),
+        lines(|n| row(n, '.', ",", "\"", ',')),
+        lines(|n| row(n, '.', "'", "", ';')),
+        lines(|n| row(n, ',', "\u{a0}", "", ';')),
+        lines(|n| row(n, '.', "", "", ';').replace('-', "\u{2212}")),
+    ] {
+        let (rate_hz, found) = samples(&desk, &("t [ms];acc\n".to_owned() + &text));
+        assert!((rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-3, "{}", &text[..60]);
+        assert!(found.iter().enumerate().all(|(n, x)| (x - value(n)).abs() < 0.006), "{}", &text[..60]);
+    }
+    // A single group without a fraction may be a decimal point: no number.
+    let found = Recording::open({
+        let path = desk.join("b.csv");
+        std::fs::write(&path, "t [ms];acc\n".to_owned() + &lines(|n| format!("{n};1,{:03}", 100 + n)))
+            .unwrap();
+        path
+    });
+    let read = found.unwrap().channels.iter().find(|c| c.name == "acc").map(|c| c.read().unwrap()[1]);
+    assert_eq!(read, Some(1.101));
+    // MATLAB writes the times of a timetable so.
+    for (unit, second) in [(" sec", 1.0), (" ms", 1e-3), ("ms", 1e-3), (" min", 60.0)] {
+        let text = lines(|n| format!("{:.9}{unit},{}", n as f64 / RATE_HZ / second, signal(n)));
+        let (rate_hz, found) = samples(&desk, &("Time,Acc\n".to_owned() + &text));
+        assert!(
+            (rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-3 && found[7] == signal(7),
+            "{unit}: {rate_hz:?}"
+        );
+    }
+}
+
+#[test]
+fn issue_lines_above_a_table_say_its_rate() {
+    let desk = Scratch::create("formats-kinds-rate");
+    for head in [
+        "# fs = 12800 Hz\nacc\n",
+        "Abtastrate [Hz];12800\nacc\n",
+        "Sampling Frequency: 12.8 kHz\nacc\n",
+        "Record Length,300\nSample Interval,7.8125e-05\nacc\n",
+        "Delta_X\t7,8125E-5\nacc\n",
+        "Audacity Sample Data Export\nSample Rate: 12800 Hz. Sample values on linear scale. 1 channel \
+         (mono).\n\n",
+    ] {
+        let (rate_hz, found) = samples(&desk, &(head.to_owned() + &lines(|n| format!("{:.4}", signal(n)))));
+        assert_eq!((rate_hz, found.len(), found[7]), (Some(RATE_HZ), 300, signal(7)), "{head}");
+    }
+    // Two that contradict each other, an unknown unit, a sentence.
+    for head in [
+        "fs: 12800\nSample rate: 25600\nacc\n",
+        "Sample rate: 3 turtles\nacc\n",
+        "Sample rate: see page 12800\nacc\n",
+        "Rate: 20\nacc\n",
+    ] {
+        let (rate_hz, _) = samples(&desk, &(head.to_owned() + &lines(|n| format!("{:.4}", signal(n)))));
+        assert_eq!(rate_hz, None, "{head}");
+    }
+}

@@ -567,6 +567,33 @@ fn issue_every_usual_codec_of_parquet_is_read() {
     }
 }
 
+#[test]
+fn issue_properties_and_channels_of_tdms_say_the_rate() {
+    let desk = Scratch::create("formats-tdms-rates");
+    let data: Vec<u8> = (0..COUNT).flat_map(|n| signal(n).to_le_bytes()).collect();
+    let of = |index| tdms_object("/'g'/'acc'", &index, &[]);
+    for (path, name, value) in [
+        ("/'g'", "SamplingRate", RATE_HZ),
+        ("/", "Sampling Rate", RATE_HZ),
+        ("/", "sample_interval", 1.0 / RATE_HZ),
+    ] {
+        let parent = tdms_object(path, &Index::NoData, &[(name, Is::Number(value))]);
+        let segment = tdms_segment(&[parent, of(Index::Of(F64, COUNT as u64))], true, &data);
+        let found = opened(&desk, "a.tdms", &segment);
+        assert_eq!(found.channel("g/acc").unwrap().rate_hz, Some(RATE_HZ), "{path} {name}");
+    }
+    // A channel of times in the group, whose path is no unit.
+    for (name, second) in [("Time", 1.0), ("t [ms]", 1e-3)] {
+        let times: Vec<u8> = (0..COUNT).flat_map(|n| (n as f64 / RATE_HZ / second).to_le_bytes()).collect();
+        let time = tdms_object(&format!("/'g'/'{name}'"), &Index::Of(F64, COUNT as u64), &[]);
+        let segment =
+            tdms_segment(&[time, of(Index::Of(F64, COUNT as u64))], true, &[times, data.clone()].concat());
+        let found = opened(&desk, "a.tdms", &segment);
+        let hz = found.channel("g/acc").unwrap().rate_hz.unwrap_or_else(|| panic!("{:?}", found.notes));
+        assert!((hz / RATE_HZ - 1.0).abs() < 1e-6, "{name}: {hz}");
+    }
+}
+
 // ----------------------------------------------------------------------------------------------- HDF5
 
 /// Files that h5py wrote, by `fixtures/signals/make.py`.
@@ -599,6 +626,12 @@ fn issue_attributes_of_hdf5_say_rate_and_unit() {
     assert_eq!((channel.rate_hz, channel.unit.as_deref()), (Some(RATE_HZ), Some("g")), "{:?}", found.notes);
     // A group has a rate of its own.
     assert_eq!(found.channel("far.acc").unwrap().rate_hz, Some(3200.0), "{:?}", found.notes);
+}
+
+#[test]
+fn issue_scale_factors_of_hdf5_are_applied() {
+    let found = fixture("scaled.h5");
+    holds(found.channel("acc").unwrap(), COUNT, |n| 0.5 + 0.001 * (1000.0 * signal(n)).round());
 }
 
 // ------------------------------------------------------------------------------------------ mutations

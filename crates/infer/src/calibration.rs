@@ -16,16 +16,16 @@ use crate::{
     runs::Target,
 };
 
-/// Points of the prior that all truths share; a posterior that too few of them describe is sought by itself.
+/// Points of the prior that all truths share; a posterior with too few of them is sampled on its own.
 const POOL: usize = 8192;
 
-/// So many of the pool must count.
+/// Least effective number of points from the pool.
 const ENOUGH: f64 = 200.0;
 
 /// Bins of rank histograms.
 pub const BINS: usize = 10;
 
-/// A point, and what one run there gave.
+/// A point, and the outputs of one run there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Truth {
     /// In the unit cube.
@@ -45,7 +45,7 @@ pub struct Share {
     pub high: f64,
 }
 
-/// How one field comes out.
+/// Calibration of one field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FieldCalibration {
     /// Share of truths within the central 50 % interval.
@@ -58,11 +58,12 @@ pub struct FieldCalibration {
     pub chi_squared: f64,
     /// Probability of a χ² as large where ranks are even.
     pub p_value: f64,
-    /// Mean standard deviation of the posterior over that of the prior: 1 where the outputs tell nothing.
+    /// Mean standard deviation of the posterior over that of the prior: 1 where the outputs carry no
+    /// information.
     pub width: f64,
 }
 
-/// Whether an inference can be trusted, field by field.
+/// Whether an inference is calibrated, field by field.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Calibration {
     /// Number of truths.
@@ -71,7 +72,7 @@ pub struct Calibration {
     pub fields: Vec<FieldCalibration>,
 }
 
-/// What one truth gave: rank of each coordinate, and its posterior standard deviation.
+/// Result of one truth: rank of each coordinate, and its posterior standard deviation.
 struct Answer {
     ranks: Vec<f64>,
     deviations: Vec<f64>,
@@ -81,7 +82,7 @@ impl Calibration {
     /// Infers every truth from its own outputs. `columns` are those that count, each with its tolerance.
     ///
     /// # Errors
-    /// When there are no truths, their shapes do not fit, or a target cannot be asked for.
+    /// When there are no truths, their shapes do not fit, or a target is invalid.
     pub fn of(
         emulator: &Emulator,
         priors: &[Prior],
@@ -134,7 +135,7 @@ fn targets(truth: &Truth, columns: &[(usize, f64)], number: usize) -> Result<Vec
     columns.iter().map(target).collect()
 }
 
-/// Points of the prior whose predictions are known once for all truths.
+/// Points of the prior whose predictions are computed once for all truths.
 struct Pool {
     points: Vec<Vec<f64>>,
     predictions: Predictions,

@@ -1,4 +1,4 @@
-//! Targets that no point of the prior can make: each alone, in pairs, and all together.
+//! Targets that no point of the prior reaches: each alone, in pairs, and all together.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,25 +16,25 @@ use crate::{
 /// Points of the prior among which the best is sought first.
 const POOL: usize = 8192;
 
-/// Tries to better the best point of a target, a pair, or all, in rounds of so many points.
+/// Rounds and points a round by which the best point of a target, a pair, or all is improved.
 const ROUNDS: [usize; 2] = [16, 48];
 
 /// A target is out of reach where no point brings it within as many standard deviations: 1 % of runs lie
 /// further off.
 pub const LIMIT: f64 = 2.576;
 
-/// How near a point of the prior comes to one target, whatever it does to the others.
+/// Nearest prediction to one target over the prior, regardless of the others.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reach {
     /// Number of the target.
     pub target: usize,
     /// The best point.
     pub point: Vec<f64>,
-    /// How far the target lies from the prediction there, in standard deviations of scatter, tolerance and
-    /// the emulator's uncertainty: positive where the target is larger. Of a target that asks whether an
-    /// output exists, the normal deviate of the probability that it is as asked.
+    /// Distance of the target from the prediction there, in standard deviations of scatter, tolerance and the
+    /// emulator's uncertainty: positive where the target is larger. For a target on the existence of an
+    /// output, the normal deviate of the probability of that target.
     pub deviations: f64,
-    /// Median prediction there, in the output's unit; NaN where existence alone is asked.
+    /// Median prediction there, in the output's unit; NaN for a target on existence alone.
     pub prediction: f64,
     /// Probability that the output exists, or does not, as the target asks.
     pub probability: f64,
@@ -53,7 +53,7 @@ pub struct Exclusion {
     pub deviations: f64,
 }
 
-/// What the targets ask beyond the prior's reach.
+/// Targets beyond the prior's reach.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Conflict {
     /// Every target alone.
@@ -124,7 +124,7 @@ impl Conflict {
     }
 }
 
-/// How far a target lies off: its value, or where the output is unlikely to be as asked, that.
+/// Distance of a target: that of its value, or of its existence where that is unlikely.
 fn signed(likelihood: &Likelihood, target: usize, seen: &Seen) -> f64 {
     let rarity = likelihood.rarity(seen);
     match likelihood.deviate(target, seen) {
@@ -140,7 +140,7 @@ fn misses(likelihood: &Likelihood, points: &[Vec<f64>]) -> Vec<Vec<f64>> {
     likelihood.see(points).iter().map(row).collect()
 }
 
-/// Points that were seen, and how far each target lies off from them.
+/// Evaluated points, and the distance of each target from them.
 struct Search<'a> {
     likelihood: &'a Likelihood<'a>,
     priors: &'a [Prior],

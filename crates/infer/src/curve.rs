@@ -1,4 +1,4 @@
-//! Whole curves as targets: a few principal components in place of every sample.
+//! Whole curves as targets: a few principal components instead of every sample.
 
 use faer::Mat;
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub struct Curves {
     pub variances: Vec<f64>,
     /// Share of the curves' variance that these shapes keep, 0 … 1.
     pub kept: f64,
-    /// Root mean square, over curves and samples, of what they leave out, in the curves' unit.
+    /// Root mean square, over curves and samples, of the residual, in the curves' unit.
     pub left_out: f64,
 }
 
@@ -50,7 +50,7 @@ impl Curves {
         let singular = svd.S().column_vector();
         let squares: Vec<f64> = (0..singular.nrows()).map(|i| singular[i] * singular[i]).collect();
         let total: f64 = squares.iter().sum();
-        // What rounding leaves of equal curves is no shape.
+        // The rounding error of equal curves is not a shape.
         let rounding = 1e-28 * n as f64 * mean.iter().map(|m| m * m).sum::<f64>() + 1e-24 * total;
         let mut kept = 0.0;
         let mut count = 0;
@@ -92,8 +92,8 @@ impl Curves {
         Ok(curve)
     }
 
-    /// Root mean square of what the shapes leave out of a curve: where it is far above `left_out`, the curve
-    /// is none of the kind that they were made from.
+    /// Root mean square of a curve's residual: where it is far above `left_out`, the curve differs in kind
+    /// from those that the shapes were made from.
     ///
     /// # Errors
     /// When the curve has another number of samples.

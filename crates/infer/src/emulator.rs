@@ -1,5 +1,5 @@
 //! Outputs as functions of the point, learned from runs: a Gaussian process each, with the scatter of runs,
-//! the probability that the output exists, and the correlation of what is left.
+//! the probability that the output exists, and the correlation of residuals.
 
 mod correlation;
 mod existence;
@@ -37,17 +37,17 @@ pub struct Emulator {
     correlations: Mat<f64>,
 }
 
-/// What one output is at one point, in the output's unit. Where it is emulated on a logarithmic scale, `mean`
-/// is its median, and the deviations are those of the logarithm times the mean.
+/// Prediction of one output at one point, in the output's unit. Where it is emulated on a logarithmic scale,
+/// `mean` is its median, and the deviations are those of the logarithm times the mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// Probability that a run there yields it.
     pub exists: f64,
     /// Its mean over starts. NaN where too few runs yield the output for it to be emulated.
     pub mean: f64,
-    /// Standard deviation of that mean: what more runs would tell.
+    /// Standard deviation of that mean, which more runs reduce.
     pub sd_of_mean: f64,
-    /// Standard deviation of single starts about the mean: what no further run tells.
+    /// Standard deviation of single starts about the mean, which no further run reduces.
     pub scatter: f64,
 }
 
@@ -61,7 +61,8 @@ pub struct Quality {
     /// Share of runs that yield it.
     pub exists: f64,
     /// Share of the variance of runs that the other points predict, on the output's scale: 1 where runs
-    /// follow a smooth function without scatter, 0 where the point tells nothing. NaN without an emulator.
+    /// follow a smooth function without scatter, 0 where they do not depend on the point. NaN without an
+    /// emulator.
     pub r_squared: f64,
     /// Share of runs within the 90 % interval of their prediction.
     pub coverage_90: f64,
@@ -239,7 +240,7 @@ impl Emulator {
         Some(value.regression.predict(points).into_iter().enumerate().map(one).collect())
     }
 
-    /// The share of the mean's uncertainty that is left at points after runs at further ones, one start each.
+    /// The share of the mean's uncertainty that remains at points after runs at further ones, one start each.
     /// None where the output is not emulated.
     pub(crate) fn left_after(
         &self,

@@ -9,9 +9,9 @@ pub enum Error {
     Prior {
         /// Which number of the prior.
         field: &'static str,
-        /// What it was.
+        /// Value.
         value: f64,
-        /// What it may be.
+        /// Allowed values.
         expected: &'static str,
     },
 
@@ -32,7 +32,7 @@ pub enum Error {
     /// Rows or columns that do not fit together.
     #[error("{what} {number} has {found} numbers, expected {expected}")]
     Shape {
-        /// What has the wrong length.
+        /// Argument of the wrong length.
         what: &'static str,
         /// Which of them, from 0.
         number: usize,
@@ -45,7 +45,7 @@ pub enum Error {
     /// A number that is not finite, or outside its range.
     #[error("{what} {number} of row {row} = {value}: {expected}")]
     Value {
-        /// What the number is.
+        /// Name of the number.
         what: String,
         /// Its column, from 0.
         number: usize,
@@ -53,18 +53,18 @@ pub enum Error {
         row: usize,
         /// The number.
         value: f64,
-        /// What it may be.
+        /// Allowed values.
         expected: &'static str,
     },
 
-    /// A target that cannot be asked for.
+    /// An invalid target.
     #[error("target {number} of output `{output}`: {why}")]
     Target {
         /// Which target, from 0.
         number: usize,
         /// Name of the output, or its number where there is none such.
         output: String,
-        /// What is wrong, and what to try.
+        /// Problem and remedy.
         why: String,
     },
 
@@ -73,9 +73,9 @@ pub enum Error {
     Option {
         /// Name of the option.
         option: &'static str,
-        /// What it was.
+        /// Value.
         value: f64,
-        /// What it may be.
+        /// Allowed values.
         expected: &'static str,
     },
 

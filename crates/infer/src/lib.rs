@@ -1,9 +1,9 @@
-//! Bayesian inference of a simulation's inputs from its outputs: which points of the unit cube make the
-//! numbers that were measured, how sure that is, and which numbers no point makes.
+//! Bayesian inference of a simulation's inputs from its outputs: which points of the unit cube reproduce the
+//! measured numbers, with which probability, and which numbers no point reproduces.
 //!
-//! The crate knows nothing of the simulation. It is given runs, a row each: a point of the unit cube and what
-//! the run there yielded. It learns every output as a function of the point, with the scatter of starts
-//! ([`Emulator`]), and draws from the posterior of points given targets ([`Posterior`]). Priors turn
+//! The crate is independent of the simulation. Its input are runs, a row each: a point of the unit cube and
+//! the outputs of the run there. It learns every output as a function of the point, with the scatter of
+//! starts ([`Emulator`]), and draws from the posterior of points given targets ([`Posterior`]). Priors turn
 //! coordinates into values ([`Prior`]). Everything follows from seeds: the same runs give the same answer on
 //! any number of threads.
 //!

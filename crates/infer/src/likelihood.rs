@@ -50,7 +50,7 @@ impl Seen {
 /// Some outputs at some points.
 pub(crate) struct Predictions {
     points: usize,
-    /// Of each output: the probability that it exists, and what it is, point by point.
+    /// Of each output: the probability that it exists, and its prediction, point by point.
     columns: Vec<(Vec<f64>, Option<Vec<Scaled>>)>,
 }
 
@@ -130,7 +130,7 @@ impl<'a> Likelihood<'a> {
         sum + self.copula(&normal)
     }
 
-    /// Logarithm of what correlation adds: of normal deviates with what share of each is the runs' own.
+    /// Logarithm of the copula's density, of normal deviates and the share of each that is due to the runs.
     fn copula(&self, normal: &[(usize, f64, f64)]) -> f64 {
         let n = normal.len();
         let mut factor = vec![0.0; n * n];
@@ -162,7 +162,7 @@ impl<'a> Likelihood<'a> {
     }
 
     /// How many scales of scatter and tolerance a target lies from the prediction, as a normal deviate, and
-    /// none where only its existence is asked.
+    /// none for a target on existence alone.
     pub(crate) fn deviate(&self, target: usize, seen: &Seen) -> Option<f64> {
         let asked = &self.asked[target];
         let tails = asked.value.and(asked.tails)?;
@@ -187,12 +187,12 @@ impl<'a> Likelihood<'a> {
         seen.log_exists.exp()
     }
 
-    /// How unlikely it is that the output is as asked, as a two-sided normal deviate: 0 where it is sure.
+    /// Improbability of the target on existence, as a two-sided normal deviate: 0 where it is certain.
     pub(crate) fn rarity(&self, seen: &Seen) -> f64 {
         -normal_quantile((0.5 * seen.log_exists.exp()).clamp(1e-12, 0.5))
     }
 
-    /// Median prediction, in the output's unit; NaN where existence alone is asked.
+    /// Median prediction, in the output's unit; NaN for a target on existence alone.
     pub(crate) fn prediction(&self, target: usize, seen: &Seen) -> f64 {
         let asked = &self.asked[target];
         match asked.value.filter(|_| asked.tails.is_some()) {
@@ -215,10 +215,10 @@ impl<'a> Likelihood<'a> {
 impl Emulator {
     /// Logarithm of the joint density of targets at a point, each on the scale of its output: with the
     /// scatter of a start, the emulator's own uncertainty and the targets' tolerances. Several targets of one
-    /// output count as so many runs of their own.
+    /// output count as separate runs.
     ///
     /// # Errors
-    /// When a target cannot be asked for, or the point has other dimensions or lies outside.
+    /// When a target is invalid, or the point has other dimensions or lies outside.
     pub fn log_likelihood(&self, point: &[f64], targets: &[Target]) -> Result<f64, Error> {
         let points = [point.to_vec()];
         self.check(&points)?;

@@ -1,4 +1,4 @@
-//! Where the next runs tell most, and how much they would tell.
+//! The most informative next runs, and how much they would narrow the posterior.
 
 use serde::{Deserialize, Serialize};
 
@@ -22,8 +22,8 @@ const CANDIDATES: usize = 400;
 pub struct NextOptions {
     /// Number of points.
     pub count: usize,
-    /// Share of them that fill the prior evenly whatever the posterior says, 0 … 1, against regions that the
-    /// emulator does not know of.
+    /// Share of them that fill the prior evenly whatever the posterior is, 0 … 1, against regions without
+    /// runs.
     pub filling: f64,
     /// Points of the filling sequence that earlier calls with this seed have used.
     pub filled: usize,
@@ -31,12 +31,12 @@ pub struct NextOptions {
     pub seed: u64,
 }
 
-/// Points of the next runs: draws of the posterior where the emulator's doubt moves the likelihood most, each
-/// counting the ones chosen before it as known, and points that fill the prior.
+/// Points of the next runs: draws of the posterior where the emulator's uncertainty changes the likelihood
+/// most, each given the ones chosen before it, and points that fill the prior.
 ///
 /// # Errors
-/// When priors do not match the emulator, a target cannot be asked for, `filling` is out of range, or the
-/// filling sequence ends.
+/// When priors do not match the emulator, a target is invalid, `filling` is out of range, or the filling
+/// sequence ends.
 pub fn next(
     emulator: &Emulator,
     priors: &[Prior],
@@ -70,25 +70,25 @@ pub fn next(
     Ok(chosen)
 }
 
-/// What some further runs would do to one field.
+/// Effect of further runs on one field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Gain {
     /// Number of the coordinate.
     pub field: usize,
     /// Standard deviation of the coordinate now.
     pub deviation: f64,
-    /// What is expected after the runs: at most `deviation`, within the error of reweighting.
+    /// Expected value after the runs: at most `deviation`, within the error of reweighting.
     pub after: f64,
-    /// What is expected where the emulator has no doubt left: the scatter of starts and the targets'
-    /// tolerances remain.
+    /// Expected value without the emulator's uncertainty: the scatter of starts and the targets' tolerances
+    /// remain.
     pub limit: f64,
 }
 
 /// How much runs at further points are expected to narrow each field. To first order: the emulator's mean is
-/// taken to be right, and its uncertainty becomes what it will be after those runs; draws are reweighted.
+/// assumed right, with its uncertainty after those runs; draws are reweighted.
 ///
 /// # Errors
-/// When priors or points do not match the emulator, or a target cannot be asked for.
+/// When priors or points do not match the emulator, or a target is invalid.
 pub fn expected_gain(
     emulator: &Emulator,
     priors: &[Prior],

@@ -47,7 +47,7 @@ impl Default for PosteriorOptions {
     }
 }
 
-/// What is known of the point after the targets.
+/// Posterior of the point.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Posterior {
     /// Draws of equal weight in the unit cube (`[draw][dimension]`), choices in the middle of their cells.
@@ -62,7 +62,7 @@ pub struct Posterior {
     pub stages: usize,
     /// Share of proposed moves that were accepted at the last stage.
     pub acceptance: f64,
-    /// Points at which the emulator was asked.
+    /// Number of the emulator's evaluations.
     pub evaluations: usize,
 }
 
@@ -70,8 +70,8 @@ impl Posterior {
     /// Of the point, given priors of its coordinates and targets.
     ///
     /// # Errors
-    /// When priors do not match the emulator's dimensions or are impossible, a target cannot be asked for, or
-    /// the number of draws is out of range.
+    /// When priors do not match the emulator's dimensions or are impossible, a target is invalid, or the
+    /// number of draws is out of range.
     pub fn of(
         emulator: &Emulator,
         priors: &[Prior],

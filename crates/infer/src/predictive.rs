@@ -1,4 +1,4 @@
-//! What runs at draws of the posterior would give, beside the targets.
+//! Posterior predictive distribution of the outputs, beside the targets.
 
 use serde::{Deserialize, Serialize};
 
@@ -26,7 +26,7 @@ impl Predictive {
     /// Of every output, and the first target of each.
     ///
     /// # Errors
-    /// When a target cannot be asked for, or draws have other dimensions than the emulator.
+    /// When a target is invalid, or draws have other dimensions than the emulator.
     pub fn of(
         emulator: &Emulator,
         posterior: &Posterior,

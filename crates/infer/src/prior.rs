@@ -7,7 +7,7 @@ use crate::{
     random::{normal_quantile, normal_share},
 };
 
-/// What is known of a field before any run. Fields are independent of each other.
+/// Prior distribution of a field. Fields are independent of each other.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Prior {
@@ -44,7 +44,7 @@ impl Prior {
     /// Whether its numbers make a distribution.
     ///
     /// # Errors
-    /// Names the first number that does not, and what it may be.
+    /// Names the first number that does not, and its range.
     pub fn check(&self) -> Result<(), Error> {
         let refuse = |field, value, expected| Err(Error::Prior { field, value, expected });
         let ordered = |from: f64, to: f64| {

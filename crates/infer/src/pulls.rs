@@ -12,11 +12,11 @@ use crate::{
     runs::Target,
 };
 
-/// Draws are reweighted if so large a share of them still counts; otherwise the posterior is sought anew,
-/// since draws that lie within a narrow posterior know nothing of the tails of a wide one.
+/// Draws are reweighted if their effective share is above this; otherwise the posterior is sampled again,
+/// since draws of a narrow posterior do not cover the tails of a wide one.
 const ENOUGH: f64 = 0.3;
 
-/// What one target does to one field.
+/// Effect of one target on one field.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Pull {
     /// Number of the target.

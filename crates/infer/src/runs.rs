@@ -1,4 +1,4 @@
-//! What runs gave: points, outputs, and the targets that they are held against.
+//! Runs: points, outputs, and the targets for them.
 
 use serde::{Deserialize, Serialize};
 
@@ -10,8 +10,8 @@ pub struct Runs {
     /// Where each run lies in the unit cube (`[run][dimension]`, 0 … 1; choices in the middle of their
     /// cells).
     pub points: Vec<Vec<f64>>,
-    /// What it gave (`[run][output]`, each in its own unit); none where a run does not yield the quantity,
-    /// such as a tone that is not found.
+    /// Outputs (`[run][output]`, each in its own unit); none where a run does not yield the quantity, such as
+    /// a tone that is not found.
     pub outputs: Vec<Vec<Option<f64>>>,
 }
 
@@ -35,7 +35,7 @@ pub enum Scale {
     Logarithmic,
 }
 
-/// What the answer is asked to make.
+/// A target for an output.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Target {
     /// Column of the output.
@@ -111,7 +111,7 @@ impl Runs {
         Ok(())
     }
 
-    /// Rows with equal points, in the order in which each point comes first.
+    /// Rows with equal points, in the order of first occurrence.
     pub(crate) fn groups(&self) -> Vec<Vec<usize>> {
         let mut order: Vec<usize> = (0..self.points.len()).collect();
         let compare = |&a: &usize, &b: &usize| {
@@ -146,7 +146,7 @@ impl Target {
     /// Whether it asks for a number that its output can have.
     ///
     /// # Errors
-    /// Says what is wrong with it.
+    /// Names the invalid number and its range.
     pub fn check(&self, number: usize, outputs: &[Output]) -> Result<(), Error> {
         let Some(output) = outputs.get(self.output) else {
             let why = format!("there are outputs 0 to {} only", outputs.len().saturating_sub(1));

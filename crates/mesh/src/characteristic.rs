@@ -1,4 +1,4 @@
-//! The characteristic length of an element: what its own critical time step says about its size.
+//! The characteristic length of an element: its own critical time step as a length.
 
 use crate::part::signed_area;
 

@@ -94,7 +94,7 @@ impl Deck {
         self.read_bytes(text.as_bytes())
     }
 
-    /// Reads a file of this format, which is binary or of any encoding: what is not UTF-8 is taken for
+    /// Reads a file of this format, which is binary or of any encoding: anything but UTF-8 is taken for
     /// Latin-1.
     ///
     /// # Errors
@@ -114,7 +114,7 @@ impl Deck {
     }
 }
 
-/// What a file held.
+/// Content of a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReadDeck {
     /// Bodies are the parts or element sets; elements in none are in a body `rest`. Nodes that no element
@@ -122,7 +122,7 @@ pub struct ReadDeck {
     pub mesh: Mesh,
     /// Node sets by name, in numbers of the mesh.
     pub node_sets: BTreeMap<String, Vec<u32>>,
-    /// What was passed over, with its lines.
+    /// Ignored parts, with their lines.
     pub notes: Vec<String>,
 }
 
@@ -144,7 +144,7 @@ pub struct DeckError {
     pub file: Option<String>,
     /// Line in it, from 1.
     pub line: usize,
-    /// What is wrong, and what to try.
+    /// Problem and remedy.
     pub what: String,
 }
 
@@ -171,7 +171,7 @@ fn text_of(bytes: &[u8]) -> Cow<'_, str> {
     }
 }
 
-/// Letters and digits of a name, in capitals, others as `_`: what every program takes.
+/// Letters and digits of a name, in capitals, others as `_`: a name that every program accepts.
 fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' }).collect()
 }

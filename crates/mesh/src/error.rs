@@ -1,4 +1,4 @@
-//! What can be wrong with a request for a mesh.
+//! Errors of requests for a mesh.
 
 /// Why a mesh, a report or a file could not be made.
 ///
@@ -12,11 +12,11 @@ pub enum Error {
          unit (metres)"
     )]
     NotPositive {
-        /// The shape that was asked for.
+        /// The requested shape.
         shape: &'static str,
         /// The field that is wrong.
         field: &'static str,
-        /// What the field holds.
+        /// The field's value.
         value: f64,
     },
     /// A coordinate or an angle is infinite or not a number.
@@ -24,55 +24,55 @@ pub enum Error {
         "{shape}: `{field}` is {value}, but it must be a finite number; check the calculation that gave it"
     )]
     NotFinite {
-        /// The shape that was asked for.
+        /// The requested shape.
         shape: &'static str,
         /// The field that is wrong.
         field: &'static str,
-        /// What the field holds.
+        /// The field's value.
         value: f64,
     },
     /// A count is too small or too large to make the shape.
     #[error("{shape}: `{field}` is {value}, but it must lie between {least} and {most}; {advice}")]
     Count {
-        /// The shape that was asked for.
+        /// The requested shape.
         shape: &'static str,
         /// The field that is wrong.
         field: &'static str,
-        /// What the field holds.
+        /// The field's value.
         value: usize,
         /// Smallest count that works.
         least: usize,
         /// Largest count that works.
         most: usize,
-        /// What to try.
+        /// Remedy.
         advice: &'static str,
     },
     /// A dimension does not go together with the others.
     #[error("{shape}: `{field}` is {value:.9}, but it must be {relation} {limit:.9}; {advice}")]
     OutOfRange {
-        /// The shape that was asked for.
+        /// The requested shape.
         shape: &'static str,
         /// The field that is wrong.
         field: &'static str,
-        /// What the field holds.
+        /// The field's value.
         value: f64,
         /// How the field must compare with the limit: `above`, `below`, `at most`.
         relation: &'static str,
         /// The limit.
         limit: f64,
-        /// What to try.
+        /// Remedy.
         advice: &'static str,
     },
     /// Two fields that exclude each other.
     #[error("{shape}: `{field}` does not go together with `{other}`; {advice}")]
     Conflict {
-        /// The shape that was asked for.
+        /// The requested shape.
         shape: &'static str,
         /// One field.
         field: &'static str,
-        /// The other field, with what it holds.
+        /// The other field, with its value.
         other: &'static str,
-        /// What to try.
+        /// Remedy.
         advice: &'static str,
     },
     /// No arrangement of the nodes was found in which every element has a positive Jacobian.
@@ -80,13 +80,13 @@ pub enum Error {
         "{shape}: element {element} stays inside out (its smallest corner area is {area:e} m²); {advice}"
     )]
     Tangled {
-        /// The shape that was asked for.
+        /// The requested shape.
         shape: &'static str,
         /// The element, quadrilaterals first.
         element: usize,
         /// Smallest signed corner area [m²].
         area: f64,
-        /// What to try.
+        /// Remedy.
         advice: &'static str,
     },
     /// An array of output data does not fit the mesh.

@@ -1,4 +1,4 @@
-//! Triangles between two closed loops of points that look at each other.
+//! Triangles in the gap between two closed loops of points.
 
 use std::f64::consts::{PI, TAU};
 

@@ -36,7 +36,7 @@ pub struct Body {
     pub triangles: Range<usize>,
 }
 
-/// What [`Mesh::add`] says about the body it has added; node numbers are those of the mesh.
+/// A body added by [`Mesh::add`]; node numbers are those of the mesh.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Placed {
     /// Index of the body in [`Mesh::bodies`].

@@ -74,7 +74,7 @@ impl Quality {
     }
 }
 
-/// What is collected element by element.
+/// Sums over elements.
 struct Tally {
     poisson: f64,
     smallest_angle: f64,

@@ -34,7 +34,7 @@ pub(crate) fn eigenpairs(mut diagonal: Vec<f64>, mut beside: Vec<f64>) -> Vec<(f
                 let length = up.hypot(bulge);
                 beside[k + 1] = length;
                 if length == 0.0 {
-                    // It has fallen apart already: what is left goes on by itself.
+                    // The matrix has decoupled: the remaining part is iterated separately.
                     diagonal[k + 1] -= carried;
                     beside[last] = 0.0;
                     continue 'sweeps;

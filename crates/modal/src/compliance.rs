@@ -1,4 +1,4 @@
-//! How much bodies give way beside a contact, beyond penalty and modes, as a curve over the force (THEORY
+//! Local compliance of bodies beside a contact, beyond penalty and modes, as a curve over the force (THEORY
 //! §9.3).
 
 use serde::{Deserialize, Serialize};

@@ -32,9 +32,9 @@ pub use seat::Seat;
 /// A bearing in a few modes: all that its steps depend on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ModalBearing {
-    /// What the mesh became, with the tables of a step rounded to single precision.
+    /// The reduced mesh, with the tables of a step rounded to single precision.
     pub reduction: Reduction,
-    /// What the scene adds.
+    /// Numbers of the scene.
     pub parameters: Parameters,
 }
 

@@ -1,4 +1,4 @@
-//! What one scene adds to a reduction: outlines, contact, damping, speeds, cage and oil, in SI.
+//! Numbers of one scene for a reduction: outlines, contact, damping, speeds, cage and oil, in SI.
 
 use serde::{Deserialize, Serialize};
 use stribeck_duty::Duty;

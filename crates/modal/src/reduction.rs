@@ -1,4 +1,4 @@
-//! What the elastic bodies of one mesh under one load become (THEORY §9.1–9.3).
+//! The elastic bodies of one mesh under one load, reduced (THEORY §9.1–9.3).
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! The reduced bearing: what stays the same during a run, and the forces that follow from a state (THEORY
+//! The reduced bearing: the constant data of a run, and the forces that follow from a state (THEORY
 //! §9.2–9.4).
 
 use stribeck_modal::{
@@ -19,7 +19,7 @@ use crate::{
     state::State,
 };
 
-/// A reduced bearing: what does not change during a run.
+/// A reduced bearing: the constant data of a run.
 #[derive(Debug, Clone)]
 pub struct Bearing {
     /// Time step [s].

@@ -80,8 +80,8 @@ impl Wall {
 }
 
 impl Cage {
-    /// From its pockets, mass and moment of inertia and centre of mass. On a wall rollers give way by
-    /// `compliance`.
+    /// From its pockets, mass and moment of inertia and centre of mass. `compliance` is that of a roller on a
+    /// wall.
     pub(crate) fn new(
         pockets: &Pockets,
         [mass, inertia]: [f64; 2],

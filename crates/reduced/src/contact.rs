@@ -1,5 +1,4 @@
-//! The geometry of contact: outlines of rollers and raceways, and how deep they sink into each other (THEORY
-//! §9.3).
+//! The geometry of contact: outlines of rollers and raceways, and their penetration (THEORY §9.3).
 
 pub mod outline;
 

@@ -1,4 +1,4 @@
-//! First stage: how fast the rings turn, and the load.
+//! First stage of a step: speeds of the rings, and the load.
 
 use pulp::Simd;
 use stribeck_duty::Duty;

@@ -1,5 +1,4 @@
-//! What films of oil do to rollers, and through them to modes and rings, in a step and at the start (THEORY
-//! §9.4, §9.5).
+//! Forces of oil films on rollers, modes and rings, in a step and at the start (THEORY §9.4, §9.5).
 
 use pulp::Simd;
 use stribeck_film::side_by_side::PushedRows;
@@ -13,7 +12,7 @@ use crate::{
     state::State,
 };
 
-/// What films do to eight rollers, beside the forces on these.
+/// Effects of films on eight rollers besides the forces on them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct OilForces {
     /// Normal force at the outer raceway [N], and its decrease as the raceway recedes [N/m].
@@ -21,7 +20,7 @@ pub(crate) struct OilForces {
     pub(crate) stiffness: [f64; LANES],
     /// Moments that the drives of outer and inner ring make good [N m].
     pub(crate) drive: [f64; 2],
-    /// What their springs hold beside those of contact [J], and heat [J].
+    /// Energy of their springs beyond that of contact [J], and heat [J].
     pub(crate) stored: f64,
     heat: f64,
 }
@@ -121,8 +120,8 @@ impl Lubrication {
         by_oil
     }
 
-    /// What the film of one roller on a land does, by itself: numbers of the raceway, of the land and of the
-    /// roller in its block are given.
+    /// Forces of the film of one roller on a land, in scalar arithmetic, for the numbers of raceway and land
+    /// and of the roller in its block.
     #[inline(never)]
     fn alone(
         &self,
@@ -148,7 +147,7 @@ impl Lubrication {
 }
 
 impl OilForces {
-    /// Adds what films of eight rollers do.
+    /// Adds the forces of films of eight rollers.
     #[inline(always)]
     fn add_eight<S: Simd>(&mut self, simd: S, pushed: &PushedRows, now: FilmStep) {
         let (mut heat, mut stored) = (Vector::all(simd, 0.0), Vector::all(simd, 0.0));
@@ -167,7 +166,7 @@ impl OilForces {
         self.stored += stored.sum();
     }
 
-    /// Adds what a film of one roller does at a raceway, but for its force.
+    /// Adds the effects of a film of one roller at a raceway, without its force.
     fn add_one(&mut self, raceway: usize, lane: usize, by_film: &FilmForces) {
         self.drive[raceway] += by_film.moment;
         self.heat += by_film.heat;
@@ -208,7 +207,7 @@ impl SeenRollers {
 }
 
 /// Adds forces of films at a raceway, given in its frame, to those on eight rollers. Returns the moment that
-/// its drive makes good [N m].
+/// its drive balances [N m].
 #[inline(always)]
 fn push_rollers<S: Simd>(
     simd: S,
@@ -238,7 +237,7 @@ fn push_rollers<S: Simd>(
 }
 
 impl Rollers {
-    /// A roller as the outer (0) or the inner (1) raceway sees it before the first step, the former
+    /// A roller in the frame of the outer (0) or the inner (1) raceway before the first step, the former
     /// displaced.
     fn view_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> RollerView {
         let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();

@@ -1,5 +1,5 @@
-//! Modes of outer ring and adapter in a step, in vectors over modes: how the raceway moves under a roller,
-//! what the roller does to them, and how they move on (THEORY §9.3, §9.4).
+//! Modes of outer ring and adapter in a step, in vectors over modes: motion of the raceway under a roller,
+//! modal forces of rollers, and motion of the modes (THEORY §9.3, §9.4).
 
 use pulp::Simd;
 use stribeck_modal::{
@@ -34,7 +34,7 @@ pub(crate) struct Modes {
     pub(crate) drag: Vec<Row>,
     /// Tensions of the seat's springs beyond those of the preload [N]; empty where there is no seat.
     pub(crate) tension: Vec<Row>,
-    /// What rollers do to the seat.
+    /// Responses of the seat to rollers.
     pub(crate) responses: RollerResponses,
 }
 
@@ -65,7 +65,7 @@ impl Modes {
     }
 }
 
-/// Modes of outer ring and housing: what a step looks up of them.
+/// Modes of outer ring and housing: tables for a step.
 #[derive(Debug, Clone)]
 pub(crate) struct Structure {
     /// Groups of modes.
@@ -144,7 +144,7 @@ impl Structure {
         ]
     }
 
-    /// Adds what a roller does to the modes, when the raceway presses on it with `force` at a place.
+    /// Adds the modal forces by a roller on which the raceway presses with `force` at a place.
     #[inline(always)]
     pub(crate) fn press<S: Simd>(
         &self,

@@ -1,4 +1,4 @@
-//! A reduced bearing in motion, from one sampling interval to the next: what a time loop drives.
+//! A reduced bearing in motion, as a time loop drives it from one sampling interval to the next.
 
 pub mod readings;
 
@@ -21,7 +21,7 @@ pub struct BearingInMotion {
     pub(crate) sensors: Vec<SensorReading>,
 }
 
-/// What a checkpoint holds of it.
+/// Its state in a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// Positions and velocities.
@@ -29,8 +29,8 @@ pub struct Saved {
     pub(crate) memory: Memory,
 }
 
-/// Energies at the positions before the last step of an interval [J]: what is stored, and work and heat since
-/// the start.
+/// Energies at the positions before the last step of an interval [J]: stored, and work and heat since the
+/// start.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// Time of these positions [s].
@@ -161,7 +161,7 @@ impl BearingInMotion {
         self.saved.state.steps as f64 * self.bearing.time_step
     }
 
-    /// What it takes to continue.
+    /// State to continue from.
     pub fn saved(&self) -> Saved {
         let mut saved = self.saved.clone();
         self.scratch.store(&mut saved.state);

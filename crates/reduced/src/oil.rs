@@ -1,8 +1,8 @@
 //! Oil between rollers and raceways: the films of the full model between the circles that the polygons stand
 //! for (THEORY §4.6, §9.4).
 //!
-//! A film follows from where a roller is and how it moves; what it remembers is in the state. A bearing
-//! without oil has nothing of this.
+//! A film follows from the position and velocity of a roller, and from its own state. A bearing without oil
+//! has none of it.
 
 mod bodies;
 mod eight;
@@ -46,7 +46,7 @@ pub(crate) struct OiledRaceway {
     speed: f64,
 }
 
-/// What films remember from step to step.
+/// State of the films.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Films {
     /// At the outer and the inner raceway, land by land of one roller after the other.
@@ -55,7 +55,7 @@ pub struct Films {
     pub(crate) heat: f64,
 }
 
-/// What one film remembers.
+/// State of one film.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Film {
     /// The oil; `None` where there is no film.
@@ -78,9 +78,9 @@ impl Films {
 pub(crate) struct FilmStep {
     pub(crate) step: u64,
     pub(crate) dt: f64,
-    /// Whether energy is asked for.
+    /// Whether energy is computed.
     pub(crate) last: bool,
-    /// Whether the seat feels them.
+    /// Whether the seat responds to them.
     pub(crate) felt: bool,
 }
 
@@ -91,7 +91,7 @@ impl FilmStep {
     }
 }
 
-/// What films do to a roller in a step.
+/// Results of a step of the films of a roller.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct FilmForces {
     /// Sum of the sizes of their forces [N], and where the seat responds to them, their decrease as the
@@ -187,7 +187,7 @@ impl OiledRaceway {
         self.curved.lands.iter().map(move |land| Film { places: places(land), ..Film::default() })
     }
 
-    /// What the film of a roller on one of the lands does in a step.
+    /// Advances the film of a roller on one of the lands by a step.
     pub(crate) fn film_force(
         &self,
         land: usize,
@@ -228,7 +228,7 @@ impl OiledRaceway {
         film.fixed = pushed.fixed;
         by_film.add(&nearest, &pushed);
         if let (true, Some(layer)) = (now.felt, film.layer) {
-            // What dry contact would carry there responds by itself.
+            // The force of dry contact there responds separately.
             let [all, dry] =
                 [layer.force, layer.force - pushed.force].map(|force| law.spring.stiffness(force));
             by_film.stiffness += all - dry;
@@ -248,7 +248,7 @@ impl OiledRaceway {
         each.map(gap).fold(f64::INFINITY, f64::min)
     }
 
-    /// What the films of a roller carry in steady rolling.
+    /// Forces of the films of a roller in steady rolling.
     pub(crate) fn carried(&self, rim: &Rim, films: &mut [Film], seen: &RollerView) -> FilmForces {
         let mut by_film = FilmForces::default();
         for ((law, land), film) in self.films.iter().zip(&self.curved.lands).zip(films) {
@@ -282,7 +282,7 @@ impl OiledRaceway {
 }
 
 impl Films {
-    /// Forgets what films there are, but not where they are.
+    /// Removes the films, but keeps their places.
     pub(crate) fn forget(&mut self) {
         self.at.iter_mut().flatten().for_each(|film| (film.layer, film.fixed) = (None, false));
     }

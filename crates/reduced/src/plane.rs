@@ -45,7 +45,7 @@ impl<N: Number> Rotation<N> {
         [c.times_plus(x, -(s * y)), s.times_plus(x, c * y)]
     }
 
-    /// A vector, rotated the other way: as a frame sees it that is rotated itself.
+    /// A vector, rotated the other way: in the frame that is rotated by this.
     #[inline(always)]
     pub(crate) fn back(self, [x, y]: Vec2<N>) -> Vec2<N> {
         let Self { cosine: c, sine: s } = self;

@@ -103,8 +103,8 @@ pub(crate) fn of_one(from: &Rows, lane: usize) -> [f64; 2] {
     [from[0][lane], from[1][lane]]
 }
 
-/// What a sum of products cannot exceed in size, when some numbers have these sizes and others are at most so
-/// large.
+/// Upper bound of the magnitude of a sum of products, from the magnitudes of one factor and the bounds of the
+/// other.
 #[inline(always)]
 pub(crate) fn largest_sum<S: Simd>(simd: S, sizes: &[Row], others: &[Row]) -> f64 {
     let mut sum = Vector::all(simd, 0.0);

@@ -133,7 +133,7 @@ impl Springs {
                 .all(|roller| (roller.facet as usize + 1) < self.by_rollers.len() / self.rows())
     }
 
-    /// Lets the seat open and slip where it does at rest, the modes being at `q`.
+    /// Opens and slips the seat to its equilibrium at rest, with the modes at `q`.
     pub(crate) fn slip(&self, panels: &mut SeatState, q: &[f64]) {
         let simd = Scalar::new();
         let (mut tension, mut responses) = (vec![Row::default(); self.rows()], RollerResponses::default());
@@ -143,9 +143,8 @@ impl Springs {
         panels.before.copy_from_slice(&panels.open);
     }
 
-    /// Finds out what opens and slips where the modes are now, and adds what that does to the modes to
-    /// `push`. Returns the heat of this step [J] and, when it is the `last` of a sample, the energy that is
-    /// stored by it [J].
+    /// Finds opening and slip at the present modes, and adds their modal forces to `push`. Returns the heat
+    /// of this step [J] and, when it is the `last` of a sample, the energy that is stored by it [J].
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "one seat, with all that it reads and adds to")]
     pub(crate) fn respond<S: Simd>(
@@ -170,7 +169,7 @@ impl Springs {
         if !last {
             return [heat, 0.0];
         }
-        // What rollers press is part of the tensions, and its work part of their own energy.
+        // The roller forces are part of the tensions, and their work part of the rollers' own energy.
         let mut by_rollers = 0.0;
         for (roller, by) in responses.rollers.iter().zip(responses.by.chunks_exact(self.rows())) {
             by_rollers += roller.force * dot(simd, by, panels.open.as_chunks().0);
@@ -181,8 +180,8 @@ impl Springs {
         [heat, self.stored(simd, panels, tension) + by_rollers]
     }
 
-    /// Displacement of the raceway to the outside by what has opened and slipped, at both vertices of a facet
-    /// [m], in parts to be summed.
+    /// Outward displacement of the raceway by opening and slip, at both vertices of a facet [m], in parts to
+    /// be summed.
     #[inline(always)]
     pub(crate) fn under<S: Simd>(&self, simd: S, panels: &SeatState, facet: usize) -> [Vector<S>; 2] {
         let [first, second] = self.ends(facet);
@@ -197,7 +196,7 @@ impl Springs {
         sums
     }
 
-    /// How far a vertex of the raceway moves at most by what has opened and slipped in this step [m].
+    /// Bound of the motion of a vertex of the raceway by opening and slip of this step [m].
     #[inline(always)]
     pub(crate) fn farthest<S: Simd>(&self, simd: S, panels: &SeatState) -> f64 {
         let mut sum = Vector::all(simd, 0.0);

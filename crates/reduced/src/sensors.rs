@@ -7,8 +7,8 @@ use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{roller_force::RollerForce, row::Row, seat::SeatState, state::State};
 
-/// What moves sensors, each with the components of all of them side by side: x and y of the first, then of
-/// the next one, filled up with zeros to whole rows.
+/// Responses of the sensors, each with the components of all of them side by side: x and y of the first, then
+/// of the next one, filled up with zeros to whole rows.
 #[derive(Debug, Clone)]
 pub(crate) struct Sensors {
     /// Rows of components.
@@ -23,7 +23,7 @@ pub(crate) struct Sensors {
     by_tension: Vec<Row>,
 }
 
-/// What they measure at a time, all components.
+/// Readings at a time, all components.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SensorMotion {
     /// Velocity with the modes [m/s].
@@ -78,8 +78,7 @@ impl Sensors {
         Self { rows, by_mode: by_mode.collect(), by_vertex: by_vertex.collect(), by_gap, by_tension }
     }
 
-    /// What they measure at the velocities of a state, while rollers press as `roller_forces` and the seat
-    /// has these tensions [N].
+    /// Readings at the velocities of a state, under `roller_forces` and these tensions of the seat [N].
     #[inline(always)]
     pub(crate) fn measure<S: Simd>(
         &self,

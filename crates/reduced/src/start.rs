@@ -1,4 +1,4 @@
-//! Equilibrium to start from: modes and the rollers' places between the raceways (THEORY §9.5).
+//! Equilibrium at the start: modes, and positions of the rollers between the raceways (THEORY §9.5).
 
 use pulp::Scalar;
 use stribeck_simd::lanes::Vector;
@@ -15,8 +15,8 @@ pub type Solve<'a> = &'a dyn Fn(&[f64], &[f64]) -> Vec<f64>;
 /// Newton iterations for modes and rollers.
 const ITERATIONS: usize = 200;
 
-/// How far an iteration moves the raceway under a roller at most [m], halved whenever it would go back: under
-/// a light load few rollers touch or none, and what holds the ring is not known before they do.
+/// Largest motion of the raceway under a roller in an iteration [m], halved whenever it would reverse: under
+/// a light load few rollers touch or none, and the stiffness that supports the ring is unknown until they do.
 const FARTHEST: f64 = 10e-6;
 
 /// From this iteration on steps that go back and forth are halved, however short they are: a film or an edge
@@ -26,13 +26,13 @@ const CYCLES: usize = 20;
 /// A step so short is at such a jump [m].
 const AT_A_JUMP: f64 = 1e-12;
 
-/// Unbalanced force on a roller or a mode that is left, over the load.
+/// Remaining unbalanced force on a roller or a mode, over the load.
 const TOLERANCE: f64 = 1e-9;
 
 /// Holds motions of modes that nothing resists while the iteration runs [rad²/s²].
 const REGULARISATION: f64 = 1e4;
 
-/// How often the seat slips and all comes into equilibrium again.
+/// Number of alternations between slip of the seat and equilibrium.
 const SEATINGS: usize = 8;
 
 impl Bearing {
@@ -150,7 +150,7 @@ impl Bearing {
                     }
                 }
             }
-            // A motion that nothing resists, the turn of ring and adapter, is left to inertia.
+            // A motion without stiffness, the rotation of ring and adapter, is left to inertia.
             let step = solve(&matrix, &force);
             let residual = (0..r).map(|n| (force[n] * step[n]).abs()).sum::<f64>();
             let along =
@@ -180,7 +180,7 @@ impl Bearing {
         Ok(())
     }
 
-    /// What a roller in this direction presses with `force`, near the facet `hint`.
+    /// Contact of a roller in this direction under `force`, near the facet `hint`.
     fn roller_force_at(&self, hint: u32, radial: [f64; 2], force: f64) -> RollerForce {
         let outline = &self.raceways[0].outline;
         let facet = outline.facet_along([0.0; 2], radial, hint as usize, 1.0);

@@ -1,4 +1,4 @@
-//! What changes during a reduced run: the checkpoint.
+//! The state of a reduced run, the content of its checkpoint.
 
 use serde::{Deserialize, Serialize};
 

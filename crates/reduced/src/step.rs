@@ -1,7 +1,7 @@
 //! One step of the reduced bearing, and many of them in the instruction set of the processor (THEORY §9.4).
 //!
-//! Rollers are taken eight at a time: what all of them share is computed in vectors, facet-dependent work
-//! roller by roller.
+//! Rollers are taken eight at a time: work common to all is done in vectors, facet-dependent work roller by
+//! roller.
 
 mod raceway_motion;
 mod rollers;

@@ -1,4 +1,4 @@
-//! What a step adds up: energies at its positions, work, and sums over all rollers.
+//! Sums of a step: energies at its positions, work, and sums over all rollers.
 
 use pulp::Simd;
 use stribeck_simd::lanes::Vector;
@@ -11,7 +11,7 @@ use crate::{
 /// Energies and work of one step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Tally {
-    /// Whether energies are asked for: after the last step of a sample.
+    /// Whether energies are computed: after the last step of a sample.
     pub(crate) last: bool,
     pub(crate) stored: Stored,
     pub(crate) spent: Spent,
@@ -45,7 +45,7 @@ impl Tally {
     }
 }
 
-/// Sums over all rollers in one step, as [`Spent`] and [`Stored`] say.
+/// Sums over all rollers in one step, as of [`Spent`] and [`Stored`].
 pub(crate) struct Sums<S: Simd> {
     pub(crate) heat: [Vector<S>; 2],
     /// Moments on the drives of outer and inner ring [N m].

@@ -14,7 +14,7 @@ use crate::{
     direction,
     error::Error,
     extraction::Extraction,
-    local_contact::Pressed,
+    local_contact::LocalContact,
     structure::{SHIFT, Structure, flexibility},
 };
 
@@ -74,7 +74,7 @@ impl Compliances {
         let penalty = scene.penalty_stiffness * scene.thickness;
         let compliance = |on: &[Vec<f64>], spacing: f64, radius: f64, across: f64| {
             let flexibility = [on, &roller.flexibility[..]];
-            let pressed = Pressed { spacing: [spacing, roller.spacing], flexibility, radius, penalty };
+            let pressed = LocalContact { spacing: [spacing, roller.spacing], flexibility, radius, penalty };
             curve(&pressed, size.most, across)
         };
         let rigid = vec![vec![0.0; roller.flexibility.len()]; roller.flexibility.len()];
@@ -163,7 +163,7 @@ fn inner_patch(
     Ok(Patch { flexibility, spacing })
 }
 
-/// The rim of a roller, and how much it gives way by an equal force on its other side [m/N].
+/// The rim of a roller, and its deflection by an equal force on its other side [m/N].
 fn roller_patch(
     size: &Size<'_>,
     extraction: &Extraction,
@@ -212,9 +212,9 @@ fn rigid_modes(d: &Dynamics, motions: &SmallMotions, slots: &[u32]) -> Modes {
     Modes { squares: vec![0.0; 3], shapes }
 }
 
-/// Solves the local contact problem at several loads up to `most` [N]; `across` is how much a roller gives
-/// way by an equal force on its other side [m/N].
-fn curve(pressed: &Pressed<'_>, most: f64, across: f64) -> Compliance {
+/// Solves the local contact problem at several loads up to `most` [N]; `across` is the deflection of a roller
+/// by an equal force on its other side [m/N].
+fn curve(pressed: &LocalContact<'_>, most: f64, across: f64) -> Compliance {
     // Nodes of both surfaces lie anyhow to each other under a contact; a few cases stand for all.
     let phases = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
     let mean = |delta: f64| {

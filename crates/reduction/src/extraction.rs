@@ -1,8 +1,8 @@
-//! A preloaded bearing taken apart: which node is what, where nodes are, and the forces on them.
+//! A preloaded bearing taken apart: sets of nodes, their positions, and the forces on them.
 
 use std::collections::BTreeSet;
 
-use stribeck_bearing::assembly::Machine;
+use stribeck_bearing::assembly::BearingSystem;
 use stribeck_mesh::Mesh;
 use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_solver::{
@@ -14,7 +14,7 @@ use stribeck_system::Parts;
 
 use crate::error::Error;
 
-/// Node numbers, while the system still knows them by name.
+/// Node numbers, found by name while there is a system.
 pub(crate) struct Nodes {
     /// Outer raceway, counter-clockwise.
     pub(crate) outer: Vec<u32>,
@@ -43,7 +43,7 @@ pub(crate) struct Inertia {
     pub(crate) centre: [f64; 2],
 }
 
-/// What is known of a machine at its preload before it is taken apart.
+/// Data of a bearing at its preload, read before it is taken apart.
 pub(crate) struct Extraction {
     pub(crate) nodes: Nodes,
     /// Places of all nodes [m], and contact forces on them [N].
@@ -81,24 +81,24 @@ pub(crate) struct Preload {
 }
 
 impl Extraction {
-    /// Reads a preloaded machine and takes it apart.
+    /// Reads a preloaded bearing and takes it apart.
     pub(crate) fn of(
         scene: &ResolvedScene,
-        mut machine: Machine,
+        mut bearing: BearingSystem,
         mesh: &Mesh,
     ) -> Result<(Self, Parts), Error> {
-        let contact_forces = machine.system.contact_forces();
-        let resultants: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();
-        let nodes = Nodes::of(&machine, scene)?;
-        let system = &machine.system;
+        let contact_forces = bearing.system.contact_forces();
+        let resultants: Vec<[f64; 2]> = bearing.system.resultants().map(|r| r.force).collect();
+        let nodes = Nodes::of(&bearing, scene)?;
+        let system = &bearing.system;
         let places: Vec<[f64; 2]> = (0..system.node_count() as u32).map(|n| system.position(n)).collect();
-        let of_rings = 0..mesh.bodies[machine.rollers[0].body].nodes.start;
+        let of_rings = 0..mesh.bodies[bearing.rollers[0].body].nodes.start;
         let inertia = |body: usize| {
             let motion = system.motion_of(body);
             Inertia { mass_and_moment: [motion.mass, motion.inertia], centre: motion.centre }
         };
         let frame = match scene.written.housing {
-            HousingScene::Springs(_) => machine.housing.and_then(|body| {
+            HousingScene::Springs(_) => bearing.housing.and_then(|body| {
                 let mass = system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
                 Some((mass, system.nodes_of(body).next()?))
             }),
@@ -106,10 +106,10 @@ impl Extraction {
         };
         let mut extraction = Self {
             moved: of_rings.map(|n| [places[n][0] - mesh.x[n], places[n][1] - mesh.y[n]]).collect(),
-            seat: machine.pairs.seat().map(|seat| resultants[seat]),
-            roller: inertia(machine.rollers[0].body),
-            cage: machine.cage.map(inertia),
-            roller_centre: places[machine.rollers[0].centre as usize],
+            seat: bearing.pairs.seat().map(|seat| resultants[seat]),
+            roller: inertia(bearing.rollers[0].body),
+            cage: bearing.cage.map(inertia),
+            roller_centre: places[bearing.rollers[0].centre as usize],
             structure_mass: nodes.structure.iter().map(|&n| system.mass(n)).sum(),
             frame,
             nodes,
@@ -117,7 +117,7 @@ impl Extraction {
             contact_forces,
             slot_of: Vec::new(),
         };
-        let parts = machine.system.into_parts();
+        let parts = bearing.system.into_parts();
         extraction.slot_of.clone_from(&parts.dynamics.layout().slot_of_node);
         Ok((extraction, parts))
     }
@@ -139,12 +139,12 @@ impl Extraction {
 }
 
 impl Preload {
-    /// Forces and springs of a machine taken apart, at its preload.
+    /// Forces and springs of a bearing taken apart, at its preload.
     pub(crate) fn of(extraction: &Extraction, parts: &mut Parts, mesh: &Mesh) -> Self {
         let elastic = parts.dynamics.elastic_energy();
         let elastic = elastic.strain + elastic.hourglass;
         let count = parts.dynamics.state.x.len();
-        // In the undeformed mesh springs of the housing do not push: what is left is the load.
+        // In the undeformed mesh springs of the housing are free of force: only the load remains.
         let mut load = NodeForces::zeros(count);
         let mut undeformed = parts.dynamics.state.clone();
         for (n, &slot) in extraction.slot_of.iter().enumerate() {
@@ -192,8 +192,8 @@ impl Preload {
 }
 
 impl Nodes {
-    fn of(machine: &Machine, scene: &ResolvedScene) -> Result<Self, Error> {
-        let system = &machine.system;
+    fn of(bearing: &BearingSystem, scene: &ResolvedScene) -> Result<Self, Error> {
+        let system = &bearing.system;
         let named = |name: &str| system.nodes(name).map_err(stribeck_bearing::error::Error::from);
         // The mesh walks the outer raceway clockwise, with the solid on the left.
         let mut outer = named("outer raceway")?;
@@ -202,15 +202,15 @@ impl Nodes {
             outer,
             inner: named("inner raceway")?,
             rim: named("rim of roller 1")?,
-            structure: std::iter::once(machine.outer)
-                .chain(machine.housing)
+            structure: std::iter::once(bearing.outer)
+                .chain(bearing.housing)
                 .flat_map(|body| system.nodes_of(body))
                 .collect(),
-            outer_ring: system.nodes_of(machine.outer).collect(),
-            inner_ring: system.nodes_of(machine.inner).collect(),
-            roller: system.nodes_of(machine.rollers[0].body).collect(),
-            sensors: machine.nodes_on_back(&scene.sensor_angles),
-            back: machine.back.clone(),
+            outer_ring: system.nodes_of(bearing.outer).collect(),
+            inner_ring: system.nodes_of(bearing.inner).collect(),
+            roller: system.nodes_of(bearing.rollers[0].body).collect(),
+            sensors: bearing.nodes_on_back(&scene.sensor_angles),
+            back: bearing.back.clone(),
         })
     }
 }

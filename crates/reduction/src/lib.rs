@@ -8,11 +8,11 @@
 //! outlines, damping, cage, oil and speeds ([`modal_bearing`]).
 //!
 //! ```
-//! use stribeck_reduction::local_contact::Pressed;
+//! use stribeck_reduction::local_contact::LocalContact;
 //!
 //! // Two half-spaces that are rigid beside the penalty: a parabola on it.
 //! let rigid = vec![vec![0.0; 9]; 9];
-//! let pressed = Pressed { spacing: [5e-4; 2], flexibility: [&rigid, &rigid], radius: 0.01, penalty: 6e11 };
+//! let pressed = LocalContact { spacing: [5e-4; 2], flexibility: [&rigid, &rigid], radius: 0.01, penalty: 6e11 };
 //! let force = pressed.force(1e-5, [0.0; 2]);
 //! assert!((pressed.rigid(force) / 1e-5 - 1.0).abs() < 1e-3);
 //! ```
@@ -22,7 +22,7 @@
 //! | Question | File |
 //! |---|---|
 //! | In which order is a scene reduced? | `reduce.rs` |
-//! | Which nodes and forces are taken from the preloaded machine? | `extraction.rs` |
+//! | Which nodes and forces are taken from the preloaded bearing? | `extraction.rs` |
 //! | Which modes are kept, and how flexible is what they leave out? | `structure.rs` |
 //! | How is the seat divided, and what do its springs hold? | `seat.rs` |
 //! | What do raceway, sensors and loads become? | `raceway.rs`, `sensors.rs`, `loads.rs` |

@@ -3,7 +3,7 @@
 
 /// Two surfaces that are pressed together.
 #[derive(Debug, Clone)]
-pub struct Pressed<'a> {
+pub struct LocalContact<'a> {
     /// Distance of the nodes of raceway and roller [m].
     pub spacing: [f64; 2],
     /// Displacement of node i by a unit force at node j [m/N], square, by rows; the middle node lies under
@@ -15,8 +15,8 @@ pub struct Pressed<'a> {
     pub penalty: f64,
 }
 
-/// An integration point: the gap between the undeformed surfaces [m], and the nodes that move it, with their
-/// shares: two of each surface.
+/// An integration point: the gap between the undeformed surfaces [m], and the nodes whose displacements
+/// change it, with their shares: two of each surface.
 struct Point {
     gap: f64,
     nodes: [(usize, f64); 4],
@@ -29,7 +29,7 @@ const POINTS: usize = 16;
 const ITERATIONS: usize = 60;
 const BALANCED: f64 = 1e-10;
 
-impl Pressed<'_> {
+impl LocalContact<'_> {
     /// Force [N] at the approach `delta` [m], with the middle nodes off the contact's middle by these shares
     /// of a facet.
     pub fn force(&self, delta: f64, phase: [f64; 2]) -> f64 {

@@ -1,4 +1,4 @@
-//! The outer raceway as the reduction sees it: normals, forces and modal shapes of its nodes.
+//! The outer raceway of a reduction: normals, forces and modal shapes of its nodes.
 
 use stribeck_modal::Seat;
 use stribeck_solver::state::NodeForces;
@@ -56,8 +56,8 @@ pub(crate) fn without_dents(
     extraction.nodes.outer.iter().zip(&dents).map(without_dent).collect()
 }
 
-/// Shapes at the vertices of the raceway [1/√kg], less what the seat takes back: x of all modes, then y,
-/// vertex by vertex.
+/// Shapes at the vertices of the raceway [1/√kg], less the part cancelled by the tangential springs of the
+/// seat: x of all modes, then y, vertex by vertex.
 pub(crate) fn shapes(
     raceway: &[RacewayNode],
     structure: &Structure,

@@ -26,7 +26,7 @@ use crate::{
 /// A mesh that has been preloaded and reduced: the same for every start, speed and duration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReducedMesh {
-    /// What rings, rollers and cage became.
+    /// The reduced rings, rollers and cage.
     pub reduction: Reduction,
     /// Rings and a roller as they were meshed.
     pub parts: MeshedParts,
@@ -44,17 +44,17 @@ impl ReducedMesh {
     pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
         let meshed = MeshedParts::new(scene)?;
         let assembly = Assembly::of(scene, &meshed)?;
-        let mut machine = assembly.machine(scene, 1)?;
-        let warning = preload(&mut machine, scene, &assembly.kinematics)?;
+        let mut bearing = assembly.build(scene, 1)?;
+        let warning = preload(&mut bearing, scene, &assembly.kinematics)?;
         let mesh = &assembly.model.mesh;
-        let (mut extraction, mut parts) = Extraction::of(scene, machine, mesh)?;
+        let (mut extraction, mut parts) = Extraction::of(scene, bearing, mesh)?;
         let moved = std::mem::take(&mut extraction.moved);
         let reduction = reduce(scene, mesh, &extraction, &mut parts)?;
         Ok(Self { reduction, parts: meshed, moved, warning })
     }
 }
 
-/// Reduces a machine that has been taken apart at its preload.
+/// Reduces a bearing that has been taken apart at its preload.
 fn reduce(
     scene: &ResolvedScene,
     mesh: &Mesh,

@@ -1,4 +1,4 @@
-//! How sensors move: with the modes, and beyond them under forces on the raceway.
+//! Responses of sensors: to the modes, and quasi-statically to forces on the raceway.
 
 use stribeck_modal::reduction::Sensor;
 use stribeck_solver::state::NodeForces;

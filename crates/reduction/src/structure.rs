@@ -327,7 +327,7 @@ mod tests {
             assert!(beyond > 0.0 && beyond < beyond_before, "{khz} kHz: {beyond}, before {beyond_before}");
             beyond_before = beyond;
         }
-        // What is left is the dent under the force, which waves around the ring hardly make.
+        // The remainder is the dent under the force, which waves around the ring hardly represent.
         assert!(beyond_before < 0.5 * whole, "{beyond_before} of {whole}");
     }
 }

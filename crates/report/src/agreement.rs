@@ -1,5 +1,5 @@
-//! How far the reduced model is from the full one: the page of a validation, and what the report of a reduced
-//! run says of it.
+//! The page of a validation: the reduced model beside the full one, and the sentence in the report of a
+//! reduced run that cites it.
 
 use std::fs;
 use std::path::Path;
@@ -172,7 +172,8 @@ fn octaves(octaves: &Octaves) -> Figure {
     figure
 }
 
-/// What is known of the error of a reduced run: the validation next to it of the scene that is nearest.
+/// Error of a reduced run as far as it is known: from the validation in a neighbouring folder whose scene
+/// differs least.
 pub(super) fn of_run(scene: &Scene, run_dir: &Path) -> Markup {
     if scene.model == ModelScene::Full {
         return html! {};
@@ -211,8 +212,8 @@ fn distance(differences: &[String], agreement: &Agreement) -> String {
     format!("The nearest scene that was validated, {}, differs in {listed}{rest}.", agreement.scene)
 }
 
-/// Fields in which two scenes differ, with this scene's value and the other's. What a start draws, names,
-/// lengths of records and guards make no other model.
+/// Fields in which two scenes differ, with this scene's value and the other's. Fields drawn for each start,
+/// names, durations and guards do not count: they leave the model the same.
 fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
     let plain = |scene: &Scene| {
         let mut scene = scene.clone();

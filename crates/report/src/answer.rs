@@ -1,5 +1,5 @@
-//! What an engineer reads first: was the defect seen, which lines are mesh and which physics, how far to
-//! trust it.
+//! The summary at the head of a page: was the defect detected, which lines come from the mesh and which from
+//! the bearing, how reliable is that.
 
 use maud::{Markup, html};
 use stribeck_dsp::PeriodCount;
@@ -22,7 +22,7 @@ use crate::page::{sentence, with_code};
 /// Rollers that are named one by one, at most.
 const NAMED: usize = 6;
 
-/// The first paragraphs of the page, and beside them how far to trust them.
+/// The first paragraphs of the page, with the limits of their numbers beside them.
 pub(super) fn paragraphs(run: &Run, findings: &Findings) -> Markup {
     let summary = &findings.summary;
     html! {
@@ -69,7 +69,7 @@ fn warnings(run: &Run, summary: &Summary) -> Vec<String> {
     all
 }
 
-/// Whether a warning of a run only says which pictures its page will lack.
+/// Whether a warning of a run concerns only pictures that its page will lack.
 pub(super) fn is_of_pictures(warning: &str) -> bool {
     warning.starts_with("no pictures")
 }
@@ -98,7 +98,7 @@ fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }
 
-/// Was the defect seen?
+/// Was the defect detected?
 fn defect(run: &Run, summary: &Summary) -> String {
     let faults = run.scene.written.faults();
     if faults.is_empty() {
@@ -184,7 +184,8 @@ fn other_faults(faults: &[RollingSurface], spalls: &[DefectScene]) -> String {
     format!(" The scene has others, whose families are in the spectra: {}.", others.join("; "))
 }
 
-/// Which rollers touch the floor of a spall. Where no `edges` are seen all the same, the floor carries them.
+/// Which rollers touch the floor of a spall. Where no `edges` show in the record nevertheless, the floor
+/// carries the rollers.
 fn floor(events: &[Event], edges: usize) -> String {
     let floors: Vec<String> =
         events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
@@ -290,7 +291,7 @@ fn unsteady(summary: &Summary) -> Option<&DutyFinding> {
     summary.duty.as_ref().filter(|duty| duty.is_unsteady())
 }
 
-/// What the envelope shows over the angle of the shaft.
+/// The envelope's order spectrum, in words.
 fn orders(duty: &DutyFinding) -> String {
     let Some(envelope) = &duty.envelope else {
         return format!("No family was sought over the angle of the {}.", duty.over());
@@ -345,7 +346,7 @@ fn physics(summary: &Summary) -> String {
     lines.unwrap_or_default().trim_start().to_owned()
 }
 
-/// What limits the numbers, one subject each.
+/// Limits of the numbers, one paragraph a subject.
 fn trust(summary: &Summary) -> Vec<String> {
     let EnergyFinding { max_relative_error, share_of_heat, .. } = summary.energy;
     let load = summary

@@ -37,7 +37,7 @@ pub struct CampaignRun {
     pub reason: Option<String>,
     /// Values of the fields that vary.
     pub values: Vec<String>,
-    /// What its record is said to show: `BPFO`, `none`; `None` where it is not judged.
+    /// Defect family claimed for its record, as `BPFO` or `none`; `None` where there is no verdict.
     pub claimed: Option<String>,
     /// Numbers of its summary by their path.
     pub numbers: BTreeMap<String, f64>,
@@ -45,7 +45,7 @@ pub struct CampaignRun {
     pub folder: Option<String>,
 }
 
-/// What is drawn and listed: path in the summary, words, unit.
+/// Quantities drawn and listed: path in the summary, words, unit.
 const QUANTITIES: [(&str, &str, &str); 12] = [
     ("levels.record.rms_g", "Root mean square", "g"),
     ("levels.record.peak_g", "Peak", "g"),
@@ -162,7 +162,7 @@ struct Abscissa {
     axis: Axis,
     /// Of each run; not a number where it has none.
     places: Vec<f64>,
-    /// What the places of words are.
+    /// Names of the words' places on the axis.
     words: String,
 }
 
@@ -207,7 +207,7 @@ impl Abscissa {
     }
 }
 
-/// A quantity over a field, coloured by the other field where there is one other, else by what is claimed.
+/// A quantity over a field, coloured by the other field where there is one other, else by the claimed family.
 fn figure(
     index: &CampaignIndex,
     at: usize,
@@ -279,7 +279,7 @@ fn means(name: &str, colour: Colour, x: &[f64], y: &[f64]) -> Option<Series> {
     (places.len() > 1).then(|| Series::listed(&name, colour, places, means))
 }
 
-/// The same places, equal ones a little apart, so that every dot is seen.
+/// The abscissae, equal ones spread a little, so that no dot hides another.
 fn side_by_side(x: &[f64], width: f64) -> Vec<f64> {
     /// Of the width of the axis, from the first to the last of equal places.
     const APART: f64 = 0.012;
@@ -365,7 +365,7 @@ mod tests {
         let index = index(vec![run(1, "100", 1.0), run(2, "200", 4.0), run(3, "100", 3.0)]);
         let figure = figure(&index, 0, &Abscissa::of(&index, 0), &QUANTITIES[0]).expect("a number");
         assert_eq!((figure.series[0].y.as_slice(), figure.series[1].y.len()), (&[2.0, 4.0][..], 3));
-        // Charts join what stands at one place.
+        // Charts join points of one abscissa, so these are drawn as dots.
         let x: Vec<f64> = (0..3).map(|n| figure.series[1].position(n)).collect();
         assert!(x[0] < x[1] && x[1] - x[0] < 2.0 && x[2] == 200.0, "{x:?}");
         assert!(index.runs.iter().all(|run| !run.numbers.contains_key("levels.record.kurtosis")));

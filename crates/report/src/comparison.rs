@@ -87,7 +87,7 @@ fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-/// The answer in a few sentences: what was changed, what changed, what each shows by itself.
+/// The answer in a few sentences: the fields that differ, the results that differ, and each side alone.
 pub fn answer(comparison: &Comparison) -> Vec<String> {
     let sides = &comparison.sides;
     let scenes = sides.iter().filter(|side| side.scene.is_some()).count();
@@ -168,7 +168,7 @@ fn row_in_words(row: &Row) -> String {
     format!("{} {}{unit}", row.quantity, values.join(" → "))
 }
 
-/// Which colour is whose, and what each is.
+/// The sides with their colours.
 fn at_a_glance(sides: &[Side]) -> Markup {
     let known = |text: Option<String>| text.unwrap_or_else(|| "–".to_owned());
     html! {

@@ -165,7 +165,7 @@ pub(super) fn waterfall(course: &Course, unit: &str, speeds: Option<&[f64]>) -> 
         sheet.text([x, foot + 19.0], 12.0, Anchor::Middle, INK, &Scale::of(end_hz).text(f, step, "Hz"));
     }
     sheet.text([AT[0] + 0.5 * wide, foot + 40.0], 13.0, Anchor::Middle, INK, "Frequency");
-    // A bar of 20 dB says what the height means.
+    // A bar of 20 dB gives the scale of the height.
     let (x, long) = (AT[0] - 26.0, HIGH * 20.0 / RANGE_DB);
     sheet.path(&[[x, foot], [x, foot - long]], false, "stroke:#14181c;stroke-width:2");
     sheet.text([x - 6.0, foot - 0.5 * long + 4.0], 11.0, Anchor::End, INK, "20 dB");
@@ -187,7 +187,7 @@ pub(super) fn waterfall(course: &Course, unit: &str, speeds: Option<&[f64]>) -> 
     Some(picture)
 }
 
-/// What each row stands for, and its mean powers.
+/// The abscissa of each row, and its mean powers.
 fn waterfall_rows(course: &Course, speeds: Option<&[f64]>) -> Vec<(String, Vec<f64>)> {
     let columns: Vec<&[f64]> = course.values.chunks_exact(course.lines).collect();
     let key: Vec<f64> = match speeds {

@@ -1,4 +1,4 @@
-//! The page of an ensemble: what many starts of one scene say together.
+//! The page of an ensemble: the results of many starts of one scene.
 
 mod answer;
 mod figures;

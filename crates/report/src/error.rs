@@ -1,4 +1,4 @@
-//! What can go wrong between an analysis and its page.
+//! Errors while a page is made from an analysis.
 
 use std::path::PathBuf;
 
@@ -17,7 +17,7 @@ pub enum Error {
     Drawing {
         /// Name of the figure.
         figure: String,
-        /// What the drawing library said.
+        /// Message of the drawing library.
         why: String,
     },
     /// The numbers cannot be written as JSON.
@@ -29,7 +29,7 @@ pub enum Error {
     Write {
         /// The file.
         path: PathBuf,
-        /// What the system said.
+        /// Message of the operating system.
         why: std::io::Error,
     },
 }

@@ -65,7 +65,7 @@ impl Item {
         }
     }
 
-    /// How far to trust it.
+    /// How reliable it is.
     pub(super) fn note(&self) -> &str {
         match self {
             Self::Chart(figure) => &figure.note,

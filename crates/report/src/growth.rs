@@ -173,7 +173,7 @@ fn figures(of: &GrowthFindings) -> Vec<Figure> {
         curve("spall", "Length by two events a passage", Axis::plain("Length", "mm"), &|r| r.spall_mm),
     ]
     .into_iter()
-    .filter(|figure| figure.series.iter().any(|series| series.y.iter().any(|y| y.is_finite())))
+    .filter(|figure| figure.series.iter().any(|series| series.y.iter().filter(|y| y.is_finite()).count() > 1))
     .collect()
 }
 
@@ -194,8 +194,8 @@ fn life(unit: &UnitFindings) -> Option<Figure> {
         Series::listed(name, colour, x.clone(), y)
     };
     figure = figure
-        .with(curve("90 %", Colour::Blue, &|_, left| left.low).as_edge())
-        .with(curve("90 %", Colour::Blue, &|_, left| left.high).as_edge())
+        .with(curve("5 % below", Colour::Blue, &|_, left| left.low).as_edge())
+        .with(curve("95 % below", Colour::Blue, &|_, left| left.high).as_edge())
         .with(curve("median", Colour::Blue, &|_, left| left.median))
         .with(curve("truth", Colour::Orange, &|record, _| record.remaining_true));
     if let Some(at) = unit.alarm_at {

@@ -1,5 +1,5 @@
-//! The page of an inference: what unknowns can have been, whether such scenes make what was seen, and what no
-//! scene makes.
+//! The page of an inference: the posterior of the unknowns, whether scenes drawn from it reproduce the
+//! observations, and which observations no scene reproduces.
 
 mod figures;
 mod page;
@@ -25,7 +25,7 @@ pub struct Answer {
     pub version: String,
     /// Commit it was built from.
     pub commit: String,
-    /// What all draws follow from.
+    /// Seed of all random draws.
     pub seed: u64,
     /// Scenes that were run, without those of the check.
     pub scenes: usize,
@@ -60,7 +60,7 @@ pub struct Answer {
     pub calibration: Option<Vec<FieldCalibrated>>,
 }
 
-/// What is known of one unknown.
+/// Posterior of one unknown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FieldFound {
     /// Its name.
@@ -99,7 +99,7 @@ pub struct Choice {
     pub probability: f64,
 }
 
-/// One target beside what scenes of the posterior make.
+/// One target beside the results of scenes from the posterior.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct TargetFound {
     /// Its name.
@@ -108,7 +108,8 @@ pub struct TargetFound {
     pub of: String,
     /// Whether differences count by their ratio.
     pub logarithmic: bool,
-    /// What was seen; `None` where there must be none, or of a curve's component the score.
+    /// Observed value, or the score of a curve's component; `None` where the target is that there is no
+    /// value.
     pub value: Option<f64>,
     /// How exactly it was read.
     pub tolerance: f64,
@@ -189,7 +190,8 @@ pub struct FieldCalibrated {
     pub ranks: Vec<usize>,
     /// Probability of ranks as uneven by chance.
     pub p_value: f64,
-    /// Standard deviation of the posteriors over that of the prior, on average: 1 where records tell nothing.
+    /// Standard deviation of the posteriors over that of the prior, on average: 1 where the records carry no
+    /// information on it.
     pub width_of_prior: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The bands that a verdict looks into, and how much each knocks: a kurtogram over a dyadic tree.
+//! The bands that a verdict examines and how impulsive each is: a kurtogram over a dyadic tree.
 
 use stribeck_dsp::BandEnvelope;
 

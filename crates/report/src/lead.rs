@@ -50,7 +50,7 @@ fn own_rings(scene: &ResolvedScene) -> String {
     rings.into_iter().filter_map(of_file).collect()
 }
 
-/// What holds the outer ring, in words, where it is not the adapter.
+/// The housing in words, where it is not the adapter.
 fn housing(scene: &ResolvedScene) -> String {
     match &scene.written.housing {
         HousingScene::Adapter => String::new(),

@@ -1,4 +1,4 @@
-//! The page of a measured record: verdict, families, the spectra that they stand in.
+//! The page of a measured record: verdict, families, and the spectra that show them.
 
 use std::path::Path;
 
@@ -21,7 +21,7 @@ const LOWEST_CYCLIC_HZ: f64 = 2.0;
 pub struct Baseline {
     /// Name of its file.
     pub name: String,
-    /// What it shows.
+    /// Findings of the analysis.
     pub analysis: Analysis,
 }
 

@@ -21,12 +21,12 @@ use crate::plot::base64;
 
 /// Frames at most.
 const FRAMES: usize = 600;
-/// Frames in the time between two rollers at one place, at least: a passage of a spall is then seen in some
-/// ten of them.
+/// Least number of frames in the time between two rollers at one place: a passage over a spall then covers
+/// about ten of them.
 const FRAMES_A_PASSAGE: usize = 40;
 /// Frames between two angles.
 const ANGLES_EVERY: usize = 8;
-/// Events whose names the scrubber says, at most.
+/// Most events that the scrubber labels.
 const NAMED: usize = 400;
 
 /// What `bearing.js` reads; lengths [mm], angles [rad], counter-clockwise from the x axis.
@@ -133,7 +133,7 @@ impl Stretch {
     }
 }
 
-/// Angles that so many frames take.
+/// Number of stored angles for this many frames.
 fn angles(frames: usize) -> usize {
     frames.saturating_sub(1).div_ceil(ANGLES_EVERY) + 1
 }
@@ -279,7 +279,7 @@ fn faulty(scene: &ResolvedScene, numbers: &[usize]) -> Vec<usize> {
     numbers.iter().copied().filter(|number| faults.contains(&RollingSurface::Roller(*number))).collect()
 }
 
-/// What happens in a stretch of time, in words and in order.
+/// Events of a stretch of time, in words and in order.
 fn named(events: &[Event], time_s: Range<f64>) -> Vec<(f64, String)> {
     let of_event = |event: &Event| {
         let roller = event.roller;

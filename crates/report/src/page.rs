@@ -1,4 +1,4 @@
-//! What all pages have: their head, sections, sentences and the files of their figures.
+//! Common parts of all pages: head, sections, sentences and the files of their figures.
 
 use std::fs;
 use std::panic::resume_unwind;
@@ -46,7 +46,7 @@ pub(crate) fn json(summary: &impl Serialize) -> Result<String, Error> {
     Ok(text + "\n")
 }
 
-/// What a page needs before its first word.
+/// The head of a page: title, styles and scripts.
 pub(crate) fn head(name: &str) -> Markup {
     html! {
         head {
@@ -61,8 +61,7 @@ pub(crate) fn head(name: &str) -> Markup {
     }
 }
 
-/// A heading, what stands before the figures, the figures (`otherwise` when there are none) and what stands
-/// after them.
+/// A heading, text before the figures, the figures (`otherwise` when there are none) and text after them.
 pub(crate) fn section(
     id: &str,
     name: &str,
@@ -139,7 +138,7 @@ fn sentences(note: &str) -> Vec<&str> {
     all
 }
 
-/// Words with what stands between grave accents as code.
+/// Words, with text between grave accents set as code.
 pub(crate) fn with_code(words: &str) -> Markup {
     let parts = words.split('`').enumerate();
     html! { @for (n, part) in parts { @if n % 2 == 1 { code { (part) } } @else { (part) } } }

@@ -1,5 +1,5 @@
-//! The paper, figure by figure: its numbers beside those of a run or of many starts, what differs first, and
-//! its figures drawn anew over its axes.
+//! The paper, figure by figure: its numbers beside those of a run or of many starts, differences first, and
+//! its figures redrawn on its axes.
 
 mod figures;
 
@@ -25,7 +25,7 @@ pub(crate) struct PaperCase<'a> {
     levels: &'a SensorLevels,
     sensor: &'a SensorSignal,
     beside: Vec<Beside>,
-    /// Whether the record is shorter than the paper's: what is missing then may lie behind its end.
+    /// Whether the record is shorter than the paper's: a missing event may then lie after its end.
     short: bool,
 }
 
@@ -78,7 +78,7 @@ impl<'a> PaperCase<'a> {
         all
     }
 
-    /// The section of the page: what differs, the numbers, the `figures`, and `more` folded up behind them.
+    /// The section of the page: differences, numbers, `figures`, and `more` folded up behind them.
     pub(crate) fn section(&self, figures: &[Item], more: Markup) -> Result<Markup, Error> {
         let drawn = page::figures(figures)?;
         Ok(html! {
@@ -91,7 +91,7 @@ impl<'a> PaperCase<'a> {
         })
     }
 
-    /// What differs by more than the scatter, the farthest first, then what does not.
+    /// Quantities that differ by more than the scatter, the largest difference first, then the others.
     fn verdict(&self) -> String {
         let missing = self.beside.iter().filter(|b| self.is_behind_the_end(b)).count();
         let mut off: Vec<&Beside> =
@@ -159,7 +159,7 @@ impl<'a> PaperCase<'a> {
         }
     }
 
-    /// Where the numbers are from, and how far to trust the comparison.
+    /// Sources of the numbers, and the limits of the comparison.
     fn about(&self) -> String {
         let radial = 100.0 * self.levels.angle_deg.to_radians().sin().abs();
         let scatter = if self.starts.len() > 1 {

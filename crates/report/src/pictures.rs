@@ -1,4 +1,4 @@
-//! Pictures of the bearing: its mesh, a roller, who carries what, stresses.
+//! Pictures of the bearing: its mesh, a roller, the load zone, stresses.
 
 mod mesh;
 mod polar;

@@ -1,5 +1,5 @@
-//! Figures: what is drawn, apart from how. One [`Figure`] becomes an interactive chart in the page and a
-//! static SVG beside it.
+//! Figures as data, apart from how they are drawn. One [`Figure`] becomes an interactive chart in the page
+//! and a static SVG beside it.
 //!
 //! ```
 //! use stribeck_report::plot::{Axis, Colour, Figure, Series};
@@ -31,16 +31,16 @@ pub use raster::png;
 pub use scale::{Scale, ticks};
 use serde::Serialize;
 
-/// One chart: an abscissa, an ordinate, what is drawn over them and what the reader should see in it.
+/// One chart: an abscissa, an ordinate, the series over them, and a caption.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// Name of the anchor in the page and of the SVG file; letters, digits and `-`.
     pub id: String,
     /// Heading.
     pub title: String,
-    /// One sentence that says what to see.
+    /// One sentence that states the finding.
     pub caption: String,
-    /// What must be known to read the figure honestly: resolution, transient, decimation. May be empty.
+    /// Limits of the figure: resolution, transient, decimation. May be empty.
     pub note: String,
     /// Horizontal axis.
     pub x: Axis,
@@ -89,13 +89,13 @@ pub struct Axis {
     pub label: String,
     /// Unit symbol of the values as stored.
     pub unit: String,
-    /// What its values are, by which its ticks are placed and written.
+    /// Kind of its values, which decides how ticks are placed and written.
     pub ticks: Ticks,
     /// Range [unit]; `None` follows the data.
     pub range: Option<(f64, f64)>,
 }
 
-/// What the values of an axis are, by which its ticks are placed and written.
+/// Kind of an axis's values, which decides how ticks are placed and written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ticks {
@@ -202,7 +202,7 @@ pub struct Band {
     pub from: f64,
     /// Right end [unit of the horizontal axis].
     pub to: f64,
-    /// What the shade means, listed in the legend.
+    /// Meaning of the shade, listed in the legend.
     pub label: String,
 }
 
@@ -245,13 +245,13 @@ impl Figure {
         self
     }
 
-    /// Sets the sentence that says what to see.
+    /// Sets the caption: one sentence that states the finding.
     pub fn caption(mut self, text: impl Into<String>) -> Self {
         self.caption = text.into();
         self
     }
 
-    /// Sets the statement on how far to trust it.
+    /// Sets the note on the figure's limits.
     pub fn note(mut self, text: impl Into<String>) -> Self {
         self.note = text.into();
         self
@@ -310,7 +310,7 @@ impl Axis {
         Self { ticks: Ticks::Angle, ..Self::plain(label, "°") }.over(0.0, 360.0)
     }
 
-    /// A logarithmic axis: the figure holds decimal logarithms, its ticks say the numbers.
+    /// A logarithmic axis: the figure holds decimal logarithms, its ticks show the numbers themselves.
     pub fn decades(label: &str, unit: &str) -> Self {
         Self { ticks: Ticks::Decades, ..Self::plain(label, unit) }
     }

@@ -152,7 +152,7 @@ fn all_numbers(summary: &Summary) -> Markup {
     }
 }
 
-/// Leads to the page in which the bearing of a reduced run runs, or says how it is made.
+/// Links to the interactive page of a reduced run, or names the command that makes it.
 fn lab(run: &Run, run_dir: &Path) -> Markup {
     if run.scene.written.model == ModelScene::Full {
         return html! {};
@@ -171,7 +171,7 @@ fn lab(run: &Run, run_dir: &Path) -> Markup {
     }
 }
 
-/// Says loudly when a run did not complete.
+/// A banner for a run that did not complete.
 fn banner(run: &Run) -> Markup {
     let what = match run.info.status {
         Status::Complete => return html! {},

@@ -55,7 +55,7 @@ pub(super) const OFF: &str = "How far the middle line lies from where the record
 const SCATTER: &str = "By how much that differs between components of sensors and forces of rollers, in the \
     same widths";
 
-/// What a row of the paper's numbers says where the record has none.
+/// Text of a row of the paper's numbers for which the record has none.
 const CANNOT_TELL: &str = "this record cannot tell";
 
 fn family(family: Origin) -> (&'static str, &'static str) {
@@ -121,7 +121,7 @@ fn unsteady(summary: &Summary) -> bool {
     summary.duty.as_ref().is_some_and(DutyFinding::is_unsteady)
 }
 
-/// What stands in the place of lines at constant frequencies where the speed changes.
+/// Text in place of the table of lines where the speed changes.
 fn no_lines() -> Markup {
     html! { p class="hint" { "The speed changes, so that no line of the mesh or of the defect has a place \
     here: see " a href="#duty" { "Speed and load" } "." } }
@@ -331,7 +331,7 @@ pub(super) fn envelope(summary: &Summary, name: &str) -> Markup {
     }
 }
 
-/// What the leading sensor would tell somebody who does not know the scene.
+/// Diagnosis from the leading sensor alone, without knowledge of the scene.
 pub(super) fn diagnosis(summary: &Summary) -> Markup {
     let Some(diagnosis) = &summary.diagnosis else { return html! {} };
     let number = |hz: Option<f64>| cell(hz.map(|hz| format!("{hz:.2}")));

@@ -8,7 +8,7 @@ use stribeck_formats::wav::{Whole, pcm};
 
 use crate::plot::base64_bytes;
 
-/// Samples a second of what is played [Hz].
+/// Sample rate of the played sound [Hz].
 const RATE_HZ: u32 = 48_000;
 /// Longest sound of a page [s]: 0.6 MB.
 const LONGEST_S: f64 = 5.0;

@@ -56,7 +56,7 @@ pub(super) fn events(summary: &Summary) -> Markup {
     folded(table, summary.events.len(), "passages over the defect, one by one")
 }
 
-/// A table of so many rows, folded up when it would fill the page.
+/// A table, folded up where its rows would fill the page.
 pub(super) fn folded(table: Markup, rows: usize, what: &str) -> Markup {
     const OPEN: usize = 24;
     if rows <= OPEN {
@@ -88,7 +88,7 @@ pub(super) fn notch(summary: &Summary) -> Markup {
     }
 }
 
-/// What the neighbours of a roller in a spall carry.
+/// Quantities left out of the table: the loads of a roller's neighbours.
 const LEFT_OUT: &str = "Static, rigid rings, roller over the defect left out";
 
 /// Forces in numbers; `over_spall` where a spall stands that rollers come over.
@@ -230,7 +230,7 @@ pub(super) fn levels(summary: &Summary) -> Markup {
     }
 }
 
-/// Where the run comes from and what it cost.
+/// Origin of the run, and its computing time.
 pub(super) fn provenance(info: &RunInfo, summary: &Summary) -> Markup {
     let run = &summary.run;
     let mesh = &info.mesh;

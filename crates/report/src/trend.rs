@@ -1,5 +1,4 @@
-//! The page of several measured records side by side: how health and defect families went from one to the
-//! next.
+//! The page of several measured records side by side: levels and defect families from one record to the next.
 
 use std::path::Path;
 
@@ -65,7 +64,7 @@ fn joint_page(joint: &Joint, entries: &[TrendEntry]) -> Markup {
                 p class="lead" { (joint.verdict) }
                 @for note in &joint.notes { p class="hint" { (note) } }
                 h2 #shares { "What each channel hears" }
-                div class="scroll" { (heard(joint)) }
+                div class="scroll" { (families_by_channel(joint)) }
                 p class="hint" {
                     "The part of each channel in the power that swings with a family, and the height of the \
                     family in it; bold where the channel claims a defect by itself. The probability of a false \
@@ -79,8 +78,8 @@ fn joint_page(joint: &Joint, entries: &[TrendEntry]) -> Markup {
     }
 }
 
-/// A row a family, a column a channel.
-fn heard(joint: &Joint) -> Markup {
+/// Families of a joint verdict: a row a family, a column a channel.
+fn families_by_channel(joint: &Joint) -> Markup {
     let number = |x: Option<f64>, unit: &str, factor: f64| {
         x.map_or_else(|| "–".to_owned(), |x| format!("{:.0} {unit}", factor * x))
     };
@@ -93,10 +92,10 @@ fn heard(joint: &Joint) -> Markup {
             @for family in &joint.families {
                 tr {
                     td { (family.name) }
-                    @for heard in &family.channels {
-                        @let share = number(heard.share, "%", 100.0);
-                        @let text = format!("{share}, {}", number(heard.height_db, "dB", 1.0));
-                        td { @if heard.claimed { strong { (text) } } @else { (text) } }
+                    @for channel in &family.channels {
+                        @let share = number(channel.share, "%", 100.0);
+                        @let text = format!("{share}, {}", number(channel.height_db, "dB", 1.0));
+                        td { @if channel.claimed { strong { (text) } } @else { (text) } }
                     }
                     td { (format!("{:.1e}", family.p_value)) }
                     td { (family.nearest.as_deref().filter(|_| family.claimed).unwrap_or("–")) }

@@ -24,7 +24,7 @@ pub struct Sample {
     pub seat: Option<[f64; 2]>,
 }
 
-/// What a sensor measures.
+/// Readings of a sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SensorSample {
     /// Acceleration [m/s²], mean over the interval: the change of velocity over its length.
@@ -33,7 +33,7 @@ pub struct SensorSample {
     pub instant: [f64; 2],
 }
 
-/// A rolling element: where it is and what acts on it.
+/// A rolling element: its position, and the forces on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RollerSample {
     /// Centre [m].
@@ -94,8 +94,7 @@ pub struct Channels {
     shaft: ShaftChannels,
 }
 
-/// What the duty adds where speed or load change: the angle of the shaft, that of an outer ring that turns,
-/// and the load.
+/// Channels of a duty that changes: the angle of the shaft, that of an outer ring that turns, and the load.
 #[derive(Debug, Clone)]
 struct ShaftChannels {
     /// `None` where nothing changes.
@@ -125,8 +124,7 @@ impl Channels {
         self.visit(sample, &mut |_, value| row.push(value));
     }
 
-    /// Every channel in its order, with its value in a sample. Names are formatted only where they are asked
-    /// for.
+    /// Every channel in its order, with its value in a sample. Names are formatted only where they are used.
     fn visit(&self, sample: &Sample, channel: &mut impl FnMut(Arguments<'_>, f64)) {
         channel(format_args!("time_s"), sample.time);
         for (name, sensor) in self.sensors.iter().zip(&sample.sensors) {

@@ -1,4 +1,4 @@
-//! The checkpoint of a run: what it takes to continue to the same bits, and the file that holds it.
+//! The checkpoint of a run: the state from which it continues to the same bits, and its file.
 //!
 //! ```text
 //! stribeck checkpoint\n   version u32   identity, 16 letters   length u64   CRC-32 of the content u32   content
@@ -20,7 +20,8 @@ use stribeck_scene::{run_info::RunInfo, scene::Scene};
 /// First bytes of every checkpoint.
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
-/// Version of the file; a program continues only what it understands to the last bit.
+/// Version of the file. Other versions are refused, because a state that is read in part does not continue to
+/// the same bits.
 const VERSION: u32 = 18;
 
 /// Length of a scene's hash.
@@ -35,9 +36,9 @@ const MAX_CONTENT: u64 = 1 << 32;
 /// A run between two samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Checkpoint<S> {
-    /// What `run.json` would say.
+    /// Content of `run.json` at this sample.
     pub info: RunInfo,
-    /// What the model in motion needs to go on.
+    /// State of the model in motion.
     pub motion: S,
 }
 
@@ -99,14 +100,14 @@ impl<S: Serialize + DeserializeOwned> Checkpoint<S> {
     }
 }
 
-/// Name of what a checkpoint belongs to: the hash of its scene, whatever its duration.
+/// Identity that ties a checkpoint to its scene: the hash of the scene without its duration.
 pub fn identity(scene: &Scene) -> String {
     let mut scene = scene.clone();
     scene.solver.duration_ms = 0.0;
     scene.hash()
 }
 
-/// A checkpoint that is of no use; without it a run can only begin again.
+/// The error for a checkpoint that cannot be used, after which a run can only begin again.
 fn refused(path: &Path, reason: String) -> Error {
     let reason = format!(
         "{reason}. Otherwise start it anew from its `scene.ron`; its samples stay readable until then"

@@ -2,15 +2,15 @@
 //!
 //! | watched | warning | stop |
 //! |---|---|---|
-//! | penetration over what a bearing gives way by itself | above 1 | |
-//! | time without a roller that carries anything | `unsupported_warning_ms` | |
+//! | penetration over the bearing's own deflection | above 1 | |
+//! | time without a loaded roller | `unsupported_warning_ms` | |
 //! | rollers out of the space between the raceways | | [`OUT_OF_PLACE`] |
 //! | the cage's offset over its room between the raceways | above 1 | a cage's thickness beyond |
 //!
-//! The fields are those of `guards` in the scene. Energy, penetration in shares of an element and what else
-//! depends on the model is watched by the model itself. A warning is given once, at the first sample above
-//! its limit. What has been seen is in checkpoints and in [`GuardInfo`](stribeck_scene::run_info::GuardInfo):
-//! a continued run warns as an unbroken one does.
+//! The fields are those of `guards` in the scene. Energy, penetration over element size and other limits that
+//! depend on the model are watched by the model. A warning is issued once, at the first sample above its
+//! limit. The extremes so far are kept in checkpoints and in
+//! [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
 
 mod softness;
 
@@ -27,7 +27,7 @@ pub const OUT_OF_PLACE: f64 = 0.5;
 /// A roller carries something above this share of the load.
 const CARRIES: f64 = 1e-3;
 
-/// Where rollers and cage are at a sample, and what they carry.
+/// Positions of rollers and cage at a sample, and the largest load.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placed {
     /// Centres of the rollers, in the order of the scene, from that of the outer ring [m].
@@ -52,7 +52,7 @@ pub struct Guards {
     /// Smallest and largest distance of a roller's centre from that of the outer ring [m].
     annulus: [f64; 2],
     cage: Option<CageRoom>,
-    /// What else holds the cage, in words.
+    /// What guides the cage in this scene, in words.
     holds_cage: String,
     /// The field that shortens the time step, as messages name it.
     step_field: &'static str,
@@ -82,7 +82,7 @@ impl CageRoom {
 }
 
 impl Guards {
-    /// Of a scene; `step_field` is the field that shortens the time step of its model.
+    /// The limits of a scene; `step_field` is the field that shortens the time step of its model.
     pub fn new(scene: &ResolvedScene, step_field: &'static str) -> Self {
         let radius = scene.roller_radius;
         let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(0.0, f64::max);
@@ -102,7 +102,7 @@ impl Guards {
         }
     }
 
-    /// What holds the cage of this scene, to be said behind "take".
+    /// What guides the cage of this scene, as the object of "take".
     pub fn holds_cage(&self) -> &str {
         &self.holds_cage
     }
@@ -143,11 +143,12 @@ impl Guards {
     }
 
     fn rollers(&self, centres: &[[f64; 2]], when: &When) -> Option<String> {
+        let [inner, outer] = self.annulus;
         for (number, [x, y]) in self.numbers.iter().zip(centres) {
-            let radius = x.hypot(*y);
-            // A place that is no number lies in no range either.
-            if !(self.annulus[0]..=self.annulus[1]).contains(&radius) {
-                let through = if radius < self.annulus[0] { "inner" } else { "outer" };
+            // A position that is not a number lies in no range either. The root is taken only for the message.
+            if !(inner * inner..=outer * outer).contains(&(x * x + y * y)) {
+                let radius = x.hypot(*y);
+                let through = if radius < inner { "inner" } else { "outer" };
                 return Some(format!(
                     "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from \
                      that of the outer ring {when}. Take a \
@@ -195,7 +196,7 @@ impl CageRoom {
     }
 }
 
-/// When something was seen. It is written for few of the samples that are looked at.
+/// Time of an observation, formatted only for the few samples that need a message.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct When {
     step: u64,
@@ -213,5 +214,46 @@ impl When {
 impl Display for When {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(f, "at step {}, t = {:.5} ms", self.step, 1e3 * self.time)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use stribeck_scene::scene::Scene;
+
+    use super::*;
+
+    /// The paper's rollers between their raceways, and one just beyond either end of where they may be, or
+    /// nowhere.
+    #[test]
+    fn refuses_a_roller_that_has_gone_through_a_raceway() {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes/singh2014.ron");
+        let scene = Scene::read(scene).expect("the paper's scene").resolve();
+        let guards = Guards::new(&scene, "`model.step_us`");
+        let when = When { step: 7, time: 14e-6 };
+        let [inner, outer] = guards.annulus;
+        let at = |number: usize, radius: f64| {
+            let (s, c) = (0.3 + number as f64).sin_cos();
+            [radius * c, radius * s]
+        };
+        for third in [inner * (1.0 + 1e-12), 0.5 * (inner + outer), outer * (1.0 - 1e-12)] {
+            let centres = [at(0, inner + 1e-6), at(1, outer - 1e-6), at(2, third)];
+            assert_eq!(guards.rollers(&centres, &when), None, "{third} m");
+        }
+        for (third, through) in [
+            (inner * (1.0 - 1e-12), "inner"),
+            (0.0, "inner"),
+            (outer * (1.0 + 1e-12), "outer"),
+            (f64::INFINITY, "outer"),
+        ] {
+            let centres = [at(0, inner + 1e-6), at(1, outer - 1e-6), at(2, third)];
+            let stop = guards.rollers(&centres, &when).expect("it is out of place");
+            let said = format!("roller 3 has gone through the {through} raceway");
+            assert!(stop.starts_with(&said), "{third} m: {stop}");
+        }
+        let centres = [at(0, inner + 1e-6), [f64::NAN, 0.0]];
+        assert!(guards.rollers(&centres, &when).is_some_and(|stop| stop.starts_with("roller 2 ")));
     }
 }

@@ -1,4 +1,4 @@
-//! What the program around a run provides, and how it follows the run's progress.
+//! The program around a run: identity, threads, clocks, and the progress that it is told of.
 
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ pub struct Host<'a> {
     pub commit: String,
     /// Processor and operating system, in words.
     pub machine: String,
-    /// Wall-clock time since some moment [s].
+    /// Wall-clock time since an arbitrary moment [s].
     pub wall_s: &'a dyn Fn() -> f64,
     /// Processor time of this process so far, all threads [s].
     pub cpu_s: &'a dyn Fn() -> f64,
@@ -23,7 +23,7 @@ pub struct Host<'a> {
 }
 
 impl Host<'_> {
-    /// Whether the run ends here: what the first rank says, where there are several.
+    /// Whether the run ends here; with several ranks the first decides.
     pub(crate) fn agree(&self, stop: bool) -> bool {
         self.ranks.as_ref().map_or(stop, |ranks| broadcast(&**ranks, &[u8::from(stop)]) == [1])
     }
@@ -48,7 +48,7 @@ impl<'a> Host<'a> {
 /// How far a run is.
 #[derive(Debug, Clone, Copy)]
 pub struct Progress {
-    /// What is going on: `mesh`, `preload`, `run`.
+    /// Phase of the run: `mesh`, `preload`, `run`.
     pub phase: &'static str,
     /// Steps taken.
     pub step: u64,

@@ -1,4 +1,5 @@
-//! What the first of several ranks sends the others before a run.
+//! Runs over several ranks: before a run the first rank broadcasts its scene and checkpoint, and the others
+//! follow it.
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 use stribeck_scene::scene::Scene;
@@ -7,7 +8,7 @@ use stribeck_solver::ranks::broadcast;
 
 use crate::{checkpoint::Checkpoint, error::Error, host::Host};
 
-/// A run for all ranks.
+/// The order that the first rank broadcasts.
 #[derive(Serialize, Deserialize)]
 struct Order<S> {
     /// Text of the scene.
@@ -16,7 +17,7 @@ struct Order<S> {
     checkpoint: Option<Checkpoint<S>>,
 }
 
-/// Lets all other ranks take part in a run of the scene, from its start or from a checkpoint.
+/// Sends all other ranks the order to take part in a run of the scene, from its start or from a checkpoint.
 ///
 /// # Errors
 /// When the order cannot be encoded.

@@ -1,4 +1,4 @@
-//! How a run continues: which checkpoint serves, and what `run.json` says from then on.
+//! Continuing a run: the choice of its checkpoint, and the content of `run.json` from there on.
 
 use serde::{Serialize, de::DeserializeOwned};
 use stribeck_scene::{
@@ -82,8 +82,8 @@ fn check_counts(dir: &RunDir, scene: &ResolvedScene, info: &RunInfo) -> Result<u
 /// More steps in a sample than any scene has: a second in steps of a nanosecond.
 const MOST_STEPS: f64 = 1e9;
 
-/// Refuses runs that ended by themselves, as far as `run.json` tells; a warning when it does not. Scene and
-/// checkpoint are enough to continue.
+/// Refuses runs that ended on their own according to `run.json`; a warning when that cannot be read. Scene
+/// and checkpoint are enough to continue.
 fn may_go_on(dir: &RunDir, scene: &ResolvedScene) -> Result<Option<String>, Error> {
     let info = match dir.read_info() {
         Ok(info) => info,

@@ -1,4 +1,4 @@
-//! What is known of a run before its first step.
+//! The set-up of a run: everything known before its first step.
 
 use stribeck_scene::{
     resolved::ResolvedScene,
@@ -22,9 +22,9 @@ pub struct Setup {
     pub reduced: Option<ReducedInfo>,
     /// How long the set-up took [s].
     pub wall_s: f64,
-    /// Mass of the outer ring and of what sits on it [kg]: the rollers carry its weight beside the load.
+    /// Mass of the outer ring and its housing [kg]: the rollers carry its weight besides the load.
     pub carried_mass: f64,
-    /// What of the scene's mesh files was passed over.
+    /// Parts of the scene's mesh files that were ignored.
     pub notes: Vec<String>,
     /// Warnings of the preload and of the model.
     pub warnings: Vec<String>,

@@ -20,7 +20,7 @@ use stribeck_scene::{
 
 /// A model of a bearing in motion: what the time loop drives from sample to sample.
 pub trait Motion: Send {
-    /// What it takes to go on from a sample.
+    /// State from which it continues after a sample.
     type Saved: Serialize + DeserializeOwned;
 
     /// Takes the steps of one sampling interval; the last one is accounted for.
@@ -53,7 +53,7 @@ pub trait Motion: Send {
         Ok(())
     }
 
-    /// What it takes to go on.
+    /// State to continue from.
     fn saved(&self) -> Self::Saved;
 }
 
@@ -89,9 +89,9 @@ fn columns(scene: &ResolvedScene) -> Vec<&'static str> {
 
 /// A run in its time loop.
 pub struct Run<M> {
-    /// What `run.json` says.
+    /// Content of `run.json`.
     pub info: RunInfo,
-    /// What its checkpoints belong to.
+    /// Identity of its checkpoints.
     identity: String,
     motion: M,
     channels: Channels,
@@ -103,7 +103,7 @@ pub struct Run<M> {
     oiled: bool,
 }
 
-/// When a run was last saved, and what that cost.
+/// Time of the last checkpoint, and how long writing it took.
 #[derive(Default)]
 struct Saved {
     sample: usize,
@@ -114,11 +114,15 @@ struct Saved {
 }
 
 impl Saved {
-    fn is_due(&self, sample: usize, wall_s: f64) -> bool {
-        let passed = wall_s - self.wall_s;
-        // A clock that was set back, or that is none, must not put off saving.
+    /// Whether it is time to save after a sample. The clock is read only when enough samples have passed.
+    fn is_due(&self, sample: usize, wall_s: impl FnOnce() -> f64) -> bool {
+        if sample - self.sample < SAVE_EVERY {
+            return false;
+        }
+        let passed = wall_s() - self.wall_s;
+        // A clock that was set back, or that stands still, must not postpone saving.
         let counts = passed >= 0.0 && self.cost_s >= 0.0;
-        sample - self.sample >= SAVE_EVERY && (!counts || SAVE_SHARE * passed >= self.cost_s)
+        !counts || SAVE_SHARE * passed >= self.cost_s
     }
 }
 
@@ -215,7 +219,7 @@ impl<M: Motion> Run<M> {
                 self.info.stop_reason = Some(format!("interrupted at {:.4} ms", 1e3 * progress.time_s));
                 break;
             }
-            if saved.is_due(sample, (host.wall_s)()) {
+            if saved.is_due(sample, || (host.wall_s)()) {
                 note_times(&mut self.info);
                 self.save(dir, &mut saved, host)?;
             }

@@ -1,11 +1,11 @@
-//! What a scene can change where a run goes wrong, of what it does not do yet.
+//! Advice on fields of a scene for a run that went wrong; only changes that the scene does not have yet.
 
 use crate::scene::{PocketWalls, Scene};
 
 /// Largest coefficient of friction that a scene may have.
 pub(crate) const MOST_FRICTION: f64 = 2.0;
 
-/// What holds a cage that has left the bearing, to be said behind "take".
+/// What guides a cage that has left the bearing, as the object of "take".
 pub fn holds_cage(scene: &Scene) -> String {
     let corners = scene.cage.as_ref().is_some_and(|cage| cage.pocket == PocketWalls::Corners);
     let pockets = if corners {

@@ -14,7 +14,7 @@
 //! )
 //! ```
 //!
-//! Equal files make equal scenes. What a variant is lies in its scene alone, so a run is named by the scene's
+//! Equal files make equal scenes. A variant is defined by its scene alone, so a run is named by the scene's
 //! content.
 
 mod design;
@@ -46,7 +46,7 @@ const MOST_PROBLEMS: usize = 10;
 /// has one in nearly all.
 const MOST_LOOKED_AT: usize = 1000;
 
-/// What lies in a campaign's file.
+/// Content of a campaign's file.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename = "campaign")]
 struct Text {
@@ -103,9 +103,9 @@ pub struct Campaign {
     pub fields: Vec<String>,
     /// Its runs, in order.
     pub runs: Vec<Variant>,
-    /// What was drawn follows from it.
+    /// Seed of the drawn points.
     pub seed: u64,
-    /// What stays of each run.
+    /// Files that are kept of each run.
     pub keep: Keep,
 }
 
@@ -131,9 +131,9 @@ impl Campaign {
     /// Reads a campaign's file and makes its scenes. Paths in it count from its folder.
     ///
     /// # Errors
-    /// What is wrong with the file, with its line: its own fields, those of a scene that it names, and the
-    /// scene that it starts from, and values that their field cannot have. A scene that cannot be is no error
-    /// here: its variant says why.
+    /// Mistakes in the file, with line and field: in its own fields, in fields of scenes that it names, in
+    /// the scene that it starts from, and values of the wrong type. An impossible scene is no error here: its
+    /// variant carries the reason.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text =
@@ -203,7 +203,7 @@ fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// The runs of all variants. A scene that cannot be is no error: its run says why.
+/// The runs of all variants. An impossible scene is no error: its run carries the reason.
 fn variants(
     file: &Text,
     base: Option<&Path>,
@@ -213,7 +213,7 @@ fn variants(
     let mut runs = Vec::with_capacity(rows.values.len() * file.starts);
     let mut unreadable: Vec<Problem> = Vec::new();
     let mut rows_to_look_at = MOST_LOOKED_AT;
-    // What is wrong with every variant so far, outside of what varies.
+    // Findings that every variant so far has, in fields that do not vary.
     let mut common: Option<Vec<Problem>> = None;
     for (row, values) in rows.values.iter().enumerate() {
         let assigned = (0..values.len()).map(|column| rows.argument(row, column));

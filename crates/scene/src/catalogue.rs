@@ -1,4 +1,4 @@
-//! Bearings by name: what their defect frequencies follow from.
+//! Bearings by name, with the dimensions that their defect frequencies follow from.
 //!
 //! Makers do not print the number of rolling elements of every bearing; where no source is known for it, the
 //! entry has none and the user must give it. Any bearing can be given by its numbers:
@@ -38,7 +38,7 @@ pub struct CatalogueBearing {
     pub pitch_mm: f64,
     /// Contact angle [°].
     pub angle_deg: f64,
-    /// What it is fitted into; `None` where no source is known.
+    /// Boundary dimensions; `None` where no source is known.
     pub boundary: Option<Boundary>,
     /// Where the numbers are from.
     pub source: String,
@@ -88,8 +88,8 @@ pub fn beginning_with(text: &str) -> Result<Vec<CatalogueBearing>, String> {
     Ok(names::beginning_with(text, known()?))
 }
 
-/// What a scene rests on that nobody gave: what no catalogue prints of a bearing of the catalogue, and what
-/// the fields of one's own bearing left out.
+/// Assumptions of a scene: dimensions that no catalogue prints, and dimensions that the fields of a bearing
+/// left out.
 pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     if !bearing.assumed.is_empty() {
         return bearing.assumed.iter().map(|what| assumption(*what, bearing)).collect();
@@ -135,7 +135,7 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     notes
 }
 
-/// What was assumed of a bearing of one's own, in words.
+/// An assumption about a bearing given by its own fields, in words.
 fn assumption(what: Assumed, b: &BearingScene) -> String {
     let mm = |mm: f64| (1e4 * mm).round() / 1e4;
     match what {
@@ -183,7 +183,7 @@ const SPACING: f64 = 1.25;
 /// Part of the pitch circle [°] over which balls lie side by side when a deep groove bearing is filled.
 const FILLING_DEG: f64 = 186.0;
 
-/// As many balls as go into a deep groove bearing whose rings lie against each other while it is filled:
+/// Number of balls that can be filled into a deep groove bearing while its rings lie against each other:
 /// right for all of the catalogue whose number is known.
 pub(crate) fn filled(pitch_mm: f64, diameter_mm: f64) -> usize {
     let one = 2.0 * (diameter_mm / pitch_mm).min(1.0).asin();
@@ -289,13 +289,13 @@ impl CatalogueBearing {
     /// numbers, or both: `NU 205, elements=13`.
     ///
     /// # Errors
-    /// What is not understood, with the names and numbers that are.
+    /// Parts that are not understood, with the valid names and numbers.
     pub fn parse(text: &str) -> Result<Self, String> {
         let numbers = "`--bearing \"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
         Self::parse_or_advise(text, &format!("give its numbers, {numbers}"))
     }
 
-    /// As [`parse`](Self::parse), with other advice on what to give where a name is not known.
+    /// As [`parse`](Self::parse), with other advice where a name is unknown.
     ///
     /// # Errors
     /// As [`parse`](Self::parse).

@@ -5,7 +5,7 @@ use crate::{
     scene::{ContactFormula, ContactPasses, Scene},
 };
 
-/// What a contact law is made of.
+/// Parameters of a contact law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ContactNumbers {
     /// Penalty stiffness of both passes together [Pa/m].
@@ -18,7 +18,7 @@ impl ContactNumbers {
     /// For squares of the scene's element size.
     pub(crate) fn of(scene: &Scene, material: &Material, size: f64) -> Self {
         let (c, scale) = (&scene.contact, scene.contact.penalty_scale);
-        // Half an element deep: what the nodes of a surface weigh.
+        // Half an element deep: the mass of a surface's nodes.
         let layer = 0.5 * material.density * size;
         match c.formula {
             ContactFormula::ElementLayer => {
@@ -73,7 +73,7 @@ mod tests {
             // half a cube.
             let m = 0.5 * rho * volume;
             let critical = 2.0 * m * (k * 2.0 * m / (m * m)).sqrt();
-            // What `Law::with_damping` makes of it at a ratio of one.
+            // The damping of `Law::with_damping` at a ratio of one.
             close(2.0 * (found.stiffness * 0.5 * found.layer_mass).sqrt(), count * critical / area);
         }
         let (found, scene) = numbers(ContactFormula::LsdynaSegment, ContactPasses::Two);

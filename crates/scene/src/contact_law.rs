@@ -1,4 +1,4 @@
-//! Approach of a rolling element and each of its raceways under a force, by a law of one's choice.
+//! Approach of a rolling element and each of its raceways under a force, by either contact law.
 
 use std::f64::consts::PI;
 
@@ -13,8 +13,8 @@ use crate::resolved::ResolvedScene;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ContactLawKind {
-    /// Line contact in plane strain, down to the thickness of the rings: what the models compute with
-    /// (THEORY §6.2).
+    /// Line contact in plane strain, down to the thickness of the rings: the law of both models (THEORY
+    /// §6.2).
     Line,
     /// Point contact of balls in grooves, after Hertz.
     Ball,

@@ -1,5 +1,5 @@
-//! Deviations of raceways and rolling elements from round: what a scene says of them, and how deep the
-//! surface lies at any angle.
+//! Deviations of raceways and rolling elements from round: their fields in a scene, and the depth of the
+//! surface at any angle.
 
 use std::f64::consts::{PI, TAU};
 
@@ -25,7 +25,7 @@ pub struct DeviationScene {
 pub enum RollingSurface {
     /// The raceway of the outer ring.
     Outer,
-    /// The raceway of the inner ring; what is on it turns with the shaft.
+    /// The raceway of the inner ring; its deviations turn with the shaft.
     Inner,
     /// A rolling element, from 1.
     Roller(usize),
@@ -93,7 +93,8 @@ pub struct DentScene {
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SurfaceProfileScene {
-    /// Table with the columns `position_mm` and `depth_um`, beside the scene; read where no points are given.
+    /// Table with the columns `position_mm` and `depth_um`, beside the scene; read where there are no
+    /// `points`.
     pub file: String,
     /// Its points, in the order of their places; the surface is not changed outside of them.
     pub points: Vec<PointScene>,
@@ -137,7 +138,7 @@ pub struct RoughnessScene {
     pub slope: f64,
 }
 
-/// The slope of a scene that gives none, which is not written.
+/// The default slope, which is not written to a scene.
 const RANDOM_WALK: f64 = 2.0;
 
 fn is_random_walk(slope: &f64) -> bool {
@@ -202,7 +203,7 @@ impl FormScene {
         }
     }
 
-    /// Depth of what it takes away from the surface at its deepest [mm].
+    /// Largest depth below the nominal surface [mm].
     pub fn depth_mm(&self) -> f64 {
         match self {
             Self::Spall(spall) => spall.depth_mm,
@@ -293,7 +294,7 @@ struct Wave {
 /// How far a wall of a rolling element leans, over its height: a depth has one value at each angle.
 const LEAN: f64 = 1e-3;
 
-/// What changes a part of the surface.
+/// A deviation of a part of the surface.
 #[derive(Debug, Clone, PartialEq)]
 struct Piece {
     /// Angle of its middle [rad].
@@ -304,8 +305,8 @@ struct Piece {
 }
 
 impl Relief {
-    /// What the deviations make of a surface of the radius `radius` [m] whose facets are `facet_mm` long;
-    /// `None` when none of them is `on` it. Grooves of raceways are no part of it.
+    /// Relief of a surface of radius `radius` [m] whose facets are `facet_mm` long; `None` when no deviation
+    /// is `on` it. Grooves of raceways are no part of it.
     pub fn of(deviations: &[DeviationScene], on: RollingSurface, radius: f64, facet_mm: f64) -> Option<Self> {
         let mut relief = Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 };
         let mut any = false;
@@ -504,7 +505,7 @@ mod tests {
         assert_eq!(relief, again);
     }
 
-    /// The power in two bands of the profile, from its sine and cosine parts at each order, tells the slope.
+    /// The power in two bands of the profile, from its sine and cosine parts at each order, yields the slope.
     /// Source: Persson et al. 2005, §2: a self-affine profile of the Hurst exponent H has C(q) ∝ q^−(1 + 2H);
     /// THEORY §6.4.
     #[test]

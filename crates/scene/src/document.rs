@@ -1,5 +1,5 @@
-//! A file that makes scenes, such as that of a campaign: its text, where its fields stand, and what is wrong
-//! with it, said as of scenes: with line, field, what is allowed and what to try.
+//! A file that defines scenes, such as that of a campaign: its text, the places of its fields, and messages
+//! as those on scenes, with line, field, allowed values and remedy.
 
 use ron::error::SpannedError;
 
@@ -8,17 +8,17 @@ use crate::scene_file::problem::{Place, Problem, SceneError, offset, place_in_fi
 use crate::scene_file::wording::{list, shown};
 use crate::scene_file::{self, suggest};
 
-/// What is particular to one kind of file.
+/// Properties of one kind of file.
 pub(crate) struct Kind {
-    /// What such a file is, in words: `a campaign`.
+    /// Noun for such a file: `a campaign`.
     pub(crate) noun: &'static str,
-    /// What it may hold, and a file to look at.
+    /// Its fields, and an example file.
     pub(crate) example: &'static str,
     /// The part of it whose type has this name.
     pub(crate) part: fn(Option<&str>) -> &'static str,
-    /// What to try where a field without default lacks, by the type that lacks it.
+    /// Remedy for a missing field without default, by the type that misses it.
     pub(crate) lacking: fn(Option<&str>) -> Option<&'static str>,
-    /// What to do with a field of a scene that stands in the wrong place.
+    /// Remedy for a field of a scene at the wrong level.
     pub(crate) for_fields_of_scenes: &'static str,
     /// How large a whole number in the field of this name may be; `None` for other fields.
     pub(crate) most: fn(&str) -> Option<u64>,
@@ -32,7 +32,7 @@ pub(crate) struct File<'a> {
     kind: &'static Kind,
 }
 
-/// A file that the system does not give.
+/// A file that cannot be read.
 pub(crate) fn unreadable(name: &str, kind: &Kind, example: &str, error: &std::io::Error) -> SceneError {
     let place = Place::Unwritten { file: name.to_owned() };
     let noun = kind.noun;
@@ -67,7 +67,7 @@ impl<'a> File<'a> {
         problem.into()
     }
 
-    /// The scene that all others are made from; what is wrong with an item of `set` is shown there.
+    /// The scene that all others start from; a mistake in an item of `set` is shown at that item.
     pub(crate) fn of_base(&self, error: SceneError) -> SceneError {
         SceneError::new(error.problems().iter().cloned().map(|problem| self.in_set(problem)).collect())
     }

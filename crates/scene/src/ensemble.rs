@@ -1,18 +1,18 @@
-//! Many starts of one scene: what is drawn for each, and `ensemble.json`, which says how many there are.
+//! Many starts of one scene: the values drawn for each, and `ensemble.json`, which holds their number.
 //!
-//! Nobody knows how a bearing stood when the clock began, and what rattles or strikes in it depends on that.
-//! So a start draws what a scene leaves to chance, from a seed and its number:
+//! The initial position of rollers and cage is unknown, and rattling and impacts depend on it. So each start
+//! draws it at random, from a seed and the start's number:
 //!
-//! | drawn | evenly over |
+//! | drawn | uniform over |
 //! |---|---|
-//! | angle of roller 1, and of all others with it | from the scene's angle on, as far as one facet of a roller rolls |
+//! | angle of roller 1, and of all others with it | from the scene's angle to that after rolling by one facet of a roller |
 //! | phase of the rollers' meshes | one facet of a roller |
 //! | place of each roller in its pocket | the clearance of the pocket, to either side |
 //!
 //! A turn by more than a facet would mostly shift the record in time; within one, the same rollers cross the
 //! defect in every start, none of them earlier than in the scene, and their events can be compared. All
-//! rollers have one phase, so that the copies of their mesh keep the pattern of the scene. What was drawn
-//! stands in the scene of the start, which makes it a run like any other.
+//! rollers have one phase, so that the copies of their mesh keep the pattern of the scene. The drawn values
+//! are in the scene of the start, which makes it a run like any other.
 
 use std::collections::BTreeMap;
 
@@ -38,11 +38,11 @@ pub struct Ensemble {
     pub commit: String,
     /// Hash of the scene that all starts have in common ([`Scene::hash`]).
     pub scene_hash: String,
-    /// What the draws follow from.
+    /// Seed of the draws.
     pub seed: u64,
-    /// Starts that were asked for, numbered from 1.
+    /// Number of starts requested; they are numbered from 1.
     pub starts: usize,
-    /// Starts that could not be run, by number, and why. One that diverged says so in its own `run.json`.
+    /// Starts that could not be run, by number, and why. One that diverged is recorded in its own `run.json`.
     pub failed: BTreeMap<usize, String>,
 }
 
@@ -75,7 +75,7 @@ pub fn start(scene: &Scene, seed: u64, number: usize) -> Scene {
     drawn
 }
 
-/// Whether `other` is a start of `scene`: they differ in nothing but name and what is drawn.
+/// Whether `other` is a start of `scene`: they differ in name and drawn values only.
 pub fn is_start_of(other: &Scene, scene: &Scene) -> bool {
     let mut undrawn = other.clone();
     undrawn.name.clone_from(&scene.name);
@@ -87,7 +87,7 @@ pub fn is_start_of(other: &Scene, scene: &Scene) -> bool {
     undrawn == *scene
 }
 
-/// Angle by which a roller comes on along the outer raceway while one of its facets rolls [°].
+/// Angle by which a roller advances on the outer raceway while it rolls by one of its facets [°].
 fn facet_deg(scene: &Scene) -> f64 {
     let b = &scene.bearing;
     360.0 / scene.mesh.roller_facets as f64 * b.roller_diameter_mm / b.outer_race_diameter_mm
@@ -139,8 +139,8 @@ mod tests {
         assert!((1..50).all(|number| start(&turned, 1, number).validate().is_ok()));
     }
 
-    /// Draws fill their ranges evenly: mean and variance of a uniform distribution, (b − a)²/12, within four
-    /// standard errors of so many draws.
+    /// Draws are uniform over their ranges: mean and variance of a uniform distribution, (b − a)²/12, within
+    /// four standard errors for the number of draws.
     #[test]
     fn invariant_draws_are_even_over_their_ranges() {
         const STARTS: usize = 2000;

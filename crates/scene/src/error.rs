@@ -22,7 +22,7 @@ pub enum Error {
         value: f64,
         /// The valid range, with unit.
         allowed: String,
-        /// What to try.
+        /// Remedy.
         suggestion: &'static str,
     },
 
@@ -35,7 +35,7 @@ pub enum Error {
     NoEquilibrium {
         /// Iterations done.
         iterations: usize,
-        /// Force that is left over [N].
+        /// Unbalanced force [N].
         residual_n: f64,
         /// Load [N].
         load_n: f64,
@@ -44,11 +44,11 @@ pub enum Error {
     /// The system refused to read or write a file.
     #[error("cannot {action} `{}`: {source}. {kept}", path.display())]
     Io {
-        /// What was tried: `create`, `write`, `read` …
+        /// Operation that failed: `create`, `write`, `read` …
         action: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// What remains readable, and what to try.
+        /// Files that remain readable, and the remedy.
         kept: String,
         /// The system's answer.
         source: std::io::Error,
@@ -59,7 +59,7 @@ pub enum Error {
     Trace {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it, and what to try.
+        /// Problem and remedy.
         message: String,
     },
 
@@ -68,11 +68,11 @@ pub enum Error {
     Mesh {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Problem.
         message: String,
     },
 
-    /// The folder for a run, or for what is made of runs, holds something else.
+    /// The folder for a run, or for a result made from runs, holds something else.
     #[error(
         "`{}` holds files of something else (for example `{found}`), and what is written there would mix \
          with them. \
@@ -86,7 +86,7 @@ pub enum Error {
         found: String,
     },
 
-    /// An earlier run left samples in the folder for a run, or for what is made of runs.
+    /// An earlier run left samples in the folder for a run, or for a result made from runs.
     #[error(
         "`{}` holds {found}, which is kept. You can {}choose another folder with --out, such as `{}`",
         path.display(), or(ways), free.display()
@@ -94,9 +94,9 @@ pub enum Error {
     FolderHoldsRun {
         /// The folder.
         path: PathBuf,
-        /// What the run is.
+        /// Description of that run.
         found: String,
-        /// What can be done with it, in words; none where no run was to go there.
+        /// Ways to proceed, in words; none where the folder was not meant for a run.
         ways: Vec<String>,
         /// A folder of a similar name that is not there.
         free: PathBuf,
@@ -155,7 +155,7 @@ pub enum Error {
     RunInfo {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with line and column.
+        /// Problem, with line and column.
         source: serde_json::Error,
     },
 }

@@ -1,4 +1,4 @@
-//! Which surfaces of a scene have defects, and which of them a report looks at first.
+//! Which surfaces of a scene have defects, and which of them a report treats first.
 
 use std::f64::consts::PI;
 

@@ -1,8 +1,9 @@
-//! Frames: where the nodes about the defect are at chosen times, one file each, for pictures of the stress.
+//! Frames: positions of the nodes about the defect at chosen times, one file each, for pictures of the
+//! stress.
 //!
 //! `frames/000042.npy` belongs to sample 42. Its rows are the nodes in a window, with their displacements
-//! from the stress-free mesh that the scene makes; its first column repeats the time. A run that goes on from
-//! a checkpoint writes the frames after it once more, to the same bytes.
+//! from the stress-free mesh that the scene makes; its first column repeats the time. A run continued from a
+//! checkpoint writes the later frames again, to the same bytes.
 
 use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
@@ -62,7 +63,7 @@ impl Window {
 /// All frames in the folder, in the order of time; none when there is no such folder.
 ///
 /// # Errors
-/// What is wrong with the first file that cannot be read.
+/// The error of the first file that cannot be read.
 pub fn read_all(folder: &Path) -> Result<Vec<Frame>, Error> {
     let Ok(entries) = std::fs::read_dir(folder) else { return Ok(Vec::new()) };
     let mut files: Vec<PathBuf> =

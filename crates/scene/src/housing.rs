@@ -1,12 +1,11 @@
-//! What holds the outer ring and takes the load: the paper's adapter, or other housings.
+//! Housings, which hold the outer ring and take the load: the paper's adapter, and others.
 //!
-//! The inner ring turns about a fixed centre, and the load pushes what is outside towards it, as on a wheel
-//! or under the paper's adapter. A load on the shaft of a housing that stands still is the same seen from the
-//! shaft.
+//! The inner ring turns about a fixed centre, and the load pushes the housing towards it, as on a wheel or
+//! under the paper's adapter. A load on the shaft in a stationary housing is the same seen from the shaft.
 
 use serde::{Deserialize, Serialize};
 
-/// What holds the outer ring and takes the load.
+/// The housing, which holds the outer ring and takes the load.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum HousingScene {
@@ -42,9 +41,9 @@ pub struct PedestalScene {
 pub struct MeshHousingScene {
     /// The file, `.msh`, `.inp` or `.k`; its path counts from the folder of the scene.
     pub file: String,
-    /// What a unit of the file's lengths is [mm]: 1 for files in millimetres, 1000 for metres.
+    /// Length unit of the file [mm]: 1 for files in millimetres, 1000 for metres.
     pub unit_mm: f64,
-    /// What the file holds: when a scene is read it is put here, so that a run holds all of its scene.
+    /// Content of the file, inserted when a scene is read, so that a run holds its complete scene.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub text: String,
     /// Name of the set of nodes along the bore.

@@ -1,4 +1,4 @@
-//! Inferences: which scenes could have made the numbers that somebody saw.
+//! Inferences: which scenes are consistent with observed numbers.
 //!
 //! ```text
 //! (
@@ -26,8 +26,8 @@
 //! ```
 //!
 //! Each unknown has a prior; each target a number, or a curve, of `summary.json`. `readings` are no part of
-//! the scene: they say which of several items of every run is the one that was seen, as `{sensor}` in a path.
-//! What is simulated, and what follows from it, is not decided here.
+//! the scene: they select which of several items of a run was observed, as `{sensor}` in a path. Neither the
+//! choice of simulations nor the statistics are decided here.
 
 mod quantity;
 mod refusal;
@@ -52,7 +52,7 @@ pub const MOST_TARGETS: usize = 100;
 pub const MOST_STARTS: usize = 100;
 /// Most runs.
 pub const MOST_RUNS: usize = 100_000;
-/// Fewest scenes of the first round, by unknown: fewer cannot tell one from another.
+/// Fewest scenes of the first round, per unknown: fewer cannot separate their effects.
 const FEWEST_BY_UNKNOWN: usize = 4;
 
 /// An inference that can be made.
@@ -62,13 +62,13 @@ pub struct Inference {
     pub name: String,
     /// The text of its file.
     pub text: String,
-    /// What is drawn follows from it.
+    /// Seed of all draws.
     pub seed: u64,
     /// Runs of each scene, which differ in their starts.
     pub starts: usize,
-    /// What is not known.
+    /// The unknowns.
     pub unknowns: Vec<Unknown>,
-    /// What was seen.
+    /// The observations.
     pub targets: Vec<Target>,
     /// How many runs may be made.
     pub budget: Budget,
@@ -76,16 +76,16 @@ pub struct Inference {
     set: Vec<String>,
 }
 
-/// A field of the scene, or several that go together, whose value is not known.
+/// A field of the scene with an unknown value, or several with a common one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Unknown {
     /// Name: the field's path, or the one given.
     pub name: String,
-    /// What it may be.
+    /// Its prior.
     pub values: Values,
 }
 
-/// What an unknown may be before anything was seen.
+/// Prior distribution of an unknown.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
     /// A number of a range, evenly, or evenly over its logarithm.
@@ -116,23 +116,22 @@ pub enum Values {
     Readings(Vec<String>),
 }
 
-/// A number, or a curve, that was seen.
+/// An observed number or curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Target {
     /// Name: the one given, or the quantity's.
     pub name: String,
     /// Which number of `summary.json`.
     pub of: Quantity,
-    /// What it is.
+    /// Observation.
     pub seen: Seen,
-    /// Standard deviation of what was seen, beside that of starts, in the quantity's unit: how exactly it was
-    /// read.
+    /// Standard deviation of the observation's error, besides the scatter of starts, in the quantity's unit.
     pub tolerance: f64,
     /// Whether differences count by their ratio: levels do.
     pub log: bool,
 }
 
-/// What was seen of a quantity.
+/// Observation of a quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Seen {
     /// A number.
@@ -169,7 +168,7 @@ impl Unknown {
         }
     }
 
-    /// What puts a value into a scene.
+    /// Overrides `field=value` that set a value in a scene.
     fn arguments(&self, value: f64) -> Vec<String> {
         match &self.values {
             Values::Sets(sets) => sets[choice(value, sets.len())].clone(),
@@ -196,8 +195,8 @@ impl Inference {
     /// Reads the file of an inference. Paths in it count from its folder.
     ///
     /// # Errors
-    /// What is wrong with the file, with its line: its own fields, those of a scene that it names, values
-    /// that their field cannot have, and quantities that cannot be read.
+    /// Mistakes in the file, with line and field: in its own fields, in fields of scenes that it names,
+    /// values of the wrong type, and quantities that cannot be read.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text =

@@ -1,9 +1,9 @@
-//! Ideal kinematics: who turns how fast when nothing slips, when a roller crosses the defect, and which tones
-//! the facets of a mesh make.
+//! Ideal kinematics: speeds in rolling without slip, times at which rollers cross the defect, and tones of
+//! the facets of a mesh.
 //!
 //! Angles count counter-clockwise from the x axis. An inner ring at a positive speed turns clockwise, so its
 //! angular velocity and that of the cage are negative, and that of a roller is positive; at a negative speed
-//! all are the other way round. Frequencies are magnitudes.
+//! all signs are reversed. Frequencies are magnitudes.
 
 use std::f64::consts::TAU;
 
@@ -57,7 +57,7 @@ pub struct Kinematics {
     bearing: Dimensions,
 }
 
-/// What kinematics needs of a bearing.
+/// Dimensions and speeds that kinematics needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Dimensions {
     outer_m: f64,
@@ -112,8 +112,8 @@ impl Kinematics {
         Self::between(&scene.bearing, duty.speed_rpm(0.0), duty.outer_speed_rpm(0.0))
     }
 
-    /// Kinematics of a scene's bearing at its mean speeds over the run: where a speed changes, ratios of its
-    /// frequencies to that of the rings against each other are what holds.
+    /// Kinematics of a scene's bearing at its mean speeds over the run: where a speed changes, only ratios of
+    /// its frequencies to the relative speed of the rings are meaningful.
     pub fn at_mean_speed(scene: &Scene) -> Self {
         let duration_s = 1e-3 * scene.solver.duration_ms;
         let [inner_rpm, outer_rpm] = scene.duty().mean_speeds_rpm(duration_s);
@@ -130,7 +130,7 @@ impl Kinematics {
     /// are positive.
     pub fn between(bearing: &BearingScene, inner_rpm: f64, outer_rpm: f64) -> Self {
         let (shaft, ring) = (inner_rpm / 60.0, outer_rpm / 60.0);
-        // Rollers see the difference; what they do in space has the outer ring's motion on top.
+        // Rollers follow the relative speed; the outer ring's rotation is added to their motion in space.
         let clockwise_hz = shaft - ring;
         let relative_hz = clockwise_hz.abs();
         let (outer, inner) = (bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm);
@@ -255,7 +255,7 @@ mod tests {
         // Formulas with the pitch circle share the clearance between the raceways otherwise.
         assert_close(apart, 1.0 / k.bpfi_hz, PRINTED);
         assert_close(apart, 1.0 / (24.0 * (k.shaft_hz - k.cage_hz)), 1e-9);
-        // The roller behind the defect in the sense of rotation comes never first: the inner ring runs ahead
+        // The roller behind the defect in the sense of rotation is never the first: the inner ring runs ahead
         // of it.
         assert_eq!(crossings[0].roller, 24);
         let length_m = k.contact_speed_m_s * (crossings[0].exit_s - crossings[0].entry_s);
@@ -409,8 +409,8 @@ mod tests {
         }
     }
 
-    /// What turns the other way is the mirror image: frequencies stay, angular velocities change their sign,
-    /// and rollers that start at mirrored angles meet a mirrored defect at the same times.
+    /// Rotation in the other direction is the mirror image: frequencies stay, angular velocities change their
+    /// sign, and rollers that start at mirrored angles meet a mirrored defect at the same times.
     #[test]
     fn invariant_a_shaft_that_turns_back_is_the_mirror_image() {
         let scene = Scene::default();

@@ -1,11 +1,10 @@
-//! What a user writes and what a run leaves: scenes of rolling element bearings, their kinematics, run
-//! folders and traces.
+//! Scenes of rolling element bearings (the input), their kinematics, and run folders and traces (the output).
 //!
 //! Nothing here meshes or simulates, so that whoever only reads a run links neither.
 //!
-//! # A scene: who turns how fast, who carries how much
+//! # A scene: its speeds and its load distribution
 //!
-//! A scene is a text in [RON](https://docs.rs/ron); what it does not say has a default. Numbers carry their
+//! A scene is a text in [RON](https://docs.rs/ron); fields that it omits have defaults. Numbers carry their
 //! unit in their name there, and are SI in a [`ResolvedScene`](resolved::ResolvedScene).
 //!
 //! ```
@@ -25,7 +24,7 @@
 //! # Ok::<(), stribeck_scene::Error>(())
 //! ```
 //!
-//! What cannot be is refused where it stands, with what is allowed:
+//! Impossible values are refused with their place and the allowed range:
 //!
 //! ```
 //! # use stribeck_scene::Scene;
@@ -36,19 +35,19 @@
 //! # A run: its folder
 //!
 //! [`run_dir::Run::read`] reads scene, provenance and sampled channels of a run, also of one that was killed;
-//! [`mesh_file::RunMesh`] its mesh, [`frames`] where nodes about the defect were.
+//! [`mesh_file::RunMesh`] its mesh, [`frames`] the positions of nodes about the defect.
 //!
 //! # Where to look
 //!
 //! | question | module |
 //! |---|---|
-//! | What can a scene say, and what is checked? | [`scene`], [`scene_file`] |
+//! | Which fields has a scene, and what is checked? | [`scene`], [`scene_file`] |
 //! | What is that in SI? | [`resolved`]; surfaces that are not round [`deviation`] |
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
-//! | How do speed and load go over time? | [`duty`] |
+//! | How do speed and load vary over time? | [`duty`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
 //! | Which scenes does a campaign make of one? | [`campaign`] |
-//! | What lies in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
+//! | Which files are in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
 pub mod advice;
 pub mod campaign;

@@ -1,4 +1,4 @@
-//! Approach of two raceways that press a roller between them: plane-strain line contacts (THEORY §6.2).
+//! Approach of two raceways with a roller pressed between them: plane-strain line contacts (THEORY §6.2).
 
 use crate::resolved::ResolvedScene;
 
@@ -68,7 +68,7 @@ impl LineContacts {
     }
 
     /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²]; `None` beyond the largest
-    /// approach that the law knows, where contacts as wide as the roller would give way without more load.
+    /// approach for which the law holds: its stiffness vanishes where contacts are as wide as the roller.
     pub(crate) fn load(&self, delta: f64) -> Option<(f64, f64)> {
         // δ(w) is concave, so Newton from below never overshoots; 80 is more than the logarithms of any real
         // load.

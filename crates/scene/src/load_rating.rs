@@ -49,8 +49,8 @@ fn balls_factor(ratio: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// What makers print, with the bearing's own balls. Source: SKF, Rolling bearings (2018), deep groove
-    /// ball bearings: C₀ of 6205 is 7.8 kN, of 6203 4.75 kN.
+    /// Ratings printed by makers, with the bearing's own balls. Source: SKF, Rolling bearings (2018), deep
+    /// groove ball bearings: C₀ of 6205 is 7.8 kN, of 6203 4.75 kN.
     #[test]
     fn peer_static_ratings_of_ball_bearings() {
         for (name, printed_n) in [("6205", 7_800.0), ("6203", 4_750.0)] {

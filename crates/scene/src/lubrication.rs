@@ -29,8 +29,8 @@ pub fn loaded_films(scene: &ResolvedScene) -> Result<Option<[LoadedFilm; 2]>, Er
     let Some(film) = scene.film else { return Ok(None) };
     let load = static_load::at_start(scene)?.max_roller_n() / scene.thickness;
     let k = Kinematics::of(&scene.written);
-    // What sweeps over either surface is the contact: with the cage over the outer raceway, against the shaft
-    // over the inner.
+    // The contact moves over each raceway: with the cage over the outer one, relative to the shaft over the
+    // inner one.
     let speeds = [
         (k.cage_rad_s - k.outer_rad_s).abs() * scene.outer_race_radius,
         (k.shaft_rad_s - k.cage_rad_s).abs() * scene.inner_race_radius,

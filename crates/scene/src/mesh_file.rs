@@ -1,5 +1,5 @@
-//! The mesh of a run, read back from its `mesh.vtu`: bodies by name, where their nodes are free of stress and
-//! where they are when the run starts, and their elements. Nothing needs to be meshed again to draw a run.
+//! The mesh of a run, read back from its `mesh.vtu`: bodies by name, positions of their nodes free of stress
+//! and at the start of the run, and their elements. So a run is drawn without meshing again.
 //!
 //! `mesh.vtu` is a file for ParaView as well (VTK's unstructured grid, appended raw data). It is read as this
 //! program writes it: an XML header of one tag a line, then the arrays, little-endian, each after its length
@@ -13,12 +13,11 @@
 //! | `types`, `connectivity` | u8, i32 | cells: quadrilaterals (9) first, then triangles (5), and their nodes |
 //! | `body` | i32 a cell | the body that it belongs to |
 //!
-//! Earlier versions wrote the names as one array `body_names` of texts, each of which ends with a zero byte;
-//! they are read, too.
+//! Files with the names in one array `body_names` of zero-terminated texts are read, too.
 //!
-//! A reduced run keeps no more of rings and housing than their modes: they stand in the file as at the
-//! preload of the reduction, whose rollers stand symmetrically about the defect, so that one serves all
-//! starts. Rollers and cage stand where the run starts.
+//! A reduced run has rings and housing in their modes only: the file has them at the preload of the
+//! reduction, with rollers symmetrical about the defect, which serves all starts. Rollers and cage are at
+//! their positions at the start.
 
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -127,7 +126,7 @@ impl RunMesh {
     }
 }
 
-/// A regular file: what is none may never end.
+/// A regular file: reading a pipe or device may never end.
 fn open(path: &Path) -> std::io::Result<BufReader<File>> {
     let file = File::open(path)?;
     if !file.metadata()?.is_file() {
@@ -236,7 +235,7 @@ fn attribute<'a>(line: &'a str, name: &str) -> Option<&'a str> {
     Some(rest.split_once('"')?.0)
 }
 
-/// A name as it was before it was put into an attribute.
+/// A name without the escapes of an XML attribute.
 fn unescaped(name: &str) -> String {
     name.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&")
 }

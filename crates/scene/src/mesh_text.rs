@@ -1,9 +1,9 @@
-//! Mesh files as the text that a scene holds: with the files that they include, and binary ones in letters.
+//! Mesh files as text within a scene: with the files that they include, binary ones in base64.
 //!
 //! A run holds all of its scene, so that `*INCLUDE` has to be followed when the scene is read. The lines of
 //! another file stand between two comments, `** included: part.inp` and `** end of included` (`$` in
-//! LS-DYNA's files), from which the reader of meshes knows which file a line is of. A binary file is
-//! `base64:` and its bytes in that encoding (RFC 4648).
+//! LS-DYNA's files), by which the reader of meshes finds the file of a line. A binary file is `base64:` and
+//! its bytes in that encoding (RFC 4648).
 
 use std::borrow::Cow;
 use std::fs::File;
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-/// What a binary file begins with.
+/// Prefix of a binary file.
 const BINARY: &str = "base64:";
 /// Files that include files that include files.
 const DEEPEST: usize = 20;
@@ -28,7 +28,7 @@ pub fn bytes(text: &str) -> Result<Cow<'_, [u8]>, String> {
     bytes.map(Cow::Owned).map_err(|why| format!("its bytes are damaged in the scene: {why}"))
 }
 
-/// The text of the mesh `file`, and of what it includes, of `most` bytes in all.
+/// The text of the mesh `file` and of the files that it includes, of at most `most` bytes in all.
 pub(crate) fn read(file: &Path, most: u64) -> Result<String, String> {
     let main = bytes_of(file, most)?;
     let extension = file.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
@@ -45,8 +45,8 @@ pub(crate) fn read(file: &Path, most: u64) -> Result<String, String> {
     Ok(text.out)
 }
 
-/// Text of any encoding that has ASCII in it: what is not UTF-8 is taken for Latin-1, which has a letter for
-/// every byte. UTF-16 is known by its byte order mark.
+/// Text in any encoding that contains ASCII: anything but UTF-8 is taken for Latin-1, which maps every byte.
+/// UTF-16 is recognised by its byte order mark.
 fn text_of(bytes: Vec<u8>) -> String {
     let units = |order: fn([u8; 2]) -> u16| {
         let units = bytes[2..].as_chunks().0.iter().map(|pair| order(*pair));
@@ -105,7 +105,7 @@ struct Assembled {
 }
 
 impl Assembled {
-    /// Adds the text of `file`, and what that includes.
+    /// Adds the text of `file` and of the files that it includes.
     fn add(&mut self, text: &str, file: &Path, depth: usize) -> Result<(), String> {
         if depth > DEEPEST {
             return Err(format!(

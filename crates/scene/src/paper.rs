@@ -31,8 +31,7 @@ mod tests {
         assert!(scene.validate().is_ok());
     }
 
-    /// Whatever is chosen for what the paper leaves open, what it gives is given: Table 1, load, speed,
-    /// defect.
+    /// Fields that the paper gives have its values, whatever the others are: Table 1, load, speed, defect.
     #[test]
     fn invariant_the_paper_s_run_has_what_the_paper_gives() {
         let (paper, oiled) = (Scene::singh2014(), Scene::default());

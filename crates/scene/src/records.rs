@@ -1,9 +1,9 @@
-//! What a machine's sensor would record of a run, behind an unknown path and in noise.
+//! Synthetic records of a machine's sensor: the force of a run behind an unknown path, in noise.
 
 use serde::{Deserialize, Serialize};
 
 /// Records of the force of all rolling elements on the outer ring, behind a path of resonances that the
-/// scene's hash draws, in white noise: one for each level of the noise. `summary.json` says what they tell.
+/// scene's hash draws, in white noise: one for each level of the noise. `summary.json` has their signatures.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RecordsScene {

@@ -18,8 +18,8 @@ use crate::scene::{
     CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
 };
 
-/// A scene in SI: dimensions, material, mesh, contact, load and times, and beside them the scene as written
-/// for what has no unit to convert. Lengths are [m], angles [rad], counter-clockwise from the x axis.
+/// A scene in SI: dimensions, material, mesh, contact, load and times, and the scene as written, for fields
+/// without a unit to convert. Lengths are [m], angles [rad], counter-clockwise from the x axis.
 ///
 /// ```
 /// let scene = stribeck_scene::Scene::default().resolve();
@@ -65,11 +65,11 @@ pub struct ResolvedScene {
     pub adapter_height: f64,
     /// Spalls with steep walls, which meshes of raceways are cut with.
     pub grooves: Vec<DefectGeometry>,
-    /// What deviates from round on the outer raceway.
+    /// Relief of the outer raceway: its deviations from round.
     pub outer_relief: Option<Relief>,
     /// The same of the inner raceway, at the start.
     pub inner_relief: Option<Relief>,
-    /// Rolling elements that are not round, from 0, and what deviates on them at the start.
+    /// Rolling elements that are not round, from 0, with their reliefs at the start.
     pub roller_reliefs: Vec<(usize, Relief)>,
     /// Material of every body.
     pub material: Material,

@@ -3,16 +3,16 @@
 use serde::{Deserialize, Serialize};
 
 /// A ring from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the centre of the
-/// bearing in the origin. Its material is that of the bearing, its raceway the circle of `bearing`, and what
-/// the file cuts into that.
+/// bearing in the origin. Its material is that of the bearing, its raceway the circle of `bearing`, with the
+/// cut-outs of the file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct RingMeshScene {
     /// The file, `.msh`, `.inp` or `.k`; its path counts from the folder of the scene.
     pub file: String,
-    /// What a unit of the file's lengths is [mm]: 1 for files in millimetres, 1000 for metres.
+    /// Length unit of the file [mm]: 1 for files in millimetres, 1000 for metres.
     pub unit_mm: f64,
-    /// What the file holds: when a scene is read it is put here, so that a run holds all of its scene.
+    /// Content of the file, inserted when a scene is read, so that a run holds its complete scene.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub text: String,
     /// Name of the set of nodes all along the raceway.

@@ -49,8 +49,8 @@ pub struct TurningRings {
 }
 
 impl TurningRings {
-    /// The bearing of a scene, as if it were sound, with its inner ring at `speed_rpm`; the outer one turns
-    /// as the scene says.
+    /// The bearing of a scene, without defects, with its inner ring at `speed_rpm`; the outer one turns as in
+    /// the scene.
     pub fn new(scene: &ResolvedScene, kind: ContactLawKind, speed_rpm: f64) -> Self {
         let written = &scene.written;
         let k = Kinematics::between(&written.bearing, speed_rpm, written.operation.outer_speed_rpm);
@@ -101,7 +101,7 @@ impl TurningRings {
         let reach = self.clearance_m.abs() + alone + self.law.approach(1, load_n).0;
         let mut shift = [0.0, self.clearance_m.max(0.0) + 0.5 * alone];
         let mut now = self.carried(shift, load_n, &directions);
-        // Forces of interference are larger than the load, and so is what their rounding leaves.
+        // Forces of interference are larger than the load, and so is their rounding error.
         let enough = |at: &Carried| at.unbalanced() <= TOLERANCE * load_n.max(at.largest_n);
         for _ in 0..MAX_ITERATIONS {
             if enough(&now) {
@@ -121,7 +121,7 @@ impl TurningRings {
         Err(Error::NoEquilibrium { iterations: MAX_ITERATIONS, residual_n: now.unbalanced(), load_n })
     }
 
-    /// What the elements carry where the shaft is shifted.
+    /// Force of the elements on a shifted shaft [N].
     fn carried(&self, shift: [f64; 2], load_n: f64, directions: &[[f64; 2]]) -> Carried {
         let mut out = Carried { left: [0.0, load_n], stiffness: [0.0; 3], loaded: 0, largest_n: 0.0 };
         for n in directions {

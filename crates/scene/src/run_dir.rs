@@ -1,4 +1,4 @@
-//! The folder of one run: who may write it, what lies in it, how it is read again.
+//! The folder of one run: its lock, its files, and how it is read again.
 //!
 //! ```text
 //! runs/x/  scene.ron  run.json  trace.npy  energy.npy  mesh.vtu  checkpoint  frames/   written by the run
@@ -11,11 +11,12 @@
 //!
 //! A run is never written over another one that holds samples: [`RunDir::create`] refuses such a folder,
 //! [`RunDir::create_numbered`] takes the next free one, and [`RunDir::replace`] keeps the earlier run until
-//! the new one is complete. What other commands make of runs takes no folder of a run ([`check_folder`]).
+//! the new one is complete. Results that other commands make from runs never go into the folder of a run
+//! ([`check_folder`]).
 //!
-//! The checkpoint is there from the first step of a run on. Whatever kills the run, the folder can be read,
-//! and continued from the last checkpoint: traces never hold fewer samples than it counts. A complete run
-//! keeps its last one, so that it can be made longer.
+//! The checkpoint is there from the first step of a run on. After a kill the folder can be read, and
+//! continued from the last checkpoint: traces never hold fewer samples than it counts. A complete run keeps
+//! its last one, so that it can be made longer.
 
 mod earlier;
 mod ensemble;
@@ -55,16 +56,16 @@ pub const LAB: &str = "lab.html";
 const FIGURES: &str = "figures";
 const FRAMES: &str = "frames";
 const LOCK: &str = ".lock";
-/// Written beside a file, then renamed over it: a reader sees the old file or the new one, never half of
-/// either.
+/// Suffix of a file while it is written; it is then renamed over the target, so that a reader sees the old
+/// file or the new one, never a part.
 const PARTIAL: &str = ".part";
 
 /// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no
-/// run, so it goes first and nothing half removed is taken for a result.
+/// run, so it is removed first, and a half removed run is not taken for a result.
 const FILES: [&str; 11] =
     [INFO, ENSEMBLE, REPORT, LAB, SUMMARY, TRACE, SIGNALS, ENERGY, MESH, CHECKPOINT, SCENE];
 
-/// Folders that a run or its report fills, and what they write there.
+/// Folders that a run or its report fills, and their files.
 const FOLDERS: [(&str, &[&str]); 2] = [(FIGURES, &["svg", "png", "gif"]), (FRAMES, &["npy"])];
 
 const UNTOUCHED: &str = "Nothing was changed; choose a folder that can be written with --out";
@@ -83,8 +84,8 @@ pub struct RunDir {
 }
 
 impl RunDir {
-    /// Reserves the folder at `path` for a new run, making it when it is missing. What a run left that never
-    /// took a sample stays untouched until [`RunDir::start`].
+    /// Reserves the folder at `path` for a new run, making it when it is missing. Files of a run that never
+    /// took a sample stay untouched until [`RunDir::start`].
     ///
     /// # Errors
     ///
@@ -115,7 +116,7 @@ impl RunDir {
         let mut number = 1;
         loop {
             match Self::create(numbered(path, number)) {
-                // The first is asked for by the user; one with a number is only a proposal.
+                // The first name is the user's own; a numbered one is only a proposal.
                 Err(Error::FolderHoldsRun { .. } | Error::FolderInUse { .. }) if number < MOST_NUMBERS => {}
                 Err(Error::ForeignFolder { .. }) if (2..MOST_NUMBERS).contains(&number) => {}
                 done => return done,
@@ -151,9 +152,8 @@ impl RunDir {
         }
     }
 
-    /// Puts a complete run in the place of the one that it was to replace ([`RunDir::replace`]), also after
-    /// it was continued. What the owner added to the earlier folder stays there. Nothing happens to other
-    /// runs.
+    /// Moves a complete run to the place of the one that it replaces ([`RunDir::replace`]), also after it was
+    /// continued. Files that the owner added to the earlier folder stay there. Nothing happens to other runs.
     ///
     /// # Errors
     ///
@@ -172,12 +172,12 @@ impl RunDir {
         self.replaces.as_deref()
     }
 
-    /// What keeps the folder for this run until it starts.
+    /// The reservation of the folder until the run starts.
     pub fn reservation(&self) -> Reservation {
         self.reservation.clone()
     }
 
-    /// Removes what a run without samples left and writes `scene.ron` and `run.json` of this one.
+    /// Removes the files of a run without samples and writes `scene.ron` and `run.json` of this one.
     ///
     /// Call it when mesh and preload have succeeded and the time loop is about to begin.
     ///
@@ -190,14 +190,14 @@ impl RunDir {
         self.write_info(info)
     }
 
-    /// From now on the folder is that of this run: what an earlier one left there is removed.
+    /// From here on the folder is that of this run: files of an earlier one are removed.
     fn begin(&self) -> Result<(), Error> {
         self.reservation.start();
         files::remove_run(&self.path)?;
         self.replaces.as_deref().map_or(Ok(()), |old| replacement::mark(&self.path, old))
     }
 
-    /// Writes `scene.ron` and `run.json` of a run that goes on; its scene may last longer than before.
+    /// Writes `scene.ron` and `run.json` of a continued run, whose duration may be longer than before.
     ///
     /// Call it when the state of the checkpoint is restored and the time loop is about to begin.
     ///

@@ -49,17 +49,17 @@ pub struct RunInfo {
     /// pieces; version, machine and threads are those of the last one.
     #[serde(default)]
     pub resumed_at_s: Vec<f64>,
-    /// What the reduced model kept; none in the full one.
+    /// Modes that the reduced model kept; none in the full one.
     #[serde(default)]
     pub reduced: Option<ReducedInfo>,
     /// Energy verdict.
     pub energy: EnergyInfo,
-    /// The worst that the other guards have seen.
+    /// Extremes of the other guards.
     #[serde(default)]
     pub guards: GuardInfo,
     /// Vertical force that the rollers must carry: load plus the weight of adapter and outer ring [N].
     pub expected_support_n: f64,
-    /// What the run does not take of its scene: what of the mesh files of housing and rings was passed over.
+    /// Parts of the scene that the run ignores: of the mesh files of housing and rings.
     #[serde(default)]
     pub notes: Vec<String>,
     /// Warnings, in the order in which they arose.
@@ -97,7 +97,7 @@ pub struct MeshInfo {
     pub inner_facets: usize,
 }
 
-/// What the reduced model kept.
+/// Modes that the reduced model kept.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ReducedInfo {
     /// Modes of outer ring and adapter, the two that nothing resists among them.
@@ -118,15 +118,14 @@ pub struct EnergyInfo {
     /// Peak strain energy [J]; infinite likewise.
     #[serde(deserialize_with = "null_is_infinite")]
     pub peak_strain_j: f64,
-    /// What friction, films and damping have turned into heat [J]; nothing in runs of programs that did not
-    /// say.
+    /// Heat of friction, films and damping [J]; absent in runs of programs that did not record it.
     #[serde(default, deserialize_with = "null_is_infinite")]
     pub heat_j: f64,
 }
 
 impl EnergyInfo {
-    /// Largest |imbalance| over the heat [-], where that is more than was ever stored as strain: in a long
-    /// run what a step is off by grows with the heat, and the strain energy does not.
+    /// Largest |imbalance| over the heat [-], where the heat exceeds the peak strain energy: in a long run
+    /// the error of the steps grows with the heat, while the strain energy does not.
     pub fn share_of_heat(&self) -> Option<f64> {
         let share = self.max_relative_error * self.peak_strain_j / self.heat_j;
         (self.heat_j > self.peak_strain_j && share.is_finite()).then_some(share)
@@ -138,15 +137,14 @@ impl EnergyInfo {
         self.share_of_heat().unwrap_or(self.max_relative_error)
     }
 
-    /// What the energy was off by at most, as [`imbalance`] says it.
+    /// Largest energy imbalance in words, as of [`imbalance`].
     pub fn in_words(&self) -> String {
         imbalance(self.max_relative_error, self.share_of_heat())
     }
 }
 
-/// What an energy is off by in words: over the heat where that is more than the peak strain energy, because
-/// the error of the step grows with the heat and says nothing beside strain; else over the peak strain
-/// energy.
+/// An energy imbalance in words: relative to the heat where that exceeds the peak strain energy, because the
+/// error of the steps grows with the heat; else relative to the peak strain energy.
 pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
     match of_heat {
         Some(share) => format!("{:.3} % of the heat", 100.0 * share),
@@ -154,7 +152,7 @@ pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
     }
 }
 
-/// The worst that the guards have seen (`guards.rs`).
+/// Extremes of the guards (`guards.rs`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct GuardInfo {
@@ -197,7 +195,7 @@ impl Default for GuardInfo {
     }
 }
 
-/// JSON knows no infinity: it is written as `null`. The binary checkpoint knows it.
+/// JSON knows no infinity: it is written as `null`. The binary checkpoint holds it as it is.
 fn null_is_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     if !from.is_human_readable() {
         return f64::deserialize(from);
@@ -222,8 +220,8 @@ pub fn clock(seconds: f64) -> String {
 mod tests {
     use super::{EnergyInfo, clock};
 
-    /// A second of the reduced model was said to be off by 35.785 % of the peak strain energy, which read as
-    /// a failure: it was 0.02 % of the heat. A rigid housing stores millionths of what turns into heat.
+    /// A second of the reduced model is off by 35.785 % of the peak strain energy, which reads as a failure,
+    /// and by 0.02 % of the heat: a rigid housing stores millionths of the dissipated energy.
     #[test]
     fn issue_an_imbalance_is_told_by_the_larger_of_strain_and_heat() {
         let energy = |max_relative_error, peak_strain_j, heat_j| EnergyInfo {

@@ -97,19 +97,19 @@ impl Scene {
     }
 }
 
-/// A field of a scene file that gave way to the name of another bearing.
+/// A field of a scene file that the name of another bearing has replaced.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Replaced {
     /// Dotted path.
     pub field: String,
-    /// What the file says.
+    /// Value in the file.
     pub written: String,
-    /// What the scene has.
+    /// Value in the scene.
     pub now: String,
 }
 
-/// What the scene file at `path` says and `bearing=NAME` among `overrides` replaces: to another bearing than
-/// the file's all follows that surrounds it, but for what further overrides give. Nothing where the scene
+/// Fields of the scene file at `path` that `bearing=NAME` among `overrides` replaces: with another bearing
+/// than the file's its surroundings change, except fields that further overrides set. Empty where the scene
 /// cannot be read.
 pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<Replaced> {
     let is_bearing = |text: &&str| text.split('=').next().is_some_and(|path| path.trim() == "bearing");
@@ -133,9 +133,8 @@ pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<R
         .collect()
 }
 
-/// What is wrong with `field` of the scene file at `path`, or of the paper's scene, under `overrides`:
-/// `message`, shown where the field was written. For what is found in a sound scene later, as in the meshes
-/// that it names.
+/// The error `message` on `field` of the scene file at `path`, or of the paper's scene, under `overrides`,
+/// shown where the field was written. For mistakes found after reading, as in the meshes that a scene names.
 pub fn refused_at<S: AsRef<str>>(
     path: Option<&Path>,
     overrides: &[S],
@@ -169,7 +168,7 @@ fn compose<S: AsRef<str>>(
 struct Understood {
     scene: Scene,
     set: Vec<origin::Override>,
-    /// Why the bearing that it gives by its own fields is none.
+    /// Why the fields of its bearing do not define one.
     refusal: Option<Box<own::Refusal>>,
 }
 
@@ -190,8 +189,8 @@ impl Understood {
     }
 }
 
-/// The scene with a bearing of its own completed. `given` has the paths of the fields that somebody wrote
-/// into the paper's scene; `None` where its bearing is another one already.
+/// The scene with a bearing of its own completed. `given` has the paths of the fields written by the user;
+/// `None` where its bearing is another one already.
 fn complete(mut scene: Scene, set: Vec<origin::Override>, given: Option<Vec<String>>) -> Understood {
     let own = given.map(|given| own::complete(&mut scene, &given));
     let refusal = match own {
@@ -208,7 +207,7 @@ fn names_bearing<S: AsRef<str>>(overrides: &[S]) -> bool {
     })
 }
 
-/// Some editors put a byte order mark in front; RON knows none.
+/// Some editors write a byte order mark first, which RON does not accept.
 pub(crate) fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
@@ -231,8 +230,8 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
     Ok(complete(scene, set, (!has_name).then_some(given)))
 }
 
-/// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. What further
-/// overrides may repair is not looked at: numbers outside their range, bodies that cannot exist, tables that
+/// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. Errors that further
+/// overrides may repair are not checked: numbers outside their range, bodies that cannot exist, tables that
 /// are not there.
 pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
     match path {
@@ -259,7 +258,7 @@ pub(crate) fn unreadable_values<S: AsRef<str>>(
     scene.map_or_else(|_| Vec::new(), |scene| overrides::unreadable_values(scene, overrides))
 }
 
-/// What is wrong with the name of a field that no scene has; `None` for one that some scene has.
+/// The error on a field name that no scene has; `None` for one that some scene has.
 pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
     let schema = schema::Schema::new();
     let known = schema.default_of(path).is_some();
@@ -267,7 +266,7 @@ pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
     if known { None } else { answer().map(|problem| *problem) }
 }
 
-/// A designation that gives no bearing.
+/// The error on a designation that yields no bearing.
 pub(crate) fn unknown_bearing(why: String, place: Place) -> Problem {
     let mut problem = Problem::new(why, place);
     "bearing".clone_into(&mut problem.field);

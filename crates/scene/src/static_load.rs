@@ -1,4 +1,4 @@
-//! Static load distribution between two rigid rings: which roller carries how much, THEORY §6.
+//! Static load distribution over the rollers between two rigid rings, THEORY §6.
 //!
 //! After Stribeck and Sjövall, with a radial clearance and the compliance of a plane-strain line contact: the
 //! roller's half by Johnson (*Contact Mechanics*, 1985, §5.6), the ring's side as a half-plane down to the
@@ -14,8 +14,8 @@ use crate::scene::Scene;
 const TOLERANCE: f64 = 1e-10;
 /// The search is a damped Newton iteration on a convex energy; it needs about ten.
 const MAX_ITERATIONS: usize = 200;
-/// A step goes no farther than so many times the clearance and the approach of a roller that carries
-/// everything: where few rollers are touched, or none, a direction has no stiffness that would say how far.
+/// Longest step of the search, over the sum of clearance and the approach of a roller that carries
+/// everything: where few rollers touch, or none, a direction has no stiffness to limit it.
 const REACH: f64 = 10.0;
 /// Shortest part of a step that is tried.
 const SHORTEST: f64 = 1e-9;
@@ -77,8 +77,8 @@ impl RigidRings {
     /// Equilibrium of the outer ring under `load_n`, downwards, over rollers at `angles_deg` (90° is the
     /// top).
     ///
-    /// A roller that carries nothing, because it stands in a defect, is left out of the list. Horizontal
-    /// forces balance too, so the angles need not be symmetric.
+    /// A roller without load because it lies in a defect is not listed. Horizontal forces balance too, so the
+    /// angles need not be symmetric.
     ///
     /// # Errors
     ///
@@ -225,8 +225,8 @@ pub fn at_start(scene: &ResolvedScene) -> Result<StaticLoad, Error> {
 }
 
 /// Angles of a scene's rollers at the start as seen in a frame whose load comes from above [°], in their
-/// order, without those that are missing: what [`RigidRings::distribute`] takes. For a load downwards they
-/// are the angles themselves.
+/// order, without those that are missing: the argument of [`RigidRings::distribute`]. For a load downwards
+/// they are the angles themselves.
 pub fn angles_to_load_deg(scene: &Scene) -> Vec<f64> {
     let turned = scene.load_zone_deg() - 90.0;
     let angles = roller_angles_deg(scene);
@@ -298,9 +298,9 @@ mod tests {
 
     #[test]
     fn survives_any_load_that_a_bearing_may_carry() {
-        // Once light loads left the rings without contact on the way, and the search ended far outside the
-        // bearing. Few rollers leave one of them alone under the load. Between rigid rings the law of the
-        // contact has fewer logarithms.
+        // Under light loads the search passes positions without contact, from which it must not leave the
+        // bearing. With few rollers one of them may carry alone. Between rigid rings the law of the contact
+        // has fewer logarithms.
         let rigid = Scene::parse("(housing: rigid(), defect: None)", "here").expect("valid");
         for rollers in [3, 4, 5, 24] {
             for turned in 0..8 {

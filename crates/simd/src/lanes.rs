@@ -14,7 +14,7 @@ use pulp::{Simd, bytemuck};
 /// Numbers in a line of cache. No vector is longer, and arrays are cut into groups of that many.
 pub const LANES: usize = 8;
 
-/// What a kernel does with numbers.
+/// Operations of a kernel on numbers.
 ///
 /// A kernel that is written over it chooses between two values where a program for single numbers would
 /// branch; flags are numbers too, one for yes and zero for no.

@@ -8,7 +8,7 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use serde::{Deserialize, Serialize};
 use stribeck_bearing::{
-    assembly::{Assembly, Machine, load},
+    assembly::{Assembly, BearingSystem, load},
     own_mesh,
     start::{damp, launch, preload},
 };
@@ -30,10 +30,10 @@ use recorder::Recorder;
 /// A bearing of finite elements before its first step.
 pub(crate) struct Full {
     assembly: Assembly,
-    machine: Machine,
+    bearing: BearingSystem,
 }
 
-/// What a checkpoint holds of it.
+/// Its state in a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Saved {
     system: Snapshot,
@@ -44,32 +44,32 @@ impl Full {
     /// Meshed and laid out.
     fn assemble(with: &mut Preparation<'_>) -> Result<Self, Error> {
         let assembly = Assembly::new(with.scene)?;
-        let machine = assembly.machine(with.scene, with.host.threads)?;
+        let bearing = assembly.build(with.scene, with.host.threads)?;
         let mesh = assembly.mesh_info();
         with.progress.elements = mesh.quads + mesh.triangles;
-        Ok(Self { assembly, machine })
+        Ok(Self { assembly, bearing })
     }
 
-    /// Mass of the outer ring and of what holds it [kg].
+    /// Mass of the outer ring and its housing [kg].
     fn carried_mass(&self) -> f64 {
-        let system = &self.machine.system;
+        let system = &self.bearing.system;
         let mass = |body: usize| system.nodes_of(body).map(|n| system.mass(n)).sum::<f64>();
-        std::iter::once(self.machine.outer).chain(self.machine.housing).map(mass).sum()
+        std::iter::once(self.bearing.outer).chain(self.bearing.housing).map(mass).sum()
     }
 
-    /// In motion under its duty, its ranks and what is watched of it.
+    /// The model in motion, with its duty, ranks and guards.
     fn moving(self, with: &Preparation<'_>, recorder: Recorder) -> FullMotion {
-        let Self { assembly, mut machine } = self;
+        let Self { assembly, mut bearing } = self;
         let (scene, host) = (with.scene, with.host);
-        host.ranks.iter().for_each(|ranks| machine.system.divide(Arc::clone(ranks)));
+        host.ranks.iter().for_each(|ranks| bearing.system.divide(Arc::clone(ranks)));
         FullMotion {
             recorder,
             frames: with.dir.and_then(|dir| Frames::of(scene, dir.frames())),
-            guards: Guards::new(scene, &assembly, &machine),
+            guards: Guards::new(scene, &assembly, &bearing),
             duty: scene.varying_duty().map(|duty| (duty.clone(), scene.written.operation.load_n)),
             outer_turns: scene.written.operation.outer_turns(),
             assembly,
-            machine,
+            bearing,
         }
     }
 }
@@ -87,19 +87,19 @@ impl Model for Full {
         let started = (with.host.wall_s)();
         let mut full = Self::assemble(with)?;
         with.enter("preload", watch);
-        let (scene, Self { assembly, machine }) = (with.scene, &mut full);
+        let (scene, Self { assembly, bearing }) = (with.scene, &mut full);
         let preloaded = match scene.written.solver.start {
-            Start::Preloaded => preload(machine, scene, &assembly.kinematics)?,
+            Start::Preloaded => preload(bearing, scene, &assembly.kinematics)?,
             Start::Sudden => None,
         };
-        let critical = machine.system.critical_time_step();
+        let critical = bearing.system.critical_time_step();
         let interval = scene.interval;
         let steps_per_sample =
             (interval / (scene.written.solver.time_step_factor * critical)).ceil().max(1.0) as usize;
         let dt = interval / steps_per_sample as f64;
-        machine.system.set_time_step(dt, Some(critical))?;
-        launch(machine, &assembly.kinematics);
-        damp(scene, machine)?;
+        bearing.system.set_time_step(dt, Some(critical))?;
+        launch(bearing, &assembly.kinematics);
+        damp(scene, bearing)?;
         let setup = Setup {
             time_step: dt,
             critical_time_step: critical,
@@ -116,8 +116,8 @@ impl Model for Full {
 
     fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error> {
         let mut full = Self::assemble(with)?;
-        full.machine.system.set_time_step(info.time_step_s, Some(info.critical_time_step_s))?;
-        damp(with.scene, &mut full.machine)?;
+        full.bearing.system.set_time_step(info.time_step_s, Some(info.critical_time_step_s))?;
+        damp(with.scene, &mut full.bearing)?;
         Ok(full)
     }
 
@@ -126,12 +126,12 @@ impl Model for Full {
     }
 
     fn mesh_file(&self, _scene: &ResolvedScene) -> Result<Vec<u8>, Error> {
-        Ok(mesh_file(&self.assembly, &|node| self.machine.system.position(node))?)
+        Ok(mesh_file(&self.assembly, &|node| self.bearing.system.position(node))?)
     }
 
     fn start(mut self, with: &Preparation<'_>) -> FullMotion {
-        guards::arm(with.scene, &mut self.machine.system);
-        let recorder = Recorder::new(with.scene, &self.machine);
+        guards::arm(with.scene, &mut self.bearing.system);
+        let recorder = Recorder::new(with.scene, &self.bearing);
         self.moving(with, recorder)
     }
 
@@ -139,9 +139,9 @@ impl Model for Full {
         if info.mesh != self.assembly.mesh_info() {
             return Err(Misfit::other_model());
         }
-        guards::arm(with.scene, &mut self.machine.system);
-        self.machine.system.restore(saved.system).map_err(|error| Misfit(error.to_string()))?;
-        let recorder = Recorder::resume(with.scene, &self.machine, saved.recorder);
+        guards::arm(with.scene, &mut self.bearing.system);
+        self.bearing.system.restore(saved.system).map_err(|error| Misfit(error.to_string()))?;
+        let recorder = Recorder::resume(with.scene, &self.bearing, saved.recorder);
         Ok(self.moving(with, recorder.ok_or_else(Misfit::other_model)?))
     }
 }
@@ -149,7 +149,7 @@ impl Model for Full {
 /// A bearing of finite elements in motion.
 pub(crate) struct FullMotion {
     assembly: Assembly,
-    machine: Machine,
+    bearing: BearingSystem,
     recorder: Recorder,
     frames: Option<Frames>,
     guards: Guards,
@@ -162,7 +162,7 @@ impl FullMotion {
     /// Speeds and load of the next step, where they change.
     fn drive(&mut self) -> Result<(), RunError> {
         let Some((duty, load_n)) = &self.duty else { return Ok(()) };
-        let system = &mut self.machine.system;
+        let system = &mut self.bearing.system;
         let now = system.time();
         let next = now + system.time_step();
         system.set_rotation_rate(duty.mean_shaft_rad_s(now, next))?;
@@ -179,47 +179,47 @@ impl Motion for FullMotion {
     fn interval(&mut self, steps: usize) -> Result<Ledger, RunError> {
         for _ in 1..steps {
             self.drive()?;
-            self.machine.system.step()?;
-            self.recorder.after_step(&self.machine);
+            self.bearing.system.step()?;
+            self.recorder.after_step(&self.bearing);
         }
         self.drive()?;
         // Sensors may lie on other ranks.
-        self.machine.system.gather()?;
-        self.recorder.before_step(&self.machine);
-        let ledger = self.machine.system.step_with_ledger()?;
-        self.recorder.after_step(&self.machine);
+        self.bearing.system.gather()?;
+        self.recorder.before_step(&self.bearing);
+        let ledger = self.bearing.system.step_with_ledger()?;
+        self.recorder.after_step(&self.bearing);
         Ok(ledger)
     }
 
     fn sample(&mut self) -> &Sample {
-        self.recorder.sample(&self.machine)
+        self.recorder.sample(&self.bearing)
     }
 
     fn steps(&self) -> u64 {
-        self.machine.system.steps()
+        self.bearing.system.steps()
     }
 
     fn time(&self) -> f64 {
-        self.machine.system.time()
+        self.bearing.system.time()
     }
 
     fn balance(&self) -> [f64; 2] {
-        let balance = self.machine.system.balance();
+        let balance = self.bearing.system.balance();
         [balance.peak_strain, balance.largest_error]
     }
 
     fn look(&mut self, info: &mut RunInfo) -> Option<String> {
-        self.guards.look(info, &mut self.machine)
+        self.guards.look(info, &mut self.bearing)
     }
 
     fn picture(&mut self, sample: usize) -> Result<(), RunError> {
         if let Some(frames) = self.frames.as_ref().filter(|f| f.is_due(sample)) {
-            frames.write(sample, &self.assembly, &self.machine)?;
+            frames.write(sample, &self.assembly, &self.bearing)?;
         }
         Ok(())
     }
 
     fn saved(&self) -> Saved {
-        Saved { system: self.machine.system.snapshot(), recorder: self.recorder.memory().clone() }
+        Saved { system: self.bearing.system.snapshot(), recorder: self.recorder.memory().clone() }
     }
 }

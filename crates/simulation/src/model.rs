@@ -1,4 +1,4 @@
-//! What a model must be able to do for a run of it to begin and to continue.
+//! The operations of a model by which a run begins and continues.
 
 use std::{ops::ControlFlow, path::Path};
 
@@ -28,7 +28,8 @@ impl Preparation<'_> {
         self.dir?.path().parent()
     }
 
-    /// Tells `watch` that another phase begins; it cannot break off before the first sample.
+    /// Reports the start of a phase to `watch`, whose answer is ignored: a run cannot end before its first
+    /// sample.
     pub(crate) fn enter(&mut self, phase: &'static str, watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>) {
         self.progress.phase = phase;
         let _ = watch(&self.progress);
@@ -37,7 +38,7 @@ impl Preparation<'_> {
 
 /// A model of a bearing between its preload and its first step.
 pub(crate) trait Model: Sized {
-    /// What a checkpoint holds of it.
+    /// Its state in a checkpoint.
     type Saved: Serialize + DeserializeOwned + Clone;
 
     /// The model in motion.

@@ -28,7 +28,7 @@ use motion::{ReducedMotion, Saved};
 
 /// A reduced bearing before its first step.
 pub(crate) struct Reduced {
-    /// What was meshed.
+    /// The meshed bodies.
     assembly: Assembly,
     bearing: Bearing,
     /// Displacements of the nodes of rings and housing at the preload [m].
@@ -93,8 +93,8 @@ impl Model for Reduced {
         warnings
     }
 
-    /// Rings and housing as the preload of the reduction has left them; rollers and cage, which do not
-    /// deform, where they are.
+    /// Rings and housing deformed by the preload of the reduction; rollers and cage, which are rigid, at
+    /// their positions.
     fn mesh_file(&self, scene: &ResolvedScene) -> Result<Vec<u8>, Error> {
         let mesh = &self.assembly.model.mesh;
         let mut moved = self.moved.clone();
@@ -125,7 +125,7 @@ impl Model for Reduced {
     }
 }
 
-/// What the scene wants of a reduced model.
+/// The scene's settings of the reduced model.
 fn wanted(scene: &ResolvedScene) -> ReducedScene {
     match &scene.written.model {
         ModelScene::Reduced(reduced) => reduced.clone(),
@@ -133,7 +133,7 @@ fn wanted(scene: &ResolvedScene) -> ReducedScene {
     }
 }
 
-/// A warning where steps are shorter than the scene wants them, and by what.
+/// A warning where the critical time step makes steps shorter than the scene's, with the cause.
 fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option<String> {
     let longest = 1e-6 * wanted.step_us;
     (time_step < longest && critical < longest).then(|| {
@@ -205,8 +205,8 @@ pub struct Prepared {
     pub start: State,
 }
 
-/// Prepares the bearing of a scene, which has a reduced model, for a program that drives it by itself.
-/// `runs` as for [`steps_in_a_sample`].
+/// Prepares the bearing of a scene, which has a reduced model, for a program with its own time loop. `runs`
+/// as for [`steps_in_a_sample`].
 ///
 /// # Errors
 /// When the scene cannot be meshed, preloaded or reduced, or has no equilibrium to start from.
@@ -218,8 +218,8 @@ pub fn prepared(scene: &ResolvedScene, runs: Option<&Path>) -> Result<Prepared, 
     Ok(Prepared { modal, steps_per_sample, bearing, start })
 }
 
-/// The bearing in steps as long as the scene wants them and its critical time step allows, and how many there
-/// are in a sample.
+/// The bearing with steps of the scene's length, or shorter where the critical time step demands it, and the
+/// number of steps in a sample.
 fn in_steps(
     scene: &ResolvedScene,
     wanted: &ReducedScene,
@@ -236,8 +236,8 @@ fn in_steps(
     Ok((Bearing::new(modal, interval / steps as f64)?, steps))
 }
 
-/// A whole number of steps, none longer than `longest` [s], and two at least: what a sensor measures beyond
-/// the modes is a difference between two steps of a sample.
+/// A whole number of steps, none longer than `longest` [s], and two at least: the quasi-static part of a
+/// sensor's acceleration is a difference between two steps of a sample.
 fn steps_per_sample(scene: &ResolvedScene, longest: f64) -> usize {
     // A quotient of 5.000…1 is no sixth step.
     (1e-6 * scene.written.output.interval_us / longest - 1e-9).ceil().max(2.0) as usize

@@ -1,5 +1,5 @@
 //! **One run** of the model that a scene names: from its start, from a checkpoint, or on a rank that follows
-//! another.
+//! the first.
 
 use std::ops::ControlFlow;
 

@@ -39,7 +39,7 @@ const ALL: &str = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 5.3, dept
 fn polar(scene: &Scene, surface: &str, centre: [f64; 2]) -> Vec<[f64; 2]> {
     let machine = Assembly::new(&scene.resolve())
         .expect("it meshes")
-        .machine(&scene.resolve(), 1)
+        .build(&scene.resolve(), 1)
         .expect("it is laid out");
     let nodes = machine.system.nodes(surface).expect("a surface of every scene");
     let polar = |n: u32| {
@@ -95,7 +95,7 @@ fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
     let step = |scene: &Scene| {
         let machine = Assembly::new(&scene.resolve())
             .expect("it meshes")
-            .machine(&scene.resolve(), 1)
+            .build(&scene.resolve(), 1)
             .expect("it is laid out");
         machine.system.critical_time_step()
     };

@@ -52,7 +52,7 @@ fn example_lean_scene_keeps_the_critical_step() {
     let of = |mut scene: Scene| {
         (scene.film, scene.solver.structural_damping) = (None, None);
         let scene = &scene;
-        let machine = assembled(scene).machine(&scene.resolve(), 1).expect("a model that can be solved");
+        let machine = assembled(scene).build(&scene.resolve(), 1).expect("a model that can be solved");
         let parts = machine.system.into_parts();
         parts.dynamics.critical_time_step(&[&parts.contacts.expect("a bearing has contacts")], 0.0).time_step
     };

@@ -36,7 +36,7 @@ fn notched(more: &str) -> String {
 fn forces(scene: &Scene) -> Vec<[f64; 2]> {
     let scene = &scene.resolve();
     let assembly = Assembly::new(scene).expect("a mesh");
-    let mut machine = assembly.machine(scene, 1).expect("a machine");
+    let mut machine = assembly.build(scene, 1).expect("a machine");
     assert_eq!(preload(&mut machine, scene, &assembly.kinematics).expect("an equilibrium"), None);
     let _ = machine.system.contact_forces();
     let all: Vec<[f64; 2]> = machine.system.resultants().map(|r| r.force).collect();

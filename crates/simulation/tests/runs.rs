@@ -5,7 +5,7 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::{coarse, host};
-use stribeck_bearing::assembly::{Assembly, Machine, Roller};
+use stribeck_bearing::assembly::{Assembly, BearingSystem, Roller};
 use stribeck_run::host::Progress;
 use stribeck_scene::{
     kinematics::Kinematics,
@@ -354,7 +354,7 @@ fn example_rollers_start_where_the_scene_puts_them() {
             let mut scene = scene.clone();
             scene.mesh.roller_copies = copies;
             let assembly = Assembly::new(&scene.resolve()).expect("sound");
-            assembly.machine(&scene.resolve(), 1).expect("sound")
+            assembly.build(&scene.resolve(), 1).expect("sound")
         });
         for (i, (a, b)) in before.rollers.iter().zip(&after.rollers).enumerate() {
             let [[ax, ay], [bx, by]] = [before.system.position(a.centre), after.system.position(b.centre)];
@@ -362,7 +362,7 @@ fn example_rollers_start_where_the_scene_puts_them() {
             let along = 1e-6 * (90.0 - 7.5 * i as f64) / 91e-3;
             assert!((turned - along).abs() < ROUNDING / 91e-3, "{i}: {turned} instead of {along}");
             assert!((bx.hypot(by) - 91e-3).abs() < ROUNDING);
-            let rim = |machine: &Machine, roller: &Roller| {
+            let rim = |machine: &BearingSystem, roller: &Roller| {
                 let [[cx, cy], [x, y]] = [roller.centre, roller.rim].map(|n| machine.system.position(n));
                 (y - cy).atan2(x - cx)
             };

@@ -9,7 +9,7 @@
 use std::error::Error;
 
 use stribeck_mesh::{Mesh, Rectangle};
-use stribeck_solver::{Dynamics, Elastic, Model, Motion, force::NodalLoad};
+use stribeck_solver::{Dynamics, Elastic, Model, NodeMotion, force::NodalLoad};
 
 const LENGTH: f64 = 0.5;
 const HEIGHT: f64 = 0.01;
@@ -38,7 +38,7 @@ fn arrival(steel: Elastic, columns: usize) -> Result<(f64, f64), Box<dyn Error>>
     let struck = &placed.surface("left").ok_or("a rectangle has a left side")?.nodes;
     let mut model = Model::new(mesh, steel, THICKNESS)?;
     // Its sides are held, so that plane waves run at the speed of an unbounded body.
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
 
     // Nodes that are pushed from outside are announced, then pushed: the force of a facet, a half on each of
     // its ends.

@@ -31,8 +31,8 @@ const PROBE: f64 = 2e-6;
 /// Far from the origin positions round to more than that; a probe is this many of their last digits at least.
 const DIGITS: f64 = 1e5;
 
-/// What stiffness damping `beta` [s] leaves of the critical time step `undamped` [s], when it damps all
-/// stiffness (THEORY §2.7).
+/// Critical time step [s] under stiffness damping `beta` [s] of all stiffness, from the undamped one [s]
+/// (THEORY §2.7).
 pub fn damped_time_step(undamped: f64, beta: f64) -> f64 {
     if beta > 0.0 { undamped * undamped / (beta + beta.hypot(undamped)) } else { undamped }
 }
@@ -40,11 +40,12 @@ pub fn damped_time_step(undamped: f64, beta: f64) -> f64 {
 impl Dynamics {
     /// Critical time step of elements and forces at the present positions.
     ///
-    /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds what the forces can add
-    /// in any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping terms, zero
-    /// leaves them out). Rigid bodies have no K: D over their mass and inertia bounds theirs. Infinite when
-    /// nothing has stiffness. Stiffness damping makes K larger by 1 + 2β/`dt`; [`damped_time_step`] guesses
-    /// that `dt`. Structural damping makes it larger by the stiffness of its branches.
+    /// The largest eigenvalue of M⁻½ (K + D) M⁻½ by Lanczos iteration, where D bounds the stiffness of the
+    /// forces in any configuration ([`Force::stiffness_bound`]) for the time step `dt` (used for damping
+    /// terms, zero leaves them out). Rigid bodies have no K: D over their mass and inertia bounds theirs.
+    /// Infinite when nothing has stiffness. Stiffness damping makes K larger by 1 + 2β/`dt`;
+    /// [`damped_time_step`] guesses that `dt`. Structural damping makes it larger by the stiffness of its
+    /// branches.
     pub fn critical_time_step(&self, forces: &[&dyn Force], dt: f64) -> Critical {
         let mut bound = vec![0.0; self.state.x.len()];
         forces.iter().for_each(|f| f.stiffness_bound(dt, &mut bound));
@@ -81,7 +82,7 @@ struct Operator<'a> {
     answers: Vec<bool>,
     /// Displacement of a probe [m].
     probe: f64,
-    /// What multiplies K at each of `free`.
+    /// Factor of K at each of `free`.
     stiffer: Vec<f64>,
     springs: Vec<Spring>,
 }

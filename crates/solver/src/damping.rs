@@ -1,4 +1,4 @@
-//! Mass-proportional damping relative to a motion that is not to be braked (THEORY §2.6).
+//! Mass-proportional damping relative to a motion that it does not affect (THEORY §2.6).
 
 use serde::{Deserialize, Serialize};
 

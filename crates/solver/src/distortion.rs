@@ -1,4 +1,4 @@
-//! How far elements are from their reference shape: what a run is stopped by before an element turns inside
+//! Distortion of elements from their reference shape, by which a run stops before an element turns inside
 //! out.
 
 use crate::dynamics::Dynamics;

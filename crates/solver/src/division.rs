@@ -1,5 +1,4 @@
-//! One model over ranks: which tiles each takes, what they tell each other in a step, and the whole state
-//! gathered again.
+//! One model over ranks: the tiles of each, their messages in a step, and gathering the whole state.
 //!
 //! A rank sweeps its own tiles as threads do theirs. Their ghosts and whatever nodes its forces read come
 //! from the ranks that own them, once a step, while the tiles that nobody waits for are swept. What a step
@@ -24,10 +23,10 @@ use crate::{
     state::State,
 };
 
-/// Numbers of what a tile counts in a step.
+/// Length of a tile's counters of a step.
 const ENERGIES: usize = 4;
 
-/// Numbers that tell where a rigid body is, how it moves and what drove it.
+/// Length of a rigid body's state and drive.
 const RIGID: usize = 7;
 
 /// A new cut is taken where the busiest rank of the old one has so many times the work of the busiest of the
@@ -136,7 +135,7 @@ impl Dynamics {
         }
     }
 
-    /// Lets every rank know these nodes, by their slots.
+    /// Sends these nodes, by their slots, to every rank.
     pub fn gather_nodes(&mut self, slots: &[u32]) {
         let Some(mut division) = self.division.take() else { return };
         let rank = division.ranks.rank();
@@ -155,7 +154,7 @@ impl Dynamics {
         self.division = Some(division);
     }
 
-    /// Lets every rank know the whole state.
+    /// Gathers the whole state on every rank.
     pub fn gather(&mut self) {
         let Some(mut division) = self.division.take() else { return };
         let rank = division.ranks.rank();
@@ -209,7 +208,7 @@ impl Dynamics {
         }
     }
 
-    /// Lets every rank know the sums of all tiles that have them.
+    /// Gathers the sums of all tiles that have them on every rank.
     pub(crate) fn share_sums(
         &mut self,
         tiles: &mut [Tile],

@@ -17,7 +17,7 @@ use crate::{
         sweep::{Scratch, StepEnergies},
         tile::{Tile, TileDamping, Turn},
     },
-    model::{Model, Motion, check_rate},
+    model::{Model, NodeMotion, check_rate},
     rigid::{RigidBody, RigidMotion, RigidState},
     route::Division,
     state::{Accumulated, Moment, NodeForces, State},
@@ -38,7 +38,7 @@ const LEAST_WORK: usize = 4000;
 /// A model in motion.
 #[derive(Debug)]
 pub struct Dynamics {
-    /// What changes in time.
+    /// State in time.
     pub state: State,
     /// Place and motion of each rigid body, in the order of the mesh.
     pub rigid: Vec<RigidState>,
@@ -51,10 +51,10 @@ pub struct Dynamics {
     /// Whether a step reads more than second-level caches hold, so that strips prefetch.
     fetch: bool,
     pub(crate) rigid_bodies: Vec<RigidBody>,
-    /// Work of what drives each rigid body in the last step [J].
+    /// Work of the drive of each rigid body in the last step [J].
     pub(crate) driven: Vec<f64>,
     mass: Field,
-    motion: Vec<Motion>,
+    motion: Vec<NodeMotion>,
     elements: Elements,
     pub(crate) forces: NodeForces,
     scratch: Vec<Scratch>,
@@ -105,7 +105,7 @@ pub(crate) struct ElasticBody {
 }
 
 impl Dynamics {
-    /// Lays the model out for `threads` workers. `loaded` says which nodes other forces may push.
+    /// Lays the model out for `threads` workers. `loaded` are the nodes that other forces may push.
     ///
     /// # Errors
     /// When the model holds impossible numbers, elements or nodes.
@@ -134,10 +134,10 @@ impl Dynamics {
         };
         pad(&layout, &mut state);
 
-        let motion: Vec<Motion> = layout
+        let motion: Vec<NodeMotion> = layout
             .node_of_slot
             .iter()
-            .map(|n| n.map_or(Motion::Free, |n| model.motion[n as usize]))
+            .map(|n| n.map_or(NodeMotion::Free, |n| model.motion[n as usize]))
             .collect();
         let is_loaded: Vec<bool> =
             layout.node_of_slot.iter().map(|n| n.is_some_and(|n| loaded[n as usize])).collect();
@@ -210,7 +210,7 @@ impl Dynamics {
         &self.rigid_bodies
     }
 
-    /// Own slots of elastic bodies: what moves by mass and force.
+    /// Own slots of elastic bodies, which move by mass and force.
     pub(crate) fn elastic_slots(&self) -> Vec<usize> {
         let tiles = self.tiles.iter().filter(|t| t.elastic);
         tiles.flat_map(|t| t.slots.start..t.slots.start + t.own).filter(|&n| self.mass[n] > 0.0).collect()
@@ -219,10 +219,10 @@ impl Dynamics {
     /// Whether (x, y) of a slot answer to forces.
     pub(crate) fn free_components(&self, slot: usize) -> [bool; 2] {
         match self.motion[slot] {
-            Motion::Free => [true, true],
-            Motion::HeldX => [false, true],
-            Motion::HeldY => [true, false],
-            Motion::Held | Motion::Rotating { .. } => [false, false],
+            NodeMotion::Free => [true, true],
+            NodeMotion::HeldX => [false, true],
+            NodeMotion::HeldY => [true, false],
+            NodeMotion::Held | NodeMotion::Rotating { .. } => [false, false],
         }
     }
 
@@ -263,7 +263,7 @@ impl Dynamics {
     pub fn set_rotation_rate(&mut self, rate: f64) -> Result<(), Error> {
         check_rate(rate)?;
         for finish in self.tiles.iter_mut().flat_map(|tile| &mut tile.finish) {
-            if let Motion::Rotating { rate: old, .. } = &mut finish.motion {
+            if let NodeMotion::Rotating { rate: old, .. } = &mut finish.motion {
                 *old = rate;
             }
         }

@@ -6,8 +6,8 @@
 use crate::{error::Error, material::Elastic};
 use stribeck_simd::lanes::Number;
 
-/// What a quadrilateral keeps of its reference shape, in a frame of its own: the material is isotropic, so
-/// only the shape matters, and congruent elements have equal references wherever they lie.
+/// Reference data of a quadrilateral, in a frame of its own: the material is isotropic, so only the shape
+/// matters, and congruent elements have equal references wherever they lie.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct QuadReference {
     /// Gradient of shape function 1 (that of 3 is its negative) [1/m].
@@ -22,7 +22,7 @@ pub struct QuadReference {
     pub volume: f64,
 }
 
-/// What a triangle keeps of its reference shape, in a frame of its own.
+/// Reference data of a triangle, in a frame of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TriangleReference {
     /// Gradient of shape function 1 [1/m].

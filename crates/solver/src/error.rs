@@ -1,4 +1,4 @@
-//! What can go wrong in this crate.
+//! Errors of this crate.
 
 /// Errors of the solver.
 #[derive(Debug, thiserror::Error)]
@@ -79,7 +79,7 @@ pub enum Error {
         iterations: usize,
         /// Unbalanced force [N].
         residual_n: f64,
-        /// What would have been accepted [N].
+        /// The tolerance [N].
         allowed_n: f64,
         /// Body with the largest unbalanced force.
         body: String,
@@ -87,7 +87,7 @@ pub enum Error {
         x_mm: f64,
         /// Where [mm].
         y_mm: f64,
-        /// What to try.
+        /// Remedy.
         advice: &'static str,
     },
     /// The static stiffness matrix could not be factorised.

@@ -23,12 +23,12 @@ pub trait Force {
         Energy::default()
     }
 
-    /// What it remembers from step to step beyond positions and velocities, for a snapshot.
+    /// Its state besides positions and velocities, for a snapshot.
     fn memory(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Takes over what [`Force::memory`] has given; false when that is another force's.
+    /// Restores a state of [`Force::memory`]; false when it belongs to another force.
     fn recall(&mut self, memory: &[f64]) -> bool {
         memory.is_empty()
     }

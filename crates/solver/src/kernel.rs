@@ -1,5 +1,5 @@
-//! The hot loops of a step, and how nodes and elements lie in memory for them. Results do not depend on any
-//! of it but by rounding: who wants to know what is computed reads `element.rs` and THEORY §2.
+//! The hot loops of a step, and how nodes and elements lie in memory for them. Results depend on it by
+//! rounding only; the equations are in `element.rs` and THEORY §2.
 //!
 //! | Question | File |
 //! |---|---|

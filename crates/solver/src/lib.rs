@@ -1,9 +1,9 @@
 //! Explicit dynamics of plane-strain finite elements, and the static equilibrium to start from.
 //!
-//! The crate knows bodies, not machines: a [`Model`] is a mesh, what its bodies are made of and how their
-//! nodes may move. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on nodes
-//! (loads, contact) is a [`Force`], given to each step as a list. A model pays only for the forces in its
-//! list.
+//! The crate is about bodies, not machines: a [`Model`] is a mesh with materials, elastic or rigid bodies,
+//! and the motion of nodes. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on
+//! nodes (loads, contact) is a [`Force`], given to each step as a list. A model pays only for the forces in
+//! its list.
 //!
 //! # Conventions
 //!
@@ -23,7 +23,7 @@
 //!
 //! ```
 //! use stribeck_mesh::{Mesh, Rectangle};
-//! use stribeck_solver::{Dynamics, Elastic, Force, Model, Motion, force::NodalLoad};
+//! use stribeck_solver::{Dynamics, Elastic, Force, Model, NodeMotion, force::NodalLoad};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! let length = 0.5;
@@ -33,7 +33,7 @@
 //! let steel = Elastic::new(208e9, 0.3, 7800.0)?;
 //! let mut model = Model::new(mesh, steel, 0.02)?;
 //! // Its sides are held, so that the wave runs at the speed √((λ + 2µ)/ρ) of a confined bar.
-//! model.motion.fill(Motion::HeldY);
+//! model.motion.fill(NodeMotion::HeldY);
 //!
 //! let struck = &placed.surface("left").ok_or("no left side")?.nodes;
 //! let mut loaded = vec![false; model.mesh.x.len()];
@@ -125,7 +125,7 @@ pub use error::Error;
 pub use force::Force;
 pub use kernel::layout;
 pub use material::Elastic;
-pub use model::{Behaviour, Model, Motion};
+pub use model::{Behaviour, Model, NodeMotion};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

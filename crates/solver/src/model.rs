@@ -1,4 +1,4 @@
-//! What the user of the solver gives: a mesh, what its bodies are made of, and how nodes may move.
+//! Input of the solver: a mesh, materials, elastic or rigid bodies, and the motion of nodes.
 
 use std::f64::consts::PI;
 
@@ -34,7 +34,7 @@ impl Behaviour {
 
 /// How a node may move.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum Motion {
+pub enum NodeMotion {
     /// By its forces.
     #[default]
     Free,
@@ -63,7 +63,7 @@ pub struct Model {
     /// Behaviour of each body.
     pub behaviour: Vec<Behaviour>,
     /// Motion of each node.
-    pub motion: Vec<Motion>,
+    pub motion: Vec<NodeMotion>,
     /// Out-of-plane thickness [m].
     pub thickness: f64,
     /// Hourglass stiffness, 1 = exact bending of a square.
@@ -84,7 +84,7 @@ impl Model {
             mesh,
             materials: vec![material; bodies],
             behaviour: vec![Behaviour::Elastic; bodies],
-            motion: vec![Motion::Free; nodes],
+            motion: vec![NodeMotion::Free; nodes],
             thickness,
             hourglass_scale: 1.0,
             gravity: [0.0; 2],
@@ -202,7 +202,7 @@ impl Model {
         check("gravity x [m/s²]", self.gravity[0], true, "finite")?;
         check("gravity y [m/s²]", self.gravity[1], true, "finite")?;
         for motion in &self.motion {
-            if let Motion::Rotating { rate, .. } = motion {
+            if let NodeMotion::Rotating { rate, .. } = motion {
                 check_rate(*rate)?;
             }
         }

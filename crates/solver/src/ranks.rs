@@ -1,4 +1,4 @@
-//! Processes that run one model together, as the solver asks of them: ranks, in the words of MPI.
+//! Processes that run one model together, as a trait: ranks, in the words of MPI.
 //!
 //! Every rank makes the whole model and holds all of its arrays, but takes only its own tiles from step to
 //! step ([`Dynamics::divide`](crate::Dynamics::divide)). All ranks call the same methods in the same order.
@@ -18,14 +18,14 @@ pub trait Ranks: Debug + Send + Sync {
     /// sent.
     fn exchange(&self, outgoing: &[Vec<f64>], incoming: &mut [Vec<f64>], meanwhile: &mut dyn FnMut());
 
-    /// What every rank gives, one after the other in `all`; `lengths` says how long each part is.
+    /// Gathers the parts of all ranks, one after the other, in `all`; `lengths` are those of the parts.
     fn all_gather(&self, own: &[f64], lengths: &[usize], all: &mut [f64]);
 
-    /// What every rank gives, of any length.
+    /// Gathers bytes of any length from all ranks.
     fn all_gather_bytes(&self, own: &[u8]) -> Vec<Vec<u8>>;
 }
 
-/// Gives every rank the bytes of the first; the bytes of others are not looked at.
+/// Broadcasts the bytes of the first rank; those of others are ignored.
 pub fn broadcast(ranks: &dyn Ranks, own: &[u8]) -> Vec<u8> {
     let own = if ranks.rank() == 0 { own } else { &[] };
     ranks.all_gather_bytes(own).into_iter().next().unwrap_or_default()

@@ -22,7 +22,7 @@ pub struct RigidState {
     pub spin: f64,
 }
 
-/// What does not change about a rigid body.
+/// Constant data of a rigid body.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
     pub(crate) body: usize,

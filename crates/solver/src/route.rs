@@ -1,4 +1,4 @@
-//! What one rank knows of its part in a model, and which values go from rank to rank.
+//! The part of one rank in a model, and the values that it sends to others.
 
 use std::{ops::Range, sync::Arc};
 
@@ -7,7 +7,7 @@ use crate::{
     ranks::{Ranks, Shared},
 };
 
-/// The part of one rank in a model, and what it owes to others.
+/// The part of one rank in a model, and the values that it sends to others.
 #[derive(Debug)]
 pub(crate) struct Division {
     pub(crate) ranks: Arc<dyn Ranks>,

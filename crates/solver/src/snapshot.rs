@@ -1,4 +1,4 @@
-//! All that changes in time, in one piece: what it takes to continue a model in motion to the same bits.
+//! The whole state in time, from which a model in motion continues to the same bits.
 
 use serde::{Deserialize, Serialize};
 
@@ -30,7 +30,7 @@ impl Snapshot {
 }
 
 impl Dynamics {
-    /// What has changed since the start.
+    /// The present state.
     pub fn snapshot(&self) -> Snapshot {
         let placed = |&(tile, lane): &(usize, usize)| {
             let damping = self.tiles[tile].damping.as_ref();

@@ -148,7 +148,7 @@ impl Dynamics {
         self.hand_out_spins();
     }
 
-    /// Tells the tiles how fast their bodies turn.
+    /// Sets the spins of the bodies in their tiles.
     pub(crate) fn hand_out_spins(&mut self) {
         let bodies = self.springs.iter().flat_map(|springs| &springs.bodies);
         for (body, &spin) in bodies.zip(&self.state.springs.spins) {

@@ -1,4 +1,4 @@
-//! What changes in time, and the forces of one step.
+//! The state in time, and the forces of one step.
 
 use serde::{Deserialize, Serialize};
 
@@ -25,7 +25,7 @@ pub struct State {
     pub springs: SpringState,
 }
 
-/// What changes in time of the springs and dashpots of structural damping.
+/// State of the springs and dashpots of structural damping.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct SpringState {
     /// Positions through the low-pass of each branch (x, y) [m], one value a slot, at the last evaluation.
@@ -87,7 +87,7 @@ impl Accumulated {
     }
 }
 
-/// What a force sees of the state: positions at `time`, velocities half a step before.
+/// The part of the state that a force reads: positions at `time`, velocities half a step before.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment<'a> {
     /// Steps taken.

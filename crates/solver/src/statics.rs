@@ -36,7 +36,7 @@ pub struct Undecided {
     pub rotation: bool,
 }
 
-/// What to solve.
+/// The problem.
 #[derive(Debug, Clone)]
 pub struct Statics {
     /// Slots of each body that finds its place, with its name: elastic ones, and those that move as one piece
@@ -79,7 +79,7 @@ impl std::fmt::Debug for Equilibrator {
 const GOOD_ENOUGH: f64 = 0.6;
 
 impl Equilibrator {
-    /// Numbers what may move.
+    /// Numbers the unknowns.
     pub fn new(dynamics: &Dynamics) -> Self {
         Self { unknowns: Unknowns::new(dynamics), tangent: Tangent::default() }
     }

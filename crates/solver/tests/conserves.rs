@@ -11,7 +11,7 @@ use std::f64::consts::TAU;
 
 use common::*;
 use stribeck_mesh::Disc;
-use stribeck_solver::{Dynamics, Force, Model, Motion, force::NodalLoad};
+use stribeck_solver::{Dynamics, Force, Model, NodeMotion, force::NodalLoad};
 use stribeck_testing::Noise;
 
 /// A disc of 36 mm in cells of about 5 mm: 60 nodes, quadrilaterals and triangles.
@@ -138,7 +138,7 @@ fn conserves_the_ledger_of_a_constant_load() {
     // step.
     let mut model = body(&rectangle(0.02, 0.01, 8, 4));
     for row in 0..=4 {
-        model.motion[row * 9] = Motion::Held;
+        model.motion[row * 9] = NodeMotion::Held;
     }
     let mut d = ready(&model, 0.9);
     let end: Vec<u32> = slots(&d, (0..=4).map(|row| row * 9 + 8));
@@ -167,7 +167,7 @@ fn conserves_the_ledger_of_a_driven_ring() {
     };
     let mut model = body(&part.part().expect("a ring"));
     for n in 0..48 {
-        model.motion[n] = Motion::Rotating { centre: [0.0; 2], rate: 40.0 };
+        model.motion[n] = NodeMotion::Rotating { centre: [0.0; 2], rate: 40.0 };
     }
     let mut d = ready(&model, 0.9);
     // The bore starts with a jolt, whose kinetic energy has no value at the instant itself.
@@ -206,7 +206,7 @@ fn conserves_the_ledger_of_a_ring_whose_speed_changes() {
     };
     let mut model = body(&part.part().expect("a ring"));
     for n in 0..48 {
-        model.motion[n] = Motion::Rotating { centre: [0.0; 2], rate: 0.0 };
+        model.motion[n] = NodeMotion::Rotating { centre: [0.0; 2], rate: 0.0 };
     }
     let mut d = ready(&model, 0.9);
     let (mut largest, mut worst) = (0.0_f64, 0.0_f64);

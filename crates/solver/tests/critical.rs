@@ -7,7 +7,7 @@ mod common;
 use common::*;
 use stribeck_mesh::{Annulus, Part};
 use stribeck_solver::{
-    Behaviour, Dynamics, Force, Motion,
+    Behaviour, Dynamics, Force, NodeMotion,
     force::NodalLoad,
     state::{Moment, NodeForces},
 };
@@ -197,7 +197,7 @@ fn example_rigid_bodies_on_springs_limit_the_step() {
 #[test]
 fn example_held_bodies_have_no_limit() {
     let mut model = body(&rectangle(0.02, 0.01, 2, 1));
-    model.motion.fill(Motion::Held);
+    model.motion.fill(NodeMotion::Held);
     let d = lay_out(&model);
     assert_eq!(d.critical_time_step(&[], 0.0).time_step, f64::INFINITY);
     assert_eq!(d.present_critical_time_step(&[]).time_step, f64::INFINITY);

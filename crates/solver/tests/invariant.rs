@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use stribeck_mesh::{Annulus, Disc, Groove, Mesh};
-use stribeck_solver::{Behaviour, Dynamics, Force, Model, Motion, force::NodalLoad};
+use stribeck_solver::{Behaviour, Dynamics, Force, Model, NodeMotion, force::NodalLoad};
 use stribeck_testing::Noise;
 
 /// A scene with every kind of tile: a plate and a ring of several tiles, congruent discs, a driven
@@ -35,7 +35,7 @@ fn everything() -> Model {
     model.behaviour[block.body] = Behaviour::Rigid;
     let first = model.mesh.bodies[ring.body].nodes.start;
     for n in first..first + 60 {
-        model.motion[n] = Motion::Rotating { centre: [0.3, 0.3], rate: -50.0 };
+        model.motion[n] = NodeMotion::Rotating { centre: [0.3, 0.3], rate: -50.0 };
     }
     model
 }
@@ -125,9 +125,9 @@ fn example_forces_on_nodes_that_were_not_announced_are_lost() {
 fn invariant_held_components_stay() {
     let mut model = body(&rectangle(0.01, 0.01, 4, 4));
     model.gravity = [1.0, -9.81];
-    model.motion[0] = Motion::Held;
-    model.motion[1] = Motion::HeldX;
-    model.motion[2] = Motion::HeldY;
+    model.motion[0] = NodeMotion::Held;
+    model.motion[1] = NodeMotion::HeldX;
+    model.motion[2] = NodeMotion::HeldY;
     let mut d = ready(&model, 0.9);
     let mut push = NodalLoad::new((0..25).map(|n| (slot(&d, n) as u32, 50.0, 70.0)).collect());
     run(&mut d, &mut [&mut push as &mut dyn Force], 500);
@@ -150,7 +150,7 @@ fn example_one_of_two_like_bodies_is_held() {
     mesh.add("held", &part.translated(0.02, 0.0));
     let mut model = Model::new(mesh, steel(), THICKNESS).expect("a positive thickness");
     model.gravity = [0.0, -9.81];
-    model.motion[25..].fill(Motion::Held);
+    model.motion[25..].fill(NodeMotion::Held);
     let mut d = ready(&model, 0.9);
     run(&mut d, &mut [], 100);
     assert!((0..25).all(|n| d.state.y[slot(&d, n)] < model.mesh.y[n]), "one falls");

@@ -7,7 +7,7 @@ mod common;
 
 use common::*;
 use stribeck_mesh::{Annulus, Groove, Mesh, Part};
-use stribeck_solver::{Dynamics, Model, Motion};
+use stribeck_solver::{Dynamics, Model, NodeMotion};
 use stribeck_testing::{Noise, assert_close};
 
 const COLUMNS: usize = 7;
@@ -63,7 +63,7 @@ fn forces(d: &Dynamics) -> (Vec<f64>, Vec<f64>) {
 fn speed_under_linear_field(part: &Part, f: [[f64; 2]; 2]) -> f64 {
     let mut model = body(part);
     for n in on_sides(COLUMNS, ROWS) {
-        model.motion[n] = Motion::Held;
+        model.motion[n] = NodeMotion::Held;
     }
     let mut d = ready(&model, 0.9);
     for n in 0..model.mesh.x.len() {
@@ -99,7 +99,7 @@ fn patch_bent_field_does_not_stay_at_rest() {
     // The same measurement sees a field that is not linear: the test above can fail.
     let mut model = body(&distorted());
     for n in on_sides(COLUMNS, ROWS) {
-        model.motion[n] = Motion::Held;
+        model.motion[n] = NodeMotion::Held;
     }
     let mut d = ready(&model, 0.9);
     for s in massive(&d) {

@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use stribeck_mesh::{Mesh, Part};
-use stribeck_solver::{Behaviour, Dynamics, Elastic, Error, Model, Motion, force::NodalLoad};
+use stribeck_solver::{Behaviour, Dynamics, Elastic, Error, Model, NodeMotion, force::NodalLoad};
 use stribeck_testing::assert_close;
 
 #[track_caller]
@@ -55,7 +55,10 @@ fn refuses_impossible_models() {
     says(after(|m| m.thickness = -1.0), &["thickness [m] = -1"]);
     says(after(|m| m.hourglass_scale = -0.1), &["hourglass scale", "-0.1"]);
     says(after(|m| m.gravity = [0.0, f64::NAN]), &["gravity y", "NaN"]);
-    says(after(|m| m.motion[0] = Motion::Rotating { centre: [0.0; 2], rate: f64::NAN }), &["rotation rate"]);
+    says(
+        after(|m| m.motion[0] = NodeMotion::Rotating { centre: [0.0; 2], rate: f64::NAN }),
+        &["rotation rate"],
+    );
     assert!(after(|_| ()).is_ok());
 }
 
@@ -122,7 +125,7 @@ fn refuses_statics_without_support() {
 fn refuses_statics_of_what_is_not_a_number() {
     let mut model = body(&rectangle(1.0, 1.0, 2, 2));
     for n in 0..3 {
-        model.motion[n] = Motion::Held;
+        model.motion[n] = NodeMotion::Held;
     }
     let mut d = lay_out(&model);
     let mut load = NodalLoad::new(vec![(slot(&d, 4) as u32, f64::NAN, 0.0)]);
@@ -132,7 +135,7 @@ fn refuses_statics_of_what_is_not_a_number() {
 #[test]
 fn example_a_held_body_is_already_in_equilibrium() {
     let mut model = body(&rectangle(1.0, 1.0, 2, 2));
-    model.motion.fill(Motion::Held);
+    model.motion.fill(NodeMotion::Held);
     let mut d = lay_out(&model);
     let mut load = NodalLoad::new(vec![(slot(&d, 4) as u32, 1000.0, 0.0)]);
     let found = equilibrate(&mut d, &mut [&mut load], Vec::new(), 1e-6).expect("nothing can move");

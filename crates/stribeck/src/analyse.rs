@@ -1,4 +1,4 @@
-//! `stribeck analyse`: what a measured record shows.
+//! `stribeck analyse`: verdict, families and levels of a measured record.
 
 mod baseline;
 mod components;
@@ -63,7 +63,8 @@ pub struct Options {
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
     /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
-    /// several files, such as axes, or both ends of a shaft; says which part each hears, and which is nearest
+    /// several files, such as axes, or both ends of a shaft; names the damaged part by each channel, and the
+    /// channel nearest to it
     #[arg(long, conflicts_with_all = ["alarms", "reference", "components"])]
     together: bool,
     /// Folder for findings.json and report.html [default: beside the working folder, the file's name and
@@ -84,7 +85,7 @@ enum Standing {
     Flexible,
 }
 
-/// How records are read, and what is known of their machine, as flags of every command that takes some.
+/// Flags of every command that reads records: how they are read, and their machine.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Reading {
     /// Samples a second [Hz], when the file does not say it
@@ -119,11 +120,11 @@ pub(crate) struct Reading {
     /// Radial internal clearance in operation [µm], a number or a range [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
     pub(crate) clearance_um: Option<(f64, f64)>,
-    /// How far the outer ring and its housing give at the loaded place [µm/kN], a number or a range: what
-    /// gives presses an element farther [default: 0]
+    /// Compliance of the outer ring and its housing at the loaded place [µm/kN], a number or a range: a
+    /// compliant seat presses an element farther into a defect [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
     housing_um_per_kn: Option<(f64, f64)>,
-    /// What a sample is multiplied by, for example 1/sensitivity
+    /// Factor of every sample, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     scale: f64,
     /// Unit of the samples after that
@@ -137,14 +138,14 @@ pub(crate) struct Reading {
 }
 
 impl Reading {
-    /// Whether anything is known of a machine, or said of a file.
+    /// Whether the flags state anything of a machine, or of a file.
     pub(crate) fn is_given(&self) -> bool {
         let numbers = self.rate_hz.is_some() || self.load_n.is_some() || self.clearance_um.is_some();
         let words = [&self.channel, &self.bearing, &self.tacho, &self.unit].iter().any(|word| word.is_some());
         numbers || words || self.speed_rpm.is_some()
     }
 
-    /// The same machine, for a file of one channel that says its rate.
+    /// The same machine, for a file of one channel with its rate.
     pub(crate) fn of_one_channel(&self) -> Self {
         Self {
             rate_hz: None,
@@ -159,7 +160,7 @@ impl Reading {
     }
 }
 
-/// What a user knows of the speed [1/min].
+/// The user's statement of the speed [1/min].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Speed {
     Of(f64),
@@ -243,7 +244,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("trend-analysis"));
     let folders = folders(&options.files);
     check_folder(&out, &[TREND])?;
-    // The table of all comes last; until then an empty one tells whose folder this is.
+    // The table of all is written last; until then an empty one marks the folder as this command's.
     if !out.join(TREND).exists() {
         std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
         write_atomic(&out.join(TREND), b"[]")?;
@@ -342,7 +343,7 @@ fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result
     Ok(analysis)
 }
 
-/// The zone of the velocity level, where it is asked for and can be told.
+/// The zone of the velocity level, where it is requested and can be determined.
 fn zoned(options: &Options, analysis: &Analysis) -> Option<Zoned> {
     let group = if options.iso_group? == 1 { Group::Large } else { Group::Medium };
     let foundation = match options.foundation? {
@@ -359,14 +360,14 @@ fn zoned(options: &Options, analysis: &Analysis) -> Option<Zoned> {
     Some(Zoned::of(velocity?, group, foundation))
 }
 
-/// A record that was read, and what is known of its machine.
+/// A record that was read, and its machine as far as known.
 struct Read {
     /// The samples, over the angle of the shaft where its speed varies.
     signal: Channel,
     /// Their rate [Hz].
     rate_hz: f64,
     machine: Machine,
-    /// What happened on the way.
+    /// Notes on reading.
     notes: Vec<String>,
     /// Whether it is a run's.
     of_run: bool,
@@ -491,8 +492,7 @@ fn located(asked: &Path, place: &Place) -> Result<(PathBuf, Option<Scene>)> {
     Ok((file.join("trace.npy"), Some(scene)))
 }
 
-/// The channel that was asked for; otherwise that of the leading sensor of a run, or the first of the
-/// longest.
+/// The requested channel; otherwise that of the leading sensor of a run, or the first of the longest.
 fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Result<&'a Channel> {
     if let Some(name) = asked {
         let channel = recording.channel(name)?;
@@ -551,7 +551,7 @@ fn moves(channel: &Channel) -> bool {
 /// Speeds that vary by more than this part smear the fifth harmonic of a family over several lines.
 const STEADY: f64 = 0.01;
 
-/// What is known of the machine, and the times of whole turns, in samples, where the speed varies.
+/// The machine by the flags, and the times of whole turns, in samples, where the speed varies.
 fn machine(
     options: &Reading,
     recording: &Recording,

@@ -19,7 +19,7 @@ pub struct Options {
     json: bool,
 }
 
-/// What to do where a name is not known.
+/// Remedy where a name is unknown.
 const NUMBERS: &str = "give its numbers, `\"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {

@@ -25,20 +25,20 @@ pub(crate) struct Board {
 }
 
 struct State {
-    /// What one is called: `start`.
+    /// Noun for one: `start`.
     noun: &'static str,
     /// How many are to be run.
     all: usize,
     done: usize,
     /// Those that are in their time loop: the part of each that is done.
     going: BTreeMap<usize, f64>,
-    /// What continued ones had done before.
+    /// Work that continued ones had done before.
     earlier: f64,
     shown: Instant,
 }
 
 impl Board {
-    /// A board for so many, each called a `noun`.
+    /// A board for a number of runs, each called a `noun`.
     pub(crate) fn new(noun: &'static str, all: usize) -> Self {
         let on_terminal = std::io::stderr().is_terminal();
         let target = if on_terminal && !is_quiet() {
@@ -80,7 +80,7 @@ impl Board {
         }
     }
 
-    /// `number` has ended, as `words` say.
+    /// Marks run `number` as ended, with `words`.
     pub(crate) fn done(&self, number: usize, words: &str) {
         let mut state = self.state.lock().unwrap_or_else(PoisonError::into_inner);
         state.going.remove(&number);
@@ -90,7 +90,7 @@ impl Board {
         self.say(&line);
     }
 
-    /// Says something above the bar.
+    /// Prints a line above the bar.
     pub(crate) fn say(&self, line: &str) {
         self.bar.suspend(|| tell!("{line}"));
     }

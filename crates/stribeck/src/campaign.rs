@@ -1,9 +1,9 @@
 //! `stribeck campaign`: many scenes made from one, each run in a folder of its own, and a data set of them
 //! all.
 //!
-//! The truth lies in the folders of the runs, which are named by what is in their scenes. So the same command
-//! starts and goes on, parts of it may run anywhere, in any order and at once, and the tables come out the
-//! same.
+//! The state is in the folders of the runs alone, which are named by the hashes of their scenes. So the same
+//! command starts and continues, parts of it may run anywhere, in any order and at once, and the tables are
+//! the same.
 
 mod datasheet;
 mod names;
@@ -37,10 +37,10 @@ pub struct Options {
     out: Option<PathBuf>,
     #[command(flatten)]
     share: Share,
-    /// Goes on with what is there, which the command does anyway: for scripts that say so
+    /// Continues a campaign, which the command does anyway: for scripts that state it
     #[arg(long)]
     resume: bool,
-    /// Runs only part I of N, for several machines; whichever comes last makes the tables
+    /// Runs only part I of N, for several machines; the last one makes the tables
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<Shard>,
     /// Runs nothing: prints the script that has an engine run the campaign in parts, to be sent to a file: `>
@@ -76,13 +76,13 @@ pub(crate) const SCENES: &str = "scenes.txt";
 const DATASHEET: &str = "DATASHEET.md";
 const INDEX: &str = "index.html";
 
-/// The folder of a campaign is known by the former from the first moment of its first part on, and by the
-/// second when it is done; that of a growth by its table before that.
+/// The first marks the folder of a campaign from the start of its first part on, the second when it is done;
+/// the third marks that of a growth.
 pub(crate) const MARKS: [&str; 3] = [TURN, tables::RUNS, GROWTH_TABLE];
 /// The table of the records of a growth.
 pub(crate) const GROWTH_TABLE: &str = "growth.csv";
 
-/// Where the things of a campaign are.
+/// Paths in the folder of a campaign.
 struct Folder(ManyRuns);
 
 impl Folder {
@@ -90,7 +90,7 @@ impl Folder {
         self.path().join(CAMPAIGN)
     }
 
-    /// Hashes of the scenes of all runs, by which a table or a scene file that was changed is known.
+    /// Hashes of the scenes of all runs, by which a changed table or scene file is detected.
     fn scenes(&self) -> PathBuf {
         self.path().join(SCENES)
     }
@@ -99,16 +99,15 @@ impl Folder {
         &self.0.0
     }
 
-    /// Waits until no other part writes the files of the campaign itself, for as long as what is returned
-    /// lives, and removes what a part that was killed has left half written.
+    /// Waits until no other part writes the files of the campaign itself, locks them until the returned value
+    /// is dropped, and removes files that a killed part left half written.
     fn take_turn(&self) -> Result<File> {
         let path = self.path().join(TURN);
         let lock = || {
             let file = File::options().write(true).create(true).truncate(false).open(&path)?;
             match file.lock() {
                 Ok(()) => self.remove_left_overs(),
-                // Some network file systems know no locks: there, parts do not meet by the names of what they
-                // write.
+                // Some network file systems have no locks: there, parts write under different names.
                 Err(error) if error.kind() == ErrorKind::Unsupported => {}
                 Err(error) => return Err(error),
             }
@@ -146,7 +145,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     carry_out(&campaign, out, options.share, options.shard)
 }
 
-/// Runs what is due of a campaign, or of one part of it, in `out`, and makes its tables when all is done.
+/// Runs the outstanding runs of a campaign, or of one part of it, in `out`, and makes its tables when all are
+/// done.
 pub(crate) fn carry_out(
     campaign: &Campaign,
     out: PathBuf,
@@ -220,8 +220,8 @@ fn scenes(campaign: &Campaign) -> String {
     campaign.runs.iter().map(|run| format!("{} {}\n", run.number, hash(run))).collect()
 }
 
-/// Makes the tables when every run has come to an end, and says how matters stand. A part of a campaign has
-/// done what it was asked for when the runs that are its own, `mine`, have.
+/// Makes the tables when every run has ended, and prints the state. A part of a campaign is complete when its
+/// own runs, `mine`, are.
 fn conclude(
     folder: &Folder,
     campaign: &Campaign,
@@ -271,7 +271,7 @@ fn conclude(
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
-/// What the page of the campaign shows.
+/// Content of the campaign's page.
 fn index(folder: &Folder, campaign: &Campaign, rows: &[Row], written: &Written) -> CampaignIndex {
     let run = |row: &Row| {
         let run = row.folder.as_ref().and_then(|path| path.strip_prefix(folder.path()).ok());

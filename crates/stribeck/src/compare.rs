@@ -18,7 +18,7 @@ use crate::place::{Place, shown};
 #[derive(Debug, clap::Args)]
 pub struct Options {
     /// Two or more of: the folder of a run or of an ensemble, its name below runs/, a file of a measured
-    /// record. The first is what the others are compared with
+    /// record. The first is the reference
     #[arg(required = true, num_args = 2.., value_name = "RUN_OR_FILE")]
     sides: Vec<PathBuf>,
     #[command(flatten)]
@@ -28,7 +28,7 @@ pub struct Options {
     out: Option<PathBuf>,
 }
 
-/// By this the folder of a comparison is known.
+/// File that marks the folder of a comparison.
 const MARK: &str = "compare.json";
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
@@ -134,14 +134,14 @@ fn of_folder(label: &str, folder: &Path, channel: Option<&str>, mixed: bool) -> 
     side.with_context(|| format!("`{}` cannot be compared", shown(folder)))
 }
 
-/// Bearing and speed of a record where only a run beside it has them, with a note that says so.
+/// Bearing and speed of a record, taken from a run beside it where the record has none, with a note.
 fn completed(reading: &Reading, sides: &[Option<Side>]) -> (Reading, Option<String>) {
     let mut reading = reading.clone();
     let run = sides.iter().flatten().find(|side| side.scene.is_some());
     let Some((run, scene)) = run.and_then(|run| Some((run, run.scene.as_ref()?))) else {
         return (reading, None);
     };
-    // The channel that was asked for is that of a run, too.
+    // The requested channel applies to runs, too.
     let mut taken = Vec::new();
     if reading.bearing.is_none() {
         let b = &scene.bearing;

@@ -1,4 +1,4 @@
-//! Scripts that have an existing engine run the parts of a campaign or of an inference.
+//! Scripts by which an existing workflow engine runs the parts of a campaign or of an inference.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ pub(crate) enum Engine {
     Hq,
 }
 
-/// What a part is told.
+/// Arguments of a part.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Part {
     pub(crate) of: u32,
@@ -25,19 +25,19 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// One of so many, with as many threads as it may have, or one a job.
+    /// One of the parts, with its threads, or one thread a job.
     pub(crate) fn new(of: u32, share: Share) -> Self {
         let Share { jobs, threads, memory_gb } = share;
         Self { of, jobs, threads: threads.or(jobs).unwrap_or(1), memory_gb }
     }
 }
 
-/// Parts of a command for which nobody has said how many.
+/// Default number of parts.
 pub(crate) const MOST_PARTS: u32 = 16;
 
-/// The script that runs `command`. It may be submitted again after any loss: what is done is not done twice.
-/// A part that ends before others leaves the tables to them and has done its work; so an engine that reports
-/// a failure has one to report.
+/// The script that runs `command`. It may be submitted again after any loss: completed runs are not repeated.
+/// A part that ends before others leaves the tables to them and succeeds; so an engine reports real failures
+/// only.
 pub(crate) fn script(engine: Engine, command: &str, file: &Path, out: &Path, part: Part) -> Result<String> {
     let absolute = |path: &Path| -> Result<PathBuf> {
         std::path::absolute(path).with_context(|| format!("`{}` has no absolute path", path.display()))
@@ -54,7 +54,7 @@ pub(crate) fn script(engine: Engine, command: &str, file: &Path, out: &Path, par
             memory_gb.map_or_else(String::new, |gb| format!(" --memory-gb {gb}")),
         ))
     };
-    // A cluster ends what takes more than it asked for.
+    // A cluster kills jobs that exceed their request.
     let memory = memory_gb
         .map_or_else(String::new, |gb| format!("#SBATCH --mem={:.0}M\n", (1e9 * gb / 1048576.0).ceil()));
     Ok(match engine {

@@ -68,7 +68,7 @@ enum Format {
     Uff,
     /// Parquet, a row a sample
     Parquet,
-    /// Sound to listen to: one channel, 16 bits, as loud as they hold; with `--sensor` the bits of the sensor
+    /// Sound to listen to: one channel, scaled to 16 bits; with `--sensor` the bits of the sensor
     Wav,
     /// The same container with 64-bit floats, every channel in its own unit
     Wav64,
@@ -139,7 +139,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What stands beside the numbers where the format can hold it.
+/// Metadata, where the format can hold them.
 fn provenance(run: &Run) -> Vec<String> {
     let info = &run.info;
     let duration_s = info.interval_s * info.samples as f64;
@@ -224,7 +224,7 @@ fn recorded(channels: &[Channel], text: &str) -> Result<Vec<Channel>> {
         .collect()
 }
 
-/// A sensor from its numbers; what is not given adds nothing.
+/// A sensor by its flags; a missing one has no effect.
 fn sensor(text: &str, rate_hz: f64) -> Result<Sensor> {
     let mut sensor = Sensor::ideal(rate_hz);
     let (mut resonance_hz, mut quality) = (None, 30.0);
@@ -270,7 +270,7 @@ pub(crate) fn unit(name: &str) -> Option<&'static str> {
     .map(|(_, unit)| unit)
 }
 
-/// What is known of one frame.
+/// Data of one frame.
 struct Stressed {
     time_s: f64,
     part: Part,

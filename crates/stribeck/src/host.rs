@@ -1,5 +1,5 @@
-//! What a run records about the machine and the program: clocks, names, versions. The crates are told, never
-//! look.
+//! Clocks, names and versions that a run records about computer and program. The crates are given them and
+//! never read them.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -54,9 +54,9 @@ pub struct SharedClock(Mutex<Shares>);
 
 #[derive(Debug, Default)]
 struct Shares {
-    /// What the process had used when it was last dealt out [s].
+    /// Processor time of the process at its last distribution [s].
     dealt_s: f64,
-    /// What each run that is going has got so far [s].
+    /// Processor time assigned to each active run so far [s].
     going: BTreeMap<usize, f64>,
 }
 

@@ -1,8 +1,8 @@
-//! `stribeck infer`: which scenes could have made the numbers that somebody saw.
+//! `stribeck infer`: which scenes are consistent with observed numbers.
 //!
 //! Rounds of runs of a scene whose unknowns are drawn, first evenly over their priors, then where the
-//! posterior is; then runs at draws of the posterior, and the answer. All that was run lies in the folder, so
-//! the same command starts and goes on, parts of it may run anywhere, and the answer comes out the same.
+//! posterior is; then runs at draws of the posterior, and the answer. All runs are in the folder, so the same
+//! command starts and continues, parts of it may run anywhere, and the answer is the same.
 
 mod answer;
 mod outputs;
@@ -35,8 +35,8 @@ pub struct Options {
     /// File with unknowns and targets, such as fixtures/infer/quick.ron
     #[arg(required_unless_present = "record")]
     file: Option<PathBuf>,
-    /// Infers what made a measured record: the spall on the raceway that `analyse` finds damaged, its load
-    /// and clearance. Needs `--bearing`, and `--speed-rpm` where the record does not tell the speed
+    /// Infers the cause of a measured record: the spall on the raceway that `analyse` finds damaged, its load
+    /// and clearance. Needs `--bearing`, and `--speed-rpm` where the record does not yield the speed
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "emit"])]
     record: Option<PathBuf>,
     /// Runs for a record
@@ -71,13 +71,13 @@ const DRAWS: usize = 4000;
 /// Draws of a posterior from which the next round is chosen.
 const DRAWS_OF_ROUND: usize = 1000;
 
-/// Share of a round's scenes that fill the prior, against regions that the emulator does not know of.
+/// Share of a round's scenes that fill the prior, against regions without runs.
 const FILLING: f64 = 0.25;
 
-/// Between two looks at what other parts have done.
+/// Interval at which the progress of other parts is read.
 const LOOK: Duration = Duration::from_secs(2);
 
-/// The folder of an inference is known by its file.
+/// File that marks the folder of an inference.
 const FILE: &str = "inference.ron";
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
@@ -177,7 +177,7 @@ struct Study<'a> {
 }
 
 impl Study<'_> {
-    /// Runs what is left; `None` when Ctrl-C was pressed.
+    /// Runs the outstanding runs; `None` when Ctrl-C was pressed.
     fn carry_out(&self) -> Result<Option<Known<'_>>> {
         let Self { inference, rounds, .. } = self;
         let budget = inference.budget;
@@ -235,7 +235,7 @@ impl Study<'_> {
         Ok(points.iter().map(|point| snapped(self.rounds.priors(), point)).collect())
     }
 
-    /// Points of a later round, from what is known so far.
+    /// Points of a later round, from the runs so far.
     fn following(&self, rows: &[Row], number: usize, count: usize) -> Result<Vec<Vec<f64>>> {
         let table = Table::of(self.inference, rows)?;
         let emulator = Emulator::fit(&table.runs, &table.outputs, self.inference.seed)?;
@@ -280,7 +280,7 @@ impl Study<'_> {
             }
             std::thread::sleep(LOOK);
         }
-        // Each reduction serves the starts of one scene, and none is asked for again.
+        // Each reduction serves the starts of one scene only.
         if options.shard.is_none() {
             std::fs::remove_dir_all(rounds.runs().0.join("runs").join(".reduced")).ok();
         }

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use anyhow::{Context, Result};
 use stribeck_scene::run_dir::Reservation;
 
-/// What a shell reports for a program ended by Ctrl-C.
+/// Exit code of a program ended by Ctrl-C.
 pub const EXIT_CODE: u8 = 130;
 
 /// Whether Ctrl-C was pressed. The first asks for an end in good order, the second ends the program.
@@ -40,8 +40,8 @@ impl Interrupt {
         Ok(Self(shared))
     }
 
-    /// Lets Ctrl-C end the program at once until the run in `place` takes its first step; what was made for
-    /// it is removed.
+    /// Makes Ctrl-C end the program at once until the run in `place` takes its first step; files made for it
+    /// are removed.
     pub fn need_not_wait_for(&self, place: Reservation) {
         *self.0.place.lock().unwrap_or_else(PoisonError::into_inner) = Some(place);
         // It may have been pressed while the place was made.
@@ -55,7 +55,7 @@ impl Interrupt {
         self.0.pressed.load(Ordering::SeqCst)
     }
 
-    /// What a watched run is to do.
+    /// Whether a watched run continues.
     pub fn flow(&self) -> ControlFlow<()> {
         if self.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }

@@ -41,7 +41,7 @@ pub const MODULE: &str = "stribeck_lab.wasm";
 /// More in one page is slow to open.
 const MOST_SCENES: usize = 12;
 
-/// What a page may have [bytes]: more is hard to send.
+/// Largest page [bytes]: more is hard to send.
 const LARGEST: usize = 3 << 20;
 
 impl Options {

@@ -1,6 +1,6 @@
 //! The program `stribeck`: its commands, for the binary and for `cargo xtask`, which has the same ones.
 //!
-//! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates below.
+//! Glue only: paths, flags, progress and exit codes. All computation is in the crates below.
 
 pub mod host;
 pub mod interrupt;
@@ -57,17 +57,17 @@ pub struct Cli {
 }
 
 impl Cli {
-    /// Does what the command line asks for, in `place`.
+    /// Executes the command line, in `place`.
     ///
     /// # Errors
-    /// With what to tell the user.
+    /// The message for the user.
     pub fn run(&self, place: &Place) -> Result<ExitCode> {
         self.loudness.apply();
         self.command.run(place)
     }
 }
 
-/// What the program can do.
+/// Commands of the program.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
     /// Writes a scene of your own, by five questions or by flags, that runs as it is
@@ -76,19 +76,19 @@ pub enum Command {
     Simulate(simulate::Options),
     /// Writes the report of a run again
     Report(report::Options),
-    /// Runs many scenes made from one, and makes a data set of them; the same command starts and goes on
+    /// Runs many scenes made from one, and makes a data set of them; the same command starts and continues
     Campaign(campaign::Options),
     /// Lets spalls of several units grow by a law, records each at intervals, and says what is left of it, with
     /// the truth beside; the same command starts and goes on
     Grow(grow::Options),
     /// Runs a scene with several values of some fields, each with every other: a campaign in one line
     Sweep(sweep::Options),
-    /// Infers unknown fields of a scene from numbers that were seen: what they can have been, what they
-    /// cannot
+    /// Infers unknown fields of a scene from observed numbers: which values are consistent with them, and
+    /// which are not
     Infer(infer::Options),
-    /// Runs a scene by the full and by the reduced model, and says how far apart they are
+    /// Runs a scene by the full and by the reduced model, and compares them
     Validate(validate::Options),
-    /// Says what to expect of a scene before it is run: lines, levels, steps, cost, advice
+    /// Predicts a run before it is made: lines, levels, steps, cost, advice
     Plan(plan::Options),
     /// Stiffness and damping of a bearing over load, speed and cage angle, for rotor dynamics
     Stiffness(stiffness::Options),
@@ -97,29 +97,29 @@ pub enum Command {
     /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are
     /// from
     Bearings(bearings::Options),
-    /// Says what a measured record shows: which defects, how sure, and what it cannot say
+    /// Analyses a measured record: which defects, how certain, and what it does not decide
     Analyse(analyse::Options),
-    /// Sets runs, ensembles and measured records beside each other: what was changed, what changed with it
+    /// Compares runs, ensembles and measured records: changed fields, and changed results
     Compare(compare::Options),
     /// Writes the signals or the stress frames of a run in a format of other programs
     Export(export::Options),
-    /// Lists the runs that there are, with what was made of them
+    /// Lists the runs and other results
     List(list::Options),
     /// Opens the page of a run in a browser
     Open(open::Options),
     /// Removes runs, after asking
     Rm(remove::Options),
-    /// Writes what a shell needs to complete commands and flags
+    /// Writes the completions of commands and flags for a shell
     Completions(shell::Completions),
     /// Writes the pages of the manual
     Man(shell::Man),
 }
 
 impl Command {
-    /// Does it, with paths and words of `place`.
+    /// Executes the command, with paths and words of `place`.
     ///
     /// # Errors
-    /// With what to tell the user.
+    /// The message for the user.
     pub fn run(&self, place: &Place) -> Result<ExitCode> {
         match self {
             Self::New(options) => new::run(options, place),
@@ -146,7 +146,7 @@ impl Command {
     }
 }
 
-/// The exit code of a command; says on stderr what went wrong.
+/// The exit code of a command; prints its error on stderr.
 pub fn conclude(done: Result<ExitCode>) -> ExitCode {
     let done = done.and_then(|code| match out::trouble() {
         Some(trouble) if code == ExitCode::SUCCESS => Err(anyhow::Error::msg(trouble)),

@@ -1,5 +1,5 @@
 //! Runs of many scenes in one folder, each below `runs/` by the hash of its scene, so that equal scenes are
-//! run once and whoever asks for a scene again finds its run.
+//! run once, and a scene that occurs again has its run.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ use crate::simulate::{jobs, threads};
 #[derive(Debug, Clone)]
 pub(crate) struct ManyRuns(pub(crate) PathBuf);
 
-/// A scene that is to be run, with the number by which the user knows it, or why it cannot be.
+/// A scene to be run, with its number in the table, or the reason why it cannot be.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wanted<'a> {
     pub(crate) number: usize,
@@ -98,7 +98,8 @@ impl ManyRuns {
         })
     }
 
-    /// What is to be run of these; of runs that ended when the program was killed the numbers are made.
+    /// Selects the runs to be made; of runs that had ended when the program was killed only the summaries are
+    /// made.
     pub(crate) fn due<'a>(
         &self,
         keep: Keep,
@@ -117,7 +118,7 @@ impl ManyRuns {
                         due.push(Due { number, scene, folder });
                     }
                 }
-                // What a kill has left; it may free the space that others need.
+                // Remains of a kill; removing them may free the space that others need.
                 Stage::Ended if !interrupt.is_pressed() => {
                     if let Err(why) = settle(&self.run(scene), keep) {
                         caution!("{why:#}");
@@ -129,7 +130,7 @@ impl ManyRuns {
         Ok(due)
     }
 
-    /// Runs what is due. `say` is told first how many go at a time.
+    /// Runs the outstanding runs. `say` is called first with the number of simultaneous ones.
     pub(crate) fn make(
         &self,
         keep: Keep,
@@ -150,7 +151,7 @@ impl ManyRuns {
         shop.run(&|due, error| {
             let kept = match error {
                 Some(error) => self.keep_failure(&due.scene, &error.to_string()),
-                // By every job for its own run; what is made of all only gathers.
+                // Each job makes the summary of its own run; the tables only collect them.
                 None if matches!(State::of(&due.folder, &due.scene), State::Done) => {
                     settle(&due.folder, keep)
                 }
@@ -170,9 +171,9 @@ fn is_settled(path: &Path, keep: Keep) -> Result<bool> {
     Ok(keep == Keep::All || dir.summary().exists() && dir.keeps_only(keep))
 }
 
-/// Makes the numbers of a run that has come to its end, and removes what is not to be kept.
+/// Makes the summary of a finished run, and removes the files that are not kept.
 fn settle(path: &Path, keep: Keep) -> Result<()> {
-    // Nobody else reads what is being removed.
+    // No other process reads the removed files.
     let dir = match RunDir::reopen(path) {
         Err(Error::FolderInUse { .. }) => return Ok(()),
         dir => dir?,

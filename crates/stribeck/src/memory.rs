@@ -13,7 +13,7 @@ const OF_SENSOR: f64 = 4.0;
 /// … and of each roller in oil, how thick films are that float.
 const OF_FLOATING: f64 = 2.0;
 
-/// What the run of a scene takes [GB], while it runs or when its numbers are made.
+/// Memory of a scene's run [GB], the larger of simulation and analysis.
 pub(crate) fn need_gb(scene: &Scene) -> f64 {
     let g = scene.resolve();
     let floating = if scene.film.is_some() { OF_FLOATING * g.rollers as f64 } else { 0.0 };
@@ -21,8 +21,7 @@ pub(crate) fn need_gb(scene: &Scene) -> f64 {
     MODEL_GB + 8e-9 * channels * g.duration / g.interval
 }
 
-/// What programs may still take, and this one where it has a limit of its own [GB]; `None` where the system
-/// does not tell.
+/// Available memory [GB], capped by this process's limit; `None` where the system does not report it.
 pub(crate) fn free_gb() -> Option<f64> {
     let about = std::fs::read_to_string("/proc/meminfo").ok();
     let available = about.and_then(|about| {

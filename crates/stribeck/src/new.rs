@@ -15,7 +15,7 @@ use stribeck_scene::scene::Scene;
 use crate::out::say;
 use crate::place::{Place, shown};
 
-/// Flags of `new`. What is not given is asked for on a terminal, and has its default elsewhere.
+/// Flags of `new`. A missing one is asked for on a terminal, and has its default elsewhere.
 #[derive(Debug, clap::Args)]
 pub struct Options {
     /// File to write, for example mine.ron [default: the bearing and its defect]
@@ -35,7 +35,7 @@ pub struct Options {
     /// Length of the record [s] [default: 1, longer where twenty passages over a defect take longer]
     #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     duration_s: Option<f64>,
-    /// Asks nothing: what is not given has its default
+    /// Asks nothing: missing flags have their defaults
     #[arg(long, short = 'y')]
     yes: bool,
 }
@@ -113,7 +113,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         stem.to_string_lossy().replace(|c: char| !(c.is_ascii_alphanumeric() || "-_.".contains(c)), "-")
     });
     let text = text(&name, &answers);
-    // What is refused here would be refused when it runs; then no file is left.
+    // A scene that would be refused when it runs is refused here, and no file is written.
     let scene = Scene::parse(&text, &shown(&file))?;
     if let Some(folder) = file.parent().filter(|folder| !folder.as_os_str().is_empty()) {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", shown(folder)))?;
@@ -132,13 +132,13 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is allowed of a number: itself, or words on why not.
+/// Check of a number: the number, or the reason in words why it is refused.
 type Limit<'a> = dyn Fn(f64) -> Result<f64, String> + 'a;
 
-/// Radial load where none is given [N].
+/// Default radial load [N].
 const USUAL_N: f64 = 1000.0;
 
-/// What a first scene of a bearing may have; what is beyond can be written into the file by hand.
+/// Limits of a first scene of a bearing; values beyond can be written into the file by hand.
 #[derive(Debug, Clone, Copy)]
 struct Limits {
     /// Static rating by ISO 76 [N].
@@ -168,7 +168,7 @@ impl Limits {
         })
     }
 
-    /// 1000 N, or a tenth of what a smaller bearing carries [N].
+    /// 1000 N, or a tenth of a smaller bearing's static rating [N].
     fn usual_load_n(self) -> f64 {
         let tenth = 0.1 * self.rating_n;
         let digits = 10_f64.powf(tenth.max(1e-9).log10().floor() - 1.0);
@@ -269,7 +269,7 @@ fn answers(options: &Options, asks: bool) -> Result<Answers> {
     })
 }
 
-/// The name of a bearing in the catalogue, with the numbers that were given beside it.
+/// The name of a bearing in the catalogue, with the dimensions given beside it.
 fn with_numbers(text: &str, bearing: &CatalogueBearing) -> String {
     let text = text.trim().trim_matches('"');
     match text.split_once(',') {
@@ -384,7 +384,7 @@ mod tests {
         says(limits.speed(0.1), "1.7 to");
         says(limits.duration(1500.0, 0.01), "0.112 to 100 s");
         says(limits.duration(1500.0, 1e9), "0.112 to 100 s");
-        // What is written without flags can be, of small bearings and slow ones, too.
+        // A scene written without flags is valid for small and slow bearings, too.
         let small = Limits::of("6000").expect("known");
         assert!(small.load(small.usual_load_n()).is_ok(), "{small:?}");
         assert!(limits.duration(20.0, limits.usual_duration_s(20.0)).is_ok());

@@ -15,7 +15,7 @@ pub struct Options {
     /// Run, ensemble, campaign or analysis: its folder, or its name below runs/ [default: the newest that has
     /// a page]
     run: Option<PathBuf>,
-    /// Says where the page is, and opens nothing
+    /// Prints the path of the page, and opens nothing
     #[arg(long)]
     print: bool,
 }

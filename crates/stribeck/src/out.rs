@@ -1,5 +1,5 @@
-//! Standard output: what the user reads, or another program that may close it before the end. Standard error:
-//! how it goes, by `-q` and `-v`.
+//! Standard output: results for the user, or for another program that may close it before the end. Standard
+//! error: progress, by `-q` and `-v`.
 
 use std::fmt::Arguments;
 use std::io::{Error, ErrorKind, IsTerminal, Write, stderr, stdout};
@@ -12,10 +12,10 @@ use clap::builder::styling::{AnsiColor, Style};
 /// How much is said on the way.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub struct Loudness {
-    /// Says results, warnings and errors alone
+    /// Prints results, warnings and errors only
     #[arg(short, long, global = true, conflicts_with = "verbose", display_order = 1000)]
     quiet: bool,
-    /// Says more: what is read and written, each line with the seconds since the start
+    /// Prints more: files read and written, each line with the seconds since the start
     #[arg(short, long, global = true, display_order = 1001)]
     verbose: bool,
 }
@@ -44,7 +44,7 @@ pub(crate) fn is_quiet() -> bool {
     LOUDNESS.load(Ordering::Relaxed) == QUIET
 }
 
-/// Writes a line of how it goes to standard error, but for `--quiet`.
+/// Writes a line of progress to standard error, except with `--quiet`.
 macro_rules! tell {
     ($($words:tt)*) => { $crate::out::progress(format_args!($($words)*)) };
 }
@@ -88,7 +88,7 @@ pub(crate) fn warning(words: Arguments<'_>) {
     on_error(format_args!("{} {words}", marked("warning:", AnsiColor::Yellow)));
 }
 
-/// Says what went wrong, and why.
+/// Prints an error with its causes.
 pub(crate) fn error(error: &anyhow::Error, causes: &[String]) {
     on_error(format_args!("{} {error}", marked("error:", AnsiColor::Red)));
     causes.iter().for_each(|cause| on_error(format_args!("  because: {cause}")));
@@ -96,7 +96,7 @@ pub(crate) fn error(error: &anyhow::Error, causes: &[String]) {
 
 fn on_error(words: Arguments<'_>) {
     let since = BEGAN.get().filter(|_| LOUDNESS.load(Ordering::Relaxed) == VERBOSE);
-    // Nobody is left to be told that standard error is closed.
+    // A closed standard error cannot be reported.
     match since {
         Some(began) => drop(writeln!(stderr(), "[{:8.3} s] {words}", began.elapsed().as_secs_f64())),
         None => drop(writeln!(stderr(), "{words}")),
@@ -118,8 +118,8 @@ fn marked(word: &str, colour: AnsiColor) -> String {
 /// Why standard output took no more, once it did not.
 static CLOSED: Mutex<Option<Error>> = Mutex::new(None);
 
-/// Writes a line to standard output, as `println!` does. Where it takes no more, as that of `| head` after
-/// some lines, what the command does besides goes on, and [`trouble`] knows of it at the end.
+/// Writes a line to standard output, as `println!` does. Where it is closed, as by `| head` after some lines,
+/// the command continues, and [`trouble`] reports it at the end.
 macro_rules! say {
     ($($words:tt)*) => { $crate::out::line(format_args!($($words)*)) };
 }
@@ -135,7 +135,7 @@ fn write_line(out: &mut dyn Write, closed: &mut Option<Error>, words: Arguments<
     }
 }
 
-/// What kept lines from standard output, such as a full disk; nothing where a reader had enough of them.
+/// The error that kept lines from standard output, such as a full disk; none where the reader closed it.
 pub(crate) fn trouble() -> Option<String> {
     told(CLOSED.lock().unwrap_or_else(PoisonError::into_inner).take())
 }

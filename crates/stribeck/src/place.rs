@@ -1,4 +1,4 @@
-//! Where scenes and runs are, and what the program is called.
+//! Paths of scenes and runs, and the name of the program.
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -14,7 +14,7 @@ use crate::out::{caution, detail};
 /// The surroundings of a command.
 #[derive(Debug, Clone)]
 pub struct Place {
-    /// What the user types before the name of a command.
+    /// The program's name as the user types it before a command.
     pub program: &'static str,
     root: PathBuf,
 }
@@ -33,7 +33,7 @@ impl Place {
     /// The scene in a file under `overrides`; without a file the paper's run.
     ///
     /// # Errors
-    /// What is wrong with it, or with the meshes that it names, with line and field.
+    /// Mistakes in it, or in the meshes that it names, with line and field.
     pub fn scene(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
         let scene = self.scene_quietly(file, overrides)?;
         if let Some(file) = file.map(|file| self.locate(file)) {
@@ -44,8 +44,8 @@ impl Place {
         Ok(scene)
     }
 
-    /// As [`Place::scene`], without a word on what another bearing replaces or what of one is assumed, to
-    /// read a scene many times.
+    /// As [`Place::scene`], without messages on replaced fields or assumed dimensions, to read a scene many
+    /// times.
     ///
     /// # Errors
     /// As [`Place::scene`].
@@ -58,7 +58,7 @@ impl Place {
         Self::with_sound_meshes(scene, file.as_deref(), overrides)
     }
 
-    /// Says what of a scene file another bearing replaces.
+    /// Prints the fields of a scene file that another bearing replaces.
     fn say_replaced(file: &Path, replaced: &[Replaced]) {
         if replaced.is_empty() {
             return;
@@ -74,7 +74,7 @@ impl Place {
         );
     }
 
-    /// Says what of the scene's bearing is assumed. Of one of the catalogue the report says it.
+    /// Prints the assumed dimensions of the scene's bearing. For one of the catalogue they are in the report.
     pub(crate) fn say_assumed(scene: &Scene) {
         let own = Some(&scene.bearing).filter(|bearing| !bearing.assumed.is_empty());
         for note in own.into_iter().flat_map(catalogue::assumptions) {
@@ -146,7 +146,7 @@ impl Place {
         let written = |path: &Path| -> Option<SystemTime> {
             files.iter().filter_map(|name| path.join(name).metadata().ok()?.modified().ok()).max()
         };
-        // A plan that was killed may have left what it tried.
+        // A plan that was killed may have left its trial run.
         let entries = entries.flatten().filter(|entry| !entry.file_name().to_string_lossy().starts_with('.'));
         let runs = entries.filter_map(|entry| Some((written(&entry.path())?, entry.path())));
         match runs.max() {

@@ -1,4 +1,4 @@
-//! `stribeck plan`: what to expect of a scene before it is run.
+//! `stribeck plan`: prediction of a run before it is made.
 
 mod json;
 mod trial;
@@ -29,7 +29,7 @@ pub struct Options {
     /// Overrides a field of the scene, for example --set mesh.size_mm=1.0; may be repeated
     #[arg(long = "set", value_name = "FIELD=VALUE")]
     overrides: Vec<String>,
-    /// Does not begin the run to see what it takes: the rest of the plan at once
+    /// Does not try the first steps to estimate the cost: the rest of the plan at once
     #[arg(long)]
     no_trial: bool,
     /// Writes the plan to standard output as JSON
@@ -77,7 +77,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What the bearing carries.
+/// The load distribution.
 fn loads(plan: &Plan) {
     let loads = &plan.loads;
     let [outer, inner] = loads.pressure_pa.map(|pa| 1e-6 * pa);
@@ -105,10 +105,10 @@ fn steps(scene: &ResolvedScene, trial: &Trial) -> f64 {
     (trial.info.steps_planned as f64 * scene.duration / trial.info.simulated_s.max(f64::MIN_POSITIVE)).round()
 }
 
-/// A machine on which a run takes so many times longer than where nothing else runs is busy.
+/// Ratio of wall-clock to processor time above which a computer counts as busy.
 const BUSY: f64 = 1.2;
 
-/// What the run takes.
+/// Time and memory of the run.
 fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
     let what = match &trial.info.reduced {
         Some(reduced) => format!("{} modes of {} elements", reduced.modes, plan.elements),
@@ -222,7 +222,7 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
     );
 }
 
-/// What the record will hold.
+/// Length and resolution of the record.
 fn record(scene: &ResolvedScene, plan: &Plan) {
     let samples = 1e3 * scene.written.solver.duration_ms / scene.written.output.interval_us;
     say!("  the trace takes {:.3} GB", 8e-9 * samples * channels::names(scene).len() as f64);

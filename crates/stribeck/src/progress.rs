@@ -14,7 +14,7 @@ use crate::out::{is_quiet, tell};
 const REDRAW: Duration = Duration::from_millis(100);
 /// A log gets a line after this part of the run …
 const LOG_PART: f64 = 0.05;
-/// … or after this time, whichever comes first.
+/// … or after this time, whichever is first.
 const LOG_PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows how far a run has come.
@@ -95,7 +95,7 @@ impl Meter {
             0 => format!("{:.0} ms/s", 1e3 * progress.time_s * (done / progress.step as f64) / elapsed),
             elements => format!("{:.1} M element-steps/s", 1e-6 * done * elements as f64 / elapsed),
         };
-        // What a long run is off by grows with its heat, and says nothing beside the strain energy.
+        // The imbalance of a long run grows with its heat, and must not be compared with the strain energy.
         let error = match progress.share_of_heat {
             Some(share) => format!("{:.3} % of the heat", 100.0 * share),
             None => format!("{:.3} %", 100.0 * progress.energy_error),
@@ -110,7 +110,7 @@ impl Meter {
     }
 }
 
-/// What the energy of a run was off by at most, in words.
+/// Largest energy imbalance of a run, in words.
 pub(crate) fn energy_error(info: &RunInfo) -> String {
     format!("energy error {}", info.energy.in_words())
 }

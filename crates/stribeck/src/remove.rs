@@ -73,7 +73,7 @@ fn canonical(path: &Path) -> Result<PathBuf> {
     path.canonicalize().with_context(|| format!("`{}` cannot be found", path.display()))
 }
 
-/// Whether the user says yes; without a terminal nobody can be asked.
+/// Whether the user agrees; without a terminal the answer is no.
 fn agreed(items: &[Item], bytes: u64, place: &Place) -> Result<bool> {
     let (mut stderr, stdin) = (std::io::stderr(), std::io::stdin());
     if !(stdin.is_terminal() && stderr.is_terminal()) {

@@ -89,7 +89,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     announce(options, &dir.report())
 }
 
-/// Says where the page is, and prints it where that was asked for.
+/// Prints the path of the page, and the page as PDF where requested.
 fn announce(options: &Options, page: &Path) -> Result<ExitCode> {
     say!("report: {}", shown(page));
     if options.pdf {

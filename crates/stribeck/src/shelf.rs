@@ -1,4 +1,4 @@
-//! What lies below `runs/`: runs, ensembles, campaigns and what was made of them.
+//! The folder `runs/`: runs, ensembles, campaigns and results made from them.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use stribeck_scene::run_info::{RunInfo, Status};
 
 use crate::place::{Place, shown};
 
-/// What a folder holds.
+/// Content of a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Run,
@@ -23,7 +23,7 @@ pub(crate) enum Kind {
     Trend,
 }
 
-/// A kind of folder: names below it by which it is known, its page, and a word for it.
+/// A kind of folder: the files that mark it, its page, and a word for it.
 const KINDS: [(Kind, &[&str], &str, &str); 8] = [
     (Kind::Ensemble, &["ensemble.json"], "report.html", "ensemble"),
     (Kind::Run, &["run.json"], "report.html", "run"),

@@ -1,4 +1,4 @@
-//! `stribeck completions` and `stribeck man`: what shells and readers of manuals take.
+//! `stribeck completions` and `stribeck man`: completions of shells, and manual pages.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

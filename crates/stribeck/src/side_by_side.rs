@@ -1,4 +1,4 @@
-//! Runs side by side, each in a folder of its own: what is due is taken one after the other by several jobs.
+//! Runs side by side, each in a folder of its own: several jobs take outstanding runs from one queue.
 
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -30,7 +30,7 @@ pub(crate) struct Jobs {
 }
 
 impl Jobs {
-    /// For so many runs at the most: as asked for, or as many as there are threads.
+    /// With at most this number of runs at a time: as requested, or the number of threads.
     pub(crate) fn of(jobs: Option<usize>, threads: Option<usize>, runs: usize) -> Self {
         let threads = threads.unwrap_or_else(host::cores);
         let count = jobs.unwrap_or(threads).clamp(1, runs.max(1));
@@ -44,11 +44,11 @@ impl Jobs {
     }
 }
 
-/// What the jobs share.
+/// State shared by the jobs.
 pub(crate) struct Shop<'a> {
     due: &'a [Due],
     next: AtomicUsize,
-    /// The disk refused something: what comes next would be refused as well.
+    /// The disk refused a write: later ones would be refused as well.
     disk_refuses: AtomicBool,
     jobs: Jobs,
     clock: SharedClock,
@@ -57,7 +57,7 @@ pub(crate) struct Shop<'a> {
 }
 
 impl<'a> Shop<'a> {
-    /// For what is due, each called a `noun`.
+    /// For outstanding runs, each called a `noun`.
     pub(crate) fn new(noun: &'static str, due: &'a [Due], jobs: Jobs, interrupt: &'a Interrupt) -> Self {
         Self {
             due,
@@ -70,9 +70,9 @@ impl<'a> Shop<'a> {
         }
     }
 
-    /// Runs what is due until nothing is left, Ctrl-C is pressed or the disk refuses. `ended` is told of each
-    /// run, with why it could not be made; what the disk or the folder refused can follow when that has
-    /// changed, and is not told.
+    /// Runs the outstanding runs until none remains, Ctrl-C is pressed or the disk refuses. `ended` is called
+    /// for each run, with the reason where it could not be made; runs that disk or folder refused can follow
+    /// later, and are not reported.
     pub(crate) fn run(&self, ended: &(dyn Fn(&Due, Option<&Error>) + Sync)) {
         std::thread::scope(|scope| {
             (1..self.jobs.count).for_each(|_| drop(scope.spawn(|| self.work(ended))));
@@ -119,13 +119,13 @@ impl<'a> Shop<'a> {
                         Error::Scene(SceneError::Io { .. }) => {
                             self.disk_refuses.store(true, Ordering::Relaxed);
                         }
-                        // What lies in the scene fails again wherever it is run.
+                        // An error of the scene occurs again on any computer.
                         Error::Scene(
                             SceneError::Scene(_)
                             | SceneError::Input { .. }
                             | SceneError::NoEquilibrium { .. },
                         ) => ended(due, Some(error)),
-                        // What lies in its folder.
+                        // An error of its folder.
                         Error::Scene(_) => {}
                         _ => ended(due, Some(error)),
                     }

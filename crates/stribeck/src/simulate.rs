@@ -55,7 +55,7 @@ pub struct Options {
     /// Starts that run side by side, each with its share of the threads [default: as many as threads]
     #[arg(long, value_name = "M", value_parser = jobs)]
     jobs: Option<usize>,
-    /// What the starts are drawn from: equal seeds draw the same [default: 1]
+    /// Seed of the starts: equal seeds draw the same [default: 1]
     #[arg(long, value_name = "S")]
     seed: Option<u64>,
 }
@@ -103,7 +103,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     done
 }
 
-/// Takes part in what the first process runs.
+/// Takes part in the run of the first process.
 fn take_part(options: &Options, ranks: Arc<dyn Ranks>) -> Result<ExitCode> {
     host::with_ranks(options.threads.unwrap_or(1), Some(ranks), simulation::follow)?;
     Ok(ExitCode::SUCCESS)
@@ -189,7 +189,7 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
             tell!("continue it: {} simulate --resume {path}", place.program);
         }
     }
-    // A run that broke off has a report too: what was computed until then is what shows why.
+    // A run that broke off has a report too: the samples until then show the cause.
     if dir.has_started() && !options.no_report {
         match report::write(dir.path()) {
             Ok(_) => say!("report: {}", shown(&dir.report())),
@@ -207,8 +207,7 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
     })
 }
 
-/// The folder of a new run. The user's own choice is taken or refused; the default gives way to runs that are
-/// there.
+/// The folder of a new run. The user's own choice is used or refused; the default avoids existing runs.
 fn reserve(options: &Options, place: &Place, scene: &Scene) -> Result<RunDir> {
     let by_name = place.runs().join(&scene.name);
     let folder = options.out.as_deref().unwrap_or(&by_name);
@@ -225,7 +224,7 @@ fn reserve(options: &Options, place: &Place, scene: &Scene) -> Result<RunDir> {
     }
 }
 
-/// Puts a complete run where the user wants it.
+/// Moves a complete run to its final folder.
 fn take_place(dir: RunDir) -> Result<RunDir> {
     let path = shown(dir.path());
     dir.take_place().with_context(|| {
@@ -244,7 +243,7 @@ fn reopen(run: &Path, overrides: &[String]) -> Result<(Scene, RunDir)> {
     Ok((scene, dir))
 }
 
-/// Refuses to change anything but the duration of what has begun.
+/// Refuses to change anything but the duration of a run that has begun.
 fn check_overrides(overrides: &[String]) -> Result<()> {
     const MAY_CHANGE: &str = "solver.duration_ms";
     let other = overrides.iter().find(|text| text.split('=').next().unwrap_or_default().trim() != MAY_CHANGE);
@@ -258,7 +257,7 @@ fn check_overrides(overrides: &[String]) -> Result<()> {
     Ok(())
 }
 
-/// Says how the run ended and what it cost.
+/// Prints how the run ended, and its cost.
 fn announce(info: &RunInfo) {
     for note in &info.notes {
         tell!("note: {note}");

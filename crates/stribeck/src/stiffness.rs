@@ -37,7 +37,7 @@ pub struct Options {
     /// Damping over stiffness [µs], C = β K: stated, because nothing here computes it; 2.5 to 25 are measured
     #[arg(long, default_value_t = 8.0, value_name = "US", allow_hyphen_values = true)]
     damping_us: f64,
-    /// Folder for what is written [default: NAME-stiffness in the working folder]
+    /// Folder for the results [default: NAME-stiffness in the working folder]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Prints stiffness.json instead of the table
@@ -56,7 +56,7 @@ enum Contact {
     Palmgren,
 }
 
-/// By this the folder is known.
+/// File that marks the folder.
 const MARK: &str = "stiffness.json";
 
 /// Points that are still computed within seconds.
@@ -99,7 +99,7 @@ fn stem(options: &Options) -> String {
     stem.map_or("singh2014".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-/// What is asked, checked.
+/// The requested grid of loads, speeds and angles, checked.
 fn grid(options: &Options, scene: &ResolvedScene) -> Result<Grid> {
     let usual = |asked: &[f64], value: f64, parts: &[f64]| {
         if asked.is_empty() { parts.iter().map(|part| part * value).collect() } else { asked.to_vec() }
@@ -146,7 +146,7 @@ fn grid(options: &Options, scene: &ResolvedScene) -> Result<Grid> {
     Ok(Grid { loads_n, speeds_rpm, angles, law, damping_s: 1e-6 * beta })
 }
 
-/// What the scene has and the stiffness does not.
+/// Fields of the scene that the stiffness leaves out.
 fn left_out(scene: &ResolvedScene) -> Vec<String> {
     let written = &scene.written;
     let mut left = Vec::new();

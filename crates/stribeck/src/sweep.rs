@@ -24,17 +24,16 @@ pub struct Options {
     /// all runs. Several fields run every combination
     #[arg(long = "set", value_name = "FIELD=V1,V2,…", required = true)]
     set: Vec<String>,
-    /// Starts of each combination, drawn from the seed: they say how far chance spreads the numbers
+    /// Starts of each combination, drawn from the seed: they show the scatter of the results
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10_000))]
     starts: u16,
-    /// What the starts are drawn from
+    /// Seed of the starts
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// What is kept of each run once its numbers are made
+    /// Files kept of each run once its summary exists
     #[arg(long, value_enum, default_value_t = Kept::All)]
     keep: Kept,
-    /// Folder [default: runs/NAME-by-FIELD]; the same command goes on, and other values are added to what is
-    /// there
+    /// Folder [default: runs/NAME-by-FIELD]; the same command continues, and other values are added
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -44,7 +43,7 @@ pub struct Options {
     print: bool,
 }
 
-/// What is kept of a run.
+/// Files kept of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Kept {
     /// Everything
@@ -129,9 +128,9 @@ fn parse(text: &str, out: &Path) -> Result<Campaign> {
     })
 }
 
-/// Reads the scene under each value of each field by itself, so that what is wrong is said in the words of
-/// the command line; the name of the scene. What other bearings replace, and what is assumed of them, is said
-/// once for all values.
+/// Reads the scene under each value of each field separately, so that mistakes are reported in the words of
+/// the command line; returns the name of the scene. Replaced fields and assumed dimensions are reported once
+/// for all values.
 fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&Assigned]) -> Result<String> {
     let file = options.scene.as_deref();
     let argument = |a: &Assigned, value: &str| format!("{}={value}", a.field);
@@ -254,8 +253,8 @@ pub(crate) fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
     Ok(up.chain(to[common..].iter().copied()).collect())
 }
 
-/// Removes what an earlier sweep in this folder says of itself; its runs stay and serve where their scenes
-/// come again.
+/// Removes the tables of an earlier sweep in this folder; its runs stay and are used where their scenes occur
+/// again.
 fn make_way(out: &Path) -> Result<()> {
     let text = std::fs::read_to_string(out.join(CAMPAIGN)).unwrap_or_default();
     if text.starts_with(WRITTEN_BY) {

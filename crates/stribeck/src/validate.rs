@@ -1,5 +1,4 @@
-//! `stribeck validate`: the same starts of a scene by the full and by the reduced model, and how far apart
-//! they are.
+//! `stribeck validate`: the same starts of a scene by the full and by the reduced model, compared.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -29,7 +28,7 @@ pub struct Options {
     /// Starts, each by both models
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(1..=1000))]
     starts: u16,
-    /// What the starts are drawn from
+    /// Seed of the starts
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Runs that go side by side [default: as many as cores]
@@ -38,8 +37,7 @@ pub struct Options {
     /// Worker threads of all runs together [default: all cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<usize>,
-    /// Folder of the runs and of the page [default: runs/NAME-validation]; the same command goes on with what
-    /// is there
+    /// Folder of the runs and of the page [default: runs/NAME-validation]; the same command continues
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Folder of the runs of the full model, for example that of another validation: other modes or another
@@ -49,7 +47,7 @@ pub struct Options {
     full: Option<PathBuf>,
 }
 
-/// By these a folder is known to be that of a validation, also of one that was interrupted.
+/// Files that mark the folder of a validation, also of an interrupted one.
 const MARKS: [&str; 3] = ["validation.json", "full/start-001", "reduced/start-001"];
 /// By this the folder of its runs of one model.
 const MARK: &str = "start-001";

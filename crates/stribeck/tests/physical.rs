@@ -63,7 +63,7 @@ fn analytic_contacts_of_the_physical_scene_are_hertzian() {
     scene.bearing.first_roller_deg = 90.0;
     let g = scene.resolve();
     let assembly = Assembly::new(&g).expect("a mesh");
-    let mut machine = assembly.machine(&g, 2).expect("a machine");
+    let mut machine = assembly.build(&g, 2).expect("a machine");
     preload(&mut machine, &g, &assembly.kinematics).expect("an equilibrium");
 
     let mesh = &assembly.model.mesh;

@@ -20,7 +20,7 @@ pub struct Options {
     flags: Flags,
 }
 
-/// What all have in common.
+/// Fields that all cases share.
 const SCENE: &str = "fixtures/scenes/atlas.ron";
 
 /// The paper's bearing, rollers of light and medium series, and balls; `""` is the paper's.
@@ -156,7 +156,7 @@ fn in_diameters(list: &str, roller_mm: f64) -> String {
     text + rest
 }
 
-/// What is wrong with a field; nothing when all is well.
+/// Faults of a field; empty when there are none.
 fn faults(cell: &Cell<'_>) -> Vec<String> {
     let mut faults = Vec::new();
     for (model, run) in [("reduced", cell.reduced)].into_iter().chain(cell.full.map(|full| ("full", full))) {
@@ -197,8 +197,8 @@ const LEDGER: f64 = 0.01;
 /// Sidebands of six that make the right ones.
 const SIDEBANDS: usize = 3;
 
-/// What the rhythm within a passage resolves of its frequency: knocks last about 1 ms, and three follow the
-/// first one.
+/// Resolution of the repetition rate within a passage: knocks last about 1 ms, and three follow the first
+/// one.
 const RHYTHM: f64 = 0.04;
 
 /// A family that is claimed at another place than the motion has it, or without its sidebands.
@@ -270,7 +270,7 @@ fn fields(sheet: &mut Sheet, cells: &[Cell<'_>], say: impl Fn(&Cell<'_>) -> Stri
     sheet.table(&names, &rows);
 }
 
-/// What a record was said to show.
+/// The claimed family of a record.
 fn short(cell: &Cell<'_>) -> String {
     let claimed = |d: &DiagnosisFinding| {
         let names: Vec<&str> = d.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect();
@@ -379,7 +379,7 @@ fn balance(sheet: &mut Sheet, cells: &[Cell<'_>]) {
     sheet.table(&["bearing", "ledger reduced, %", "ledger full, %", "load reduced, %"], &rows);
 }
 
-/// How far the mean load through the rollers is from what they carry in rest.
+/// Difference of the mean load on the rollers from their static load.
 fn off_load(run: &Finished) -> Option<f64> {
     let load = &run.numbers()?.load;
     Some((load.mean_n? / load.expected_n - 1.0).abs())

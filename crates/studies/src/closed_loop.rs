@@ -1,5 +1,5 @@
 //! `cargo xtask study loop`: measured spalls, their lengths, and whether simulated spalls of these lengths
-//! knock as the measured ones do.
+//! have the signature of the measured ones.
 
 use std::path::{Path, PathBuf};
 
@@ -21,7 +21,7 @@ pub struct Options {
     folder: PathBuf,
 }
 
-/// What all runs have in common.
+/// Fields that all runs share.
 const SCENE: &str = "fixtures/scenes/studies/loop.ron";
 /// The bearing of the rig.
 const BEARING: &str = "6205";
@@ -57,7 +57,7 @@ struct Measured {
     found: Found,
 }
 
-/// What `stribeck analyse` says of a record.
+/// Findings of `stribeck analyse` on a record.
 pub(crate) struct Found {
     /// Families that are claimed.
     pub(crate) claimed: Vec<String>,
@@ -106,7 +106,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
          bearing and the speed, and nothing of the spall.",
     );
     lengths(&mut sheet, &records);
-    // Only lengths that a second event gives have a spacing.
+    // Only lengths from a second event have a spacing.
     let spaced = records.iter().filter(|r| r.rpm == LOOPED_RPM && r.found.spall_mm.is_some());
     let runner = Runner::new("loop", &options.flags, host);
     let mut first = Vec::new();
@@ -184,7 +184,7 @@ impl<'a> Pass<'a> {
         Self { record, length_mm, measured_s, simulated_s: Err("not run".to_owned()), by_load_s: None }
     }
 
-    /// A spall that is longer by what the contact runs in the time that is missing.
+    /// A spall longer by the path of the contact in the missing time.
     fn again(&self) -> Option<Self> {
         let missing_s = self.measured_s - self.simulated_s.as_ref().ok()?;
         let speed_mm_s = self.record.found.speed_mm_s(RACEWAYS[self.record.raceway].3)?;
@@ -244,7 +244,7 @@ fn mm(value: f64) -> String {
     number(value, 2)
 }
 
-/// Estimated lengths beside the true ones, and what is asked of them.
+/// Estimated lengths beside the true ones, and the criteria.
 fn lengths(sheet: &mut Sheet, records: &[Measured]) {
     sheet.heading("Lengths");
     let rows: Vec<Vec<String>> = records

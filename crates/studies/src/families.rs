@@ -11,7 +11,7 @@ use crate::table::number;
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet, Variant};
 use stribeck_scene::dice::Dice;
 
-/// What is run: chords, copies turned with the pattern.
+/// Scene of all runs: chords, copies turned with the pattern.
 const SCENE: &str = "fixtures/scenes/studies/lean.ron";
 /// Counts by which the least lead was chosen.
 const CALIBRATED: [usize; 5] = [91, 106, 112, 117, 122];
@@ -170,7 +170,7 @@ fn in_a_word(family: &FamilyFinding) -> String {
     }
 }
 
-/// What became of combs that are not there.
+/// Results for combs that are not there.
 #[derive(Default)]
 struct Tally {
     combs: usize,

@@ -1,4 +1,4 @@
-//! What a study needs of the program that runs it.
+//! Interface of a study to the program that runs it.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,7 +10,7 @@ use stribeck_scene::scene::Scene;
 /// One run of a study.
 #[derive(Debug, Clone, Copy)]
 pub struct Job<'a> {
-    /// What is run.
+    /// Scene to run.
     pub scene: &'a Scene,
     /// Where its files go.
     pub folder: &'a Path,
@@ -22,7 +22,7 @@ pub struct Job<'a> {
     pub alone: bool,
 }
 
-/// The program around a study: it runs scenes, tells the time and speaks.
+/// The program around a study: it runs scenes, has a clock and prints.
 pub trait Host: Sync {
     /// Root of the repository: scenes are read below it, runs and pages are written below it.
     fn root(&self) -> &Path;
@@ -45,18 +45,18 @@ pub trait Host: Sync {
     /// Whether the user wants to stop.
     fn is_interrupted(&self) -> bool;
 
-    /// Says how far the study is, in one line.
+    /// Prints the progress of the study in one line.
     fn say(&self, line: &str);
 }
 
-/// What came out.
+/// Result of a study.
 #[derive(Debug, Clone, Default)]
 pub struct Answer {
     /// The answer in a sentence, for studies that have one.
     pub said: Option<String>,
     /// The page that was written.
     pub page: Option<PathBuf>,
-    /// What went wrong in the cases studied, when that is a failure of the program.
+    /// Errors in the studied cases that are failures of the program.
     pub failure: Option<String>,
 }
 

@@ -1,5 +1,5 @@
-//! `cargo xtask study impulse`: whether the impulse at the exit is that of a finer mesh. A single impulse
-//! says little: rollers without load rattle, and two starts that differ by a microsecond differ by a factor.
+//! `cargo xtask study impulse`: whether the impulse at the exit is that of a finer mesh. A single impulse is
+//! no evidence: rollers without load rattle, and two starts that differ by a microsecond differ by a factor.
 //! Their distributions are compared.
 
 pub(crate) mod statistics;
@@ -37,14 +37,14 @@ struct Quantity {
     of: fn(&Impulse) -> f64,
 }
 
-/// Running means over these times leave what is slower than 8.9, 4.4 and 2.1 kHz (−3 dB) [s].
+/// Widths of running means, which are low-pass filters at 8.9, 4.4 and 2.1 kHz (−3 dB) [s].
 const MEANS_S: [f64; 3] = [50e-6, 100e-6, 210e-6];
 
 /// The first blow: so long from the first contact behind the groove on. Then the load comes back, and the
 /// cage runs into the roller.
 const BLOW_S: f64 = 0.3e-3;
 
-/// A roller that the outer raceway pushes by so much has met it [N].
+/// Force of the outer raceway above which a roller counts as in contact with it [N].
 const MET_N: f64 = 20.0;
 
 /// The cage strikes within so long after the first contact [s].
@@ -86,13 +86,13 @@ const QUANTITIES: [Quantity; 8] = [
     Quantity { name: "first blow below 2.1 kHz, RMS g", decimals: 2, of: |i| i.blow_g[2] },
 ];
 
-/// What happens to the roller, the same at all sensors.
+/// Quantities of the roller, the same at all sensors.
 const OF_ROLLER: [Quantity; 2] = [
     Quantity { name: "behind the middle of its pocket, µm", decimals: 0, of: |i| i.roller.behind_um },
     Quantity { name: "largest force of the cage, N", decimals: 0, of: |i| i.roller.cage_n },
 ];
 
-/// A mesh and what became of its starts.
+/// A mesh and the results of its starts.
 struct Group {
     name: &'static str,
     runs: Vec<Finished>,
@@ -191,8 +191,8 @@ fn compare(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
     sheet.table(&heads(groups, &offs), &rows);
 }
 
-/// Where the roller lies in its pocket, what the cage does to it, and what the slow part of the impulse goes
-/// with.
+/// Position of the roller in its pocket, force of the cage on it, and correlation of the slow part of the
+/// impulse with both.
 fn of_roller(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
     let rows: Vec<Vec<String>> =
         OF_ROLLER.iter().map(|&quantity| means(sheet, "roller 1", quantity, groups).0).collect();
@@ -324,7 +324,7 @@ mod tests {
     fn example_place_in_a_pocket_of_a_cage_that_has_turned() {
         let at = |angle: f64| [0.09 * angle.cos(), 0.09 * angle.sin()];
         assert!(behind((at(1.6), 0.2), (at(1.5), 0.1)).abs() < 1e-15);
-        // Clockwise is backwards in angle: who has turned less is behind.
+        // Clockwise rotation decreases the angle: the body that has turned less is behind.
         assert!((behind((at(1.6), 0.0), (at(1.501), -0.1)) - 0.09e-3).abs() < 1e-15);
     }
 }

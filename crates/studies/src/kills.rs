@@ -27,7 +27,7 @@ pub struct Options {
     no_page: bool,
 }
 
-/// A process that does not end by itself within this time hangs [s].
+/// A process that does not end within this time counts as hanging [s].
 const PATIENCE_S: f64 = 600.0;
 
 /// Of the moments at which runs were killed.
@@ -108,8 +108,8 @@ impl Killer<'_> {
                 }
                 tally.kills += 1;
                 tally.again += usize::from(continued);
-                // Before the first checkpoint there is nothing to continue; the program says so, and a new
-                // run is taken.
+                // Before the first checkpoint there is nothing to continue; the program refuses, and a new
+                // run is begun.
                 continued = run.join("checkpoint").exists();
                 tally.too_early += usize::from(!continued);
                 if !continued && run.join("run.json").exists() {
@@ -187,7 +187,7 @@ impl Killer<'_> {
     }
 }
 
-/// What must be the same: samples, energies and the scene.
+/// Files that must be equal: samples, energies and the scene.
 fn files(run: &Path) -> Result<Vec<Vec<u8>>> {
     let read = |name: &str| {
         let path: PathBuf = run.join(name);

@@ -1,8 +1,8 @@
 //! Questions that are answered by many runs: one question, many runs, one table.
 //!
-//! A study is a list of variants: a scene and what is changed in it. Runs are kept in
-//! `runs/study/STUDY/VARIANT`; those that are finished are not repeated, and one that was interrupted is
-//! continued. The answer goes to `docs/results/STUDY.md` with a `.csv` and pictures beside it.
+//! A study is a list of variants: a scene with overrides. Runs are kept in `runs/study/STUDY/VARIANT`; those
+//! that are finished are not repeated, and one that was interrupted is continued. The answer goes to
+//! `docs/results/STUDY.md` with a `.csv` and pictures beside it.
 //!
 //! `cargo xtask study` is the command. Nothing that simulates depends on this crate; elements, precisions and
 //! integrators that no run uses live here ([`reference`], [`integrators`]). Like every library here it prints
@@ -39,7 +39,7 @@ pub use runner::Flags;
 pub(crate) use runner::{Finished, Runner, Variant};
 pub(crate) use table::{Column, Sheet};
 
-/// What is asked.
+/// The questions.
 #[derive(Debug, clap::Subcommand)]
 pub enum Study {
     /// Which reading of the paper agrees with it best, and whether its hypothesis holds
@@ -48,7 +48,7 @@ pub enum Study {
     Long(long::Options),
     /// Runs killed at random moments and continued: the same bytes
     Kills(kills::Options),
-    /// Stiff and extreme cases: what the energy did, and whether the code stopped honestly
+    /// Stiff and extreme cases: energy balance, and whether the program stopped or warned
     Stability(stability::Options),
     /// Error against run time of the whole bearing
     #[command(name = "run_time")]
@@ -56,15 +56,15 @@ pub enum Study {
     /// Error against work: problems with a known answer, by elements, integrators and contacts
     #[command(name = "work_precision")]
     WorkPrecision,
-    /// Where contact noise comes from and what each cure takes away
+    /// Sources of contact noise, and the effect of each cure
     Noise(noise::Options),
     /// Whether the family of lines of any facet count is named rightly, and false ones are not
     Families(families::Options),
-    /// Many bearings, many defects: whether each comes out as what it is
+    /// Many bearings, many defects: whether each is diagnosed correctly
     Atlas(atlas::Options),
     /// Lengths of measured spalls, and whether simulated ones of these lengths knock alike
     Loop(closed_loop::Options),
-    /// Simulated spalls of known length through `stribeck analyse`: whether it says how long they are
+    /// Simulated spalls of known length through `stribeck analyse`: whether it finds their lengths
     Spalls(spalls::Options),
     /// How far the reduced bearing is from the full one, scene by scene
     Reduced(reduced::Options),
@@ -77,11 +77,11 @@ pub enum Study {
 }
 
 impl Study {
-    /// Runs what has not been run and writes the answer.
+    /// Runs the outstanding variants and writes the answer.
     ///
     /// # Errors
-    /// When a variant is not a scene, a page cannot be written, or at an interruption; what has been run is
-    /// kept.
+    /// When a variant is not a valid scene, a page cannot be written, or at an interruption; finished runs
+    /// are kept.
     pub fn run(&self, host: &dyn Host) -> Result<Answer> {
         match self {
             Self::Paper(options) => paper::run(options, host),

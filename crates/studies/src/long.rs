@@ -13,7 +13,7 @@ use stribeck_scene::run_dir::Run;
 
 use crate::{Answer, Flags, Host, Runner, Sheet, Variant};
 
-/// What is run.
+/// Overrides of the run.
 const LONG: &str = "fixtures/scenes/long.ron";
 
 /// Flags of `study long`.

@@ -1,4 +1,4 @@
-//! `cargo xtask study noise`: where contact noise comes from and what each cure takes away.
+//! `cargo xtask study noise`: sources of contact noise, and the effect of each cure.
 
 mod converged;
 pub(super) mod variants;
@@ -89,7 +89,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     Ok(Answer::on(sheet.write()?))
 }
 
-/// Whether what stands at the line is a line.
+/// Whether the level at the line's frequency is a line above the background.
 fn background(sheet: &mut Sheet, long: &[Finished], ends: &[Finished]) {
     let named = |name: &str| ends.iter().find(|r| r.variant.name == name);
     let rows: Vec<&Finished> =

@@ -69,7 +69,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     Ok(Answer { failure, ..Answer::on(sheet.write()?) })
 }
 
-/// What each was completed to.
+/// Dimensions to which each was completed.
 fn bearings(sheet: &mut Sheet, runs: &[Finished]) {
     let rows = runs.iter().filter(|run| run.variant.name.ends_with("-reduced")).map(|run| {
         let (scene, b) = (&run.scene, &run.scene.written.bearing);

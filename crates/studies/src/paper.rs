@@ -13,10 +13,10 @@ use crate::{Answer, Finished, Flags, Host, Runner, Sheet};
 
 /// Scene of the variants: the paper's facets, larger elements away from the raceways.
 const LEAN: &str = "fixtures/scenes/studies/lean.ron";
-/// What every variant sets: one exit and the time to the next entry, no pictures.
+/// Overrides of every variant: one exit and the time to the next entry, no pictures.
 const SHORT: [&str; 2] = ["solver.duration_ms=12.0", "output.frames=None"];
 
-/// What variants of three passages set.
+/// Overrides of variants with three passages.
 const LONG: [&str; 2] = ["solver.duration_ms=30.0", "output.frames=None"];
 
 /// Flags of `study paper`.
@@ -32,9 +32,9 @@ pub struct Options {
 /// The halves of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum Part {
-    /// What the paper leaves open
+    /// Choices that the paper leaves open
     Base,
-    /// What follows from its hypothesis
+    /// Consequences of its hypothesis
     Hypothesis,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     Ok(Answer::on(sheet.write()?))
 }
 
-/// What all of it cost, and with which programs it was run.
+/// Cost of all runs, and the versions that ran them.
 fn cost(sheet: &mut Sheet, runs: &[&Finished]) {
     let infos: Vec<_> = runs.iter().filter_map(|r| r.info.as_ref()).collect();
     let minutes = infos.iter().map(|i| i.wall_s + i.setup_s).sum::<f64>() / 60.0;

@@ -1,5 +1,5 @@
-//! `cargo xtask study reduced`: how far the reduced bearing is from the full one, scene by scene, with what
-//! it does not keep.
+//! `cargo xtask study reduced`: the reduced bearing beside the full one, scene by scene, with the effects
+//! that it leaves out.
 
 use std::path::Path;
 
@@ -26,7 +26,7 @@ struct Case {
     scene: &'static str,
     set: &'static [&'static str],
     starts: usize,
-    /// Reduced models of it: in words, and what is changed in the scene for each.
+    /// Reduced models of it: in words, with overrides of the scene.
     models: &'static [Model],
 }
 
@@ -165,7 +165,7 @@ const LONG: &str = "fixtures/scenes/reduced.ron";
 const LEDGER_US: [&str; 3] = ["5", "2", "0.5"];
 const LEDGER_MS: [&str; 2] = ["1000", "10000"];
 
-/// What came out of a case with one reduced model.
+/// Result of a case with one reduced model.
 struct Compared {
     case: &'static Case,
     /// In words, and the name of its folder.
@@ -242,7 +242,7 @@ impl Case {
         format!("{}-{}", self.name, words.replace(' ', "").replace('µ', "u").replace('.', "_").to_lowercase())
     }
 
-    /// What is changed in its scene.
+    /// Overrides of its scene.
     fn set(&self, (_, own): &Model) -> Vec<String> {
         self.set.iter().chain(*own).map(|set| (*set).to_owned()).collect()
     }
@@ -277,7 +277,7 @@ fn validate(
     Ok(())
 }
 
-/// What a validation has found, if it has been made.
+/// Result of a validation, if it has been made.
 fn read(out: &Path) -> Result<Option<Agreement>> {
     let path = out.join("validation.json");
     let text = match std::fs::read(&path) {
@@ -290,7 +290,7 @@ fn read(out: &Path) -> Result<Option<Agreement>> {
     }
 }
 
-/// Which scenes, and what both models take.
+/// The scenes, and the computing time of both models.
 fn scenes(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("The scenes");
     let rows: Vec<Vec<String>> = all
@@ -317,7 +317,7 @@ fn scenes(sheet: &mut Sheet, all: &[Compared]) {
     );
 }
 
-/// What rollers carry, when, and how fast the cage is.
+/// Forces on rollers, times of events, and the speed of the cage.
 fn forces(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("Forces, events, cage");
     let of = |Compared { words, agreement, .. }: &Compared| {
@@ -471,7 +471,7 @@ fn peaks(sheet: &mut Sheet, all: &[Compared]) {
     );
 }
 
-/// What is not kept, and what cannot be told.
+/// Effects that are left out, and differences that are not resolved.
 fn outside(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("What is not kept, and what cannot be told");
     let mut rows = Vec::new();
@@ -514,7 +514,7 @@ fn outside(sheet: &mut Sheet, all: &[Compared]) {
     );
 }
 
-/// What ledgers of long runs are off by.
+/// Energy imbalance of long runs.
 fn balance(sheet: &mut Sheet, ledgers: &[Finished]) {
     sheet.heading("Energy over seconds");
     let row_of = |run: &Finished| {
@@ -599,7 +599,7 @@ mod tests {
         let chance = band(-1.9, Some(0.7));
         assert!(chance.is_outside() && !chance.is_told());
         assert_eq!(chance.off(), "−1.9 ± 0.7");
-        // One start has no scatter, and tells nothing.
+        // One start has no scatter, and decides nothing.
         assert!(!band(9.0, None).is_told());
     }
 }

@@ -1,5 +1,5 @@
-//! Elements assembled one after the other, for comparisons: what the fast kernel computes, and choices that
-//! it does not have. Nothing here is used in a run.
+//! Elements assembled one after the other, for comparisons: the arithmetic of the fast kernel, and choices
+//! that it does not have. Nothing here is used in a run.
 //!
 //! Choices: quadrilaterals of one point with hourglass stiffness or of 2 × 2 points, double or mixed
 //! precision (forces of an element in single precision from differences of positions in double), linear bulk
@@ -7,20 +7,20 @@
 
 use anyhow::{Result, ensure};
 use stribeck_solver::{
-    Behaviour, Dynamics, Model, Motion,
+    Behaviour, Dynamics, Model, NodeMotion,
     element::{QuadReference, Stiffness, TriangleReference, quad_forces, triangle_forces},
 };
 
 /// How quadrilaterals are integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Rule {
-    /// One point, with hourglass stiffness: what the kernel does.
+    /// One point, with hourglass stiffness, as in the kernel.
     OnePoint,
     /// 2 × 2 Gauss points: no hourglass modes, but too stiff in bending and near incompressibility.
     Full,
 }
 
-/// In what precision the forces of an element are computed.
+/// Precision of the forces of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Precision {
     /// 64 bits throughout.
@@ -30,7 +30,7 @@ pub enum Precision {
     Mixed,
 }
 
-/// What varies.
+/// Choices of a reference model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Choice {
     /// Integration of quadrilaterals.
@@ -103,10 +103,10 @@ impl Reference {
             "bulk viscosity = {viscosity}: must be zero or positive"
         );
         ensure!(!model.behaviour.contains(&Behaviour::Rigid), "a reference model has no rigid bodies");
-        let turning = |m: &Motion| matches!(m, Motion::Rotating { .. });
+        let turning = |m: &NodeMotion| matches!(m, NodeMotion::Rotating { .. });
         ensure!(!model.motion.iter().any(turning), "a reference model has no rotating nodes");
         let mesh = &model.mesh;
-        // The solver checks the model and knows the masses.
+        // The solver checks the model and computes the masses.
         let dynamics = Dynamics::new(model, &vec![false; mesh.x.len()], 1)?;
         let slots = &dynamics.layout().slot_of_node;
         let mass: Vec<f64> = slots.iter().map(|&slot| dynamics.mass()[slot as usize]).collect();
@@ -139,10 +139,10 @@ impl Reference {
         });
         let inverse_mass = mass.iter().zip(&model.motion).flat_map(|(m, motion)| {
             let [x, y] = match motion {
-                Motion::Free => [1.0, 1.0],
-                Motion::HeldX => [0.0, 1.0],
-                Motion::HeldY => [1.0, 0.0],
-                Motion::Held | Motion::Rotating { .. } => [0.0, 0.0],
+                NodeMotion::Free => [1.0, 1.0],
+                NodeMotion::HeldX => [0.0, 1.0],
+                NodeMotion::HeldY => [1.0, 0.0],
+                NodeMotion::Held | NodeMotion::Rotating { .. } => [0.0, 0.0],
             };
             [x / m, y / m]
         });
@@ -283,7 +283,7 @@ fn full_forces(x: [f64; 4], y: [f64; 4], points: &[GaussPoint; 4], k: &Stiffness
 }
 
 /// [`quad_forces`] in single precision, from differences in double. Strains are found from the displacement
-/// gradient of the diagonals' inner products, as far as single precision lets them.
+/// gradient of the diagonals' inner products, as far as single precision allows.
 fn single_forces(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> [[f64; 2]; 4] {
     let s = |v: f64| v as f32;
     let p = [s(x[0] - x[2]), s(y[0] - y[2])];

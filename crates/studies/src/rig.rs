@@ -1,4 +1,4 @@
-//! What the small models of several studies share: a few bodies, contacts and loads, without a bearing.
+//! Common parts of the small models of several studies: a few bodies, contacts and loads, without a bearing.
 
 use anyhow::{Context, Result};
 use stribeck_contact::{Law, Method};

@@ -34,7 +34,7 @@ pub struct Options {
 /// Force is averaged from here on [ms]: before, the bearing still settles.
 const FROM_MS: f64 = 1.0;
 
-/// What one start says.
+/// Results of one start.
 #[derive(Debug, Clone, Copy)]
 struct Measured {
     /// Its number.
@@ -54,7 +54,7 @@ struct Measured {
 /// One of the relative errors of a choice.
 type Error = fn(&Row) -> Option<f64>;
 
-/// What all starts of a choice say, held against the reference.
+/// Results of all starts of a choice, beside the reference.
 struct Row {
     choice: Choice,
     starts: Vec<Measured>,
@@ -95,7 +95,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     Ok(Answer::on(sheet.write()?))
 }
 
-/// Reads what a complete run says.
+/// Reads the results of a complete run.
 fn measure(choice: &Choice, finished: &Finished) -> Option<Measured> {
     let (summary, info) = (finished.numbers()?, finished.info.as_ref()?);
     let start = choice.starts.iter().position(|v| v.name == finished.variant.name)?;
@@ -136,7 +136,7 @@ impl Row {
         let own = choice.reference;
         let impulse_off = impulse.zip(sample(reference)).filter(|_| !own).map(|(a, b)| ratio(&a, &b));
         Self {
-            // Other work on the machine adds to the time, and never takes from it.
+            // Other work on the computer only ever adds to the time.
             seconds: least(starts.iter().map(|m| m.seconds)),
             nanoseconds: starts.iter().filter_map(|m| m.nanoseconds).reduce(f64::min),
             force: force.filter(|_| !own),
@@ -317,7 +317,7 @@ fn table(sheet: &mut Sheet, rows: &[Row]) {
     sheet.table(&names, &cells);
 }
 
-/// What a user asks: the cheapest choice that is good enough and stays so when its mesh is refined.
+/// The user's question: the cheapest choice that is accurate enough and stays so when its mesh is refined.
 fn answers(sheet: &mut Sheet, rows: &[Row], reference: &[Measured]) {
     sheet.heading("In short");
     let all = curves(rows);
@@ -342,7 +342,7 @@ fn answers(sheet: &mut Sheet, rows: &[Row], reference: &[Measured]) {
             ]);
         }
     }
-    // Scatter of single starts, over all choices by its median: what no mesh takes away.
+    // Scatter of single starts, over all choices by its median: which no mesh reduces.
     let scatter = median(rows.iter().filter_map(|row| row.impulse.map(|s| s.scatter / s.mean)));
     for wanted in [0.2, 0.1] {
         let starts = (scatter / wanted).powi(2).ceil();

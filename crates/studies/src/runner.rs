@@ -15,7 +15,7 @@ use stribeck_scene::scene::Scene;
 
 use crate::{Host, Job};
 
-/// What every study takes.
+/// Flags of every study.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Flags {
     /// Worker threads [default: all cores]; the results do not depend on it
@@ -29,7 +29,7 @@ pub struct Flags {
     /// run
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
-    /// Runs nothing: makes the tables from what has been run
+    /// Runs nothing: makes the tables from finished runs
     #[arg(long)]
     tables_only: bool,
 }
@@ -53,7 +53,7 @@ impl Flags {
     }
 }
 
-/// A scene and what is changed in it.
+/// A scene with overrides.
 #[derive(Debug, Clone)]
 pub(crate) struct Variant {
     /// Name of its folder: letters, digits, `-` and `_`.
@@ -67,7 +67,7 @@ pub(crate) struct Variant {
 /// A variant that has been run, or could not be.
 #[derive(Debug)]
 pub(crate) struct Finished {
-    /// What was asked for.
+    /// The variant.
     pub(crate) variant: Variant,
     /// Its folder.
     pub(crate) folder: PathBuf,
@@ -75,7 +75,7 @@ pub(crate) struct Finished {
     pub(crate) scene: ResolvedScene,
     /// Its numbers, or why there are none.
     pub(crate) summary: Result<Summary, String>,
-    /// What its run says of itself.
+    /// `run.json` of its run.
     pub(crate) info: Option<RunInfo>,
 }
 
@@ -127,10 +127,10 @@ impl<'a> Runner<'a> {
     }
 
     /// Runs every variant that has not been run and returns all that have been, in their order. A variant
-    /// that fails says why in its place and does not end the study.
+    /// that fails has its reason in the table and does not end the study.
     ///
     /// # Errors
-    /// When a variant is not a scene, or at Ctrl-C; what has been run is kept.
+    /// When a variant is not a valid scene, or at Ctrl-C; finished runs are kept.
     pub(crate) fn run(&self, variants: &[Variant]) -> Result<Vec<Finished>> {
         self.run_with(&self.flags, variants)
     }
@@ -155,7 +155,7 @@ impl<'a> Runner<'a> {
         Ok(shown.into_iter().filter_map(|(_, slot)| slot.into_inner()).collect())
     }
 
-    /// Does `work` for every item, as many at a time as the flags say.
+    /// Applies `work` to every item, as many at a time as the flags allow.
     ///
     /// # Errors
     /// At Ctrl-C.
@@ -179,7 +179,7 @@ impl<'a> Runner<'a> {
         Ok(())
     }
 
-    /// What is to be done for a variant.
+    /// Work to be done for a variant.
     fn plan(&self, flags: &Flags, variant: &Variant) -> Result<Planned> {
         let scene = variant.scene(self.host.root())?;
         let folder = self.folder.join(&variant.name);
@@ -188,7 +188,7 @@ impl<'a> Runner<'a> {
         Ok(Planned { variant: variant.clone(), scene, folder, state, due, failed: OnceLock::new() })
     }
 
-    /// As [`Runner::run`]; when not `wanted`, nothing is run and what has been run is returned.
+    /// As [`Runner::run`]; when not `wanted`, nothing is run and finished runs are returned.
     ///
     /// # Errors
     /// As [`Runner::run`].
@@ -215,7 +215,7 @@ impl<'a> Runner<'a> {
     }
 }
 
-/// A variant and what is to be done for it.
+/// A variant and the work to be done for it.
 struct Planned {
     variant: Variant,
     scene: Scene,
@@ -251,7 +251,7 @@ fn state_of(folder: &Path, scene: &Scene) -> State {
     }
 }
 
-/// Reads a run again and draws its conclusions anew, so that a table is never older than the analysis.
+/// Analyses a run again, so that a table is never older than the analysis.
 fn finished(planned: &Planned) -> Finished {
     let Planned { variant, folder, scene, failed, .. } = planned;
     let run = match failed.get() {

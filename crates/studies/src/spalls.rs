@@ -1,5 +1,5 @@
-//! `cargo xtask study spalls`: simulated spalls of known length through `stribeck analyse`: does it say how
-//! long they are?
+//! `cargo xtask study spalls`: simulated spalls of known length through `stribeck analyse`: does it find
+//! their lengths?
 
 use anyhow::Result;
 
@@ -46,12 +46,11 @@ struct Case {
     length_mm: f64,
 }
 
-/// What a record said of a case.
+/// Findings on the record of a case.
 struct Told {
     case: Case,
     found: Found,
-    /// Passages on record, those of which both events are seen in the force, and those in which the floor is
-    /// touched.
+    /// Recorded passages, those with both events in the force, and those in which the floor is touched.
     passages: [usize; 3],
     /// Median time from half of the load to half of it [s].
     by_load_s: Option<f64>,
@@ -156,12 +155,12 @@ impl Told {
         std::f64::consts::PI * self.case.diameter_mm / f64::from(self.case.elements)
     }
 
-    /// What the contact runs in a time [mm].
+    /// Path of the contact in a time [mm].
     fn run_mm(&self, lasts_s: f64) -> Option<f64> {
         Some(lasts_s * self.apart_mm() * self.found.hz?)
     }
 
-    /// What the contact runs from half of the load to half of it [mm].
+    /// Path of the contact between the times of half load [mm].
     fn by_load_mm(&self) -> Option<f64> {
         self.run_mm(self.by_load_s?)
     }
@@ -170,7 +169,7 @@ impl Told {
         self.found.claimed.iter().any(|name| name == self.case.family)
     }
 
-    /// Whether a second event was seen.
+    /// Whether a second event was found.
     fn is_length(&self) -> bool {
         self.found.spall_mm.is_some()
     }
@@ -189,12 +188,13 @@ impl Told {
         self.reading_mm().is_some_and(|[_, low, high]| (low..=high).contains(&self.case.length_mm))
     }
 
-    /// Whether the spall is one that §7.9 speaks of: shorter than half of the distance of two elements.
+    /// Whether the spall is within the scope of THEORY §7.9: shorter than half of the distance of two
+    /// elements.
     fn is_short(&self) -> bool {
         self.case.length_mm < 0.5 * self.apart_mm()
     }
 
-    /// What this record shows, measured against the forces.
+    /// Findings of this record beside the forces.
     fn why(&self) -> String {
         let apart = self.apart_mm();
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < SAME;

@@ -1,5 +1,5 @@
-//! `cargo xtask study stability`: stiff and extreme cases, what the energy did, and whether the code stopped
-//! honestly.
+//! `cargo xtask study stability`: stiff and extreme cases, energy balance, and whether the program stopped or
+//! warned.
 
 mod geometry;
 mod limit;
@@ -32,7 +32,7 @@ const ENERGY_WARNING: f64 = 0.005;
 enum Verdict {
     /// It ended with a right answer.
     Right,
-    /// It ended, and a warning says what is wrong.
+    /// It ended, with a warning.
     Warned,
     /// A guard stopped it.
     Stopped,
@@ -57,12 +57,12 @@ impl Verdict {
 /// One row of the atlas.
 #[derive(Debug, Clone)]
 struct Case {
-    /// What was done.
+    /// The case.
     done: String,
     /// Largest imbalance of energy over the peak energy [-].
     energy: Option<f64>,
     verdict: Verdict,
-    /// What was seen.
+    /// The observation.
     seen: String,
 }
 

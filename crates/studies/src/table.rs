@@ -1,4 +1,4 @@
-//! What a study writes: a table of its variants as Markdown and as comma-separated values, and pictures.
+//! Output of a study: a table of its variants as Markdown and as comma-separated values, and pictures.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -52,7 +52,7 @@ impl Sheet {
         let _ = write!(self.text, "\n## {text}\n");
     }
 
-    /// Adds a table of runs, one row a variant. A variant without numbers says why in a note below.
+    /// Adds a table of runs, one row a variant. A variant without numbers has a note below.
     pub(crate) fn runs(&mut self, table: &str, rows: &[&Finished], columns: &[Column]) {
         let mut names = vec!["variant"];
         names.extend(columns.iter().map(|c| c.name));

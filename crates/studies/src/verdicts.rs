@@ -1,6 +1,6 @@
 //! `cargo xtask study verdicts`: measured records of known state through the verdict of `stribeck analyse`:
-//! how often it is right, wrong, silent, or raises an alarm over a sound bearing, beside a plain envelope and
-//! a kurtogram.
+//! how often it is right, wrong, undecided, or raises an alarm over a sound bearing, beside a plain envelope
+//! and a kurtogram.
 
 mod baseline;
 mod both_ends;
@@ -29,7 +29,7 @@ pub struct Options {
     /// The records as they are, without the changes of the table of robustness
     #[arg(long)]
     unchanged: bool,
-    /// Change one record in so many
+    /// Change every N-th record only
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     changed_every: u32,
     /// Only changes whose name contains this; may be repeated

@@ -19,7 +19,7 @@ const BEARING: &str = "The whole bearing has no known answer. What a simulated m
 /// One calculation.
 #[derive(Debug, Clone, Copy)]
 struct Point {
-    /// What is refined: element size [m] or time step over the limit.
+    /// Refined parameter: element size [m], or time step over the limit.
     size: f64,
     /// Elements evaluated, or unknowns of a static problem.
     work: f64,
@@ -34,7 +34,7 @@ struct Point {
 struct Curve {
     /// The choice.
     name: String,
-    /// What is refined, in words.
+    /// Refined parameter, in words.
     refined: &'static str,
     points: Vec<Point>,
 }
@@ -46,7 +46,7 @@ struct Problem {
     title: &'static str,
     /// The problem, the answer and its source.
     words: String,
-    /// What work is.
+    /// Measure of work.
     work: &'static str,
     curves: Vec<Curve>,
 }
@@ -82,7 +82,7 @@ impl Problem {
         all
     }
 
-    /// What no other point beats in both work and error.
+    /// Points that no other one beats in both work and error (Pareto front).
     fn front(&self) -> Vec<(&str, Point)> {
         let mut best = f64::INFINITY;
         let mut front = self.by_work();

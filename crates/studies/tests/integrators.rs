@@ -7,7 +7,7 @@ mod common;
 use std::f64::consts::PI;
 
 use common::*;
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_studies::integrators::{Scheme, Trajectory};
 use stribeck_studies::reference::{Choice, Precision, Reference, Rule};
 use stribeck_testing::{Noise, assert_close, ledger, orders};
@@ -115,7 +115,7 @@ fn patch_the_plain_path_is_the_kernel() {
 fn standing_wave(columns: usize, choice: Choice, scheme: Scheme, factor: f64) -> f64 {
     let length = 0.01;
     let mut model = body(&rectangle(length, length / columns as f64, columns, 1));
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     let mut plain = Reference::new(&model, choice).expect("a model of elastic bodies");
     let critical = lay_out(&model).critical_time_step(&[], 0.0).time_step;
     let time = 1.3 * 2.0 * length / steel().dilatational_speed();

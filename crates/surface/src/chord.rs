@@ -1,5 +1,5 @@
-//! Facets that hang on their own two nodes: a chord as polynomial, and the height of an arc above it (THEORY
-//! §4.4).
+//! Facets that depend on their own two nodes only: a chord as polynomial, and the height of an arc above it
+//! (THEORY §4.4).
 
 use stribeck_simd::lanes::Number;
 

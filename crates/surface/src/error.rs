@@ -1,4 +1,4 @@
-//! What can go wrong in this crate.
+//! Errors of this crate.
 
 /// Errors of contact.
 #[derive(Debug, thiserror::Error)]
@@ -19,7 +19,7 @@ pub enum Error {
     BadPair {
         /// Its place in the list.
         pair: usize,
-        /// What is wrong with it.
+        /// Problem.
         reason: &'static str,
     },
     /// A surface has too few facets or one of no length.
@@ -27,7 +27,7 @@ pub enum Error {
     BadSurface {
         /// Name of the surface.
         name: String,
-        /// What is wrong with it.
+        /// Problem.
         reason: &'static str,
     },
 }

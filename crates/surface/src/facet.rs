@@ -21,7 +21,7 @@ pub trait Facet: Copy {
     /// The point at a place and a height above the polynomial.
     fn point(&self, place: f64, height: f64) -> FacetPoint<f64>;
 
-    /// Foot of `p` on the facet's curve, which goes on beyond its ends.
+    /// Foot of `p` on the facet's curve, which is extended beyond its ends.
     fn foot(&self, p: [f64; 2]) -> Foot<f64>;
 
     /// The closest point of this facet alone.
@@ -45,7 +45,7 @@ pub trait Facet: Copy {
 /// The closest point of one facet.
 #[derive(Debug, Clone, Copy)]
 pub struct Closest {
-    /// The foot on the facet's curve, which goes on beyond its ends.
+    /// The foot on the facet's curve, which is extended beyond its ends.
     pub foot: Foot<f64>,
     /// Unsigned distance [m].
     pub distance: f64,

@@ -1,5 +1,5 @@
-//! Points of facets and their feet on others: how they move, and what forces on them do to the facets (THEORY
-//! §4.4), over any [`Number`].
+//! Points of facets and their feet on others: their motion, and the nodal forces equivalent to forces on them
+//! (THEORY §4.4), over any [`Number`].
 //!
 //! A facet's curve is a polynomial c(s), linear in the positions of some nodes, plus a height e along its
 //! normal n: x = c(s) + e(s) n. Its variation is δx = δc − e t (n·δc′)/|c′|, with the unit tangent t: the

@@ -26,7 +26,7 @@
 //! let (radius, n) = (0.01, 36);
 //! let angle = |i: u32| TAU * f64::from(i) / f64::from(n);
 //! let (x, y): (Vec<f64>, Vec<f64>) = (0..n).map(|i| (radius * angle(i).cos(), radius * angle(i).sin())).unzip();
-//! let polygon = Surface::new("roller", (0..n).collect(), true, &x, &y)?;
+//! let polygon = Surface::new("wheel", (0..n).collect(), true, &x, &y)?;
 //! let circle = polygon.clone().smoothed(Smoothing::Arc { centre: [0.0; 2] }, &x, &y)?;
 //!
 //! // Above the middle of the first facet, 1 mm off the circle.

@@ -2,11 +2,11 @@
 
 use stribeck_simd::lanes::Number;
 
-/// A polynomial in the plane, coefficients of s⁰, s¹ …; as a sum of forces, what each coefficient gets.
+/// A polynomial in the plane, coefficients of s⁰, s¹ …; as a sum of forces, the force on each coefficient.
 #[derive(Debug, Clone, Copy)]
 pub struct Polynomial<N, const K: usize>(pub [[N; 2]; K]);
 
-/// What facets of any degree ask of their polynomials.
+/// Operations that facets of any degree need of their polynomials.
 pub trait Coefficients<N>: Copy {
     /// All zero, of the kind of `like`.
     fn zero(like: N) -> Self;

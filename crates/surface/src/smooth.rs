@@ -4,7 +4,7 @@ use stribeck_simd::lanes::Number;
 
 use crate::polyline::Vertices;
 
-/// What a polyline stands for.
+/// Curve that a polyline represents.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Smoothing {
     /// Itself: contact is with the chords.

@@ -1,5 +1,5 @@
-//! Surfaces that move as splines of their nodes: a load that travels over them does not see where the nodes
-//! are (THEORY §4.5).
+//! Surfaces that move as splines of their nodes: the response to a travelling load does not depend on the
+//! positions of nodes (THEORY §4.5).
 //!
 //! The curve is the uniform cubic B-spline whose control points are means of three neighbouring nodes, ¼ (1,
 //! 2, 1), plus a height that makes it the surface's own curve in the reference positions. Corners are kept:
@@ -20,7 +20,7 @@ type Rows = [[f64; SUPPORT]; 4];
 /// The same by node, for x and y of each coefficient in turn.
 type Columns = [[f64; 8]; SUPPORT];
 
-/// How every facet of a surface hangs on its nodes.
+/// Dependence of every facet of a surface on its nodes.
 #[derive(Debug, Clone)]
 pub struct Spline {
     facets: Vec<Support>,
@@ -111,7 +111,7 @@ impl Spline {
         cubic(&self.facets[facet].height, s)
     }
 
-    /// Vertices that a point hangs on, with their shares; near corners shares may be negative.
+    /// Vertices that a point depends on, with their shares; near corners shares may be negative.
     #[inline]
     pub fn shares(&self, facet: usize, s: f64) -> [(usize, f64); SUPPORT] {
         let Support { vertices, matrix, .. } = &self.facets[facet];

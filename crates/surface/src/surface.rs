@@ -30,9 +30,9 @@ pub struct Surface {
     pub(crate) rise: Vec<Rise>,
     /// True for a vertex where two smoothed facets join without a kink.
     pub(crate) smooth: Vec<bool>,
-    /// True when every facet is its chord, and hangs on its own two nodes.
+    /// True when every facet is its chord, and depends on its own two nodes only.
     pub(crate) flat: bool,
-    /// How the curve hangs on its nodes; `None` when each facet hangs on its own two.
+    /// Dependence of the curve on its nodes; `None` when each facet depends on its own two.
     pub(crate) spline: Option<Spline>,
 }
 
@@ -160,7 +160,7 @@ impl Surface {
         self.length.len()
     }
 
-    /// Whether every facet is its chord, and hangs on its own two nodes.
+    /// Whether every facet is its chord, and depends on its own two nodes only.
     #[inline]
     pub fn is_flat(&self) -> bool {
         self.flat
@@ -193,7 +193,7 @@ impl Surface {
         }
     }
 
-    /// Vertices that a point hangs on, with their shares.
+    /// Vertices that a point depends on, with their shares.
     #[inline]
     pub fn shares(&self, facet: usize, place: f64) -> [(usize, f64); 6] {
         match &self.spline {

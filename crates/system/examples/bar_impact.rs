@@ -3,7 +3,7 @@
 
 use stribeck_contact::Law;
 use stribeck_mesh::Rectangle;
-use stribeck_solver::{Elastic, Motion};
+use stribeck_solver::{Elastic, NodeMotion};
 use stribeck_system::{Pair, Plan};
 
 /// Relative error of the contact time [-].
@@ -15,7 +15,7 @@ pub(crate) fn error() -> Result<f64, Box<dyn std::error::Error>> {
     plan.add("striker", &bar.translated(-length, 0.0), steel)?;
     plan.add("bar", &bar, steel)?;
     // Held sides make plane waves, whose speed is c = √((λ + 2µ)/ρ).
-    plan.model.motion.fill(Motion::HeldY);
+    plan.model.motion.fill(NodeMotion::HeldY);
     // As stiff as one cell.
     let law = Law::penalty(steel.plane_strain_modulus() * columns as f64 / length)?;
     plan.contact(Pair::new("striker.right", "bar.left", law))?;

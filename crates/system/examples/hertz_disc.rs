@@ -5,7 +5,7 @@
 use std::f64::consts::PI;
 use stribeck_contact::{Law, Smoothing};
 use stribeck_mesh::{Disc, Rectangle};
-use stribeck_solver::{Elastic, Motion};
+use stribeck_solver::{Elastic, NodeMotion};
 use stribeck_system::{Pair, Plan, Preload, UndecidedMotion};
 
 /// Relative error of the approach under the load that was found [-].
@@ -17,12 +17,12 @@ pub(crate) fn error() -> Result<f64, Box<dyn std::error::Error>> {
     let mut plan = Plan::new(thickness);
     let body = plan.add("disc", &disc, steel)?.body;
     plan.smooth("disc.rim", Smoothing::Arc { centre: [0.0; 2] }, false)?;
-    plan.constrain("disc.centre", Motion::HeldX)?;
+    plan.constrain("disc.centre", NodeMotion::HeldX)?;
     let law = Law::penalty(20.0 * steel.plane_strain_modulus() / 1e-4)?;
     let reach = radius - approach;
     for (name, y, side) in [("floor", -reach - 1e-3, "top"), ("roof", reach, "bottom")] {
         plan.add(name, &plate.translated(0.0, y), steel)?;
-        plan.constrain(name, Motion::Held)?;
+        plan.constrain(name, NodeMotion::Held)?;
         plan.contact(Pair::new("disc.rim", &format!("{name}.{side}"), law))?;
     }
 

@@ -2,7 +2,7 @@
 
 use stribeck_contact::Law;
 use stribeck_mesh::Rectangle;
-use stribeck_solver::{Elastic, Motion};
+use stribeck_solver::{Elastic, NodeMotion};
 use stribeck_system::{Pair, Plan, Preload, UndecidedMotion};
 
 /// Relative error of the way to rest [-].
@@ -15,7 +15,7 @@ pub(crate) fn error() -> Result<f64, Box<dyn std::error::Error>> {
     plan.model.gravity = [0.0, -gravity];
     let body = plan.add("block", &block, steel)?.body;
     plan.add("floor", &floor, steel)?;
-    plan.constrain("floor", Motion::Held)?;
+    plan.constrain("floor", NodeMotion::Held)?;
     let law = Law::penalty(1e12)?.with_friction(friction)?;
     plan.contact(Pair::new("block.bottom", "floor.top", law))?;
 

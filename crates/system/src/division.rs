@@ -1,8 +1,9 @@
-//! One system over ranks: who computes which interaction of surfaces, and when all is known everywhere.
+//! One system over ranks: which rank computes which interaction of surfaces, and when results are known on
+//! all.
 //!
-//! Between two ledgers a rank knows its own tiles, what its interactions read, and what every interaction
-//! came to. A ledger, and so a sample and a checkpoint, begins and ends with the whole state gathered on
-//! every rank.
+//! Between two ledgers a rank has its own tiles, the nodes that its interactions read, and the results of
+//! every interaction. A ledger, and so a sample and a checkpoint, begins and ends with the whole state
+//! gathered on every rank.
 
 use std::sync::Arc;
 
@@ -41,7 +42,7 @@ impl System {
         self.dynamics.ranks()
     }
 
-    /// Lets every rank know the whole state.
+    /// Gathers the whole state on every rank.
     ///
     /// # Errors
     /// When ranks do not run the same system.
@@ -115,7 +116,7 @@ impl System {
         Ok(())
     }
 
-    /// Lets every rank know what interactions remember.
+    /// Gathers the states of interactions on every rank.
     fn gather_memories(&mut self) -> Result<(), Error> {
         let (Some(division), Some(ranks)) = (&self.division, self.dynamics.ranks()) else { return Ok(()) };
         for (kind, leaders) in self.forces.interactions().zip(&division.leaders) {
@@ -130,7 +131,7 @@ impl System {
         Ok(())
     }
 
-    /// Deals interactions out: each to the ranks that move nodes within its reach, the first of which speaks
+    /// Assigns interactions: each to the ranks that move nodes within its reach, the first of which speaks
     /// for it.
     fn assign(&mut self) {
         let (Some(division), Some(ranks)) = (&mut self.division, self.dynamics.ranks()) else { return };

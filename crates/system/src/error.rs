@@ -1,4 +1,4 @@
-//! What can go wrong in this crate.
+//! Errors of this crate.
 
 /// Errors of a system of bodies.
 #[derive(Debug, thiserror::Error)]
@@ -15,7 +15,7 @@ pub enum Error {
     /// A name that nothing carries.
     #[error("there is no {kind} `{name}`; there are: {known}")]
     UnknownName {
-        /// What was looked for: a body, a surface, a load …
+        /// Kind of thing: a body, a surface, a load …
         kind: &'static str,
         /// The name given.
         name: String,
@@ -33,7 +33,7 @@ pub enum Error {
     /// A node number beyond the mesh.
     #[error("{what} names node {node}, and the mesh has {nodes} nodes")]
     UnknownNode {
-        /// What names it.
+        /// The thing that refers to it.
         what: String,
         /// The number given.
         node: u32,
@@ -66,14 +66,14 @@ pub enum Error {
     /// A snapshot of other bodies, contacts or loads.
     #[error("the snapshot belongs to another system: {what} differ")]
     OtherSystem {
-        /// What differs.
+        /// The difference.
         what: &'static str,
     },
 
-    /// The operating system gives no threads.
+    /// The operating system provides no threads.
     #[error("cannot start {threads} worker threads: {source}. Try fewer")]
     Threads {
-        /// How many were asked for.
+        /// Number of threads requested.
         threads: usize,
         /// The operating system's answer.
         source: std::io::Error,

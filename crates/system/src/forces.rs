@@ -1,4 +1,4 @@
-//! The one list of all that pushes on nodes besides the elements: loads, contact, and what the user adds.
+//! The one list of forces on nodes besides those of elements: loads, contact, and laws of the user.
 
 use stribeck_contact::{Contacts, Films};
 use stribeck_solver::{

@@ -1,4 +1,4 @@
-//! Guard rails: what is watched at every look, when it is worth a warning, when to stop.
+//! Guard rails: limits that are checked at every look, with warnings and stops.
 //!
 //! | watched | warning | stop |
 //! |---|---|---|
@@ -25,7 +25,7 @@ const STRAINED: f64 = 0.01;
 /// When to warn and when to stop.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
-    /// What the imbalance of energy is measured against.
+    /// Reference of the imbalance of energy.
     pub energy_scale: Scale,
     /// Imbalance of energy above which there is a warning [%].
     pub energy_warning_percent: f64,
@@ -42,7 +42,7 @@ pub struct Limits {
     pub area_stop_percent: f64,
     /// The element size [m]; `None` takes the shortest facet of all contact surfaces.
     pub element_size: Option<f64>,
-    /// Elements are looked at, and a small imbalance is warned of, at every so many looks: to look at all
+    /// Elements are checked, and a small imbalance is warned of, once in this many looks: checking all
     /// elements costs as much as two steps.
     pub elements_every: u64,
 }
@@ -63,7 +63,7 @@ impl Default for Limits {
     }
 }
 
-/// What the user calls the things that messages advise to change.
+/// The user's names for the fields in messages.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Words {
     /// Time step over the critical one.
@@ -96,7 +96,7 @@ impl Default for Words {
     }
 }
 
-/// The worst that looks have seen.
+/// Extremes of all looks.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
     /// Looks so far.
@@ -126,7 +126,7 @@ impl Default for Seen {
     }
 }
 
-/// What is watched.
+/// Quantities under guard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Watched {
     /// The balance of energy, and that all numbers are numbers.
@@ -144,11 +144,11 @@ pub enum Watched {
 /// Something beyond its limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// What it is about.
+    /// Quantity.
     pub watched: Watched,
     /// Whether to go on would be of no use.
     pub stops: bool,
-    /// What was found, when and where, and what to try.
+    /// Message: value, time, place and remedy.
     pub message: String,
 }
 

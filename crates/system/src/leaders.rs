@@ -1,11 +1,11 @@
-//! Which rank speaks for what.
+//! The leader of each interaction: the rank that reports it.
 
 use stribeck_solver::ranks::Shared;
 
-/// What one rank knows of the shares of all.
+/// The shares of all ranks, as each rank has them.
 #[derive(Debug, Default)]
 pub(crate) struct Division {
-    /// The rank that speaks for each interaction, kind by kind.
+    /// The leader of each interaction, kind by kind.
     pub(crate) leaders: Vec<Vec<usize>>,
     /// Slots that the forces of every rank read: of loads and of the user's laws.
     pub(crate) everywhere: Vec<u32>,

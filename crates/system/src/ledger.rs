@@ -1,4 +1,4 @@
-//! The energy ledger: what is in the model, what has left it, what came in (THEORY §2.5).
+//! The energy ledger: energy stored, dissipated and supplied (THEORY §2.5).
 
 use serde::{Deserialize, Serialize};
 
@@ -23,8 +23,8 @@ pub struct Ledger {
     pub further: f64,
     /// Heat of friction since the start.
     pub friction: f64,
-    /// Heat of mass, stiffness and structural damping since the start, and what the springs of the latter
-    /// hold.
+    /// Heat of mass, stiffness and structural damping since the start, and the energy of the latter's
+    /// springs.
     pub damping: f64,
     /// Heat of damping in contact, and in forces that the user has added, since the start.
     pub contact_damping: f64,
@@ -41,13 +41,12 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Kinetic energy and what is stored [J].
+    /// Kinetic and stored energy [J].
     pub fn inside(&self) -> f64 {
         self.kinetic + self.strain + self.hourglass + self.contact + self.further
     }
 
-    /// What is in the model and what has left it, less what came in [J]: constant but for the error of the
-    /// time step.
+    /// Energy stored and dissipated less energy supplied [J]: constant but for the error of the time step.
     pub fn balance(&self) -> f64 {
         self.kinetic
             + self.strain
@@ -63,7 +62,7 @@ impl Ledger {
     }
 }
 
-/// What an imbalance of energy is measured against.
+/// Reference of an imbalance of energy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Scale {
     /// The largest energy in the model so far, kinetic energy included.
@@ -83,7 +82,7 @@ impl Scale {
     }
 }
 
-/// What the ledger counts from, and the worst that it has seen.
+/// Origin of the ledger, and its extremes.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Balance {
     /// Balance at the first step [J]; none before it. It must balance against that step, not against nothing.

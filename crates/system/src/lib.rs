@@ -1,8 +1,8 @@
 //! Bodies in motion with contact, loads and the ledger of their energy, in node numbers and surface names.
 //!
-//! A [`Plan`] says what there is: bodies, materials, constraints, which surfaces may touch, what pushes.
-//! [`Plan::build`] makes it a [`System`], which finds equilibrium, takes steps, balances its energy and says
-//! when something goes wrong. Where nodes lie in the solver's memory concerns this crate alone.
+//! A [`Plan`] has the bodies, materials, constraints, contact pairs and loads. [`Plan::build`] makes it a
+//! [`System`], which finds equilibrium, takes steps, balances its energy and says when something goes wrong.
+//! Where nodes lie in the solver's memory concerns this crate alone.
 //!
 //! # Conventions
 //!
@@ -18,7 +18,7 @@
 //! ```
 //! use stribeck_contact::Law;
 //! use stribeck_mesh::Rectangle;
-//! use stribeck_solver::{Elastic, Motion};
+//! use stribeck_solver::{Elastic, NodeMotion};
 //! use stribeck_system::{Pair, Plan};
 //!
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -27,7 +27,7 @@
 //! let mut plan = Plan::new(0.01);
 //! plan.add("ground", &block, steel)?;
 //! plan.add("block", &block.translated(0.0, 0.01), steel)?;
-//! plan.constrain("ground.bottom", Motion::Held)?;
+//! plan.constrain("ground.bottom", NodeMotion::Held)?;
 //! plan.contact(Pair::new("block.bottom", "ground.top", Law::penalty(5e13)?))?;
 //!
 //! let mut system = plan.build(1)?;

@@ -15,10 +15,10 @@ pub(crate) struct Load {
     pub(crate) memory: LoadMemory,
 }
 
-/// What a load remembers from step to step.
+/// State of a load from step to step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct LoadMemory {
-    /// What multiplies the forces now [-], and what did in the step before.
+    /// Scale factor of the forces [-], now and in the step before.
     pub(crate) factor: f64,
     before: f64,
     /// Work done since the start [J].

@@ -1,4 +1,4 @@
-//! Where nodes and bodies are and how they move, in node numbers and names.
+//! Positions and velocities of nodes and bodies, in node numbers and names.
 
 use stribeck_solver::rigid::{RigidMotion, RigidState};
 

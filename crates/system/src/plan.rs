@@ -1,8 +1,8 @@
-//! What the user gives: bodies, which of their surfaces may touch, what pushes on them.
+//! Input of a system: bodies, contact pairs of their surfaces, and loads.
 
 use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::{Mesh, Part, Placed, Surface};
-use stribeck_solver::{Elastic, Force, Model, Motion, structural_damping::StructuralDamping};
+use stribeck_solver::{Elastic, Force, Model, NodeMotion, structural_damping::StructuralDamping};
 
 use crate::{
     error::Error,
@@ -41,7 +41,7 @@ pub struct Pair {
     pub first: String,
     /// Name of the other.
     pub second: String,
-    /// What acts between them.
+    /// Law between them.
     pub law: Law,
     /// Where it acts.
     pub method: Method,
@@ -160,7 +160,7 @@ impl Plan {
         self.names.bodies.clone_from(&mesh.bodies);
         materials.push(material);
         behaviour.push(stribeck_solver::Behaviour::Elastic);
-        motion.resize(mesh.x.len(), Motion::Free);
+        motion.resize(mesh.x.len(), NodeMotion::Free);
         for (surface, nodes) in &placed.surfaces {
             self.surface(&format!("{name}.{surface}"), nodes.clone())?;
         }
@@ -196,16 +196,16 @@ impl Plan {
         Ok(())
     }
 
-    /// Says how the nodes of a body, a surface or a mark may move.
+    /// Constrains the nodes of a body, a surface or a mark.
     ///
     /// # Errors
     /// When nothing has that name.
-    pub fn constrain(&mut self, name: &str, motion: Motion) -> Result<(), Error> {
+    pub fn constrain(&mut self, name: &str, motion: NodeMotion) -> Result<(), Error> {
         self.names.nodes(name)?.iter().for_each(|&n| self.model.motion[n as usize] = motion);
         Ok(())
     }
 
-    /// Lets two surfaces touch.
+    /// Adds a contact pair of two surfaces.
     ///
     /// Two threads take pairs from either end of the list. The pair with by far the most work had better come
     /// first, and those of one body together.

@@ -1,4 +1,4 @@
-//! All that changes in time, in one piece: a system continued from it takes the same steps to the bit.
+//! The whole state in time: a system continued from it takes the same steps to the bit.
 
 use serde::{Deserialize, Serialize};
 use stribeck_contact::{ContactState, Contacts, FilmState, Films};
@@ -6,8 +6,8 @@ use stribeck_solver::snapshot::Snapshot as MotionSnapshot;
 
 use crate::{error::Error, forces::Forces, guards::Seen, ledger::Balance, load::LoadMemory, system::System};
 
-/// What changes in time. Bodies, pairs, limits, the time step and damping are no part of it; of forces added
-/// by [`Plan::force`](crate::Plan::force) it is what they say that they remember.
+/// The state in time. Bodies, pairs, limits, the time step and damping are no part of it; of forces added by
+/// [`Plan::force`](crate::Plan::force) it is what they say that they remember.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     motion: MotionSnapshot,
@@ -27,7 +27,7 @@ impl Snapshot {
 }
 
 impl System {
-    /// What has changed since the start.
+    /// The present state.
     pub fn snapshot(&self) -> Snapshot {
         let (contacts, films) = self.contact_states();
         Snapshot {

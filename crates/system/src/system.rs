@@ -23,7 +23,7 @@ use crate::{
 pub struct System {
     /// When to warn and when to stop.
     pub limits: Limits,
-    /// What messages call the things that they advise to change.
+    /// The user's names for the fields in messages.
     pub words: Words,
     pub(crate) dynamics: Dynamics,
     pub(crate) forces: Forces,
@@ -46,7 +46,7 @@ pub struct System {
     before: Velocities,
 }
 
-/// What a system is made of.
+/// Parts of a system.
 #[non_exhaustive]
 pub struct Parts {
     /// Elements and their motion.
@@ -94,7 +94,7 @@ impl System {
         self.dynamics.critical_time_step(&[&self.forces], 0.9 * damped).time_step
     }
 
-    /// Critical time step [s] of elements and of what contact and the user's laws are as stiff as now: sharp,
+    /// Critical time step [s] of elements and of the present stiffness of contact and the user's laws: sharp,
     /// but good for these positions alone. Damping and rigid bodies are left out; infinite when nothing is
     /// stiff.
     pub fn present_critical_time_step(&self) -> f64 {
@@ -303,17 +303,17 @@ impl System {
         &self.balance
     }
 
-    /// The worst that looks have seen.
+    /// Extremes of all looks.
     pub fn seen(&self) -> &Seen {
         &self.seen
     }
 
-    /// What each contact pair did in the last step, in the order of the plan.
+    /// Results of each contact pair in the last step, in the order of the plan.
     pub fn resultants(&self) -> impl Iterator<Item = Resultant> {
         self.forces.contacts.iter().flat_map(|contacts| contacts.resultants())
     }
 
-    /// What each oil film did in the last step, in the order of the plan.
+    /// Results of each oil film in the last step, in the order of the plan.
     pub fn films(&self) -> impl Iterator<Item = FilmResultant> {
         self.forces.films.iter().flat_map(|films| films.resultants())
     }
@@ -332,8 +332,8 @@ impl System {
         nodes.map(|node| self.slot(node)).map(|n| [force.fx[n], force.fy[n]]).collect()
     }
 
-    /// What the contact pairs of that name did in the last step together: the force on their first surfaces'
-    /// bodies, and the deepest penetration.
+    /// Results of the contact pairs of that name in the last step, added up: the force on their first
+    /// surfaces' bodies, and the deepest penetration.
     ///
     /// # Errors
     /// When there is no pair of that name.

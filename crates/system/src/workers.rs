@@ -16,7 +16,7 @@ impl std::fmt::Debug for Workers {
 }
 
 impl Workers {
-    /// So many threads, the caller among them; no pool for one.
+    /// A pool of this many threads, the caller among them; none for one.
     ///
     /// # Errors
     /// When the operating system gives fewer.

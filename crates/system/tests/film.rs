@@ -2,7 +2,7 @@
 
 use stribeck_contact::{Law, Oil};
 use stribeck_mesh::{Disc, Rectangle};
-use stribeck_solver::{Elastic, Motion};
+use stribeck_solver::{Elastic, NodeMotion};
 use stribeck_system::{Film, Pair, Plan, Preload, System};
 
 /// The roller [m] and the out-of-plane thickness [m].
@@ -43,7 +43,7 @@ fn dry(x: f64, gap: f64, held: bool) -> Plan {
     let disc = disc.part().expect("a disc").translated(x, RADIUS + gap);
     plan.add("roller", &disc, steel()).expect("a new name");
     if held {
-        plan.constrain("wall.bottom", Motion::Held).expect("a surface");
+        plan.constrain("wall.bottom", NodeMotion::Held).expect("a surface");
     }
     plan.contact(Pair::new("roller.rim", "wall.top", Law::penalty(STIFFNESS).expect("a law")))
         .expect("two surfaces");

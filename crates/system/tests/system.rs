@@ -3,7 +3,7 @@
 use stribeck_contact::Law;
 use stribeck_mesh::{Part, Rectangle};
 use stribeck_solver::{
-    Elastic, Force, Motion,
+    Elastic, Force, NodeMotion,
     state::{Energy, Moment, NodeForces},
 };
 use stribeck_system::{Error, Pair, Plan, Preload, System, Watched, Workers};
@@ -22,7 +22,7 @@ fn plan() -> Plan {
     plan.model.gravity = [0.0, -9.81];
     plan.add("lower", &block(0.0, 0.0), steel()).expect("a new name");
     plan.add("upper", &block(0.004, 0.01), steel()).expect("a new name");
-    plan.constrain("lower.bottom", Motion::Held).expect("a surface");
+    plan.constrain("lower.bottom", NodeMotion::Held).expect("a surface");
     let law = Law::penalty(5e13).and_then(|law| law.with_friction(0.2)).expect("a law");
     plan.contact(Pair::new("upper.bottom", "lower.top", law)).expect("two surfaces");
     plan.load("upper.top", [0.0, -1e3]).expect("a surface");
@@ -193,7 +193,7 @@ fn invariant_names_are_found_or_named() {
     says(plan.load("upper.topp", [0.0; 2]).expect_err("no such surface"), &["`upper.topp`", "`upper.top`"]);
     says(plan.load("upper.top", [0.0; 2]).expect_err("it has a load"), &["`upper.top`", "twice"]);
     says(plan.add("upper", &block(0.0, 0.0), steel()).expect_err("taken"), &["`upper`", "twice"]);
-    says(plan.constrain("uper", Motion::Held).expect_err("no such body"), &["`uper`", "`upper`"]);
+    says(plan.constrain("uper", NodeMotion::Held).expect_err("no such body"), &["`uper`", "`upper`"]);
     let law = Law::penalty(1e12).expect("a law");
     says(plan.contact(Pair::new("upper.top", "roof", law)).expect_err("no roof"), &["`roof`", "`lower.top`"]);
     says(plan.load_nodes("far", vec![(900, [0.0; 2])]).expect_err("no such node"), &["`far`", "900", "90"]);
@@ -273,7 +273,7 @@ fn stirred(factor: f64) -> [f64; 2] {
     let mut plan = Plan::new(0.007);
     plan.add("lower", &block(0.0, 0.0), steel()).expect("a new name");
     plan.add("upper", &block(0.0, 0.01), steel()).expect("a new name");
-    plan.constrain("lower.bottom", Motion::Held).expect("a surface");
+    plan.constrain("lower.bottom", NodeMotion::Held).expect("a surface");
     plan.contact(Pair::new("upper.bottom", "lower.top", Law::penalty(5e13).expect("a law")))
         .expect("two surfaces");
     plan.load("upper.top", [0.0, -1e3]).expect("a surface");

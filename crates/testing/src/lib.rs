@@ -1,15 +1,18 @@
-//! What the tests of several crates share: comparisons, rows of `docs/VALIDATION.md`, repeatable numbers,
-//! temporary folders, what a program said, and other programs to hold ours against.
+//! Shared by the tests of several crates: comparisons, rows of `docs/VALIDATION.md`, repeatable numbers,
+//! temporary folders, the output of a program, a reference for balls, and peers: other programs to compare
+//! with.
 //!
 //! It depends on no other crate of the workspace, so that all can have it as a dev-dependency. What needs the
 //! solver stands in `tests/common` of the crate that uses it.
 
+mod ball;
 pub mod ledger;
 mod noise;
 pub mod peer;
 mod said;
 mod scratch;
 
+pub use ball::ball_approach;
 pub use noise::Noise;
 pub use said::{said, says};
 pub use scratch::Scratch;

@@ -1,4 +1,4 @@
-//! What the sources of a crate may say.
+//! Words that general crates must not use, and calls that libraries must not make.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,8 @@ use anyhow::{Context, Result};
 use super::layers;
 
 /// Crates that must be of use outside bearings.
-const GENERAL: [&str; 9] = ["mesh", "simd", "solver", "mpi", "contact", "system", "dsp", "formats", "infer"];
+const GENERAL: [&str; 11] =
+    ["mesh", "simd", "solver", "mpi", "surface", "film", "contact", "system", "dsp", "formats", "infer"];
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
 

@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 use serde::Serialize;
 use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
 use stribeck_mesh::{Disc, Mesh, Placed, Rectangle};
-use stribeck_solver::{Dynamics, Elastic, Force, Model, Motion};
+use stribeck_solver::{Dynamics, Elastic, Force, Model, NodeMotion};
 
 use super::measure::Problem;
 use super::program::{About, Program, Time, timed, write_json};
@@ -90,7 +90,7 @@ pub(super) fn problem(folder: &Path) -> Result<Problem> {
 
     let mut model = Model::new(mesh, Elastic::new(YOUNGS_MODULUS, POISSONS_RATIO, DENSITY)?, THICKNESS)?;
     let held: Vec<usize> = facing(&lower, "bottom")?.nodes.iter().map(|&n| n as usize).collect();
-    held.iter().for_each(|&n| model.motion[n] = Motion::Held);
+    held.iter().for_each(|&n| model.motion[n] = NodeMotion::Held);
     let mut loaded = vec![false; model.mesh.x.len()];
     touching.iter().flat_map(|s| &s.nodes).for_each(|&n| loaded[n as usize] = true);
     let mut dynamics = Dynamics::new(&model, &loaded, 1)?;

@@ -129,3 +129,66 @@ pub(crate) fn bytes(original: &[u8], dice: &mut Dice) -> Vec<u8> {
     }
     bytes
 }
+
+/// Damages a binary file where its fields are likely: says what was done.
+pub(crate) fn fields(original: &[u8], dice: &mut Dice) -> (&'static str, Vec<u8>) {
+    /// Bytes at the beginning and at the end in which most fields are.
+    const NEAR: usize = 600;
+    let mut bytes = original.to_vec();
+    let at = match dice.below(4) {
+        0 => dice.below(bytes.len()),
+        1 => bytes.len().saturating_sub(1 + dice.below(NEAR)),
+        _ => dice.below(bytes.len().min(NEAR)),
+    };
+    let end = (at + 1 + dice.below(40)).min(bytes.len());
+    let done = match dice.below(9) {
+        0 | 1 => {
+            bytes[at] ^= 1 << dice.below(8);
+            "a bit is turned"
+        }
+        2..=4 => {
+            count(&mut bytes, at, dice);
+            "a number of a head is another"
+        }
+        5 => {
+            let small = (0..bytes.len()).map(|n| (at + n) % bytes.len()).find(|n| bytes[*n] < 64);
+            bytes[small.unwrap_or(at)] = dice.below(64) as u8;
+            "a type or a flag is another"
+        }
+        6 => {
+            bytes.truncate(at);
+            "it is cut off"
+        }
+        7 => {
+            let copy = bytes[at..end].to_vec();
+            bytes.splice(at..at, copy);
+            "a piece stands twice"
+        }
+        _ => {
+            drop(bytes.drain(at..end));
+            "a piece is missing"
+        }
+    };
+    (done, bytes)
+}
+
+/// Changes the first number of 32 bits at or behind a place that looks like a count, a size or an address.
+fn count(bytes: &mut [u8], at: usize, dice: &mut Dice) {
+    let word = |n: usize| Some(u32::from_le_bytes(bytes.get(n..n + 4)?.try_into().ok()?));
+    let Some((place, found)) =
+        (at..bytes.len()).find_map(|n| Some((n, word(n).filter(|w| (1..1 << 20).contains(w))?)))
+    else {
+        return;
+    };
+    let changed = match dice.below(8) {
+        0 => found + 1,
+        1 => found - 1,
+        2 => 2 * found,
+        3 => found / 2,
+        4 => 0,
+        5 => u32::MAX,
+        6 => found + dice.below(16) as u32,
+        _ => dice.bits() as u32,
+    };
+    bytes[place..place + 4].copy_from_slice(&changed.to_le_bytes());
+}

@@ -15,6 +15,7 @@ use stribeck_solver::{Dynamics, Elastic, Model};
 
 use super::Answer;
 use super::damage::{bytes, text};
+use super::readers::{self, Shelf};
 use crate::workspace;
 use stribeck::host;
 use stribeck_scene::dice::Dice;
@@ -27,7 +28,7 @@ pub(crate) struct Kind {
     pub(crate) attempt: fn(&Inputs, &mut Dice) -> Result<Answer>,
 }
 
-pub(crate) const KINDS: [Kind; 9] = [
+pub(crate) const KINDS: [Kind; 10] = [
     Kind { name: "scene", weight: 50, attempt: scene },
     Kind { name: "override", weight: 15, attempt: set },
     Kind { name: "table", weight: 10, attempt: table },
@@ -37,6 +38,7 @@ pub(crate) const KINDS: [Kind; 9] = [
     Kind { name: "run-info", weight: 5, attempt: run_info },
     Kind { name: "mesh", weight: 40, attempt: mesh },
     Kind { name: "shape", weight: 4, attempt: shape },
+    Kind { name: "reader", weight: 60, attempt: reader },
 ];
 
 /// A scene of everything that goes over time.
@@ -69,6 +71,7 @@ pub(crate) struct Inputs {
     trace: Vec<u8>,
     checkpoint: Vec<u8>,
     info: String,
+    shelf: Shelf,
 }
 
 impl Inputs {
@@ -97,6 +100,7 @@ impl Inputs {
             trace: read(dir.trace())?,
             checkpoint: read(dir.checkpoint())?,
             info: String::from_utf8(read(dir.info())?)?,
+            shelf: Shelf::open()?,
             folder: folder.to_owned(),
         })
     }
@@ -124,7 +128,7 @@ fn scene(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     if let Some(scene) = scene.filter(|scene| small(scene) && dice.one_in(20)).map(|scene| scene.resolve())
         && let (_, Some(assembly)) = answered(Assembly::new(&scene))?
     {
-        answered(assembly.machine(&scene, 1))?;
+        answered(assembly.build(&scene, 1))?;
     }
     Ok(answer)
 }
@@ -331,6 +335,11 @@ fn mesh(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
         d.distortion();
     }
     Ok(answer)
+}
+
+/// A file of signals, or a mesh of another program.
+fn reader(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
+    readers::attempt(&inputs.shelf, &inputs.folder, dice)
 }
 
 /// Dimensions and counts for the generators.

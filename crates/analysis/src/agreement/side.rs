@@ -1,12 +1,12 @@
 //! One run, reduced to the quantities that are compared.
 
-use stribeck_dsp::{Detrend, Scaling, Sensor, Welch, WelchOptions};
+use stribeck_dsp::{Detrend, Scaling, Sensor, Welch, WelchOptions, running_mean};
 use stribeck_scene::run_dir::Run;
 
 use super::{FROM_S, LEAST_MEANS, MEAN_S, thirds};
 use crate::Error;
 use crate::findings::Findings;
-use crate::load::{running_mean, support};
+use crate::load::support;
 use crate::record::Record;
 use crate::summary::Summary;
 
@@ -176,8 +176,8 @@ mod tests {
     /// is not zero.
     #[test]
     fn example_lines_between_grid_points_have_their_amplitudes() {
-        // Half a grid step beside its place, as FINER says; sidelobes of the neighbours are a hundred times
-        // smaller.
+        // At most half a step of the finer grid beside its place; sidelobes of the neighbours are a hundred
+        // times smaller.
         const CLOSE: f64 = 2e-4;
         let wanted = [1.0, 0.5, 2.0, 0.25, 0.8];
         let line = |n: u32, order: usize| {

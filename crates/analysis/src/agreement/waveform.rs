@@ -1,4 +1,4 @@
-//! Waveforms of the accelerations: how alike they are at low frequencies, and their largest values as a
+//! Waveforms of the accelerations: their correlation at low frequencies, and their largest values as a
 //! recorder shows them.
 
 use serde::{Deserialize, Serialize};
@@ -18,7 +18,7 @@ const WAVEFORM: usize = 50_000;
 pub struct Correlation {
     /// Sensor.
     pub sensor: String,
-    /// Only what is below this frequency counts [Hz].
+    /// Upper end of the compared band [Hz].
     pub below_hz: f64,
     /// Correlation of full and reduced model over the starts [-].
     pub value: Statistic,
@@ -30,7 +30,7 @@ pub struct Correlation {
 pub struct Peak {
     /// Sensor.
     pub sensor: String,
-    /// Only what is below this frequency counts [Hz].
+    /// Upper end of the compared band [Hz].
     pub below_hz: f64,
     /// Magnitude of both components, by the full model [g].
     pub full_g: Statistic,
@@ -81,7 +81,7 @@ pub(super) fn correlated(below_hz: f64, sides: &[[Side; 2]]) -> Option<Correlati
 /// Correlation of two equally long signals in the band from their first line to `below_hz`, through a Hann
 /// window.
 ///
-/// The cross power of a and b is half of what the power of a + b exceeds the powers of both by.
+/// The cross power of a and b is half the excess of the power of a + b over the sum of both powers.
 fn correlation(a: &[f64], b: &[f64], below_hz: f64, rate_hz: f64) -> Option<f64> {
     let options = WelchOptions { detrend: Detrend::None, ..WelchOptions::new(a.len()) };
     let mut welch = Welch::new(rate_hz, a.len(), &options).ok()?;

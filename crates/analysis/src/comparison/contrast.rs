@@ -15,7 +15,7 @@ pub struct Contrast {
     pub low: Option<f64>,
     /// Upper end of it.
     pub high: Option<f64>,
-    /// What follows.
+    /// Verdict.
     pub verdict: Verdict,
 }
 
@@ -27,7 +27,7 @@ pub enum Verdict {
     Differs,
     /// Its interval holds zero.
     WithinScatter,
-    /// Both sides are single: nobody knows what chance does.
+    /// Both sides are single runs: the scatter is unknown.
     Unknown,
 }
 

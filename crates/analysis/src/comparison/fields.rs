@@ -21,12 +21,12 @@ pub fn differences(scenes: &[Option<&Scene>]) -> Vec<FieldDifference> {
     let values: Vec<Option<Value>> = scenes.iter().map(|scene| scene.map(plain)).collect();
     let mut found = Vec::new();
     compare("", &values.iter().map(Option::as_ref).collect::<Vec<_>>(), &mut found);
-    // What chance chose comes last.
+    // Fields drawn for each start come last.
     found.sort_by_key(|difference| DRAWN.contains(&difference.field.as_str()));
     found
 }
 
-/// What a start draws.
+/// Fields that a start draws.
 const DRAWN: [&str; 3] = ["bearing.first_roller_deg", "cage.roller_offsets_um", "mesh.roller_phase_deg"];
 
 fn compare(path: &str, values: &[Option<&Value>], found: &mut Vec<FieldDifference>) {

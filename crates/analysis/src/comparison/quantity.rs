@@ -1,4 +1,4 @@
-//! What is compared: the numbers of one signal, and those of the run behind it.
+//! Compared quantities: of one signal, and of the run behind it.
 
 use serde_json::Value;
 

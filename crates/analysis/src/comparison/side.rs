@@ -26,7 +26,7 @@ use crate::summary::RecordLevels;
 /// Samples that are kept of a trace, for a picture.
 const SHOWN: usize = 1 << 16;
 
-/// What a side is.
+/// Kind of a side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -41,9 +41,9 @@ pub enum Kind {
 /// A run, an ensemble or a record, as it is compared.
 #[derive(Debug, Clone, Serialize)]
 pub struct Side {
-    /// By what it is called.
+    /// Its label.
     pub label: String,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// The signal that is compared.
     pub channel: String,
@@ -53,7 +53,7 @@ pub struct Side {
     pub rate_hz: f64,
     /// Length of one signal [s].
     pub duration_s: f64,
-    /// Speed of the shaft against the outer ring [1/s]; `None` where it is not known or changes.
+    /// Speed of the shaft against the outer ring [1/s]; `None` where it is unknown or changes.
     pub shaft_hz: Option<f64>,
     /// The bearing in words, where it is known.
     pub bearing: Option<String>,
@@ -61,8 +61,8 @@ pub struct Side {
     pub load_n: Option<f64>,
     /// Signals: starts that are complete, or one.
     pub signals: usize,
-    /// What each signal shows by itself, or where signals disagree, how many show it; empty where none is
-    /// long enough to be judged.
+    /// Verdict of each signal, or where signals disagree, the number of signals with each verdict; empty
+    /// where none is long enough.
     pub verdict: String,
     /// Cautions.
     pub notes: Vec<String>,
@@ -79,7 +79,7 @@ pub struct Side {
 pub struct Member {
     /// Its beginning.
     pub trace: Sampled,
-    /// What describes it as a whole; `None` for a constant one.
+    /// Its statistics; `None` for a constant one.
     pub shape: Option<Shape>,
     /// Root mean square of the velocity from 10 to 1000 Hz [mm/s], of an acceleration.
     pub velocity_mm_s: Option<f64>,
@@ -95,7 +95,7 @@ pub struct Member {
     pub support_n: Sampled,
     /// Numbers of `summary.json`; null for a record.
     pub summary: Value,
-    /// What it shows by itself.
+    /// Its verdict, without the scene.
     pub verdict: Option<String>,
 }
 
@@ -183,7 +183,7 @@ impl Member {
     }
 }
 
-/// What the signal of a run shows by itself; `None` where it is too short, or constant. Where the speed
+/// Verdict of a run's signal, without the scene; `None` where it is too short, or constant. Where the speed
 /// changes no family has a frequency.
 fn judged(
     scene: &ResolvedScene,
@@ -198,7 +198,7 @@ fn judged(
     };
     let unit = AccelerationUnit::Gravity.symbol().to_owned();
     let channel = Channel::held(name.to_owned(), signal_g.to_vec()).in_unit(Some(unit));
-    // A tenth of a hertz is far below what the rounding of times in a file can move.
+    // The file's rounding of times moves the rate by far less than a tenth of a hertz.
     match Analysis::of(&channel, (10.0 * rate_hz).round() / 10.0, &machine) {
         Err(Error::NoSignal(_)) => Ok(None),
         analysis => analysis.map(Some),
@@ -216,7 +216,7 @@ fn channel_name(sensor: &str) -> String {
     format!("sensor.{sensor}.ay_m_s2")
 }
 
-/// Number of the sensor whose channel contains `asked`; without one, the leading one.
+/// Number of the sensor whose channel name contains `asked`; without one, the leading one.
 fn sensor(findings: &Findings, asked: Option<&str>) -> Result<usize, Error> {
     let names: Vec<String> = findings.sensors.iter().map(|s| channel_name(&s.name)).collect();
     let found = names.iter().position(|name| asked.is_none_or(|asked| name.contains(asked)));

@@ -80,7 +80,7 @@ impl Merged {
     }
 }
 
-/// What there is at one place of the summaries, out of `of` starts.
+/// The values at one place of the summaries of `of` starts, merged.
 fn merge(values: &[&Value], of: usize) -> Merged {
     let present: Vec<&Value> = values.iter().copied().filter(|value| !value.is_null()).collect();
     let Some(first) = present.first() else { return Merged::Nothing };

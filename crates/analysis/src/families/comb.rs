@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::kernels::{Complex, Shift, dot, orthogonalise, turned, unit};
-use super::{Motion, SIDEBANDS, Source};
+use super::{RecordedMotion, SIDEBANDS, Source};
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
 const ORDERS: i32 = 3;
@@ -14,8 +14,8 @@ const HALF_BAND: f64 = 8.0;
 /// Samples of the band signal in the length of the low-pass filter, and of the baseband that it is made from.
 const OVERLAP: usize = 4;
 const FINE: usize = 8 * OVERLAP;
-/// Columns shorter than this part of the longest, after what they share with the others is taken off, carry
-/// nothing new.
+/// Least norm of a column, over that of the longest, after orthogonalisation: shorter ones are dropped as
+/// dependent.
 const INDEPENDENT: f64 = 1e-6;
 /// Steps in a resolution in which the carrier is sought.
 const CARRIER_STEPS: f64 = 20.0;
@@ -46,7 +46,7 @@ pub(super) struct Columns {
 impl BasebandComb {
     /// `None` when no roller is loaded, the record is shorter than the filter, or the band does not fit below
     /// half the sampling rate. `observed` are the rollers whose forces are fitted.
-    pub(super) fn of(motion: &Motion, source: Source, observed: &[usize]) -> Option<Self> {
+    pub(super) fn of(motion: &RecordedMotion, source: Source, observed: &[usize]) -> Option<Self> {
         let samples = motion.samples();
         let dt = motion.interval_s;
         let phases: Vec<Vec<f64>> = motion
@@ -107,7 +107,7 @@ impl BasebandComb {
     }
 
     /// Where lines BPFO apart explain the sums best, within half a BPFO of the mean rate [Hz from it].
-    fn nearest_line_hz(&self, motion: &Motion) -> f64 {
+    fn nearest_line_hz(&self, motion: &RecordedMotion) -> f64 {
         let columns = self.columns(0.0, self.rate_hz).sums;
         let step_hz = motion.resolution_hz() / CARRIER_STEPS;
         let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
@@ -153,7 +153,7 @@ pub(super) struct Baseband {
 }
 
 impl Baseband {
-    fn new(motion: &Motion, centre_hz: f64) -> Self {
+    fn new(motion: &RecordedMotion, centre_hz: f64) -> Self {
         let half_hz = HALF_BAND * motion.bpfo_hz;
         let thin = ((1.0 / (half_hz * motion.interval_s)) as usize / FINE).max(1);
         let interval_s = thin as f64 * motion.interval_s;
@@ -163,7 +163,7 @@ impl Baseband {
 
     /// Whether the band about `centre_hz` lies between zero and half the sampling rate, and the record
     /// outlasts the filter by more than a comb's columns.
-    pub(super) fn fits(&self, motion: &Motion, centre_hz: f64) -> bool {
+    pub(super) fn fits(&self, motion: &RecordedMotion, centre_hz: f64) -> bool {
         centre_hz > self.half_hz
             && centre_hz + self.half_hz < 0.5 / motion.interval_s
             && self.filter.taps.len() >= OVERLAP
@@ -210,7 +210,7 @@ fn add(sum: &mut [Complex], part: &[Complex]) {
 }
 
 /// Load-weighted mean rate of the phases [Hz]; `None` when nothing is loaded or nothing turns.
-fn mean_rate_hz(motion: &Motion, phases: &[Vec<f64>]) -> Option<f64> {
+fn mean_rate_hz(motion: &RecordedMotion, phases: &[Vec<f64>]) -> Option<f64> {
     let (mut turned, mut weight) = (0.0, 0.0);
     for (roller, phase) in motion.rollers.iter().zip(phases) {
         for n in 1..phase.len() {
@@ -258,7 +258,7 @@ pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
     basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
 }
 
-/// Adds what `columns` hold beyond `basis` to it, orthonormal.
+/// Extends `basis` by the part of `columns` that is orthogonal to it, normalised.
 pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex>]) {
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
     for column in columns {

@@ -1,5 +1,5 @@
-//! What the fit of combs spends its time in, compiled for the vectors of each processor. Nothing is fused and
-//! sums have a fixed order, so that all of them give the same bits.
+//! The kernels of the fit of combs, compiled for the vectors of each processor. Nothing is fused and sums
+//! have a fixed order, so that all of them give the same bits.
 
 use std::f64::consts::TAU;
 
@@ -43,9 +43,9 @@ impl WithSimd for Turn<'_> {
     }
 }
 
-/// A shift in frequency, and weighted averages of what was shifted: one every few values.
+/// A shift in frequency, and decimated by weighted averages.
 pub(super) struct Shift<'a> {
-    /// What each value is multiplied by.
+    /// Factor of each value.
     turns: Vec<Complex>,
     taps: &'a [f64],
     step: usize,
@@ -100,7 +100,7 @@ impl WithSimd for Average<'_> {
     }
 }
 
-/// Takes off a column what it shares with the orthonormal columns of `basis`: Gram–Schmidt, twice for
+/// Subtracts from a column its projection on the orthonormal columns of `basis`: Gram–Schmidt, twice for
 /// rounding.
 pub(super) fn orthogonalise(column: &mut [Complex], basis: &[Vec<Complex>]) {
     Arch::new().dispatch(Orthogonalise { column, basis });
@@ -163,7 +163,7 @@ fn times(a: Complex, b: Complex) -> Complex {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
-/// Sum of what pairs make, in four parts, which do not wait for each other.
+/// Sum over pairs in four partial sums, which do not wait for each other.
 #[inline(always)]
 fn sum<A: Copy, B: Copy>(a: &[A], b: &[B], of: impl Fn(A, B) -> Complex) -> Complex {
     let (a, b) = (a.as_chunks::<4>(), b.as_chunks::<4>());

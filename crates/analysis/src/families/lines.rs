@@ -1,4 +1,4 @@
-//! The lines of a family that was found, read from the spectra.
+//! The lines of a found family, read from the spectra.
 
 use stribeck_dsp::{Welch, WelchOptions, Window};
 

@@ -25,7 +25,7 @@ struct Sound {
     source: Source,
     /// Moves its lines [Hz].
     detuned_hz: f64,
-    /// What a roller under the largest load does to a sensor [g].
+    /// Amplitude at a sensor by a roller under the largest load [g].
     gain_g: f64,
 }
 
@@ -37,7 +37,7 @@ impl Sound {
 
 /// Rollers that share a load by the cosine, without a defect. Loaded rollers turn `slip` slower than rolling,
 /// each by a little of its own.
-fn silent(samples: usize, slip: f64) -> Motion {
+fn silent(samples: usize, slip: f64) -> RecordedMotion {
     let rollers = (0..ROLLERS).map(|number| {
         let start = 94f64.to_radians() - TAU * number as f64 / ROLLERS as f64;
         let spin_hz = SPIN_HZ * (1.0 - slip) * (1.0 + 1e-3 * (number as f64).sin()) - CAGE_HZ;
@@ -50,7 +50,7 @@ fn silent(samples: usize, slip: f64) -> Motion {
             orbit,
         }
     });
-    Motion {
+    RecordedMotion {
         interval_s: INTERVAL_S,
         shaft_rad_s: -TAU * SHAFT_HZ,
         outer_rad_s: 0.0,
@@ -61,7 +61,12 @@ fn silent(samples: usize, slip: f64) -> Motion {
 
 /// Puts sounds and `noise_g` on four accelerations, each with a transfer of its own that depends on the place
 /// of the roller, and a thousandth of the load for each g on the force of every roller.
-fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (Motion, Vec<Channel>) {
+fn sounding(
+    mut motion: RecordedMotion,
+    sounds: &[Sound],
+    noise_g: f64,
+    seed: u64,
+) -> (RecordedMotion, Vec<Channel>) {
     let samples = motion.samples();
     let mut noise = Noise::new(seed);
     let heard = |roller: &RollerTrack, n: usize, of_place: &dyn Fn(f64) -> (f64, f64)| -> f64 {
@@ -102,7 +107,7 @@ fn sounding(mut motion: Motion, sounds: &[Sound], noise_g: f64, seed: u64) -> (M
 
 fn judged(
     candidates: &[(&str, Source)],
-    (motion, accelerations): &(Motion, Vec<Channel>),
+    (motion, accelerations): &(RecordedMotion, Vec<Channel>),
 ) -> Vec<FamilyFinding> {
     let candidates: Vec<Candidate> =
         candidates.iter().map(|(name, source)| Candidate { name: (*name).into(), source: *source }).collect();
@@ -226,7 +231,7 @@ fn example_a_short_record_is_not_judged() {
     let families = judged(&CANDIDATES, &sounding(silent(600, 0.0), &[Sound::of(CANDIDATES[0].1)], 1.0, 5));
     assert_eq!(found(&families), [""; 0]);
     assert!(families.iter().all(|f| f.verdict.contains("0.5 periods of BPFO")), "{families:#?}");
-    let nobody = Motion { rollers: Vec::new(), ..silent(SAMPLES, 0.0) };
+    let nobody = RecordedMotion { rollers: Vec::new(), ..silent(SAMPLES, 0.0) };
     assert_eq!(found(&judged(&CANDIDATES, &(nobody, Vec::new()))), [""; 0]);
 }
 

@@ -1,15 +1,15 @@
-//! How well a comb explains the channels of a record, where it belongs and elsewhere.
+//! How well a comb explains the channels of a record, at its predicted frequency and elsewhere.
 
 use super::comb::{BasebandComb, Columns, extend_basis, power, smoothed};
 use super::kernels::{Complex, dot};
-use super::{Channel, LEAST_LEAD, Motion};
+use super::{Channel, LEAST_LEAD, RecordedMotion};
 
-/// What is left of a channel counts as this share of it at least: a fit to 98 % is not bettered by one to 99
-/// %, which follows the channel's noise.
+/// Floor of the residual's share: a fit of 99 % is no better than one of 98 %, because the rest is the
+/// channel's noise.
 const LEAST_REST: f64 = 0.02;
-/// How far a carrier may stand from the recorded motion, in resolutions: its place is known to some tenths,
-/// and the lines of three families lie less than a resolution apart when their combs are laid over each
-/// other.
+/// How far a carrier may stand from the recorded motion, in resolutions: its frequency is known to some
+/// tenths, and the lines of three families lie less than a resolution apart when their combs are laid over
+/// each other.
 const AT_HOME: f64 = 0.5;
 /// Half width of the part of the scan that is taken in small steps, and the steps of it, in resolutions.
 const CLOSE: f64 = 1.0;
@@ -17,7 +17,7 @@ const CLOSE_STEP: f64 = 0.05;
 /// A comb must fit best where it belongs over this many BPFO: one that stands a spacing off shares all lines
 /// but the outermost.
 const SCAN: f64 = 1.5;
-/// Beside combs in the fit, copies of a comb up to this many BPFO off are rivals: what the fit misses lies
+/// With combs in the fit, copies of a comb up to this many BPFO off are rivals: the residual of the fit lies
 /// there.
 const BESIDE: f64 = 5.0;
 /// Detuned combs, in BPFO on either side of the carrier: beyond the band that a comb shares with its copy.
@@ -34,7 +34,7 @@ const PRESSED: f64 = 0.1;
 /// Every signal in which combs are sought.
 pub(super) struct Channels {
     accelerations: Vec<Vec<f64>>,
-    /// Forces on rollers, which are one channel: what facets do to a roller at a place does not depend on the
+    /// Forces on rollers, which are one channel: the effect of facets at a place does not depend on the
     /// roller.
     forces: Vec<Vec<f64>>,
 }
@@ -79,7 +79,7 @@ impl Trial {
 }
 
 /// Numbers of the rollers whose forces are looked at, from 0, ascending.
-pub(super) fn observed(motion: &Motion) -> Vec<usize> {
+pub(super) fn observed(motion: &RecordedMotion) -> Vec<usize> {
     let mean = |n: usize| mean(&motion.rollers[n].load_n);
     let mut rollers: Vec<usize> = (0..motion.rollers.len()).collect();
     rollers.sort_by(|&a, &b| mean(b).total_cmp(&mean(a)));
@@ -94,7 +94,7 @@ impl Channels {
     /// The accelerations less their mean, and the forces on the rollers `observed` less their running mean
     /// over two periods of `slowest_hz`.
     pub(super) fn of(
-        motion: &Motion,
+        motion: &RecordedMotion,
         accelerations: &[Channel],
         observed: &[usize],
         slowest_hz: f64,
@@ -119,7 +119,7 @@ impl Channels {
     /// Tries a comb beside those that are in the fit with their offsets [Hz].
     pub(super) fn try_comb(
         &self,
-        motion: &Motion,
+        motion: &RecordedMotion,
         comb: &BasebandComb,
         in_fit: &[(&BasebandComb, f64)],
     ) -> Trial {
@@ -207,8 +207,8 @@ impl Base {
 }
 
 impl Signals {
-    /// Share of each acceleration, and of the forces as the last, that `columns` explain of what `fit`
-    /// leaves, 0 to 1.
+    /// Share of each acceleration, and of the forces as the last, that `columns` explain of the residual of
+    /// `fit`, 0 to 1.
     fn shares(&self, fit: &Columns, columns: &Columns) -> Vec<f64> {
         let mut basis = fit.clone();
         extend(&mut basis, columns);
@@ -234,7 +234,7 @@ fn score(shares: &[f64]) -> f64 {
 }
 
 /// Offsets of the scan [Hz], ascending; `beside` combs in the fit they reach farther.
-fn offsets(motion: &Motion, beside: bool) -> Vec<f64> {
+fn offsets(motion: &RecordedMotion, beside: bool) -> Vec<f64> {
     let resolution_hz = motion.resolution_hz();
     let close = (CLOSE / CLOSE_STEP).round() as i32;
     let mut offsets: Vec<f64> = (-close..=close).map(|n| f64::from(n) * CLOSE_STEP * resolution_hz).collect();

@@ -9,7 +9,7 @@ use crate::artefacts::Artefact;
 use crate::diagnosis::DiagnosisFinding;
 use crate::duty::DutyFinding;
 use crate::enveloping::EnvelopeFinding;
-use crate::families::{Channel, FamilyFinding, Motion};
+use crate::families::{Channel, FamilyFinding, RecordedMotion};
 use crate::film::FilmFinding;
 use crate::filtering::Filter;
 use crate::kinematics::KinematicsFinding;
@@ -19,7 +19,7 @@ use crate::records::RecordFinding;
 use crate::summary::{Event, LevelsFinding, SpectrumFinding};
 use crate::tones::{PredictedLine, Tone};
 
-/// What one pass over all rollers yields.
+/// Results of one pass over all rollers.
 pub(super) struct Rollers<'a> {
     pub(super) motion: KinematicsFinding,
     pub(super) carried: Carried,
@@ -35,7 +35,7 @@ pub(super) struct MeshLines {
     /// As found by their whole families.
     pub(super) families: Vec<FamilyFinding>,
     /// Motion and accelerations [g] that the families were fitted to.
-    pub(super) signals: (Motion, Vec<Channel>),
+    pub(super) signals: (RecordedMotion, Vec<Channel>),
 }
 
 /// The load between rigid rings.
@@ -59,7 +59,7 @@ pub(super) struct LeadingSpectrum {
     pub(super) fine: Option<Spectrum>,
 }
 
-/// The envelope spectrum of the leading sensor [g⁴] and what stands in it.
+/// The envelope spectrum of the leading sensor [g⁴] and its lines.
 #[derive(Default)]
 pub(super) struct EnvelopeAnswer {
     pub(super) spectrum: Option<Spectrum>,
@@ -67,7 +67,7 @@ pub(super) struct EnvelopeAnswer {
 }
 
 impl EnvelopeAnswer {
-    /// A note says why there is none.
+    /// A note gives the reason where there is none.
     pub(super) fn with_note(enveloped: Option<Enveloped>, notes: &mut Vec<String>) -> Self {
         match enveloped {
             Some(Ok((spectrum, finding))) => Self { spectrum: Some(spectrum), finding: Some(finding) },

@@ -34,7 +34,7 @@ use crate::tones;
 /// The facet line of the rollers.
 const ROLLER_VERTICES: &str = "roller_vertices";
 
-/// A record, and what geometry and speed predict of it.
+/// A record, with the predictions from geometry and speed.
 pub(super) struct Case<'a> {
     pub(super) record: &'a Record<'a>,
     pub(super) run: &'a Run,
@@ -58,7 +58,7 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// What must be known before any number is read?
+    /// Which warnings precede all numbers?
     pub(super) fn caveats(&self) -> Vec<String> {
         let (run, record) = (self.run, self.record);
         let mut notes = Vec::new();
@@ -91,7 +91,7 @@ impl<'a> Case<'a> {
         notes
     }
 
-    /// What does the leading sensor show by itself, without the scene? `None` for a record of fewer than ten
+    /// What is the verdict on the leading sensor, without the scene? `None` for a record of fewer than ten
     /// periods, or of a speed that changes.
     pub(super) fn judged_by_itself(&self) -> Result<Option<Analysis>, Error> {
         let [begin_s, end_s] = self.record.stretch_s();
@@ -104,8 +104,8 @@ impl<'a> Case<'a> {
         }
     }
 
-    /// How do rollers turn, what do they carry, and when do they pass the defect? They are read one after the
-    /// other.
+    /// How do rollers turn, what is their load, and when do they pass the defect? Their channels are read one
+    /// after the other.
     pub(super) fn rollers(&self) -> Result<Rollers<'_>, Error> {
         let (scene, record, prediction) = (&self.run.scene, self.record, &self.prediction);
         let mut turning = Turning::new(record, &prediction.kinematics);
@@ -159,7 +159,7 @@ impl<'a> Case<'a> {
         Ok(MeshLines { lines, tones, families, signals: (tracks, channels) })
     }
 
-    /// Where does the notch stand, and what is left of the sensors behind it?
+    /// Where is the notch, and what are the sensors' signals behind it?
     pub(super) fn notch(
         &self,
         mesh: &MeshLines,
@@ -185,7 +185,7 @@ impl<'a> Case<'a> {
         AtRest { expected_n, curve }
     }
 
-    /// What happens when rollers cross the defect, and how loud is it?
+    /// Which events and levels has a passage over the defect?
     pub(super) fn crossings(
         &self,
         passages: Passages<'_>,
@@ -204,7 +204,7 @@ impl<'a> Case<'a> {
         Ok(Crossings { events, levels })
     }
 
-    /// What do rollers carry, beside rigid rings, and does the bearing roll?
+    /// What is the load distribution, beside that of rigid rings, and does the bearing roll?
     pub(super) fn load(
         &self,
         carried: &Carried,
@@ -226,7 +226,8 @@ impl<'a> Case<'a> {
         load
     }
 
-    /// What does the spectrum of the leading sensor resolve, and must a finer one show the defect's family?
+    /// What does the spectrum of the leading sensor resolve, and would a longer record resolve the defect's
+    /// family?
     pub(super) fn spectrum(&self, sensors: &[SensorSignal]) -> Result<LeadingSpectrum, Error> {
         let leading = sensors.first().and_then(|sensor| Some((sensor, sensor.raw_density.as_ref()?)));
         let fine = match self.prediction.shocks.zip(leading) {
@@ -240,7 +241,7 @@ impl<'a> Case<'a> {
         Ok(LeadingSpectrum { finding, fine })
     }
 
-    /// What would a machine's sensor tell, where the scene asks for it?
+    /// Which signatures has a machine's sensor, where the scene has `output.records`?
     pub(super) fn records(
         &self,
         carried: &Carried,
@@ -291,7 +292,8 @@ impl<'a> Case<'a> {
         Ok(Orders { duty, spectrum })
     }
 
-    /// What can the paper's cursor read at this sample rate? `None` for another scene than the paper's.
+    /// Which frequencies can the paper's cursor read at this sample rate? `None` for another scene than the
+    /// paper's.
     pub(super) fn cursor(&self) -> Option<CursorReading> {
         if !self.of_paper {
             return None;

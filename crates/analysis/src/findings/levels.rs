@@ -1,5 +1,5 @@
-//! Levels about and between the passages of rollers, and the lines of the facets, sensor by sensor: each as
-//! if it were the only one of the scene.
+//! Levels about and between the passages of rollers, and the lines of the facets, sensor by sensor: each
+//! sensor independently of the others.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use crate::levels::{self, Phase, SignalLevel, Visit};
 use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, RecordLevels, SensorLevels};
 use crate::tones::{self, NearestLine, PredictedLine};
 
-/// Multiple of the facet tone that the paper sees beside it.
+/// Multiple of the facet tone that the paper reports.
 const FIFTH: f64 = 5.0;
 
 /// Parts of a record.
@@ -24,11 +24,11 @@ struct Spans<'a> {
     quiet: Vec<Range<usize>>,
 }
 
-/// Levels of one sensor.
-struct Heard {
+/// Levels of one sensor [g]: of the impulses at the exits, and of the gaps between events.
+struct QuietAndImpulse {
     impulse: Option<SignalLevel>,
     between: Option<SignalLevel>,
-    /// In the gaps behind the notch, its transient left out.
+    /// Level of the gaps behind the notch, without its transient.
     filtered: Option<SignalLevel>,
 }
 
@@ -47,15 +47,15 @@ pub(super) fn level_finding(
     let spans = Spans::of(time, events);
     let mut finding = LevelsFinding::default();
     for (number, sensor) in sensors.iter().enumerate() {
-        let heard = spans.heard(sensor);
+        let found = spans.levels(sensor);
         if number == 0 {
-            finding = spans.leading(sensor, &heard);
+            finding = spans.leading(sensor, &found);
             for event in events.iter_mut() {
                 let span = event.left_ms().map(|t| levels::impulse_span(time, 1e-3 * t));
                 event.impulse_g = span.and_then(|s| levels::level(&sensor.raw_g, &[s])).map(|l| l.peak);
             }
         }
-        finding.sensors.push(spans.of_sensor(sensor, &heard, facet_lines(sensor, tone)?));
+        finding.sensors.push(spans.of_sensor(sensor, &found, facet_lines(sensor, tone)?));
     }
     if let Some(filter) = filter.filter(|_| !sensors.is_empty() && finding.between_filtered_g.is_none()) {
         notes.push(format!(
@@ -77,20 +77,20 @@ impl<'a> Spans<'a> {
         Self { time, phases, impulses, quiet }
     }
 
-    fn heard(&self, sensor: &SensorSignal) -> Heard {
+    fn levels(&self, sensor: &SensorSignal) -> QuietAndImpulse {
         let start = self.time.first().copied().unwrap_or(0.0);
         let settled = start + sensor.notch.as_ref().map_or(0.0, Filter::transient_s);
         let quiet_settled = levels::gap_spans(self.time, &self.phases, settled);
-        Heard {
+        QuietAndImpulse {
             impulse: levels::level(&sensor.raw_g, &self.impulses),
             between: levels::level(&sensor.raw_g, &self.quiet),
             filtered: levels::level(&sensor.filtered_g, &quiet_settled),
         }
     }
 
-    /// What is said of the leading sensor alone.
-    fn leading(&self, sensor: &SensorSignal, heard: &Heard) -> LevelsFinding {
-        let Heard { impulse, between, filtered } = heard;
+    /// Numbers of the leading sensor alone.
+    fn leading(&self, sensor: &SensorSignal, found: &QuietAndImpulse) -> LevelsFinding {
+        let QuietAndImpulse { impulse, between, filtered } = found;
         LevelsFinding {
             sensor: Some(sensor.name.clone()),
             phases: by_phase(&sensor.raw_g, &self.phases),
@@ -110,10 +110,10 @@ impl<'a> Spans<'a> {
     fn of_sensor(
         &self,
         sensor: &SensorSignal,
-        heard: &Heard,
+        found: &QuietAndImpulse,
         [tone, fifth]: [NearestLine; 2],
     ) -> SensorLevels {
-        let Heard { impulse, between, filtered } = heard;
+        let QuietAndImpulse { impulse, between, filtered } = found;
         SensorLevels {
             sensor: sensor.name.clone(),
             angle_deg: sensor.angle_deg,

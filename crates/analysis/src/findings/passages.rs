@@ -1,4 +1,4 @@
-//! What happens when rollers cross the defect: events, and the forces themselves.
+//! Passages of rollers over the defect: events, and the forces themselves.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -26,8 +26,7 @@ const LOADED: f64 = 0.05;
 /// Traverses before and behind a passage in which it is looked for.
 const ABOUT: f64 = 3.0;
 
-/// A roller that comes earlier or later than without slip by less than this part of a traverse is looked for
-/// where it would be without.
+/// Slip below which a passage is expected at its time without slip, as a part of a traverse.
 const UNMOVED: f64 = 0.1;
 
 /// Notes of one kind that are said in full; of the others the number.
@@ -43,7 +42,7 @@ pub(super) struct Passages<'a> {
     seen: Vec<BTreeMap<usize, (Event, Vec<String>)>>,
 }
 
-/// A bearing with what its oil keeps between surfaces.
+/// A bearing with its least film thickness.
 #[derive(Debug, Clone, Copy)]
 struct Oiled<'a> {
     scene: &'a ResolvedScene,
@@ -105,8 +104,8 @@ impl<'a> Passages<'a> {
         }
     }
 
-    /// One event for every passage that begins within the record, in order of expected entry, where rollers
-    /// carry; at rest the fullest has `fullest_n`.
+    /// One event for every passage of a loaded roller that begins within the record, in order of expected
+    /// entry; `fullest_n` [N] is the largest static force.
     pub(super) fn events(
         mut self,
         record: &Record<'_>,
@@ -148,8 +147,7 @@ struct Path {
 }
 
 impl Path {
-    /// Of a roller with this orbital angle [rad]. `turned_rad` says how far the raceway has turned at a time
-    /// [s].
+    /// Of a roller with this orbital angle [rad]. `turned_rad` is the angle of the raceway at a time [s].
     fn of(
         orbit: &[f64],
         time: &[f64],
@@ -157,7 +155,7 @@ impl Path {
         period_s: Option<f64>,
         turned_rad: impl Fn(f64) -> f64,
     ) -> Self {
-        // As the raceway sees it.
+        // In the frame of the raceway.
         let orbit: Vec<f64> = orbit.iter().zip(time).map(|(angle, &t)| angle - turned_rad(t)).collect();
         let over = |edge: f64| events::crossings(time, &orbit, edge.to_radians());
         Self {
@@ -169,8 +167,8 @@ impl Path {
         }
     }
 
-    /// Entry and exit [s] of the passage that follows, and from then on how late it is. `None` for what is
-    /// not on record, or further away than half a period or, of a single passage, a traverse.
+    /// Entry and exit [s] of the next passage, with its delay. `None` outside of the record, or when it is
+    /// further away than half a period or, of a single passage, a traverse.
     fn next(&mut self, passage: &Crossing) -> [Option<f64>; 2] {
         let found = [
             self.near(&self.leading, passage.entry_s, passage),
@@ -197,8 +195,8 @@ impl Path {
     }
 }
 
-/// Events of one roller over one spall that begin within the record, with what was noted of them, by their
-/// place among the spall's passages.
+/// Events of one roller over one spall that begin within the record, with notes, by their number among the
+/// spall's passages.
 fn passages_of(
     bearing: Oiled<'_>,
     time_s: &[f64],
@@ -282,7 +280,7 @@ fn passages_of(
     events
 }
 
-/// Events of one spall, from those `seen` over it in the order of its passages, of rollers that carry at
+/// Events of one spall, from those `seen` over it in the order of its passages, of rollers with a load of at
 /// least `least_n`.
 fn events_of(
     record: &Record<'_>,
@@ -336,8 +334,7 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
         .map(|e| (e.roller, e.extent_s()))
         .map(|(roller, [from, until])| (roller, from, until))
         .collect();
-    // In a long record a neighbour comes round again; the one that counts is a roller spacing before or
-    // after.
+    // In a long record a neighbour passes again; the relevant passage is a roller spacing before or after.
     let spacing_s = 1.0 / prediction.kinematics.bpfo_hz;
     for event in events.iter_mut() {
         let [own_from, own_until] = event.extent_s();
@@ -359,7 +356,7 @@ fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]
             let Some(at) = during.clone().filter(free).max_by(|&a, &b| force[a].total_cmp(&force[b])) else {
                 continue;
             };
-            let before = events::median(&mut force[..during.start].to_vec());
+            let before = stribeck_dsp::median(&mut force[..during.start].to_vec());
             let gain = force[at] / before;
             if before > 0.0 && force[at] > before && most.is_none_or(|(_, most, _)| gain >= most) {
                 most = Some((time[at], gain, force[at]));
@@ -456,7 +453,7 @@ impl Event {
 mod tests {
     use super::*;
 
-    /// Thirty-seven orbits of a roller whose cage turns 0.4 % slower than without slip, and so comes ten
+    /// Thirty-seven orbits of a roller whose cage turns 0.4 % slower than without slip, and so is ten
     /// traverses late in the end, or 0.4 % faster.
     #[test]
     fn example_a_slipping_roller_is_followed_through_a_long_record() {

@@ -6,7 +6,7 @@ use stribeck_scene::run_dir::Run;
 
 use super::{GRID_HZ, SHORTEST_SPECTRUM, SensorSignal};
 use crate::Error;
-use crate::families::{self, Channel, Motion, RollerTrack};
+use crate::families::{self, Channel, RecordedMotion, RollerTrack};
 use crate::kinematics;
 use crate::levels::STANDARD_GRAVITY;
 use crate::prediction::Prediction;
@@ -72,7 +72,7 @@ pub(super) fn tracks_and_channels(
     sensors: &[SensorSignal],
     steady: bool,
     notes: &mut Vec<String>,
-) -> Result<(Motion, Vec<Channel>), Error> {
+) -> Result<(RecordedMotion, Vec<Channel>), Error> {
     let interval_s = record.interval_s();
     let bpfo_hz = motion.bpfo_hz.filter(|hz| *hz > 0.0).unwrap_or(prediction.kinematics.bpfo_hz);
     let early = families::too_early(record.len(), interval_s, bpfo_hz).unwrap_or(0);
@@ -94,7 +94,7 @@ pub(super) fn tracks_and_channels(
         let spin = late.spin.iter().map(|angle| sense * angle).collect();
         RollerTrack { place, orbit, spin, load_n: late.outer_normal() }
     };
-    let tracks = Motion {
+    let tracks = RecordedMotion {
         interval_s,
         shaft_rad_s: sense * prediction.kinematics.shaft_rad_s,
         outer_rad_s: sense * prediction.kinematics.outer_rad_s,

@@ -151,8 +151,8 @@ pub(super) fn filter_sensors(
     Ok(())
 }
 
-/// The defect's family over the angle of the shaft against the outer ring, put into `duty`, and the spectrum
-/// behind it; a note where there is none.
+/// The defect's family over the angle of the shaft against the outer ring, stored in `duty`, with the
+/// spectrum; a note where there is none.
 pub(super) fn order_spectrum(
     run: &Run,
     record: &Record<'_>,

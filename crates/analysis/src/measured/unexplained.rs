@@ -34,6 +34,9 @@ pub(super) struct Found {
 pub(super) struct Known {
     /// Its comb [Hz].
     pub(super) comb_hz: f64,
+    /// Ends of the place in which it was looked for [Hz].
+    pub(super) low_hz: f64,
+    pub(super) high_hz: f64,
     /// Its height over the background.
     pub(super) height: f64,
 }
@@ -46,6 +49,8 @@ const WINDOW: f64 = 0.01;
 /// Sidebands of the shaft and of the cage that a family may have, either way.
 const BESIDE_SHAFT: i32 = 4;
 const BESIDE_CAGE: i32 = 2;
+/// A comb that stands higher than a family by this factor, 6 dB, is no part of it.
+const FAR_HIGHER: f64 = 4.0;
 /// Probability of a false alarm at which such a comb is named.
 const NAMED: f64 = 1e-9;
 
@@ -96,11 +101,14 @@ fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[Known]) -
     near_shaft
         || families.iter().any(|family| {
             let f = family.comb_hz;
-            // A multiple or an even part of a family is the family's, however high it stands; of two combs
-            // that share some lines only, the higher one is no part of the lower.
-            let part = (1..=5).any(|n| is(f * f64::from(n)) || is(f / f64::from(n)));
-            let shared = (2..=5).any(|q| (2..=5).any(|p| is(f * f64::from(p) / f64::from(q))));
-            let fraction = part || (shared && family.height >= comb.height);
+            // A multiple or an even part of a family is the family's, however high it stands. A family whose
+            // place ends beside the comb has its flank; two that share some lines may be parts of each other:
+            // the comb is the family's unless it stands far higher.
+            let is_lower = comb.height < FAR_HIGHER * family.height;
+            let is_same = is(f) && ((family.low_hz..=family.high_hz).contains(&hz) || is_lower);
+            let part = (2..=5).any(|n| is(f * f64::from(n)) || is(f / f64::from(n)));
+            let shared = (2..=5).any(|q| (2..=5).any(|p| p != q && is(f * f64::from(p) / f64::from(q))));
+            let fraction = is_same || part || (shared && is_lower);
             let by_shaft = (-BESIDE_SHAFT..=BESIDE_SHAFT)
                 .any(|k| (1..=2).any(|m| is(f64::from(m) * f + f64::from(k) * own.shaft_hz)));
             let by_cage = (-BESIDE_CAGE..=BESIDE_CAGE)

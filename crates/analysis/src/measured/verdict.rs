@@ -136,8 +136,9 @@ pub(super) fn judge(
         .iter()
         .filter(|(family, _)| family.noise_p_value < ALPHA)
         .filter_map(|(_, standing)| {
-            let comb = &standing.as_ref()?.comb;
-            Some(Known { comb_hz: comb.fundamental_hz, height: comb.height })
+            let Standing { comb, comb_hz, .. } = standing.as_ref()?;
+            let [low_hz, high_hz] = [1.0 - SLIP, 1.0 + SLIP].map(|part| part * comb_hz);
+            Some(Known { comb_hz: comb.fundamental_hz, low_hz, high_hz, height: comb.height })
         })
         .collect();
     let of_others = |hz: f64| around.may_be(hz / shaft_hz);

@@ -1,8 +1,8 @@
-//! What the paper's figures show in numbers, beside ours: in their order, with the scatter of starts.
+//! Numbers read from the paper's figures, beside ours: in their order, with the scatter of starts.
 //!
 //! The paper is one start, so its number *differs* where it lies farther from the mean of our starts than a
-//! further start would in 95 % of cases, plus what its print leaves open. A single run does not know its
-//! scatter; then that of [`Shown::scatter`] is taken, about twice what ensembles of the paper's bearing have.
+//! further start would in 95 % of cases, plus the reading error of the print. A single run has no scatter;
+//! then [`Shown::scatter`] is used, about twice that of ensembles of the paper's bearing.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -23,7 +23,7 @@ const OF_A_LEVEL: f64 = 0.3;
 pub struct Shown {
     /// Number of the figure.
     pub figure: &'static str,
-    /// What it shows.
+    /// Quantity.
     pub quantity: String,
     /// Unit of all numbers.
     pub unit: &'static str,
@@ -31,9 +31,9 @@ pub struct Shown {
     pub paper: f64,
     /// How far off it may be read.
     pub read: f64,
-    /// Deviation of one start that is granted where it is not known.
+    /// Assumed deviation of one start where the scatter is unknown.
     pub scatter: f64,
-    /// More is no difference: the paper says that it happens, not how often.
+    /// A larger value is no difference: the paper states an occurrence, not a number.
     pub at_least: bool,
     /// Ours; `None` where the run has none.
     pub ours: Option<f64>,
@@ -153,8 +153,7 @@ impl Beside {
         (ours.mean - shown.paper).abs() > granted + shown.read
     }
 
-    /// How far the means are apart, in what separates no difference from one [-]; infinite where ours is
-    /// missing. Orders what differs.
+    /// Difference of the means over its limit [-]; infinite where ours is missing. Sorts the differences.
     pub fn distance(&self) -> f64 {
         let Some(ours) = self.ours.filter(|s| 2 * s.count > self.of) else { return f64::INFINITY };
         let granted = ours.of_a_further_one().unwrap_or(self.shown.scatter) + self.shown.read;

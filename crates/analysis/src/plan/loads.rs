@@ -1,4 +1,4 @@
-//! What a bearing carries before anything moves, and what will go wrong when it does.
+//! Static loads of a bearing, and problems to expect in motion.
 
 use std::f64::consts::PI;
 
@@ -12,7 +12,7 @@ use stribeck_scene::{
 
 use crate::Error;
 
-/// Static load sharing between rigid rings, and what it presses.
+/// Static load distribution between rigid rings, with approaches and pressures.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loads {
     /// Diametral clearance [m]; below zero, rollers are pressed between the raceways.
@@ -62,7 +62,7 @@ const SAFE: f64 = 1.0;
 /// A cage that nothing holds has fallen through its room after this many times a free fall over it.
 const FALLS: f64 = 3.0;
 
-/// What will go wrong, each with its reason and what to change.
+/// Problems to expect, each with its reason and remedy.
 pub(super) fn dangers(scene: &ResolvedScene, loads: &Loads) -> Vec<String> {
     [overload(loads), cage(scene), penetration(scene, loads)].into_iter().flatten().collect()
 }
@@ -100,7 +100,7 @@ fn cage(scene: &ResolvedScene) -> Option<String> {
         return None;
     }
     let fall_s = (2.0 * room.max(0.0) / scene.gravity.max(f64::MIN_POSITIVE)).sqrt();
-    // What corners hold, but too loosely, is as free until then.
+    // A cage held by pocket corners with a large clearance is as free until they touch.
     if scene.duration <= FALLS * fall_s {
         return None;
     }

@@ -7,7 +7,7 @@ use stribeck_film::{Layer, Pushed};
 use super::{Film, Films, Memory};
 use crate::interactions::{Interactions, within_reach};
 
-/// Numbers of a report: heat, force, how far springs are pressed in, thickness, and where the force goes.
+/// Numbers of a report: heat, force, deflection of the springs, thickness, and the distribution of the force.
 const REPORT: usize = 5 + 8;
 
 /// About how long one takes [ns].
@@ -74,8 +74,8 @@ impl Interactions for Films {
     fn hear(&mut self, which: usize, report: &[f64]) {
         let film = &mut self.films[which];
         let &[heat, force, depth, dry, above, ref shares @ ..] = report else { return };
-        // What others need not know stays with the rank that computes the film: where it ends, what it
-        // carries, whether it is solid.
+        // The rest of the state stays on the rank that computes the film: its end, its force, whether it is
+        // solid.
         film.pushed = Pushed { heat, force, pressed: [depth, dry], ..film.pushed };
         let mut layer = film.memory.layer.unwrap_or(Layer::at(above));
         layer.above = above;

@@ -1,6 +1,6 @@
 //! Bands of chords with few points each: a chord in each lane.
 //!
-//! Points near the end of the other chord or near a corner are left over.
+//! Points near the end of the other chord or near a corner are left to scalar code.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
@@ -21,20 +21,19 @@ use stribeck_surface::{Surface, foot::Push, plane::choose};
 pub(crate) struct ChordBand<'a> {
     pub(crate) points: &'a Points,
     pub(crate) candidates: &'a [Candidate],
-    /// Of all points of the pass: where they were found last, until when they are inactive, what they
-    /// remember.
+    /// Of all points of the pass: last facet, time until which they are inactive, and history.
     pub(crate) nearest: &'a [u32],
     pub(crate) inactive_until: &'a mut [f64],
     pub(crate) history: &'a mut Histories,
 }
 
-/// What became of a band's facets; bits are those of lanes.
+/// Results of a band's facets; one bit a lane.
 pub(crate) struct BandOutcome<V: Simd> {
     /// Facets of which a point touches.
     pub(crate) touched: u64,
-    /// Facets whose first, second and so on point is active and left over.
+    /// Facets whose first, second and so on point is active and left to scalar code.
     pub(crate) left: [u64; FEW_POINTS],
-    /// When the next point of each facet becomes active; of use where none touches and none is left.
+    /// When the next point of each facet becomes active; valid where none touches and none is left.
     pub(crate) soonest: Vector<V>,
     /// Sum of the forces on the facets [N].
     pub(crate) force: [f64; 2],
@@ -58,7 +57,7 @@ impl ChordBand<'_> {
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));
         let soon = Vector::all(simd, now + 1.0);
         let base = candidates[0].first as usize;
-        // Lanes without a facet go along with the first one; their points are never active.
+        // Lanes without a facet repeat the first one; their points are never active.
         let lanes = Vector::<V>::LEN;
         let mut pattern = [candidates[0].pattern.first; LANES];
         let mut alike = true;
@@ -192,7 +191,7 @@ impl<V: Simd> OnChords<V> {
         self.with_place = [fx.times_plus(place, wx), fy.times_plus(place, wy)];
     }
 
-    /// Hands the forces over to the nodes; what neighbouring chords do to a node that they share, at once.
+    /// Adds the forces to the nodes; those of neighbouring chords on a shared node in one addition.
     #[inline(always)]
     fn flush(&self, push: &mut Vec<Push>) {
         if self.lanes == 0 {

@@ -39,7 +39,7 @@ pub(crate) struct ChordLanes {
     pub(crate) joints: Joints,
 }
 
-/// How chords in neighbouring lanes hang together.
+/// How chords in neighbouring lanes share nodes.
 #[derive(Clone, Copy)]
 pub(crate) enum Joints {
     /// Each begins where the one in the lane before ends.
@@ -53,8 +53,8 @@ pub(crate) enum Joints {
 }
 
 impl ChordLanes {
-    /// From the slots of each chord's ends, in so many lanes. They are compared one after the other: whole
-    /// vectors would wait for slots that are on their way to memory.
+    /// From the slots of each chord's ends. They are compared one by one: vector loads would wait for stores
+    /// of slots still in flight.
     #[inline(always)]
     pub(crate) fn new(lanes: usize, mut ends_of: impl FnMut(usize) -> [u32; 2]) -> Self {
         let mut ends = [[0; LANES]; 2];
@@ -79,7 +79,7 @@ impl ChordLanes {
     }
 }
 
-/// A number of a field at both ends of each chord; what two chords share is read once.
+/// A number of a field at both ends of each chord; a shared node is read once.
 #[inline(always)]
 fn both<V: Simd>(simd: V, field: &[f64], ChordLanes { ends: [a, b], joints }: &ChordLanes) -> [Vector<V>; 2] {
     let before = |first: u32| Vector::all(simd, field[first as usize]);

@@ -1,6 +1,6 @@
 //! Points of one chord against another chord: feet, motion and forces, over any [`Number`].
 //!
-//! On chords everything is linear in the place of a point, so all points take the same few operations,
+//! On chords everything is linear in the place of a point, so all points need the same few operations,
 //! whether they lie on one facet ([`chord_row`](super::chord_row)) or on many
 //! ([`chord_band`](super::chord_band)). Points near the end of the other chord are left for
 //! [`single_points`](super::single_points).
@@ -50,7 +50,7 @@ pub(crate) struct ChordPoints<N> {
     pub(crate) damping: N,
 }
 
-/// What acts between them.
+/// Law between them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ChordReaction<N> {
     pub(crate) acts: Reaction<N>,
@@ -123,7 +123,7 @@ impl<N: Number> ChordPair<N> {
         if end { one.choose_below(foot, one, zero) } else { foot.choose_below(zero, one, zero) }
     }
 
-    /// What acts on points, and its energies; without `MEMORY` the penalty alone.
+    /// Forces on points, and energies; without `MEMORY` of the penalty alone.
     #[inline(always)]
     pub(crate) fn act<const MEMORY: bool>(
         &self,

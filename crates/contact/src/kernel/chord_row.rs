@@ -1,7 +1,7 @@
 //! Rows of points on one chord: whole vectors of them, each against the one of two chords of the other
 //! surface that is below it (PERFORMANCE.md §2).
 //!
-//! Points near the end of the other chord or near a corner are left over.
+//! Points near the end of the other chord or near a corner are left to scalar code.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};

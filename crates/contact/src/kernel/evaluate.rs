@@ -1,5 +1,5 @@
-//! One evaluation of a pass: which facets are active, vectors of their points first, then what is left over,
-//! one by one.
+//! One evaluation of a pass: the active facets, their points first in vectors, then the remaining ones one by
+//! one.
 
 use pulp::{Arch, Simd, WithSimd};
 use stribeck_simd::lanes::{LANES, Number, Vector};
@@ -20,7 +20,7 @@ use crate::{
 };
 use stribeck_surface::{Surface, chord::ChordFacet, facet::Facet, foot::Push, spline_facet::SplineFacet};
 
-/// What an evaluation needs; compiled for each instruction set.
+/// Arguments of an evaluation, which is compiled for each instruction set.
 pub(crate) struct Evaluation<'a> {
     pub(crate) memory: &'a mut Memory,
     pub(crate) points: &'a Points,
@@ -34,7 +34,7 @@ pub(crate) struct Evaluation<'a> {
     pub(crate) push: &'a mut Vec<Push>,
 }
 
-/// What it comes to, besides the forces.
+/// Its results besides the forces.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Sum {
     /// Force on the secondary body [N].
@@ -52,7 +52,7 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
-    /// Numbers that tell what it came to.
+    /// Length of its results as numbers.
     pub(crate) const NUMBERS: usize = 6;
 
     /// All but the work, as numbers.
@@ -61,7 +61,7 @@ impl Sum {
         [x, y, stored, friction, damping, penetration]
     }
 
-    /// What [`Sum::numbers`] has given.
+    /// From the numbers of [`Sum::numbers`].
     pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
         let &[x, y, stored, friction, damping, penetration] = numbers else { return Self::default() };
         Self { force: [x, y], stored, friction, damping, penetration, work: 0 }
@@ -70,8 +70,8 @@ impl Sum {
 
 /// How rows of points on facets of one kind are done in vectors, against facets of the same kind.
 trait RowFacet: Facet {
-    /// What acts on the other surface may wait in `others`; the facet in motion is left in `own` where it was
-    /// needed.
+    /// Forces on the other surface may wait in `others`; the moving facet is stored in `own` where it was
+    /// computed.
     fn touch_row<V: Simd, const MEMORY: bool>(
         simd: V,
         row: Row<'_>,
@@ -120,8 +120,8 @@ impl WithSimd for Evaluation<'_> {
 
     #[inline(always)]
     fn with_simd<V: Simd>(self, simd: V) -> Sum {
-        // Which curves meet is asked once a pass, and whether points remember; the loop over points is
-        // compiled for each.
+        // The kinds of curves, and whether points have a history, are decided once a pass; the loop over
+        // points is compiled for each case.
         let memory = self.memory.history.is_some();
         match [self.secondary, self.primary].map(|surface| surface.spline().is_some()) {
             [false, false] if memory => self.evaluate::<V, ChordFacet, ChordFacet, true>(simd),
@@ -262,7 +262,7 @@ impl Evaluation<'_> {
     }
 }
 
-/// What facets come to once vectors of their points are done.
+/// Results of facets once vectors of their points are done.
 struct Facets<'a, S: Facet, P: Facet> {
     single: SinglePoints<'a, S, P>,
     /// See [`Memory`].
@@ -272,8 +272,8 @@ struct Facets<'a, S: Facet, P: Facet> {
 }
 
 impl<S: Facet, P: Facet> Facets<'_, S, P> {
-    /// Finishes a facet: evaluates the points that are left over, hands forces over and finds out when it is
-    /// active again.
+    /// Finishes a facet: evaluates the remaining points, adds forces to nodes and finds when it is active
+    /// again.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)] // what a pass remembers, field by field
     fn finish<V: Simd>(

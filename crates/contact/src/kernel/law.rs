@@ -1,5 +1,5 @@
-//! What acts at points in contact, and what they remember (THEORY §4.2–4.3), over any [`Number`]: at single
-//! points and at whole vectors of them.
+//! The law at points in contact, with their history (THEORY §4.2–4.3), over any [`Number`]: at single points
+//! and at whole vectors of them.
 
 use stribeck_simd::lanes::Number;
 
@@ -13,7 +13,7 @@ use stribeck_surface::{
 /// The law of a pass, the same in all lanes.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LawKernel<N> {
-    /// Per weight of a point: what [`PointState::weight`] is multiplied by.
+    /// Per weight of a point: the factor of [`PointState::weight`].
     stiffness: N,
     dashpot: N,
     tangential: N,
@@ -33,7 +33,7 @@ pub(crate) struct LawKernel<N> {
     longest: N,
 }
 
-/// Points whose feet are known, and what they remember.
+/// Points with known feet, and their history.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PointState<N> {
     /// One where the foot holds and the point is looked at; nothing acts on the others.
@@ -49,15 +49,16 @@ pub(crate) struct PointState<N> {
     pub(crate) damping: N,
 }
 
-/// What becomes of them.
+/// Their results.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reaction<N> {
     /// One where the point touches.
     pub(crate) on: N,
-    /// Forces [N], of use only where points are on: against the normal, damping included, and to its left.
+    /// Forces [N], valid only where points are in contact: against the normal, damping included, and to its
+    /// left.
     pub(crate) pressure: N,
     pub(crate) shear: N,
-    /// What all remember now.
+    /// New history.
     pub(crate) slip: N,
     pub(crate) damping: N,
     /// One where the point stands off and has nothing to settle; it is inactive until then.
@@ -142,7 +143,7 @@ impl<N: Number> LawKernel<N> {
         magnitude(gap - self.reach)
     }
 
-    /// What acts, and its energies. Without `MEMORY` the penalty alone.
+    /// Forces, and energies. Without `MEMORY` of the penalty alone.
     #[inline(always)]
     pub(crate) fn act<const MEMORY: bool>(
         &self,
@@ -185,7 +186,7 @@ impl<N: Number> LawKernel<N> {
                 inactive_until,
             };
         }
-        // Damping sets in with the stiffness and never pulls: the sum of both stays a pressure.
+        // Damping sets in with the stiffness, and the sum of both is never tensile.
         let damping = (-(dashpot * opening)).max(-elastic);
         // Work of a force over a step is the mean of its two ends times the displacement (THEORY §2.5).
         let damping_heat = -(half * self.dt * (points.damping + damping) * opening);
@@ -210,7 +211,7 @@ impl<N: Number> LawKernel<N> {
         }
     }
 
-    /// Points that lost contact: settles the last half step of what they remember.
+    /// Points that lost contact: accounts for the last half step of their history.
     #[inline(always)]
     pub(crate) fn release(&self, points: &PointState<N>, totals: &mut Totals<N>) {
         let &PointState { weight, sliding, slip, damping, .. } = points;
@@ -235,8 +236,8 @@ mod tests {
     /// A point of surface: gap, weight, opening, along, slip and damping force of the step before.
     type State = [f64; 6];
 
-    /// What acts and what is remembered: pressure, shear, slip, damping force; stored energy, heat of
-    /// friction and of damping.
+    /// Forces and history: pressure, shear, slip, damping force; stored energy, heat of friction and of
+    /// damping.
     type Acted = [f64; 7];
 
     /// The law as a textbook has it, branch by branch: a penalty with a parabola about the corner, a dashpot
@@ -263,7 +264,7 @@ mod tests {
         let limit = law.friction * k * depth;
         let shear = if trial.abs() <= limit { trial } else { limit * trial.signum() };
         let elastic = [slip, shear / kt].map(|slip| 0.5 * kt * slip * slip);
-        // Work of the mean force over the step, less what the spring has stored of it.
+        // Work of the mean force over the step, less the energy stored in the spring.
         let friction = 0.5 * (kt * slip + shear) * along * DT - (elastic[1] - elastic[0]);
         let heat = -0.5 * (damping + dashpot) * opening * DT;
         [k * depth + dashpot, -shear, shear / kt, dashpot, k * energy + elastic[1], friction, heat]

@@ -1,4 +1,4 @@
-//! After a search: the facet of the primary surface from which each point of a candidate sets out.
+//! After a search: the facet of the primary surface at which each point of a candidate starts.
 
 use pulp::{Simd, WithSimd};
 use stribeck_simd::lanes::{LANES, Number, Vector};

@@ -52,7 +52,7 @@ impl<V: Simd> MovingPatch<V> {
 }
 
 /// One or two facets of the primary surface that points have their feet on, kept from one facet of points to
-/// the next: what acts on them is handed to the nodes when others come.
+/// the next: their forces are added to the nodes when others follow.
 pub(crate) struct OtherPatches<V: Simd> {
     facets: [Option<LoadedPatch<V>>; 2],
 }
@@ -124,7 +124,7 @@ fn sums<V: Simd>(Polynomial(forces): &Polynomial<Vector<V>, 4>) -> Polynomial<f6
 
 impl Row<'_> {
     /// Splines against splines: evaluates the points whose feet lie within the facets known for the first and
-    /// the last of them; those that certainly do not touch are inactive for a while.
+    /// the last of them; those that cannot touch become inactive for some time.
     #[inline(always)]
     pub(crate) fn touch_patches<V: Simd, const MEMORY: bool>(
         self,

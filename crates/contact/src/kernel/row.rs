@@ -1,5 +1,5 @@
-//! The points of one facet of a pass, whole vectors of them: what evaluations of chords and of splines have
-//! in common.
+//! The points of one facet of a pass, whole vectors of them: the common part of evaluations of chords and of
+//! splines.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};
@@ -18,8 +18,7 @@ const ROOM: usize = Method::MOST_POINTS + LANES;
 pub(crate) struct Row<'a> {
     pub(crate) candidate: &'a Candidate,
     pub(crate) points: &'a Points,
-    /// Of all points of the pass: where they were found last, until when they are inactive, what they
-    /// remember.
+    /// Of all points of the pass: last facet, time until which they are inactive, and history.
     pub(crate) nearest: &'a [u32],
     pub(crate) inactive_until: &'a mut [f64],
     pub(crate) history: &'a mut Histories,
@@ -35,7 +34,7 @@ pub(crate) struct Row<'a> {
 pub(crate) struct Outcome {
     /// Whether a point touches.
     pub(crate) touched: bool,
-    /// Bits of the active points that are left over.
+    /// Bits of the active points that are left to scalar code.
     pub(crate) left: u64,
     /// Force on the facet [N].
     pub(crate) force: [f64; 2],

@@ -1,5 +1,5 @@
 //! Points one by one: near ends and corners, on arcs, between chords and splines, in the static preload,
-//! where vectors of points do not do them.
+//! wherever vectors of points leave them.
 
 use stribeck_solver::state::Moment;
 
@@ -46,7 +46,7 @@ pub(crate) struct SinglePoints<'a, S: Facet, P: Facet> {
 }
 
 impl<S: Facet, P: Facet> SinglePoints<'_, S, P> {
-    /// Evaluates the points of a facet that are left over.
+    /// Evaluates the remaining points of a facet.
     #[inline(never)]
     pub(crate) fn touch(
         &mut self,

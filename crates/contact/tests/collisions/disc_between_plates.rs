@@ -32,7 +32,7 @@
 //! Nothing is lost.
 
 use stribeck_contact::Method;
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 
 use crate::common::*;
 use crate::penalty;
@@ -53,7 +53,7 @@ fn conserves_energy_over_a_hundred_bounces() {
     }
     let mut model = scene.model();
     for plate in plates {
-        model.motion[model.mesh.bodies[plate].nodes.clone()].fill(Motion::Held);
+        model.motion[model.mesh.bodies[plate].nodes.clone()].fill(NodeMotion::Held);
     }
     let (mut d, mut contacts) = scene.lay_out(&model);
     set_step(&mut d, &contacts, 0.5);

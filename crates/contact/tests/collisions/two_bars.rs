@@ -35,7 +35,7 @@
 //! The bars touch for 2L/c, c² = (λ + 2µ)/ρ, under the stress ρ c v, and exchange their velocities.
 
 use stribeck_contact::Method;
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_testing::{assert_close, ledger};
 
 use crate::common::*;
@@ -76,7 +76,7 @@ fn bars(length: f64, cells: usize, speed: f64, method: Method) -> BarImpact {
     let b = scene.add("right bar", &rectangle([1e-9, 0.0], length, 2.0 * size, cells, 2), "left");
     scene.pair(a, b, penalty(size), method);
     let mut model = scene.model();
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     let (mut d, mut contacts) = scene.lay_out(&model);
     set_step(&mut d, &contacts, 0.4);
     let bodies = [a, b].map(|body| of_body(&d, &model, body));

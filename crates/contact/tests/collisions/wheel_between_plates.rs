@@ -34,7 +34,7 @@
 //! The speed in flight stays what it was, and after as many steps back the wheel is where it started.
 
 use stribeck_contact::{Law, Method, Smoothing};
-use stribeck_solver::{Behaviour, Motion};
+use stribeck_solver::{Behaviour, NodeMotion};
 
 use crate::common::*;
 
@@ -60,7 +60,7 @@ fn conserves_energy_over_a_thousand_bounces_on_curves() {
     let mut model = scene.model();
     model.behaviour[wheel] = Behaviour::Rigid;
     for plate in plates {
-        model.motion[model.mesh.bodies[plate].nodes.clone()].fill(Motion::Held);
+        model.motion[model.mesh.bodies[plate].nodes.clone()].fill(NodeMotion::Held);
     }
     let arc = Smoothing::Arc { centre: [0.0; 2] };
     let curves = [(arc, true), (Smoothing::Facet, false), (Smoothing::Facet, false)];

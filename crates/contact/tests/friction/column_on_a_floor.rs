@@ -31,7 +31,7 @@
 //! The penetration is ρ g H/k; the resultant on the first body, the column, is its weight, upwards.
 
 use stribeck_contact::{Law, Method};
-use stribeck_solver::{Motion, force::NodalLoad};
+use stribeck_solver::{NodeMotion, force::NodalLoad};
 use stribeck_testing::assert_close;
 
 use crate::common::*;
@@ -64,8 +64,8 @@ fn example_penetration_is_pressure_over_stiffness() {
         let mut model = scene.model();
         model.gravity = [0.0, -G];
         // No sideways motion: the pressure is then the same everywhere.
-        model.motion[model.mesh.bodies[column].nodes.clone()].fill(Motion::HeldX);
-        model.motion[model.mesh.bodies[floor].nodes.clone()].fill(Motion::Held);
+        model.motion[model.mesh.bodies[column].nodes.clone()].fill(NodeMotion::HeldX);
+        model.motion[model.mesh.bodies[floor].nodes.clone()].fill(NodeMotion::Held);
         let (mut d, mut contacts) = scene.lay_out(&model);
         let bodies = vec![("column".to_owned(), of_body(&d, &model, column))];
         let mut no_load = NodalLoad::default();

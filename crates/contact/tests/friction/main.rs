@@ -15,7 +15,7 @@ mod column_on_a_floor;
 
 use stribeck_contact::{Contacts, Law, Method};
 use stribeck_mesh::Part;
-use stribeck_solver::{Behaviour, Dynamics, Model, Motion};
+use stribeck_solver::{Behaviour, Dynamics, Model, NodeMotion};
 
 use common::*;
 
@@ -45,7 +45,7 @@ impl OnFloor {
         scene.pair(body, floor, law, method);
         let mut model = scene.model();
         model.behaviour[body] = Behaviour::Rigid;
-        model.motion[model.mesh.bodies[floor].nodes.clone()].fill(Motion::Held);
+        model.motion[model.mesh.bodies[floor].nodes.clone()].fill(NodeMotion::Held);
         model.gravity = gravity;
         let (mut d, contacts) = scene.lay_out(&model);
         d.set_time_step(STEP).expect("a positive time step");

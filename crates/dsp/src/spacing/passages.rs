@@ -116,13 +116,11 @@ impl Search {
                 && near.iter().all(|power| *power <= all[n])
                 && between.iter().any(|power| *power <= VALLEY * all[n])
         };
-        (1..all.len() - 1)
-            .filter(|n| stands(*n))
-            .map(|n| Second {
-                lag: n.abs_diff(reach) as f64 + between_samples(&all, n, reach),
-                height: all[n],
-            })
-            .collect()
+        // A band may be later than both together.
+        let sharp = smoothing(self.sample_rate_hz).min(reach - 1);
+        let first = top(&all, highest(&all, reach - sharp..reach + sharp + 1));
+        let second = |n: usize| Second { lag: (top(&all, n) - first).abs(), height: all[n] };
+        (1..all.len() - 1).filter(|n| stands(*n)).map(second).collect()
     }
 
     /// Mean power about the strongest events, from the greatest distance before them to as much after, over
@@ -153,10 +151,10 @@ fn highest(values: &[f64], within: Range<usize>) -> usize {
     within.max_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(from)
 }
 
-/// By how much the top of a parabola through three values about `n` lies farther from `reach` [samples].
-fn between_samples(values: &[f64], n: usize, reach: usize) -> f64 {
+/// Where the parabola through a value and its neighbours has its top, if it has one near it [samples].
+fn top(values: &[f64], n: usize) -> f64 {
     let (left, right) = (values[n - 1], values[n + 1]);
     let bend = left - 2.0 * values[n] + right;
-    let offset = if bend < 0.0 { 0.5 * (left - right) / bend } else { 0.0 };
-    if n < reach { -offset } else { offset }
+    let offset = if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 };
+    n as f64 + offset
 }

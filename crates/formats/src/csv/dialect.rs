@@ -1,22 +1,21 @@
-//! How a table is written: what splits its columns, which sign is the decimal point, where its rows of
-//! numbers begin.
+//! How a table is written: separator of columns, decimal sign, first row of numbers.
 
 use super::stamp::stamp;
 
 /// How a table is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Dialect {
-    /// What splits columns; a space stands for any run of white space.
+    /// Separator of columns; a space stands for any run of white space.
     pub(crate) separator: char,
     pub(crate) decimal_comma: bool,
 }
 
-/// What a field is.
+/// Kind of a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Field {
     Number(f64),
     Stamp(i64, i32),
-    /// Nothing, or a word for what is missing.
+    /// Empty, or a word for a missing value.
     Missing,
     Text,
 }
@@ -86,8 +85,9 @@ impl Dialect {
         if self.separator == ' ' {
             return line.split_whitespace().map(clean).collect();
         }
-        if !line.contains('"') {
-            return line.split(self.separator).map(str::trim).collect();
+        // A quote without its other half takes no separator along.
+        if line.matches('"').count() % 2 == 1 || !line.contains('"') {
+            return line.split(self.separator).map(clean).collect();
         }
         let (mut fields, mut from, mut quoted) = (Vec::new(), 0, false);
         for (at, c) in line.char_indices() {
@@ -107,7 +107,7 @@ impl Dialect {
         line.chars().all(|c| c.is_whitespace() || c == self.separator || c == '"')
     }
 
-    /// What a field is.
+    /// Kind of a field.
     pub(crate) fn field(&self, field: &str) -> Field {
         const MISSING: [&str; 10] = ["", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "nil"];
         if let Some(number) = self.number(field) {
@@ -119,44 +119,76 @@ impl Dialect {
         stamp(field).map_or(Field::Text, |(s, ns)| Field::Stamp(s, ns))
     }
 
-    fn number(&self, field: &str) -> Option<f64> {
+    /// A number with the decimal sign of the table, and with its thousands in groups.
+    pub(super) fn number(&self, field: &str) -> Option<f64> {
         // Rust takes words for numbers that are none here.
         if !field.contains(|c: char| c.is_ascii_digit()) {
             return None;
         }
+        // Some write a minus that is no hyphen.
+        let field = field.replace('\u{2212}', "-");
         let plain = |text: &str| text.parse::<f64>().ok();
         let number = |text: &str| {
             // FORTRAN writes D for the exponent of a double.
             plain(text).or_else(|| plain(&text.replace(['d', 'D'], "e")))
         };
+        let (point, group) = if self.decimal_comma { (',', '.') } else { ('.', ',') };
+        let grouped = |sign: char| ungrouped(&field, point, sign).and_then(|text| plain(&text));
         if self.decimal_comma && field.contains(',') {
-            number(&field.replace(',', "."))
+            number(&field.replace(',', ".")).or_else(|| grouped(group))
         } else {
-            number(field)
+            number(&field).or_else(|| grouped(group))
         }
+        .or_else(|| {
+            let signs = ['\'', '\u{2019}', '\u{a0}', '\u{202f}', ' '];
+            let point = if field.contains(point) { point } else { '.' };
+            signs.into_iter().find_map(|sign| plain(&ungrouped(&field, point, sign)?))
+        })
     }
 }
 
+/// `1.234.567,5` without the signs between its thousands, and with a decimal point. Without a fraction a
+/// single sign may be the decimal one: then it is none.
+fn ungrouped(field: &str, point: char, group: char) -> Option<String> {
+    let (whole, fraction) = match field.split_once(point) {
+        Some((whole, fraction)) => (whole, Some(fraction)),
+        None => (field, None),
+    };
+    let mut groups = whole.trim_start_matches(['-', '+']).split(group);
+    let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    let first = groups.next().filter(|text| digits(text) && text.len() <= 3)?;
+    let rest: Vec<&str> = groups.collect();
+    let is_grouped = rest.iter().all(|text| text.len() == 3 && digits(text))
+        && fraction.is_none_or(digits)
+        && rest.len() >= if fraction.is_some() { 1 } else { 2 };
+    let sign = if whole.starts_with('-') { "-" } else { "" };
+    is_grouped.then(|| format!("{sign}{first}{}.{}", rest.concat(), fraction.unwrap_or("0")))
+}
+
 /// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line
-/// above has no comma, or the first part is `-0`, or what is behind the comma has always the same digits,
-/// zeros at its beginning, too.
+/// above has no comma, or the first part is `-0`, or the part behind the comma always has the same digits,
+/// zeros at its beginning, too. One line in ten may be damaged.
 fn is_one_column(head: &[String], rows: &[String]) -> bool {
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
-    let pairs: Option<Vec<(&str, &str)>> = rows
-        .iter()
-        .map(|line| line.trim().trim_matches('"'))
-        .filter(|line| !line.is_empty())
-        .map(|line| {
-            line.split_once(',').filter(|(a, b)| digits(a.trim_start_matches(['-', '+'])) && digits(b))
-        })
-        .collect();
-    let Some(pairs) = pairs.filter(|pairs| !pairs.is_empty()) else { return false };
+    // `1,25e-3` is a number, too.
+    let mantissa = |text: &str| text.split_once(['e', 'E', 'd', 'D']).map(|(before, _)| before.len());
+    let lines = rows.iter().map(|line| line.trim().trim_matches('"')).filter(|line| !line.is_empty());
+    let (mut count, mut pairs): (usize, Vec<(&str, &str)>) = (0, Vec::new());
+    for line in lines {
+        count += 1;
+        let pair = line.split_once(',').map(|(a, b)| (a, &b[..mantissa(b).unwrap_or(b.len())]));
+        let whole = |a: &str| digits(a) || ungrouped(&format!("{a},0"), ',', '.').is_some();
+        pairs.extend(pair.filter(|(a, b)| whole(a.trim_start_matches(['-', '+'])) && digits(b)));
+    }
+    if pairs.is_empty() || 10 * (count - pairs.len()) > count {
+        return false;
+    }
     if let Some(name) = head.iter().rev().find(|line| !line.trim().is_empty()) {
         return !name.contains(',');
     }
     let width = pairs[0].1.len();
     let padded = width > 1
-        && pairs.iter().all(|(_, b)| b.len() == width)
+        && 10 * pairs.iter().filter(|(_, b)| b.len() == width).count() >= 9 * pairs.len()
         && pairs.iter().any(|(_, b)| b.starts_with('0'));
     padded || pairs.iter().any(|(a, _)| *a == "-0")
 }

@@ -1,7 +1,7 @@
 //! Names and units of columns from the lines above them.
 
 use super::dialect::Dialect;
-use crate::units::{is_unit, seconds};
+use crate::units::{self, is_unit, seconds};
 
 /// Names and units of `columns` columns; both may be empty texts.
 pub(crate) fn names(head: &[String], dialect: Dialect, columns: usize) -> (Vec<String>, Vec<String>) {
@@ -51,4 +51,27 @@ fn is_row_of_units(row: &[String]) -> bool {
     // `t` and `time` are names.
     let time = some.iter().any(|field| seconds(field).is_some());
     !some.is_empty() && (2 * known > some.len() || known > 0 && time)
+}
+
+/// The sample rate [Hz] that a line above the table says: `fs = 12800`, `Sample rate: 12.8 kHz`, `Delta_X`
+/// and the step behind a separator. Lines that contradict each other say nothing.
+pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
+    let mut said = head.iter().filter_map(|line| {
+        let line = line.trim_start_matches(|c: char| c.is_whitespace() || "#%\"".contains(c));
+        let (key, rest) = line.split_once([':', '=', '\t', ';', ','])?;
+        let rest = rest.trim_matches(|c: char| c.is_whitespace() || "\";,:=".contains(c));
+        let end = rest.find(|c: char| !(c.is_ascii_digit() || ".,+-eE".contains(c)));
+        let (number, behind) = rest.split_at(end.unwrap_or(rest.len()));
+        let number = number.trim_end_matches([',', '.']);
+        // The head may have another decimal sign than the table.
+        let plain = |text: &str| text.parse().ok();
+        let value = plain(number).or_else(|| dialect.number(number));
+        let value = value.or_else(|| plain(&number.replacen(',', ".", 1)))?;
+        let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || word.ends_with("Hz"));
+        // A word that is no unit may be one that is not known; a sentence goes on behind a comma or a point.
+        let alone = behind.trim().is_empty() || unit.is_some() || behind.starts_with(['\t', ';', ',']);
+        alone.then(|| units::rate_hz(key, unit, value)).flatten()
+    });
+    let first = said.next()?;
+    said.all(|hz| (hz / first - 1.0).abs() < 1e-3).then_some(first)
 }

@@ -16,7 +16,7 @@ const LONGEST: u64 = 1 << 24;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coding {
     encoding: &'static Encoding,
-    /// What ends a line; `\r` alone is that of old Macintoshes.
+    /// End of a line; `\r` alone is that of old Macintoshes.
     end: u8,
 }
 
@@ -58,7 +58,11 @@ impl Coding {
             Err(why) if why.error_len().is_none() => UTF_8,
             Err(_) => WINDOWS_1252,
         });
-        let end = if start.contains(&b'\r') && !start.contains(&b'\n') { b'\r' } else { b'\n' };
+        // Few lines may end otherwise than most.
+        let plain: Vec<u8> = start.into_iter().filter(|b| *b != 0).collect();
+        let lone = plain.windows(2).filter(|w| w[0] == b'\r' && w[1] != b'\n').count();
+        let lines = plain.iter().filter(|b| **b == b'\n').count();
+        let end = if lone > lines { b'\r' } else { b'\n' };
         Ok(Self { encoding, end })
     }
 
@@ -118,7 +122,7 @@ impl Lines {
         }
         self.read += 1;
         let (text, _) = self.coding.encoding.decode_without_bom_handling(&self.bytes);
-        let text = text.trim_start_matches('\u{feff}').trim_end_matches(['\r', '\n']);
+        let text = text.trim_start_matches(['\u{feff}', '\n']).trim_end_matches(['\r', '\n']);
         Ok(Some(text.to_owned()))
     }
 }

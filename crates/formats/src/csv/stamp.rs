@@ -5,9 +5,14 @@ use jiff::Timestamp;
 use jiff::civil::{Date, DateTime, Time};
 use jiff::tz::TimeZone;
 
+use crate::units::seconds;
+
 /// Seconds and nanoseconds since some origin that all stamps of one form share.
 pub(crate) fn stamp(field: &str) -> Option<(i64, i32)> {
     let field = field.trim();
+    if let Some(span) = span(field) {
+        return Some(span);
+    }
     let shaped = field.len() >= 6 && field.starts_with(|c: char| c.is_ascii_digit());
     if !shaped || !(field.contains(':') || field.matches(['-', '/', '.']).count() >= 2) {
         return None;
@@ -31,6 +36,16 @@ pub(crate) fn stamp(field: &str) -> Option<(i64, i32)> {
         _ if text.contains(':') => civil(Date::constant(1970, 1, 1), clock(&text)?),
         _ => civil(day(&text)?, Time::midnight()),
     }
+}
+
+/// A number with its unit of time, as MATLAB writes the times of a timetable: `0.25 sec`, `12.5ms`.
+fn span(field: &str) -> Option<(i64, i32)> {
+    let at = field.rfind(|c: char| c.is_ascii_digit() || c == '.')? + 1;
+    let (number, unit) = field.split_at(at);
+    let second = seconds(unit.trim())?.1;
+    let value: f64 = number.trim().parse().ok().filter(|x: &f64| x.abs() < 1e9)?;
+    let whole = (value * second).floor();
+    Some((whole as i64, (1e9 * (value * second - whole)).round() as i32))
 }
 
 /// A day; with dots, the day comes first, with slashes the month, unless it can be none.
@@ -96,7 +111,9 @@ mod tests {
             assert_eq!(stamp(text), Some((base.0, nanos)), "{text}");
         }
         assert_eq!(stamp("08:00:00,5"), Some((28_800, 500_000_000)));
-        for text in ["1.5", "-3", "12", "1e-3", "acc", "1.234,5", "08-15"] {
+        assert_eq!(stamp("78.125 ms"), Some((0, 78_125_000)));
+        assert_eq!(stamp("2.5 sec"), Some((2, 500_000_000)));
+        for text in ["1.5", "-3", "12", "3 g", "ms", "1.5 V", "1e-3", "acc", "1.234,5", "08-15"] {
             assert_eq!(stamp(text), None, "{text}");
         }
     }

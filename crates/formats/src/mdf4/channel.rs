@@ -1,4 +1,4 @@
-//! Channels of an MDF group: how each is stored, and what its numbers mean.
+//! Channels of an MDF group: the storage of each, and its conversion to values.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,7 +10,7 @@ use crate::number::{Kind, Number};
 use crate::recording::Strided;
 use crate::{Channel, Result};
 
-/// What is known of one channel.
+/// Metadata of one channel.
 pub(crate) struct Described {
     pub(crate) name: String,
     pub(crate) unit: Option<String>,
@@ -19,7 +19,7 @@ pub(crate) struct Described {
     place: usize,
     /// `None` for a virtual channel, whose stored value is the number of its record.
     number: Option<Number>,
-    /// Byte and bit of a record that say whether its sample is invalid.
+    /// Byte and bit of a record that mark its sample as invalid.
     invalid: Option<(usize, u8)>,
     curve: Option<Curve>,
 }
@@ -123,7 +123,7 @@ impl Block {
 }
 
 impl Described {
-    /// Bytes of a record up to the end of what belongs to it.
+    /// Bytes of a record up to its end in it.
     pub(crate) fn end(&self) -> usize {
         let number = self.number.map_or(0, |number| self.place.saturating_add(number.kind.bytes()));
         number.max(self.invalid.map_or(0, |(byte, _)| byte + 1))

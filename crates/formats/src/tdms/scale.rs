@@ -1,4 +1,4 @@
-//! Scales of TDMS channels: `NI_Scale[n]_…` say how stored counts become physical values.
+//! Scales of TDMS channels: `NI_Scale[n]_…` define the conversion of stored counts to physical values.
 //!
 //! A scale works on the stored numbers or on the result of another one; the last is what LabVIEW shows.
 
@@ -28,8 +28,8 @@ pub(crate) fn count(of: &Properties) -> usize {
 }
 
 /// The law of the last scale; `None` where stored numbers are values, otherwise why the channel cannot be
-/// read.
-pub(crate) fn curve(of: &Properties) -> Result<Option<Curve>, String> {
+/// read. The scale of number `raw`, of no type, stands for the stored numbers of DAQmx.
+pub(crate) fn curve(of: &Properties, raw: Option<u32>) -> Result<Option<Curve>, String> {
     let scaled = matches!(of.get("NI_Scaling_Status"), Some(Property::Text(status)) if status == "scaled");
     let count = count(of);
     if scaled || count == 0 {
@@ -40,6 +40,9 @@ pub(crate) fn curve(of: &Properties) -> Result<Option<Curve>, String> {
     loop {
         let prefix = format!("NI_Scale[{at}]_");
         let Some(Property::Text(sort)) = of.get(&format!("{prefix}Scale_Type")) else {
+            if raw.is_some_and(|id| id as usize == at) {
+                break;
+            }
             return Err(format!("its scale {at} does not say its type"));
         };
         let number = |name: &str| match of.get(&format!("{prefix}{sort}_{name}")) {
@@ -80,6 +83,9 @@ pub(crate) fn curve(of: &Properties) -> Result<Option<Curve>, String> {
             return Err(format!("its scale {at} works on a scale {input}, which does not come before it"));
         }
         at = input as usize;
+    }
+    if chain.is_empty() {
+        return Ok(None);
     }
     chain.reverse();
     Ok(Some(if chain.len() == 1 { chain.swap_remove(0) } else { Curve::Chain(chain) }))

@@ -46,7 +46,14 @@ pub fn responses(path: &Path) -> Result<(Vec<Frf>, Vec<String>)> {
     let mut sets = 0;
     for (line, dataset) in datasets(path)? {
         sets += 1;
-        let Found::Function(dataset) = dataset else { continue };
+        let dataset = match dataset {
+            Found::Function(dataset) => dataset,
+            Found::Damaged(what) => {
+                others.push(format!("the {what}"));
+                continue;
+            }
+            Found::Other(_) => continue,
+        };
         match dataset.frf(line) {
             Ok(frf) => found.push(frf),
             Err(why) => others.push(format!("`{}` of line {line}: {why}", dataset.name())),
@@ -94,7 +101,7 @@ impl Dataset {
         if !matches!(abscissa as i64, 18 | 0) {
             return Err(format!("its abscissa has type {abscissa}, where 18 is the frequency"));
         }
-        let mut notes = Vec::new();
+        let mut notes: Vec<String> = self.odd.iter().cloned().collect();
         let (order, top) = response(numbers(&self.head[8]).first().copied(), self.unit(8), &mut notes)?;
         let (per, bottom) = reference(numbers(&self.head[9]).first().copied(), self.unit(9), &mut notes)?;
         let stride = 2 + usize::from(!self.even);

@@ -24,7 +24,7 @@ pub(super) struct Existence {
     deviation: f64,
     offset: f64,
     slope: f64,
-    /// As far as so many runs can tell, it is no nearer to 0 or 1.
+    /// Nearest probability to 0 or 1 that this number of runs can support.
     least: f64,
 }
 

@@ -16,7 +16,7 @@ pub(super) const LEAST_NOISE: f64 = 1e-8;
 /// Bounds of the logarithms: length scales, variance of the function, variance of the noise.
 const BOUNDS: [[f64; 2]; 3] = [[-3.5, 5.0], [-9.0, 5.0], [-18.4, 2.0]];
 
-/// What is known of an output before it is predicted, in units of its standard deviation.
+/// Hyperparameters of an output, in units of its standard deviation.
 #[derive(Debug, Clone)]
 pub(super) struct Hyper {
     pub(super) kernel: Kernel,

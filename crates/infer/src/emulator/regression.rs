@@ -40,7 +40,7 @@ pub(super) struct Regression {
     base_weights: Mat<f64>,
 }
 
-/// Of each point of a sample, what the other points predict.
+/// Cross-validated predictions: each point of a sample by the other points.
 #[derive(Debug, Clone)]
 pub(super) struct LeftOut {
     pub(super) mean: f64,
@@ -133,8 +133,7 @@ impl Regression {
         (0..points.len()).map(|j| [means[(j, 0)], squared_column(&features, j) + rest[j]]).collect()
     }
 
-    /// Covariance of the function between points, as it is known after all runs: a row for each of `a`, a
-    /// column for each of `b`.
+    /// Posterior covariance of the function between points: a row for each of `a`, a column for each of `b`.
     pub(super) fn covariance(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> Mat<f64> {
         let halves = [a, b].map(|points| {
             let (mut features, _) = self.features(points);
@@ -149,7 +148,7 @@ impl Regression {
         prior - left_smooth.transpose() * right_smooth + left.transpose() * right
     }
 
-    /// The share of the function's standard deviation that is left at points after values at further ones,
+    /// The share of the function's standard deviation that remains at points after values at further ones,
     /// each with its own variance.
     pub(super) fn left_after(&self, points: &[Vec<f64>], further: &[Vec<f64>], noise: &[f64]) -> Vec<f64> {
         let now = self.predict(points);
@@ -250,7 +249,7 @@ mod tests {
         }
     }
 
-    /// What is said of a point without its value is what a fit to the other points says.
+    /// The leave-one-out prediction of a point equals a fit to the other points.
     #[test]
     fn invariant_left_out_is_a_fit_without() {
         let (_, left_out) = fitted(&POINTS, &VALUES, &[1.0; 3]);

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::error::Error;
 
-/// Fewer points than these tell of an even scatter only.
+/// Least number of points for a scatter that varies over the cube.
 const LEAST_POINTS: usize = 40;
 
 /// Passes of the weighted regression.
@@ -18,7 +18,7 @@ const PASSES: usize = 4;
 /// A squared residual counts as no more than this many variances, so that one outlier makes no region.
 const LARGEST: f64 = 8.0;
 
-/// −E ln χ²₁ and its variance: what a logarithm of one squared residual lies below, and how far it scatters.
+/// −E ln χ²₁ and its variance: bias and variance of the logarithm of one squared residual.
 const LOG_CHI: [f64; 2] = [1.270_362_845, 4.934_802_2];
 
 /// Runs at one point, as this regression needs them.

@@ -1,4 +1,4 @@
-//! Moves of draws at one temperature that leave their distribution as it is.
+//! Moves of draws at one temperature that leave their distribution invariant.
 
 use crate::random::Random;
 
@@ -25,7 +25,8 @@ impl Default for Scales {
 }
 
 impl Population {
-    /// `count` draws by weights of sum 1, systematically: each as often as its weight says, but for rounding.
+    /// `count` draws by weights of sum 1, systematically: each as often as its weight demands, but for
+    /// rounding.
     pub(super) fn resampled(&self, weights: &[f64], count: usize, random: &mut Random) -> Self {
         let offset = random.share();
         let mut below = weights[0];

@@ -13,7 +13,8 @@ pub(crate) struct Corner {
     /// the wall leans, and by the square of its distance times that [1/m], because the roller is round.
     lean: f64,
     bend: f64,
-    /// What the corner cuts from the facet presses with half of a pass's penalty times this and depth².
+    /// The wedge that the corner cuts from the facet presses with half of a pass's penalty times this and
+    /// depth².
     wedge: f64,
 }
 

@@ -1,12 +1,12 @@
-//! A roller on a straight wall of its pocket: what of it lies beyond the wall, in series with what it gives
-//! way by (THEORY §9.4).
+//! A roller on a straight wall of its pocket: the part of it beyond the wall, in series with its local
+//! compliance (THEORY §9.4).
 
 use stribeck_modal::compliance::Curve;
 
 use crate::rollers::polygon::{Cut, Polygon};
 
-/// What presses on a flat: a circle, or a polygon, and where its vertex 0 is seen from the foot of its
-/// centre.
+/// The shape that presses on a flat: a circle, or a polygon with the direction of its vertex 0 from the foot
+/// of its centre.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Shape<'a> {
     Circle(f64),
@@ -52,7 +52,7 @@ const STEPS: usize = 20;
 const ENOUGH: f64 = 1e-6;
 
 /// Force between a roller, `distance` from its centre to the flat, and the flat on a penalty [N/m²], where
-/// the roller gives way by `curve`; `None` where they are clear of each other.
+/// `curve` is the compliance of the roller; `None` where they are clear of each other.
 pub(crate) fn press(shape: Shape<'_>, distance: f64, penalty: f64, curve: &Curve) -> Option<OnFlat> {
     let mut cut = shape.cut(distance);
     if cut.area <= 0.0 {

@@ -27,7 +27,7 @@ pub(crate) struct PlacedCage {
     middle: [f64; 2],
 }
 
-/// What a wall does to a roller.
+/// Force and moment of a wall on a roller.
 pub(crate) struct WallForce {
     pub(crate) force: [f64; 2],
     /// About the roller's centre.
@@ -88,8 +88,8 @@ impl Wall {
     }
 }
 
-/// A wall or a corner of it that presses on a roller.
-struct Pressed {
+/// Normal contact of a roller with a wall or a corner of it.
+struct NormalContact {
     /// From the roller towards it.
     n: [f64; 2],
     /// Force [N], stiffness of the penalty [N/m], and the part of an approach that it takes.
@@ -102,7 +102,7 @@ struct Pressed {
     couple: f64,
 }
 
-/// A roller whose wall was nearer than this share of its radius in a step is still seen in the next, when
+/// A roller whose wall was nearer than this share of its radius in a step is evaluated in the next, too, when
 /// half of the work of the last force is counted.
 const STILL_SEEN: f64 = 1.01;
 
@@ -178,8 +178,8 @@ impl InPockets<'_> {
             let [drag, damping] = load(simd, &walls.passive, at);
             let moved = (drag * drag).max(damping * damping);
             let reach = STILL_SEEN * top;
-            // A wall that was touched in the last step is still seen a little beyond the circle around the
-            // roller.
+            // A wall that was touched in the last step is evaluated a little beyond the circle around the
+            // roller, too.
             let limit = zero.choose_below(moved, all(reach * reach), all(top * top));
             let touches = square.choose_below(limit, zero.choose_below(-within, zero, one), zero);
             touch |= touches.bits() << at;
@@ -215,9 +215,9 @@ impl InPockets<'_> {
         let d = placed.turn.forth(to);
         let own_d = Rotation::to(turned).back(d);
         let pressed = if t > 0.0 && t < 1.0 {
-            // The foot goes along the wall with the roller, so that the force stands on the wall.
+            // The foot moves along the wall with the roller, so that the force is normal to the wall.
             let shape = if *round { Shape::Circle(top) } else { Shape::Polygon(&rollers.polygon, own_d) };
-            flat::press(shape, distance, law.penalty, &cage.curve).map(|on| Pressed {
+            flat::press(shape, distance, law.penalty, &cage.curve).map(|on| NormalContact {
                 n: d,
                 force: on.force,
                 stiffness: law.penalty * on.length,
@@ -231,7 +231,7 @@ impl InPockets<'_> {
             // The normal of the roller's facet.
             let n = Rotation::to([level, tilt]).forth(d);
             let [force, stiffness, stored] = cage.corners[usize::from(t > 0.5)].press(law.penalty, depth);
-            (depth > 0.0).then_some(Pressed { n, force, stiffness, part: 1.0, stored, couple: 0.0 })
+            (depth > 0.0).then_some(NormalContact { n, force, stiffness, part: 1.0, stored, couple: 0.0 })
         };
         if pressed.is_none() && *passive == [0.0; 2] {
             *slip = 0.0;
@@ -252,7 +252,7 @@ impl InPockets<'_> {
         let (closing, sliding) = (dot(relative, n), dot(relative, t));
         tally.spent.heat[0] -= passive[0] * sliding;
         tally.spent.heat[1] += passive[1] * closing;
-        let Some(Pressed { force, stiffness, part, stored, couple, .. }) = pressed else {
+        let Some(NormalContact { force, stiffness, part, stored, couple, .. }) = pressed else {
             (*slip, *passive) = (0.0, [0.0; 2]);
             return None;
         };

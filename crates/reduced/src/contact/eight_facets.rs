@@ -1,5 +1,4 @@
-//! Eight facets of a boundary about a contact, seen at once: in vectors, and only where all of them go by
-//! with growing u.
+//! Eight facets of a boundary about a contact, in vectors: only where u increases along all of them.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -9,10 +8,10 @@ use crate::contact::outline::{Facet, PAD, Parts, View};
 /// Ends of eight facets.
 const ENDS: usize = LANES + 1;
 
-/// Facets before the one that the ray along d goes through.
+/// Facets before the one that the ray along d intersects.
 const BEFORE: usize = 3;
 
-/// Eight neighbouring facets with growing u.
+/// Eight neighbouring facets with increasing u.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct EightFacets {
@@ -23,8 +22,8 @@ pub struct EightFacets {
 }
 
 impl EightFacets {
-    /// Sees the facets about that of a view; false where a wall or the far side of the boundary is among
-    /// them. `along` says whether vertices go by along +t.
+    /// Projects the facets about that of a view; false where a wall or the far side of the boundary is among
+    /// them. `along` is whether vertices follow along +t.
     #[inline(always)]
     pub(crate) fn look<S: Simd>(&mut self, simd: S, view: &View<'_>, along: bool) -> bool {
         let n = view.outline.len();
@@ -79,8 +78,9 @@ impl EightFacets {
     }
 }
 
-/// Goes along roller and raceway up to `reach` [m] to either side, and hands over what lies between two
-/// places where neither has a vertex. False, and nothing handed over, where the eights do not reach so far.
+/// Walks along roller and raceway up to `reach` [m] to either side, and passes on the parts between two
+/// places where neither has a vertex. False, with no part passed on, where the eight facets do not extend so
+/// far.
 #[inline(always)]
 pub(crate) fn segments<S: Simd>(
     simd: S,

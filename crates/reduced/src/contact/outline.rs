@@ -1,4 +1,4 @@
-//! Boundaries of raceways and rollers, and how a roller's centre sees them (THEORY §9.3): d points to the
+//! Boundaries of raceways and rollers, as projected from a roller's centre (THEORY §9.3): d points to the
 //! raceway and t is d turned by a right angle; a point is (u, h), u along t and h along d.
 
 use stribeck_simd::lanes::Number;
@@ -168,8 +168,8 @@ impl<N: Number> Facet<N> {
     }
 }
 
-/// What becomes of the parts between two places where neither boundary has a vertex. A trait, because what a
-/// closure does is compiled without the vectors' instruction set.
+/// Receiver of the parts between two places where neither boundary has a vertex. A trait, because closures
+/// are compiled without the vectors' instruction set.
 pub(crate) trait Parts {
     /// Takes the part between two places along t [m], below these facets of roller and raceway.
     fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet);
@@ -182,18 +182,18 @@ pub(crate) trait Parts {
 pub(crate) struct Walk<'a> {
     view: View<'a>,
     along: bool,
-    /// The vertex that comes next.
+    /// The next vertex.
     vertex: usize,
     /// Ends of the present facet, and where the next one ends.
     a: [f64; 2],
     pub(crate) b: [f64; 2],
     next: [f64; 2],
     slope: f64,
-    /// 1 where what is lower hides what is behind it, as raceways do, −1 where what is higher does.
+    /// 1 where lower parts hide those behind them, as on raceways, −1 where higher ones do.
     hides: f64,
     /// How far the facet is seen: a wall behind it may lean over it.
     pub(crate) end: f64,
-    /// Whether a wall that leans over has gone by; who asks takes it back.
+    /// Whether an overhanging wall was passed; reading resets it.
     pub(crate) jumps: bool,
 }
 
@@ -231,7 +231,7 @@ impl<'a> Walk<'a> {
         walk
     }
 
-    /// Sees one vertex further.
+    /// Projects one more vertex.
     #[inline(always)]
     fn look(&mut self) {
         self.vertex = if self.along {
@@ -242,7 +242,7 @@ impl<'a> Walk<'a> {
         self.next = self.view.see(self.vertex);
     }
 
-    /// Goes on to the next facet.
+    /// Advances to the next facet.
     #[inline(always)]
     pub(crate) fn step(&mut self) {
         (self.a, self.b) = (self.b, self.next);

@@ -204,7 +204,7 @@ pub struct Pair<'a, S> {
     pub sides: Sides,
     /// Roller and raceway again, eight facets at once.
     eights: &'a [EightFacets; 2],
-    /// Whether they can be seen so.
+    /// Whether they can be processed so.
     pub in_eights: bool,
 }
 
@@ -243,7 +243,7 @@ impl<'a, S: Simd> Pair<'a, S> {
         parts
     }
 
-    /// Walks along both boundaries, and hands over what lies between two places where neither has a vertex.
+    /// Walks along both boundaries, and passes on the parts between two places where neither has a vertex.
     #[inline(always)]
     fn walk(&self, reach: f64, parts: &mut impl Parts) {
         let mut u = -reach;
@@ -273,7 +273,7 @@ impl<'a, S: Simd> Pair<'a, S> {
     }
 }
 
-/// Adds up what lies between straight lines.
+/// Sums over parts between straight lines.
 struct Chords {
     sum: Penetration,
     shift: f64,
@@ -293,7 +293,7 @@ impl Parts for Chords {
     }
 }
 
-/// Adds up what lies between parabolas.
+/// Sums over parts between parabolas.
 struct Arcs {
     sum: Penetration,
     sides: Sides,
@@ -333,7 +333,7 @@ fn jump(sum: &mut Penetration, [[p1, h1], [p2, h2]]: [[f64; 2]; 2]) {
     sum.skew += 2.0 * deepest * area;
 }
 
-/// Adds what lies in a part, where `present` is one; nothing sinks in elsewhere.
+/// Adds a part, where `present` is one; elsewhere there is no penetration.
 #[inline(always)]
 pub(crate) fn add_between<N: Number>(
     sum: &mut Penetration<N>,
@@ -364,7 +364,7 @@ fn straight<N: Number>([u1, u2]: [N; 2], r: Facet<N>, w: Facet<N>, shift: N) -> 
     [steep.times_plus(u1, gap), steep.times_plus(u2, gap)]
 }
 
-/// Adds what lies between two straight lines, with the penetration at both ends.
+/// Adds the part between two straight lines, with the penetration at both ends.
 #[inline(always)]
 fn chords<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], [p1, p2]: [N; 2], r: Facet<N>, w: Facet<N>) {
     let (zero, one, half, four) = (u1.constant(0.0), u1.constant(1.0), u1.constant(0.5), u1.constant(4.0));
@@ -414,7 +414,7 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
     let curvature = shift.constant(sides.curvature) * r.stretch();
     let of_raceway = shift.constant(sides.bulge - 0.5 * sides.curvature) * w.stretch();
     let ([u1, u2], [p1, p2]) = (ends, straight(ends, r, w, shift));
-    // What the arcs stand out from their chords.
+    // Heights of the arcs above their chords.
     let (of_r, of_w) = (half * curvature, of_raceway);
     let p1 = p1 + of_r * r.inside(u1) + of_w * w.inside(u1);
     let p2 = p2 + of_r * r.inside(u2) + of_w * w.inside(u2);
@@ -444,7 +444,7 @@ fn leaning<N: Number>(
     c.times_plus(tau, b).times_plus(tau, p1) * (of_roller - of_raceway)
 }
 
-/// Adds what lies between two parabolas on chords.
+/// Adds the part between two parabolas on chords.
 #[inline(always)]
 fn arcs<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], seen: Round<N>, r: Facet<N>, w: Facet<N>) {
     let Round { p: [p1, p2], curvature, bulge } = seen;

@@ -1,4 +1,4 @@
-//! A raceway, as it does not change.
+//! Constant data of a raceway.
 
 use stribeck_modal::compliance::{Compliance, Curve};
 use stribeck_simd::lanes::Number;

@@ -1,4 +1,4 @@
-//! Parts of one overlap, kept from step to step and seen side by side (THEORY §9.3).
+//! Parts of one penetration, kept from step to step and evaluated side by side (THEORY §9.3).
 //!
 //! A part lies between two places where neither roller nor raceway has a vertex. Which facets meet in it
 //! changes when vertices pass each other or the middle of the contact, every fifty steps or so; in between
@@ -33,7 +33,7 @@ pub(crate) struct Segments {
     middle: usize,
 }
 
-/// How roller and raceway are seen: d in the frame of each, and the roller's centre in that of the raceway
+/// Projection of roller and raceway: d in the frame of each, and the roller's centre in that of the raceway
 /// [m].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pose {
@@ -62,7 +62,7 @@ impl Segments {
         let (own, d) = ([all(pose.own[0]), all(pose.own[1])], [all(pose.d[0]), all(pose.d[1])]);
         let [cx, cy] = [all(pose.from[0]), all(pose.from[1])];
         let mut sum = Penetration::none(zero);
-        // All parts may lie on one side of what is looked for.
+        // All parts may lie on one side of the place searched for.
         let every = (1 << Vector::<S>::LEN) - 1;
         let (mut before, mut behind, mut middle, mut wrong) = (every, every, 0, 0);
         for at in vector_starts(simd) {

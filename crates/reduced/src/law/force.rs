@@ -1,5 +1,4 @@
-//! What a raceway does to eight rollers that it is pressed against: normal force, damping and friction
-//! (THEORY §9.4).
+//! Forces of a raceway on eight rollers: normal force, damping and friction (THEORY §9.4).
 
 use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector};
@@ -7,7 +6,7 @@ use stribeck_simd::lanes::{Number, Vector};
 use super::ContactLaw;
 use crate::{
     contact::raceway::Raceway,
-    rollers::block::Contacts,
+    rollers::block::RacewayContacts,
     row::{lanes, load},
     state::Stored,
 };
@@ -23,7 +22,7 @@ pub(crate) struct Rolling<V> {
     pub(crate) pace: V,
 }
 
-/// What a raceway does to rollers: force [N] in the frame in which it is touched, and moment [N m].
+/// Action of a raceway on rollers: force [N] in the frame of the raceway, and moment [N m].
 pub(crate) struct Pushed<V> {
     pub(crate) force: [V; 2],
     pub(crate) moment: V,
@@ -31,14 +30,14 @@ pub(crate) struct Pushed<V> {
 
 impl ContactLaw {
     /// Forces on the rollers in the lanes from `at` on, whose normal forces are known. `heat` grows by twice
-    /// the power against friction and damping [W]; `energy`, where it is asked for, by what penalty and
-    /// springs of friction store.
+    /// the power against friction and damping [W]; `energy`, where it is computed, by that of penalty and
+    /// springs of friction.
     #[inline(always)]
     pub(crate) fn push<S: Simd>(
         &self,
         simd: S,
         raceway: &Raceway,
-        contacts: &mut Contacts,
+        contacts: &mut RacewayContacts,
         at: usize,
         rolling: &Rolling<Vector<S>>,
         heat: &mut [Vector<S>; 2],
@@ -71,7 +70,7 @@ impl ContactLaw {
         let damping = where_it_touches(lost.max(-normal));
         let spread = (o.second - o.first * o.first / length).max(zero);
         let about = where_it_touches(resistance * turning * spread);
-        // Friction: a spring that what leaves the contact takes along (THEORY §9.4).
+        // Friction: a spring whose stretch leaves with the material that leaves the contact (THEORY §9.4).
         let dt = all(self.time_step);
         let left = one - (all(2.0) * pace * dt / length).min(one);
         let stiffness = all(self.sticking) * length;
@@ -87,7 +86,7 @@ impl ContactLaw {
         damping.store(&mut contacts.passive[1], at);
         about.store(&mut contacts.passive[2], at);
 
-        // d turns as the roller moves along, and what the bodies have deflection way by with it.
+        // d rotates as the roller moves along, and the deflection of the bodies with it.
         let deflection = Vector::load(simd, &contacts.shift, at);
         let per = all(raceway.outwards()) / Vector::load(simd, &contacts.distance, at);
         let turned = (half * o.skew + deflection * o.across) * per;
@@ -102,7 +101,12 @@ impl ContactLaw {
     }
 
     /// Energy of the contacts with a raceway that penalty, compliance and springs of friction store.
-    pub(crate) fn stored_in_contacts(&self, raceway: &Raceway, contacts: &Contacts, energy: &mut Stored) {
+    pub(crate) fn stored_in_contacts(
+        &self,
+        raceway: &Raceway,
+        contacts: &RacewayContacts,
+        energy: &mut Stored,
+    ) {
         for lane in lanes(contacts.near) {
             let (normal, overlap) = (contacts.normal[lane], &contacts.overlap);
             if normal > 0.0 && overlap.area[lane] > 0.0 {
@@ -117,7 +121,7 @@ impl ContactLaw {
 
     /// Deepest penetration of rollers in contact with a raceway [m].
     #[inline(always)]
-    pub(crate) fn deepest(contacts: &Contacts) -> f64 {
+    pub(crate) fn deepest(contacts: &RacewayContacts) -> f64 {
         let mut deepest = 0.0_f64;
         for lane in lanes(contacts.near) {
             deepest = deepest.max(contacts.overlap.deepest[lane]);

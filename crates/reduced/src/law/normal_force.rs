@@ -1,6 +1,6 @@
-//! How hard rollers and a raceway press on each other: what overlaps, in series with what the bodies
-//! flexibility way by (THEORY §9.3). Eight rollers side by side, and one by itself where its force is far
-//! from what was expected.
+//! Normal forces between rollers and a raceway: penetration on the penalty, in series with the local
+//! compliance of the bodies (THEORY §9.3). Eight rollers side by side, and one in scalar arithmetic where its
+//! force is far from the expected one.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -12,7 +12,7 @@ use crate::{
     contact::raceway::Raceway,
     contact::segments::Pose,
     law::ContactLaw,
-    rollers::{Rim, Rollers, block::Contacts},
+    rollers::{Rim, Rollers, block::RacewayContacts},
     row::{Row, lanes, load, of_one, store},
 };
 
@@ -33,13 +33,13 @@ pub(crate) struct NormalForce {
     pub(crate) normal: f64,
     /// Derivative of the compliance's approach there [m/N].
     flexibility: f64,
-    /// What the bodies have deflection way by [m].
+    /// Deflection of the bodies [m].
     deflection: f64,
-    /// What overlaps at that force.
+    /// Penetration at that force.
     overlap: Penetration,
 }
 
-/// A roller by a raceway, seen in the frame of the raceway's outline.
+/// A roller beside a raceway, in the frame of the raceway's outline.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RollerOnRaceway<'a> {
     pub(crate) raceway: &'a Raceway,
@@ -55,7 +55,7 @@ pub(crate) struct RollerOnRaceway<'a> {
 
 impl ContactLaw {
     /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when
-    /// centres and directions of vertex 0 are known in its frame. `parts` is room to compute in.
+    /// centres and directions of vertex 0 are known in its frame. `parts` is scratch.
     #[inline(always)]
     #[expect(
         clippy::too_many_arguments,
@@ -69,7 +69,7 @@ impl ContactLaw {
         first: usize,
         top: &Row,
         present: u64,
-        contacts: &mut Contacts,
+        contacts: &mut RacewayContacts,
         parts: &mut [Penetration<Row>; LANES],
     ) {
         let all = |value: f64| Vector::all(simd, value);
@@ -122,10 +122,10 @@ impl ContactLaw {
         }
     }
 
-    /// What the bodies flexibility way by at the forces that are expected, and how far from their middles
-    /// contacts may reach then.
+    /// Deflection of the bodies at the expected forces, and how far from their middles contacts may then
+    /// reach.
     #[inline(always)]
-    fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut Contacts) {
+    fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, half) = (all(0.0), all(0.5));
         for at in vector_starts(simd) {
@@ -175,7 +175,7 @@ impl ContactLaw {
         rollers: &Rollers,
         raceway: &Raceway,
         first: usize,
-        contacts: &mut Contacts,
+        contacts: &mut RacewayContacts,
         parts: &mut [Penetration<Row>; LANES],
     ) -> u64 {
         let mut alone = 0;
@@ -208,10 +208,10 @@ impl ContactLaw {
         alone
     }
 
-    /// Takes steps of Newton's method for the forces, with what each overlap becomes by a more shift.
-    /// Returns those that have to be searched for more; their `normal` is what to begin with.
+    /// Takes steps of Newton's method for the forces, with each penetration after a further shift. Returns
+    /// those that need further steps; their `normal` is the first guess.
     #[inline(always)]
-    fn search<S: Simd>(&self, simd: S, contacts: &mut Contacts) -> u64 {
+    fn search<S: Simd>(&self, simd: S, contacts: &mut RacewayContacts) -> u64 {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(self.penalty));
         let mut again = 0;
@@ -255,7 +255,7 @@ impl ContactLaw {
         again
     }
 
-    /// Contact of a roller with a raceway, by itself. `hints` are the facets found last.
+    /// Contact of one roller with a raceway. `hints` are the facets found last.
     #[inline(always)]
     pub(crate) fn normal_force<S: Simd>(
         &self,
@@ -286,7 +286,7 @@ impl ContactLaw {
                 continue;
             }
             found = pair.penetration(shift, raceway.reach(depth));
-            // Newton's method with what the overlap becomes by a more shift.
+            // Newton's method with the penetration after a further shift.
             let start = force;
             let (mut more, mut now) = (0.0, [found.area, found.length]);
             for _ in 0..NEWTON {

@@ -74,7 +74,7 @@ impl ContactLaw {
             let by_inner = self.push(simd, &raceways[1], on_inner, at, &rolling, &mut sums.heat);
             let [fx, fy] = inner.forth(simd, by_inner.force);
             store([fx, fy], &mut block.force[1], at);
-            // What the roller does to the ring, the drive makes good.
+            // The drive balances the moment of the roller on the ring.
             sums.drive[1] = sums.drive[1] + centre[0] * fy - centre[1] * fx + by_inner.moment;
             (by_outer.moment + by_inner.moment).store(&mut block.moment, at);
         }

@@ -1,5 +1,4 @@
-//! What can be read of a bearing in motion at the end of a sampling interval. Forces are means over the
-//! interval.
+//! Readings of a bearing in motion at the end of a sampling interval. Forces are means over the interval.
 
 use pulp::Scalar;
 use serde::{Deserialize, Serialize};
@@ -23,7 +22,7 @@ pub struct SensorReading {
     pub instant: [f64; 2],
 }
 
-/// A roller: where it is and what acts on it.
+/// A roller: its position, and the forces on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RollerReading {
     /// Centre [m].
@@ -62,7 +61,7 @@ impl Bearing {
         Memory { velocity: (0..self.reduction.sensors.len()).map(of).collect() }
     }
 
-    /// What sensors measure at the end of an interval.
+    /// Readings of the sensors at the end of an interval.
     pub(crate) fn read_sensors(
         &self,
         scratch: &Scratch,
@@ -86,12 +85,19 @@ impl Bearing {
 }
 
 impl BearingInMotion {
-    /// What sensors measure, in the order of the reduction's.
+    /// Readings of the sensors, in the order of the reduction's.
     pub fn sensors(&self) -> &[SensorReading] {
         &self.sensors
     }
 
+    /// Centres of the rollers in their order [m].
+    #[inline]
+    pub fn centres(&self) -> impl Iterator<Item = [f64; 2]> {
+        self.saved.state.x.iter().zip(&self.saved.state.y).map(|(x, y)| [*x, *y])
+    }
+
     /// Rollers in their order.
+    #[inline]
     pub fn rollers(&self) -> impl Iterator<Item = RollerReading> {
         let (state, scratch) = (&self.saved.state, &self.scratch);
         let steps = scratch.summed as f64;

@@ -1,5 +1,5 @@
-//! Films of eight rollers on a land of a raceway, side by side (THEORY §4.6, §9.4): where they are nearest,
-//! and what their oil does.
+//! Films of eight rollers on a land of a raceway, side by side (THEORY §4.6, §9.4): nearest places, and
+//! forces of the oil.
 
 use pulp::Simd;
 use stribeck_film::{
@@ -19,7 +19,7 @@ const CORRECTIONS: usize = 1;
 /// A place farther from its facet than this, in facets, is looked for facet by facet.
 const STRAYED: f64 = 0.5;
 
-/// What films of eight rollers with a raceway remember, land by land; those of rollers whose rims are formed
+/// State of the films of eight rollers with a raceway, land by land; those of rollers whose rims are formed
 /// are taken one by one.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct BlockFilms {
@@ -48,7 +48,7 @@ pub(crate) struct EightFilms {
     behind: Row,
 }
 
-/// Eight rollers as a raceway sees them, in the frame of its outline: as [`RollerView`] says of one.
+/// Eight rollers in the frame of a raceway's outline, as [`RollerView`] of one.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct SeenRollers {
     pub(crate) centre: Rows,
@@ -128,7 +128,7 @@ impl BlockFilms {
 }
 
 impl EightFilms {
-    /// Takes over what one film remembers.
+    /// Sets the state of one film.
     pub(crate) fn load(&mut self, race: &OiledRaceway, land: usize, lane: usize, film: &Film) {
         let bit = 1 << lane;
         self.present &= !bit;
@@ -140,7 +140,7 @@ impl EightFilms {
         self.lie_on(&race.curved, &race.curved.lands[land], lane, film.places[0]);
     }
 
-    /// What one film remembers.
+    /// State of one film.
     pub(crate) fn film(&self, lane: usize) -> Film {
         let layer = (self.present >> lane) & 1 == 1;
         let place = Place { facet: self.facet[lane], along: self.along[lane] };

@@ -1,5 +1,5 @@
-//! Where a roller is nearest to a raceway, on the smooth curves that their outlines stand for, and how fast
-//! both sweep past there.
+//! The nearest places of roller and raceway, on the smooth curves that their outlines represent, and the
+//! entrainment speed there.
 
 use stribeck_film::{FacetCurve, Land, Place, Point};
 use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};
@@ -16,7 +16,7 @@ pub(crate) struct Curved {
     pub(crate) lands: Vec<Land>,
 }
 
-/// The rim of a roller, seen from its centre.
+/// The rim of a roller, about its centre.
 #[derive(Debug, Clone)]
 pub(crate) enum Rim {
     /// A circle of this radius [m].
@@ -25,7 +25,7 @@ pub(crate) enum Rim {
     Formed(Box<Curved>),
 }
 
-/// A roller as a raceway sees it, in the frame of its outline.
+/// A roller in the frame of a raceway's outline.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RollerView {
     /// Centre [m] and direction of vertex 0.
@@ -162,7 +162,7 @@ impl Nearest {
         Self { gap, d, distance, lever, ends, tilt: foot.tilt([-d[0], -d[1]]) }
     }
 
-    /// Entrainment speed [m/s]: half of what both surfaces sweep past the closest approach.
+    /// Entrainment speed [m/s]: half the sum of the speeds of both surfaces past the closest approach.
     pub(crate) fn speed(&self, seen: &RollerView, land: &Land) -> f64 {
         let along = self.d[0] * seen.velocity[1] - self.d[1] * seen.velocity[0];
         let on_land = self.ends.iter().all(|&end| end > 0.0);

@@ -51,12 +51,12 @@ pub(crate) struct Block {
     pub(crate) tilt: Rows,
     /// Largest displacement of the raceway under them since these were known [m].
     pub(crate) drift: Row,
-    /// What these come from: by the modes, as [`Bearing::moved`] says, and by the seat at both vertices,
-    /// roller by roller in parts, and summed.
+    /// Parts of that motion: by the modes, as of [`Bearing::moved`], and by the seat at both vertices, roller
+    /// by roller in parts, and summed.
     pub(crate) parts_of_motion: [[Row; 8]; LANES],
     pub(crate) moved: [Row; 8],
     /// At outer and inner raceway.
-    pub(crate) contacts: [Contacts; 2],
+    pub(crate) contacts: [RacewayContacts; 2],
     /// Films of oil; none without oil.
     pub(crate) films: BlockFilms,
     /// At the two walls of each pocket.
@@ -64,7 +64,7 @@ pub(crate) struct Block {
     /// Forces by outer raceway, inner raceway and cage in this step [N], and their moment [N m].
     pub(crate) force: [Rows; 3],
     pub(crate) moment: Row,
-    /// What drives them along the outer raceway because that is displaced more there [N].
+    /// Force towards smaller displacement of the outer raceway [N] (THEORY (9.5a)).
     pub(crate) downhill: Rows,
     /// The forces, summed over the steps since the last sample.
     pub(crate) sums: [Rows; 3],
@@ -72,7 +72,7 @@ pub(crate) struct Block {
 
 /// Contacts of eight rollers with a raceway, in the frame of its outline.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Contacts {
+pub(crate) struct RacewayContacts {
     /// From the state: normal force of the last step and its growth [N], elastic
     /// slip [m], drag and damping force [N] and damping moment [N m], facets of roller and raceway.
     pub(crate) force: Row,
@@ -94,24 +94,24 @@ pub(crate) struct Contacts {
     /// Those that may touch.
     pub(crate) near: u64,
     pub(crate) segments: [Segments; LANES],
-    /// What the search for the force begins with: a force [N] and its root, what the bodies flexibility way
-    /// by at it [m], the derivative of that [m/N], and how far from its middle the contact may reach [m].
+    /// Start of the search for the force: a force [N] and its root, the deflection of the bodies at it [m],
+    /// the derivative of that [m/N], and how far from its middle the contact may reach [m].
     pub(crate) start: Row,
     pub(crate) root: Row,
     pub(crate) shift: Row,
     pub(crate) flexibility: Row,
     pub(crate) reach: Row,
-    /// The piece of the compliance there, as [`stribeck_modal::compliance::Curve::piece_at`] says.
+    /// The piece of the compliance there, as of [`stribeck_modal::compliance::Curve::piece_at`].
     pub(crate) knot: Row,
     pub(crate) first: Row,
     pub(crate) slope: Row,
     pub(crate) next: Row,
-    /// What it finds: normal force [N], what overlaps at it.
+    /// Its result: normal force [N], and the penetration at it.
     pub(crate) normal: Row,
     pub(crate) overlap: Penetration<Row>,
 }
 
-impl Contacts {
+impl RacewayContacts {
     /// Stiffness of one contact as the raceway recedes and the roller stays [N/m].
     #[inline(always)]
     pub(crate) fn stiffness(&self, penalty: f64, lane: usize) -> f64 {
@@ -128,7 +128,7 @@ pub(crate) struct Walls {
 }
 
 impl Block {
-    /// The rollers from `first` on, and what of them does not change.
+    /// The rollers from `first` on, with their constant data.
     pub(crate) fn new(rollers: &Rollers, raceways: &[Raceway; 2], first: usize) -> Self {
         let count = (rollers.count - first).min(LANES);
         let mut block = Self { first, count, bits: (1 << count) - 1, ..Self::default() };
@@ -192,7 +192,7 @@ impl Block {
     /// it step by step rounds.
     pub(crate) fn begin(&mut self, rollers: &Rollers, anew: usize) {
         self.sums = Default::default();
-        // A roller that is clear of the outer raceway goes along it nevertheless.
+        // A roller that is clear of the outer raceway moves along it nevertheless.
         let on_outer = &mut self.contacts[0];
         for lane in lanes(self.bits & !on_outer.near) {
             on_outer.hints[lane][1] = self.facet[lane];
@@ -204,7 +204,7 @@ impl Block {
         }
     }
 
-    /// Shows the state what is sampled and looked at: places, angles, normal forces and films.
+    /// Writes to the state the sampled quantities: positions, angles, normal forces and films.
     pub(crate) fn show(&self, state: &mut State) {
         let (of, n) = (self.first..self.first + self.count, self.count);
         let columns = [

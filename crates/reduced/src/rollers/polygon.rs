@@ -1,11 +1,11 @@
-//! The polygon of a roller as walls and corners of the cage meet it (THEORY §9.4).
+//! The polygon of a roller in contact with walls and corners of the cage (THEORY §9.4).
 
 use crate::plane::{Rotation, Vec2};
 
-/// Half of what is rounded about a vertex of a roller where a corner of the cage meets it, in facets. A
-/// corner that passes a sharp vertex meets another force at once, and the step, which falls on it somewhere,
-/// gives or takes energy by its length; over a tenth of a facet, which takes several steps, that is gone, and
-/// a tenth of what vertices stand out by with it.
+/// Half the length over which a vertex of a roller is rounded for corners of the cage, in facets. At a sharp
+/// vertex the force of a corner jumps within a step, which changes the energy by the place of the jump in the
+/// step; rounding over a tenth of a facet, which takes several steps, removes that, and a tenth of the
+/// vertex's height.
 const ROUNDED: f64 = 0.05;
 
 /// Part of a roller beyond a flat, with the penetration p over the distance u from the foot of its
@@ -49,13 +49,13 @@ impl Cut {
 pub(crate) struct Polygon {
     /// Distance of the facets from the centre [m].
     apothem: f64,
-    /// Half the angle of a facet, and what is rounded of it [rad].
+    /// Half the angle of a facet, and its rounded part [rad].
     half: f64,
     rounded: f64,
     /// Directions of the middles of the facets.
     middles: Vec<[f64; 2]>,
-    /// Cosine and sine of half the angle of a facet and of the whole, and the sine of what is not rounded of
-    /// half of it.
+    /// Cosine and sine of half the angle of a facet and of the whole, and the sine of the part of half of it
+    /// that is not rounded.
     half_turn: [f64; 2],
     turn: [f64; 2],
     sine_sharp: f64,
@@ -105,7 +105,7 @@ impl Polygon {
         2.0 * self.apothem * self.half_turn[1] / self.half_turn[0]
     }
 
-    /// What lies beyond a flat at `distance` from the centre, at a right angle to the direction `d`.
+    /// The part beyond a flat at `distance` from the centre, normal to the direction `d`.
     pub(crate) fn beyond(&self, d: [f64; 2], distance: f64) -> Cut {
         let mut cut = Cut::default();
         let middle = self.beside_middle(d);

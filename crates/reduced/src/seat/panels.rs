@@ -1,4 +1,5 @@
-//! Panels of the seat in a step: which of them open, close and slip, and what follows for tensions and modes.
+//! Panels of the seat in a step: which of them open, close and slip, with the resulting tensions and modal
+//! forces.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -16,8 +17,8 @@ const EVERY_OTHER: [Row; 2] =
     [Row([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]), Row([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0])];
 
 impl Springs {
-    /// Begins a step: what opened and slipped in the last one is taken to go on alike, which leaves few
-    /// passes to take. Returns the springs that have moved by that, a bit for each.
+    /// Begins a step: opening and slip are extrapolated from the last one, which leaves few sweeps. Returns
+    /// the springs that have moved by that, a bit for each.
     #[inline(always)]
     pub(super) fn extrapolate<S: Simd>(&self, simd: S, panels: &mut SeatState) -> u128 {
         let zero = Vector::all(simd, 0.0);
@@ -77,7 +78,7 @@ impl Springs {
         responses: &mut RollerResponses,
         passes: Passes,
     ) -> f64 {
-        // Every other panel at once: neighbours see what those between them have done.
+        // Every other panel at once: neighbours then use the results of those between them.
         let mut quiet = 0;
         for half in 0..2 * passes.most {
             let (these, far) = self.release(
@@ -109,9 +110,9 @@ impl Springs {
         heat.sum()
     }
 
-    /// Lets those of some panels that pull open, and those slip that friction does not panels, all at once.
-    /// Returns which springs have moved, a bit for each, and whether that changed a tension by more than
-    /// `still` [N].
+    /// Opens those of some panels that would be in tension, and slips those beyond the limit of friction, all
+    /// at once. Returns which springs have moved, a bit for each, and whether that changed a tension by more
+    /// than `still` [N].
     #[inline(always)]
     pub(super) fn release<S: Simd>(
         &self,
@@ -137,8 +138,8 @@ impl Springs {
                 let had = gap(&panels.open, across);
                 let opens = pulls.times_plus(of(&self.per_own, across), had).max(zero) - had;
                 let loses = opens * of(&self.own, across);
-                // Held where it was before, and let go by what friction cannot panels: what slips first must
-                // not slip too far.
+                // Slip from the position before the step, by the excess over the limit of friction: otherwise
+                // panels that slip first would slip too far.
                 let limit = friction * (loses - pulls).max(zero);
                 let was = gap(&panels.open, along);
                 let held = (was - gap(&panels.before, along)) * of(&self.own, along);
@@ -163,8 +164,8 @@ impl Springs {
         (moved, far != 0)
     }
 
-    /// What follows from the springs that have opened and slipped in this step, a bit for each: what all
-    /// tensions have lost, and what is done to the modes.
+    /// Effects of the springs that have opened and slipped in this step, a bit for each: loss of all
+    /// tensions, and modal forces.
     #[inline(always)]
     pub(super) fn accumulate<S: Simd>(
         &self,

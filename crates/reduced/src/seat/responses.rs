@@ -1,4 +1,4 @@
-//! How rollers respond to a seat that gives way under them, within a step.
+//! Response of roller forces to opening and slip of the seat within a step.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
@@ -16,7 +16,7 @@ use crate::{
 /// share. Below it they are extrapolated from the step before, which is stable up to a third.
 const RESPONSIVE: f64 = 0.2;
 
-/// What rollers press in a step, and how they answer to a seat that gives way.
+/// Roller forces in a step, and their response to displacement of the seat.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RollerResponses {
     pub(super) rollers: Vec<RollerResponse>,
@@ -29,12 +29,12 @@ pub(crate) struct RollerResponses {
     pub(super) moves: Vec<(usize, f64)>,
 }
 
-/// What one of them does.
+/// Response of one roller.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RollerResponse {
     /// Force on the raceway [N].
     pub(super) force: f64,
-    /// What it is expected to be, which may be below zero, if the seat has given way under it by `given` [m].
+    /// Expected force, which may be below zero, if the seat under it is displaced by `given` [m].
     expected: f64,
     given: f64,
     /// Decrease of the force as the seat recedes further [N/m]; zero where it is negligible.
@@ -44,9 +44,8 @@ pub(super) struct RollerResponse {
 }
 
 impl Springs {
-    /// What rollers do to the tensions, each by itself: a unit force at its place, the force that is expected
-    /// if the seat goes on as in the step before, and how much less it presses where the seat gives way by
-    /// more.
+    /// Effects of single rollers on the tensions: of a unit force at its place, the force that is expected if
+    /// the seat goes on as in the step before, and how much less it presses where the seat gives way by more.
     #[inline(always)]
     pub(super) fn answer<S: Simd>(
         &self,
@@ -86,8 +85,8 @@ impl Springs {
             let mut answer =
                 RollerResponse { force: expected, expected, given: 0.0, stiffness: 0.0, part: 0.0 };
             if gain > RESPONSIVE {
-                // Where panels let go a change comes back times −gain, where they panels not at all: halfway
-                // between the two.
+                // Where panels open a change returns times −gain, where they hold not at all: halfway between
+                // the two.
                 let part = 1.0 / (1.0 + 0.5 * gain);
                 answer = RollerResponse { given: given.sum(), stiffness: roller.stiffness, part, ..answer };
             }
@@ -95,7 +94,7 @@ impl Springs {
         }
     }
 
-    /// Lets rollers answer to how far the seat has given way by now.
+    /// Updates the roller forces for the present displacement of the seat.
     #[inline(always)]
     pub(super) fn update_forces<S: Simd>(
         &self,

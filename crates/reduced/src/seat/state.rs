@@ -1,4 +1,4 @@
-//! What changes of the seat during a run: part of the checkpoint.
+//! State of the seat during a run, a part of the checkpoint.
 
 use serde::{Deserialize, Serialize};
 
@@ -13,7 +13,7 @@ pub struct SeatState {
     pub(super) before: Vec<f64>,
     /// Tension that each spring has lost by it [N].
     pub(super) lost: Vec<f64>,
-    /// What that does to each mode [N/√kg].
+    /// Modal forces of that [N/√kg].
     pub(crate) push: Vec<f64>,
     /// Forces of rollers in the last step.
     pub(crate) pressed: Vec<RollerForce>,

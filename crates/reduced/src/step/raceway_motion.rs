@@ -1,4 +1,4 @@
-//! Where rollers are by both raceways, the outer one moved with the modes (THEORY §9.3).
+//! Positions of rollers relative to both raceways, the outer one displaced by the modes (THEORY §9.3).
 
 use pulp::Simd;
 use stribeck_simd::lanes::{Number, Vector, vector_starts};
@@ -114,7 +114,7 @@ impl Bearing {
         if self.oil.is_some() { 0 } else { clear }
     }
 
-    /// How the outer raceway moves under eight rollers, by what modes and seat displace.
+    /// Motion of the outer raceway under eight rollers, by modes and seat.
     #[inline(always)]
     fn raceway_motion<S: Simd>(&self, simd: S, block: &mut Block) {
         for at in vector_starts(simd) {

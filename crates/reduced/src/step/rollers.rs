@@ -102,8 +102,8 @@ impl Bearing {
         [by_oil.normal, by_oil.stiffness]
     }
 
-    /// Adds the forces of a group of rollers to those on the modes, and keeps what sensors and seat respond
-    /// to beyond the modes.
+    /// Adds the forces of a group of rollers to those on the modes, and stores the forces to which sensors
+    /// and seat respond quasi-statically.
     #[inline(always)]
     fn push_modes<S: Simd>(&self, simd: S, scratch: &mut Scratch, b: usize, by_film: [[f64; LANES]; 2]) {
         let block = &scratch.blocks[b];

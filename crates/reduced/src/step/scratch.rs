@@ -1,4 +1,4 @@
-//! Room for what a step computes.
+//! Scratch of a step.
 
 use stribeck_simd::lanes::LANES;
 
@@ -13,7 +13,7 @@ use crate::{
     state::{State, Stored},
 };
 
-/// Room for what a step computes, and sums over the steps of a sample.
+/// Scratch of a step, and sums over the steps of a sample.
 #[derive(Debug, Clone, Default)]
 pub struct Scratch {
     /// The rollers during some steps.
@@ -29,7 +29,7 @@ pub struct Scratch {
     /// Motion of the sensors before and after the last step of a sample.
     pub(crate) before: SensorMotion,
     pub(crate) now: SensorMotion,
-    /// Energies at the positions of the last step, when it was asked for.
+    /// Energies at the positions of the last step, when they were computed.
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
     pub(crate) deepest: f64,
@@ -65,7 +65,7 @@ impl Scratch {
         (self.summed, self.deepest) = (0, 0.0);
     }
 
-    /// Shows the state what is sampled and looked at.
+    /// Writes the sampled quantities to the state.
     pub(crate) fn show(&self, state: &mut State) {
         self.blocks.iter().for_each(|block| block.show(state));
     }

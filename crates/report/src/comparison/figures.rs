@@ -13,7 +13,7 @@ const LOW_HZ: f64 = 10_000.0;
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
 /// Harmonics of the inner raceway's frequency up to which an envelope spectrum is drawn.
 const HARMONICS: f64 = 3.2;
-/// As far as an envelope spectrum is drawn where no family is known [Hz].
+/// Upper end of an envelope spectrum where no family is known [Hz].
 const UNKNOWN_HZ: f64 = 500.0;
 
 pub(super) struct Figures {
@@ -36,7 +36,7 @@ impl Figures {
     }
 }
 
-/// Sides with their first signal, the loudest first, so that the others are drawn over it.
+/// Sides with their first signal, the strongest first, so that the weaker are drawn over it.
 fn loudest_first<'a>(sides: &[(&'a Side, Colour)]) -> Vec<(&'a Side, &'a Member, Colour)> {
     let member = |(side, colour): &(&'a Side, Colour)| Some((*side, side.members.first()?, *colour));
     let mut all: Vec<_> = sides.iter().filter_map(member).collect();

@@ -1,4 +1,4 @@
-//! What an engineer reads first: what was chosen, what follows from it, and how much starts scatter.
+//! The summary at the head of the page: calibrated values, predictions, and the scatter between starts.
 
 use maud::{Markup, html};
 use stribeck_scene::resolved::ResolvedScene;
@@ -22,7 +22,7 @@ pub(super) fn paragraphs(findings: &EnsembleFindings) -> Markup {
     }
 }
 
-/// What somebody chose, with its value.
+/// Values that were calibrated.
 fn calibrated(scene: &ResolvedScene, of_paper: bool) -> String {
     let (contact, solver) = (&scene.written.contact, &scene.written.solver);
     let mut chosen = vec![
@@ -59,7 +59,7 @@ fn calibrated(scene: &ResolvedScene, of_paper: bool) -> String {
     format!("The scene chooses {} and {last}. {source}.", chosen.join(", "))
 }
 
-/// What nobody adjusted.
+/// Results that nothing was calibrated to.
 fn predicted(summary: &EnsembleSummary) -> String {
     let beside = |path: &str, factor: f64, decimals: usize, words: &str| {
         summary
@@ -102,7 +102,7 @@ fn predicted(summary: &EnsembleSummary) -> String {
     format!("Adjusted to nothing: {}.{tone}{energy}", said.join("; "))
 }
 
-/// How far to trust a single start, and the mean.
+/// Uncertainty of a single start, and of the mean.
 fn scatter(summary: &EnsembleSummary) -> String {
     let complete = summary.count(Ended::Complete);
     if complete < 2 {

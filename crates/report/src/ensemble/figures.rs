@@ -1,4 +1,4 @@
-//! Charts of an ensemble: one start in front of what all do.
+//! Charts of an ensemble: one start over the range of all.
 
 use super::super::figures::{Item, about_the_tone, mark};
 use super::strips;

@@ -15,7 +15,7 @@ const COLOURS: [Colour; 6] =
 const DOT: f64 = 3.0;
 const FAINT: &str = "#5c6670";
 
-/// A dot a start, side by side so that equal values are seen apart; `along` runs over the values.
+/// A dot a start, side by side where values coincide; `along` runs over the values.
 fn strip(sheet: &mut Sheet, values: &[f64], colour: Colour, place: impl Fn(f64, f64) -> [f64; 2]) {
     let paint = format!("fill:{};fill-opacity:0.55", colour.css());
     for (n, value) in values.iter().enumerate() {
@@ -169,7 +169,7 @@ pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
     Some(picture)
 }
 
-/// What happens to a roller in the defect, in a sentence.
+/// The course of a roller's passage over the defect, in a sentence.
 pub(super) fn story(findings: &EnsembleFindings, roller: usize) -> String {
     let of = findings.complete.len();
     let count = |what: fn(&Event) -> Option<f64>| {

@@ -11,7 +11,7 @@ use stribeck_analysis::statistic::{CONFIDENCE, Statistic};
 use stribeck_analysis::summary::Event;
 use stribeck_analysis::words;
 
-/// Part of itself to which a mean is worth knowing.
+/// Relative width of its interval up to which a mean is shown with fewer decimals.
 const WORTH: f64 = 0.1;
 
 /// Phases of a record, as fields of `levels`, and in words.
@@ -48,7 +48,7 @@ pub(super) fn shown(value: f64, decimals: usize) -> String {
     format!("{value:.decimals$}").replace('-', "−")
 }
 
-/// `136 ± 8`: the mean and how well it is known.
+/// `136 ± 8`: the mean and the half width of its interval.
 pub(super) fn mean(s: &Statistic, factor: f64, decimals: usize) -> String {
     let mean = shown(factor * s.mean, decimals);
     match s.high {
@@ -288,7 +288,8 @@ pub(super) fn roller(event: &Merged) -> String {
     }
 }
 
-/// What the paper measures, beside ours over the starts. What is given stands on the page of any start.
+/// The paper's measured numbers beside ours over the starts. Numbers that the paper prescribes are on the
+/// page of any start.
 pub(super) fn paper(summary: &EnsembleSummary) -> Markup {
     let measured = |row: &&Merged| row.text("part") != Some("Model") && row.number("ours_value").is_some();
     let mut part = "";
@@ -352,7 +353,7 @@ fn paper_row(row: &Merged) -> Markup {
 
 /// Where a number lies among the starts.
 fn place(number: f64, s: &Statistic) -> &'static str {
-    // What all starts agree on to rounding is one number.
+    // Values that agree to rounding in all starts are shown as one number.
     let same = (number - s.mean).abs() <= 1e-9 * s.mean.abs();
     match (s.low, s.high) {
         _ if same => "at ours",
@@ -364,7 +365,7 @@ fn place(number: f64, s: &Statistic) -> &'static str {
     }
 }
 
-/// Every start: what was drawn, how it ended.
+/// Every start: its drawn values, and how it ended.
 pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
     let ended = |ended: Ended| match ended {
         Ended::Complete => "complete",

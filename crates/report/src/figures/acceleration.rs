@@ -77,7 +77,7 @@ pub(super) fn notched(findings: &Findings) -> Option<Figure> {
     Some(figure)
 }
 
-/// Every other sensor, and what the mean over an interval leaves out.
+/// Every other sensor, and the instantaneous acceleration beside the mean over an interval.
 pub(super) fn others(record: &Record<'_>, findings: &Findings) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for sensor in findings.sensors.iter().skip(1) {

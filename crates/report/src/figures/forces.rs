@@ -9,7 +9,7 @@ use stribeck_analysis::summary::Event;
 /// Rollers whose force is drawn: the paper's three. All others are in the table.
 pub(crate) const DRAWN: usize = 3;
 
-/// A roller that carries so many times as much as before carried next to nothing.
+/// Largest relative increase that is shown: beyond it the force before was next to nothing.
 const MOST_GAIN: f64 = 10.0;
 
 /// A record of more roller spacings is drawn about each passage only.
@@ -66,7 +66,7 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         format!("strikes the floor at {t:.2} ms with {n:.0} N {} (#2)", by.in_words())
     });
     let help = event.compensation_gain.zip(event.compensation_n).map_or(String::new(), |(gain, force_n)| {
-        // Over next to nothing a share says nothing.
+        // A share of a force that is next to nothing has no meaning.
         let more = if gain < MOST_GAIN {
             format!("{:.0} % more", 100.0 * (gain - 1.0))
         } else {
@@ -86,7 +86,7 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
         )
 }
 
-/// What all rollers carry together, sample by sample.
+/// Sum of the forces on all rollers [N], sample by sample.
 pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
     let sum = &findings.support_n;
     if sum.is_empty() {

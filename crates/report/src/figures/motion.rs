@@ -1,12 +1,13 @@
-//! Slip: how fast rollers spin and run, and the cage turns, against rolling without slip.
+//! Slip: speeds of the rollers about their axes and about the bearing, and of the cage, over those of rolling
+//! without slip.
 
 use std::f64::consts::TAU;
 
 use crate::Error;
 use crate::plot::{Axis, Colour, Figure, Level, Series};
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::load::running_mean;
 use stribeck_analysis::record::Record;
+use stribeck_dsp::running_mean;
 
 /// Rates are means over this time [s]; at most a tenth of the record.
 const SMOOTHING_S: f64 = 0.5e-3;
@@ -25,13 +26,13 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
     let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple];
     let cage_rad_s = k.outer_rad_s - k.sense() * TAU * k.cage_on_outer_hz;
     let crossing: Vec<usize> = findings.summary.events.iter().map(|e| e.roller).take(3).collect();
-    // What the rings turn at against each other, over its mean; rings that hardly do tell nothing of slip.
+    // Relative speed of the rings over its mean; slip cannot be judged where it is nearly zero.
     let against = record.relative_angle().map(|angle| rates(&angle, record.interval_s(), width));
     let mean = k.shaft_rad_s - k.outer_rad_s;
     let pace = |n: usize| against.as_ref().map_or(1.0, |rate| (rate[n] / mean).abs());
     let percent = |name: &str, colour: Colour, angle: &[f64], without_slip_rad_s: f64| {
         let mut rate = rates(angle, record.interval_s(), width);
-        // Beside an outer ring whose angle is on record motion is seen from there.
+        // Where the angle of the outer ring is recorded, motion is taken relative to that ring.
         let mut without_slip_rad_s = without_slip_rad_s;
         if let Some(outer) = record.channel("outer_ring.angle_rad") {
             let outer = rates(outer, record.interval_s(), width);

@@ -21,13 +21,13 @@ use stribeck_analysis::words::significant;
 const DEPTH_DB: f64 = 120.0;
 /// Upper end of the low frequencies [Hz].
 const LOW_HZ: f64 = 2_500.0;
-/// Upper end of what a spectrum shows at first [Hz]; the whole band is a click away.
+/// Upper end of the initial view of a spectrum [Hz]; a click shows the whole band.
 const FIRST_HZ: f64 = 10_000.0;
 /// Spectra behind tabs.
 const TABS: &str = "spectra";
 /// Multiples of the defect's frequency that are marked.
 const FAMILY: usize = 10;
-/// Where each colour of the marks comes from, of those that are drawn.
+/// The legend of the colours that are drawn.
 fn legend(findings: &Findings) -> String {
     let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, \
         purple nodes of the outer and \
@@ -153,12 +153,12 @@ pub(in super::super) fn about_the_tone(notch_hz: Option<f64>, marks: &[Mark], ha
     if half_hz >= PAPER_HZ.1 && (low > high || PAPER_HZ.0 <= low && high < PAPER_HZ.1) {
         return PAPER_HZ;
     }
-    // Without any, the top of what is sampled.
+    // Without any, half the sample rate.
     let low = low.min(half_hz);
     ((low - AROUND_HZ).max(0.0), (high.max(low) + AROUND_HZ).min(half_hz))
 }
 
-/// What a spectrum can tell apart, in one sentence.
+/// Resolution of a spectrum, in one sentence.
 fn stated(spectrum: &Spectrum) -> String {
     format!("Welch: {}.", spectrum.resolution())
 }
@@ -335,7 +335,7 @@ fn over_frequency(id: &str, title: &str, (from, to): (f64, f64)) -> Figure {
     Figure::new(id, title, Axis::si("Frequency", "Hz").over(from, to), density)
 }
 
-/// What a cursor of a run can be set to: the families of defects, the shaft, the facets.
+/// Frequencies to which the cursor of a run can be set: the families of defects, the shaft, the facets.
 fn cursor(findings: &Findings) -> Cursor {
     let k = &findings.prediction.kinematics;
     let mut known = vec![
@@ -385,7 +385,7 @@ fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
 }
 
 /// Carrier and sidebands of every family that was found; the predicted carrier of those that were not, by
-/// geometry where no motion tells it.
+/// geometry where the recorded motion does not yield it.
 fn line_marks(findings: &Findings) -> Vec<Mark> {
     let bpfo = findings.summary.kinematics.bpfo_hz.unwrap_or(findings.prediction.kinematics.bpfo_hz);
     let mut marks = Vec::new();

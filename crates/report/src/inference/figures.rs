@@ -10,7 +10,7 @@ const GREY: &str = "#999";
 const PANEL: [f64; 2] = [260.0, 150.0];
 const IN_A_ROW: usize = 3;
 
-/// Every unknown by itself: bars over the prior, which is the grey line.
+/// The marginal posterior of every unknown: bars, with the prior as a grey line.
 pub(super) fn marginals(answer: &Answer) -> Picture {
     let rows = answer.fields.len().div_ceil(IN_A_ROW);
     let mut sheet = Sheet::new(IN_A_ROW as f64 * PANEL[0], rows as f64 * PANEL[1]);
@@ -173,7 +173,7 @@ fn square(sheet: &mut Sheet, [x, y]: [f64; 2], size: f64, paint: &str) {
     sheet.path(&[[x, y], [x + size, y], [x + size, y + size], [x, y + size]], true, paint);
 }
 
-/// Every target beside what emulated scenes and runs at draws of the posterior make of it.
+/// Every target beside its predictions: of the emulator, and of runs at draws of the posterior.
 pub(super) fn targets(answer: &Answer) -> Picture {
     let (left, width, line) = (220.0, 500.0, 30.0);
     let mut sheet = Sheet::new(left + width + 90.0, 40.0 + line * answer.targets.len() as f64);
@@ -221,7 +221,7 @@ pub(super) fn targets(answer: &Answer) -> Picture {
     picture
 }
 
-/// What the line of a target shows.
+/// Range that the line of a target covers.
 fn span(target: &TargetFound) -> Option<(f64, f64)> {
     let all = target.run_values.iter().chain(target.value.iter()).chain(target.predicted.iter().flatten());
     let all: Vec<f64> = all.copied().filter(|value| value.is_finite()).collect();
@@ -238,7 +238,7 @@ fn span(target: &TargetFound) -> Option<(f64, f64)> {
     }
 }
 
-/// Targets by unknowns: how far each target tells each unknown.
+/// Targets by unknowns: how strongly each target constrains each unknown.
 pub(super) fn pulls(answer: &Answer) -> Picture {
     let (left, top, wide, line) = (220.0, 110.0, 52.0, 24.0);
     let columns = answer.fields.len();

@@ -148,7 +148,7 @@ fn drawn(case: &PaperCase<'_>, what: &str) -> String {
     case.number.map_or(what.to_owned(), |number| format!("{what}, start {number}"))
 }
 
-/// What the shade is.
+/// Meaning of the shaded band.
 fn band_words(case: &PaperCase<'_>) -> String {
     match case.starts.len() {
         1 => String::new(),

@@ -1,4 +1,4 @@
-//! The load zone as a polar plot: what each place of the outer raceway carries, at rest and in motion.
+//! The load zone as a polar plot: force at each angle of the outer raceway, at rest and in motion.
 
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;

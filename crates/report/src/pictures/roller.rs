@@ -1,4 +1,4 @@
-//! One roller as the mesh has it, and what its facets leave out (the paper's Fig. 4).
+//! One roller as meshed, and the deviation of its facets from the circle (the paper's Fig. 4).
 
 use std::f64::consts::PI;
 

@@ -19,20 +19,20 @@ use stribeck_analysis::words::{kilonewtons, pascals};
 const ABOVE: f64 = 0.002;
 /// Side of an animated picture [px].
 const SIDE: u16 = 480;
-/// Half the side of what a picture of a moment shows [m].
+/// Half the side of the picture of a moment [m].
 const HALF: f64 = 3e-3;
 /// Time for one animated picture [1/100 s].
 const HUNDREDTHS: u16 = 9;
 
-/// A moment: what stands there, its cells, and the point to look at, in the window's own axes [m].
+/// A moment: its title, its cells, and the focus, in the axes of the picture [m].
 struct Moment {
     title: String,
-    /// What stands at the focus, in words.
+    /// Place of the focus, in words.
     at: &'static str,
     time_s: f64,
     cells: Vec<Cell>,
     focus: [f64; 2],
-    /// What Hertz has for the contact at the focus; `None` at an edge.
+    /// Hertzian stress of the contact at the focus; `None` at an edge.
     hertz: Option<Hertz>,
 }
 
@@ -92,7 +92,7 @@ pub(super) fn pictures(
     Ok(pictures)
 }
 
-/// The first frame with the roller that crosses first, seen where it touches the outer raceway, and the frame
+/// The first frame with the roller that crosses first, at its contact with the outer raceway, and the frame
 /// with the highest stress near the trailing edge while the roller climbs out.
 fn moments(
     record: &Record<'_>,
@@ -207,7 +207,7 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
     }
     scale_of_colours(&mut sheet, [10.0, side + top + 14.0], end);
     let mut picture = Picture::new("stress", "Stress under a roller and at the exit edge", sheet);
-    // Where each moment has its highest stress, from the point that it looks at, and what Hertz has there.
+    // Position of each moment's highest stress from its focus, and the Hertzian value.
     let mut places = Vec::new();
     let mut hertz = String::new();
     for m in moments {

@@ -22,7 +22,7 @@ impl Canvas {
         Self { width, height, pixels: vec![0; width * height] }
     }
 
-    /// Fills a convex polygon given in pixels, either way round, with the shade `level` from 0 to 1.
+    /// Fills a convex polygon [px], of either orientation, with the shade `level` from 0 to 1.
     pub fn fill(&mut self, corners: &[[f64; 2]], level: f64) {
         let shade = (FIRST + (level.clamp(0.0, 1.0) * (SHADES - 1) as f64).round() as usize) as u8;
         let span = |c: usize, limit: usize| {

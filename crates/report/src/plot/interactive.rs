@@ -9,7 +9,7 @@ use crate::Error;
 /// Points sent to the page for one series; beyond that extremes are kept and the figure says so.
 pub(super) const POINT_LIMIT: usize = 10_000;
 
-/// What `plot.js` reads.
+/// Data that `plot.js` reads.
 #[derive(Serialize)]
 struct Sent<'a> {
     x: SentAxis<'a>,

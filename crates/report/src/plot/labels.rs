@@ -2,7 +2,7 @@
 
 /// Row (0 is nearest the chart) of each label, given its centre and its width in pixels.
 ///
-/// Labels are placed from left to right, each in the lowest row where it is free.
+/// Labels are placed from left to right, each in the lowest row that has room for it.
 pub(super) fn rows(labels: &[(f64, f64)]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..labels.len()).collect();
     order.sort_by(|&a, &b| labels[a].0.total_cmp(&labels[b].0));

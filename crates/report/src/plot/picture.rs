@@ -7,16 +7,16 @@ use maud::{Markup, PreEscaped, html};
 use super::{Colour, Tab, base64, raster};
 use crate::Error;
 
-/// One picture and what the reader should see in it.
+/// One picture with its caption.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Picture {
     /// Name of the anchor in the page and of the files; letters, digits and `-`.
     pub id: String,
     /// Heading.
     pub title: String,
-    /// One sentence that says what to see.
+    /// One sentence that states the finding.
     pub caption: String,
-    /// What must be known to read it honestly. May be empty.
+    /// Limits of the picture. May be empty.
     pub note: String,
     /// The drawing.
     pub sheet: Sheet,
@@ -53,7 +53,7 @@ impl Sheet {
         Self { width, height, body: String::new() }
     }
 
-    /// A line through points; `closed` joins its ends. `paint` is what CSS takes: `fill:none;stroke:#000`.
+    /// A line through points; `closed` joins its ends. `paint` is a CSS style: `fill:none;stroke:#000`.
     pub fn path(&mut self, points: &[[f64; 2]], closed: bool, paint: &str) {
         let _ = write!(self.body, "<path d=\"");
         self.points(points);
@@ -112,7 +112,7 @@ impl Sheet {
         );
     }
 
-    /// Draws what `draw` adds inside a rectangle only.
+    /// Clips the drawing of `draw` to a rectangle.
     pub fn clipped(&mut self, name: &str, at: [f64; 2], size: [f64; 2], draw: impl FnOnce(&mut Self)) {
         let ([x, y], [w, h]) = (at, size);
         let _ = write!(

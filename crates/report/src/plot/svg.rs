@@ -314,7 +314,7 @@ fn axis_name(axis: &Axis) -> String {
     }
 }
 
-/// Units of so many pixels.
+/// Conversion of pixels to units.
 const fn px(pixels: i32) -> i32 {
     pixels * FINE as i32
 }

@@ -10,8 +10,7 @@ use super::When;
 /// Contact that sinks in by more than this share of the defect's depth moves its edges.
 const OF_DEPTH: f64 = 0.5;
 
-/// What a penetration is to be compared with [m]: a contact that sinks in by more is softer than the bearing
-/// itself.
+/// Reference of penetrations [m]: a contact with a larger penetration is softer than the bearing itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Softness {
     /// Half of the diametral clearance.

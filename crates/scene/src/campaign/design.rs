@@ -58,7 +58,7 @@ pub(super) struct Table {
 }
 
 impl Rows {
-    /// What puts the value of a variant and a field, both from 0, into a scene.
+    /// Overrides that set the value of a field in a variant, both from 0.
     pub(super) fn argument(&self, row: usize, column: usize) -> String {
         format!("{}={}", self.fields[column].0, self.values[row][column])
     }
@@ -126,7 +126,7 @@ fn closed(text: &str) -> Option<usize> {
     }
 }
 
-/// What cannot be: the place in the campaign's file, as a path, and why.
+/// A mistake: its place in the campaign's file, as a path, and the reason.
 pub(super) struct Refused {
     pub(super) at: String,
     pub(super) why: String,
@@ -217,7 +217,7 @@ fn grid(axes: &[Axis]) -> Result<Rows, Refused> {
     Ok(Rows { fields: axes.iter().enumerate().map(place).collect(), values: rows, table: None })
 }
 
-/// Whether so many points over these fields can be drawn.
+/// Whether the design can have this number of points over these fields.
 fn possible(count: usize, most: usize, axes: &[Axis]) -> Result<(), Refused> {
     if count == 0 || count > most || axes.is_empty() || axes.len() > 256 {
         let why =

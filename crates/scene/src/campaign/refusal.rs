@@ -1,5 +1,4 @@
-//! What is wrong with a campaign's file, said as of scenes: with line, field, what is allowed and what to
-//! try.
+//! Errors of a campaign's file, as those of scenes: with line, field, allowed values and remedy.
 
 use super::design::Rows;
 use super::{MOST_RUNS, MOST_STARTS};
@@ -22,7 +21,7 @@ pub(super) const CAMPAIGN: Kind = Kind {
 pub(super) const FILE: &str = "fixtures/campaigns/quick64.ron";
 
 impl File<'_> {
-    /// What is wrong with a field that varies, where it is named.
+    /// The error on a field that varies, shown where it is named.
     pub(super) fn field(&self, mut problem: Problem, rows: &Rows, column: usize) -> SceneError {
         problem.place = match &rows.table {
             Some(table) => place_in_file(&table.name, &table.text, table.head(column)),
@@ -31,7 +30,7 @@ impl File<'_> {
         problem.into()
     }
 
-    /// What is wrong with the scene of a variant, each value shown where it is written.
+    /// Errors of a variant's scene, each value shown where it is written.
     pub(super) fn of_variant(&self, error: &SceneError, rows: &Rows, row: usize) -> SceneError {
         let placed = error.problems().iter().cloned().map(|problem| match varies(&problem, rows, row) {
             Some(column) => self.value(problem, rows, row, column),
@@ -40,7 +39,7 @@ impl File<'_> {
         SceneError::new(placed.collect())
     }
 
-    /// What is wrong with it in what all variants have in common, as far as somebody wrote that.
+    /// Its errors in fields that all variants share, as far as they were written.
     pub(super) fn outside(&self, error: &SceneError, rows: &Rows, row: usize) -> Vec<Problem> {
         let written = |problem: &&Problem| !matches!(problem.place, Place::Unwritten { .. });
         let problems = error.problems().iter().filter(written);
@@ -81,7 +80,7 @@ impl File<'_> {
     }
 }
 
-/// The column of the value that is to blame for what is wrong with the scene of a variant.
+/// Column of the value that causes the error of a variant's scene.
 fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize> {
     let Place::CommandLine { argument, .. } = &problem.place else { return None };
     (0..rows.fields.len()).find(|column| rows.argument(row, *column) == *argument)
@@ -101,7 +100,7 @@ fn part(outer: Option<&str>) -> &'static str {
     }
 }
 
-/// What to try where a field without default lacks.
+/// Remedy for a missing field without default.
 fn lacking(outer: Option<&str>) -> Option<&'static str> {
     match outer {
         Some("split") => Some("`train`, `validation` and `test` sum to 1; `{field}: 0` for none"),

@@ -1,4 +1,4 @@
-//! What files of campaigns make, and what they are told.
+//! Campaign files: the scenes that they define, and the errors that they get.
 
 use super::*;
 

@@ -43,7 +43,7 @@ enum Kind {
     Ball,
 }
 
-/// What such a file looks like.
+/// Example of such a file.
 const EXAMPLE: &str = "[(name: \"mine\", element: roller, elements: 16, diameter_mm: 9.0, pitch_mm: 68.5, \
     bore_mm: 50, outside_mm: 85, width_mm: 20)]";
 
@@ -72,7 +72,7 @@ fn paths() -> Vec<PathBuf> {
 fn read(path: &Path) -> Result<Vec<CatalogueBearing>, String> {
     let shown = path.display();
     let text = std::fs::read_to_string(path).map_err(|why| format!("`{shown}` cannot be read: {why}"))?;
-    // Some editors put a byte order mark in front.
+    // Some editors write a byte order mark first.
     let text = text.trim_start_matches('\u{feff}');
     let dialect = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
     let entries: Vec<Entry> = dialect

@@ -1,4 +1,4 @@
-//! From what people write to the bearing that they mean.
+//! From a designation as users write it to a bearing of the catalogue.
 
 use super::{CatalogueBearing, tables};
 
@@ -43,8 +43,8 @@ pub(super) fn find(
 
 fn fits(asked: &str, bearing: &CatalogueBearing) -> bool {
     let own = plain(&bearing.name);
-    // `6205-2RS1` and `6205-2Z` are a 6205, with two seals or shields, and 62055 is not. Inserts have
-    // bores of their own, which their balls do not know of: `UER204-12`.
+    // `6205-2RS1` and `6205-2Z` are a 6205, with two seals or shields, and 62055 is not. Inserts have bores
+    // that do not follow from their balls: `UER204-12`.
     asked.strip_prefix(&own).is_some_and(|rest| {
         let mut letters = rest.chars();
         match letters.next() {
@@ -56,7 +56,7 @@ fn fits(asked: &str, bearing: &CatalogueBearing) -> bool {
     })
 }
 
-/// Why a plane model has no bearing of this kind, where its name says of which one it is.
+/// Why a plane model cannot have a bearing of this kind, where the name shows the kind.
 fn beyond_a_plane(whole: &str) -> Option<&'static str> {
     // Seals and shields begin with a digit of their own.
     let asked = ["2RS", "2Z"].iter().filter_map(|seal| whole.split_once(seal)).map(|(own, _)| own).next();

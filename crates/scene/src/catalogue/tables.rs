@@ -257,7 +257,7 @@ fn cylindrical() -> impl Iterator<Item = CatalogueBearing> {
     })
 }
 
-/// What [`all`] has, in words.
+/// Content of [`all`], in words.
 pub(super) fn names() -> String {
     let others: Vec<&str> = OTHERS.iter().map(|row| row.0).filter(|name| !name.starts_with('6')).collect();
     format!(
@@ -279,7 +279,7 @@ fn of_row(
 mod tests {
     use super::*;
 
-    /// What [`BALL_RULE`] says of itself, by the bearings whose balls are listed with their source.
+    /// The accuracy stated by [`BALL_RULE`], checked with bearings whose balls are listed with their source.
     #[test]
     fn example_balls_by_rule_beside_known_ones() {
         // Diameter to 6 %, pitch to 1.5 %, and all of the numbers.

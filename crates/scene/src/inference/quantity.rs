@@ -9,10 +9,10 @@
 //! count(events.floor_n > 100)
 //! ```
 //!
-//! A list is entered at one item, by number from 0 or by what stands in it; or by all items, which are taken
-//! together as `count`, `share` (of items that have the number), `mean`, `median`, `min`, `max` or `first`
-//! says. A number that is `null`, and an item that is not there, is missing. Behind a bound, `> 100` or `<
-//! 60`, a number beyond it is one that is missing to `count` and `share`, and yes or no, 1 or 0, by itself.
+//! A list is entered at one item, by number from 0 or by a value in it; or at all items, which are combined
+//! by `count`, `share` (of items that have the number), `mean`, `median`, `min`, `max` or `first`. A number
+//! that is `null`, and an item that is not there, is missing. Behind a bound, `> 100` or `< 60`, a number
+//! beyond it counts as missing in `count` and `share`; alone, the bound yields 1 or 0.
 
 use std::fmt;
 
@@ -80,10 +80,10 @@ const TAKES: [(&str, Take); 7] = [
 ];
 
 impl Quantity {
-    /// Reads what the file says.
+    /// Parses the path in the file.
     ///
     /// # Errors
-    /// When it is no path, in words.
+    /// In words, when it is not a path.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
         let (take, path) = match text.split_once('(') {
@@ -112,7 +112,7 @@ impl Quantity {
         Ok(Self { text: text.to_owned(), take, steps, bound })
     }
 
-    /// Names in braces: what an unknown's readings are put for.
+    /// Names in braces, which the readings of an unknown replace.
     pub fn placeholders(&self) -> Vec<&str> {
         let conditions = self.steps.iter().flat_map(|step| match &step.item {
             Item::Where(conditions) => conditions.as_slice(),
@@ -170,7 +170,7 @@ impl Quantity {
         let bare: Vec<&str> = self.steps.iter().map(|step| step.name.as_str()).collect();
         match summary.get(first) {
             None => false,
-            // What is `null` or an empty list as a whole may have that name in another run.
+            // A value that is `null` or an empty list may have that name in another run.
             Some(Value::Null) => true,
             Some(Value::Array(items)) if items.is_empty() => true,
             Some(_) => names(summary).iter().any(|name| *name == bare.join(".")),

@@ -1,4 +1,4 @@
-//! What is wrong with the file of an inference, said as of scenes.
+//! Errors of an inference's file, as those of scenes.
 
 use super::{MOST_RUNS, MOST_STARTS};
 use crate::document::Kind;

@@ -1,4 +1,4 @@
-//! What files of inferences make, and what they are told.
+//! Inference files: the unknowns and targets that they define, and the errors that they get.
 
 use serde_json::json;
 

@@ -1,4 +1,4 @@
-//! What stands in the file of an inference, and what it means.
+//! The text of an inference's file, and its meaning.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ use super::{
 use crate::document::File;
 use crate::scene_file::{self, SceneError};
 
-/// What lies in the file of an inference.
+/// Content of the file of an inference.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields, rename = "inference")]
 pub(super) struct Text {

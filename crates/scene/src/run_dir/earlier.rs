@@ -1,4 +1,4 @@
-//! What an earlier run has left in a folder. Samples are worth keeping, however the run ended.
+//! Remains of an earlier run in a folder. Samples are worth keeping, however the run ended.
 
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use crate::trace::TraceFile;
 #[derive(Debug)]
 pub(super) enum Earlier {
     Run {
-        /// What `run.json` says; `None` when it cannot be read.
+        /// Content of `run.json`; `None` when it cannot be read.
         info: Option<Box<RunInfo>>,
         /// It has a checkpoint to go on from.
         can_go_on: bool,
     },
     Ensemble {
-        /// Starts that were asked for; `None` when `ensemble.json` cannot be read.
+        /// Number of starts requested; `None` when `ensemble.json` cannot be read.
         wanted: Option<usize>,
         /// Starts that have come to their end.
         ended: usize,
@@ -49,7 +49,7 @@ impl Earlier {
         matches!(info.status, Status::Complete | Status::Diverged)
     }
 
-    /// What it is.
+    /// Its description in words.
     pub(super) fn name(&self) -> String {
         let info = match self {
             Self::Ensemble { wanted: Some(wanted), ended } => {

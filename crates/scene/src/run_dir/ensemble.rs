@@ -22,12 +22,12 @@ pub enum State {
 }
 
 impl RunDir {
-    /// Whether the folder holds an ensemble, or what is left of one.
+    /// Whether the folder holds an ensemble, or remains of one.
     pub fn is_ensemble(path: impl AsRef<Path>) -> bool {
         path.as_ref().join(ENSEMBLE).is_file()
     }
 
-    /// Removes what a run without samples left and writes `scene.ron` and `ensemble.json` of an ensemble.
+    /// Removes the files of a run without samples and writes `scene.ron` and `ensemble.json` of an ensemble.
     ///
     /// # Errors
     ///

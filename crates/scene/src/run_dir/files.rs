@@ -51,14 +51,14 @@ pub(super) fn remove_run(folder: &Path) -> Result<(), Error> {
     for start in start_folders(folder) {
         remove_run(&start)?;
         remove(&start.join(LOCK))?;
-        // What the owner added stays, and so do the folders that it lies in.
+        // Files that the owner added stay, and so do their folders.
         FOLDERS.iter().for_each(|(name, _)| drop(std::fs::remove_dir(start.join(name))));
         std::fs::remove_dir(&start).ok();
     }
     Ok(())
 }
 
-/// Removes what a run or its report has put into the folder `name` of `run`, and no other file.
+/// Removes the files that a run or its report wrote into the folder `name` of `run`, and no others.
 fn remove_filled(run: &Path, name: &str) -> Result<(), Error> {
     let extensions =
         FOLDERS.iter().find(|(folder, _)| *folder == name).map_or(&[][..], |(_, extensions)| extensions);
@@ -77,7 +77,7 @@ pub(super) fn remove_folder(run: &Path, name: &str) -> Result<(), Error> {
     Ok(())
 }
 
-/// Gives a complete file its name.
+/// Renames a complete file to its final name.
 pub(super) fn rename(from: &Path, to: &Path) -> Result<(), Error> {
     std::fs::rename(from, to).map_err(|e| cannot("write", to, "What it was made from is still there", e))
 }

@@ -1,4 +1,4 @@
-//! What stays of a run whose samples take more room than its owner has.
+//! Choice of the files that are kept of a run, to save disk space.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::trace::TraceFile;
 /// Names of the channels of sensors begin with it.
 pub const SENSOR: &str = "sensor.";
 
-/// What stays of a run when its numbers are made. Scene, provenance and numbers always do.
+/// Files that are kept of a run once its summary exists. Scene, provenance and summary always are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(rename = "keep", rename_all = "snake_case")]
 pub enum Keep {
@@ -30,7 +30,7 @@ impl RunDir {
         self.path.join(SIGNALS)
     }
 
-    /// Whether the trace is gone, which goes last, and what `keep` names of its samples is there.
+    /// Whether the trace, which is removed last, is gone and the samples that `keep` names are there.
     pub fn keeps_only(&self, keep: Keep) -> bool {
         match keep {
             Keep::All => true,
@@ -39,9 +39,9 @@ impl RunDir {
         }
     }
 
-    /// Removes what `keep` does not name of a run that has come to its end: samples, energy ledger, mesh,
-    /// frames and checkpoint. Nothing is removed before the channels of sensors lie in a file of their own,
-    /// where they are kept; and the trace goes last, so that after a kill it can be done once more.
+    /// Removes the files of a finished run that `keep` does not name: samples, energy ledger, mesh, frames
+    /// and checkpoint. Nothing is removed before the channels of sensors lie in a file of their own, where
+    /// they are kept; and the trace goes last, so that a removal that was killed can be repeated.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! The folder of what is made of runs and records and is none: a validation, a campaign, an analysis.
+//! Output folders of commands that use runs and records: of a validation, a campaign, an analysis.
 
 use std::path::Path;
 
@@ -6,9 +6,8 @@ use super::earlier::Earlier;
 use super::{ENSEMBLE, INFO, UNTOUCHED, files, free_name, reservation};
 use crate::error::Error;
 
-/// Refuses a folder for what a command makes of runs or records, unless it is missing, empty, or holds one of
-/// `marks`: names below it by which the command knows what it wrote itself, and beside which anything may
-/// lie.
+/// Refuses an output folder unless it is missing, empty, or holds one of `marks`: names of files by which a
+/// command recognises its own output, beside which other files may lie.
 ///
 /// # Errors
 ///

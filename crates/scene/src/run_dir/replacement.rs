@@ -1,5 +1,4 @@
-//! A run that takes the place of another one, once it is complete. Until then it lies beside it, in
-//! `NAME.new`.
+//! A run that replaces another one once it is complete. Until then it lies beside it, in `NAME.new`.
 
 use std::path::{Path, PathBuf};
 
@@ -21,13 +20,13 @@ fn sibling(path: &Path, end: &str) -> PathBuf {
     path.with_file_name(name)
 }
 
-/// Notes in the new folder what it is for.
+/// Notes in the new folder which run it replaces.
 pub(super) fn mark(new: &Path, replaces: &Path) -> Result<(), Error> {
     let name = replaces.file_name().unwrap_or_default().to_string_lossy().into_owned();
     super::write_atomic(&new.join(MARK), name.as_bytes())
 }
 
-/// What the run in `new` is to replace.
+/// The run that the one in `new` replaces.
 pub(super) fn marked(new: &Path) -> Option<PathBuf> {
     let name = std::fs::read_to_string(new.join(MARK)).ok()?;
     // A name and no path: it stays beside the run, wherever both were moved.
@@ -35,12 +34,12 @@ pub(super) fn marked(new: &Path) -> Option<PathBuf> {
     plain.then(|| new.with_file_name(name))
 }
 
-/// Puts the complete run in `new` at `old`. What the owner added to the old folder comes along.
+/// Puts the complete run in `new` at `old`. Files that the owner added to the old folder are moved along.
 pub(super) fn swap(new: &Path, old: &Path) -> Result<(), Error> {
     const KEPT: &str = "Both runs are still there";
     let away = sibling(old, &format!(".old-{}", std::process::id()));
     if old.exists() {
-        // Nobody else may be writing it; the lock moves away with the folder.
+        // No other process may be writing it; the lock moves with the folder.
         let _held = lock(old)?;
         std::fs::rename(old, &away).map_err(|e| cannot("replace", old, KEPT, e))?;
     }
@@ -59,7 +58,8 @@ pub(super) fn swap(new: &Path, old: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-/// Moves what the owner added to a folder of the earlier run; what cannot be moved stays where it is.
+/// Moves files that the owner added to a folder of the earlier run; a file that cannot be moved stays where
+/// it is.
 fn bring_along(from: &Path, to: &Path) {
     for name in std::fs::read_dir(from).into_iter().flatten().flatten().map(|entry| entry.file_name()) {
         let target = to.join(&name);

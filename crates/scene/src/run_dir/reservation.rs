@@ -1,5 +1,5 @@
-//! A folder that is kept for one run: made when it is missing, locked against other processes, and taken away
-//! again when the run never starts.
+//! A folder reserved for one run: made when it is missing, locked against other processes, and removed when
+//! the run never starts.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
@@ -57,7 +57,7 @@ impl Reservation {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Writes our process number into the lock, for the message of whoever comes second.
+    /// Writes the number of this process into the lock, for the message of a second one.
     pub(super) fn sign(&self) -> Result<(), Error> {
         let state = self.state();
         let name = state.path.join(LOCK);
@@ -78,7 +78,7 @@ impl Reservation {
         self.state().started
     }
 
-    /// When the run has not begun, takes away what was made for it and calls `end`; the run cannot begin
+    /// When the run has not begun, removes the folders made for it and calls `end`; the run cannot begin
     /// meanwhile.
     pub fn unless_started(&self, end: impl FnOnce()) {
         let mut state = self.state();
@@ -99,7 +99,7 @@ impl State {
 }
 
 impl Drop for State {
-    /// A folder made for a run that never started is taken away again.
+    /// A folder made for a run that never started is removed.
     fn drop(&mut self) {
         if !self.started {
             self.take_away();
@@ -123,7 +123,7 @@ fn make_and_lock(path: &Path, made: &mut Vec<PathBuf>) -> Result<File, Error> {
             return Err(Error::ForeignFolder { path: path.to_owned(), found });
         }
         match found.and_then(|_| open_lock(path)) {
-            // Another process took away the folder, or one above it, because its own run never started.
+            // Another process removed the folder, or one above it, because its own run never started.
             Err(e) if e.kind() == ErrorKind::NotFound && attempt < ATTEMPTS => {}
             Err(e) => return Err(cannot("create", path, UNTOUCHED, e)),
             Ok(file) => {
@@ -150,9 +150,9 @@ fn make(path: &Path, made: &mut Vec<PathBuf>) -> std::io::Result<()> {
     Ok(())
 }
 
-/// A file in the folder that no run writes; hidden files are nobody's business.
+/// A file in the folder that no run writes; hidden files do not count.
 fn foreign_file(path: &Path) -> std::io::Result<Option<String>> {
-    // A folder with run.json is a run, and what its owner added to it is left alone.
+    // A folder with run.json is a run, and files that its owner added do not matter.
     if [INFO, LOCK].iter().any(|name| path.join(name).exists()) {
         return Ok(None);
     }
@@ -189,13 +189,13 @@ fn take_lock(path: &Path, mut file: &File) -> Result<(), Error> {
             Read::by_ref(&mut file).take(20).read_to_string(&mut owner).ok();
             Err(Error::FolderInUse { path: path.to_owned(), owner: owner.trim().to_owned() })
         }
-        // Some network file systems know no locks; a run there is unprotected rather than impossible.
+        // Some network file systems have no locks; a run there is unprotected rather than impossible.
         Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => Ok(()),
         Err(TryLockError::Error(e)) => Err(cannot("write", &path.join(LOCK), UNTOUCHED, e)),
     }
 }
 
-/// Whether `file` is what lies at `path` now.
+/// Whether `file` is still the file at `path`.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;

@@ -1,4 +1,4 @@
-//! A run as the report sees it.
+//! A run as a report reads it.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use crate::run_info::RunInfo;
 use crate::scene::Scene;
 use crate::trace::TraceFile;
 
-/// A run as the report sees it.
+/// A run as a report reads it.
 #[derive(Debug)]
 pub struct Run {
     /// The complete scene, in SI.
@@ -23,7 +23,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// What is missing of the run: samples that `run.json` counts and the files no longer hold.
+    /// Samples that `run.json` counts and the files do not hold, in words.
     pub fn damage(&self) -> Vec<String> {
         let wanted = self.info.samples;
         let short = |(name, found): (&str, usize)| {
@@ -37,7 +37,7 @@ impl Run {
         [(TRACE, self.trace.len()), (ENERGY, self.energy.len())].into_iter().filter_map(short).collect()
     }
 
-    /// Refuses a run whose `scene.ron` is no longer what was simulated.
+    /// Refuses a run whose `scene.ron` differs from the simulated scene.
     ///
     /// # Errors
     ///
@@ -51,11 +51,11 @@ impl Run {
     }
 
     /// Reads the run in the folder `path`, also one that was interrupted, killed or is still going. Its
-    /// samples stay on disk until they are asked for.
+    /// samples stay on disk until they are read.
     ///
     /// # Errors
     ///
-    /// [`Error::NotARun`], or what is wrong with the first file that cannot be read.
+    /// [`Error::NotARun`], or the error of the first file that cannot be read.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         let dir = RunDir::open(path)?;
         Ok(Self {

@@ -127,7 +127,7 @@ fn invariant_a_run_is_replaced_when_the_new_one_is_complete() {
         "{error}"
     );
 
-    // Continued, it still knows whose place it takes.
+    // A continued run still replaces the same folder.
     let dir = RunDir::reopen(&new).expect("a run").take_place().expect("complete");
     assert_eq!(dir.path().canonicalize().expect("there"), run.canonicalize().expect("there"));
     assert_eq!(Trace::read(run.join(TRACE)).expect("readable").get("x"), Some(&[2.0][..]));
@@ -200,7 +200,7 @@ fn invariant_many_at_once_get_a_folder_each() {
             let (path, paths) = (&path, &paths);
             scope.spawn(move || {
                 let dir = RunDir::create_numbered(path).expect("free");
-                // Every other one never starts and takes its folder away under the others.
+                // Every other one never starts, and removes its folder while the others use it.
                 if n % 2 == 0 {
                     dir.start(&Scene::default(), &info(Status::Running)).expect("writable");
                     let mut trace = TraceWriter::create(dir.trace(), &["time_s"]).expect("writable");
@@ -267,7 +267,7 @@ fn issue_what_is_made_of_runs_takes_no_folder_of_others() {
     std::fs::write(other.join("thesis.tex"), "years of work").expect("writable");
     let error = check_folder(&other, MARKS).expect_err("foreign").to_string();
     assert!(error.contains("thesis.tex") && error.contains("--out"), "{error}");
-    // In what is its own a command goes on, whatever its owner has added.
+    // A command continues in its own output folder, whatever files were added.
     std::fs::create_dir_all(other.join("full/start-001")).expect("writable");
     assert!(check_folder(&other, MARKS).is_ok());
 }

@@ -1,4 +1,4 @@
-//! What a scene means: ranges first, then what must fit together. Every value that is proposed has been
+//! The meaning of a scene: ranges first, then relations between fields. Every value that is proposed has been
 //! tried.
 
 use super::finding::{Finding, Proposal};

@@ -44,7 +44,7 @@ const RIM_SLOPE: f64 = 3.08;
 const NOTCH: &str =
     "[(at_mm: -1.0, depth_um: 0.0), (at_mm: 0.0, depth_um: 20.0), (at_mm: 1.0, depth_um: 0.0)]";
 
-/// What no mesh can follow, in a scene whose numbers are in range.
+/// Deviations that no mesh can follow, in a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     let each = scene.defects.iter().enumerate();
     each.flat_map(|(i, deviation)| Checked::new(scene, i, deviation).findings()).collect()
@@ -406,7 +406,7 @@ impl<'a> Checked<'a> {
         })
     }
 
-    /// What is not there has no other deviation.
+    /// A missing roller has no further deviation.
     fn of_nothing(&self) -> Option<Finding> {
         if !self.on_roller() {
             return None;
@@ -454,7 +454,7 @@ impl<'a> Checked<'a> {
         None
     }
 
-    /// An oil film knows the curvature of a whole roller, and tracks that bend gently.
+    /// An oil film assumes the curvature of a whole roller, and raceways of small curvature changes.
     fn in_oil(&self) -> Option<Finding> {
         let gentle = match &self.deviation.form {
             FormScene::Spall(spall) => {

@@ -1,5 +1,5 @@
-//! How large a run may be: elements that fit the bodies in a number that fits a computer, samples that fit a
-//! disk; and bands and lists that hold something.
+//! Limits of a run's size: number of elements, of samples and of channels; and bands and lists that must not
+//! be empty.
 
 use std::f64::consts::PI;
 
@@ -463,7 +463,7 @@ fn too_many_samples(scene: &Scene) -> Option<Finding> {
     ))
 }
 
-/// A band of structural damping that branches can tell apart.
+/// A band of structural damping wide enough for its branches.
 fn damped_band(scene: &Scene) -> Option<Finding> {
     const FROM: &str = "solver.structural_damping.from_khz";
     const TO: &str = "solver.structural_damping.to_khz";

@@ -1,22 +1,22 @@
-//! Something wrong with the meaning of a scene, before it is known who wrote what.
+//! An inconsistency of a scene, before its fields are traced to file or command line.
 
 use super::wording::number;
 
 /// Values that do not go together, or one that is outside its range.
 #[derive(Debug, Clone)]
 pub(crate) struct Finding {
-    /// What is wrong, with the values.
+    /// Message, with the values.
     pub message: String,
     /// The fields involved, of which one must change; the likeliest culprit first.
     pub remedies: Vec<Remedy>,
 }
 
-/// How one field could put things right while the others stay.
+/// A remedy by one field, while the others stay.
 #[derive(Debug, Clone)]
 pub(crate) struct Remedy {
     /// Dotted path of the field.
     pub field: String,
-    /// What it may be.
+    /// Allowed values.
     pub allowed: String,
     /// Values to propose, the best first. They are tried before they are shown, so they may be guesses.
     pub values: Vec<Proposal>,

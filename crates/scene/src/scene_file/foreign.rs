@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::outline::{Entry, Outline};
 
-/// A habit that was recognised: what is wrong and how it is written in RON.
+/// A recognised habit: its error, and the spelling in RON.
 pub(crate) struct Habit {
     pub(crate) range: Range<usize>,
     pub(crate) message: String,
@@ -45,8 +45,8 @@ pub(crate) fn other_format(text: &str) -> Option<Habit> {
     habit("YAML, or RON without its outer brackets", how)
 }
 
-/// The first line that says something, and where it begins. Comments of YAML and TOML are passed over where
-/// more follows.
+/// The first line with content, and where it begins. Comments of YAML and TOML are skipped where more
+/// follows.
 fn first_line(text: &str) -> Option<(usize, &str)> {
     let mut comment = None;
     let mut at = 0;
@@ -101,7 +101,7 @@ pub(crate) fn comma_number(text: &str) -> Option<usize> {
     (digits > 0).then_some(text.len() - fraction.len() + digits)
 }
 
-/// What to say with the number that [`with_point`] makes. Three digits behind the comma may be thousands.
+/// Message on the number that [`with_point`] makes. Three digits behind the comma may be thousands.
 pub(crate) fn comma_note(written: &str) -> &'static str {
     match written.rsplit_once(',') {
         Some((whole, thousands)) if thousands.len() == 3 && !whole.contains('.') => {

@@ -66,7 +66,7 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     found
 }
 
-/// What the number at `path` may be, `3 to 400`; `None` for a field that is no number.
+/// Range of the number at `path`, `3 to 400`; `None` for a field that is no number.
 pub(crate) fn allowed(path: &str) -> Option<String> {
     let mut scene = with_everything();
     allowed_in(&scene, path).or_else(|| {
@@ -100,7 +100,7 @@ fn with_everything() -> Scene {
     scene.operation.load_profile = Some(ProfileScene::Harmonic(HarmonicScene::default()));
     scene.operation.outer_speed_profile.clone_from(&scene.operation.speed_profile);
     scene.operation.rotating_load = Some(RotatingLoadScene::default());
-    // Not written where they are what they are by default.
+    // Not written where they have their defaults.
     (scene.operation.load_angle_deg, scene.operation.outer_speed_rpm) = (90.0, 100.0);
     scene.bearing.clearance_change_um = -10.0;
     let b = &mut scene.bearing;
@@ -108,11 +108,11 @@ fn with_everything() -> Scene {
     scene
 }
 
-/// What speeds [rpm] and loads [N] may be.
+/// Ranges of speeds [rpm] and loads [N].
 const SPEED: Range = within(-100_000.0, 100_000.0);
 const LOAD: Range = positive(1e9);
 
-/// What a value of the profile at `path` may be, in words, where `value` is not.
+/// Range of the values of the profile at `path`, in words, where `value` is outside.
 pub(crate) fn refuses_in_profile(path: &str, value: f64) -> Option<String> {
     let (range, unit) = if path == LOAD_PROFILE { (LOAD, "N") } else { (SPEED, "rpm") };
     (!range.contains(value)).then(|| format!("{range} {unit}"))
@@ -152,7 +152,7 @@ fn in_profile(
     }
 }
 
-/// One number of the scene and what it may be.
+/// One number of the scene and its range.
 struct Number {
     path: String,
     value: f64,
@@ -185,14 +185,25 @@ impl Number {
     }
 }
 
-/// Every number of the scene. A test holds this list against the fields of [`Scene`].
-#[rustfmt::skip]
+/// Takes a number of the scene: path, value, range, unit.
+type Add<'a> = dyn FnMut(&str, f64, Range, &'static str) + 'a;
+
+/// Every number of the scene, subject by subject. A test compares this list with the fields of [`Scene`].
 fn numbers(scene: &Scene) -> Vec<Number> {
-    let Scene { bearing: b, adapter, material, mesh, operation, contact, solver, output, guards, .. } = scene;
     let mut list = Vec::new();
     let mut add = |path: &str, value: f64, range: Range, unit: &'static str| {
         list.push(Number { path: path.to_owned(), value, range, unit });
     };
+    let subjects =
+        [numbers_of_model_and_bearing, numbers_of_housing, numbers_of_defects, numbers_of_mesh, numbers_of_operation, numbers_of_contact, numbers_of_solver, numbers_of_output];
+    subjects.iter().for_each(|of| of(scene, &mut add));
+    list
+}
+
+/// Numbers of the model, the bearing and its cage.
+#[rustfmt::skip]
+fn numbers_of_model_and_bearing(scene: &Scene, add: &mut Add<'_>) {
+    let b = &scene.bearing;
     if let ModelScene::Reduced(reduced) = &scene.model {
         add("model.modes_khz", reduced.modes_khz, within(2.0, 300.0), "kHz");
         add("model.step_us", reduced.step_us, within(0.05, 5.0), "µs");
@@ -220,6 +231,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
             add(&format!("cage.roller_offsets_um[{i}]"), *offset, within(-10_000.0, 10_000.0), "µm");
         }
     }
+}
+
+/// Numbers of the adapter or another housing, and of rings from files.
+#[rustfmt::skip]
+fn numbers_of_housing(scene: &Scene, add: &mut Add<'_>) {
+    let adapter = &scene.adapter;
     add("adapter.width_mm", adapter.width_mm, positive(50_000.0), "mm");
     add("adapter.height_mm", adapter.height_mm, positive(50_000.0), "mm");
     match &scene.housing {
@@ -242,6 +259,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
             add(&format!("{path}.unit_mm"), mesh.unit_mm, positive(1e6), "mm");
         }
     }
+}
+
+/// Numbers of the spall and of other deviations from round.
+#[rustfmt::skip]
+fn numbers_of_defects(scene: &Scene, add: &mut Add<'_>) {
+    let b = &scene.bearing;
     if let Some(defect) = &scene.defect {
         add("defect.length_mm", defect.length_mm, positive(20_000.0), "mm");
         add("defect.depth_mm", defect.depth_mm, positive(5_000.0), "mm");
@@ -290,6 +313,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
             FormScene::Missing => {}
         }
     }
+}
+
+/// Numbers of material and mesh.
+#[rustfmt::skip]
+fn numbers_of_mesh(scene: &Scene, add: &mut Add<'_>) {
+    let (material, mesh) = (&scene.material, &scene.mesh);
     add("material.youngs_modulus_gpa", material.youngs_modulus_gpa, positive(10_000.0), "GPa");
     let poisson = Range { low: 0.0, low_included: true, high: 0.5, high_included: false };
     add("material.poissons_ratio", material.poissons_ratio, poisson, "");
@@ -307,24 +336,36 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("mesh.grading.coarse_mm", grading.coarse_mm, positive(1_000.0), "mm");
         add("mesh.grading.fine_layers", grading.fine_layers as f64, within(1.0, 1_000.0), "");
     }
+}
+
+/// Numbers of load, speed and their profiles.
+#[rustfmt::skip]
+fn numbers_of_operation(scene: &Scene, add: &mut Add<'_>) {
+    let operation = &scene.operation;
     add("operation.load_n", operation.load_n, LOAD, "N");
     add("operation.load_angle_deg", operation.load_angle_deg, within(-360.0, 360.0), "°");
     add("operation.speed_rpm", operation.speed_rpm, SPEED, "rpm");
     add("operation.outer_speed_rpm", operation.outer_speed_rpm, SPEED, "rpm");
     add("operation.gravity_m_s2", operation.gravity_m_s2, within(0.0, 1_000.0), "m/s²");
     if let Some(profile) = &operation.speed_profile {
-        in_profile(SPEED_PROFILE, profile, (SPEED, "rpm"), &mut add);
+        in_profile(SPEED_PROFILE, profile, (SPEED, "rpm"), add);
     }
     if let Some(profile) = &operation.outer_speed_profile {
-        in_profile(OUTER_SPEED_PROFILE, profile, (SPEED, "rpm"), &mut add);
+        in_profile(OUTER_SPEED_PROFILE, profile, (SPEED, "rpm"), add);
     }
     if let Some(profile) = &operation.load_profile {
-        in_profile(LOAD_PROFILE, profile, (LOAD, "N"), &mut add);
+        in_profile(LOAD_PROFILE, profile, (LOAD, "N"), add);
     }
     if let Some(rotating) = &operation.rotating_load {
         add("operation.rotating_load.force_n", rotating.force_n, LOAD, "N");
         add("operation.rotating_load.angle_deg", rotating.angle_deg, within(-360.0, 360.0), "°");
     }
+}
+
+/// Numbers of contact and oil.
+#[rustfmt::skip]
+fn numbers_of_contact(scene: &Scene, add: &mut Add<'_>) {
+    let contact = &scene.contact;
     add("contact.points_per_facet", contact.points_per_facet as f64, within(1.0, 16.0), "");
     add("contact.penalty_scale", contact.penalty_scale, positive(1_000.0), "");
     add("contact.onset_um", contact.onset_um, within(0.0, 20.0), "µm");
@@ -337,8 +378,14 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("film.pressure_viscosity_per_gpa", film.pressure_viscosity_per_gpa, within(1.0, 100.0), "1/GPa");
         add("film.roughness_um", film.roughness_um, within(0.01, 10.0), "µm");
     }
+}
+
+/// Numbers of time integration and damping.
+#[rustfmt::skip]
+fn numbers_of_solver(scene: &Scene, add: &mut Add<'_>) {
+    let solver = &scene.solver;
     add("solver.duration_ms", solver.duration_ms, positive(LONGEST_MS), "ms");
-    // Above 1 a run diverges and says so: wanted by studies of stability.
+    // Above 1 a run diverges and is stopped: used by studies of stability.
     add("solver.time_step_factor", solver.time_step_factor, positive(1.5), "");
     add("solver.hourglass_scale", solver.hourglass_scale, positive(10.0), "");
     add("solver.mass_damping_per_s", solver.mass_damping_per_s, within(0.0, 1e6), "1/s");
@@ -349,6 +396,12 @@ fn numbers(scene: &Scene) -> Vec<Number> {
         add("solver.structural_damping.to_khz", damping.to_khz, positive(1e5), "kHz");
         add("solver.structural_damping.branches", damping.branches as f64, within(1.0, 3.0), "");
     }
+}
+
+/// Numbers of output and guards.
+#[rustfmt::skip]
+fn numbers_of_output(scene: &Scene, add: &mut Add<'_>) {
+    let (output, guards) = (&scene.output, &scene.guards);
     add("output.interval_us", output.interval_us, within(0.01, 1e6), "µs");
     add("guards.energy_warning_percent", guards.energy_warning_percent, positive(1e6), "%");
     add("guards.energy_stop_percent", guards.energy_stop_percent, positive(1e6), "%");
@@ -372,7 +425,6 @@ fn numbers(scene: &Scene) -> Vec<Number> {
             add(&format!("output.records.noise_db[{i}]"), *noise, within(-100.0, 60.0), "dB");
         }
     }
-    list
 }
 
 /// Names that cannot be folders or channels, and sensors that share one.

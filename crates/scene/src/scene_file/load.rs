@@ -1,4 +1,4 @@
-//! The text of a scene file, or why it is none.
+//! The text of a scene file, or the reason why it cannot be read.
 
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -33,7 +33,7 @@ pub(crate) fn load(path: &Path) -> Result<String, SceneError> {
     })
 }
 
-/// The system's answer in words; its own for what is rare.
+/// The operating system's error in words; its own text for rare ones.
 fn reason(error: &std::io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound => "there is no such file".to_owned(),
@@ -43,7 +43,7 @@ fn reason(error: &std::io::Error) -> String {
     }
 }
 
-/// What to try when the system refuses.
+/// Remedy for an error of the operating system.
 fn advice(error: &std::io::Error, path: &Path) -> String {
     match error.kind() {
         ErrorKind::NotFound => match neighbour(path) {
@@ -71,7 +71,7 @@ fn neighbour(path: &Path) -> Option<String> {
     Some(folder.map_or_else(|| near.to_owned(), |folder| folder.join(near).display().to_string()))
 }
 
-/// What to say of a folder: a scene inside it.
+/// Message on a folder: a scene inside it.
 fn inside(folder: &Path) -> String {
     match scenes_in(folder).first() {
         Some(scene) => format!("name the file inside it: `{}`", folder.join(scene).display()),

@@ -1,8 +1,8 @@
-//! `bearing: "NU 205"`: all numbers of a bearing from its designation, and of all that surrounds it unless
-//! the file says otherwise.
+//! `bearing: "NU 205"`: all dimensions of a bearing from its designation, and its surroundings unless the
+//! file gives them.
 //!
-//! What no catalogue prints follows the paper's bearing in proportion: the mesh has as many facets, contact
-//! the same pressure.
+//! Dimensions that no catalogue prints are in proportion to the paper's bearing: the mesh has as many facets,
+//! contact the same pressure.
 
 use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
@@ -33,12 +33,12 @@ pub(crate) fn take(text: &str, outline: &Outline) -> Option<(String, String)> {
     Some((format!("{}{blank}{}", &text[..value.start], &text[value.end..]), name))
 }
 
-/// Paths of all fields that a text gives.
+/// Paths of all fields written in a text.
 pub(crate) fn written(text: &str) -> Vec<String> {
     Outline::of(text).entries.into_iter().map(|entry| entry.path).collect()
 }
 
-/// Paths of all fields that arguments `field=value` give.
+/// Paths of all fields that arguments `field=value` set.
 pub(crate) fn written_by<S: AsRef<str>>(arguments: &[S]) -> Vec<String> {
     let fields = |argument: &S| {
         let (path, value) = argument.as_ref().split_once('=')?;
@@ -49,7 +49,7 @@ pub(crate) fn written_by<S: AsRef<str>>(arguments: &[S]) -> Vec<String> {
     arguments.iter().filter_map(fields).flatten().collect()
 }
 
-/// What stands between the quotes of a text.
+/// The text between quotes.
 pub(crate) fn designation(value: &str) -> Option<String> {
     let inner = value.trim().strip_prefix('"')?.strip_suffix('"')?;
     (!inner.contains('"')).then(|| inner.to_owned())
@@ -59,14 +59,14 @@ pub(crate) fn designation(value: &str) -> Option<String> {
 /// lies outside of the pitch circle then, as that of the paper's bearing.
 pub(super) const OFF_RACE: f64 = 0.22;
 
-/// Friction of steel on steel in oil. That of the paper's scene, a tenth of it, lets small bearings skid.
+/// Friction of steel on steel in oil. With that of the paper's scene, a tenth of it, small bearings skid.
 const FRICTION: f64 = 0.05;
 
-/// Puts the bearing into the scene, and around it what the user did not write; `given` has the paths of what
-/// was.
+/// Sets the bearing of the scene, and its surroundings as far as the user did not write them; `given` has the
+/// paths of written fields.
 ///
 /// # Errors
-/// Words on what is not known of the bearing, or why a plane model has no such bearing.
+/// In words: unknown dimensions of the bearing, or why a plane model has no such bearing.
 pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
     let fields = "give it by its fields, `bearing: (rollers: 13, roller_diameter_mm: 7.5, …)`";
     let known = CatalogueBearing::parse_or_advise(name, fields)?;
@@ -91,7 +91,8 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     }
     surround(scene, Surrounded { bearing, pitch_mm: known.pitch_mm }, given);
     if known.element == Element::Ball {
-        // By the load, which was chosen for cylinders as long as the balls' ring allows, if nobody gave one.
+        // By the load, which was chosen for cylinders as long as the balls' ring allows, if the user gave
+        // none.
         let thickness_mm = tidy(thickness_of_balls(scene));
         if thickness_mm < THINNEST_MM {
             return Err(format!(
@@ -118,8 +119,8 @@ pub(super) struct Surrounded {
     pub(super) pitch_mm: f64,
 }
 
-/// Puts a bearing into a scene, and around it in proportion to the paper's what nobody gave: cage, housing,
-/// defect, elements, friction, load and pictures.
+/// Sets the bearing of a scene and, in proportion to the paper's, all surroundings that the user did not
+/// give: cage, housing, defect, elements, friction, load and pictures.
 pub(super) fn surround(scene: &mut Scene, of: Surrounded, given: &[String]) {
     let Surrounded { bearing, pitch_mm } = of;
     let given = |path: &str| given.iter().any(|written| written == path);
@@ -197,7 +198,7 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, given: &[String]) {
     scene.bearing = bearing;
 }
 
-/// Modes of rings smaller or larger than the paper's, where nobody gave them: a NU 205 with 60 kHz has the
+/// Modes of rings smaller or larger than the paper's, where the user gave none: a NU 205 with 60 kHz has the
 /// forces of the full model to 0.6 % (docs/results/reduced.md), and 30 kHz are as good for the paper's.
 pub(super) fn modes(scene: &mut Scene, given: &[String]) {
     let outside = |b: &BearingScene| b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
@@ -210,9 +211,9 @@ pub(super) fn modes(scene: &mut Scene, given: &[String]) {
     }
 }
 
-/// A penetration under the largest static force that is so many times smaller than what guards warn of stays
-/// below it when rollers knock: where some ten rollers share the load, each takes its part at once and sinks
-/// in 2.1 times as deep (docs/results/own.md).
+/// Ratio of the penetration limit of the guards to the penetration under the largest static force, so that
+/// impacts of rollers stay below that limit: where some ten rollers share the load, each takes its part at
+/// once and sinks in 2.1 times as deep (docs/results/own.md).
 const KNOCKS: f64 = 2.5;
 
 /// The same of so few rollers that one carries all at times: the ring falls from each onto the next.
@@ -220,11 +221,11 @@ const KNOCKS_OF_FEW: f64 = 6.0;
 const FEW: usize = 6;
 
 /// Share of the load that the most loaded of many rollers carries between raceways with clearance, times
-/// their number: Stribeck's 5, and a fifth more for a clearance as wide as the rollers give way.
+/// their number: Stribeck's 5, and a fifth more for a clearance as wide as the approach of the rollers.
 const WITH_CLEARANCE: f64 = 6.0;
 
-/// Contact that does not sink in deeper than the radial clearance or a tenth of an element, where nobody gave
-/// its stiffness: the paper's, in proportion, is too soft where few rollers carry.
+/// Contact stiffness, where the user gave none, with a penetration below the radial clearance and a tenth of
+/// an element: the paper's, in proportion, is too soft where few rollers carry.
 pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
     let written = |path: &str| given.iter().any(|written| written == path);
     if written("contact.penalty_scale") || written("contact.formula") {
@@ -258,8 +259,8 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
     };
     let (ball, pitch) = (known.diameter_mm, known.pitch_mm);
     let clearance = catalogue::normal_clearance_mm(known.element, bore_mm);
-    // Rings are as far apart as the catalogue says; the clearance is taken from the rollers, or from the
-    // groove of the outer ring.
+    // The distance of the rings is that of the catalogue; the clearance is taken from the rollers, or from
+    // the groove of the outer ring.
     let (roller, outer) = match known.element {
         Element::Roller => (ball - 0.5 * clearance, pitch + ball),
         Element::Ball => (ball, pitch + ball + clearance),
@@ -280,8 +281,7 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
     })
 }
 
-/// Angle of roller 1 of so many [°]: as far before the middle of the load zone, in parts of the pitch, as the
-/// paper's.
+/// Angle of roller 1 [°]: as far before the middle of the load zone, in pitches, as in the paper's bearing.
 pub(super) fn first_roller(rollers: usize) -> f64 {
     tidy(90.0 + 4.0 * 24.0 / rollers as f64)
 }
@@ -307,7 +307,7 @@ pub(super) fn tidy(number: f64) -> f64 {
     to_digits(5, number)
 }
 
-/// What a person would write into a scene.
+/// A number rounded as a person would write it into a scene.
 fn to_digits(digits: i32, number: f64) -> f64 {
     if number == 0.0 || !number.is_finite() {
         return number;

@@ -1,5 +1,5 @@
-//! Who wrote a field: a line of the file, an argument of the command line, or nobody (a default); and so, who
-//! is to blame where several fields do not go together.
+//! Origin of a field: a line of the file, an argument of the command line, or a default; and from that, which
+//! field to blame where several are inconsistent.
 
 use super::finding::{Finding, Proposal};
 use super::outline::Outline;
@@ -21,7 +21,7 @@ impl Override {
     }
 
     /// The value of the field `rest` inside this override's value (empty: the whole); `None` where it is left
-    /// out. The name of a bearing gives all of its fields.
+    /// out. The name of a bearing sets all of its fields.
     fn place_of(&self, rest: &str) -> Option<Place> {
         let from = self.value_start();
         if rest.is_empty() || self.path == "bearing" && !self.argument[from..].contains('(') {
@@ -63,8 +63,8 @@ impl<'a> Origin<'a> {
 
     /// Blames one field of a finding, and proposes the first value of its remedy.
     ///
-    /// The command line was written last, and a default by nobody: what was written later is blamed first,
-    /// and among equals the likeliest culprit that one value can repair.
+    /// The command line was written last, a default not at all: the field written last is blamed first, and
+    /// among equals the likeliest one that a single value can repair.
     pub(crate) fn problem(&self, finding: Finding) -> Problem {
         let mut candidates: Vec<Candidate> = Vec::with_capacity(finding.remedies.len());
         for remedy in finding.remedies {
@@ -87,7 +87,7 @@ impl<'a> Origin<'a> {
             Some(Candidate { field, proposal: Some(Proposal { value, note }), .. }) => {
                 problem.propose(field, value, note);
             }
-            // What is in a list cannot be tried beforehand.
+            // Items of a list cannot be tried beforehand.
             _ if blamed.field.contains('[') => {
                 problem.suggestion = "take a value that is allowed there".to_owned();
             }
@@ -99,7 +99,7 @@ impl<'a> Origin<'a> {
         problem
     }
 
-    /// Where `field` was written, or that nobody did.
+    /// Place where `field` was written, if it was.
     pub(crate) fn place(&self, field: &str) -> Place {
         self.written(field).unwrap_or(Place::Unwritten { file: self.file.to_owned() })
     }
@@ -123,7 +123,7 @@ impl<'a> Origin<'a> {
 struct Candidate {
     field: String,
     allowed: String,
-    /// A value that repairs what was found.
+    /// A value that repairs the finding.
     proposal: Option<Proposal>,
     place: Option<Place>,
 }

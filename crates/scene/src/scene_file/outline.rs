@@ -2,7 +2,7 @@
 //!
 //! RON reports the place of a syntax error but forgets the place of a value that it accepted, so an error of
 //! meaning (a negative diameter) could not be underlined. This scanner remembers. It is tolerant: on a broken
-//! text it keeps what it has understood so far, and it never fails.
+//! text it keeps the fields found so far, and it never fails.
 
 use std::ops::Range;
 

@@ -32,7 +32,7 @@ pub(crate) fn apply<S: AsRef<str>>(
 
 /// Those of `arguments` whose value no reading of their field takes: words that are not its words, numbers of
 /// another type, names of no bearing. The others are applied as far as they go, so each value meets the scene
-/// that it is written for. What a value means, and whether it goes together with others, is not looked at.
+/// that it is written for. Ranges and relations to other fields are not checked.
 pub(crate) fn unreadable_values<S: AsRef<str>>(mut scene: Scene, arguments: &[S]) -> Vec<(usize, Problem)> {
     let schema = Schema::new();
     let given = named::written_by(arguments);
@@ -82,7 +82,7 @@ fn apply_one(
     if path == "bearing"
         && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
     {
-        // Another bearing than the file's: what surrounds it follows, but for what the command line says.
+        // Another bearing than the file's: its surroundings follow, except fields on the command line.
         let mut scene = scene.clone();
         return match named::put(&mut scene, &name, given) {
             Ok(()) => Ok((scene, by)),
@@ -149,7 +149,7 @@ pub(crate) fn known(
         let all = format!("give the whole list: `{list}=[ … ]`");
         return Err(refuse(path, message, all, mark));
     }
-    // The longest prefix that exists is the section; what follows is the unknown name.
+    // The longest prefix that exists is the section; the rest is the unknown name.
     let mut section = path;
     while let Some((parent, _)) = section.rsplit_once('.') {
         section = parent;
@@ -193,7 +193,7 @@ fn absent_in_its_form(path: &str, schema: &Schema, text: &str, outline: &Outline
     form().is_some()
 }
 
-/// Writes the names in a text as `--set` wants them, with their section.
+/// Writes the names in a text with their section, as `--set` takes them.
 fn with_section(text: String, section: &str, names: &[&str]) -> String {
     if section.is_empty() {
         return text;

@@ -1,9 +1,9 @@
-//! A bearing of one's own: what its fields leave out follows from what they give, as for a bearing of the
-//! catalogue, and what cannot follow is asked for.
+//! A bearing given by its own fields: missing dimensions follow from the given ones, as for a bearing of the
+//! catalogue; those that cannot follow are requested.
 //!
-//! Fields that nobody gave are the paper's. Where they cannot be meant, because the given ones contradict
-//! them, the bearing is completed from the given ones alone, and its cage, housing, defect, elements and load
-//! follow it ([`surround`](super::named::surround)).
+//! Fields that the user did not give are the paper's. Where the given ones contradict them, the bearing is
+//! completed from the given ones alone, and its cage, housing, defect, elements and load follow it
+//! ([`surround`](super::named::surround)).
 
 use super::named::{self, Surrounded, tidy};
 use super::origin::Origin;
@@ -19,12 +19,13 @@ const PAPERS_CLEARANCE: [f64; 2] = [-0.005, 0.03];
 const PAPERS_SIZE: f64 = 0.01;
 /// Given diameters that should agree may differ by this part of the pitch.
 const AGREE: f64 = 0.01;
-/// Thickness of a ring over the diameter of a roller where nobody gave it: 0.37 to 0.43 in NU 205 to NU 312.
+/// Thickness of a ring over the diameter of a roller where the user did not give it: 0.37 to 0.43 in NU 205
+/// to NU 312.
 const RING: f64 = 0.4;
 /// An assumed ring is at most this part of its raceway's radius thick.
 const OF_RADIUS: f64 = 0.8;
 
-/// What became of a scene's bearing.
+/// Outcome for a scene's bearing.
 #[derive(Debug)]
 pub(super) enum Own {
     /// It is the paper's, or one with other numbers beside its diameters.
@@ -35,7 +36,7 @@ pub(super) enum Own {
     Refused(Box<Refusal>),
 }
 
-/// Why given fields make no bearing.
+/// Why given fields do not define a bearing.
 #[derive(Debug)]
 pub(super) struct Refusal {
     /// Dotted path of the field to blame.
@@ -43,7 +44,7 @@ pub(super) struct Refusal {
     message: String,
     allowed: String,
     suggestion: String,
-    /// What would be the paper's bearing again.
+    /// Change that makes it the paper's bearing again.
     repair: Option<(String, String)>,
     of_another: bool,
 }
@@ -60,18 +61,18 @@ impl Refusal {
         problem
     }
 
-    /// Whether a field is given that the paper's bearing is never described by.
+    /// Whether a field is given that no scene of the paper's bearing has.
     pub(super) fn is_of_another(&self) -> bool {
         self.of_another
     }
 
-    /// What to add to a message on the paper's bearing with a field that it cannot have.
+    /// Addition to a message on the paper's bearing with a field that it cannot have.
     pub(super) fn hint(&self) -> String {
         format!("; the other numbers are the paper's, because nobody gave them: {}", self.suggestion)
     }
 }
 
-/// What is given of the main dimensions [mm].
+/// The given main dimensions [mm].
 #[derive(Debug, Clone, Copy)]
 struct Given {
     outer: Option<f64>,
@@ -108,8 +109,8 @@ pub(super) fn is_papers(b: &BearingScene) -> bool {
     main(b) == main(&paper)
 }
 
-/// Completes the bearing of a scene and what surrounds it. `given` has the paths of what somebody wrote; all
-/// else is the paper's.
+/// Completes the bearing of a scene and its surroundings. `given` has the paths of the written fields; all
+/// others are the paper's.
 pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
     let written = |name: &str| given.iter().any(|path| path.strip_prefix("bearing.") == Some(name));
     let b = &scene.bearing;
@@ -125,7 +126,7 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
     if main.may_be_the_papers() {
         return Own::Papers;
     }
-    // What is out of range is refused for that.
+    // Values out of range are refused elsewhere.
     let all = [main.outer, main.inner, main.roller, main.pitch, main.bore, main.outside, main.width];
     if all.into_iter().flatten().any(|mm| !(mm > 0.0 && mm < 20_000.0)) || b.rollers < 3 {
         return Own::Papers;
@@ -224,8 +225,8 @@ enum Side {
 }
 
 impl Given {
-    /// Whether the paper's bearing with these numbers is meant: what is not given of it goes together with
-    /// what is.
+    /// Whether the paper's bearing with these dimensions is meant: its other dimensions are consistent with
+    /// the given ones.
     fn may_be_the_papers(self) -> bool {
         if self.describes_another() {
             return false;
@@ -252,12 +253,12 @@ impl Given {
         }
     }
 
-    /// Whether something is given that no scene of the paper's bearing gives.
+    /// Whether a field is given that no scene of the paper's bearing has.
     fn describes_another(self) -> bool {
         [self.pitch, self.bore, self.outside, self.width].iter().any(Option::is_some)
     }
 
-    /// How many raceways are given.
+    /// Number of given raceways.
     fn raceways(self) -> usize {
         [self.outer, self.inner].iter().flatten().count()
     }
@@ -310,7 +311,7 @@ impl Given {
         }))
     }
 
-    /// Thickness of a ring [mm] by what is given; `None` where nothing is.
+    /// Thickness of a ring [mm] by the given dimensions; `None` without any.
     fn ring(
         self,
         b: &BearingScene,
@@ -362,7 +363,7 @@ impl Given {
         }
     }
 
-    /// What else is needed, in words.
+    /// Missing dimensions, in words.
     fn lacks(self) -> Box<Refusal> {
         let fields = [
             ("roller_diameter_mm", self.roller),
@@ -407,7 +408,7 @@ impl Given {
         })
     }
 
-    /// Diameters between which no roller is left.
+    /// Diameters that leave no room for rollers.
     fn impossible(self, d: Diameters) -> Box<Refusal> {
         let field = if self.pitch.is_some() {
             "pitch_mm"

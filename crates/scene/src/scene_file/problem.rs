@@ -1,4 +1,4 @@
-//! What is wrong with a scene, and the picture of it that the user sees.
+//! Errors of a scene, and the excerpt of its text that the user sees.
 
 use std::fmt;
 use std::ops::Range;
@@ -18,13 +18,14 @@ pub struct SceneError {
 pub struct Problem {
     /// Dotted path of the field, `bearing.rollers`; empty when the whole file is meant.
     pub field: String,
-    /// What is wrong, with the value.
+    /// Message, with the value.
     pub message: String,
-    /// What would be accepted, with its unit; empty when there is nothing to say.
+    /// Accepted values, with their unit; may be empty.
     pub allowed: String,
-    /// What to try; empty when there is nothing to say.
+    /// Remedy; may be empty.
     pub suggestion: String,
-    /// What removes this problem, as `--set` takes it: `bearing.rollers=24`; `None` where no one value does.
+    /// Override that removes this problem, as for `--set`: `bearing.rollers=24`; `None` where no one value
+    /// does.
     pub repair: Option<String>,
     /// Where the value was written.
     pub place: Place,
@@ -55,7 +56,7 @@ pub enum Place {
         /// Characters to underline, at least 1.
         width: usize,
     },
-    /// Nowhere: the file as a whole, or a default that nobody wrote.
+    /// Nowhere: the file as a whole, or a default.
     Unwritten {
         /// File name as the user gave it; empty for a scene built in memory.
         file: String,
@@ -67,7 +68,7 @@ impl SceneError {
         Self { problems }
     }
 
-    /// The same with `hint` behind what is said of fields of the bearing.
+    /// The same with `hint` after messages on fields of the bearing.
     pub(crate) fn about_bearing(mut self, hint: &str) -> Self {
         let of_bearing = |problem: &&mut Problem| problem.field.starts_with("bearing.");
         self.problems.iter_mut().filter(of_bearing).for_each(|problem| problem.message.push_str(hint));
@@ -104,7 +105,7 @@ impl Problem {
     pub(crate) fn propose(&mut self, field: &str, value: &str, note: &str) {
         let written = match &self.place {
             Place::CommandLine { .. } => format!("--set {}", for_a_shell(field, value)),
-            // The line that is shown says which section is meant.
+            // The excerpt shows the section.
             Place::File { .. } if field == self.field => {
                 let name = field.rsplit('.').next().unwrap_or(field);
                 if name.ends_with(']') { format!("`{value}`") } else { format!("`{name}: {value}`") }
@@ -123,8 +124,8 @@ impl Problem {
         }
     }
 
-    /// The same problem with a value that stands at `place` by itself, without the name of its field. No
-    /// `--set` removes it there.
+    /// The same problem with a value that is at `place` without the name of its field. No `--set` removes it
+    /// there.
     pub(crate) fn of_value_at(mut self, place: Place) -> Self {
         if let Some((field, value)) = self.repair.take().as_deref().and_then(|repair| repair.split_once('='))
             && let Some(note) = self.suggestion.strip_prefix(&format!("--set {}", for_a_shell(field, value)))

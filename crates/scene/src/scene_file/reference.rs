@@ -1,4 +1,4 @@
-//! What can be said of every field of a scene: its default and its range, for a reference.
+//! Default and range of every field of a scene, for the reference.
 
 use super::limits;
 use super::schema::Schema;
@@ -8,12 +8,12 @@ pub struct FieldReference {
     schema: Schema,
 }
 
-/// What a field is, as far as it can be said.
+/// Default and range of a field.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Field {
     /// Its default, as it would be written.
     pub default: Option<String>,
-    /// What a number may be, `3 to 400`, with its unit.
+    /// Range of a number, `3 to 400`, with its unit.
     pub range: Option<String>,
 }
 
@@ -37,7 +37,7 @@ impl FieldReference {
 
     /// The field at a dotted path, `mesh.size_mm`; of lists the first item stands for all.
     pub fn of(&self, path: &str) -> Field {
-        // What is written only where it is used is absent from the default scene.
+        // Fields written only where they are used are absent from the default scene.
         let default = match LATER.iter().find(|(later, _)| *later == path) {
             Some((_, default)) => Some((*default).to_owned()),
             None => self.schema.default_of(path).map(str::to_owned),

@@ -1,4 +1,5 @@
-//! What rings from files leave to no one else: their raceways are those of the files.
+//! Relations of rings from files: their raceways are those of the files, so other fields must not change
+//! them.
 
 use super::finding::{Finding, Remedy};
 use super::limits::{INNER_RING_MESH, OUTER_RING_MESH};

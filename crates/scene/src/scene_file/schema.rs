@@ -1,4 +1,4 @@
-//! Every field that a scene has, its default and what kind of value it takes.
+//! Every field of a scene, with its default and the kind of its value.
 
 use super::limits::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::outline::Outline;
@@ -51,7 +51,7 @@ impl Complete {
 
 impl Schema {
     pub(crate) fn new() -> Self {
-        // A word by default, but what stands behind another one must be known.
+        // A word by default, but the fields of the other variants must be known.
         let mut scene = Scene { model: ModelScene::Reduced(ReducedScene::default()), ..Scene::default() };
         // Absent by default, but its fields must be known.
         scene.mesh.grading = Some(GradingScene::default());
@@ -174,7 +174,7 @@ impl Schema {
         }
     }
 
-    /// What belongs into `path`.
+    /// Kind of value at `path`.
     pub(crate) fn kind(&self, path: &str) -> Kind {
         let value = self.default_of(path).unwrap_or_default();
         match value.chars().next() {

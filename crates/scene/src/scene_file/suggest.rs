@@ -1,5 +1,4 @@
-//! What the user may have meant: the nearest name, the missing or other unit, the section where a name
-//! belongs.
+//! Suggestions: the nearest name, the missing or other unit, the section where a name belongs.
 
 use super::wording::number;
 
@@ -7,7 +6,7 @@ use super::wording::number;
 const NEAR: f64 = 0.80;
 
 /// A word of this many letters with one of them wrong, too many, missing or in the place of its neighbour is
-/// worth proposing, too; the measure of likeness sees little in common in short words.
+/// worth proposing, too; the similarity of short words is low.
 const SLIP: usize = 3;
 
 /// A part of a name has as many letters at least.
@@ -74,7 +73,7 @@ pub(crate) fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
     (best.0 >= NEAR).then_some(best.1)
 }
 
-/// What to write instead of the unknown field `found`; `None` where nothing is like it.
+/// Replacement for the unknown field `found`; `None` where none is similar.
 ///
 /// `siblings` are the names valid in that place, `all` the dotted paths of every field there is.
 pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> Option<String> {

@@ -1,4 +1,5 @@
-//! RON text → [`Scene`], with RON's errors turned into ours: the field, its value, what belongs there.
+//! RON text → [`Scene`], with RON's errors turned into ours: the field, its value, the expected kind of
+//! value.
 
 use ron::error::SpannedError;
 
@@ -11,8 +12,8 @@ use super::{foreign, limits, suggest};
 use crate::catalogue::CatalogueBearing;
 use crate::scene::Scene;
 
-/// Reads the types of a scene; its meaning is checked later. `written` is what the user wrote, in which all
-/// places are those of `text`.
+/// Reads the types of a scene; its meaning is checked later. `written` is the user's text; places in it are
+/// those of `text`.
 pub(crate) fn parse(text: &str, written: &str, file: &str) -> Result<Scene, SceneError> {
     deserialize(text).map_err(|fault| {
         let place = place_in_file(file, written, fault.range.clone());
@@ -26,9 +27,9 @@ pub(crate) struct Fault {
     pub(crate) range: std::ops::Range<usize>,
     message: String,
     allowed: String,
-    /// What to try in words.
+    /// Remedy in words.
     suggestion: String,
-    /// What to try as a value of the field, and why.
+    /// Proposed value of the field, and the reason.
     proposal: Option<(String, &'static str)>,
 }
 
@@ -61,7 +62,7 @@ pub(crate) fn deserialize(text: &str) -> Result<Scene, Box<Fault>> {
     }
 }
 
-/// What a mesh file says, which the scene of a run holds and nobody writes.
+/// Content of a mesh file, which the program writes into the scene of a run.
 const HELD: &str = "text";
 
 /// Words for one error of RON.
@@ -145,7 +146,7 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
     fault
 }
 
-/// A value of the wrong type: RON names the character that surprised it, the user wants the field.
+/// A value of the wrong type: RON names a character, the user needs the field.
 fn value_fault(text: &str, path: &str, outline: &Outline, schema: &Schema, fault: &mut Fault) {
     if let Some((entry, habit)) = foreign::decimal_comma(text, outline, fault.range.start) {
         fault.field.clone_from(&entry.path);
@@ -202,7 +203,7 @@ fn of_bearing(path: &str, word: &str) -> Option<(String, &'static str)> {
     Some((format!("\"{}\"", known.name), "the name of a bearing of the catalogue, in quotes"))
 }
 
-/// What belongs into `path`, with its range or its words.
+/// Accepted values of `path`: its range or its words.
 fn allowed(schema: &Schema, path: &str) -> String {
     let kind = schema.kind(path);
     match kind {
@@ -214,7 +215,7 @@ fn allowed(schema: &Schema, path: &str) -> String {
     }
 }
 
-/// The words that `path` takes. Serde knows them; asked with a word that is none of them, it says them.
+/// The words that `path` takes: serde lists the variants when given an unknown one.
 fn words_of(schema: &Schema, path: &str) -> Option<&'static [&'static str]> {
     match dialect().from_str::<Scene>(&schema.text_with(path, "no_such_word")?).err()?.code {
         ron::Error::NoSuchEnumVariant { expected, .. } => Some(expected),
@@ -245,7 +246,7 @@ fn proposal(value: &str, kind: Kind) -> Option<(String, &'static str)> {
     }
 }
 
-/// What to look for where RON broke off.
+/// Hint on the place where RON stopped.
 fn hint(text: &str, at: usize) -> &'static str {
     let before = text[..at].trim_end();
     let rest = text[at..].trim_start();

@@ -1,5 +1,5 @@
-//! Profiles from CSV files, and meshes of housings and rings: a scene that was read holds what is in them, so
-//! that a run holds all of its scene.
+//! Profiles from CSV files, and meshes of housings and rings: reading inserts their content, so that a run
+//! holds its complete scene.
 //!
 //! ```text
 //! time_ms, value
@@ -8,7 +8,7 @@
 //! ```
 //!
 //! The first line names the columns, of which two are read: `time_ms` and `value` of a speed or a load,
-//! `position_mm` and `depth_um` of a surface. What follows a `#` is a comment.
+//! `position_mm` and `depth_um` of a surface. Text after `#` is a comment.
 
 use std::fs::File;
 use std::io::Read;
@@ -31,13 +31,13 @@ const MAX_BYTES: u64 = 1 << 20;
 const MAX_MESH_BYTES: u64 = 4 << 20;
 /// Most rows: the scene of the run holds them all.
 const MAX_ROWS: usize = 10_000;
-/// What a table is for.
+/// Purpose of a table.
 struct Table<'a> {
     /// The field that takes it.
     path: &'a str,
     /// Its columns, the ascending one first.
     columns: [&'static str; 2],
-    /// Says what a value may be that is out of range.
+    /// Returns the range where a value is outside.
     refuses: &'a dyn Fn(f64) -> Option<String>,
 }
 
@@ -78,7 +78,7 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Res
     Ok(())
 }
 
-/// Puts what the mesh `file` of the group `path` holds into `text`, unless it is there.
+/// Inserts the content of the mesh `file` of the group `path` into `text`, unless it is there.
 fn read_mesh(
     path: &str,
     file: &str,
@@ -123,7 +123,7 @@ impl Table<'_> {
         Ok(points)
     }
 
-    /// What it is.
+    /// Its form.
     fn form(&self) -> String {
         let [first, second] = self.columns;
         format!("a CSV file whose first line is `{first},{second}`, with two numbers in each line")
@@ -154,7 +154,7 @@ impl Table<'_> {
                 columns = Some(([find(first)?, find(second)?], cells.len()));
                 continue;
             };
-            // As a decimal comma makes of `0,5`: what follows would be taken for another number.
+            // As from a decimal comma, `0,5`: the digits after it would be taken for another number.
             if let Some((at, cell)) = cells.iter().skip(named).find(|(_, cell)| !cell.is_empty()) {
                 let message =
                     format!("the row has {} columns, and the first line names {named}", cells.len());
@@ -215,7 +215,7 @@ fn text_of(file: &Path, most: u64) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
 }
 
-/// What is wrong with a table, and where.
+/// An error of a table, with its place.
 struct Fault {
     range: std::ops::Range<usize>,
     message: String,
@@ -228,7 +228,7 @@ fn cells(line: &str, from: usize) -> Vec<(usize, &str)> {
     let mut at = from;
     line.split(',')
         .map(|cell| {
-            // Some editors put a byte order mark in front.
+            // Some editors write a byte order mark first.
             let text = cell.trim_start_matches(|c: char| c.is_whitespace() || c == '\u{feff}');
             let begin = at + cell.len() - text.len();
             at += cell.len() + 1;

@@ -1,4 +1,4 @@
-//! What a user may write into a scene file or behind `--set`, and what the answer is.
+//! Texts of scene files and of `--set`, and the answers to them.
 
 mod blame;
 mod deviations;

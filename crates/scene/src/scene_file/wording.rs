@@ -21,7 +21,7 @@ pub(crate) fn round_down(value: f64, digits: i32) -> f64 {
     to_digits(value, digits, f64::floor)
 }
 
-/// Rounds a positive number to `digits` significant digits; what is too small for that stays.
+/// Rounds a positive number to `digits` significant digits; one that is too small for that is not changed.
 fn to_digits(value: f64, digits: i32, round: fn(f64) -> f64) -> f64 {
     if !value.is_normal() {
         return value;
@@ -37,7 +37,7 @@ fn to_digits(value: f64, digits: i32, round: fn(f64) -> f64) -> f64 {
     }
 }
 
-/// What the user wrote, on one line and not too long.
+/// The user's text on one line, shortened.
 pub(crate) fn shown(text: &str) -> String {
     let line: String = text.chars().take(SHOWN).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if text.chars().nth(SHOWN).is_some() { line + "…" } else { line }

@@ -1,7 +1,7 @@
 //! Traces of so many channels that their names alone are longer than the header that `numpy.load` reads: the
 //! same channels as a NumPy archive, one array each.
 //!
-//! The file keeps its name, `trace.npy`. `numpy.load` knows an archive by its first bytes and not by its
+//! The file keeps its name, `trace.npy`. `numpy.load` recognises an archive by its first bytes, not by its
 //! name, so that `numpy.load("trace.npy")["roller.50.outer_fy_n"]` is a time history here, too. A run writes
 //! rows, as always, and makes the archive of them when it ends; one that goes on makes rows of it first.
 //! Arrays are stored without compression, channel after channel, and channels are read from where they lie.
@@ -18,7 +18,7 @@ use crate::error::Error;
 
 /// First bytes of an archive.
 pub(super) const MAGIC: &[u8; 4] = b"PK\x03\x04";
-/// What of the channels is in memory at a time while an archive is made [bytes].
+/// Most memory for channels while an archive is made [bytes].
 const AT_ONCE: usize = 1 << 28;
 /// Longest header of one array.
 const MAX_HEADER: usize = 4096;

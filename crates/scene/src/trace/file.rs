@@ -1,5 +1,4 @@
-//! A trace that stays on disk: its channels are read when they are asked for, also those of a run that was
-//! killed.
+//! A trace that stays on disk: channels are read on demand, also those of a run that was killed.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
@@ -11,7 +10,8 @@ use super::archive::{self, Archive};
 use super::{Trace, header};
 use crate::error::Error;
 
-/// What is read at once [bytes]: it stays in a core's cache while channels are picked from it.
+/// Size of a block that is read at once [bytes]: it stays in a core's cache while channels are picked from
+/// it.
 const BLOCK_BYTES: usize = 1 << 18;
 /// The same where channel lies after channel: enough of each that reading it is worth a seek.
 const WIDE_BLOCK_BYTES: usize = 1 << 24;
@@ -147,7 +147,7 @@ impl TraceFile {
         Ok(part.trace)
     }
 
-    /// Of an archive only what is wanted is read.
+    /// Of an archive only the wanted channels are read.
     fn read_columns(&self, rows: Range<usize>, starts: &[u64], mut part: Part) -> Result<Trace, Error> {
         let rows = rows.start.min(self.rows)..rows.end.min(self.rows);
         let mut file = self.file.lock().unwrap_or_else(PoisonError::into_inner);
@@ -178,7 +178,8 @@ impl TraceFile {
         Ok(part.trace)
     }
 
-    /// Every channel, over so many samples at most: all of them, or every second one, or every third …
+    /// Every channel, decimated to at most this many samples: all of them, or every second one, or every
+    /// third …
     ///
     /// # Errors
     ///
@@ -203,7 +204,7 @@ impl TraceFile {
         matches!(self.layout, Layout::Rows(start) if start == header_length as u64)
     }
 
-    /// Hands blocks of whole rows to `take` until it says no.
+    /// Passes blocks of whole rows to `take` until it returns false.
     fn each_block(&self, rows: Range<usize>, mut take: impl FnMut(&[[u8; 8]]) -> bool) -> Result<(), Error> {
         let rows = rows.start..rows.end.min(self.rows);
         let row = 8 * self.names.len();
@@ -248,7 +249,7 @@ struct Part {
 }
 
 impl Part {
-    /// With room for so many `rows`.
+    /// With room for `rows` rows.
     fn of(file: &TraceFile, rows: usize, wanted: impl Fn(&str) -> bool) -> Self {
         let places: Vec<usize> = (0..file.names.len()).filter(|&at| wanted(&file.names[at])).collect();
         let names = places.iter().map(|&at| file.names[at].clone()).collect();

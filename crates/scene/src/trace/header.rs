@@ -61,7 +61,7 @@ fn short_form<S: AsRef<str>>(names: &[S]) -> String {
     format!("('V{size}', {{'names':[{}],'formats':'{formats}'}})", quoted.join(","))
 }
 
-/// What stands before the number of rows; the prefix of the file [bytes], and the length of the header after
+/// Header text before the number of rows; the prefix of the file [bytes], and the length of the header after
 /// it.
 fn layout(descr: &str) -> (String, usize, usize) {
     let head = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': (");
@@ -83,7 +83,7 @@ pub(super) fn encode<S: AsRef<str>>(names: &[S], rows: u64) -> Result<Vec<u8>, S
     let (mut head, mut prefix, mut length) = layout(&pairs(names));
     if length > NUMPY_LIMIT {
         let short = layout(&short_form(names));
-        // Where neither is short enough, pairs are what more programs understand.
+        // Where neither is short enough, pairs are used, which more programs understand.
         if short.2 <= NUMPY_LIMIT {
             (head, prefix, length) = short;
         }
@@ -156,7 +156,7 @@ pub(super) fn extent(start: &[u8]) -> Result<(usize, usize), String> {
     Ok((prefix, length))
 }
 
-/// Channel names of a header text. The number of rows is not read: the file's size tells it more reliably.
+/// Channel names of a header text. The number of rows is not read: the file's size is more reliable.
 pub(super) fn decode(text: &[u8]) -> Result<Vec<String>, String> {
     let text = std::str::from_utf8(text).map_err(|_| "its header is not text".to_owned())?;
     if !text.contains("'fortran_order': False") {

@@ -1,4 +1,4 @@
-//! A trace on disk: what NumPy would read, what a killed run leaves, what is refused.
+//! A trace on disk: as NumPy reads it, after a kill, and damaged.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -100,7 +100,7 @@ fn survives_a_kill_but_for_a_hundred_rows() {
     for row in rows(250) {
         writer.push(&row).expect("writable");
     }
-    // What another process sees while the writer still runs.
+    // The file as another process reads it while the writer still runs.
     let seen = Trace::read(file.path()).expect("readable");
     assert_eq!(seen.len(), 200);
     let text = std::fs::read(file.path()).expect("readable");
@@ -244,7 +244,7 @@ fn channels(rollers: usize) -> Vec<String> {
     names
 }
 
-/// Values that tell channel and sample.
+/// Values that identify channel and sample.
 fn distinct(names: &[String], count: usize) -> Vec<Vec<f64>> {
     (0..count).map(|row| (0..names.len()).map(|at| (at * 1000 + row) as f64 / 7.0).collect()).collect()
 }
@@ -361,7 +361,7 @@ fn survives_an_archive_cut_or_damaged() {
     }
 }
 
-/// With the limit that NumPy has by itself.
+/// With NumPy's own limit.
 #[test]
 fn peer_numpy_opens_every_trace() {
     // NumPy 2.4.6, where the interpreter in STRIBECK_PYTHON (or python3) has it.

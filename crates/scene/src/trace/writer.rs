@@ -9,7 +9,7 @@ use crate::error::Error;
 
 /// Rows that a killed run may lose: one millisecond at 100 kHz.
 const ROWS_PER_FLUSH: u64 = 100;
-/// What of a trace is in memory while it is copied [bytes].
+/// Memory for a trace while it is copied [bytes].
 const COPIED_BYTES: usize = 1 << 24;
 
 /// Appends rows to a `.npy` file.
@@ -78,8 +78,7 @@ impl TraceWriter {
         })
     }
 
-    /// Opens the file of an earlier writer, to go on after its first `rows` rows; what follows them is cut
-    /// off.
+    /// Opens the file of an earlier writer, to go on after its first `rows` rows; later rows are cut off.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Frames are written: where the nodes about the defect are at chosen times ([`stribeck_scene::frames`]).
+//! Frames: positions of the nodes about the defect at chosen times ([`stribeck_scene::frames`]).
 
 use std::path::PathBuf;
 
@@ -6,10 +6,10 @@ use stribeck_scene::frames::{COLUMNS, Window};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::trace::TraceWriter;
 
-use stribeck_bearing::assembly::{Assembly, Machine};
+use stribeck_bearing::assembly::{Assembly, BearingSystem};
 use stribeck_run::error::Error;
 
-/// Which samples become frames, and of what.
+/// Samples that become frames, and the nodes in them.
 #[derive(Debug)]
 pub(super) struct Frames {
     folder: PathBuf,
@@ -21,7 +21,7 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// What a scene asks for; `None` when it asks for nothing.
+    /// The frames of a scene; `None` without any.
     pub(super) fn of(scene: &ResolvedScene, folder: PathBuf) -> Option<Self> {
         let wanted = scene.written.output.frames.as_ref()?;
         // Of the numbers as written: a quotient of seconds may fall short of a whole number of samples.
@@ -41,14 +41,19 @@ impl Frames {
     }
 
     /// Writes the frame of a sample.
-    pub(super) fn write(&self, sample: usize, assembly: &Assembly, machine: &Machine) -> Result<(), Error> {
+    pub(super) fn write(
+        &self,
+        sample: usize,
+        assembly: &Assembly,
+        bearing: &BearingSystem,
+    ) -> Result<(), Error> {
         std::fs::create_dir_all(&self.folder).map_err(|source| stribeck_scene::Error::Io {
             action: "create",
             path: self.folder.clone(),
             kept: "Samples are safe; free the disk, or set `output.frames: None`".into(),
             source,
         })?;
-        let (mesh, system) = (&assembly.model.mesh, &machine.system);
+        let (mesh, system) = (&assembly.model.mesh, &bearing.system);
         let mut file = TraceWriter::create(self.folder.join(format!("{sample:06}.npy")), &COLUMNS)?;
         for node in 0..mesh.x.len() {
             let [x, y] = system.position(node as u32);

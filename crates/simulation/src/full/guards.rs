@@ -1,4 +1,4 @@
-//! What is watched of the full model beside [the guards of all models](stribeck_run::guards).
+//! Guards of the full model besides [the guards of all models](stribeck_run::guards).
 //!
 //! | watched | warning | stop |
 //! |---|---|---|
@@ -10,10 +10,10 @@
 //! | critical time step over that of a square cell | below [`SMALL_STEP`] | |
 //! | the housing's height above the outer ring | | [`OUT_OF_PLACE`] |
 //!
-//! [`System::look`] watches what can go wrong with any bodies in motion and says it in the scene's words
+//! [`System::look`] watches the limits that apply to any bodies in motion, with messages in the scene's words
 //! ([`arm`]).
 
-use stribeck_bearing::assembly::{Assembly, Machine};
+use stribeck_bearing::assembly::{Assembly, BearingSystem};
 use stribeck_run::guards::{self, OUT_OF_PLACE, Placed, When};
 use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_solver::Elastic;
@@ -37,14 +37,14 @@ pub(super) struct Guards {
 }
 
 impl Guards {
-    pub(super) fn new(scene: &ResolvedScene, assembly: &Assembly, machine: &Machine) -> Self {
+    pub(super) fn new(scene: &ResolvedScene, assembly: &Assembly, bearing: &BearingSystem) -> Self {
         let mesh = &assembly.model.mesh;
         let height = |body: usize| mean(mesh.y[mesh.bodies[body].nodes.clone()].iter().copied());
         Self {
             shared: guards::Guards::new(scene, "`solver.time_step_factor`"),
-            placed: Placed { centres: vec![[0.0; 2]; machine.rollers.len()], ..Placed::default() },
+            placed: Placed { centres: vec![[0.0; 2]; bearing.rollers.len()], ..Placed::default() },
             seat: OUT_OF_PLACE * scene.roller_radius,
-            housing_height: machine.housing.map(|housing| height(housing) - height(machine.outer)),
+            housing_height: bearing.housing.map(|housing| height(housing) - height(bearing.outer)),
         }
     }
 
@@ -85,37 +85,37 @@ impl Guards {
         warnings
     }
 
-    /// Looks at the machine after a sample: adds warnings to `info`; the reason to stop, if there is one.
-    pub(super) fn look(&mut self, info: &mut RunInfo, machine: &mut Machine) -> Option<String> {
+    /// Looks at the bearing after a sample: adds warnings to `info`; the reason to stop, if there is one.
+    pub(super) fn look(&mut self, info: &mut RunInfo, bearing: &mut BearingSystem) -> Option<String> {
         let mut stop = None;
-        for finding in machine.system.look() {
+        for finding in bearing.system.look() {
             if finding.stops {
-                // The first reason is the one given.
+                // The first reason is reported.
                 stop.get_or_insert(finding.message);
             } else {
                 info.warnings.push(finding.message);
             }
         }
-        let (seen, guards) = (machine.system.seen(), &mut info.guards);
+        let (seen, guards) = (bearing.system.seen(), &mut info.guards);
         guards.energy_warned = seen.energy_warned;
         guards.hourglass_share = seen.hourglass_share;
         guards.least_area = seen.least_area;
         guards.strain_checked = seen.strain_checked;
-        self.place(machine);
+        self.place(bearing);
         let place = self.shared.look(info, &self.placed);
-        stop.or(place).or_else(|| self.housing(info, machine))
+        stop.or(place).or_else(|| self.housing(info, bearing))
     }
 
-    /// Where rollers and cage are, and what they carry.
-    fn place(&mut self, machine: &Machine) {
-        let system = &machine.system;
-        let ring = centre(system, machine.outer);
+    /// Positions of rollers and cage, and the largest load.
+    fn place(&mut self, bearing: &BearingSystem) {
+        let system = &bearing.system;
+        let ring = centre(system, bearing.outer);
         let from_ring = |[x, y]: [f64; 2]| [x - ring[0], y - ring[1]];
-        for (place, roller) in self.placed.centres.iter_mut().zip(&machine.rollers) {
+        for (place, roller) in self.placed.centres.iter_mut().zip(&bearing.rollers) {
             *place = from_ring(system.position(roller.centre));
         }
-        self.placed.cage = machine.cage.map(|cage| from_ring(centre(system, cage)));
-        let by_contact = system.resultants().skip(machine.pairs.outer(0)).take(machine.rollers.len());
+        self.placed.cage = bearing.cage.map(|cage| from_ring(centre(system, cage)));
+        let by_contact = system.resultants().skip(bearing.pairs.outer(0)).take(bearing.rollers.len());
         // Of each roller on the outer and on the inner raceway in turn.
         let by_oil = system.films().step_by(2);
         let forces = by_contact.map(|pair| pair.force).chain(by_oil.map(|film| film.force));
@@ -123,8 +123,8 @@ impl Guards {
         self.placed.penetration_share = system.seen().penetration_share;
     }
 
-    fn housing(&self, info: &RunInfo, machine: &Machine) -> Option<String> {
-        let [housing, ring] = [machine.housing?, machine.outer].map(|body| centre(&machine.system, body)[1]);
+    fn housing(&self, info: &RunInfo, bearing: &BearingSystem) -> Option<String> {
+        let [housing, ring] = [bearing.housing?, bearing.outer].map(|body| centre(&bearing.system, body)[1]);
         let off = housing - ring - self.housing_height?;
         (off.abs() > self.seat).then(|| {
             format!(
@@ -138,7 +138,7 @@ impl Guards {
     }
 }
 
-/// Sets what the system watches, and what its messages call the fields of the scene.
+/// Sets the limits of the system's guards, and the scene's field names for its messages.
 pub(super) fn arm(scene: &ResolvedScene, system: &mut System) {
     let GuardsScene {
         energy_warning_percent,
@@ -150,7 +150,7 @@ pub(super) fn arm(scene: &ResolvedScene, system: &mut System) {
         unsupported_warning_ms: _,
     } = scene.written.guards;
     system.limits = Limits {
-        // All that turns would hide what matters.
+        // The kinetic energy of the rotating bodies would hide an imbalance.
         energy_scale: Scale::StrainEnergy,
         energy_warning_percent,
         energy_stop_percent,

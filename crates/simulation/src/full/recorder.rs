@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
-use stribeck_bearing::assembly::Machine;
+use stribeck_bearing::assembly::BearingSystem;
 use stribeck_run::channels::{CageSample, RollerSample, Sample, SensorSample};
 use stribeck_scene::resolved::ResolvedScene;
 
@@ -21,7 +21,7 @@ pub(super) struct Recorder {
     sample: Sample,
 }
 
-/// What a sample needs of the one before: the recorder's part of a checkpoint.
+/// State between samples: the recorder's part of a checkpoint.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub(super) struct Memory {
     /// Node of each sensor, chosen at the start.
@@ -34,106 +34,106 @@ pub(super) struct Memory {
 }
 
 impl Recorder {
-    pub(super) fn new(scene: &ResolvedScene, machine: &Machine) -> Self {
-        let sensors = machine.nodes_on_back(&scene.sensor_angles);
-        let rollers = machine.rollers.len();
+    pub(super) fn new(scene: &ResolvedScene, bearing: &BearingSystem) -> Self {
+        let sensors = bearing.nodes_on_back(&scene.sensor_angles);
+        let rollers = bearing.rollers.len();
         let memory = Memory {
-            at_sample: sensors.iter().map(|&n| velocity(machine, n)).collect(),
+            at_sample: sensors.iter().map(|&n| velocity(bearing, n)).collect(),
             sensors,
-            rim_angle: (0..rollers).map(|i| rim_angle(machine, i)).collect(),
+            rim_angle: (0..rollers).map(|i| rim_angle(bearing, i)).collect(),
             spin: vec![0.0; rollers],
         };
-        Self::with(scene, memory, machine)
+        Self::with(scene, memory, bearing)
     }
 
-    /// A recorder that continues; `None` when the memory is that of another machine.
-    pub(super) fn resume(scene: &ResolvedScene, machine: &Machine, memory: Memory) -> Option<Self> {
-        let nodes = machine.system.node_count();
+    /// A recorder that continues; `None` when the memory is that of another bearing.
+    pub(super) fn resume(scene: &ResolvedScene, bearing: &BearingSystem, memory: Memory) -> Option<Self> {
+        let nodes = bearing.system.node_count();
         let fits = memory.sensors.iter().all(|&n| (n as usize) < nodes)
             && memory.at_sample.len() == memory.sensors.len()
-            && [&memory.rim_angle, &memory.spin].iter().all(|v| v.len() == machine.rollers.len());
-        fits.then(|| Self::with(scene, memory, machine))
+            && [&memory.rim_angle, &memory.spin].iter().all(|v| v.len() == bearing.rollers.len());
+        fits.then(|| Self::with(scene, memory, bearing))
     }
 
-    fn with(scene: &ResolvedScene, memory: Memory, machine: &Machine) -> Self {
+    fn with(scene: &ResolvedScene, memory: Memory, bearing: &BearingSystem) -> Self {
         Self {
             before_step: vec![[0.0; 2]; memory.sensors.len()],
             memory,
-            contact: vec![[0.0; 2]; machine.system.resultants().count()],
-            film: vec![[0.0; 2]; machine.system.films().count()],
+            contact: vec![[0.0; 2]; bearing.system.resultants().count()],
+            film: vec![[0.0; 2]; bearing.system.films().count()],
             steps: 0,
             sample: Sample::of(scene),
         }
     }
 
-    /// What it takes to continue after a sample.
+    /// State to continue from after a sample.
     pub(super) fn memory(&self) -> &Memory {
         &self.memory
     }
 
     /// Before the last step of an interval.
-    pub(super) fn before_step(&mut self, machine: &Machine) {
+    pub(super) fn before_step(&mut self, bearing: &BearingSystem) {
         for (before, &n) in self.before_step.iter_mut().zip(&self.memory.sensors) {
-            *before = velocity(machine, n);
+            *before = velocity(bearing, n);
         }
     }
 
     /// After every step: adds up the forces that acted in it.
-    pub(super) fn after_step(&mut self, machine: &Machine) {
-        for (sum, pair) in self.contact.iter_mut().zip(machine.system.resultants()) {
+    pub(super) fn after_step(&mut self, bearing: &BearingSystem) {
+        for (sum, pair) in self.contact.iter_mut().zip(bearing.system.resultants()) {
             *sum = add(*sum, pair.force);
         }
-        for (sum, film) in self.film.iter_mut().zip(machine.system.films()) {
+        for (sum, film) in self.film.iter_mut().zip(bearing.system.films()) {
             *sum = add(*sum, film.force);
         }
         self.steps += 1;
     }
 
     /// The sample at the end of an interval; sums begin anew.
-    pub(super) fn sample(&mut self, machine: &Machine) -> &Sample {
-        self.sample.time = machine.system.time();
-        self.sensors(machine);
-        self.rollers(machine);
+    pub(super) fn sample(&mut self, bearing: &BearingSystem) -> &Sample {
+        self.sample.time = bearing.system.time();
+        self.sensors(bearing);
+        self.rollers(bearing);
         if let Some(cage) = &mut self.sample.cage
-            && let Some(at) = machine.cage.and_then(|body| machine.system.rigid(body))
+            && let Some(at) = bearing.cage.and_then(|body| bearing.system.rigid(body))
         {
             *cage = CageSample { centre: at.centre, angle: at.angle };
         }
-        self.sample.seat = machine.pairs.seat().map(|seat| self.mean_contact(seat));
+        self.sample.seat = bearing.pairs.seat().map(|seat| self.mean_contact(seat));
         self.contact.fill([0.0; 2]);
         self.film.fill([0.0; 2]);
         self.steps = 0;
         &self.sample
     }
 
-    fn sensors(&mut self, machine: &Machine) {
-        let dt = machine.system.time_step();
+    fn sensors(&mut self, bearing: &BearingSystem) {
+        let dt = bearing.system.time_step();
         let interval = dt * self.steps as f64;
         let Memory { sensors, at_sample, .. } = &mut self.memory;
         let of_each = sensors.iter().zip(at_sample).zip(&self.before_step).zip(&mut self.sample.sensors);
         for (((&node, at_sample), before_step), sensor) in of_each {
-            let now = velocity(machine, node);
+            let now = velocity(bearing, node);
             let over = |before: [f64; 2], span: f64| [0, 1].map(|c: usize| (now[c] - before[c]) / span);
             *sensor = SensorSample { mean: over(*at_sample, interval), instant: over(*before_step, dt) };
             *at_sample = now;
         }
     }
 
-    fn rollers(&mut self, machine: &Machine) {
-        let pairs = &machine.pairs;
-        let mut thicknesses = machine.system.films().map(|film| film.thickness);
-        for (i, roller) in machine.rollers.iter().enumerate() {
-            let angle = rim_angle(machine, i);
+    fn rollers(&mut self, bearing: &BearingSystem) {
+        let pairs = &bearing.pairs;
+        let mut thicknesses = bearing.system.films().map(|film| film.thickness);
+        for (i, roller) in bearing.rollers.iter().enumerate() {
+            let angle = rim_angle(bearing, i);
             let turned = angle - self.memory.rim_angle[i];
             // Less than half a turn lies between two samples.
             self.memory.spin[i] += turned - TAU * (turned / TAU).round();
             self.memory.rim_angle[i] = angle;
             self.sample.rollers[i] = RollerSample {
-                centre: machine.system.position(roller.centre),
+                centre: bearing.system.position(roller.centre),
                 spin: self.memory.spin[i],
                 outer: self.mean_of_raceway(pairs.outer(i), 2 * i),
                 inner: self.mean_of_raceway(pairs.inner(i), 2 * i + 1),
-                cage: machine.cage.map(|_| {
+                cage: bearing.cage.map(|_| {
                     let sum = pairs.cage(i).fold([0.0; 2], |sum, wall| add(sum, self.contact[wall]));
                     self.over_steps(sum)
                 }),
@@ -163,13 +163,13 @@ fn add(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 
 /// Velocity of a sensor [m/s]: that of its node; for a rigid ring, the ring centre's velocity, because the
 /// sensor sits on the housing.
-fn velocity(machine: &Machine, node: u32) -> [f64; 2] {
-    machine.system.rigid(machine.outer).map_or_else(|| machine.system.velocity(node), |ring| ring.velocity)
+fn velocity(bearing: &BearingSystem, node: u32) -> [f64; 2] {
+    bearing.system.rigid(bearing.outer).map_or_else(|| bearing.system.velocity(node), |ring| ring.velocity)
 }
 
 /// Angle of the line from a roller's centre to its first rim node [rad].
-fn rim_angle(machine: &Machine, roller: usize) -> f64 {
+fn rim_angle(bearing: &BearingSystem, roller: usize) -> f64 {
     let [[cx, cy], [x, y]] =
-        [machine.rollers[roller].centre, machine.rollers[roller].rim].map(|n| machine.system.position(n));
+        [bearing.rollers[roller].centre, bearing.rollers[roller].rim].map(|n| bearing.system.position(n));
     (y - cy).atan2(x - cx)
 }

@@ -1,15 +1,14 @@
-//! What is watched of a reduced run beside [the guards of all models](stribeck_run::guards): energy and
-//! penetration.
+//! Guards of a reduced run besides [the guards of all models](stribeck_run::guards): energy and penetration.
 
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
 use stribeck_run::guards::{self, Placed, When};
 use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_system::Ledger;
 
-/// Imbalance of a run's ledger, and what it is compared with.
+/// Imbalance of a run's ledger, and the energies that it is compared with.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LedgerError {
-    /// The imbalance, and what rings and contacts store now [J].
+    /// The imbalance, and the energy stored in rings and contacts [J].
     imbalance: f64,
     stored: f64,
     /// Over the heat since the start.
@@ -51,7 +50,7 @@ impl LedgerError {
         match 100.0 * self.of_heat {
             percent if percent < 0.1 => format!("{percent:.3} % of all heat"),
             percent if percent < 100.0 => format!("{percent:.1} % of all heat"),
-            // A bearing without friction and damping makes no heat to speak of.
+            // A bearing without friction and damping dissipates next to nothing.
             _ => "more than all heat".to_owned(),
         }
     }
@@ -132,7 +131,7 @@ impl Guards {
     fn place(&mut self, bearing: &BearingInMotion) {
         let Placed { centres, carries, cage, penetration_share } = &mut self.placed;
         centres.clear();
-        centres.extend(bearing.rollers().map(|roller| roller.centre));
+        centres.extend(bearing.centres());
         *carries = bearing.largest_outer_force();
         *cage = bearing.cage_offset();
         *penetration_share = bearing.deepest() / self.element_size;
@@ -150,8 +149,7 @@ impl Guards {
                 self.advice()
             ));
         }
-        // Of the larger of both: in a run that turns energy into heat for long, one that always stands says
-        // nothing.
+        // Relative to the larger of both: over a long run the heat grows beyond any constant limit.
         let of_larger = percent.min(100.0 * off.of_heat);
         if of_larger > limits.energy_warning_percent && !info.guards.energy_warned {
             info.guards.energy_warned = true;
@@ -164,7 +162,7 @@ impl Guards {
         None
     }
 
-    /// What may help a run that diverges.
+    /// Advice for a run that diverges.
     fn advice(&self) -> String {
         let astray = self.placed.cage.map_or(0.0, |[x, y]| x.hypot(y));
         if astray > ASTRAY * self.roller_radius {
@@ -205,7 +203,7 @@ impl Guards {
 mod tests {
     use super::*;
 
-    /// A ledger that is off by so many joules, beside heat and energy of motion.
+    /// A ledger with this imbalance [J], beside heat and kinetic energy.
     fn off([imbalance, heat, kinetic]: [f64; 3]) -> LedgerError {
         LedgerError::of(&Ledger { imbalance, kinetic, friction: heat, ..Ledger::default() })
     }
@@ -213,14 +211,15 @@ mod tests {
     #[test]
     fn issue_what_gathers_and_what_hardly_any_load_leaves_is_no_divergence() {
         for (numbers, stored, apart) in [
-            // A ledger that runs away, before there is any heat to speak of.
+            // A ledger that diverges before there is noticeable heat.
             ([0.05, 1e-3, 0.1], 0.1, true),
-            // Seconds at a light load: a thousandth of the heat, many times what rings and contacts store.
+            // Seconds at a light load: a thousandth of the heat, many times the energy stored in rings and
+            // contacts.
             ([0.37, 100.0, 0.1], 5e-3, false),
-            // 1 N, 0.03 ms: half of what they store, hardly any heat yet.
+            // 1 N, 0.03 ms: half of the stored energy, hardly any heat yet.
             ([4e-10, 1e-11, 0.11], 7e-10, false),
-            // 193 N in a rigid housing, 4 ms: a quarter of what the rings store, half a hundredth of what
-            // contacts do beside them.
+            // 193 N in a rigid housing, 4 ms: a quarter of the energy stored in the rings, half a hundredth
+            // of that in the contacts.
             ([8.8e-6, 4.9e-4, 6.2], 1.6e-3, false),
             ([f64::NAN, 1.0, 1.0], 1.0, true),
         ] {

@@ -23,7 +23,7 @@ pub struct ReducedMotion {
     sample: Sample,
 }
 
-/// What a checkpoint holds of it.
+/// Its state in a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Saved {
     /// The bearing.

@@ -9,7 +9,7 @@ use pulp::Simd;
 use crate::kernel::frames::{LaneFrames, LaneMotion};
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-/// What is the same for all tiles in a step.
+/// Parameters of a step, the same for all tiles.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct StepParameters {
     pub(crate) dt: f64,
@@ -26,12 +26,12 @@ pub(crate) struct StepParameters {
     pub(crate) back: bool,
 }
 
-/// What is the same for all nodes of a tile.
+/// Parameters of a tile, the same for all its nodes.
 pub(crate) struct Step<S: Simd> {
     dt: Vector<S>,
-    /// Gravity times what a push gains [m/s].
+    /// Velocity gained by gravity in a step [m/s].
     fall: [Vector<S>; 2],
-    /// What is left of a velocity after a step, (1 − αΔt/2)/(1 + αΔt/2).
+    /// Factor of a velocity after a step, (1 − αΔt/2)/(1 + αΔt/2).
     keep: Vector<S>,
     /// Velocity that the frame of each lane gives back in a step, at the origin [m/s] and by place [1/s]; the
     /// first with gravity.

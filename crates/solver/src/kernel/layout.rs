@@ -14,7 +14,7 @@ use stribeck_mesh::{Body, Mesh, strips::find_strips};
 
 use crate::{
     element::{QuadReference, TriangleReference},
-    model::{Behaviour, Model, Motion},
+    model::{Behaviour, Model, NodeMotion},
 };
 use stribeck_simd::lanes::LANES;
 
@@ -355,7 +355,7 @@ fn congruent_groups(
             && model.behaviour[b].is_elastic()
             && model.materials[a] == model.materials[b]
             && p.nodes.len() == q.nodes.len()
-            && p.nodes.clone().chain(q.nodes.clone()).all(|n| model.motion[n] == Motion::Free)
+            && p.nodes.clone().chain(q.nodes.clone()).all(|n| model.motion[n] == NodeMotion::Free)
             && p.nodes.len() * LANES <= 4 * TILE_NODES
             && p.quads.len() == q.quads.len()
             && p.triangles.len() == q.triangles.len()

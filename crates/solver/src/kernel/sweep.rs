@@ -17,7 +17,7 @@ use crate::{
         structural_damping::{Evaluate, Evaluation, HeldWork},
         tile::Tile,
     },
-    model::Motion,
+    model::NodeMotion,
 };
 use stribeck_simd::{field::Field, lanes::Vector, threads::Met};
 
@@ -165,11 +165,11 @@ impl Sweep<'_> {
         for done in 0..=tile.strips.len() {
             while let Some(f) = finish.next_if(|f| f.after == done) {
                 let free = match f.motion {
-                    Motion::Free => [1.0, 1.0],
-                    Motion::HeldX => [0.0, 1.0],
-                    Motion::HeldY => [1.0, 0.0],
-                    Motion::Held => [0.0, 0.0],
-                    Motion::Rotating { centre, rate } => {
+                    NodeMotion::Free => [1.0, 1.0],
+                    NodeMotion::HeldX => [0.0, 1.0],
+                    NodeMotion::HeldY => [1.0, 0.0],
+                    NodeMotion::Held => [0.0, 0.0],
+                    NodeMotion::Rotating { centre, rate } => {
                         let gain = gain(tile.damping.as_ref().map_or(0.0, |d| d.rate), dt);
                         work += rotate::<D>(&mut nodes, f.nodes.clone(), centre, rate, dt, gain, gravity);
                         continue;

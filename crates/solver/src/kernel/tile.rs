@@ -13,7 +13,7 @@ use crate::{
         quad_forms::{QuadMetric, QuadShape},
         varying_references::VaryingReferences,
     },
-    model::Motion,
+    model::NodeMotion,
 };
 use stribeck_simd::{field::Field, lanes::LANES};
 
@@ -157,7 +157,7 @@ pub(crate) struct Finish {
     /// Number of strips that must be done.
     pub(crate) after: usize,
     pub(crate) nodes: Range<usize>,
-    pub(crate) motion: Motion,
+    pub(crate) motion: NodeMotion,
 }
 
 impl Strip {
@@ -192,7 +192,7 @@ impl Tile {
         quads: &[QuadReference],
         triangles: &[TriangleReference],
         stiffness: Stiffness,
-        motion: &[Motion],
+        motion: &[NodeMotion],
         loaded: &[bool],
     ) -> Self {
         let mut tile = Self {
@@ -223,7 +223,7 @@ impl Tile {
             tile.add_strips(layout, quads);
         }
         tile.schedule(layout, motion);
-        tile.turns = tile.finish.iter().any(|finish| matches!(finish.motion, Motion::Rotating { .. }));
+        tile.turns = tile.finish.iter().any(|finish| matches!(finish.motion, NodeMotion::Rotating { .. }));
         let strips: usize = tile.strips.iter().map(|s| s.len).sum();
         let congruent = LANES * (tile.quads_of_runs.len() + tile.triangles.len());
         tile.work = 1 + 3 * strips + 2 * congruent + 12 * tile.quads.len();
@@ -272,7 +272,7 @@ impl Tile {
     }
 
     /// Lists which nodes are complete after which strip: the last one that reads or pushes them.
-    fn schedule(&mut self, layout: &TileLayout, motion: &[Motion]) {
+    fn schedule(&mut self, layout: &TileLayout, motion: &[NodeMotion]) {
         let mut after = vec![0; self.own];
         for (s, strip) in self.strips.iter().enumerate() {
             for corner in strip.corners {
@@ -290,7 +290,7 @@ impl Tile {
                 let strip = &mut self.strips[s];
                 let first = strip.corners[if turned { 3 } else { 0 }] as usize;
                 let row = first..first + strip.len + 1;
-                let done = |n: usize| after[n] == s + 1 && motion[n] == Motion::Free;
+                let done = |n: usize| after[n] == s + 1 && motion[n] == NodeMotion::Free;
                 if row.end <= self.own && row.clone().all(done) {
                     strip.completes = true;
                     with_strip[row].fill(true);

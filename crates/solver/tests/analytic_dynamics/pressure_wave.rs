@@ -40,7 +40,7 @@
 
 use std::f64::consts::PI;
 
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_testing::{assert_close, ledger};
 
 use crate::common::*;
@@ -56,7 +56,7 @@ const AREA: f64 = 1e-3;
 fn analytic_speed_of_a_pressure_wave() {
     let (columns, cell) = (400, 1e-3);
     let mut model = body(&rectangle(columns as f64 * cell, cell, columns, 1));
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     let mut d = ready(&model, 0.9);
 
     let c = steel().dilatational_speed();

@@ -35,7 +35,7 @@
 //! Kinetic energy ½ I ω² with I = Σ m r² of the nodes; no work of the drive.
 
 use stribeck_mesh::Annulus;
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_testing::ledger;
 
 use crate::common::*;
@@ -58,7 +58,7 @@ fn analytic_driven_ring_turns_as_one() {
     let centre = [0.02, -0.01];
     let mut model = body(&ring.part().expect("a ring").translated(centre[0], centre[1]));
     for n in 0..facets {
-        model.motion[n] = Motion::Rotating { centre, rate };
+        model.motion[n] = NodeMotion::Rotating { centre, rate };
     }
     let mut d = ready(&model, 0.9);
     let mut inertia = 0.0;

@@ -38,7 +38,7 @@
 
 use std::f64::consts::PI;
 
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_testing::orders;
 
 use crate::common::*;
@@ -51,7 +51,7 @@ const ORDERS: std::ops::Range<f64> = 1.9..2.2;
 fn converges_time_step_second_order() {
     let (columns, length) = (16, 0.016);
     let mut model = body(&rectangle(length, 1e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     let critical = lay_out(&model).critical_time_step(&[], 0.0).time_step;
     let steps = (1.5 * length / steel().dilatational_speed() / (0.8 * critical)).ceil() as usize;
     let end = |refined: usize| {

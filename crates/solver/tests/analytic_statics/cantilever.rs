@@ -33,7 +33,7 @@
 //!
 //! δ = P L³/(3 E' I) + P L/(κ µ A), E' = E/(1 − ν²), κ = 5/6 for a rectangle in plane strain.
 
-use stribeck_solver::{Motion, force::NodalLoad};
+use stribeck_solver::{NodeMotion, force::NodalLoad};
 use stribeck_testing::assert_close;
 
 use crate::ROUNDING;
@@ -50,7 +50,7 @@ const ONE_CELL: f64 = 0.02;
 fn tip_deflection(length: f64, height: f64, columns: usize, rows: usize, p: f64) -> f64 {
     let mut model = body(&rectangle(length, height, columns, rows));
     for row in 0..=rows {
-        model.motion[row * (columns + 1)] = Motion::Held;
+        model.motion[row * (columns + 1)] = NodeMotion::Held;
     }
     let mut d = lay_out(&model);
     let end = |row: usize| row * (columns + 1) + columns;

@@ -30,7 +30,7 @@
 //!
 //! u = ρ g H²/(2 (λ + 2µ)), with lumped masses exactly. In time nothing moves.
 
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_testing::assert_close;
 
 use crate::ROUNDING;
@@ -49,7 +49,7 @@ fn example_column_under_its_weight() {
     let mut model = body(&rectangle(0.02, height, 2, 20));
     model.gravity = [0.0, -9.81];
     for n in 0..model.mesh.x.len() {
-        model.motion[n] = if n < 3 { Motion::Held } else { Motion::HeldX };
+        model.motion[n] = if n < 3 { NodeMotion::Held } else { NodeMotion::HeldX };
     }
     let mut d = lay_out(&model);
     equilibrate(&mut d, &mut [], Vec::new(), ROUNDING).expect("a held column");
@@ -64,7 +64,7 @@ fn example_a_run_from_equilibrium_does_not_ring() {
     let mut model = body(&rectangle(0.02, 0.2, 2, 20));
     model.gravity = [0.0, -9.81];
     for n in 0..3 {
-        model.motion[n] = Motion::Held;
+        model.motion[n] = NodeMotion::Held;
     }
     let mut d = ready(&model, 0.9);
     equilibrate(&mut d, &mut [], Vec::new(), ROUNDING).expect("a held column");

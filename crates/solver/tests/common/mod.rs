@@ -3,7 +3,7 @@
 
 use stribeck_mesh::{Annulus, Disc, Mesh, Part, Rectangle};
 use stribeck_solver::{
-    Dynamics, Elastic, Force, Model, Motion,
+    Dynamics, Elastic, Force, Model, NodeMotion,
     statics::{Equilibrium, Statics},
 };
 use stribeck_testing::Noise;
@@ -176,7 +176,7 @@ pub(crate) fn workshop() -> Model {
     // The bore of the ring is driven.
     for n in nodes {
         if model.mesh.x[n].hypot(model.mesh.y[n]) < 0.1001 {
-            model.motion[n] = Motion::Rotating { centre: [0.0; 2], rate: 50.0 };
+            model.motion[n] = NodeMotion::Rotating { centre: [0.0; 2], rate: 50.0 };
         }
     }
     model

@@ -34,7 +34,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_solver::{Motion, damping::Frame};
+use stribeck_solver::{NodeMotion, damping::Frame};
 use stribeck_testing::assert_close;
 
 use crate::common::*;
@@ -48,7 +48,7 @@ const EXPONENT: f64 = 0.02;
 fn analytic_mass_damping_decays_a_vibration() {
     let (columns, length) = (40, 0.04);
     let mut model = body(&rectangle(length, 1e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     let mut d = ready(&model, 0.9);
     // One per cent of critical, over 30 periods.
     let omega = PI * steel().dilatational_speed() / length;

@@ -35,7 +35,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_testing::ledger;
 
 use crate::common::*;
@@ -49,7 +49,7 @@ const RATE: f64 = 0.02;
 fn analytic_stiffness_damping_of_a_bar_grows_with_frequency() {
     let (columns, length) = (64, 0.064);
     let mut model = body(&rectangle(length, 1e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     for k in [1, 2, 4, 8] {
         let wave = k as f64 * PI / length;
         let omega = wave * steel().dilatational_speed();

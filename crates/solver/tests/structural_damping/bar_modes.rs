@@ -34,7 +34,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_solver::{Motion, structural_damping::StructuralDamping};
+use stribeck_solver::{NodeMotion, structural_damping::StructuralDamping};
 use stribeck_testing::{assert_close, ledger};
 
 use crate::common::*;
@@ -54,7 +54,7 @@ const PROMISED: f64 = 0.02;
 fn analytic_structural_damping_of_a_bar_is_that_of_the_branches() {
     let (columns, length) = (128, 0.256);
     let mut model = body(&rectangle(length, 2e-3, columns, 1));
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     let speed = steel().dilatational_speed();
     for k in [1, 2, 4, 8] {
         let wave = k as f64 * PI / length;

@@ -29,7 +29,7 @@
 //! x' = v, v' = −ω² (x + g u), u' = v − u/τ with ω² = 2c²/L² for half the mass of the element, integrated by
 //! the classical Runge–Kutta method in 40 000 steps.
 
-use stribeck_solver::{Motion, structural_damping::Branch};
+use stribeck_solver::{NodeMotion, structural_damping::Branch};
 use stribeck_testing::orders;
 
 use crate::common::*;
@@ -44,7 +44,7 @@ fn converges_with_the_square_of_the_time_step() {
     let length = 2e-3;
     let mut model = body(&rectangle(length, length, 1, 1));
     for n in 0..4 {
-        model.motion[n] = if model.mesh.x[n] > 0.5 * length { Motion::HeldY } else { Motion::Held };
+        model.motion[n] = if model.mesh.x[n] > 0.5 * length { NodeMotion::HeldY } else { NodeMotion::Held };
     }
     let omega = 2.0_f64.sqrt() * steel().dilatational_speed() / length;
     let branch = Branch { stiffness: 0.3, relaxation_time: 0.75 / omega };
@@ -70,7 +70,7 @@ fn converges_with_the_square_of_the_time_step() {
             let mut d = lay_out(&model);
             damp(&mut d, &[branch], vec![0], 0.5);
             d.set_time_step(end / f64::from(steps)).expect("a positive step");
-            let right = (0..4).find(|&n| model.motion[n] == Motion::HeldY).expect("two nodes are free");
+            let right = (0..4).find(|&n| model.motion[n] == NodeMotion::HeldY).expect("two nodes are free");
             let n = slot(&d, right);
             let free: Vec<usize> = massive(&d).into_iter().filter(|&s| d.state.x[s] > 0.5 * length).collect();
             free.into_iter().for_each(|s| d.state.vx[s] = speed);

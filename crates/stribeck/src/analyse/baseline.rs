@@ -1,4 +1,4 @@
-//! A record of the sound machine behind another one.
+//! A reference record of the sound machine, drawn behind another one.
 
 use std::path::Path;
 
@@ -9,8 +9,7 @@ use stribeck_report::Baseline;
 use super::{Options, examine};
 use crate::place::{Place, shown};
 
-/// Reads and analyses the record that another one is drawn over; what must be known of both goes to the notes
-/// of the latter.
+/// Reads and analyses the reference record; remarks on both go to the notes of the other one.
 pub(super) fn of(file: &Path, options: &Options, analysis: &mut Analysis, place: &Place) -> Result<Baseline> {
     let mut reading = options.reading.clone();
     if options.baseline_rpm.is_some() {

@@ -1,4 +1,5 @@
-//! Samples that are no numbers: a few are bridged, beside more of them the longest stretch without is taken.
+//! Samples that are not numbers: a few are interpolated; with more of them the longest stretch without any is
+//! used.
 
 use anyhow::{Result, bail};
 use stribeck_formats::Channel;

@@ -16,7 +16,7 @@ use crate::place::{Place, shown};
 
 /// The joint verdict as a file.
 const JOINT: &str = "joint.json";
-/// Speeds that two channels tell are one within this part.
+/// Relative difference within which two channels agree on the speed.
 const SAME_SPEED: f64 = 0.01;
 
 /// A channel of a file.
@@ -32,7 +32,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from("joint-analysis"));
     check_folder(&out, &[JOINT])?;
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
-    // Until the verdict is there, an empty one tells whose folder this is.
+    // Until the verdict is written, an empty one marks the folder as this command's.
     if !out.join(JOINT).exists() {
         write_atomic(&out.join(JOINT), b"{}")?;
     }
@@ -109,7 +109,7 @@ fn signals(file: &Path, place: &Place) -> Result<Vec<String>> {
     Ok(found.map(|c| c.name.clone()).collect())
 }
 
-/// Every channel by itself. A speed that one of them tells is taken for those that do not.
+/// Analyses every channel. A speed found in one of them is used for those that have none.
 fn analyses(sources: &[Source], reading: &Reading, place: &Place) -> Result<Vec<Analysis>> {
     let one = |source: &Source, speed_rpm: Option<Speed>| {
         let reading = Reading { channel: source.channel.clone(), speed_rpm, ..reading.clone() };

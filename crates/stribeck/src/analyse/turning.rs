@@ -1,11 +1,12 @@
-//! Spectra of a record whose shaft changes its speed.
+//! Spectra over speed and angle of a record whose shaft changes its speed.
 
 use anyhow::Result;
 use stribeck_analysis::measured::varying::turns_between;
 use stribeck_analysis::measured::{Analysis, Varying};
 use stribeck_formats::Channel;
 
-/// Spectra over speed and angle, where the speed varies.
+/// Spectra over speed and angle of a channel; `pulses` are the times of whole turns, in samples. `None`
+/// without a speed, or for a record that is too short.
 pub(super) fn varying(
     analysis: &Analysis,
     channel: &Channel,

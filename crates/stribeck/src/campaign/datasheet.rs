@@ -1,4 +1,4 @@
-//! What a data set is, in a page: made from its runs and tables, beside them.
+//! The data sheet of a data set, made from its runs and tables, beside them.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -103,7 +103,7 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
     page
 }
 
-/// What the campaign holds, by name.
+/// Content of the campaign, by name.
 fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'static str, String)> {
     let of_scenes = |of: &dyn Fn(&Scene) -> String| counted(scenes.iter().map(|scene| of(scene)));
     let range = |of: &dyn Fn(&Scene) -> f64, unit: &str| span(scenes.iter().map(|scene| of(scene)), unit);
@@ -148,7 +148,7 @@ fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'stat
     ]
 }
 
-/// What the data cannot say, by what is in them.
+/// Limits of the data, from their content.
 fn limits(scenes: &[&Scene]) -> Vec<String> {
     let mut limits = vec![
         "A plane model of the thickness that each scene gives: nothing tilts, and nothing moves along the \
@@ -212,7 +212,7 @@ fn programs(rows: &[Row]) -> String {
     programs.into_iter().collect::<Vec<_>>().join(" and ")
 }
 
-/// Each word with how often it comes.
+/// Each word with its number of occurrences.
 fn counted(words: impl Iterator<Item = String>) -> String {
     let mut counts: BTreeMap<String, usize> = BTreeMap::new();
     words.for_each(|word| *counts.entry(word).or_default() += 1);

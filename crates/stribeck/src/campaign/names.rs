@@ -1,7 +1,7 @@
-//! Names that a person can read for the folders of runs, which are named by their scenes.
+//! Readable names for the folders of runs, which are named by the hashes of their scenes.
 //!
-//! `runs/HASH` stays what scripts and further parts find; beside it `by_name/3-load_n=2000` leads there. The
-//! names are a convenience: where links cannot be made there are none.
+//! Scripts and further parts use `runs/HASH`; `by_name/3-load_n=2000` is a link to it. The names are a
+//! convenience: where links cannot be made there are none.
 
 use std::path::{Path, PathBuf};
 
@@ -14,8 +14,8 @@ pub(super) const BY_NAME: &str = "by_name";
 /// A name is no longer than this [bytes]: file systems take 255.
 const LONGEST: usize = 120;
 
-/// Makes the names of all runs that have a folder; those of earlier texts of the campaign, whose runs others
-/// may be now, are made anew.
+/// Makes links to all runs that have a folder, and removes earlier ones, which may belong to a former text of
+/// the campaign.
 pub(super) fn link(folder: &Folder, campaign: &Campaign) {
     let names = folder.path().join(BY_NAME);
     remove_links(&names);
@@ -67,7 +67,7 @@ fn name(campaign: &Campaign, variant: &Variant) -> String {
     name
 }
 
-/// A value without what shells and file systems take for something else.
+/// A value without characters that are special to shells and file systems.
 fn plain(value: &str) -> String {
     let kept = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
     let text: String = value.trim_matches('"').chars().map(|c| if kept(c) { c } else { '_' }).collect();

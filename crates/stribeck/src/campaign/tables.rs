@@ -27,14 +27,14 @@ pub(super) const RUNS: &str = "runs.parquet";
 pub(super) const EVENTS: &str = "events.parquet";
 pub(super) const SIGNALS: &str = "signals.parquet";
 
-/// One run in the table. What depends on the machine or on interruptions, such as seconds, stays in its
+/// One run in the table. Values that depend on the computer or on interruptions, such as seconds, stay in its
 /// folder.
 pub(super) struct Row {
     pub(super) number: usize,
     pub(super) split: &'static str,
     pub(super) status: &'static str,
     pub(super) reason: Option<String>,
-    /// What its guards have warned of, a line each.
+    /// Warnings of its guards, a line each.
     pub(super) warnings: Option<String>,
     variant: usize,
     pub(super) start: usize,
@@ -64,7 +64,7 @@ pub(super) struct Written {
     pub(super) signals: Vec<String>,
 }
 
-/// Reads what the runs left.
+/// Reads the results of the runs.
 pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Result<Vec<Row>> {
     let row = |(variant, stage): (&Variant, &Stage)| -> Result<Row> {
         let mut row = Row {
@@ -110,8 +110,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
     campaign.runs.iter().zip(stages).map(row).collect()
 }
 
-/// All numbers of a summary that stand alone, by their path; lists are left to the run's folder, clocks as
-/// well.
+/// All numbers of a summary outside of lists, by their path; without clocks.
 fn flatten(value: &Value, path: &str, to: &mut BTreeMap<String, f64>) {
     match value {
         Value::Object(fields) => {
@@ -171,8 +170,8 @@ pub(super) fn is_half_written(name: &OsStr) -> bool {
     parts.next().is_some_and(|process| process.parse::<u32>().is_ok()) && parts.next().is_some()
 }
 
-/// Lets `write` make a file beside `path`, then puts it in its place. Parts that write the same file at once
-/// do not meet: each has a name of its own until then.
+/// Writes a file beside `path` by `write`, then renames it to `path`. Parts that write the same file at once
+/// do not conflict: each has a name of its own until then.
 pub(super) fn replace(path: &Path, write: impl FnOnce(&Path) -> Result<()>) -> Result<()> {
     let beside = path.with_extension(format!("{}{HALF_WRITTEN}", std::process::id()));
     let written = write(&beside).and_then(|()| {

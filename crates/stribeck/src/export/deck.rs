@@ -45,8 +45,8 @@ pub(super) fn write(dir: &RunDir, run: &Run, deck: Deck, path: PathBuf) -> Resul
     Ok(path)
 }
 
-/// What the scene says of the bodies of its mesh. The cage touches nothing here: its pockets are walls of the
-/// scene, not of the mesh.
+/// Materials and constraints of the scene for the bodies of its mesh. The cage touches nothing here: its
+/// pockets are walls of the scene, not of the mesh.
 fn model<'a>(scene: &ResolvedScene, mesh: &'a Mesh) -> Model<'a> {
     let MaterialScene { youngs_modulus_gpa, poissons_ratio, density_kg_m3 } = scene.written.material;
     let named = |name: &str| mesh.bodies.iter().position(|body| body.name == name);
@@ -81,7 +81,7 @@ fn model<'a>(scene: &ResolvedScene, mesh: &'a Mesh) -> Model<'a> {
     }
 }
 
-/// What happens in the scene from its start on, as far as decks can say it.
+/// The step of the scene: loads, speeds and contacts, as far as decks can express them.
 ///
 /// # Errors
 /// When this program meshes another model than that of the run.
@@ -118,7 +118,7 @@ fn step(scene: &ResolvedScene, mesh: &Mesh) -> Result<Step> {
     }
     let [x, y] = scene.written.load_direction();
     let load = duty.load_n(0.0);
-    // Guides hold what takes the load; a body without one takes it all around.
+    // A guided housing takes the load on its top; a body without guide takes it around its surface.
     let loaded = if guided.is_empty() { all_around(mesh) } else { guided.clone() };
     Ok(Step {
         duration: 1e-3 * scene.written.solver.duration_ms,
@@ -140,7 +140,7 @@ fn all_around(mesh: &Mesh) -> Vec<u32> {
     ring.nodes.clone().filter(|n| radius(n) > (1.0 - 1e-6) * most).map(|n| n as u32).collect()
 }
 
-/// What of a scene a deck does not have.
+/// Parts of a scene that a deck does not have.
 fn left_out(scene: &ResolvedScene) -> Vec<String> {
     let o = &scene.written.operation;
     let profiles = o.speed_profile.is_some() || o.outer_speed_profile.is_some() || o.load_profile.is_some();

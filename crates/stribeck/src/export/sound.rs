@@ -1,4 +1,4 @@
-//! WAV files to listen to, and those that a recorder writes.
+//! WAV files of `stribeck export`: one channel scaled for listening, or all as a recorder or in floats.
 
 use std::path::{Path, PathBuf};
 
@@ -18,19 +18,19 @@ const SLOWEST: f64 = 1000.0;
 /// A sound shorter than this is a click [s].
 const CLICK_S: f64 = 0.5;
 
-/// Samples a second of a sound.
+/// Parses the sample rate of a sound [Hz].
 pub(super) fn rate(text: &str) -> Result<u32, String> {
     let rate = text.trim().parse().ok().filter(|rate| RATES_HZ.contains(rate));
     rate.ok_or_else(|| "a sound card plays 44100 or 48000 samples a second".to_owned())
 }
 
-/// How much slower a sound is played.
+/// Parses the factor by which a sound is slowed.
 pub(super) fn slow(text: &str) -> Result<f64, String> {
     let slow = text.trim().parse::<f64>().ok().filter(|slow| (1.0..=SLOWEST).contains(slow));
     slow.ok_or_else(|| format!("a sound is played 1 to {SLOWEST} times slower, for example 10"))
 }
 
-/// One channel as it sounds.
+/// Writes one channel as 16-bit sound at the rate of a sound card.
 pub(super) fn write(dir: &RunDir, run: &Run, options: &Options, path: &Path) -> Result<PathBuf> {
     let recording = Recording::open(dir.trace())?;
     let channel = pick(&recording, &options.channels)?;
@@ -62,7 +62,7 @@ pub(super) fn write(dir: &RunDir, run: &Run, options: &Options, path: &Path) -> 
     Ok(path.to_owned())
 }
 
-/// The channel that was asked for; otherwise the vertical acceleration of the first sensor.
+/// The requested channel; otherwise the vertical acceleration of the first sensor.
 fn pick<'a>(recording: &'a Recording, asked: &[String]) -> Result<&'a Channel> {
     let contains = |c: &Channel| asked.iter().any(|part| c.name.contains(part));
     let leading = |c: &Channel| c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2");

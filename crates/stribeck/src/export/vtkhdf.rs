@@ -1,7 +1,7 @@
 //! All frames of a run in one VTKHDF file: an unstructured grid that changes from step to step, in version
 //! 2.2 of the format.
 //!
-//! Every offset that a reader may ask for is written, those of the fields too: ParaView crashes without them.
+//! Every offset that a reader may request is written, those of the fields too: ParaView crashes without them.
 
 use std::path::Path;
 
@@ -77,7 +77,7 @@ pub(super) fn write(path: &Path, frames: &[Stressed], notes: &[String]) -> Resul
     }
     root.add_group(time.finish());
     file.add_group(root.finish());
-    // Outside the group that readers understand; what they do not know they pass over.
+    // Outside the group that readers understand; unknown groups are ignored.
     file.set_attr("notes", AttrValue::String(notes.join("\n")));
     file.write(path).with_context(|| format!("cannot write `{}`", path.display()))?;
     Ok(())

@@ -1,4 +1,4 @@
-//! What an inference found, as the page and `inference.json` have it.
+//! Results of an inference, for the page and `inference.json`.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use super::outputs::{Found, Row, Table};
 use super::{DRAWS_OF_ROUND, FILLING};
 use crate::out::say;
 
-/// All that the runs tell.
+/// Inference from all runs.
 pub(super) struct Known<'a> {
     pub(super) inference: &'a Inference,
     pub(super) priors: Vec<Prior>,

@@ -9,8 +9,8 @@ use stribeck_scene::run_dir::Keep;
 use super::rounds::{Point, Rounds};
 use crate::many_runs::{Stage, Wanted, summary_of};
 
-/// Readings of each run that become rows, where an unknown has readings: further ones of the same run tell
-/// little that is new.
+/// Readings of each run that become rows, where an unknown has readings: further ones of the same run add
+/// little.
 const READINGS: usize = 4;
 
 /// Share of a curve's variance over the runs that its components keep.
@@ -19,12 +19,12 @@ const KEPT: f64 = 0.99;
 /// Most components of a curve.
 const MOST_COMPONENTS: usize = 6;
 
-/// What every run says about the targets.
+/// Outputs of every run for the targets.
 pub(super) struct Table {
     /// Points and outputs, a row for each run and reading.
     pub(super) runs: Runs,
     pub(super) outputs: Vec<Output>,
-    /// What is held against the outputs; a curve has one for each component.
+    /// Targets of the outputs; a curve has one for each component.
     pub(super) targets: Vec<Target>,
     /// Which target of the file each of these belongs to.
     pub(super) of: Vec<usize>,
@@ -38,7 +38,7 @@ pub(super) struct Row {
     pub(super) seen: Vec<Found>,
 }
 
-/// What a run has of a target.
+/// Output of a run for a target.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Found {
     Number(Option<f64>),
@@ -51,7 +51,7 @@ pub(super) fn rows(inference: &Inference, rounds: &Rounds<'_>, points: &[Point])
     rows_of_readings(inference, rounds, points, READINGS)
 }
 
-/// The same with so many readings of each run.
+/// The same with a limit of readings per run.
 pub(super) fn rows_of_readings(
     inference: &Inference,
     rounds: &Rounds<'_>,
@@ -82,7 +82,7 @@ pub(super) fn rows_of_readings(
     Ok(rows)
 }
 
-/// Refuses targets that no number of a summary has, with what comes nearest.
+/// Refuses targets that no number of a summary has, with the nearest name.
 pub(super) fn check(inference: &Inference, summary: &Value) -> Result<()> {
     for target in &inference.targets {
         if !target.of.is_known(summary) {
@@ -194,7 +194,7 @@ impl Table {
             None => target.name.clone(),
         };
         let scale = if target.log && component.is_none() { Scale::Logarithmic } else { Scale::Linear };
-        // Shapes of curves are orthonormal: what every sample is off by at random is the score off by.
+        // Shapes of curves are orthonormal: the random error of a score is that of a single sample.
         self.targets.push(Target { output: self.outputs.len(), value, tolerance: target.tolerance });
         self.outputs.push(Output { name, scale });
         self.of.push(of);

@@ -1,4 +1,5 @@
-//! What made a measured record: the inference of a spall from what its passages tell behind any path.
+//! The cause of a measured record: inference of a spall from the signature of its passages, which does not
+//! depend on the path.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -37,9 +38,9 @@ const LONGEST: f64 = 0.45;
 const DEPTH_MM: (f64, f64) = (0.01, 0.3);
 /// Slopes of the edges [°].
 const SLOPE_DEG: (f64, f64) = (25.0, 90.0);
-/// Clearance where none is given [µm].
+/// Default clearance [µm].
 const CLEARANCE_UM: (f64, f64) = (0.0, 20.0);
-/// Element over which the mesh has so many facets.
+/// Ratio of the element's diameter to a facet.
 const FACETS: usize = 100;
 /// Step of the reduced model [µs]; stiff contacts shorten it.
 const STEP_US: f64 = 2.0;
@@ -56,7 +57,7 @@ pub(super) struct Measured {
     rhythm: Rhythm,
 }
 
-/// What a damaged raceway shows.
+/// Properties of a damaged raceway.
 struct Claim<'a> {
     ring: &'static str,
     family: &'a Family,
@@ -151,7 +152,7 @@ fn base(
     )
 }
 
-/// The inference: what is not known of the spall, and what the record tells.
+/// The inference: unknowns of the spall, and targets from the record.
 fn text(
     record: &Path,
     known: &CatalogueBearing,
@@ -177,7 +178,7 @@ fn text(
         ("operation.load_n", load, true),
         ("bearing.clearance_change_um", clearance, false),
     ];
-    // What is given as one number is no unknown.
+    // A field given as one number is not an unknown.
     let set: Vec<String> = ranges
         .iter()
         .filter(|(_, (from, to), _)| from >= to)
@@ -215,8 +216,8 @@ fn text(
     text
 }
 
-/// What the record tells, with how exactly it can be read: name, number of the summary, value, tolerance. The
-/// distance of two events by itself is none, because most runs have only a hump of the correlation there.
+/// Targets of the record: name, number of the summary, value, tolerance. The distance of two events is not
+/// one, because most runs have only a hump of the correlation there.
 fn targets(told: &PassageSignature) -> [(&'static str, &'static str, String, f64); 6] {
     let value = |value: f64| format!("value: {value:.5}");
     let within: Vec<String> = told.within.iter().map(|value| format!("{value:.4}")).collect();
@@ -270,7 +271,7 @@ impl Measured {
     }
 
     /// The force of a run behind a path with the spectrum of the measured record, in noise of the same
-    /// spectrum, as loud as that record.
+    /// spectrum, at the level of that record.
     fn synthetic(&self, folder: &Path, noise_db: f64) -> Result<Vec<f64>> {
         let findings = &self.analysis.findings;
         let run = Run::read(folder)?;
@@ -366,7 +367,7 @@ mod tests {
         std::fs::write(at(FILE), &text).expect("room");
         let inference = Inference::read(&at(FILE)).unwrap_or_else(|why| panic!("{why}\n{text}"));
         let names: Vec<&str> = inference.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
-        // A clearance that is given is no unknown.
+        // A given clearance is not an unknown.
         assert_eq!(
             names,
             ["defect.length_mm", "defect.depth_mm", "defect.edge_slope_deg", "operation.load_n", "noise_db"]

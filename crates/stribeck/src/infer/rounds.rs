@@ -1,5 +1,5 @@
 //! Which scenes an inference has run, round by round: `rounds/NN.csv` has a line for each, written before any
-//! of them runs, so that whoever goes on runs the same ones.
+//! of them runs, so that a continued inference runs the same ones.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -65,7 +65,7 @@ pub(super) fn prior(unknown: &Unknown) -> Prior {
     }
 }
 
-/// What an inference has planned so far.
+/// Scenes that an inference has planned so far.
 pub(super) struct Rounds<'a> {
     inference: &'a Inference,
     priors: Vec<Prior>,
@@ -139,8 +139,7 @@ impl<'a> Rounds<'a> {
         self.priors.iter().zip(shares).map(|(prior, &share)| prior.quantile(share)).collect()
     }
 
-    /// The starts of a scene are drawn anew for each, so that no two scenes share what chance does. A truth
-    /// has one.
+    /// Every scene has its own starts, so that scatter is independent between scenes. A truth has one.
     fn point(&self, round: Round, number: usize, shares: Vec<f64>) -> Point {
         let starts = if round == Round::Truths { 1 } else { self.inference.starts };
         let scenes =
@@ -158,7 +157,7 @@ impl<'a> Rounds<'a> {
         Point { shares, scenes }
     }
 
-    /// What is to be run of a round, a number for each start.
+    /// Runs of a round, a number for each start.
     pub(super) fn wanted(points: &[Point]) -> impl Iterator<Item = Wanted<'_>> {
         let scenes = points.iter().flat_map(|point| match &point.scenes {
             Ok(scenes) => scenes.iter().map(Ok).collect::<Vec<_>>(),

@@ -1,8 +1,8 @@
-//! What a run takes, by its beginning: a constant of another machine would be wrong.
+//! Cost of a run, from its first steps: a constant of another computer would be wrong.
 //!
-//! A machine that does something else, too, takes longer by the clock, and how busy it is when the run is
-//! made nobody knows. So each part has two times: by the clock, as busy as the machine is now, and by the
-//! processor time of its threads, which is what it takes where nothing else runs.
+//! A busy computer takes longer by the clock, and its load during the run is unknown. So each part has two
+//! times: by the clock, under the present load, and by the processor time of its threads, as on an idle
+//! computer.
 
 use std::fs;
 use std::ops::ControlFlow;
@@ -28,11 +28,11 @@ const ELEMENT_STEPS: f64 = 3e8;
 const ROLLER_STEPS: f64 = 2e6;
 /// Samples at least.
 const SAMPLES: f64 = 5.0;
-/// This part of the tried steps is left out: the first checkpoint is written before them, contact is searched
-/// for the first time, and the threads begin.
+/// This part of the tried steps is left out: they include the first checkpoint, the first contact search, and
+/// the start of threads.
 const FIRST: f64 = 0.2;
 
-/// What something takes [s].
+/// A duration [s], by the clock and by processor time.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Cost {
     /// By the clock, as busy as the machine is now.
@@ -76,18 +76,18 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// What a run will take before its first step.
+    /// Time of a run before its first step.
     pub(super) fn before(&self) -> Cost {
         self.setup.plus(self.modes.filter(|_| !self.kept).unwrap_or_default())
     }
 
-    /// What a run will take, its report left out.
+    /// Time of a run without its report.
     pub(super) fn run(&self) -> Cost {
         self.before().plus(self.steps)
     }
 }
 
-/// A folder that goes with its owner.
+/// A folder that is removed when dropped.
 struct Folder(PathBuf);
 
 impl Drop for Folder {
@@ -159,7 +159,7 @@ impl Mark {
     }
 }
 
-/// Runs a scene; its account, and what a step takes.
+/// Runs a scene; returns its `run.json` and the time of a step.
 fn run_in(scene: &Scene, folder: &Path, threads: usize) -> Result<(RunInfo, Cost)> {
     let dir = RunDir::create(folder)?;
     host::with(threads, |host| {

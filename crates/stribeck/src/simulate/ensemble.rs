@@ -17,7 +17,7 @@ use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
 use crate::side_by_side::{Due, Jobs, Shop};
 
-/// Seed of those who give none: the same command draws the same starts.
+/// Default seed: the same command draws the same starts.
 const SEED: u64 = 1;
 
 pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {

@@ -1,4 +1,4 @@
-//! Means of independent numbers and how well they are known.
+//! Means of independent numbers with their uncertainty.
 
 /// Numbers of one kind, one a start.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,4 +1,4 @@
-//! What is run for the study of impulses: meshes, each from many starts.
+//! Variants of the study of impulses: meshes, each from many starts.
 
 use crate::Variant;
 use crate::noise::variants::{ARC, FINE, LEAN, ONSET, POINTS, SPLINE, TRANSLATED, UNIFORM};
@@ -12,7 +12,7 @@ const TIGHT: &str = "cage.pocket_clearance_um=10.0";
 /// Meshes under one cage; the reference comes last.
 pub(super) struct Family {
     pub(super) name: &'static str,
-    /// What the names of its pictures begin with.
+    /// Prefix of its pictures' names.
     pub(super) id: &'static str,
     pub(super) meshes: Vec<Mesh>,
 }
@@ -24,8 +24,8 @@ pub(super) struct Mesh {
     pub(super) starts: Vec<Variant>,
 }
 
-/// What is compared, with so many starts of each mesh, and half as many in tight pockets, where less
-/// scatters.
+/// Compared meshes, with the number of starts of each, and half as many in tight pockets, where the scatter
+/// is smaller.
 pub(super) fn families(starts: u16) -> [Family; 2] {
     let few = (starts / 2).max(2);
     let cure = [ARC, SPLINE, ONSET];

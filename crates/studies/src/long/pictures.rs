@@ -1,4 +1,4 @@
-//! Spectra of a long record, beside what its first 30 ms would show.
+//! Spectra of a long record, beside those of its first 30 ms.
 
 use anyhow::Result;
 use stribeck_analysis::findings::Findings;
@@ -10,12 +10,13 @@ use crate::Sheet;
 /// The paper's record [s] and its grid [Hz].
 const PAPER_RECORD_S: f64 = 0.03;
 const GRID_HZ: f64 = 3.0;
-/// What the picture of the facet lines shows on either side of them [Hz].
+/// Half the range of the picture of the facet lines [Hz].
 const ABOUT_HZ: f64 = 250.0;
 /// Upper end of the pictures of the defect's family [Hz].
 const FAMILY_TOP_HZ: f64 = 1000.0;
 
-/// The whole spectrum, the facet lines resolved, the low frequencies.
+/// Adds three pictures of the leading sensor's spectrum to the sheet: whole, about the facet lines, and at
+/// low frequencies.
 ///
 /// # Errors
 /// When a picture cannot be written.

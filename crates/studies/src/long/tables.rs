@@ -1,4 +1,4 @@
-//! What a long record says, in numbers.
+//! Numbers of a long record.
 
 use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::findings::Findings;
@@ -18,7 +18,7 @@ fn cell(value: Option<f64>, decimals: usize) -> String {
     value.filter(|v| v.is_finite()).map_or("–".to_owned(), |v| number(v, decimals))
 }
 
-/// What was run and what it cost.
+/// The run and its cost.
 pub(super) fn cost(sheet: &mut Sheet, run: &Run, summary: &Summary) {
     let (info, cost) = (&run.info, &summary.run);
     let elements = info.mesh.quads + info.mesh.triangles;
@@ -74,7 +74,7 @@ pub(super) fn cost(sheet: &mut Sheet, run: &Run, summary: &Summary) {
     }
 }
 
-/// What the spectra resolve, and whether they are padded.
+/// Resolution of the spectra, and whether they are padded.
 pub(super) fn resolution(sheet: &mut Sheet, findings: &Findings) {
     let Some(spectrum) = findings.sensors.first().and_then(|s| s.raw_density.as_ref()) else { return };
     let resolution = spectrum.resolution();

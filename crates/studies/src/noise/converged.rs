@@ -1,4 +1,4 @@
-//! Is what is left right? The paper's method and the cure beside elements of half the size.
+//! Is the remaining signal right? The paper's method and the cure beside elements of half the size.
 
 use stribeck_analysis::record::Record;
 use stribeck_scene::run_dir::Run;

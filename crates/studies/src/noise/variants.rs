@@ -1,4 +1,4 @@
-//! What is run for the study of contact noise: one change a row.
+//! Variants of the study of contact noise: one change a row.
 
 use crate::Variant;
 
@@ -36,7 +36,7 @@ pub(crate) const FINE: [&str; 6] = [
     "contact.points_per_facet=6",
 ];
 
-/// A variant and what it shows.
+/// A variant and its purpose.
 pub(super) struct Step {
     pub(super) variant: Variant,
     pub(super) shows: &'static str,
@@ -63,7 +63,7 @@ pub(super) fn ablation() -> Vec<Step> {
     ]
 }
 
-/// What the cure does not need, and what it leaves.
+/// Changes that the cure does not need, and its remaining noise.
 pub(super) fn remainder() -> Vec<Step> {
     let cure = |name: &str, set: &[&str], shows| {
         let all: Vec<&str> = [ARC, SPLINE, POINTS, ONSET].into_iter().chain(set.iter().copied()).collect();
@@ -122,7 +122,7 @@ pub(super) fn uniform() -> Vec<Step> {
     ]
 }
 
-/// Both methods for as long as the default scene: what stands at the line when it is averaged.
+/// Both methods for as long as the default scene: the averaged level at the line.
 pub(super) fn long() -> Vec<Variant> {
     let of = |name: &str, set: &[&str]| {
         LONG.iter().fold(Variant::new(name, LEAN, set).with(TRANSLATED), |variant, s| variant.with(*s))

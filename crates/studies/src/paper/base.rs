@@ -1,4 +1,4 @@
-//! What the paper leaves open, one choice at a time, against the levels that it states.
+//! Choices that the paper leaves open, one at a time, against the levels that it states.
 
 use std::f64::consts::PI;
 
@@ -12,10 +12,10 @@ use super::{LEAN, LONG, SHORT, tone};
 use crate::table::{number, quantity_by};
 use crate::{Column, Finished, Sheet, Variant};
 
-/// Level of the paper's tone [g]: what the notch takes from ± 50 g to leave ± 20 g.
+/// Level of the paper's tone [g]: removed by the notch between ± 50 g and ± 20 g.
 const TONE_G: f64 = theirs::BETWEEN_G - theirs::FILTERED_G;
 
-/// What the variants are measured against: the default before they had been measured.
+/// Reference of the variants: the first default scene.
 const KEPT: &str = "mesh.roller_copies=translated";
 
 /// Sensors all around the ring; the paper says "a node on its outer surface".
@@ -156,7 +156,7 @@ pub(super) fn write(sheet: &mut Sheet, runs: &[Finished]) -> Result<()> {
     Ok(())
 }
 
-/// Which variant comes nearest, and whether that is the default.
+/// The nearest variant, and whether it is the default.
 fn verdict(sheet: &mut Sheet, runs: &[&Finished]) {
     let mut scored: Vec<(f64, &Finished)> = runs.iter().filter_map(|r| Some((misfit(r)?, *r))).collect();
     scored.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -170,7 +170,7 @@ fn verdict(sheet: &mut Sheet, runs: &[&Finished]) {
     ));
 }
 
-/// What dissipation at high frequencies does and costs.
+/// Effect and cost of dissipation at high frequencies.
 fn dissipation(sheet: &mut Sheet, runs: &[&Finished]) {
     let damped = |run: &&&Finished| {
         run.scene.written.solver.stiffness_damping_ns > 0.0 || run.variant.name == "base-default"

@@ -1,6 +1,5 @@
-//! What follows from the paper's hypothesis, that polygonised rollers make the tone: where it must stand and
-//! how strong it must be when facets, speed, load and orientation change. A bearing without a defect, so that
-//! nothing knocks.
+//! Consequences of the paper's hypothesis that polygonised rollers make the tone: its frequency and level
+//! when facets, speed, load and orientation change. A bearing without a defect, so without impacts.
 
 use anyhow::Result;
 use stribeck_analysis::load::support;
@@ -79,8 +78,7 @@ pub(super) fn line(run: &Finished) -> Option<Line> {
     clearest(run).filter(|l| l.above_db >= LEAST_PROMINENCE_DB)
 }
 
-/// How far the roller line stands above its surroundings at the sensor that hears it most clearly [dB], line
-/// or not.
+/// Height of the roller line above its surroundings at the sensor where it is highest [dB], line or not.
 pub(super) fn above(run: &Finished) -> Option<f64> {
     clearest(run).map(|l| l.above_db)
 }
@@ -180,7 +178,7 @@ pub(super) fn write(sheet: &mut Sheet, runs: &[Finished]) -> Result<()> {
     Ok(())
 }
 
-/// What the table says, from its numbers.
+/// Conclusions from the numbers of the table.
 fn conclusions(sheet: &mut Sheet, runs: &[Finished]) {
     let found: Vec<(&Finished, f64)> = runs.iter().filter_map(|r| Some((r, off(r)?))).collect();
     let inside = found.iter().filter(|f| f.1.abs() <= 1.0).count();

@@ -1,11 +1,11 @@
-//! The same experiments with the defect in: whether its knocks hide the line.
+//! The same experiments with the defect in: whether its impacts mask the line.
 
 use super::SHORT;
 use super::hypothesis::{above, experiments, line, rolling};
 use crate::table::number;
 use crate::{Finished, Sheet, Variant};
 
-/// What is only tried without the defect.
+/// Variants without the defect only.
 const SOUND_ONLY: [&str; 3] = ["facets-56-friction", "facets-112-35kN", "facets-112-70kN"];
 
 pub(super) fn variants() -> Vec<Variant> {

@@ -1,4 +1,4 @@
-//! What is run: meshes, steps and contacts of one bearing, each from several starts.
+//! Variants: meshes, steps and contacts of one bearing, each from several starts.
 
 use crate::Variant;
 

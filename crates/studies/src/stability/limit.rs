@@ -4,7 +4,7 @@ use anyhow::Result;
 use stribeck_contact::Method;
 use stribeck_mesh::{Annulus, Disc, Part};
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_system::{Plan, Preload, Snapshot, System};
 
 use super::{Case, Chapter, Verdict};
@@ -102,7 +102,7 @@ pub(super) fn pressed(method: Method, scale: f64) -> Result<System> {
     // Narrower, so that no corner sits on the edge of a corner.
     plan.add("upper", &rectangle([1.2e-3, 1e-9], [0.7 * width, height], [6, 4])?, steel())?;
     plan.contact(pair("upper.bottom", "lower.top", penalty(&steel(), size, scale)?, method))?;
-    plan.constrain("lower.bottom", Motion::Held)?;
+    plan.constrain("lower.bottom", NodeMotion::Held)?;
     plan.load("upper.top", [0.0, -100e6 * 0.7 * width * THICKNESS])?;
     let mut system = plan.build(1)?;
     system.settle(&Preload::default())?;

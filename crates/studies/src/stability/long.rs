@@ -5,7 +5,7 @@ use anyhow::Result;
 use stribeck_contact::Method;
 use stribeck_mesh::Disc;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_solver::Motion;
+use stribeck_solver::NodeMotion;
 use stribeck_system::{Plan, System};
 
 use super::limit::pressed;
@@ -110,7 +110,7 @@ fn bouncing() -> Result<Case> {
     let (law, method) = (penalty(&steel(), 0.65e-3, 1.0)?, Method::Integrated { points: 4 });
     for (wall, y, side) in [("below", -radius - gap - 1e-3, "top"), ("above", radius + gap, "bottom")] {
         plan.add(wall, &rectangle([-4e-3, y], [8e-3, 1e-3], [12, 2])?, steel())?;
-        plan.constrain(wall, Motion::Held)?;
+        plan.constrain(wall, NodeMotion::Held)?;
         plan.contact(pair("ball.rim", &format!("{wall}.{side}"), law, method))?;
     }
     let mut system = plan.build(1)?;
@@ -150,7 +150,7 @@ fn sticking() -> Result<Case> {
     let law =
         penalty(&steel(), 2e-3, 1e-3)?.with_friction(friction)?.with_damping(0.2, 0.5 * 7800.0 * 2e-3)?;
     plan.contact(pair("block.bottom", "ground.top", law, Method::Integrated { points: 3 }))?;
-    plan.constrain("ground", Motion::Held)?;
+    plan.constrain("ground", NodeMotion::Held)?;
     plan.model.gravity = [9.81 * slope.sin(), -9.81 * slope.cos()];
     let mut system = plan.build(1)?;
     system.set_time_step_factor(0.9)?;
@@ -162,8 +162,7 @@ fn sticking() -> Result<Case> {
         stop = stop_reason(system.run(800_000, 100, |_, _| ())?);
     }
     let crept = (place(&system) - early).abs();
-    // What a sliding block would have done in that time under the hundredth of its weight that friction
-    // leaves over.
+    // Path of a sliding block in that time under the hundredth of its weight that friction does not balance.
     let time = 0.8 * system.time();
     let free = 0.5 * 9.81 * slope.sin() * time * time;
     let right = crept < 1e-3 * free;

@@ -11,14 +11,13 @@ use crate::{Finished, Flags, Host, Runner, Variant};
 const SCENE: &str = "fixtures/scenes/studies/quick.ron";
 const BASE: &[&str] = &["solver.duration_ms=0.4"];
 
-/// A case in which the rollers carry less or more than this share of what they must, without a word, is
-/// wrong.
+/// Relative error of the rollers' load above which a case without warning is wrong.
 const SUPPORT: [f64; 2] = [0.7, 1.3];
 
-/// … unless what they lack or have too much gives outer ring and adapter less than this speed [m/s].
+/// … unless the error accelerates outer ring and adapter to less than this speed [m/s].
 const RATTLING: f64 = 0.1;
 
-/// Name, what is done, overrides.
+/// Name, description, overrides.
 pub(super) type Row = (&'static str, &'static str, &'static [&'static str]);
 
 #[rustfmt::skip]
@@ -96,7 +95,7 @@ pub(super) fn chapter(runner: &Runner<'_>, flags: &Flags, host: &dyn Host) -> an
     })
 }
 
-/// Runs a scene with the changes of each row and judges what became of it; a scene that is refused says why.
+/// Runs a scene with the overrides of each row and judges the outcome; a refused scene has its reason.
 pub(super) fn run_rows(
     runner: &Runner<'_>,
     flags: &Flags,
@@ -130,7 +129,7 @@ pub(super) fn run_rows(
 pub(super) fn ended<'a>(done: &str, run: &'a Finished) -> Result<&'a RunInfo, Case> {
     let Some(info) = &run.info else {
         let why = run.summary.as_ref().err().cloned().unwrap_or_default();
-        // What was tried and found; the advice that follows is the same each time.
+        // Case and finding; the advice after them is the same each time.
         let seen = why.split("; check that").next().unwrap_or(&why).to_owned();
         return Err(Case { done: done.to_owned(), energy: None, verdict: Verdict::Refused, seen });
     };
@@ -141,8 +140,8 @@ pub(super) fn ended<'a>(done: &str, run: &'a Finished) -> Result<&'a RunInfo, Ca
     Err(Case { done: done.to_owned(), energy, verdict: Verdict::Stopped, seen })
 }
 
-/// What the rollers carried over what they must [-], on average, and the speed [m/s] that the difference gave
-/// outer ring and adapter.
+/// Mean load on the rollers over the expected one [-], and the speed [m/s] of outer ring and adapter by the
+/// difference.
 pub(super) fn carried(run: &Finished, info: &RunInfo) -> [f64; 2] {
     let carried = Run::read(&run.folder).ok().map(|r| support(&r));
     let share = carried.map_or(f64::NAN, |n| n / info.expected_support_n);

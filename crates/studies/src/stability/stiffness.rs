@@ -3,7 +3,7 @@
 use anyhow::Result;
 use stribeck_contact::Method;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_solver::{Elastic, Motion};
+use stribeck_solver::{Elastic, NodeMotion};
 use stribeck_system::Plan;
 
 use super::{Case, Chapter};
@@ -12,7 +12,7 @@ use crate::rig::{THICKNESS, pair, penalty, rectangle, steel, stop_reason, touchi
 /// Length of a bar [m] and its cells.
 const BAR: (f64, usize) = (0.02, 40);
 
-/// A collision of two bars and what came of it.
+/// A collision of two bars and its outcome.
 pub(super) struct Collision {
     pub(super) energy: f64,
     pub(super) stop: Option<String>,
@@ -26,7 +26,7 @@ pub(super) struct Collision {
 }
 
 impl Collision {
-    /// Drift of momentum over what was exchanged.
+    /// Drift of momentum over the exchanged momentum.
     pub(super) fn momentum(&self) -> f64 {
         let of = |v: [f64; 2]| self.mass[0] * v[0] + self.mass[1] * v[1];
         let exchanged = self.mass[0] * (self.after[0] - self.before[0]).abs();
@@ -60,8 +60,8 @@ pub(super) fn collide(
         materials[1]
     };
     plan.contact(pair("a.right", "b.left", penalty(&softer, size, scale)?, method))?;
-    plan.constrain("a", Motion::HeldY)?;
-    plan.constrain("b", Motion::HeldY)?;
+    plan.constrain("a", NodeMotion::HeldY)?;
+    plan.constrain("b", NodeMotion::HeldY)?;
     let mut system = plan.build(1)?;
     system.set_time_step_factor(0.9)?;
     system.launch(a, [speed, 0.0], 0.0);

@@ -1,4 +1,4 @@
-//! What others do: the squared envelope spectrum of one band, and the family whose first lines stand highest.
+//! Baseline methods: the squared envelope spectrum of one band, and the family with the highest first lines.
 
 use stribeck_analysis::measured::Defect;
 use stribeck_dsp::{BandEnvelopes, Whitened, fast_kurtogram};

@@ -18,13 +18,13 @@ pub(super) fn pairs(records: &[Labelled]) -> Vec<Ends<'_>> {
     damaged.filter_map(|record| Some((record, other(record)?))).collect()
 }
 
-/// What both channels say together.
+/// Joint verdict of both channels.
 #[derive(Debug, Clone)]
 pub(super) struct Told {
     pub(super) claimed: Vec<Defect>,
     /// Whether the end of the damage is named as the nearest; `None` where none is named.
     pub(super) nearest_is_right: Option<bool>,
-    /// Whether the channel at the damaged end claims the defect by itself.
+    /// Whether the channel at the damaged end alone claims the defect.
     pub(super) alone: bool,
 }
 

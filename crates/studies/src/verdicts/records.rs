@@ -1,4 +1,4 @@
-//! The records of the study: file names of four public collections, and what is known of each.
+//! The records of the study: file names of four public collections, and the known state of each.
 
 use std::path::{Path, PathBuf};
 
@@ -107,7 +107,7 @@ fn files(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// What a record of a set has in common with others.
+/// Properties that the records of a set share.
 fn labelled(
     name: String,
     set: &'static str,

@@ -10,14 +10,14 @@ use super::trial::{self, Outcome, Standing};
 use crate::Sheet;
 use crate::table::number;
 
-/// What the verdict and both baselines say of a record.
+/// Results of the verdict and of both baselines for a record.
 pub(super) struct Judged {
     pub(super) outcome: Option<Outcome>,
     pub(super) fixed: Option<Scores>,
     pub(super) kurtogram: Option<Scores>,
 }
 
-/// Right, wrong and silent.
+/// Right, wrong and undecided.
 #[derive(Debug, Clone, Copy, Default)]
 struct Counts {
     of: usize,
@@ -43,7 +43,7 @@ fn pairs<'a>(records: &'a [Labelled], judged: &'a [Judged]) -> impl Iterator<Ite
     records.iter().zip(judged)
 }
 
-/// What a record is, as a row of a table.
+/// Class of a record, a row of a table.
 fn class(record: &Labelled) -> &'static str {
     match record.truth {
         Some(name) => name.part(),
@@ -102,7 +102,7 @@ fn by_threshold(scores: Option<&Scores>, least_db: f64, truth: Option<Defect>) -
     }
 }
 
-/// Right, wrong and silent by set and class.
+/// Right, wrong and undecided by set and class.
 pub(super) fn verdicts(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]) {
     let all = pairs(records, judged);
     let fixed_db = threshold(all.clone(), |j| j.fixed.as_ref());
@@ -368,7 +368,7 @@ pub(super) fn lengths(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]
     );
 }
 
-/// Right, wrong and silent after changes.
+/// Right, wrong and undecided after changes.
 pub(super) fn robustness(
     sheet: &mut Sheet,
     records: &[Labelled],
@@ -489,7 +489,7 @@ pub(super) fn numbers(sheet: &mut Sheet) {
     sheet.table(&["number", "what it is", "chosen on"], &rows.map(|r| r.map(str::to_owned).to_vec()));
 }
 
-/// What keeps the silent records silent, and the lengths from being closer.
+/// Reasons for undecided records, and for the errors of lengths.
 pub(super) fn bounds(sheet: &mut Sheet) {
     sheet.heading("What bounds it");
     sheet.say(

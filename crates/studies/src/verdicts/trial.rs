@@ -1,4 +1,4 @@
-//! What is done to a record before it is judged, and what becomes of it.
+//! Changes to a record before it is judged, and the outcome.
 
 use stribeck_analysis::measured::{Analysis, Defect, Interval, Machine};
 use stribeck_dsp::resample_poly;
@@ -8,13 +8,13 @@ use stribeck_scene::dice::Dice;
 
 use super::records::Labelled;
 
-/// A change to a record, or to what is said of it.
+/// A change to a record, or to the user's statements on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Change {
     None,
-    /// The speed that is given over the true one.
+    /// Stated speed over the true one.
     Speed(f64),
-    /// No speed is given.
+    /// No speed is stated.
     NoSpeed,
     /// A bearing that is none of the rigs'.
     Bearing(&'static str),
@@ -51,7 +51,7 @@ pub(super) const CHANGES: [(&str, Change); 14] = [
     ("reversed in time", Change::Reversed),
 ];
 
-/// The speed that is given after the change of a name; none where none is.
+/// The stated speed after a change, by its name; none where none is stated.
 pub(super) fn given_rpm(name: &str, rpm: f64) -> Option<f64> {
     match CHANGES.iter().find(|(of, _)| *of == name)?.1 {
         Change::NoSpeed => None,
@@ -60,7 +60,7 @@ pub(super) fn given_rpm(name: &str, rpm: f64) -> Option<f64> {
     }
 }
 
-/// What `analyse` says of a record.
+/// Findings of `analyse` on a record.
 #[derive(Debug, Clone)]
 pub(super) struct Outcome {
     /// Families that are claimed; a second name for one claim in `or`.

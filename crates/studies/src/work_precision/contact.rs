@@ -3,7 +3,7 @@
 use anyhow::{Context, Result};
 use stribeck_contact::{Law, Method};
 use stribeck_mesh::{Disc, Part};
-use stribeck_solver::{Behaviour, Motion, rigid::RigidState};
+use stribeck_solver::{Behaviour, NodeMotion, rigid::RigidState};
 use stribeck_system::{Plan, Preload, System};
 
 use super::{Curve, Point, Problem, timed};
@@ -21,7 +21,7 @@ fn bars(cells: usize, method: Method, scale: f64, factor: f64) -> Result<(f64, f
     let mut plan = Plan::new(THICKNESS);
     for (name, x) in [("a", -length), ("b", 1e-9)] {
         plan.add(name, &rectangle([x, 0.0], [length, 2.0 * size], [cells, 2])?, steel())?;
-        plan.constrain(name, Motion::HeldY)?;
+        plan.constrain(name, NodeMotion::HeldY)?;
     }
     plan.contact(pair("a.right", "b.left", penalty(&steel(), size, scale)?, method))?;
     let elements = plan.model.mesh.elements() as f64;
@@ -100,10 +100,10 @@ fn pressed(columns: usize, method: Method, scale: f64, uniform: bool) -> Result<
     let lower = plan.add("lower", &graded(columns, false, uniform)?, steel())?.body;
     plan.add("upper", &graded(columns, true, uniform)?, steel())?;
     plan.contact(pair("upper.bottom", "lower.top", Law::penalty(scale * modulus / cell)?, method))?;
-    plan.constrain("lower.bottom", Motion::Held)?;
+    plan.constrain("lower.bottom", NodeMotion::Held)?;
     // The middle column of the upper block stays on the axis of symmetry.
     for n in plan.nodes("upper")?.into_iter().skip(columns / 2).step_by(columns + 1) {
-        plan.model.motion[n as usize] = Motion::HeldX;
+        plan.model.motion[n as usize] = NodeMotion::HeldX;
     }
     plan.load("upper.top", [0.0, -line_load * THICKNESS])?;
     let elements = plan.model.mesh.elements() as f64;
@@ -159,7 +159,7 @@ fn on_floor(part: &Part, surface: &str, law: Law, method: Method) -> Result<(Sys
     let body = plan.add("body", part, steel())?.body;
     plan.add("floor", &rectangle([-0.013, -1e-3], [0.05, 1e-3], [50, 1])?, steel())?;
     plan.contact(pair(&format!("body.{surface}"), "floor.top", law, method))?;
-    plan.constrain("floor", Motion::Held)?;
+    plan.constrain("floor", NodeMotion::Held)?;
     plan.model.behaviour[body] = Behaviour::Rigid;
     plan.model.gravity = [0.0, -G];
     Ok((plan.build(1)?, body))

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use anyhow::Result;
 use stribeck_mesh::{Mesh, Part};
-use stribeck_solver::{Dynamics, Model, Motion};
+use stribeck_solver::{Dynamics, Model, NodeMotion};
 
 use super::{Curve, Point, Problem, timed};
 use crate::Host;
@@ -13,7 +13,7 @@ use crate::reference::{Choice, Precision, Reference, Rule};
 use crate::rig::{THICKNESS, rectangle, steel};
 use crate::stability::split;
 
-/// What is compared: name, triangles or not, element, integrator.
+/// A compared variant: name, triangles or not, element, integrator.
 pub(super) type Way = (&'static str, bool, Choice, Scheme);
 
 const CENTRAL: Scheme = Scheme::CentralDifference;
@@ -96,7 +96,7 @@ fn pulse(way: &Way, columns: usize, factor: f64) -> Result<(f64, f64)> {
     let (length, width, start, height) = (0.2, 0.01, 0.06, 1e-7);
     let part = rectangle([0.0; 2], [length, length / columns as f64], [columns, 1])?;
     let mut model = model(&if way.1 { split(part) } else { part })?;
-    model.motion.fill(Motion::HeldY);
+    model.motion.fill(NodeMotion::HeldY);
     let c = steel().dilatational_speed();
     let at = |x: f64, t: f64| height * (-((x - start - c * t) / width).powi(2)).exp();
     let speed = |x: f64| 2.0 * c / width * (x - start) / width * at(x, 0.0);
@@ -186,10 +186,10 @@ fn rayleigh(way: &Way, per_wave: usize, factor: f64) -> Result<(f64, f64)> {
     for n in 0..model.mesh.x.len() {
         let column = n % (columns + 1);
         if column == 0 || column == columns {
-            model.motion[n] = Motion::HeldX;
+            model.motion[n] = NodeMotion::HeldX;
         }
         if n <= columns {
-            model.motion[n] = Motion::Held;
+            model.motion[n] = NodeMotion::Held;
         }
     }
     let wave = Rayleigh::new(wavelength);

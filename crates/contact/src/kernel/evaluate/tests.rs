@@ -1,4 +1,4 @@
-//! Points one by one and in vectors of every width, against contact in the plainest way.
+//! Points one by one and in vectors of every width, against contact in its plainest form.
 
 use std::{cell::Cell, f64::consts::TAU};
 
@@ -48,7 +48,7 @@ impl Trough {
             y[slot as usize] = s - 0.055 + 0.02 * (31.0 * t).sin();
         }
         for (k, &slot) in self.trough.iter().enumerate() {
-            // The solid lies on the left of who walks along.
+            // The solid lies on the left in the direction of the polyline.
             let (s, c) = (-0.2 - 2.7 * k as f64 / (self.trough.len() - 1) as f64).sin_cos();
             (x[slot as usize], y[slot as usize]) = (1.05 * c, 1.05 * s);
         }
@@ -156,7 +156,7 @@ impl Plain {
             let t = tangent(f);
             [t[1] / t[0].hypot(t[1]), -t[0] / t[0].hypot(t[1])]
         };
-        // At a vertex both facets say which side is outside.
+        // At a vertex both facets decide which side is outside.
         let mut outwards = normal_of(f);
         if foot != s && !beyond_end {
             let neighbour = normal_of(if s > 1.0 { (f + 1) % facets } else { (f + facets - 1) % facets });

@@ -1,4 +1,4 @@
-//! Fields that do not go together: who is blamed, and whether what is proposed works.
+//! Inconsistent fields: which one is blamed, and whether the proposed value works.
 
 use super::*;
 

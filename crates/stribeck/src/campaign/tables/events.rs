@@ -10,13 +10,13 @@ use stribeck_formats::parquet::{Column, Values, Writer};
 use super::Row;
 use crate::many_runs::summary_of;
 
-/// Rows that are written at a time: of many short runs, or of one long one and what came before it.
+/// Rows that are written at a time: of many short runs, or of one long run with its predecessors.
 const GROUP: usize = 1 << 16;
 
 /// The name of a number of an event, and where it stands.
 type Field = (&'static str, fn(&Event) -> Option<f64>);
 
-/// What an event says in numbers, under the names of `summary.json`.
+/// Numbers of an event, under the names of `summary.json`.
 const NUMBERS: [Field; 14] = [
     ("expected_entry_ms", |e| Some(e.expected_entry_ms)),
     ("expected_exit_ms", |e| Some(e.expected_exit_ms)),

@@ -10,8 +10,8 @@ use stribeck_scene::trace::{Trace, TraceFile};
 
 use super::Row;
 
-/// Runs that have signals to their end, and the file of each: what a run that broke down has recorded is no
-/// signal of a bearing.
+/// Runs that have signals to their end, and the file of each: the record of a diverged run is not a signal of
+/// a bearing.
 fn recorded(rows: &[Row]) -> impl Iterator<Item = (&Row, PathBuf)> {
     rows.iter().filter(|row| row.is_complete()).filter_map(|row| {
         let dir = RunDir::open(row.folder.as_ref()?).ok()?;

@@ -1,4 +1,4 @@
-//! What is known of a run before it runs: its defects, in the words of data sets.
+//! Ground truth of a run: its defects, in the words of data sets.
 
 use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface};
 use stribeck_scene::scene::{ModelScene, Scene};
@@ -9,13 +9,13 @@ use stribeck_scene::scene::{ModelScene, Scene};
 pub(in crate::campaign) struct Truth {
     /// Where the faults are, `healthy` where there is none.
     pub(in crate::campaign) location: String,
-    /// What the faults are; `None` where there is none.
+    /// The faults in words; `None` where there is none.
     pub(in crate::campaign) form: Option<String>,
     /// How many there are.
     pub(super) count: usize,
     /// The first of them that has a length, in the order of the scene.
     pub(super) first: Option<Extent>,
-    /// What the other deviations are; `None` where there is none.
+    /// The other deviations in words; `None` where there is none.
     pub(in crate::campaign) deviations: Option<String>,
 }
 
