@@ -70,6 +70,7 @@ pub mod families;
 pub mod film;
 pub mod filtering;
 pub mod floor;
+pub mod growth;
 pub mod kinematics;
 pub mod levels;
 pub mod load;

@@ -110,9 +110,10 @@ fn judged(draw: u64) -> (Sources, Truth) {
 
 #[test]
 fn example_a_gear_and_two_bearings_are_told_apart() {
-    let asked = std::env::var("STRIBECK_DRAWS").ok().and_then(|draws| draws.parse().ok());
+    let asked = |name: &str| std::env::var(name).ok().and_then(|draws| draws.parse().ok());
+    let first = asked("STRIBECK_FIRST_DRAW").unwrap_or(0);
     let (mut missed, mut wrong, mut defects) = (Vec::new(), Vec::new(), 0);
-    for draw in 0..asked.unwrap_or(DRAWS) {
+    for draw in first..first + asked("STRIBECK_DRAWS").unwrap_or(DRAWS) {
         let (sources, truth) = judged(draw);
         for ((component, analysis), truth) in sources.bearings.iter().zip(truth) {
             let names: Vec<&str> = claimed(analysis).iter().map(|name| name.name()).collect();
@@ -124,11 +125,17 @@ fn example_a_gear_and_two_bearings_are_told_apart() {
             }
             defects += usize::from(truth.is_some());
             if truth.is_some_and(|truth| !names.contains(&truth)) {
-                missed.push(format!("{draw}: {component}: {truth:?}: {}", analysis.findings.verdict));
+                let findings = &analysis.findings;
+                let family = findings.families.iter().find(|f| Some(f.name.name()) == truth);
+                let why = family.map_or_else(String::new, |f| f.reason.to_string());
+                missed.push(format!("{draw}: {component}: {truth:?}: {} ({why})", findings.verdict));
             }
         }
     }
     println!("{} of {defects} defects named, {} claims wrong", defects - missed.len(), wrong.len());
+    for missed in &missed {
+        println!("{missed}");
+    }
     assert!(wrong.is_empty(), "{wrong:#?}");
     assert!(missed.len() as f64 <= (1.0 - NAMED) * defects as f64, "{missed:#?} of {defects}");
 }

@@ -71,6 +71,35 @@ pub enum Error {
         /// Half the sample rate [Hz].
         limit_hz: f64,
     },
+    /// Frequencies of a response do not ascend.
+    #[error(
+        "line {line} of the response is at {hz} Hz, behind {before_hz} Hz: frequencies must ascend, from 0 or \
+         more; sort the lines and take out doubles"
+    )]
+    NotAscending {
+        /// Number of the line, from 1.
+        line: usize,
+        /// Its frequency [Hz].
+        hz: f64,
+        /// That of the line before it [Hz].
+        before_hz: f64,
+    },
+    /// A response is known where a signal has nothing.
+    #[error(
+        "the response is known from {low_hz} to {high_hz} Hz, and the signal has lines from {lowest_hz:.3} to \
+         {highest_hz} Hz: they share no frequency; measure the response in the band of the signal, or sample \
+         the signal faster or longer"
+    )]
+    NoOverlap {
+        /// Lowest frequency of the response [Hz].
+        low_hz: f64,
+        /// Its highest one [Hz].
+        high_hz: f64,
+        /// Lowest frequency of the signal [Hz].
+        lowest_hz: f64,
+        /// Its highest one [Hz].
+        highest_hz: f64,
+    },
     /// A band holds too few grid points.
     #[error(
         "band = {low_hz} to {high_hz} Hz: {bins} usable points on a grid of {grid_hz} Hz, at least \

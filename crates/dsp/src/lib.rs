@@ -41,6 +41,7 @@
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
 //! | the times of impacts behind an unknown path | [`prewhitened_power`] |
 //! | the record of a sensor behind a random path, or behind the path of a record | [`Path`], [`coloured_like`] |
+//! | the signal of a sensor behind a measured response or some modes, and the signal before them | [`Response`] |
 //! | numbers of repeated passages that do not depend on the path to the sensor | [`Signature`] |
 //! | components locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | a smooth density of a short record | [`multitaper`] |
@@ -113,6 +114,7 @@ mod multitaper;
 mod path;
 mod prewhitened;
 mod resample;
+mod response;
 mod ridge;
 mod separation;
 mod signature;
@@ -143,6 +145,7 @@ pub use path::{Path, at_rate, coloured_like};
 pub use peak::{Peak, Sinusoid};
 pub use prewhitened::prewhitened_power;
 pub use resample::resample_poly;
+pub use response::{Mode, Response, Undone};
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
 pub use separation::{Separated, separate};

@@ -2,12 +2,15 @@
 //!
 //! Source: *Universal File Datasets*, Structural Dynamics Research Laboratory, University of Cincinnati.
 
+mod frf;
+
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::number::{Kind, Number};
 use crate::{Channel, Error, Recording, Result};
+pub use frf::{Frf, Per, responses};
 
 const FORMAT: &str = "UFF 58";
 /// Lines of a dataset before its data: five of text, six of numbers.
@@ -24,10 +27,55 @@ pub(crate) fn recognise(start: &[u8]) -> bool {
 /// # Errors
 /// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
-    let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
-    let mut lines = Lines { bytes: &bytes, at: 0, line: 0 };
     let (mut channels, mut notes): (Vec<Channel>, Vec<String>) = (Vec::new(), Vec::new());
     let mut broken = None;
+    for (begins, found) in datasets(path)? {
+        let dataset = match found {
+            Found::Function(dataset) => dataset,
+            Found::Other(kind) => {
+                notes.push(format!("the dataset of line {begins} has the number {kind}, not 58"));
+                continue;
+            }
+            // One dataset that is damaged does not spoil the others.
+            Found::Damaged(what) => {
+                notes.push(format!("the {what}: it is left out"));
+                broken.get_or_insert(what);
+                continue;
+            }
+        };
+        match dataset.channel() {
+            Ok(mut channel) => {
+                notes.extend(dataset.odd.map(|odd| format!("`{}`: {odd}", channel.name)));
+                let twins =
+                    channels.iter().filter(|c| c.name.split(" #").next() == Some(&channel.name)).count();
+                if twins > 0 {
+                    channel.name += &format!(" #{}", twins + 1);
+                }
+                channels.push(channel);
+            }
+            Err(why) => notes.push(format!("the dataset of line {begins} is left out: {why}")),
+        }
+    }
+    if let (Some(what), true) = (broken, channels.is_empty()) {
+        return Err(Error::damaged(path, FORMAT, what));
+    }
+    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+}
+
+/// One dataset of a file.
+enum Found {
+    Function(Dataset),
+    /// Another one than 58: its number.
+    Other(String),
+    /// What is wrong with it, and where.
+    Damaged(String),
+}
+
+/// All datasets of a file with the line in which each begins.
+fn datasets(path: &Path) -> Result<Vec<(usize, Found)>> {
+    let bytes = std::fs::read(path).map_err(|e| Error::read(path, e))?;
+    let mut lines = Lines { bytes: &bytes, at: 0, line: 0 };
+    let mut all = Vec::new();
     while let Some(line) = lines.next() {
         if line.trim() != "-1" {
             continue;
@@ -35,37 +83,20 @@ pub fn open(path: &Path) -> Result<Recording> {
         let Some(kind) = lines.next() else { break };
         let begins = lines.line;
         if kind.trim() == "58" || kind.trim_start().starts_with("58b") {
-            match lines.function(&kind) {
-                // One dataset that is damaged does not spoil the others.
+            let found = match lines.dataset(&kind) {
+                Ok(dataset) => Found::Function(dataset),
                 Err(what) => {
-                    let what = format!("dataset of line {begins}, near line {}: {what}", lines.line);
-                    notes.push(format!("the {what}: it is left out"));
-                    broken.get_or_insert(what);
+                    Found::Damaged(format!("dataset of line {begins}, near line {}: {what}", lines.line))
                 }
-                Ok(Ok((mut channel, odd))) => {
-                    notes.extend(odd.map(|odd| format!("`{}`: {odd}", channel.name)));
-                    let twins =
-                        channels.iter().filter(|c| c.name.split(" #").next() == Some(&channel.name)).count();
-                    if twins > 0 {
-                        channel.name += &format!(" #{}", twins + 1);
-                    }
-                    channels.push(channel);
-                }
-                Ok(Err(why)) => notes.push(format!("the dataset of line {begins} is left out: {why}")),
-            }
+            };
+            all.push((begins, found));
         } else {
-            notes.push(format!(
-                "the dataset of line {begins} has the number {}, not 58",
-                kind.trim().chars().take(20).collect::<String>()
-            ));
+            all.push((begins, Found::Other(kind.trim().chars().take(20).collect())));
         }
         // To the delimiter that ends the dataset.
         while lines.next().is_some_and(|line| line.trim() != "-1") {}
     }
-    if let (Some(what), true) = (broken, channels.is_empty()) {
-        return Err(Error::damaged(path, FORMAT, what));
-    }
-    Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+    Ok(all)
 }
 
 /// Writes each channel as an ASCII dataset of doubles, thirteen digits each; `notes` takes the first lines of
@@ -144,6 +175,67 @@ fn exponent(x: f64, digits: usize) -> String {
     format!("{mantissa}E{}{:02}", if power < 0 { '-' } else { '+' }, power.abs())
 }
 
+/// Numbers of a line of the head; what is none is NaN.
+fn numbers(line: &str) -> Vec<f64> {
+    line.split_whitespace().map(|w| w.parse::<f64>().unwrap_or(f64::NAN)).collect()
+}
+
+/// A dataset 58 as it stands in the file.
+struct Dataset {
+    head: Vec<String>,
+    count: usize,
+    complex: bool,
+    even: bool,
+    /// Abscissa of the first value, and the step, where they are even.
+    first: f64,
+    increment: f64,
+    /// Abscissa where uneven, real part, imaginary part where complex; value by value.
+    values: Vec<f64>,
+    /// What is odd about it.
+    odd: Option<String>,
+}
+
+impl Dataset {
+    fn name(&self) -> &str {
+        let lines = [self.head[0].trim(), self.head[1].trim()];
+        lines.into_iter().find(|n| !n.is_empty() && *n != "NONE").unwrap_or("function")
+    }
+
+    /// Unit of an axis whose line of the head this is.
+    fn unit(&self, line: usize) -> Option<String> {
+        let text = self.head[line].get(47..).map(|rest| rest.chars().take(20).collect::<String>());
+        text.map(|unit| unit.trim().to_owned()).filter(|unit| !unit.is_empty() && *unit != "NONE")
+    }
+
+    /// As a signal in time, or why it is none.
+    fn channel(&self) -> std::result::Result<Channel, String> {
+        if self.complex {
+            return Err("its values are complex: it is no signal in time".to_owned());
+        }
+        if !matches!(numbers(&self.head[7]).first(), Some(17.0 | 0.0)) {
+            return Err(format!("its abscissa is `{}`, not the time", self.head[7].trim()));
+        }
+        let (values, count) = (&self.values, self.count);
+        let (samples, rate_hz) = if self.even {
+            (values[..count].to_vec(), 1.0 / self.increment)
+        } else {
+            let times: Vec<f64> = values.chunks(2).take(count).map(|pair| pair[0]).collect();
+            let step =
+                (times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0)) / (count.max(2) - 1) as f64;
+            let off = |(n, t): (usize, &f64)| (t - times[0] - n as f64 * step).abs() > 0.01 * step;
+            if times.iter().enumerate().any(off) {
+                return Err("its samples are not evenly spaced; resample it first".to_owned());
+            }
+            (values.chunks(2).take(count).map(|pair| pair[1]).collect(), 1.0 / step)
+        };
+        // The increment has six digits: a rate is a round number more often than not.
+        let round = (rate_hz * 10.0).round() / 10.0;
+        let rate_hz = if (rate_hz / round - 1.0).abs() < 5e-6 { round } else { rate_hz };
+        let rate_hz = Some(rate_hz).filter(|hz| hz.is_finite() && *hz > 0.0);
+        Ok(Channel::held(self.name(), samples).at_rate(rate_hz).in_unit(self.unit(8)))
+    }
+}
+
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -159,21 +251,14 @@ impl Lines<'_> {
         Some(String::from_utf8_lossy(&rest[..end]).trim_end_matches('\r').to_owned())
     }
 
-    /// The dataset behind its first line: a channel and what is odd about it, or why it is none.
-    #[allow(clippy::type_complexity)]
-    fn function(
-        &mut self,
-        kind: &str,
-    ) -> std::result::Result<std::result::Result<(Channel, Option<String>), String>, String> {
+    /// The dataset behind its first line.
+    fn dataset(&mut self, kind: &str) -> std::result::Result<Dataset, String> {
         let head: Vec<String> = (0..HEAD).filter_map(|_| self.next()).collect();
         if head.len() < HEAD {
             return Err("it ends inside its head".to_owned());
         }
-        let integers = |line: &str| {
-            line.split_whitespace().map(|w| w.parse::<f64>().unwrap_or(f64::NAN)).collect::<Vec<_>>()
-        };
-        let form = integers(&head[6]);
-        let [ordinate, count, spacing, _, increment, ..] = form[..] else {
+        let form = numbers(&head[6]);
+        let [ordinate, count, spacing, first, increment, ..] = form[..] else {
             return Err(format!("its data form `{}` is not six numbers", head[6].trim()));
         };
         let count = if (0.0..1e10).contains(&count) {
@@ -183,15 +268,11 @@ impl Lines<'_> {
         };
         let (double, complex) = (ordinate == 4.0 || ordinate == 6.0, ordinate > 4.5);
         let even = spacing == 1.0;
-        let width = match (complex, even) {
-            (false, true) => 1,
-            (true, true) | (false, false) => 2,
-            (true, false) => 3,
-        };
+        let width = 1 + usize::from(complex) + usize::from(!even);
         let values = if kind.trim_start().starts_with("58b") {
-            self.binary(kind, double, even)?
+            self.binary(kind, count, double, complex, even)?
         } else {
-            self.text(count * width, double, even)?
+            self.text(count * width, double, complex, even)?
         };
         let there = (values.len() / width).min(count);
         if there == 0 && count > 0 {
@@ -205,38 +286,7 @@ impl Lines<'_> {
                 format!("it promises {count} values, and {more} lines more follow: they are left out")
             })
         };
-        let count = there;
-        if complex {
-            return Ok(Err("its values are complex: it is no signal in time".to_owned()));
-        }
-        let axis = integers(&head[7]);
-        let time = matches!(axis.first(), Some(17.0 | 0.0));
-        if !time {
-            return Ok(Err(format!("its abscissa is `{}`, not the time", head[7].trim())));
-        }
-        let name = [head[0].trim(), head[1].trim()]
-            .into_iter()
-            .find(|n| !n.is_empty() && *n != "NONE")
-            .unwrap_or("function");
-        let unit =
-            head[8].get(47..67).map(str::trim).filter(|u| !u.is_empty() && *u != "NONE").map(str::to_owned);
-        let (samples, rate_hz) = if even {
-            (values[..count].to_vec(), 1.0 / increment)
-        } else {
-            let times: Vec<f64> = values.chunks(2).take(count).map(|pair| pair[0]).collect();
-            let step =
-                (times.last().unwrap_or(&0.0) - times.first().unwrap_or(&0.0)) / (count.max(2) - 1) as f64;
-            let off = |(n, t): (usize, &f64)| (t - times[0] - n as f64 * step).abs() > 0.01 * step;
-            if times.iter().enumerate().any(off) {
-                return Ok(Err("its samples are not evenly spaced; resample it first".to_owned()));
-            }
-            (values.chunks(2).take(count).map(|pair| pair[1]).collect(), 1.0 / step)
-        };
-        // The increment has six digits: a rate is a round number more often than not.
-        let round = (rate_hz * 10.0).round() / 10.0;
-        let rate_hz = if (rate_hz / round - 1.0).abs() < 5e-6 { round } else { rate_hz };
-        let rate_hz = Some(rate_hz).filter(|hz| hz.is_finite() && *hz > 0.0);
-        Ok(Ok((Channel::held(name, samples).at_rate(rate_hz).in_unit(unit), odd)))
+        Ok(Dataset { head, count: there, complex, even, first, increment, values, odd })
     }
 
     /// Lines up to the delimiter that ends the dataset, which stays.
@@ -251,7 +301,13 @@ impl Lines<'_> {
     }
 
     /// Numbers in columns: 13 wide, 20 wide for doubles; uneven doubles have their abscissae 13 wide.
-    fn text(&mut self, wanted: usize, double: bool, even: bool) -> std::result::Result<Vec<f64>, String> {
+    fn text(
+        &mut self,
+        wanted: usize,
+        double: bool,
+        complex: bool,
+        even: bool,
+    ) -> std::result::Result<Vec<f64>, String> {
         let mut values = Vec::with_capacity(wanted.min(self.bytes.len() / 2));
         let parse = |word: &str| word.trim().replace(['D', 'd'], "E").parse::<f64>();
         while values.len() < wanted {
@@ -261,10 +317,11 @@ impl Lines<'_> {
                 (self.at, self.line) = (from, self.line - 1);
                 break;
             }
-            let widths: &[usize] = match (double, even) {
-                (false, _) => &[13],
-                (true, true) => &[20],
-                (true, false) => &[13, 20],
+            let widths: &[usize] = match (double, even, complex) {
+                (false, ..) => &[13],
+                (true, true, _) => &[20],
+                (true, false, false) => &[13, 20],
+                (true, false, true) => &[13, 20, 20],
             };
             let mut rest = line.as_str();
             let mut columns = Vec::new();
@@ -288,7 +345,14 @@ impl Lines<'_> {
     }
 
     /// Numbers as bytes, as many as in the first line of the dataset.
-    fn binary(&mut self, kind: &str, double: bool, even: bool) -> std::result::Result<Vec<f64>, String> {
+    fn binary(
+        &mut self,
+        kind: &str,
+        count: usize,
+        double: bool,
+        complex: bool,
+        even: bool,
+    ) -> std::result::Result<Vec<f64>, String> {
         let fields: Vec<u64> = kind.split_whitespace().skip(1).map(|w| w.parse().unwrap_or(0)).collect();
         let [order, format, _, bytes, ..] = fields[..] else {
             return Err("its first line does not say the byte order and length".to_owned());
@@ -296,6 +360,13 @@ impl Lines<'_> {
         if format != 2 {
             return Err(format!("its floating point format is {format}; IEEE (2) is read"));
         }
+        let width = if double { 8 } else { 4 };
+        let parts = 1 + usize::from(complex);
+        let needed = count.saturating_mul(parts * width + if even { 0 } else { 4 });
+        // pyuff counts a complex value once, whose two parts follow all the same.
+        let there = self.bytes.len().saturating_sub(self.at);
+        let halved = complex && bytes < needed as u64 && there >= needed;
+        let bytes = if halved { needed as u64 } else { bytes };
         let rest = self.bytes.get(self.at..).unwrap_or_default();
         let data = &rest[..rest.len().min(usize::try_from(bytes).unwrap_or(usize::MAX))];
         self.at += data.len();
@@ -310,13 +381,13 @@ impl Lines<'_> {
         }
         let number = |kind| Number { kind, big_endian: order == 2 };
         let (single, ordinate) = (number(Kind::F32), number(if double { Kind::F64 } else { Kind::F32 }));
-        let width = ordinate.kind.bytes();
         if even {
             return Ok(data.chunks_exact(width).map(|at| ordinate.decode(at)).collect());
         }
-        Ok(data
-            .chunks_exact(4 + width)
-            .flat_map(|at| [single.decode(at), ordinate.decode(&at[4..])])
-            .collect())
+        let row = |at: &[u8]| -> Vec<f64> {
+            let ordinates = at[4..].chunks_exact(width).map(|part| ordinate.decode(part));
+            std::iter::once(single.decode(at)).chain(ordinates).collect()
+        };
+        Ok(data.chunks_exact(4 + parts * width).flat_map(row).collect())
     }
 }

@@ -24,6 +24,7 @@ use stribeck_scene::scene::Scene;
 use crate::causes;
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
+use crate::transfer::Transfer;
 
 /// Flags of `analyse`.
 #[derive(Debug, clap::Args)]
@@ -129,6 +130,11 @@ pub(crate) struct Reading {
     /// Unit of the samples after that
     #[arg(long)]
     unit: Option<String>,
+    /// Path from the bearing to the sensor: a frequency response, FILE.uff, or "mass=12, stiffness=2e8,
+    /// damping=0.02", several modes with `;` between them. It is divided out of a record, which is then the
+    /// force at the bearing; the force of a run goes through it
+    #[arg(long, value_name = "PATH")]
+    path: Option<String>,
 }
 
 impl Reading {
@@ -148,6 +154,7 @@ impl Reading {
             tacho: None,
             scale: 1.0,
             unit: None,
+            path: None,
             ..self.clone()
         }
     }
@@ -401,12 +408,19 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
 fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
     let (file, scene) = located(asked, place)?;
     let recording = Recording::open(&file)?;
-    let channel = pick(&recording, options.channel.as_deref(), scene.is_some())?;
+    let picked = pick(&recording, options.channel.as_deref(), scene.is_some())?;
+    let path = options.path.as_deref().map(|text| Transfer::read(text, place)).transpose()?;
+    let at_sensor = match (&path, &scene) {
+        (Some(path), Some(_)) => Some(path.of_run(&recording, picked)?),
+        _ => None,
+    };
+    let channel = at_sensor.as_ref().map_or(picked, |(channel, _)| channel);
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
         let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
         bail!("`{}` does not say how fast it was sampled: give `--rate-hz`{notes}", file.display());
     };
     let mut notes = recording.notes.clone();
+    notes.extend(at_sensor.iter().map(|(_, note)| note.clone()));
     if let (Some(given), Some(said)) = (options.rate_hz, channel.rate_hz) {
         let same = (given / said - 1.0).abs() <= SAME_RATE;
         ensure!(
@@ -427,7 +441,12 @@ fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
     let (channel, from) = (&whole.channel, whole.from);
     let of_run = || scene.as_ref().and_then(|_| crate::export::unit(&channel.name)).map(str::to_owned);
     let unit = options.unit.clone().or_else(|| channel.unit.clone()).or_else(of_run);
-    let scaled = channel.scaled(options.scale).in_unit(unit);
+    let mut scaled = channel.scaled(options.scale).in_unit(unit);
+    if let (Some(path), None) = (&path, &scene) {
+        let (before, note) = path.before(&scaled, rate_hz)?;
+        scaled = before;
+        notes.push(note);
+    }
     let (machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
     // Pulses count from the beginning of the file.
     let moved = |all: Vec<f64>| all.into_iter().map(|at| at - from as f64).filter(|at| *at >= 0.0).collect();

@@ -76,8 +76,11 @@ pub(crate) const SCENES: &str = "scenes.txt";
 const DATASHEET: &str = "DATASHEET.md";
 const INDEX: &str = "index.html";
 
-/// The former marks the folder of a campaign from the start of its first part on, the latter when it is done.
-pub(crate) const MARKS: [&str; 2] = [TURN, "runs.parquet"];
+/// The first marks the folder of a campaign from the start of its first part on, the second when it is done;
+/// the third marks that of a growth.
+pub(crate) const MARKS: [&str; 3] = [TURN, tables::RUNS, GROWTH_TABLE];
+/// The table of the records of a growth.
+pub(crate) const GROWTH_TABLE: &str = "growth.csv";
 
 /// Paths in the folder of a campaign.
 struct Folder(ManyRuns);

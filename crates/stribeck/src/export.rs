@@ -21,6 +21,7 @@ use stribeck_scene::scene::ModelScene;
 
 use crate::out::{caution, say};
 use crate::place::{Place, shown};
+use crate::transfer::Transfer;
 
 /// Flags of `export`.
 #[derive(Debug, clap::Args)]
@@ -37,6 +38,11 @@ pub struct Options {
     /// quality=30, noise_density=0.002, range=500, bits=24, seed=1", in m/s²
     #[arg(long)]
     sensor: Option<String>,
+    /// Leads the force of the rolling elements on the outer ring to a sensor first: a frequency response,
+    /// FILE.uff, or "mass=12, stiffness=2e8, damping=0.02", several modes with `;` between them. Only what
+    /// that sensor shows is written, as path.ax_m_s2 and path.ay_m_s2
+    #[arg(long, value_name = "PATH")]
+    path: Option<String>,
     /// Samples a second of a sound [Hz]: 44100 or 48000 [default: 48000]
     #[arg(long, value_name = "HZ", value_parser = sound::rate)]
     rate_hz: Option<u32>,
@@ -80,6 +86,17 @@ enum Format {
     Msh,
 }
 
+impl Format {
+    /// Whether signals are written, in their own unit; `recorded` says that a sensor recorded them.
+    fn holds_signals(self, recorded: bool) -> bool {
+        match self {
+            Self::Csv | Self::Npz | Self::Mat | Self::Uff | Self::Parquet | Self::Wav64 => true,
+            Self::Wav => recorded,
+            Self::Pvd | Self::Vtkhdf | Self::K | Self::Inp | Self::Msh => false,
+        }
+    }
+}
+
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let folder = match &options.run {
         Some(run) => place.locate_run(run),
@@ -98,6 +115,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             );
         }
     }
+    if options.path.is_some() && !options.to.holds_signals(options.sensor.is_some()) {
+        bail!(
+            "`--path` makes signals: use it with `--to` csv, npz, mat, uff, parquet or wav64, or with wav and \
+             `--sensor`"
+        );
+    }
     let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));
     let written = match options.to {
         Format::Pvd => series(&dir, &run, out("paraview"))?,
@@ -110,7 +133,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Format::Inp => deck::write(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
         Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
         Format::Wav if options.sensor.is_none() => sound::write(&dir, &run, options, &out("sound.wav"))?,
-        _ => signals(&dir, &run, options)?,
+        _ => signals(&dir, &run, options, place)?,
     };
     say!("{}", shown(&written));
     Ok(ExitCode::SUCCESS)
@@ -137,8 +160,13 @@ fn provenance(run: &Run) -> Vec<String> {
     ]
 }
 
-fn signals(dir: &RunDir, run: &Run, options: &Options) -> Result<PathBuf> {
-    let recording = Recording::open(dir.trace())?;
+fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<PathBuf> {
+    let mut recording = Recording::open(dir.trace())?;
+    if let Some(path) = &options.path {
+        let time = recording.channels.iter().filter(|c| c.name == "time_s").cloned();
+        let made = Transfer::read(path, place)?.at_sensor(&recording)?;
+        recording.channels = time.chain(made).collect();
+    }
     let wanted = |c: &&Channel| {
         options.channels.is_empty() || options.channels.iter().any(|part| c.name.contains(part))
     };

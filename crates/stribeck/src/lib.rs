@@ -14,6 +14,7 @@ mod campaign;
 mod compare;
 mod emit;
 mod export;
+mod grow;
 mod infer;
 pub mod lab;
 mod list;
@@ -33,6 +34,7 @@ mod side_by_side;
 mod simulate;
 mod stiffness;
 mod sweep;
+mod transfer;
 mod validate;
 
 use std::process::ExitCode;
@@ -76,6 +78,9 @@ pub enum Command {
     Report(report::Options),
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and continues
     Campaign(campaign::Options),
+    /// Lets spalls of several units grow by a law, records each at intervals, and says what is left of it, with
+    /// the truth beside; the same command starts and goes on
+    Grow(grow::Options),
     /// Runs a scene with several values of some fields, each with every other: a campaign in one line
     Sweep(sweep::Options),
     /// Infers unknown fields of a scene from observed numbers: which values are consistent with them, and
@@ -121,6 +126,7 @@ impl Command {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Campaign(options) => campaign::run(options, place),
+            Self::Grow(options) => grow::run(options, place),
             Self::Sweep(options) => sweep::run(options, place),
             Self::Infer(options) => infer::run(options, place),
             Self::Validate(options) => validate::run(options, place),

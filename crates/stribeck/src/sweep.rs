@@ -234,7 +234,7 @@ fn as_ron(field: &str, value: &str) -> String {
 }
 
 /// The way from a folder to a file, so that both can be moved together.
-fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
+pub(crate) fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
     let absolute = |path: &Path| {
         std::path::absolute(path).with_context(|| format!("`{}` has no absolute path", path.display()))
     };

@@ -1,0 +1,257 @@
+//! Frequency responses between a place and a sensor, in modes or in measured lines, applied to a signal and
+//! divided out of one.
+//!
+//! A response multiplies the lines of the signal's transform by its own values at their frequencies, so a
+//! causal response stays one, and phases are those of the response. A response of acceleration to force says
+//! nothing of a constant force: the mean of the signal is taken away first. Before its first sample and
+//! behind its last one the signal is continued by its mirror image, for as long as the response rings, so that
+//! it does not begin with a blow.
+
+use std::f64::consts::{PI, TAU};
+
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use crate::error::{check_positive, check_signal};
+use crate::{Error, Result};
+
+/// A ringing has ended when it has fallen to this part.
+const ENDED: f64 = 1e-3;
+/// Share of the band of measured lines at either end over which they are faded out.
+const FADED: f64 = 0.05;
+/// What regularises a division, over the median magnitude of the response in its band.
+const REGULARISED: f64 = 0.05;
+/// A line is given back where at least this part of it is.
+const GIVEN_BACK: f64 = 0.9;
+
+/// One mode of a structure: acceleration by a force at the place of the sensor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mode {
+    mass_kg: f64,
+    stiffness_n_m: f64,
+    damping_ratio: f64,
+}
+
+impl Mode {
+    /// A mass on a spring of this stiffness [N/m], with a damping ratio above 0 and below 1.
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`], [`Error::Undefined`] for a damping ratio of 1 or more.
+    pub fn new(mass_kg: f64, stiffness_n_m: f64, damping_ratio: f64) -> Result<Self> {
+        check_positive("mass", mass_kg)?;
+        check_positive("stiffness", stiffness_n_m)?;
+        check_positive("damping", damping_ratio)?;
+        if damping_ratio >= 1.0 {
+            let why = "damping is the ratio to the critical one, above 0 and below 1, such as 0.02";
+            return Err(Error::Undefined { quantity: "mode", why });
+        }
+        Ok(Self { mass_kg, stiffness_n_m, damping_ratio })
+    }
+
+    /// Its natural frequency without damping [Hz].
+    pub fn hz(&self) -> f64 {
+        (self.stiffness_n_m / self.mass_kg).sqrt() / TAU
+    }
+
+    /// Acceleration over force [m/s²/N] at a frequency: −ω²/(k − ω²m + 2iζω√(km)).
+    /// Meirovitch, Fundamentals of Vibrations, McGraw-Hill 2001, §3.2.
+    pub fn accelerance(&self, hz: f64) -> Complex<f64> {
+        let omega = TAU * hz;
+        let (m, k) = (self.mass_kg, self.stiffness_n_m);
+        let below = Complex::new(k - omega * omega * m, 2.0 * self.damping_ratio * omega * (k * m).sqrt());
+        Complex::new(-omega * omega, 0.0) / below
+    }
+
+    /// How long it rings [s].
+    fn rings_s(&self) -> f64 {
+        (1.0 / ENDED).ln() / (TAU * self.damping_ratio * self.hz())
+    }
+}
+
+/// From a place to a sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Response(Form);
+
+#[derive(Debug, Clone, PartialEq)]
+enum Form {
+    Modes(Vec<Mode>),
+    Lines { hz: Vec<f64>, values: Vec<Complex<f64>> },
+}
+
+/// A signal out of which a response was divided.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Undone {
+    /// The signal at the place before the response.
+    pub signal: Vec<f64>,
+    /// Lowest and highest frequency [Hz] of which at least 90 % are given back.
+    pub band_hz: (f64, f64),
+    /// Share of the frequencies between them that are.
+    pub share: f64,
+}
+
+impl Response {
+    /// The sum of some modes.
+    ///
+    /// # Errors
+    /// [`Error::TooShort`] for none.
+    pub fn of_modes(modes: Vec<Mode>) -> Result<Self> {
+        let least = 1;
+        if modes.is_empty() {
+            return Err(Error::TooShort { field: "modes", len: 0, least, purpose: "a response" });
+        }
+        Ok(Self(Form::Modes(modes)))
+    }
+
+    /// Measured lines: frequencies [Hz], which ascend, with real and imaginary part at each. Between two lines
+    /// both parts are interpolated straight; beyond the first and the last one the response is none, and it is
+    /// faded to that over a twentieth of the band at either end.
+    ///
+    /// # Errors
+    /// [`Error::TooShort`] for fewer than 8 lines, [`Error::WrongLength`], [`Error::NotFinite`],
+    /// [`Error::NotAscending`].
+    pub fn of_lines(hz: Vec<f64>, parts: &[[f64; 2]]) -> Result<Self> {
+        check_signal(&hz, 8, "a response in lines")?;
+        if parts.len() != hz.len() {
+            return Err(Error::WrongLength { field: "lines", len: parts.len(), planned: hz.len() });
+        }
+        let flat: Vec<f64> = parts.iter().flatten().copied().collect();
+        check_signal(&flat, 16, "a response in lines")?;
+        let before = |n: usize| if n == 0 { -f64::MIN_POSITIVE } else { hz[n - 1] };
+        if let Some(n) = (0..hz.len()).find(|n| hz[*n] <= before(*n)) {
+            return Err(Error::NotAscending { line: n + 1, hz: hz[n], before_hz: before(n).max(0.0) });
+        }
+        let values = parts.iter().map(|[re, im]| Complex::new(*re, *im)).collect();
+        Ok(Self(Form::Lines { hz, values }))
+    }
+
+    /// Where it is known [Hz]; `None` for modes, which are known everywhere.
+    pub fn band_hz(&self) -> Option<(f64, f64)> {
+        match &self.0 {
+            Form::Modes(_) => None,
+            Form::Lines { hz, .. } => Some((hz[0], hz[hz.len() - 1])),
+        }
+    }
+
+    /// Its value at a frequency.
+    pub fn at(&self, hz: f64) -> Complex<f64> {
+        match &self.0 {
+            Form::Modes(modes) => modes.iter().map(|mode| mode.accelerance(hz)).sum(),
+            Form::Lines { hz: lines, values } => {
+                let (low, high) = (lines[0], lines[lines.len() - 1]);
+                if !(low..=high).contains(&hz) {
+                    return Complex::default();
+                }
+                let n = lines.partition_point(|line| *line <= hz).clamp(1, lines.len() - 1);
+                let share = (hz - lines[n - 1]) / (lines[n] - lines[n - 1]);
+                faded(hz, low, high) * (values[n - 1] * (1.0 - share) + values[n] * share)
+            }
+        }
+    }
+
+    /// How long it rings [s]: lines cannot say more than the inverse of their distance.
+    fn rings_s(&self) -> f64 {
+        match &self.0 {
+            Form::Modes(modes) => modes.iter().map(Mode::rings_s).fold(0.0, f64::max),
+            Form::Lines { hz, .. } => {
+                hz.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min).recip()
+            }
+        }
+    }
+
+    /// What the sensor shows of a signal.
+    ///
+    /// # Errors
+    /// [`Error::NotPositive`], [`Error::TooShort`], [`Error::NotFinite`], [`Error::NoOverlap`] where no line of
+    /// the signal lies in the band.
+    pub fn through(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Vec<f64>> {
+        self.check(signal, sample_rate_hz)?;
+        Ok(self.multiplied(signal, sample_rate_hz, |hz| self.at(hz)))
+    }
+
+    /// What has passed the response to make a signal: each line over the response, regularised as
+    /// H*/(|H|² + ε²) with ε a twentieth of the median magnitude in the band, so that noise is not magnified
+    /// where the response passes little.
+    ///
+    /// # Errors
+    /// As [`Response::through`].
+    pub fn undo(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Undone> {
+        self.check(signal, sample_rate_hz)?;
+        let (low, high) = self.overlap(signal.len(), sample_rate_hz);
+        let grid: Vec<f64> = (0..1000).map(|n| low + (f64::from(n) + 0.5) * (high - low) / 1000.0).collect();
+        let power = self.regularisation(&grid);
+        let given_back: Vec<bool> = grid
+            .iter()
+            .map(|hz| self.at(*hz).norm_sqr())
+            .map(|passed| passed / (passed + power) >= GIVEN_BACK)
+            .collect();
+        let first = given_back.iter().position(|is| *is).unwrap_or(0);
+        let last = given_back.iter().rposition(|is| *is).unwrap_or(0);
+        let among = &given_back[first..=last];
+        let share = among.iter().filter(|is| **is).count() as f64 / among.len() as f64;
+        let inverse = |hz: f64| {
+            let h = self.at(hz);
+            h.conj() / (h.norm_sqr() + power)
+        };
+        let signal = self.multiplied(signal, sample_rate_hz, inverse);
+        Ok(Undone { signal, band_hz: (grid[first], grid[last]), share })
+    }
+
+    /// ε² of a division.
+    fn regularisation(&self, grid: &[f64]) -> f64 {
+        let mut sorted: Vec<f64> = grid.iter().map(|hz| self.at(*hz).norm()).collect();
+        sorted.sort_by(f64::total_cmp);
+        (REGULARISED * sorted[sorted.len() / 2]).powi(2).max(f64::MIN_POSITIVE)
+    }
+
+    /// The frequencies that both a record and the response have [Hz].
+    fn overlap(&self, samples: usize, sample_rate_hz: f64) -> (f64, f64) {
+        let (low, high) = (sample_rate_hz / samples as f64, 0.5 * sample_rate_hz);
+        self.band_hz().map_or((low, high), |(from, to)| (low.max(from), high.min(to)))
+    }
+
+    fn check(&self, signal: &[f64], sample_rate_hz: f64) -> Result<()> {
+        check_positive("sample_rate_hz", sample_rate_hz)?;
+        check_signal(signal, 16, "a response")?;
+        let (low, high) = self.overlap(signal.len(), sample_rate_hz);
+        if let (Some((low_hz, high_hz)), true) = (self.band_hz(), low >= high) {
+            let lowest_hz = sample_rate_hz / signal.len() as f64;
+            return Err(Error::NoOverlap { low_hz, high_hz, lowest_hz, highest_hz: 0.5 * sample_rate_hz });
+        }
+        Ok(())
+    }
+
+    fn multiplied(&self, signal: &[f64], rate_hz: f64, by: impl Fn(f64) -> Complex<f64>) -> Vec<f64> {
+        let mean = signal.iter().sum::<f64>() / signal.len() as f64;
+        let reach = signal.len() - 1;
+        let pad = ((self.rings_s() * rate_hz).ceil() as usize).clamp(1, reach);
+        let at = |n: usize| match n.checked_sub(pad) {
+            None => signal[pad - n],
+            Some(n) if n <= reach => signal[n],
+            Some(n) => signal[(2 * reach).saturating_sub(n)],
+        };
+        let count = signal.len() + 2 * pad;
+        let mut lines: Vec<Complex<f64>> = (0..count).map(|n| Complex::new(at(n) - mean, 0.0)).collect();
+        let mut planner = FftPlanner::new();
+        planner.plan_fft_forward(count).process(&mut lines);
+        let scale = 1.0 / count as f64;
+        lines[0] = Complex::default();
+        for n in 1..=count / 2 {
+            let h = by(n as f64 * rate_hz * scale) * scale;
+            if 2 * n == count {
+                // Half the sample rate has no phase.
+                lines[n] *= h.re;
+            } else {
+                lines[n] *= h;
+                lines[count - n] = lines[n].conj();
+            }
+        }
+        planner.plan_fft_inverse(count).process(&mut lines);
+        lines[pad..pad + signal.len()].iter().map(|z| z.re).collect()
+    }
+}
+
+/// From 0 at either end of a band to 1 inside of it.
+fn faded(hz: f64, low: f64, high: f64) -> f64 {
+    let near = (hz - low).min(high - hz) / (FADED * (high - low));
+    if near < 1.0 { 0.5 - 0.5 * (PI * near).cos() } else { 1.0 }
+}

@@ -1,0 +1,100 @@
+//! Responses from a force to a sensor: modes against their closed form, lines against the mode that made them,
+//! there and back.
+
+use std::f64::consts::TAU;
+
+use stribeck_dsp::{Error, Mode, Response};
+
+const RATE_HZ: f64 = 20_000.0;
+
+fn mode() -> Mode {
+    Mode::new(12.0, 2e8, 0.02).expect("a mode")
+}
+
+fn harmonic(hz: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|n| 1000.0 + 100.0 * (TAU * hz * n as f64 / RATE_HZ).sin()).collect()
+}
+
+#[test]
+fn analytic_a_harmonic_force_moves_a_mode_as_its_closed_form_says() {
+    // Amplitude and phase of the steady motion; Meirovitch 2001, §3.2. The mirror image of a sine turns its
+    // phase, so a second of ringing is left out at either end.
+    let response = Response::of_modes(vec![mode()]).expect("a response");
+    for hz in [50.0, 300.0, mode().hz(), 900.0, 5000.0] {
+        let force = harmonic(hz, 60_000);
+        let moved = response.through(&force, RATE_HZ).expect("a record");
+        let h = mode().accelerance(hz);
+        for n in (20_000..40_000).step_by(37) {
+            let exact = 100.0 * h.norm() * (TAU * hz * n as f64 / RATE_HZ + h.arg()).sin();
+            assert!((moved[n] - exact).abs() < 2e-4 * 100.0 * h.norm(), "{hz}: {} {exact}", moved[n]);
+        }
+    }
+}
+
+#[test]
+fn analytic_a_pulse_rings_down_by_the_damping_and_not_before_it_comes() {
+    // Free vibration behind a pulse: acceleration falls by exp(−ζω) a second, at ω√(1−ζ²); Meirovitch
+    // 2001, §2.2.
+    let response = Response::of_modes(vec![mode()]).expect("a response");
+    let (begin, width) = (10_000, 20_usize);
+    let mut force = vec![0.0; 40_000];
+    for n in 0..width {
+        force[begin + n] = 1.0 - (TAU * n as f64 / width as f64).cos();
+    }
+    let moved = response.through(&force, RATE_HZ).expect("a record");
+    let most = moved.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let before = moved[..begin - 5].iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    assert!(before < 2e-3 * most, "{before} before it, {most} at most");
+    let (omega, zeta) = (TAU * mode().hz(), 0.02);
+    let damped = omega * (1.0_f64 - zeta * zeta).sqrt();
+    // A decaying harmonic satisfies x(t+T) = 2 e^(−ζωT) cos(ω_d T) x(t) − e^(−2ζωT) x(t−T).
+    let t = 1.0 / RATE_HZ;
+    let (a, b) = (2.0 * (-zeta * omega * t).exp() * (damped * t).cos(), (-2.0 * zeta * omega * t).exp());
+    for n in begin + width + 20..begin + 400 {
+        let left = moved[n + 1] - a * moved[n] + b * moved[n - 1];
+        assert!(left.abs() < 2e-4 * most, "{left} at {n}");
+    }
+}
+
+#[test]
+fn analytic_measured_lines_are_the_mode_that_made_them() {
+    let hz: Vec<f64> = (1..=3200).map(|n| 2.5 * f64::from(n)).collect();
+    let parts: Vec<[f64; 2]> = hz.iter().map(|f| mode().accelerance(*f)).map(|z| [z.re, z.im]).collect();
+    let lines = Response::of_lines(hz, &parts).expect("lines");
+    let modes = Response::of_modes(vec![mode()]).expect("a mode");
+    let near = |hz: f64| (lines.at(hz) / modes.at(hz) - 1.0).norm();
+    // Straight lines between points 2.5 Hz apart, at a resonance 26 Hz wide.
+    assert!((450..7500).all(|n| near(f64::from(n) + 0.4) < 0.01));
+    assert_eq!((lines.at(2.0).norm(), lines.at(8001.0).norm()), (0.0, 0.0));
+    let force = harmonic(640.0, 40_000);
+    let (a, b) = (lines.through(&force, RATE_HZ).unwrap(), modes.through(&force, RATE_HZ).unwrap());
+    let off = (10_000..30_000).map(|n| (a[n] - b[n]).abs()).fold(0.0, f64::max);
+    assert!(off < 0.01 * 100.0 * mode().accelerance(640.0).norm(), "{off}");
+}
+
+#[test]
+fn roundtrip_what_has_passed_a_mode_is_found_again() {
+    let response = Response::of_modes(vec![mode()]).expect("a response");
+    let force: Vec<f64> = (0..40_000)
+        .map(|n| n as f64 / RATE_HZ)
+        .map(|t| 50.0 + 10.0 * (TAU * 800.0 * t).sin() + 3.0 * (TAU * 3100.0 * t).cos())
+        .collect();
+    let back = response.undo(&response.through(&force, RATE_HZ).unwrap(), RATE_HZ).unwrap();
+    assert!(back.band_hz.0 < 400.0 && back.band_hz.1 > 9900.0 && back.share > 0.99, "{:?}", back.band_hz);
+    let off = (15_000..25_000).map(|n| (back.signal[n] + 50.0 - force[n]).abs()).fold(0.0, f64::max);
+    assert!(off < 0.05, "{off}");
+}
+
+#[test]
+fn refuses_responses_that_cannot_be() {
+    let told = |why: Error, word: &str| assert!(why.to_string().contains(word), "{why}");
+    told(Mode::new(-1.0, 1e8, 0.02).unwrap_err(), "mass = -1");
+    told(Mode::new(1.0, 0.0, 0.02).unwrap_err(), "stiffness = 0");
+    told(Mode::new(1.0, 1e8, 1.5).unwrap_err(), "below 1");
+    let lines = |hz: &[f64]| Response::of_lines(hz.to_vec(), &vec![[1.0, 0.0]; hz.len()]);
+    told(lines(&[1.0, 2.0]).unwrap_err(), "at least 8");
+    let back = [1.0, 2.0, 3.0, 3.0, 5.0, 6.0, 7.0, 8.0];
+    told(lines(&back).unwrap_err(), "line 4");
+    let high: Vec<f64> = (0..8).map(|n| 2e4 + f64::from(n)).collect();
+    told(lines(&high).unwrap().through(&[0.0; 100], 1e4).unwrap_err(), "20000");
+}
