@@ -53,7 +53,8 @@ pub enum EventSpacing {
 const BANDS: [(f64, f64); 2] = [(0.25, 0.5), (0.5, 1.0)];
 /// Length over which correlations are smoothed [s]: events are no sharper.
 const SMOOTHED_S: f64 = 0.3e-3;
-/// Distances from this many times one over the width of the narrower band are told, within an eighth of them.
+/// Two events nearer than this many times one over the width of the narrower band are there, but their
+/// distance is uncertain by more than an eighth, and is not told.
 const RESOLVED: f64 = 4.0;
 /// Least correlation in one of the bands.
 const LEAST: f64 = 0.05;
@@ -79,8 +80,8 @@ const CLEAR: f64 = 0.5;
 /// rhythm in which the pairs come.
 ///
 /// # Errors
-/// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered or the rate
-/// resolves none of them, [`Error::TooShort`] for a signal that is not four times as long as the longest, [`Error::NotFinite`].
+/// [`Error::NotPositive`] for a rate or distance, [`Error::Undefined`] when they are not ordered,
+/// [`Error::TooShort`] for a signal that is not four times as long as the longest, [`Error::NotFinite`].
 pub fn event_spacing(
     signal: &[f64],
     sample_rate_hz: f64,
@@ -94,8 +95,8 @@ pub fn event_spacing(
 }
 
 /// The distance between `shortest_s` and `longest_s` of two events of passages that come `passing_hz` times a
-/// second, however much weaker one of them is; where no second event stands out of the mean over passages,
-/// what [`event_spacing`] says.
+/// second, however much weaker one of them is, unless they are too near for the sample rate; where no second
+/// event stands out of the mean over passages, what [`event_spacing`] says.
 ///
 /// # Errors
 /// As [`event_spacing`], and [`Error::Undefined`] where `longest_s` is more than half of the time between
@@ -121,7 +122,9 @@ pub fn passage_spacing(
         || by_correlation(&bands, sample_rate_hz, &lags),
         |at| {
             let lag = (0.5 * (at[0] + at[1])).round() as usize;
-            EventSpacing::Pairs(spacing(at, [1.0; 2], bands[0][lag].max(bands[1][lag]), sample_rate_hz))
+            let found = spacing(at, [1.0; 2], bands[0][lag].max(bands[1][lag]), sample_rate_hz);
+            let is_resolved = found.lag_s >= RESOLVED / narrower_hz(sample_rate_hz);
+            if is_resolved { EventSpacing::Pairs(found) } else { EventSpacing::Unknown }
         },
     ))
 }
@@ -139,13 +142,7 @@ fn lags(signal: &[f64], sample_rate_hz: f64, shortest_s: f64, longest_s: f64) ->
         let why = "the longest distance must exceed the shortest";
         return Err(Error::Undefined { quantity: "distance of events", why });
     }
-    let resolved_s = RESOLVED / narrower_hz(sample_rate_hz);
-    let lags =
-        (shortest_s.max(resolved_s) * sample_rate_hz).ceil() as usize..(longest_s * sample_rate_hz) as usize;
-    if lags.is_empty() {
-        let why = "the sample rate resolves none below the longest";
-        return Err(Error::Undefined { quantity: "distance of events", why });
-    }
+    let lags = ((shortest_s * sample_rate_hz).ceil() as usize).max(2)..(longest_s * sample_rate_hz) as usize;
     check_signal(signal, (4 * lags.end).max(64), "a distance of events")?;
     Ok(lags)
 }

@@ -1,5 +1,5 @@
-//! Responses from a force to a sensor: modes against their closed form, lines against the mode that made them,
-//! there and back.
+//! Responses from a force to a sensor: modes against their closed form, lines against the mode that made
+//! them, there and back.
 
 use std::f64::consts::TAU;
 
@@ -56,6 +56,7 @@ fn analytic_a_pulse_rings_down_by_the_damping_and_not_before_it_comes() {
     }
 }
 
+/// The accelerance of one mode, −ω²/(k − mω² + icω): D. J. Ewins, Modal Testing, 2nd ed., 2000, chapter 2.
 #[test]
 fn analytic_measured_lines_are_the_mode_that_made_them() {
     let hz: Vec<f64> = (1..=3200).map(|n| 2.5 * f64::from(n)).collect();

@@ -145,7 +145,8 @@ impl Guards {
     fn rollers(&self, centres: &[[f64; 2]], when: &When) -> Option<String> {
         let [inner, outer] = self.annulus;
         for (number, [x, y]) in self.numbers.iter().zip(centres) {
-            // A position that is not a number lies in no range either. The root is taken only for the message.
+            // A position that is not a number lies in no range either. The root is taken only for the
+            // message.
             if !(inner * inner..=outer * outer).contains(&(x * x + y * y)) {
                 let radius = x.hypot(*y);
                 let through = if radius < inner { "inner" } else { "outer" };

@@ -178,8 +178,8 @@ impl Told {
         self.found.below_mm.is_some()
     }
 
-    /// Estimate, lower and upper end [mm] of the reading for spalls of this length, shorter or longer than half
-    /// of the distance of two elements: the record tells both, and not which.
+    /// Estimate, lower and upper end [mm] of the reading for spalls of this length, shorter or longer than
+    /// half of the distance of two elements: the record tells both, and not which.
     fn reading_mm(&self) -> Option<[f64; 3]> {
         if self.is_short() { self.found.spall_mm } else { self.found.otherwise_mm }
     }
@@ -309,11 +309,11 @@ fn counts(sheet: &mut Sheet, told: &[Told]) {
     line("no length given; no defect is claimed", &|t| t.found.spall_mm.is_none() && !t.is_claimed());
     sheet.table(&["record", "records", "interval holds the length", "median off, %"], &lines);
     sheet.say(
-        "Two events of a passage have two readings, and the record does not say which: a spall shorter than half \
-         of the distance of two elements, or a longer one, from whose exit to the entry of the next element it \
-         is as far (`spall_otherwise_mm` in `findings.json`). The table gives the reading of the true one. One \
-         knock an element gives no length, only a bound. Elements come free some way behind the first edge and \
-         are caught before the second one (*by load*); what rings press them together is added for it (THEORY \
-         §7.9).",
+        "Two events of a passage have two readings, and the record does not say which: a spall shorter than \
+         half of the distance of two elements, or a longer one, from whose exit to the entry of the next \
+         element it is as far (`spall_otherwise_mm` in `findings.json`). The table gives the reading of the \
+         true one. One knock an element gives no length, only a bound. Elements come free some way behind \
+         the first edge and are caught before the second one (*by load*); what rings press them together is \
+         added for it (THEORY §7.9).",
     );
 }

@@ -173,8 +173,14 @@ fn wrong_command(root: &Path, command: &str) -> Option<String> {
         command.find("cargo xtask").map(|at| at + "cargo xtask".len()).or_else(|| begins("stribeck "))?;
     // What stands behind a comment, a pipe or another command is not ours; nor is a placeholder such as
     // `[SCENE]`.
-    let ours = command[at..].split(['#', '|', ';', '&', '>']).next().unwrap_or_default();
-    let words: Vec<&str> = ours.split_whitespace().filter(|word| !word.contains(['[', '…', '<'])).collect();
+    let ours = &command[at..];
+    let ends = |(n, sign): &(usize, char)| {
+        "#|;&>".contains(*sign) && ours[..*n].matches('"').count().is_multiple_of(2)
+    };
+    let end = ours.char_indices().find(ends).map_or(ours.len(), |(n, _)| n);
+    let words = words(&ours[..end]);
+    let words: Vec<&str> =
+        words.iter().map(String::as_str).filter(|w| !w.contains(['[', '…', '<'])).collect();
     if words.is_empty() {
         return None;
     }
@@ -188,9 +194,29 @@ fn wrong_command(root: &Path, command: &str) -> Option<String> {
     Some(text.lines().next().unwrap_or_default().to_owned())
 }
 
+/// Words of a command line; what stands in quotation marks is one.
+fn words(command: &str) -> Vec<String> {
+    let mut words = vec![String::new()];
+    let mut quoted = false;
+    for sign in command.chars() {
+        match sign {
+            '"' => quoted = !quoted,
+            _ if sign.is_whitespace() && !quoted => words.push(String::new()),
+            _ => words.iter_mut().last().into_iter().for_each(|word| word.push(sign)),
+        }
+    }
+    words.retain(|word| !word.is_empty());
+    words
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn example_words_in_quotation_marks_are_one() {
+        assert_eq!(words(r#" export a  --path "mass=1, damping=0.1; mass=2""#).len(), 4);
+    }
 
     #[test]
     fn example_crates_and_architecture_agree() {

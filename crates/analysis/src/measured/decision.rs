@@ -101,8 +101,8 @@ pub(super) fn decide(families: &mut [Family], unexplained: Option<&Unexplained>,
             )
         } else if let Some(other) = unexplained.filter(|_| family.name == Defect::Ftf) {
             format!(
-                "it is there, as the cage's share in a comb at {:.3} times the shaft that is no family of this \
-                 bearing",
+                "it is there, as the cage's share in a comb at {:.3} times the shaft that is no family of \
+                 this bearing",
                 other.order
             )
         } else if family.name == Defect::Bsf && !modulated {

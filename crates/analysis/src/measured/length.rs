@@ -88,8 +88,8 @@ fn of_two_events(
     let longer = |run: f64| Interval { value: run + pressed, low: run + least - off, high: run + most + off };
     let otherwise = longer(apart_mm - run);
     let note = format!(
-        "the length of the spall is the {run:.2} ± {off:.2} mm that the contact runs between two events and the \
-         {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in \
+        "the length of the spall is the {run:.2} ± {off:.2} mm that the contact runs between two events and \
+         the {pressed:.2} mm ({least:.2} to {most:.2}) over which a bearing loaded by {:.0} to {:.0} N in \
          {housing} presses the element together{advice}. It holds for a spall shorter than half of the \
          {apart_mm:.1} mm between two elements: one of {:.1} mm ({:.1} to {:.1}), whose exit and the entry of \
          the next element are as far apart, would knock in the same rhythm, and the record does not say which",

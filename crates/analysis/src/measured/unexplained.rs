@@ -55,8 +55,8 @@ const FAR_HIGHER: f64 = 4.0;
 const NAMED: f64 = 1e-9;
 
 /// The highest comb that is no multiple of the shaft or the cage, no multiple or fraction of a
-/// family, no sideband of a higher one, is far beyond noise, and knocks. `of_others` says whether a frequency [Hz] is another
-/// bearing's.
+/// family, no sideband of a higher one, is far beyond noise, and knocks. `of_others` says whether a frequency
+/// [Hz] is another bearing's.
 pub(super) fn strongest(
     bands: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
@@ -109,11 +109,13 @@ fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[Known]) -
             let part = (2..=5).any(|n| is(f * f64::from(n)) || is(f / f64::from(n)));
             let shared = (2..=5).any(|q| (2..=5).any(|p| p != q && is(f * f64::from(p) / f64::from(q))));
             let fraction = is_same || part || (shared && is_lower);
+            // The first sidebands of a raceway that turns may stand higher than its own line.
+            let turns = [-1.0, 1.0].iter().any(|k| is(f + k * own.shaft_hz));
             let by_shaft = (-BESIDE_SHAFT..=BESIDE_SHAFT)
                 .any(|k| (1..=2).any(|m| is(f64::from(m) * f + f64::from(k) * own.shaft_hz)));
             let by_cage = (-BESIDE_CAGE..=BESIDE_CAGE)
                 .any(|k| (1..=2).any(|m| is(f64::from(m) * f + f64::from(k) * cage_hz)));
-            fraction || (family.height >= comb.height && (by_shaft || by_cage))
+            fraction || (turns && is_lower) || (family.height >= comb.height && (by_shaft || by_cage))
         })
 }
 
