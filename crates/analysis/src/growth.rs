@@ -157,8 +157,8 @@ const MISTAKEN: f64 = 0.01;
 /// record that shows one.
 ///
 /// A particle filter: courses drawn from the law are weighted by how likely each makes what was read, drawn
-/// anew where few carry the weight, and run on to their ends. Source: N. J. Gordon, D. J. Salmond and A. F. M.
-/// Smith, IEE Proc. F 140 (1993) 107.
+/// anew where few carry the weight, and run on to their ends. Source: N. J. Gordon, D. J. Salmond and A. F.
+/// M. Smith, IEE Proc. F 140 (1993) 107.
 pub fn remaining(law: &Law, read: &[Option<f64>], sigma: f64, seed: u64) -> Vec<Option<Remaining>> {
     let mut dice = Dice::new(seed);
     let mut courses: Vec<Course> = (0..COURSES).map(|_| law.unit(&mut dice)).collect();

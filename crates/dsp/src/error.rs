@@ -73,8 +73,8 @@ pub enum Error {
     },
     /// Frequencies of a response do not ascend.
     #[error(
-        "line {line} of the response is at {hz} Hz, behind {before_hz} Hz: frequencies must ascend, from 0 or \
-         more; sort the lines and take out doubles"
+        "line {line} of the response is at {hz} Hz, behind {before_hz} Hz: frequencies must ascend, from \
+         0 or more; sort the lines and take out doubles"
     )]
     NotAscending {
         /// Number of the line, from 1.
@@ -86,8 +86,8 @@ pub enum Error {
     },
     /// A response is known where a signal has nothing.
     #[error(
-        "the response is known from {low_hz} to {high_hz} Hz, and the signal has lines from {lowest_hz:.3} to \
-         {highest_hz} Hz: they share no frequency; measure the response in the band of the signal, or sample \
+        "the response is known from {low_hz} to {high_hz} Hz, and the signal has lines from {lowest_hz:.3} \
+         to {highest_hz} Hz: they share no frequency; measure the response in the band of the signal, or sample \
          the signal faster or longer"
     )]
     NoOverlap {

@@ -4,8 +4,8 @@
 //! A response multiplies the lines of the signal's transform by its own values at their frequencies, so a
 //! causal response stays one, and phases are those of the response. A response of acceleration to force says
 //! nothing of a constant force: the mean of the signal is taken away first. Before its first sample and
-//! behind its last one the signal is continued by its mirror image, for as long as the response rings, so that
-//! it does not begin with a blow.
+//! behind its last one the signal is continued by its mirror image, for as long as the response rings, so
+//! that it does not begin with a blow.
 
 use std::f64::consts::{PI, TAU};
 
@@ -102,9 +102,9 @@ impl Response {
         Ok(Self(Form::Modes(modes)))
     }
 
-    /// Measured lines: frequencies [Hz], which ascend, with real and imaginary part at each. Between two lines
-    /// both parts are interpolated straight; beyond the first and the last one the response is none, and it is
-    /// faded to that over a twentieth of the band at either end.
+    /// Measured lines: frequencies [Hz], which ascend, with real and imaginary part at each. Between two
+    /// lines both parts are interpolated straight; beyond the first and the last one the response is none,
+    /// and it is faded to that over a twentieth of the band at either end.
     ///
     /// # Errors
     /// [`Error::TooShort`] for fewer than 8 lines, [`Error::WrongLength`], [`Error::NotFinite`],
@@ -161,8 +161,8 @@ impl Response {
     /// What the sensor shows of a signal.
     ///
     /// # Errors
-    /// [`Error::NotPositive`], [`Error::TooShort`], [`Error::NotFinite`], [`Error::NoOverlap`] where no line of
-    /// the signal lies in the band.
+    /// [`Error::NotPositive`], [`Error::TooShort`], [`Error::NotFinite`], [`Error::NoOverlap`] where no line
+    /// of the signal lies in the band.
     pub fn through(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Vec<f64>> {
         self.check(signal, sample_rate_hz)?;
         Ok(self.multiplied(signal, sample_rate_hz, |hz| self.at(hz)))

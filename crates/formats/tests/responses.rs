@@ -11,7 +11,8 @@ fn fixture() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/signals/responses.uff"))
 }
 
-/// Acceleration over force of a mode of 12 kg on 2e8 N/m with a damping ratio of 0.02: real and imaginary part.
+/// Acceleration over force of a mode of 12 kg on 2e8 N/m with a damping ratio of 0.02: real and imaginary
+/// part.
 fn exact(hz: f64) -> [f64; 2] {
     let (m, k, zeta, w) = (12.0, 2e8_f64, 0.02, TAU * hz);
     let (re, im) = (k - w * w * m, 2.0 * zeta * w * (k * m).sqrt());

@@ -1,4 +1,5 @@
-//! The page of spalls that grow: what each record of each unit shows, and what is said to be left of the unit.
+//! The page of spalls that grow: what each record of each unit shows, and what is said to be left of the
+//! unit.
 
 use std::path::Path;
 
@@ -147,7 +148,8 @@ fn table(of: &GrowthFindings) -> Markup {
             }
         }
         p class="hint" {
-            "Millions of revolutions; intervals of 90 %. Alarm: the first record whose root mean square lies above the limit that the unit's first three records set."
+            "Millions of revolutions; intervals of 90 %. Alarm: the first record whose root mean square \
+                lies above the limit that the unit's first three records set."
         }
     }
 }

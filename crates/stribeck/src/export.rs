@@ -117,8 +117,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     if options.path.is_some() && !options.to.holds_signals(options.sensor.is_some()) {
         bail!(
-            "`--path` makes signals: use it with `--to` csv, npz, mat, uff, parquet or wav64, or with wav and \
-             `--sensor`"
+            "`--path` makes signals: use it with `--to` csv, npz, mat, uff, parquet or wav64, or with wav \
+             and `--sensor`"
         );
     }
     let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));

@@ -1,5 +1,5 @@
-//! `stribeck grow`: spalls of several units grow by a law, and each unit is recorded at intervals: a campaign,
-//! whose trends and remaining lives get a page of their own.
+//! `stribeck grow`: spalls of several units grow by a law, and each unit is recorded at intervals: a
+//! campaign, whose trends and remaining lives get a page of their own.
 
 mod file;
 mod records;

@@ -194,8 +194,16 @@ fn numbers(scene: &Scene) -> Vec<Number> {
     let mut add = |path: &str, value: f64, range: Range, unit: &'static str| {
         list.push(Number { path: path.to_owned(), value, range, unit });
     };
-    let subjects =
-        [numbers_of_model_and_bearing, numbers_of_housing, numbers_of_defects, numbers_of_mesh, numbers_of_operation, numbers_of_contact, numbers_of_solver, numbers_of_output];
+    let subjects = [
+        numbers_of_model_and_bearing,
+        numbers_of_housing,
+        numbers_of_defects,
+        numbers_of_mesh,
+        numbers_of_operation,
+        numbers_of_contact,
+        numbers_of_solver,
+        numbers_of_output,
+    ];
     subjects.iter().for_each(|of| of(scene, &mut add));
     list
 }

@@ -63,8 +63,8 @@ pub(super) fn judged(
     }
     if units.iter().all(|unit| unit.records.iter().all(|record| record.remaining.is_none())) {
         notes.push(
-            "Nothing is said of what is left: a unit needs a claim of its own and six records of others with a \
-             spall; take more units, or records at shorter intervals."
+            "Nothing is said of what is left: a unit needs a claim of its own and six records of others with \
+             a spall; take more units, or records at shorter intervals."
                 .to_owned(),
         );
     }
