@@ -79,8 +79,14 @@ pub(crate) fn event_spacing(
     fs: f64,
     shortest_s: f64,
     longest_s: f64,
+    passing_hz: Option<f64>,
 ) -> PyResult<(&'static str, Option<f64>, Option<f64>, Option<f64>)> {
-    let found = stribeck_dsp::event_spacing(x.as_slice()?, fs, shortest_s, longest_s).map_err(refused)?;
+    let x = x.as_slice()?;
+    let found = match passing_hz {
+        Some(hz) => stribeck_dsp::passage_spacing(x, fs, hz, shortest_s, longest_s),
+        None => stribeck_dsp::event_spacing(x, fs, shortest_s, longest_s),
+    };
+    let found = found.map_err(refused)?;
     Ok(match found {
         EventSpacing::Pairs(pair) => ("pairs", Some(pair.lag_s), Some(pair.correlation), None),
         EventSpacing::Alone { clear_from_s } => ("alone", None, None, Some(clear_from_s)),

@@ -475,10 +475,13 @@ def momeda(x: ArrayLike, taps: int, periods: ArrayLike) -> list[Deconvolved]:
     return [Deconvolved(*one) for one in found]
 
 
-def event_spacing(x: ArrayLike, fs: float, shortest_s: float, longest_s: float) -> EventSpacing:
+def event_spacing(
+    x: ArrayLike, fs: float, shortest_s: float, longest_s: float, passing_hz: float | None = None
+) -> EventSpacing:
     """The distance between ``shortest_s`` and ``longest_s`` that pairs of events keep, as the entry into a spall and
-    the exit from it, if two bands agree on one. Source: after Sawalhi and Randall 2011."""
-    return EventSpacing(*_stribeck.event_spacing(_samples(x), fs, shortest_s, longest_s))
+    the exit from it, if two bands agree on one. With ``passing_hz``, how often the pairs come, one event may be much
+    weaker than the other. Source: after Sawalhi and Randall 2011; means over passages are own."""
+    return EventSpacing(*_stribeck.event_spacing(_samples(x), fs, shortest_s, longest_s, passing_hz))
 
 
 def ridge(f: ArrayLike, t: ArrayLike, Sxx: ArrayLike, steepest_hz_s: float) -> Ridge:
