@@ -69,6 +69,7 @@ fn invariant_intervals_that_are_too_sure_miss() {
 /// The closed form of dL/dt = c Lⁿ; P. C. Paris and F. Erdogan, J. Basic Eng. 85 (1963) 528–533, for n of cracks.
 #[test]
 fn analytic_growth_is_exponential_or_of_a_power() {
+    // dL/dN ∝ Lᵐ: Paris and Erdogan 1963, with the length of a spall.
     assert!((LAW.length_mm(0.5) - 2.0).abs() < 1e-12);
     let power = Law { exponent: 2.0, ..LAW };
     // 1/L goes evenly from 1 to 1/4.

@@ -59,6 +59,7 @@ fn analytic_a_pulse_rings_down_by_the_damping_and_not_before_it_comes() {
 /// The accelerance of one mode, −ω²/(k − mω² + icω): D. J. Ewins, Modal Testing, 2nd ed., 2000, chapter 2.
 #[test]
 fn analytic_measured_lines_are_the_mode_that_made_them() {
+    // The accelerance of one mode; Meirovitch 2001, §3.2.
     let hz: Vec<f64> = (1..=3200).map(|n| 2.5 * f64::from(n)).collect();
     let parts: Vec<[f64; 2]> = hz.iter().map(|f| mode().accelerance(*f)).map(|z| [z.re, z.im]).collect();
     let lines = Response::of_lines(hz, &parts).expect("lines");

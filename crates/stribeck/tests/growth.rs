@@ -46,7 +46,7 @@ fn example_spalls_grow_and_a_second_command_runs_nothing() {
         let onset = unit["onset"].as_f64().expect("an onset");
         assert!(records.iter().filter(begun).all(|r| r["revolutions"].as_f64() >= Some(onset)));
     }
-    let table = Recording::open(&desk.join("out/growth.parquet")).expect("a table");
+    let table = Recording::open(desk.join("out/growth.parquet")).expect("a table");
     assert_eq!(table.channel("length_mm").expect("lengths").len, table.channel("run").expect("runs").len);
     let before = (read("out/growth.json"), read("out/growth.parquet"));
     let again = stribeck(&desk, &["grow", "g.ron", "--out", "out"]);
@@ -94,7 +94,7 @@ fn example_a_path_leads_the_force_to_a_sensor_and_back() {
     for (path, file) in [(mode, "mode.csv"), (&first, "lines.csv")] {
         let output = stribeck(&desk, &["export", "run", "--to", "csv", "--path", path, "--out", file]);
         assert!(output.status.success(), "{}", said(&output));
-        let made = Recording::open(&desk.join(file)).expect("a record");
+        let made = Recording::open(desk.join(file)).expect("a record");
         let names: Vec<&str> = made.channels.iter().map(|channel| channel.name.as_str()).collect();
         assert_eq!(names, ["time_s", "path.ax_m_s2", "path.ay_m_s2"]);
     }
