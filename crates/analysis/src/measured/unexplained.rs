@@ -37,6 +37,8 @@ pub(super) struct Known {
     /// Ends of the place in which it was looked for [Hz].
     pub(super) low_hz: f64,
     pub(super) high_hz: f64,
+    /// The part turns with the shaft, through the load and past the sensor.
+    pub(super) turns: bool,
     /// Its height over the background.
     pub(super) height: f64,
 }
@@ -110,12 +112,12 @@ fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[Known]) -
             let shared = (2..=5).any(|q| (2..=5).any(|p| p != q && is(f * f64::from(p) / f64::from(q))));
             let fraction = is_same || part || (shared && is_lower);
             // The first sidebands of a raceway that turns may stand higher than its own line.
-            let turns = [-1.0, 1.0].iter().any(|k| is(f + k * own.shaft_hz));
+            let turned = family.turns && [-1.0, 1.0].iter().any(|k| is(f + k * own.shaft_hz));
             let by_shaft = (-BESIDE_SHAFT..=BESIDE_SHAFT)
                 .any(|k| (1..=2).any(|m| is(f64::from(m) * f + f64::from(k) * own.shaft_hz)));
             let by_cage = (-BESIDE_CAGE..=BESIDE_CAGE)
                 .any(|k| (1..=2).any(|m| is(f64::from(m) * f + f64::from(k) * cage_hz)));
-            fraction || (turns && is_lower) || (family.height >= comb.height && (by_shaft || by_cage))
+            fraction || (turned && is_lower) || (family.height >= comb.height && (by_shaft || by_cage))
         })
 }
 

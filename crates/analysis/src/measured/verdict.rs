@@ -135,10 +135,11 @@ pub(super) fn judge(
     let there: Vec<Known> = looked[..3]
         .iter()
         .filter(|(family, _)| family.noise_p_value < ALPHA)
-        .filter_map(|(_, standing)| {
+        .filter_map(|(family, standing)| {
+            let turns = family.name == Defect::Bpfi;
             let Standing { comb, comb_hz, .. } = standing.as_ref()?;
             let [low_hz, high_hz] = [1.0 - SLIP, 1.0 + SLIP].map(|part| part * comb_hz);
-            Some(Known { comb_hz: comb.fundamental_hz, low_hz, high_hz, height: comb.height })
+            Some(Known { comb_hz: comb.fundamental_hz, low_hz, high_hz, turns, height: comb.height })
         })
         .collect();
     let of_others = |hz: f64| around.may_be(hz / shaft_hz);

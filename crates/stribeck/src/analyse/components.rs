@@ -22,7 +22,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     };
     let out = options.out.clone().unwrap_or_else(|| default_folder(file));
     check_folder(&out, &["findings.json"])?;
-    let read = super::read(file, &options.reading, place)?;
+    let read = super::reading::read(file, &options.reading, place)?;
     ensure!(
         read.machine.speed_rpm.is_some(),
         "no speed is known of the shaft whose ratio is 1: give `--speed-rpm`, or `--tacho` with the channel \

@@ -10,7 +10,8 @@ use stribeck_formats::{Recording, says_time};
 use stribeck_report::{TrendEntry, write_joint, write_measured};
 use stribeck_scene::run_dir::{check_folder, write_atomic};
 
-use super::{Options, Reading, Speed, examine, located, moves};
+use super::reading::{located, moves};
+use super::{Options, Reading, Speed, examine};
 use crate::out::say;
 use crate::place::{Place, shown};
 
