@@ -66,7 +66,8 @@ fn invariant_intervals_that_are_too_sure_miss() {
     assert!(held < 0.7, "{held}");
 }
 
-/// The closed form of dL/dt = c Lⁿ; P. C. Paris and F. Erdogan, J. Basic Eng. 85 (1963) 528–533, for n of cracks.
+/// The closed form of dL/dt = c Lⁿ; P. C. Paris and F. Erdogan, J. Basic Eng. 85 (1963) 528–533, for n of
+/// cracks.
 #[test]
 fn analytic_growth_is_exponential_or_of_a_power() {
     // dL/dN ∝ Lᵐ: Paris and Erdogan 1963, with the length of a spall.

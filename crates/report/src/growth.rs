@@ -148,8 +148,8 @@ fn table(of: &GrowthFindings) -> Markup {
             }
         }
         p class="hint" {
-            "Millions of revolutions; intervals of 90 %. Alarm: the first record whose root mean square lies above \
-             the limit that the unit's first three records set."
+            "Millions of revolutions; intervals of 90 %. Alarm: the first record whose root mean square \
+             lies above the limit that the unit's first three records set."
         }
     }
 }
