@@ -47,7 +47,7 @@ fn issue_a_damaged_row_of_a_text_costs_its_fields() {
     assert_eq!((found.channels.len(), found.channels[0].len), (3, 100));
     says(&found, "rows with more than 3 fields: 1, the first in line 41");
     // One line that ends otherwise than the others.
-    let old = good.join("\r").replacen("|\"-", "|\"-", 1) + "\r\n\r";
+    let old = good.join("\r") + "\r\n\r";
     let found = opened(&desk, "b.csv", old.as_bytes());
     assert_eq!(found.channels[0].len, 100, "{:?}", found.notes);
 }
