@@ -29,7 +29,7 @@ pub(super) fn look(
     name: Defect,
     expected_hz: f64,
     bands: &[(&BandEnvelope, Whitened)],
-    own: Option<&OwnLines>,
+    own: &OwnLines,
     record_s: f64,
     segment_s: f64,
 ) -> (Family, Option<Standing>) {
@@ -64,7 +64,7 @@ pub(super) fn look(
         return (family, None);
     }
     let (low, high) = ((1.0 - SLIP) * comb_hz, (1.0 + SLIP) * comb_hz);
-    let ranges = own.map_or_else(|| vec![(low, high)], |own| own.ranges_without(low, high));
+    let ranges = own.ranges_without(low, high);
     if ranges.is_empty() {
         family.reason = Reason::Decided(
             "its place is within a resolution of a multiple of the shaft or the cage; a longer record would \

@@ -117,12 +117,13 @@ pub(super) fn judge(
         meshes_hz: in_hz(&around.meshes),
     };
     let places = [orders.bpfo * shaft_hz, orders.bpfi * shaft_hz, orders.bsf * shaft_hz, cage_hz];
-    let cage = look(Defect::Ftf, cage_hz, &whitened, None, record_s, segment_s);
+    // Turns of another shaft may stand where the cage turns.
+    let cage = look(Defect::Ftf, cage_hz, &whitened, &own, record_s, segment_s);
     own.cage_hz = cage.1.as_ref().filter(|_| cage.0.noise_p_value < ALPHA).map(|s| s.comb.fundamental_hz);
     let mut looked: Vec<(Family, Option<Standing>)> = Defect::ALL[..3]
         .iter()
         .zip(places)
-        .map(|(name, hz)| look(*name, hz, &whitened, Some(&own), record_s, segment_s))
+        .map(|(name, hz)| look(*name, hz, &whitened, &own, record_s, segment_s))
         .collect();
     looked.push(cage);
     let cage_hz = own.cage_hz.unwrap_or(cage_hz);
