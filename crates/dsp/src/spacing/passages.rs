@@ -26,7 +26,7 @@ const ABOVE: f64 = 2.0;
 const ABOVE_IN_HALF: f64 = 1.5;
 /// Between the second and the strongest event the power falls to this part of the second's, or it is the
 /// ringing of the strongest.
-const VALLEY: f64 = 0.7;
+const VALLEY: f64 = 0.4;
 /// A second event is the highest within this part of its distance, on either side.
 const ALONE: f64 = 0.05;
 
