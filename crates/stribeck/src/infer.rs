@@ -168,8 +168,8 @@ fn enter(out: &std::path::Path, inference: &Inference) -> Result<()> {
     Ok(())
 }
 
-/// Writes what other parts of the inference may be writing at the same time, with the same content: each has a
-/// file of its own, and the last one to be renamed stays. Hidden, it makes no foreign folder of it.
+/// Writes what other parts of the inference may be writing at the same time, with the same content: each has
+/// a file of its own, and the last one to be renamed stays. Hidden, it makes no foreign folder of it.
 fn write_alike(path: &std::path::Path, bytes: &[u8]) -> Result<()> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let own = path.with_file_name(format!(".{name}.{}", std::process::id()));
