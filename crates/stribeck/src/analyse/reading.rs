@@ -36,8 +36,9 @@ pub(crate) struct Reading {
     /// there is followed over the record, and a record whose speed varies is analysed over the angle
     #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse, allow_hyphen_values = true)]
     pub(crate) speed_rpm: Option<Speed>,
-    /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise, or of the angle
-    /// of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
+    /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise; of the angle of
+    /// the shaft in rad, its name ending in `_rad`; or of its speed over time, in a unit such as `rpm`; a
+    /// record whose speed varies is analysed over the angle
     #[arg(long)]
     pub(crate) tacho: Option<String>,
     /// Pulses of the tachometer a turn, such as the teeth of its wheel
@@ -229,8 +230,11 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
         notes.push(note);
     }
     let (machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
-    // Pulses count from the beginning of the file.
-    let moved = |all: Vec<f64>| all.into_iter().map(|at| at - from as f64).filter(|at| *at >= 0.0).collect();
+    // Pulses count from the beginning of the file; a tachometer may go on behind the end of the record.
+    let last = scaled.len.saturating_sub(1) as f64;
+    let moved = |all: Vec<f64>| {
+        all.into_iter().map(|at| at - from as f64).filter(|at| (0.0..=last).contains(at)).collect()
+    };
     let pulses: Option<Vec<f64>> = pulses.map(moved);
     let over_angle = match &pulses {
         Some(pulses) => {
@@ -371,11 +375,7 @@ fn machine(
         // A tachometer may have a rate of its own.
         let own_hz =
             channel.rate_hz.filter(|_| !options.force_rate || channel.len != samples).unwrap_or(rate_hz);
-        let mut turns = if channel.name.ends_with("_rad") {
-            tacho::of_angle(channel, own_hz)?
-        } else {
-            tacho::pulses(channel, own_hz, options.pulses_per_turn)?
-        };
+        let mut turns = tacho::of(channel, own_hz, options.pulses_per_turn)?;
         turns.pulses.iter_mut().for_each(|at| *at *= rate_hz / own_hz);
         notes.append(&mut turns.notes);
         if turns.variation > STEADY {
