@@ -18,9 +18,8 @@ fn example_pulses_give_the_speed_between_samples() {
 #[test]
 fn example_an_angle_gives_pulses_and_the_mean_speed() {
     // From 10 to 30 turns a second, counter-clockwise, in a second of 10 000 samples.
-    let angle = (0..10_000)
-        .map(|n| 1e-4 * f64::from(n))
-        .map(|t| std::f64::consts::TAU * (10.0 * t + 10.0 * t * t));
+    let angle =
+        (0..10_000).map(|n| 1e-4 * f64::from(n)).map(|t| std::f64::consts::TAU * (10.0 * t + 10.0 * t * t));
     let found = of_angle(&Channel::held("shaft.angle_rad", angle.collect()), 1e4).unwrap();
     assert!((found.rpm / 1200.0 - 1.0).abs() < 2e-3, "{}", found.rpm);
     assert_eq!((found.count, found.pulses.len()), (19, 1199));
@@ -70,8 +69,7 @@ fn example_noise_and_sparks_are_no_pulses() {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         f64::from(state >> 8) / f64::from(1 << 24) - 0.5
     };
-    let mut samples: Vec<f64> =
-        wheel(40, |_| true).into_iter().map(|x| 5.0 * x + 1.5 * noise()).collect();
+    let mut samples: Vec<f64> = wheel(40, |_| true).into_iter().map(|x| 5.0 * x + 1.5 * noise()).collect();
     samples[5000] = 90.0;
     let found = turns(&Channel::held("tacho", samples), 12_800.0).unwrap();
     assert!((found.rpm / 1200.0 - 1.0).abs() < 1e-3 && found.count >= 38, "{found:?}");
@@ -106,7 +104,8 @@ fn shaped(n: usize, height: impl Fn(usize) -> f64, base: impl Fn(usize) -> f64) 
 /// Holds a tachometer of 1200 rpm that does not vary; a half of a sample on either side of 640.
 #[track_caller]
 fn even(name: &str, samples: Vec<f64>, turns_at_least: usize) -> Turns {
-    let found = turns(&Channel::held("tacho", samples), 12_800.0).unwrap_or_else(|why| panic!("{name}: {why}"));
+    let found =
+        turns(&Channel::held("tacho", samples), 12_800.0).unwrap_or_else(|why| panic!("{name}: {why}"));
     assert!((found.rpm / 1200.0 - 1.0).abs() < 1e-3, "{name}: {found:?}");
     assert!(found.variation < 0.01 && found.count >= turns_at_least, "{name}: {found:?}");
     found
@@ -174,7 +173,12 @@ fn issue_teeth_are_uneven_and_few_samples_wide() {
     // 60 teeth at 3000 rpm: 4.27 samples each.
     let samples = (0..64_000).map(|n| f64::from((n as f64 * 3000.0 / 12_800.0).fract() < 0.5)).collect();
     let found = pulses(&Channel::held("tacho", samples), 12_800.0, 60).unwrap();
-    assert!((found.rpm / 3000.0 - 1.0).abs() < 1e-4 && found.variation < 0.005, "{} {}", found.rpm, found.variation);
+    assert!(
+        (found.rpm / 3000.0 - 1.0).abs() < 1e-4 && found.variation < 0.005,
+        "{} {}",
+        found.rpm,
+        found.variation
+    );
     // Two marks a turn at 0 and 0.3; and a wheel of 60 teeth of which two are missing.
     let two = |n: usize| (n as f64 / 640.0).fract();
     let samples = (0..64_000).map(|n| f64::from(two(n) < 0.05 || (0.3..0.35).contains(&two(n)))).collect();
@@ -183,7 +187,12 @@ fn issue_teeth_are_uneven_and_few_samples_wide() {
     let tooth = |n: usize| (n as f64 / 2560.0).fract() * 60.0;
     let samples = (0..128_000).map(|n| f64::from(tooth(n) < 58.0 && tooth(n).fract() < 0.5)).collect();
     let found = pulses(&Channel::held("tacho", samples), 12_800.0, 60).unwrap();
-    assert!((found.rpm / 300.0 - 1.0).abs() < 1e-3 && found.variation < 0.01, "{} {}", found.rpm, found.variation);
+    assert!(
+        (found.rpm / 300.0 - 1.0).abs() < 1e-3 && found.variation < 0.01,
+        "{} {}",
+        found.rpm,
+        found.variation
+    );
     assert!(found.notes[0].contains("missing"), "{:?}", found.notes);
 }
 
@@ -204,7 +213,11 @@ fn issue_a_speed_over_time_is_no_tachometer_of_pulses() {
             Ok(found) => {
                 assert!(is_speed && (found.rpm / 1200.0 - 1.0).abs() < 1e-3, "{}: {found:?}", channel.name);
                 // 200 turns, sixty pulses each; the speed at the end less that at the beginning.
-                assert!((found.variation - 200.0 / 1200.0).abs() < 2e-3 && found.count >= 199, "{}", found.count);
+                assert!(
+                    (found.variation - 200.0 / 1200.0).abs() < 2e-3 && found.count >= 199,
+                    "{}",
+                    found.count
+                );
             }
             Err(why) => assert!(!is_speed, "{}: {why}", channel.name),
         }
@@ -213,6 +226,10 @@ fn issue_a_speed_over_time_is_no_tachometer_of_pulses() {
     let called = of(&Channel::held("rpm", wheel(40, |_| true)), 12_800.0, 1).unwrap();
     assert!((called.rpm / 1200.0 - 1.0).abs() < 1e-3, "{}", called.rpm);
     let stopped = held("n", 1.0).in_unit(Some("rpm".into()));
-    let why = of(&Channel::held("n", [&[0.0; 5][..], &stopped.read().unwrap()].concat()).in_unit(stopped.unit.clone()), 100.0, 1);
+    let why = of(
+        &Channel::held("n", [&[0.0; 5][..], &stopped.read().unwrap()].concat()).in_unit(stopped.unit.clone()),
+        100.0,
+        1,
+    );
     assert!(why.unwrap_err().to_string().contains("stands still at 0.0000 s"));
 }

@@ -87,7 +87,8 @@ impl Source<'_> {
     /// Members of the group whose header is there; `None` for other objects.
     fn group(&mut self, header: u64) -> Option<Vec<Member>> {
         let messages = self.messages(header)?;
-        let of = |kind: u16| messages.iter().filter(move |(of, _)| *of == kind).map(|(_, body)| body.as_slice());
+        let of =
+            |kind: u16| messages.iter().filter(move |(of, _)| *of == kind).map(|(_, body)| body.as_slice());
         if let Some(table) = of(SYMBOL_TABLE).next() {
             return self.old(long(table, 0), long(table, 8));
         }
@@ -124,7 +125,13 @@ impl Source<'_> {
         } else {
             return None;
         };
-        let prefix = if !is_new { 8 } else if flags & 4 == 0 { 4 } else { 6 };
+        let prefix = if !is_new {
+            8
+        } else if flags & 4 == 0 {
+            4
+        } else {
+            6
+        };
         let mut messages = Vec::new();
         let mut further = Vec::new();
         loop {

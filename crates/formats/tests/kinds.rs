@@ -248,8 +248,9 @@ fn issue_rows_that_are_no_samples_and_rows_that_are_channels() {
     assert_eq!(channel.read().unwrap()[..3], [0, 1, 2].map(|n| (1e4 * signal(n)).round() / 1e4));
     // LabVIEW heads a column of comments that the rows leave out.
     let rows = lines(|n| format!("\t{:.4}\t{:.4}", signal(n), signal(n + 1)));
-    let head = "LabVIEW Measurement\nX_Columns\tNo\n***End_of_Header***\t\n\t\nChannels\t2\t\nDelta_X\t7.8125E-5\t\
-                7.8125E-5\n***End_of_Header***\t\t\t\nX_Value\tone\ttwo\tComment\n";
+    let head = "LabVIEW Measurement\nX_Columns\tNo\n***End_of_Header***\t\n\t\nChannels\t2\t\n\
+                Delta_X\t7.8125E-5\t7.8125E-5\n***End_of_Header***\t\t\t\n\
+                X_Value\tone\ttwo\tComment\n";
     let found = opened(&desk, "c.lvm", (head.to_owned() + &rows).as_bytes());
     let channel = found.channel("two").unwrap();
     assert_eq!((channel.rate_hz, channel.read().unwrap()[7]), (Some(RATE_HZ), signal(8)));
@@ -258,7 +259,10 @@ fn issue_rows_that_are_no_samples_and_rows_that_are_channels() {
     for (text, rows) in [(vector.join(",") + "\n", 1), (format!("{0}\n{0}\n", vector.join("\t")), 2)] {
         let found = opened(&desk, "d.csv", text.as_bytes());
         assert_eq!((found.channels.len(), found.channels[rows - 1].len), (rows, 300));
-        assert_eq!(found.channels[rows - 1].read().unwrap()[..], (0..300).map(signal).collect::<Vec<_>>()[..]);
+        assert_eq!(
+            found.channels[rows - 1].read().unwrap()[..],
+            (0..300).map(signal).collect::<Vec<_>>()[..]
+        );
     }
 }
 
@@ -266,7 +270,9 @@ fn issue_rows_that_are_no_samples_and_rows_that_are_channels() {
 fn issue_times_since_1970_say_their_unit() {
     let desk = Scratch::create("formats-kinds-epoch");
     for (a_second, digits) in [(1e6, 3), (1e9, 0)] {
-        let row = |n: usize| format!("{:.digits$},{:.4}", a_second * (1.714_550_4e9 + n as f64 / RATE_HZ), signal(n));
+        let row = |n: usize| {
+            format!("{:.digits$},{:.4}", a_second * (1.714_550_4e9 + n as f64 / RATE_HZ), signal(n))
+        };
         let (rate_hz, _) = samples(&desk, &("timestamp,acc\n".to_owned() + &lines(row)));
         assert!((rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-3, "{a_second}: {rate_hz:?}");
     }

@@ -313,16 +313,41 @@ fn issue_lsdyna_cards_as_their_programs_write_them() {
 
 #[test]
 fn issue_gmsh_names_sets_of_lsdyna_in_comments() {
-    let text = "$# LS-DYNA Keyword file created by Gmsh\n*KEYWORD\n*TITLE\n two.key\n*NODE\n1, 0, 0, 0\n2, 1, 0, \
-                0\n3, 2, 0, 0\n4, 0, 1, 0\n5, 1, 1, 0\n6, 2, 1, 0\n*ELEMENT_BEAM\n$#SET_ELEMENT=raceway1\n1, \
-                1000001, 1, 2\n2, 1000001, 2, 3\n*ELEMENT_SHELL\n$#SET_ELEMENT=steel1\n3, 2000001, 1, 2, 5, 4\n4, \
-                2000001, 2, 3, 6, 5\n*SET_NODE_LIST\n$# raceway\n1\n1, 2, 3\n*SET_NODE_LIST\n$# fit\n2\n4, 5, \
-                6\n*END\n";
+    let text = "$# LS-DYNA Keyword file created by Gmsh
+*KEYWORD
+*TITLE
+ two.key
+*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 2, 0, 0
+4, 0, 1, 0
+5, 1, 1, 0
+6, 2, 1, 0
+*ELEMENT_BEAM
+$#SET_ELEMENT=raceway1
+1, 1000001, 1, 2
+2, 1000001, 2, 3
+*ELEMENT_SHELL
+$#SET_ELEMENT=steel1
+3, 2000001, 1, 2, 5, 4
+4, 2000001, 2, 3, 6, 5
+*SET_NODE_LIST
+$# raceway
+1
+1, 2, 3
+*SET_NODE_LIST
+$# fit
+2
+4, 5, 6
+*END
+";
     for text in [text.to_owned(), text.replace('\n', "\r\n"), text.replace('\n', "\r"), text.to_lowercase()] {
         check("Gmsh", Deck::LsDyna, text.as_bytes(), "");
     }
     // The headings that LS-PrePost writes there are no names.
-    let other = text.replace("created by Gmsh", "by LS-PrePost").replace("$# raceway", "$#     sid       da1");
+    let other =
+        text.replace("created by Gmsh", "by LS-PrePost").replace("$# raceway", "$#     sid       da1");
     let read = Deck::LsDyna.read(&other).expect("a mesh");
     assert_eq!(read.node_sets.keys().collect::<Vec<_>>(), ["set 1", "set 2"]);
 }
@@ -481,7 +506,8 @@ fn turned(bytes: &[u8], version: &str) -> Vec<u8> {
     // The numbers of a section have these widths; a line of text stands before those of format 2.2.
     let mut section = |name: &str, widths: &[usize]| {
         let head = format!("${name}\n");
-        let start = bytes[at..].windows(head.len()).position(|w| w == head.as_bytes()).unwrap() + at + head.len();
+        let start =
+            bytes[at..].windows(head.len()).position(|w| w == head.as_bytes()).unwrap() + at + head.len();
         out.extend(&bytes[at..start]);
         at = start;
         if version == "2.2" || name == "MeshFormat" {
@@ -543,14 +569,53 @@ fn issue_gmsh_nodes_with_parameters_and_partitions() {
         .collect();
     check("parameters", Deck::Gmsh, text.join("\n").as_bytes(), "steel");
     // Each square in a partition; `raceway` is curve 3 in one and 4 in the other.
-    let partitions = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n3\n1 1 \"raceway\"\n1 2 \"fit\"\n2 1 \
-        \"steel\"\n$EndPhysicalNames\n$Entities\n1 2 1 0\n1 0 0 0 0\n1 0 0 0 2 0 0 1 1 0\n2 0 1 0 2 1 0 1 2 0\n1 0 0 \
-        0 2 1 0 1 1 2 1 2\n$EndEntities\n$PartitionedEntities\n2\n1\n9 1\n1 4 2 0\n2 0 1 1 1 0 0 0 0\n3 1 1 1 1 0 0 0 1 \
-        0 0 1 1 0\n4 1 1 1 2 1 0 0 2 0 0 1 1 0\n5 1 2 2 1 2 0 1 0 2 1 0 1 2 0\n6 2 1 2 1 2 1 0 0 1 1 0 0 0\n2 2 1 1 1 0 0 \
-        0 1 1 0 1 1 2 3 5\n3 2 1 1 2 1 0 0 2 1 0 1 1 0\n$EndPartitionedEntities\n$Nodes\n1 6 1 6\n2 2 0 6\n1\n2\n3\n4\n5\n6\n0 \
-        0 0\n1 0 0\n2 0 0\n0 1 0\n1 1 0\n2 1 0\n$EndNodes\n$GhostElements\n0\n$EndGhostElements\n$Elements\n6 7 1 7\n1 3 1 \
-        1\n1 1 2\n1 4 1 1\n2 2 3\n1 5 1 2\n3 4 5\n4 5 6\n1 6 1 1\n5 2 5\n2 2 3 1\n6 1 2 5 4\n2 3 3 1\n7 2 3 6 \
-        5\n$EndElements\n";
+    let partitions = r#"$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 1 "raceway"
+1 2 "fit"
+2 1 "steel"
+$EndPhysicalNames
+$Entities
+1 2 1 0
+1 0 0 0 0
+1 0 0 0 2 0 0 1 1 0
+2 0 1 0 2 1 0 1 2 0
+1 0 0 0 2 1 0 1 1 2 1 2
+$EndEntities
+$PartitionedEntities
+2
+1 9 1
+1 4 2 0
+2 0 1 1 1 0 0 0 0
+3 1 1 1 1 0 0 0 1 0 0 1 1 0
+4 1 1 1 2 1 0 0 2 0 0 1 1 0
+5 1 2 2 1 2 0 1 0 2 1 0 1 2 0
+6 2 1 2 1 2 1 0 0 1 1 0 0 0
+2 2 1 1 1 0 0 0 1 1 0 1 1 2 3 5
+3 2 1 1 2 1 0 0 2 1 0 1 1 0
+$EndPartitionedEntities
+$Nodes
+1 6 1 6
+2 2 0 6
+1 2 3 4 5 6
+0 0 0  1 0 0  2 0 0  0 1 0  1 1 0  2 1 0
+$EndNodes
+$GhostElements
+0
+$EndGhostElements
+$Elements
+6 7 1 7
+1 3 1 1  1 1 2
+1 4 1 1  2 2 3
+1 5 1 2  3 4 5  4 5 6
+1 6 1 1  5 2 5
+2 2 3 1  6 1 2 5 4
+2 3 3 1  7 2 3 6 5
+$EndElements
+"#;
     check("partitions", Deck::Gmsh, partitions.as_bytes(), "steel");
 }
 

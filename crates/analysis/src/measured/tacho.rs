@@ -81,8 +81,10 @@ pub fn pulses(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, E
     for levels in Levels::all() {
         let edges = edges(&samples, levels);
         let found = match edges.len() {
-            0 => Err(format!("tachometer `{name}` holds no pulse; is it the right channel? A \
-                          speed over time needs its unit, such as `rpm`, behind its name")),
+            0 => Err(format!(
+                "tachometer `{name}` holds no pulse; is it the right channel? A \
+                          speed over time needs its unit, such as `rpm`, behind its name"
+            )),
             few @ 1..=2 => Err(format!("tachometer `{name}` holds {few} pulses, three are the least")),
             few if few < LEAST && refused.is_some() => continue,
             _ => mended(&edges, name, rate_hz, per_turn),
@@ -109,13 +111,7 @@ pub fn pulses(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, E
     let count = (found.pulses.len() - 1) / per_turn;
     let pulses = over_turns(found.pulses, per_turn);
     let (mean, variation) = mean_and_variation(&pulses);
-    Ok(Turns {
-        rpm: 60.0 * rate_hz / (mean * per_turn as f64),
-        count,
-        variation,
-        pulses,
-        notes,
-    })
+    Ok(Turns { rpm: 60.0 * rate_hz / (mean * per_turn as f64), count, variation, pulses, notes })
 }
 
 /// Means of the times of `per_turn` pulses, from each on; the pulses themselves where there are not two turns

@@ -75,7 +75,13 @@ impl Source<'_> {
     }
 
     /// Identifiers of all links below a node at a depth; those of nodes that are damaged are left out.
-    fn records(&mut self, tree: &Tree, (at, count): (u64, u64), depth: u64, ids: &mut Vec<Vec<u8>>) -> Option<()> {
+    fn records(
+        &mut self,
+        tree: &Tree,
+        (at, count): (u64, u64),
+        depth: u64,
+        ids: &mut Vec<Vec<u8>>,
+    ) -> Option<()> {
         let node = self.at(at, tree.node)?;
         let is_leaf = depth == 0;
         if !node.starts_with(if is_leaf { b"BTLF" } else { b"BTIN" }) {

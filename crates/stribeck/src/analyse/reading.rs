@@ -229,13 +229,18 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
         scaled = before;
         notes.push(note);
     }
-    let (machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
-    // Pulses count from the beginning of the file; a tachometer may go on behind the end of the record.
-    let last = scaled.len.saturating_sub(1) as f64;
-    let moved = |all: Vec<f64>| {
-        all.into_iter().map(|at| at - from as f64).filter(|at| (0.0..=last).contains(at)).collect()
-    };
-    let pulses: Option<Vec<f64>> = pulses.map(moved);
+    let (mut machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
+    let pulses = pulses.map(|all| {
+        // They count from the beginning of the file, and a tachometer may go on behind the end of the record.
+        let last = scaled.len.saturating_sub(1) as f64;
+        let moved = all.iter().map(|at| at - from as f64).filter(|at| (0.0..=last).contains(at));
+        let kept: Vec<f64> = moved.collect();
+        // The mean speed is that of the record.
+        if let (Some(of_all), Some(of_kept)) = (mean_gap(&all), mean_gap(&kept)) {
+            machine.speed_rpm = machine.speed_rpm.map(|rpm| rpm * of_all / of_kept);
+        }
+        kept
+    });
     let over_angle = match &pulses {
         Some(pulses) => {
             let even = over_angle(&scaled, rate_hz, pulses)?;
@@ -258,6 +263,12 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     );
     let turning = pulses.map(|pulses| Turning { signal: scaled, rate_hz, pulses });
     Ok(Read { signal: even, rate_hz: even_hz, machine, notes, of_run, turning })
+}
+
+/// Mean distance of pulses.
+fn mean_gap(pulses: &[f64]) -> Option<f64> {
+    let [first, .., last] = pulses else { return None };
+    Some((last - first) / (pulses.len() - 1) as f64)
 }
 
 /// The file of a record, and the scene where it is that of a run.

@@ -112,7 +112,10 @@ pub(super) fn of_speed(channel: &Channel, rate_hz: f64) -> Result<Option<Turns>,
         })
         .collect();
     let mut turns = of_angles(&angles, name, rate_hz)?;
-    turns.notes.push(format!("`{name}` is taken as the speed of the shaft over time, {:.1} rpm in the mean", turns.rpm));
+    turns.notes.push(format!(
+        "`{name}` is taken as the speed of the shaft over time, {:.1} rpm in the mean",
+        turns.rpm
+    ));
     Ok(Some(turns))
 }
 

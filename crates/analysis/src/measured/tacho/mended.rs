@@ -38,7 +38,8 @@ impl Mended {
             const SHOWN: usize = 5;
             let times: Vec<String> =
                 of.iter().take(SHOWN).map(|at| format!("{:.4} s", at / rate_hz)).collect();
-            let more = if of.len() > SHOWN { format!(" and {} more", of.len() - SHOWN) } else { String::new() };
+            let more =
+                if of.len() > SHOWN { format!(" and {} more", of.len() - SHOWN) } else { String::new() };
             let (pulses, are) = if of.len() == 1 { ("a pulse", "is") } else { ("pulses", "are") };
             let number = if of.len() == 1 { String::new() } else { format!("{} ", of.len()) };
             let times = times.join(", ");
@@ -80,7 +81,11 @@ fn even(edges: &[f64], name: &str, rate_hz: f64, per_turn: usize) -> Result<Mend
         let Some(&last) = pulses.last() else {
             // The first one is too many where the second begins even gaps.
             let lone = gaps.len() > 2 && off(gaps[0]) > 0.25 && gaps[0] < step && off(gaps[1]) < 0.1;
-            if lone { double.push(edge) } else { pulses.push(edge) }
+            if lone {
+                double.push(edge)
+            } else {
+                pulses.push(edge)
+            }
             continue;
         };
         let gap = edge - last;
