@@ -51,7 +51,8 @@ fn text_of(bytes: Vec<u8>) -> String {
     if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n") } else { text }
 }
 
-/// Anything but UTF-8 is taken for Latin-1, which maps every byte. UTF-16 is recognised by its byte order mark.
+/// Anything but UTF-8 is taken for Latin-1, which maps every byte. UTF-16 is recognised by its byte order
+/// mark.
 fn decoded(bytes: Vec<u8>) -> String {
     let units = |order: fn([u8; 2]) -> u16| {
         let units = bytes[2..].as_chunks().0.iter().map(|pair| order(*pair));
