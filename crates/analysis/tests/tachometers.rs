@@ -123,6 +123,7 @@ fn issue_pulses_of_changing_height_on_a_base_line_that_drifts() {
         ("heights grow with the record", shaped(60, |k| 0.1 + 0.08 * k as f64, flat)),
         ("a base line that drifts by two heights", shaped(60, |_| 1.0, |n| 2.0 * n as f64 / 38_400.0)),
         ("a base line that swings", shaped(60, |_| 1.0, |n| 1.5 * (n as f64 / 12_000.0).sin())),
+        ("a base line that swings by two heights", shaped(60, |_| 1.0, |n| (n as f64 / 1_850.0).sin())),
         ("volts on 12", shaped(60, |_| 5.0, |_| 12.0)),
     ] {
         let found = even(name, samples, 57);
@@ -179,6 +180,12 @@ fn issue_teeth_are_uneven_and_few_samples_wide() {
         found.rpm,
         found.variation
     );
+    // With one pulse a turn it would be 180 000 rpm.
+    let told = turns(
+        &Channel::held("tacho", (0..64_000).map(|n| f64::from(u8::from(n % 4 < 2))).collect()),
+        12_800.0,
+    );
+    assert!(told.unwrap().notes[0].contains("`--pulses-per-turn`"));
     // Two marks a turn at 0 and 0.3; and a wheel of 60 teeth of which two are missing.
     let two = |n: usize| (n as f64 / 640.0).fract();
     let samples = (0..64_000).map(|n| f64::from(two(n) < 0.05 || (0.3..0.35).contains(&two(n)))).collect();

@@ -100,6 +100,19 @@ pub(super) fn edges(samples: &[f64], levels: Levels) -> Vec<f64> {
     edges
 }
 
+/// How many times the samples rise at once, by at least this part of their largest rises: the edges of pulses,
+/// whatever they stand on.
+pub(super) fn steps(samples: &[f64]) -> usize {
+    const PART: f64 = 0.75;
+    let rises: Vec<f64> = samples.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut sorted: Vec<f64> = rises.iter().copied().filter(|rise| rise.is_finite()).collect();
+    // A spark or two are none.
+    let Some(at) = sorted.len().checked_sub(SPARK) else { return 0 };
+    let least = PART * *sorted.select_nth_unstable_by(at, f64::total_cmp).1;
+    let is_step = |rise: f64| rise > least && rise > 0.0;
+    rises.windows(2).filter(|pair| is_step(pair[1]) && !is_step(pair[0])).count()
+}
+
 /// The levels at a place, on the line through those of one or two stretches, and no farther.
 fn between(known: &[(f64, [f64; 2])], at: f64) -> [f64; 2] {
     match known {
