@@ -293,8 +293,8 @@ impl Course {
             }
             // Of all units only one makes a date of our time of it.
             let epoch = [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")].into_iter();
-            let epoch = epoch.map(|(a_second, unit)| (a_second, unit, self.first.1 / a_second));
-            if let Some((a_second, unit, _)) = epoch.filter(|(.., s)| DATES_S.contains(s)).next() {
+            let mut epoch = epoch.map(|(a_second, unit)| (a_second, unit, self.first.1 / a_second));
+            if let Some((a_second, unit, _)) = epoch.find(|(.., s)| DATES_S.contains(s)) {
                 let hz = units::rounded(a_second / step);
                 notes.push(format!("`{name}` counts {unit} from 1970 on: {hz} Hz"));
                 return Some(hz);
