@@ -6,7 +6,7 @@ import { PRESETS } from "./presets.js";
 import { Record, envelope, lineNear, notch, spectrum } from "./signals.js";
 import { Sound } from "./sound.js";
 import { Stage, readPicture } from "./stage.js";
-import { G, colourOf, frequencies, shown } from "./words.js";
+import { G, colourOf, forgetColours, frequencies, shown } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -129,6 +129,13 @@ function turn(wanted) {
   lab.engine.send({ task: "turn", asked: changed });
 }
 
+// What a key has moved on the stage, for who cannot see it.
+function tellStage() {
+  if (!lab.tell) return;
+  lab.tell = false;
+  $("told").textContent = `Sensor at ${lab.facts.sensors[lab.handles.sensor].deg}°; roller ${lab.handles.roller + 1} of ${lab.facts.rollers} is watched.`;
+}
+
 function watch(roller) {
   $("follow").checked = false;
   turn({ roller });
@@ -226,6 +233,7 @@ function receive(message) {
       stage.still(message);
       if (message.anew || message.opened || lab.lastSensor !== lab.handles.sensor) lab.record.clear();
       lab.lastSensor = lab.handles.sensor;
+      tellStage();
       showHandles();
       sayWords();
       if (message.opened) ready();
@@ -233,6 +241,7 @@ function receive(message) {
     },
     handles() {
       lab.handles = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, message.handles[i]]));
+      tellStage();
       showHandles();
     },
     picture() { lab.picture = readPicture(message.picture, lab.layout); lab.displacement = message.displacement; lab.dirty = true; },
@@ -277,6 +286,8 @@ const stage = new Stage($("stage"), $("inset"), {
     if (best !== lab.handles.sensor && best !== lab.askedSensor) { lab.askedSensor = best; turn({ sensor: best }); }
   },
   onRoller: (roller) => watch(roller),
+  // Said once the engine has turned what the key asked for.
+  onKey: () => { lab.tell = true; },
 });
 
 const plots = {
@@ -475,7 +486,7 @@ function connect() {
   for (const id of ["component", "at-tone", "span", "reach", "low", "high"]) $(id).addEventListener("change", () => { lastTraces = lastSpectra = 0; lab.dirty = true; });
   $("bearing").addEventListener("change", () => { open(Number($("bearing").value)).catch((error) => trouble(error.message)); });
   addEventListener("hashchange", () => takePreset(decodeURIComponent(location.hash.slice(1))));
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { lab.dirty = true; lastTraces = lastSpectra = 0; });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { forgetColours(); lab.dirty = true; lastTraces = lastSpectra = 0; });
   addEventListener("resize", () => { lab.dirty = true; lastTraces = lastSpectra = 0; });
   const name = () => `${lab.facts.name}-lab`;
   $("csv").addEventListener("click", () => {
@@ -483,7 +494,7 @@ function connect() {
     save(`${name()}.csv`, csv(names, names.map((_, c) => lab.record.last(c, n))), "text/csv");
   });
   $("png").addEventListener("click", async () => {
-    const parts = ["stage", "inset", "trace", "force", "spectrum", "envelope", "orbit"].map((id) => ({ canvas: $(id), name: $(id).getAttribute("aria-label") }));
+    const parts = ["stage", "inset", "trace", "force", "spectrum", "envelope", "orbit"].map((id) => ({ canvas: $(id), name: $(id).getAttribute("aria-label").split(". ")[0] }));
     save(`${name()}.png`, await poster(parts, `${lab.facts.title}: ${$("words").textContent.slice(0, 110)}…`, colourOf("paper"), colourOf("ink")), "image/png");
   });
   $("ron").addEventListener("click", () => save(`${name()}.ron`, sceneText(lab.facts, lab.scene, lab.handles), "text/plain"));

@@ -24,7 +24,7 @@ export function readPicture(numbers, layout) {
 }
 
 export class Stage {
-  constructor(canvas, inset, { onSensor, onRoller }) {
+  constructor(canvas, inset, { onSensor, onRoller, onKey }) {
     Object.assign(this, { canvas, inset, exaggeration: 0 });
     let dragging = false;
     const place = (event) => [(event.offsetX - this.cx) / this.scale, (this.cy - event.offsetY) / this.scale];
@@ -41,10 +41,11 @@ export class Stage {
     canvas.tabIndex = 0;
     canvas.addEventListener("keydown", (event) => {
       const [round, next] = [{ ArrowLeft: 15, ArrowRight: -15 }[event.key], { ArrowUp: 1, ArrowDown: -1 }[event.key]], count = this.facts.rollers;
-      if (round) sensorAt(this.facts.sensors[this.handles.sensor].deg + round);
-      else if (next) onRoller((this.handles.roller + next + count) % count);
-      else return;
+      if (!round && !next) return;
       event.preventDefault();
+      if (round) sensorAt(this.facts.sensors[this.handles.sensor].deg + round);
+      else onRoller((this.handles.roller + next + count) % count);
+      onKey();
     });
   }
 

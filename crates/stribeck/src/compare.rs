@@ -90,7 +90,11 @@ fn folder(asked: &Path, place: &Place) -> Result<Option<PathBuf>> {
     if !path.exists() {
         let known = known(place);
         let known = if known.is_empty() {
-            format!("`{}` holds no runs", shown(&place.runs()))
+            format!(
+                "`{}` holds no runs. `{} simulate` makes one; a measured record is given by its file",
+                shown(&place.runs()),
+                place.program
+            )
         } else {
             format!("`{}` holds {known}", shown(&place.runs()))
         };
