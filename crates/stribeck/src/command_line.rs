@@ -1,7 +1,7 @@
 //! The command line: a mistake in it is answered with an example of its command.
 
 use clap::error::{ContextKind, Error, ErrorKind};
-use clap::{Command, CommandFactory, Parser};
+use clap::{Command, Parser};
 
 /// The parsed command line. Help, the version and mistakes end the program.
 pub fn parse<C: Parser>() -> C {
@@ -33,6 +33,8 @@ fn without_trailing(mut error: Error) -> Error {
 
 #[cfg(test)]
 mod tests {
+    use clap::CommandFactory;
+
     use super::*;
     use crate::Cli;
 
