@@ -247,7 +247,8 @@ mod tests {
     }
 
     /// On a ring that its load makes out of round by half the depth, half the floor was taken for raceway:
-    /// where the spall had been, a pit of a tenth of a millimetre was left, and oil in it made the run diverge.
+    /// where the spall had been, a pit of a tenth of a millimetre was left, and oil in it made the run
+    /// diverge.
     #[test]
     fn issue_a_ring_out_of_round_keeps_no_floor_where_its_spall_was() {
         let oval = |vertices: Vec<[f64; 2]>| -> Vec<[f64; 2]> {

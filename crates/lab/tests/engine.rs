@@ -88,8 +88,8 @@ fn roundtrip_content_in_bytes() {
     }
 }
 
-/// In the guide's lab, whose ring is out of round under its load, a spall that was moved left a part of its floor
-/// behind; films over that made the run diverge within 20 ms.
+/// In the guide's lab, whose ring is out of round under its load, a spall that was moved left a part of its
+/// floor behind; films over that made the run diverge within 20 ms.
 #[test]
 fn issue_a_spall_moves_in_a_bearing_with_oil() {
     let folder = Scratch::create("lab-oil");

@@ -339,7 +339,7 @@ impl CatalogueBearing {
                 "elements" => return Err(format!("a bearing has 3 to 200 rolling elements, not {number}")),
                 name if name.contains(' ') => {
                     return Err(format!(
-                        "`{name}` is no number of a bearing: between a name and its numbers is a comma, as in \
+                        "`{name}` is no number of a bearing: a comma parts a name from its numbers, as in \
                          `NU 205, elements=13`"
                     ));
                 }

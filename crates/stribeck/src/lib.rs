@@ -131,9 +131,7 @@ pub enum Command {
     #[command(after_help = "Example: stribeck rm mine other")]
     Rm(remove::Options),
     /// Writes the completions of commands and flags for a shell
-    #[command(
-        after_help = "Example: stribeck completions bash > ~/.local/share/bash-completion/completions/stribeck"
-    )]
+    #[command(after_help = "Example: stribeck completions bash > stribeck.bash")]
     Completions(shell::Completions),
     /// Writes the pages of the manual
     #[command(after_help = "Example: stribeck man ~/.local/share/man/man1")]

@@ -1,5 +1,5 @@
-//! The five likeliest mistakes with each command of the first hour, from an empty folder: each is answered by a
-//! message that names what was wrong and what to try, the command fails, and nothing is left behind.
+//! The five likeliest mistakes with each command of the first hour, from an empty folder: each is answered by
+//! a message that names what was wrong and what to try, the command fails, and nothing is left behind.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -108,7 +108,7 @@ const EXPORT: [Mistake; 5] = [
 /// A letter for a digit, no comma, a number that is none, one out of range, a kind that no plane model has.
 const BEARINGS: [Mistake; 5] = [
     (&["bearings", "62O5"], &["no bearing `62O5`", "did you mean `6205`"]),
-    (&["bearings", "NU 205 elements=13"], &["`NU 205 elements`", "a comma, as in"]),
+    (&["bearings", "NU 205 elements=13"], &["`NU 205 elements`", "a comma parts a name"]),
     (&["bearings", "NU 205, elements=many"], &["`many` of the bearing is no number"]),
     (&["bearings", "NU 205, elements=1"], &["3 to 200 rolling elements, not 1"]),
     (&["bearings", "22205"], &["`22205` is a spherical roller bearing", "does not have"]),
