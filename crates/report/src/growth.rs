@@ -38,7 +38,7 @@ pub struct UnitFindings {
     pub onset: f64,
     /// Revolutions at the end, in truth.
     pub end: f64,
-    /// Revolutions of the first record that claims a defect.
+    /// Revolutions of the first record that claims the defect and whose next one does, too.
     pub claimed_at: Option<f64>,
     /// Revolutions of the first record above the alarm of the root mean square.
     pub alarm_at: Option<f64>,
@@ -137,7 +137,7 @@ fn table(of: &GrowthFindings) -> Markup {
     html! {
         table {
             tr {
-                th { "Unit" } th { "Records" } th { "Onset, in truth" } th { "First claim" } th { "Alarm" }
+                th { "Unit" } th { "Records" } th { "Onset, in truth" } th { "Claimed twice running from" } th { "Alarm" }
                 th { "End, in truth" } th { "Left at the last record" } th { "Left in truth" }
             }
             @for unit in &of.units {

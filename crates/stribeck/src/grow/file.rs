@@ -57,6 +57,7 @@ pub(super) enum By {
     Rms,
     Kurtosis,
     Level,
+    Spall,
 }
 
 /// Lengths at the onset and at the end [mm].
@@ -205,6 +206,7 @@ impl By {
             Self::Rms => "the logarithm of the root mean square",
             Self::Kurtosis => "the logarithm of the kurtosis",
             Self::Level => "the level of the family",
+            Self::Spall => "the logarithm of the length between the two events of a passage",
         }
     }
 }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use stribeck_analysis::growth::{Gauge, Law, remaining};
+use stribeck_analysis::growth::{Gauge, Known, Law, Record, Shown, remaining};
 use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
 use stribeck_analysis::measured::{Analysis, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
@@ -52,9 +52,12 @@ pub(super) fn judged(
     for unit in 1..=file.units {
         let of_unit = |n: &usize| planned[*n].unit == unit;
         let own: Vec<usize> = (0..planned.len()).filter(of_unit).collect();
-        let others: Vec<(f64, f64)> = (0..planned.len())
+        let others: Vec<Known> = (0..planned.len())
             .filter(|n| !of_unit(n))
-            .filter_map(|n| Some((indicator(file, &records[n])?, records[n].length_mm?)))
+            .filter_map(|n| {
+                let record = shows(file, &records[n])?;
+                Some(Known { unit: planned[n].unit, length_mm: records[n].length_mm, record })
+            })
             .collect();
         let own = own.into_iter().map(|n| records[n].clone()).collect();
         let first = planned.iter().find(|plan| plan.unit == unit);
@@ -126,16 +129,19 @@ fn record(file: &File, plan: &Planned, run: usize, found: Option<&MeasuredFindin
     }
 }
 
-/// What the length is read from, of a record that claims the defect.
-fn indicator(file: &File, record: &RecordFindings) -> Option<f64> {
+/// What a record shows; `None` where there is none.
+fn shows(file: &File, record: &RecordFindings) -> Option<Record> {
     let name = file.on.family().name();
-    record.claimed.as_ref()?.split('+').find(|claimed| *claimed == name)?;
-    let value = match file.by {
-        By::Rms => record.rms?.ln(),
-        By::Kurtosis => record.kurtosis?.ln(),
-        By::Level => record.level_db?,
+    if !record.claimed.as_ref()?.split('+').any(|claimed| claimed == name) {
+        return Some(Record::Sound);
+    }
+    let indicator = match file.by {
+        By::Rms => record.rms.map(f64::ln),
+        By::Kurtosis => record.kurtosis.map(f64::ln),
+        By::Level => record.level_db,
+        By::Spall => record.spall_mm.map(f64::ln),
     };
-    Some(value).filter(|value| value.is_finite())
+    Some(indicator.filter(|x| x.is_finite()).map_or(Record::Damaged, Record::Indicates))
 }
 
 fn unit_findings(
@@ -144,14 +150,23 @@ fn unit_findings(
     unit: usize,
     (onset, end): (f64, f64),
     mut records: Vec<RecordFindings>,
-    others: &[(f64, f64)],
+    others: &[Known],
 ) -> UnitFindings {
+    let shown: Vec<Record> =
+        records.iter().map(|record| shows(file, record).unwrap_or(Record::Sound)).collect();
     if let Some(gauge) = Gauge::of(others) {
-        let read: Vec<Option<f64>> =
-            records.iter().map(|record| indicator(file, record).map(|x| gauge.read_mm(x))).collect();
-        let left = remaining(law, &read, gauge.sigma, file.seed ^ unit as u64);
+        let read: Vec<Shown> = shown
+            .iter()
+            .map(|record| match record {
+                Record::Sound => Shown::Sound,
+                Record::Damaged => Shown::Damaged,
+                Record::Indicates(x) => Shown::Length(gauge.read_mm(*x)),
+            })
+            .collect();
+        let left = remaining(law, &read, &gauge, file.seed ^ unit as u64);
         for ((record, read), left) in records.iter_mut().zip(read).zip(left) {
-            (record.read_mm, record.remaining) = (read, left);
+            record.read_mm = if let Shown::Length(mm) = read { Some(mm) } else { None };
+            record.remaining = left;
         }
     }
     let first: Vec<f64> = records.iter().take(LEAST_RECORDS).filter_map(|record| record.rms).collect();
@@ -162,7 +177,10 @@ fn unit_findings(
         unit,
         onset,
         end,
-        claimed_at: records.iter().find(|r| indicator(file, r).is_some()).map(|r| r.revolutions),
+        claimed_at: shown
+            .windows(2)
+            .position(|two| !two.contains(&Record::Sound))
+            .map(|first| records[first].revolutions),
         alarm_at: records.iter().skip(LEAST_RECORDS).find(above).map(|r| r.revolutions),
         alarm_rms: alarm,
         records,
