@@ -1,4 +1,4 @@
-//! A spall that grows: its law, the units that are drawn from it, and what is left of a unit's life by its
+//! A spall that grows: its law, the units that are drawn from it, and the remaining life of a unit by its
 //! records.
 //!
 //! Progress goes from 0, where the spall begins, to 1, where the unit is at its end: dL/dN ∝ Lᵐ makes
@@ -96,21 +96,21 @@ impl Course {
 
 /// From an indicator to the length of a spall: ln L = a + b x, by least squares over records of other units.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gauge {
+pub struct Calibration {
     a: f64,
     b: f64,
-    /// Standard deviation of ln L about it.
+    /// Standard deviation of ln L about the line.
     pub sigma: f64,
-    /// Records that it rests on.
+    /// Number of its records.
     pub records: usize,
 }
 
-/// Fewest records of a gauge.
+/// Fewest records of a calibration.
 const LEAST_RECORDS: usize = 6;
-/// No gauge is taken to be better than this.
+/// Smallest residual that a calibration is taken to have.
 const LEAST_SIGMA: f64 = 0.02;
 
-impl Gauge {
+impl Calibration {
     /// From indicators and lengths [mm]; `None` for fewer than six records or indicators that are all one.
     pub fn of(records: &[(f64, f64)]) -> Option<Self> {
         let count = records.len() as f64;
@@ -129,13 +129,13 @@ impl Gauge {
         Some(Self { a: y - b * x, b, sigma, records: records.len() })
     }
 
-    /// The length that an indicator tells [mm].
-    pub fn read_mm(&self, indicator: f64) -> f64 {
+    /// Length of the spall by its indicator [mm].
+    pub fn length_mm(&self, indicator: f64) -> f64 {
         (self.a + self.b * indicator).exp()
     }
 }
 
-/// What is left of a life [revolutions]: the median, and the ends of an interval of 90 %.
+/// Remaining life [revolutions]: the median, and the ends of an interval of 90 %.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
 pub struct Remaining {
     /// Median.
@@ -146,18 +146,18 @@ pub struct Remaining {
     pub high: f64,
 }
 
-/// Courses that are followed.
+/// Number of particles.
 const COURSES: usize = 4000;
-/// Share of sound records that are taken for damaged ones, and of damaged ones that are missed whatever their
+/// Share of sound records in which a defect is claimed, and of damaged ones in which none is, whatever the
 /// length.
 const MISTAKEN: f64 = 0.01;
 
-/// What is left after each record of a unit by what was read from its records so far: `None` for a record
+/// Remaining life after each record of a unit by the readings of its records so far: `None` for a record
 /// that shows no defect, else the length [mm]; `sigma` is the error of its logarithm. `None` before the first
 /// record that shows one.
 ///
-/// A particle filter: courses drawn from the law are weighted by how likely each makes what was read, drawn
-/// anew where few carry the weight, and run on to their ends. Source: N. J. Gordon, D. J. Salmond and A. F.
+/// A particle filter: courses drawn from the law are weighted by the likelihood of the lengths, resampled
+/// when few of them carry the weight, and continued to their ends. Source: N. J. Gordon, D. J. Salmond and A. F.
 /// M. Smith, IEE Proc. F 140 (1993) 107.
 pub fn remaining(law: &Law, read: &[Option<f64>], sigma: f64, seed: u64) -> Vec<Option<Remaining>> {
     let mut dice = Dice::new(seed);
@@ -175,13 +175,13 @@ pub fn remaining(law: &Law, read: &[Option<f64>], sigma: f64, seed: u64) -> Vec<
         }
         let sum: f64 = weights.iter().sum();
         if sum <= 0.0 {
-            // No course of the law has made this.
+            // No course of the law is consistent with the records.
             all.resize(read.len(), None);
             return all;
         }
         weights.iter_mut().for_each(|weight| *weight /= sum);
         if weights.iter().map(|w| w * w).sum::<f64>() > 2.0 / COURSES as f64 {
-            courses = drawn_anew(&courses, &weights, &mut dice);
+            courses = resampled(&courses, &weights, &mut dice);
             weights.fill(1.0);
         }
         seen |= length.is_some();
@@ -200,8 +200,8 @@ fn likelihood(law: &Law, course: &Course, read: Option<f64>, sigma: f64) -> f64 
     }
 }
 
-/// As many courses, each as often as its weight says, from one draw.
-fn drawn_anew(courses: &[Course], weights: &[f64], dice: &mut Dice) -> Vec<Course> {
+/// As many courses, each in proportion to its weight, from one draw (systematic resampling).
+fn resampled(courses: &[Course], weights: &[f64], dice: &mut Dice) -> Vec<Course> {
     let sum: f64 = weights.iter().sum();
     let step = sum / courses.len() as f64;
     let (mut at, mut passed) = (0, weights[0]);
@@ -218,11 +218,11 @@ fn drawn_anew(courses: &[Course], weights: &[f64], dice: &mut Dice) -> Vec<Cours
         .collect()
 }
 
-/// Most records that a course is followed further.
+/// Most further records of a course.
 const FURTHEST: usize = 100_000;
 
 fn ends(law: &Law, courses: &[Course], weights: &[f64], dice: &mut Dice) -> Remaining {
-    let of_each = drawn_anew(courses, weights, dice);
+    let of_each = resampled(courses, weights, dice);
     let mut left: Vec<f64> = of_each
         .into_iter()
         .map(|mut course| {

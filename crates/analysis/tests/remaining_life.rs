@@ -1,6 +1,6 @@
-//! What is left of a unit whose spall grows: intervals over many made units, growth against its closed form.
+//! Remaining life of a unit whose spall grows: intervals over many units, growth against its closed form.
 
-use stribeck_analysis::growth::{Gauge, Law, remaining};
+use stribeck_analysis::growth::{Calibration, Law, remaining};
 use stribeck_analysis::records::normal;
 use stribeck_scene::dice::Dice;
 
@@ -13,7 +13,7 @@ const LAW: Law = Law {
     every: 5e5,
 };
 
-/// A made unit: what is read at its records, and its end.
+/// A synthetic unit: the lengths estimated from its records, and its end.
 fn made(seed: u64, sigma: f64) -> (Vec<Option<f64>>, f64) {
     let mut dice = Dice::stream(99, seed);
     let mut course = LAW.unit(&mut dice);
@@ -48,12 +48,12 @@ fn sigma_of_others() -> f64 {
         .map(|n| 1.0 + 0.05 * f64::from(n))
         .map(|mm| ((mm * (0.15 * normal(&mut dice)).exp()).ln(), mm))
         .collect();
-    Gauge::of(&records).expect("a gauge").sigma
+    Calibration::of(&records).expect("a calibration").sigma
 }
 
 #[test]
 fn invariant_intervals_of_ninety_per_cent_hold_as_many_units() {
-    // 300 units that set nothing: 90 % within what chance leaves of so many.
+    // 300 units that no constant was fitted to: 90 % of intervals, within the scatter of 300 draws.
     let held = held(&LAW, sigma_of_others(), 0..300);
     println!("{held} of the units are held");
     assert!((0.85..=0.95).contains(&held), "{held}");
@@ -86,7 +86,7 @@ fn analytic_growth_is_exponential_or_of_a_power() {
 }
 
 #[test]
-fn refuses_a_gauge_of_few_records() {
-    assert_eq!(Gauge::of(&[(1.0, 1.0); 3]), None);
-    assert_eq!(Gauge::of(&[(1.0, 1.0); 9]), None);
+fn refuses_a_calibration_by_few_records() {
+    assert_eq!(Calibration::of(&[(1.0, 1.0); 3]), None);
+    assert_eq!(Calibration::of(&[(1.0, 1.0); 9]), None);
 }

@@ -1,26 +1,27 @@
-//! What the records of a growth show, unit by unit.
+//! Findings of the records of a growth, unit by unit.
 
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use stribeck_analysis::growth::{Gauge, Law, remaining};
+use stribeck_analysis::growth::{Calibration, Law, remaining};
 use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
-use stribeck_analysis::measured::{Analysis, Machine, MeasuredFindings};
+use stribeck_analysis::measured::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
 use stribeck_formats::{Channel, Recording};
 use stribeck_report::{GrowthFindings, RecordFindings, UnitFindings};
 use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::dice::Dice;
+use stribeck_scene::growth::{Growth, Indicator};
 use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::scene::DefectRing;
 
 use super::Planned;
-use super::file::{By, File};
 use crate::many_runs::ManyRuns;
 
-/// All units with what their records show, and what is said to be left of each.
+/// All units with the findings of their records, and the estimated remaining life of each.
 pub(super) fn judged(
-    file: &File,
+    growth: &Growth,
     law: &Law,
     planned: &[Planned],
     campaign: &Campaign,
@@ -35,31 +36,33 @@ pub(super) fn judged(
             millions(law.onset.0),
             millions(law.life.0)
         ),
-        "A unit's readings are gauged by the records of the other units, whose lengths are known.".to_owned(),
+        "Lengths of a unit are estimated with a calibration by the records of the other units, whose lengths \
+         are known."
+            .to_owned(),
     ];
     let mut records = Vec::with_capacity(planned.len());
     for (plan, variant) in planned.iter().zip(&campaign.runs) {
-        let found = match findings(file, variant, &runs) {
+        let found = match findings(growth, variant, &runs) {
             Ok(found) => Some(found),
             Err(why) => {
                 notes.push(format!("run {} has no record: {why:#}", variant.number));
                 None
             }
         };
-        records.push(record(file, plan, variant.number, found.as_ref()));
+        records.push(record(growth, plan, variant.number, found.as_ref()));
     }
-    let mut units = Vec::with_capacity(file.units);
-    for unit in 1..=file.units {
+    let mut units = Vec::with_capacity(growth.units);
+    for unit in 1..=growth.units {
         let of_unit = |n: &usize| planned[*n].unit == unit;
         let own: Vec<usize> = (0..planned.len()).filter(of_unit).collect();
         let others: Vec<(f64, f64)> = (0..planned.len())
             .filter(|n| !of_unit(n))
-            .filter_map(|n| Some((indicator(file, &records[n])?, records[n].length_mm?)))
+            .filter_map(|n| Some((indicator(growth, &records[n])?, records[n].length_mm?)))
             .collect();
         let own = own.into_iter().map(|n| records[n].clone()).collect();
         let first = planned.iter().find(|plan| plan.unit == unit);
         let (onset, end) = first.map_or((f64::NAN, f64::NAN), |plan| (plan.onset, plan.end));
-        units.push(unit_findings(file, law, unit, (onset, end), own, &others));
+        units.push(unit_findings(growth, law, unit, (onset, end), own, &others));
     }
     if units.iter().all(|unit| unit.records.iter().all(|record| record.remaining.is_none())) {
         notes.push(
@@ -75,15 +78,31 @@ pub(super) fn judged(
         })
         .collect();
     let held = [told.iter().filter(|held| **held).count(), told.len()];
-    Ok(GrowthFindings { name: file.name.clone(), by: file.by.words().to_owned(), units, held, notes })
+    Ok(GrowthFindings { name: growth.name.clone(), by: words(growth.by).to_owned(), units, held, notes })
+}
+
+/// The family of the defect.
+fn defect(growth: &Growth) -> Defect {
+    match growth.on {
+        DefectRing::Outer => Defect::Bpfo,
+        DefectRing::Inner => Defect::Bpfi,
+    }
+}
+
+fn words(indicator: Indicator) -> &'static str {
+    match indicator {
+        Indicator::Rms => "the logarithm of the root mean square",
+        Indicator::Kurtosis => "the logarithm of the kurtosis",
+        Indicator::Level => "the level of the family",
+    }
 }
 
 fn millions(revolutions: f64) -> String {
     format!("{:.3} million revolutions", 1e-6 * revolutions)
 }
 
-/// What a run's record shows with the machine's noise.
-fn findings(file: &File, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredFindings> {
+/// Findings of a run's record with the machine's noise added.
+fn findings(growth: &Growth, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredFindings> {
     let scene = variant.scene.as_ref().map_err(|why| anyhow::anyhow!("{why}"))?;
     let dir = RunDir::open(runs.run(scene))?;
     let path = if dir.signals().exists() { dir.signals() } else { dir.trace() };
@@ -91,8 +110,8 @@ fn findings(file: &File, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredF
     let leading = |c: &&Channel| c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2");
     let channel = recording.channels.iter().find(leading).context("the run recorded no sensor")?;
     let rate_hz = channel.rate_hz.context("the run has no sample rate")?;
-    let mut dice = Dice::stream(file.seed ^ 0x0bad_5eed, variant.number as u64);
-    let noisy = channel.read()?.into_iter().map(|x| x + file.noise_m_s2 * normal(&mut dice)).collect();
+    let mut dice = Dice::stream(growth.seed ^ 0x0bad_5eed, variant.number as u64);
+    let noisy = channel.read()?.into_iter().map(|x| x + growth.noise_m_s2 * normal(&mut dice)).collect();
     let noisy = Channel::held(&channel.name, noisy).at_rate(Some(rate_hz)).in_unit(Some("m/s^2".to_owned()));
     let machine = Machine {
         speed_rpm: Some((scene.operation.speed_rpm - scene.operation.outer_speed_rpm).abs()),
@@ -104,12 +123,12 @@ fn findings(file: &File, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredF
     Ok(Analysis::of(&noisy, rate_hz, &machine)?.findings)
 }
 
-fn record(file: &File, plan: &Planned, run: usize, found: Option<&MeasuredFindings>) -> RecordFindings {
+fn record(growth: &Growth, plan: &Planned, run: usize, found: Option<&MeasuredFindings>) -> RecordFindings {
     let claimed = found.map(|found| {
         let names: Vec<&str> = found.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect();
         if names.is_empty() { "none".to_owned() } else { names.join("+") }
     });
-    let family = found.and_then(|found| found.families.iter().find(|f| f.name == file.on.family()));
+    let family = found.and_then(|found| found.families.iter().find(|f| f.name == defect(growth)));
     RecordFindings {
         run,
         revolutions: plan.revolutions,
@@ -126,30 +145,32 @@ fn record(file: &File, plan: &Planned, run: usize, found: Option<&MeasuredFindin
     }
 }
 
-/// What the length is read from, of a record that claims the defect.
-fn indicator(file: &File, record: &RecordFindings) -> Option<f64> {
-    let name = file.on.family().name();
+/// The quantity from which the length is estimated, of a record in which the defect is claimed.
+fn indicator(growth: &Growth, record: &RecordFindings) -> Option<f64> {
+    let name = defect(growth).name();
     record.claimed.as_ref()?.split('+').find(|claimed| *claimed == name)?;
-    let value = match file.by {
-        By::Rms => record.rms?.ln(),
-        By::Kurtosis => record.kurtosis?.ln(),
-        By::Level => record.level_db?,
+    let value = match growth.by {
+        Indicator::Rms => record.rms?.ln(),
+        Indicator::Kurtosis => record.kurtosis?.ln(),
+        Indicator::Level => record.level_db?,
     };
     Some(value).filter(|value| value.is_finite())
 }
 
 fn unit_findings(
-    file: &File,
+    growth: &Growth,
     law: &Law,
     unit: usize,
     (onset, end): (f64, f64),
     mut records: Vec<RecordFindings>,
     others: &[(f64, f64)],
 ) -> UnitFindings {
-    if let Some(gauge) = Gauge::of(others) {
-        let read: Vec<Option<f64>> =
-            records.iter().map(|record| indicator(file, record).map(|x| gauge.read_mm(x))).collect();
-        let left = remaining(law, &read, gauge.sigma, file.seed ^ unit as u64);
+    if let Some(calibration) = Calibration::of(others) {
+        let read: Vec<Option<f64>> = records
+            .iter()
+            .map(|record| indicator(growth, record).map(|x| calibration.length_mm(x)))
+            .collect();
+        let left = remaining(law, &read, calibration.sigma, growth.seed ^ unit as u64);
         for ((record, read), left) in records.iter_mut().zip(read).zip(left) {
             (record.read_mm, record.remaining) = (read, left);
         }
@@ -162,7 +183,7 @@ fn unit_findings(
         unit,
         onset,
         end,
-        claimed_at: records.iter().find(|r| indicator(file, r).is_some()).map(|r| r.revolutions),
+        claimed_at: records.iter().find(|r| indicator(growth, r).is_some()).map(|r| r.revolutions),
         alarm_at: records.iter().skip(LEAST_RECORDS).find(above).map(|r| r.revolutions),
         alarm_rms: alarm,
         records,
