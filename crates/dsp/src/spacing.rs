@@ -333,6 +333,18 @@ mod tests {
         }
     }
 
+    /// An element that bounces as it leaves a spall knocks twice within a millisecond, both times louder
+    /// than the next one that enters.
+    #[test]
+    fn example_a_bounce_is_not_taken_for_the_second_event() {
+        let weak = unequal(5e-3, 0.2e-3, 0.75);
+        let bounce = unequal(0.75e-3, 0.2e-3, 0.9);
+        let signal: Vec<f64> = weak.iter().zip(&bounce).map(|(x, y)| 0.5 * (x + y)).collect();
+        let found = passage_spacing(&signal, RATE_HZ, 60.0, 0.5e-3, 7e-3).unwrap();
+        let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
+        assert!((found.lag_s - 5e-3).abs() < 0.1e-3, "{found:?}");
+    }
+
     #[test]
     fn example_a_known_rhythm_makes_no_second_event() {
         let signal = pairs(0.0, 0.6e-3);

@@ -43,8 +43,8 @@ pub(super) struct Search {
 struct Second {
     /// Distance from the strongest event, before or after it [samples].
     lag: f64,
-    /// Its power over the median between passages.
-    height: f64,
+    /// How far the power falls between the two, over the power of the second.
+    valley: f64,
 }
 
 impl Search {
@@ -62,8 +62,10 @@ impl Search {
         let agree =
             |a: &Second, b: &Second| (a.lag - b.lag).abs() < (AGREED * a.lag.max(b.lag)).max(0.5 * sharp);
         let pairs = low.iter().flat_map(|a| high.iter().filter(move |b| agree(a, b)).map(move |b| (a, b)));
-        let weaker = |(a, b): &(&Second, &Second)| a.height.min(b.height);
-        let best = pairs.max_by(|one, other| weaker(one).total_cmp(&weaker(other)))?;
+        // Of several, the one before which it is most silent: what bounces or rings right after an impact may
+        // be louder than a second impact, and never stands as free of the first.
+        let ringing = |(a, b): &(&Second, &Second)| a.valley.max(b.valley);
+        let best = pairs.min_by(|one, other| ringing(one).total_cmp(&ringing(other)))?;
         Some([best.0.lag, best.1.lag])
     }
 
@@ -105,22 +107,27 @@ impl Search {
         let reach = self.lags.end;
         let of = |from: usize, step: usize| self.mean_about(power, strongest.iter().skip(from).step_by(step));
         let (all, halves) = (of(0, 1), [of(0, 2), of(1, 2)]);
+        let valley = |n: usize| {
+            let between = if n < reach { &all[n..reach] } else { &all[reach..n] };
+            between.iter().fold(f64::INFINITY, |least, power| least.min(*power)) / all[n]
+        };
         let stands = |n: usize| {
             let apart = n.abs_diff(reach);
             let alone = ((ALONE * apart as f64) as usize).max(1);
             let near = &all[n.saturating_sub(alone)..(n + alone + 1).min(all.len())];
-            let between = if n < reach { &all[n..reach] } else { &all[reach..n] };
             self.lags.contains(&apart)
                 && all[n] >= ABOVE
                 && halves.iter().all(|half| half[n] >= ABOVE_IN_HALF)
                 && near.iter().all(|power| *power <= all[n])
-                && between.iter().any(|power| *power <= VALLEY * all[n])
+                && valley(n) <= VALLEY
         };
         // A band may be later than both together.
         let sharp = smoothing(self.sample_rate_hz).min(reach - 1);
         let first = top(&all, highest(&all, reach - sharp..reach + sharp + 1));
-        let second = |n: usize| Second { lag: (top(&all, n) - first).abs(), height: all[n] };
-        (1..all.len() - 1).filter(|n| stands(*n)).map(second).collect()
+        let second = |n: usize| Second { lag: (top(&all, n) - first).abs(), valley: valley(n) };
+        // Such a band moves the distance, too, out of those that are looked at.
+        let within = |second: &Second| self.lags.contains(&(second.lag.round() as usize));
+        (1..all.len() - 1).filter(|n| stands(*n)).map(second).filter(within).collect()
     }
 
     /// Mean power about the strongest events, from the greatest distance before them to as much after, over
@@ -157,4 +164,29 @@ fn top(values: &[f64], n: usize) -> f64 {
     let bend = left - 2.0 * values[n] + right;
     let offset = if bend < 0.0 { (0.5 * (left - right) / bend).clamp(-0.5, 0.5) } else { 0.0 };
     n as f64 + offset
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// In one band events may come later than in both together, from which passages are counted.
+    #[test]
+    fn invariant_a_distance_is_among_those_that_are_looked_at() {
+        let search = Search { period: 1000.0, lags: 16..400, sample_rate_hz: 40_000.0 };
+        let late = smoothing(search.sample_rate_hz) - 1;
+        let found = |apart: usize| {
+            let strongest: Vec<usize> = (1..20).map(|passage| 1000 * passage).collect();
+            let mut power = vec![1.0; 21_000];
+            for place in &strongest {
+                for (at, height) in [(place + late, 50.0), (place + late - apart, 20.0)] {
+                    power[at] = height;
+                    power[at - 1] = 0.7 * height;
+                    power[at + 1] = 0.7 * height;
+                }
+            }
+            search.seconds(&power, &strongest).len()
+        };
+        assert_eq!((found(380), found(398), found(402)), (1, 1, 0));
+    }
 }

@@ -487,9 +487,11 @@ pub(super) fn numbers(sheet: &mut Sheet) {
         ],
         [
             "`ABOVE` = 2, `VALLEY` = 0.4",
-            "power of a second event over the median between passages, and the least fall before it",
+            "power of a second event over the median between passages, and the least fall before it; of \
+             several the one with the deepest fall counts",
             "the first a convention; the second from all records of HIT-SM, one of which (OR8_1200) it \
-             leaves without a length, and from ringing in five simulated spalls",
+             leaves without a length, and from ringing in five simulated spalls, two of which set the choice \
+             among several, too",
         ],
         [
             "`RESOLVED` = 4",
