@@ -1,7 +1,7 @@
 //! What develops Stribeck: `cargo xtask ci`, `study`, `peers` and `fuzz`, and the program's own `simulate`,
 //! `report` and `plan`.
 //!
-//! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
+//! Glue only: paths, flags, progress and exit codes. All computation is in the crates.
 
 mod book;
 mod ci;
@@ -53,7 +53,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = stribeck::command_line::parse::<Cli>();
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
         Command::Program(command) => lab::with_module(command)

@@ -55,7 +55,7 @@ enum Is<'a> {
     Text(&'a str),
 }
 
-/// What a segment says of the data of a TDMS object.
+/// Index of the data of a TDMS object in a segment.
 enum Index {
     /// A type and a number of values.
     Of(u32, u64),

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! An ensemble of many starts has `ensemble.json` and a folder for each start, `start-001`, `start-002` …,
-//! which is the folder of a run, in place of `run.json` and what a run writes.
+//! which is the folder of a run, in place of `run.json` and the files of a run.
 //!
 //! A run is never written over another one that holds samples: [`RunDir::create`] refuses such a folder,
 //! [`RunDir::create_numbered`] takes the next free one, and [`RunDir::replace`] keeps the earlier run until

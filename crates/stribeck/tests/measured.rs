@@ -401,7 +401,7 @@ fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
     says(&output, &["does not say how fast it was sampled: give `--rate-hz`", either]);
     let output = stribeck(desk.path(), &[&words[..], &["--rate-hz=12800"]].concat());
     says(&output, &["a defect of the outer raceway", either]);
-    // What is said to be too slow is said with a rate that would do.
+    // The message on a rate that is too low names a sufficient one.
     let output = stribeck(desk.path(), &[&words[..], &["--rate-hz=12.8"]].concat());
     says(
         &output,

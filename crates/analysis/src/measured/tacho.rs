@@ -28,7 +28,7 @@ pub struct Turns {
     pub variation: f64,
     /// Times of the pulses, in samples.
     pub pulses: Vec<f64>,
-    /// What was odd about the tachometer.
+    /// Notes on irregularities of the tachometer.
     pub notes: Vec<String>,
 }
 
@@ -73,7 +73,7 @@ pub fn turns(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
 ///
 /// # Errors
 /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when it holds fewer than three pulses, or when
-/// so many are missing or too many that no speed follows.
+/// too many are missing or surplus for a speed to follow.
 pub fn pulses(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, Error> {
     let samples = channel.read()?;
     let name = &channel.name;

@@ -47,7 +47,7 @@ impl Tab {
         let told = BufReader::new(browser.stderr.take().expect("piped"));
         let mut lines = told.lines().map_while(Result::ok);
         let line = lines.find(|line| line.contains("ws://")).expect("the browser listens");
-        // What it says further must be read, or it waits.
+        // Its further output must be read, or it blocks.
         std::thread::spawn(move || lines.for_each(drop));
         let host = line
             .split("ws://")
@@ -69,7 +69,7 @@ impl Tab {
         sleep(Duration::from_millis(1500));
     }
 
-    /// What a promise in the page comes to.
+    /// Value of a promise in the page.
     pub(crate) fn answer(&mut self, script: &str) -> Value {
         let said = self.call(
             "Runtime.evaluate",
@@ -84,7 +84,8 @@ impl Tab {
         self.errors.clone()
     }
 
-    fn call(&mut self, method: &str, params: Value) -> Value {
+    /// What the browser answers to a call of its protocol.
+    pub(crate) fn call(&mut self, method: &str, params: Value) -> Value {
         self.calls += 1;
         let id = self.calls;
         send(&mut self.stream, &json!({ "id": id, "method": method, "params": params }).to_string());

@@ -22,7 +22,7 @@ pub(super) enum Verdict {
     Differ(&'static str, String),
 }
 
-/// Compares readings. Channels are matched by what they hold, not by their names.
+/// Compares readings. Channels are matched by their values, not by their names.
 pub(super) fn judge(ours: &Reading, theirs: &Reading) -> Verdict {
     let (ours, theirs) = match (ours, theirs) {
         (Err(_), Err(_)) => return Verdict::BothRefuse,
@@ -32,7 +32,7 @@ pub(super) fn judge(ours: &Reading, theirs: &Reading) -> Verdict {
         (Ok(_), Ok(theirs)) if theirs.is_empty() => return Verdict::TheirsRefuses,
         (Ok(ours), Ok(theirs)) => (ours, theirs),
     };
-    // The other programs leave out what is no number at all.
+    // The other programs leave out channels without numbers.
     let mut rest: Vec<&Held> = ours.iter().filter(|c| c.numbers > 0).collect();
     let mut only_theirs: Vec<&Held> = Vec::new();
     for of in theirs.iter().filter(|c| c.numbers > 0) {

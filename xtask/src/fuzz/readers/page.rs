@@ -41,9 +41,9 @@ struct Kind {
 #[derive(Debug, Default)]
 pub(super) struct Tables {
     counts: BTreeMap<&'static str, Counts>,
-    /// By format and in what they differ.
+    /// By format and kind of difference.
     kinds: BTreeMap<(&'static str, &'static str, &'static str), Kind>,
-    /// By format and why we refuse what they read.
+    /// By format and our reason to refuse a file that they read.
     refusals: BTreeMap<(&'static str, String), Kind>,
     pub(super) panics: Vec<String>,
     slowest: Duration,
@@ -230,7 +230,7 @@ fn explained(kind: &str, what: &str, done: &str) -> Option<&'static str> {
     found.map(|of| of.3)
 }
 
-/// A message without the path of its file, what it quotes and words with digits: messages of one kind are
+/// A message without the path of its file, quoted text and words with digits: messages of one kind are
 /// one.
 fn gist(why: &str) -> String {
     let mut quoted = false;

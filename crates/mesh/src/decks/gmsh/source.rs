@@ -1,4 +1,4 @@
-//! What the sections of a Gmsh file consist of: lines of words, and numbers that are words or bytes.
+//! Elements of the sections of a Gmsh file: lines of words, and numbers that are words or bytes.
 
 use crate::decks::{DeckError, fault};
 

@@ -36,7 +36,7 @@ const REFUSED: [(&str, &str); 5] = [
     ("ELEMENT_SHELL_SOURCE_SINK", "write the shells as `*ELEMENT_SHELL`"),
 ];
 
-/// What the card is about whose lines come.
+/// Subject of the card whose lines follow.
 #[derive(Debug, Clone, Copy)]
 enum Card {
     Nodes,
@@ -115,7 +115,7 @@ impl File {
         }
     }
 
-    /// What a keyword in capitals begins.
+    /// Subject of a card, by its keyword in capitals.
     fn card(&mut self, name: &str, line: usize) -> Result<Card, DeckError> {
         if let Some(options) = name.strip_prefix("KEYWORD") {
             self.format = Format::of_file(options);

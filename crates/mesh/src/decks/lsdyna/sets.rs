@@ -25,7 +25,7 @@ enum Kind {
     Steps,
     /// Sets, eight a line.
     Sets,
-    /// An option in words, and what it is about.
+    /// An option in words, and its subject.
     General,
 }
 
