@@ -18,7 +18,7 @@ const FILE: &str = "stribeck_lab.wasm";
 /// Names another file.
 const VARIABLE: &str = "STRIBECK_LAB_EMBED";
 
-/// What the module is compiled from, besides this crate, in the repository.
+/// Sources of the module, besides this crate, in the repository.
 const SOURCES: [&str; 7] = ["lab", "reduced", "modal", "duty", "surface", "film", "simd"];
 
 fn main() {
@@ -30,7 +30,7 @@ fn main() {
         return;
     }
     println!("cargo::rerun-if-env-changed={VARIABLE}");
-    // The folder and not the file: what is not there would be new at every build.
+    // The folder and not the file: an absent file counts as changed at every build.
     println!("cargo::rerun-if-changed={FOLDER}");
     let here = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").unwrap_or_default());
     let Some(module) = module(&here) else { return };

@@ -11,7 +11,7 @@ use stribeck::Place;
 
 use crate::{Cli, lab, workspace};
 
-/// What the lab of the book shows: the paper's bearing with larger elements, whose page is small.
+/// Scene of the lab in the book: the paper's bearing with larger elements, whose page is small.
 const SCENE: &str = "fixtures/scenes/lab.ron";
 
 /// The page of the guide below the book, the lab beside its pictures, and where the page has room for it.

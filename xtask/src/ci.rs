@@ -27,7 +27,7 @@ pub(crate) struct Options {
     quick: bool,
 }
 
-/// One check: its name, and what is wrong (nothing, when all is well).
+/// One check: its name, and the function that returns its complaints.
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
 const CHECKS: &[Check] = &[

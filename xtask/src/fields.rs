@@ -41,14 +41,14 @@ pub(crate) fn run(_: &Options) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Whether the page says what the types say.
+/// Whether the page agrees with the types.
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let text = std::fs::read_to_string(root.join(PAGE)).unwrap_or_default();
     let complaint = || format!("{PAGE} is not what the types say; `cargo xtask fields` writes it anew");
     Ok((text != page(root)?).then(complaint).into_iter().collect())
 }
 
-/// What a type says of itself.
+/// The documentation of a type.
 struct Described {
     doc: String,
     /// Fields of a structure or words of an enumeration, with the type behind each, if it is one of ours.

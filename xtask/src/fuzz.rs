@@ -21,7 +21,7 @@ use stribeck::{host, place::shown};
 /// machine.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// Memory that a small input may take beyond what the program has [MiB].
+/// Memory that a small input may take beyond the program's own [MiB].
 const MEMORY_MIB: f64 = 512.0;
 
 /// Flags of `fuzz`.
@@ -42,7 +42,7 @@ pub(crate) struct Options {
     /// and writes docs/results/readers.md
     #[arg(long, value_name = "PYTHON", conflicts_with = "kind")]
     peers: Option<String>,
-    /// With --peers: begins no further batch of files after so many seconds
+    /// With --peers: begins no further batch of files after this number of seconds
     #[arg(long, value_name = "S", default_value_t = 600, requires = "peers")]
     seconds: u64,
     /// With --peers: keeps the files that are read differently, or by the other program alone

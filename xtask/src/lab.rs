@@ -8,7 +8,7 @@ use stribeck::lab::MODULE;
 
 use crate::workspace;
 
-/// What it is compiled for.
+/// Its target.
 const TARGET: &str = "wasm32-unknown-unknown";
 
 /// Where a build of `crates/lab` finds it, below the root.

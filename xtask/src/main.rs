@@ -1,7 +1,7 @@
 //! What develops Stribeck: `cargo xtask ci`, `study`, `peers` and `fuzz`, and the program's own `simulate`,
 //! `report` and `plan`.
 //!
-//! Glue only: paths, flags, progress and exit codes. What is computed lives in the crates.
+//! Glue only: paths, flags, progress and exit codes. All computation is in the crates.
 
 mod book;
 mod ci;

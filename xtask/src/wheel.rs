@@ -18,7 +18,7 @@ pub(crate) struct Options {
     python: String,
 }
 
-/// What a wheel may have [bytes]. That of `.ci/run`, which shares its libraries with the tests, is larger.
+/// Largest size of a wheel [bytes]. That of `.ci/run`, which shares its libraries with the tests, is larger.
 const LARGEST: u64 = 10 << 20;
 
 /// Oldest system that a wheel made with zig runs on: glibc 2.17.

@@ -44,7 +44,7 @@ pub struct DiagnosedFamily {
     /// lines.
     #[serde(default)]
     pub in_passages: bool,
-    /// Whether the record is said to show such a defect.
+    /// Whether the verdict claims such a defect.
     pub claimed: bool,
     /// Whether the scene has such a defect.
     pub present: bool,
@@ -162,7 +162,7 @@ pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis
     }
 }
 
-/// Frequency of a family by the recorded motion [Hz], with what is `present`.
+/// Frequency of a family by the recorded motion [Hz], over the damaged parts that are `present`.
 fn from_motion(
     defect: Defect,
     in_passages: bool,

@@ -1,6 +1,6 @@
 //! Predicted facet-passing lines, and the levels of the spectrum at their frequencies.
 //!
-//! Lines closer than the resolution are searched as one and marked so: a record of 30 ms merges what is
+//! Lines closer than the resolution are searched as one and marked so: a record of 30 ms merges lines
 //! within 67 Hz, and the passing of roller vertices and of raceway nodes often is.
 
 use serde::{Deserialize, Serialize};

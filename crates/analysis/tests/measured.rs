@@ -128,8 +128,8 @@ fn example_a_second_defect_is_told_from_the_sidebands_of_the_first() {
 #[test]
 fn issue_sidebands_near_the_places_of_other_families_are_no_defects() {
     // In a 6203 the lower sidebands of BPFI, 1 and 2 turns of the shaft away, lie near twice BSF and BPFO,
-    // and in 0.8 s within a line or two: an inner raceway's record was said to show all three. BPFI itself is
-    // 0.8 Hz from five turns of the shaft, which 0.8 s do not resolve and 5 s do.
+    // and in 0.8 s within a line or two: the verdict on an inner raceway's record claimed all three. BPFI
+    // itself is 0.8 Hz from five turns of the shaft, which 0.8 s do not resolve and 5 s do.
     let shaft_hz = 25.0;
     let findings = |samples: usize| {
         let inner = knocks(4.968 * shaft_hz, samples, under_the_load(shaft_hz));
@@ -220,8 +220,8 @@ fn example_an_element_that_loses_its_spin_beyond_the_load_is_told_from_the_cage(
     assert!(findings.verdict.contains("of the cage or of one rolling element"), "{}", findings.verdict);
 }
 
-/// Load and sensor stand in space: beside a shaft at rest the cage of a bearing whose outer ring turns goes
-/// by what the ring is ahead.
+/// Load and sensor stand in space: beside a shaft at rest the cage of a bearing whose outer ring turns
+/// follows the ring's lead over the shaft.
 #[test]
 fn issue_a_cage_is_expected_by_its_turns_in_space() {
     let noise = coloured(3, SAMPLES);
@@ -397,7 +397,7 @@ fn issue_the_speed_is_told_by_shaft_and_bearing_together() {
     assert_eq!(claimed(&findings), ["BPFI"], "{findings:?}");
     // A speed that is 4 % off is corrected by the same lines.
     let findings = analysed(inner_raceway(shaft_hz), 1.04 * 60.0 * shaft_hz);
-    // To 1.2 rpm, and no closer than what is not corrected.
+    // To 1.2 rpm: the part that is not corrected.
     assert!((findings.speed_rpm.unwrap() / (60.0 * shaft_hz) - 1.0).abs() < 2e-3, "{:?}", findings.notes);
     assert_eq!(claimed(&findings), ["BPFI"], "{findings:?}");
     // Noise tells none.
@@ -504,7 +504,7 @@ fn peer_verdicts_on_the_records_of_hit_sm() {
                     }
                     last = length.value;
                 }
-                // Whatever is claimed is what is there.
+                // No family is claimed but those in the record.
                 assert!(claimed(&found).iter().all(|c| *c == name), "{found:#?}");
                 hits[at] += u32::from(claimed(&found) == [name] && near && family.level_db.unwrap() > 20.0);
             }
@@ -561,7 +561,7 @@ fn peer_verdicts_on_sums_of_two_records_of_hit_sm() {
                 let machine = machine(f64::from(speed));
                 let found = Analysis::of(&Channel::held("sum", sum), 51_200.0, &machine).unwrap().findings;
                 let claims = claimed(&found);
-                // One or both of what is there, and nothing else.
+                // One or both of the families in the record, and no other.
                 assert!(
                     !claims.is_empty() && claims.iter().all(|c| ["BPFO", "BPFI"].contains(c)),
                     "{found:#?}"

@@ -47,7 +47,7 @@ fn knocks(signal: &mut [f64], noise: &mut Noise, hz: f64, ring_hz: f64, strength
     }
 }
 
-/// A record and what is in it; `uniform` of the noise lies between −1 and 1.
+/// A record and its sources; `uniform` of the noise lies between −1 and 1.
 fn record(draw: u64) -> (Vec<f64>, f64, Truth) {
     let mut noise = Noise::new(1000 + draw);
     let mut between = |low: f64, high: f64| low + (high - low) * 0.5 * (noise.uniform() + 1.0);

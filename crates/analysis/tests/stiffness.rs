@@ -138,8 +138,8 @@ fn analytic_stiffness_of_the_papers_bearing_under_preload() {
     assert!((ours[1] / ours[0] - 1.0).abs() < 1e-3, "{ours:?}");
 }
 
-/// The stiffness is the derivative of the load by the shift: between two loads the shift grows by what it
-/// says, at any angle of the cage and speed.
+/// The stiffness is the derivative of the load by the shift: between two loads the shift grows
+/// accordingly, at any angle of the cage and speed.
 #[test]
 fn invariant_stiffness_is_the_derivative_of_the_load() {
     let scene = scene("NU 205, elements=13");

@@ -27,7 +27,7 @@ const ROUNDS: usize = 21;
 /// Steps between two samples of the paper's scene, at which energies are added up.
 const SAMPLE: usize = 134;
 
-/// What is in a step besides the elements.
+/// Parts of a step besides the elements.
 struct Variant {
     name: &'static str,
     scene: Scene,

@@ -68,8 +68,8 @@ pub(crate) fn housing(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Res
     Ok(Some(made))
 }
 
-/// What the outer ring sits in: its own polygon, so that both fit facet to facet; around a ring from a file,
-/// which may have notches there, as many facets about its circle.
+/// The bore that holds the outer ring: its own polygon, so that both fit facet to facet; around a ring from a
+/// file, which may have notches there, as many facets about its circle.
 fn polygon(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Vec<[f64; 2]> {
     if scene.written.outer_ring_mesh.is_none() {
         return back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();

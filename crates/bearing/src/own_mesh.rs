@@ -16,7 +16,7 @@ use stribeck_scene::{
 
 use crate::error::Error;
 
-/// Nodes along a fit lie within this part of its radius around or within what they fit.
+/// Nodes along a fit lie within this part of its radius from the surface they fit.
 const LOOSE: f64 = 0.01;
 
 /// Half of the nodes of a raceway, and all that rollers may meet, lie within this part of its radius on its
@@ -179,7 +179,7 @@ pub fn check(scene: &ResolvedScene) -> Result<(), Error> {
     Ok(())
 }
 
-/// What of a scene's mesh files was passed over, in sentences that name field, file and line.
+/// Parts of a scene's mesh files that were ignored, in sentences that name field, file and line.
 pub fn notes(scene: &Scene) -> Vec<String> {
     let housing = match &scene.housing {
         HousingScene::Mesh(mesh) => Some(("housing", &mesh.file, &mesh.text)),

@@ -116,7 +116,7 @@ pub fn damp(scene: &ResolvedScene, bearing: &mut BearingSystem) -> Result<(), Er
         DampingFrame::RigidMotion => (Frame::OwnMotion, Frame::OwnMotion),
         DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
     };
-    // The inner ring's bore is driven: what is damped there would only be fed in again.
+    // The inner ring's bore is driven: damping there would only take energy that the drive supplies again.
     let held = std::iter::once(bearing.outer).chain(bearing.housing);
     let mut frames: Vec<(usize, Frame)> = held.map(|body| (body, standing)).collect();
     frames.extend(bearing.rollers.iter().map(|r| (r.body, rolling)));

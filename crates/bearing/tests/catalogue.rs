@@ -146,8 +146,8 @@ fn analytic_rollers_between_rigid_rings() {
 
 /// Ten bearings by their own fields, from 4 to 30 rollers and from 5 to 300 mm of bore, each as its file has
 /// it but between rigid rings.
-/// Source: as above, THEORY §6.2; 5 % are what the rule for own bearings is to keep, whatever of them was
-/// assumed.
+/// Source: as above, THEORY §6.2; 5 % is the limit of the rule for own bearings, whichever of their fields
+/// were assumed.
 #[test]
 fn analytic_own_bearings_between_rigid_rings() {
     const SHARE: f64 = 0.05;

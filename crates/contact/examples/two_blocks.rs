@@ -32,7 +32,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What a collision comes to.
+/// Outcome of a collision.
 struct Outcome {
     /// Time in contact, over 2L/c.
     contact_time: f64,

@@ -51,7 +51,7 @@ pub trait Interactions {
     fn nodes(&self) -> Vec<u32>;
 }
 
-/// The facets within [`REACH`] of those that are marked, on a surface of so many, as vertices.
+/// Vertices of the facets within [`REACH`] of those that are marked, on a surface with this number of facets.
 pub(crate) fn within_reach(marked: &[bool], closed: bool, vertices: usize) -> impl Iterator<Item = usize> {
     let mut near = vec![false; vertices];
     for facet in (0..marked.len()).filter(|&facet| marked[facet]) {

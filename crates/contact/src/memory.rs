@@ -15,12 +15,12 @@ pub(crate) struct Memory {
     pub(crate) candidates: Vec<Candidate>,
     /// Facet of the primary surface on which each point was last found.
     pub(crate) nearest: Vec<u32>,
-    /// Steps after the search before which each point cannot touch; it is looked at again in the step that
-    /// holds the last of them.
+    /// Number of steps after the search during which each point cannot touch; the step that contains its end
+    /// evaluates the point again.
     pub(crate) inactive_until: Field,
     /// History of points in contact; `None` without damping and friction.
     pub(crate) history: Option<Histories>,
-    /// Fastest that a point of the pass opened or closed of late [m/s].
+    /// Largest recent speed at which a point of the pass opened or closed [m/s].
     pub(crate) pace: f64,
     /// Step of the last search.
     pub(crate) searched: u64,
@@ -31,13 +31,13 @@ pub(crate) struct Memory {
 /// A facet that may touch.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Candidate {
-    /// Not looked at before this step.
+    /// Not evaluated before this step.
     pub(crate) active_from: u64,
     pub(crate) facet: u32,
     /// First of its points in the state of the pass.
     pub(crate) first: u32,
     pub(crate) pattern: Pattern,
-    /// Slots of its ends.
+    /// Positions of its end nodes in the arrays of the surface.
     pub(crate) ends: [u32; 2],
 }
 

@@ -37,13 +37,13 @@ pub(crate) struct Pass {
     pub(crate) points: Arc<Points>,
     pub(crate) arrangement: Arrangement,
     pub(crate) memory: Memory,
-    /// Deeper penetrations than this are not contacts but other sides of a body [m].
+    /// Deeper penetrations belong to the far side of a body and are no contacts [m].
     pub(crate) deepest: f64,
-    /// Separate, so that data read in every step lie close together.
+    /// Scratch space of searches, separate so that data read in every step lie close together.
     room: Box<Room>,
 }
 
-/// Room for a search.
+/// Scratch space of a search.
 #[derive(Debug, Clone)]
 struct Room {
     /// The memory before it.
@@ -52,7 +52,7 @@ struct Room {
     found: Vec<u32>,
 }
 
-/// Slots of the ends of a facet.
+/// Positions of a facet's end nodes in the arrays of its surface.
 fn ends(surface: &Surface, facet: u32) -> [u32; 2] {
     let (a, b) = surface.ends(facet as usize);
     [a as u32, b as u32]

@@ -94,7 +94,7 @@ impl Model {
             .expect("a film")
     }
 
-    /// What a film of steady rolling does here; forces and their moment must cancel.
+    /// Forces of a film in steady rolling; forces and their moment must cancel.
     fn steady(&self, films: &mut Films) -> FilmResultant {
         /// Of a few dozen products of forces of some 100 N.
         const ROUNDING: f64 = 1e-11;

@@ -182,7 +182,7 @@ fn analytic_hertz_collocated() {
 #[test]
 fn converges_hertz_on_splines() {
     // A spline cannot follow a contact that is stiffer than its cells, so Hertz's limit of a rigid law is not
-    // tested on it: the law stays what a layer of the coarsest cells has, one problem on every mesh. Its
+    // tested on it: the law stays that of a layer of the coarsest cells, one problem on every mesh. Its
     // pressure falls to zero without a singularity, so linear elements are of second order, and so is a
     // smoothing whose transfer function leaves one as the square of the wavenumber (THEORY §4.5). Its
     // solution is that of chords under the same law, which reach Hertz's as their law becomes stiff

@@ -1,4 +1,4 @@
-//! What contact refuses, and what it says.
+//! Inputs that contact refuses, and its messages.
 
 use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Sides, Surface};
 

@@ -116,7 +116,7 @@ fn ripple(kind: Ground, recipe: Recipe, positions: usize) -> f64 {
 
 #[test]
 fn example_a_rolling_roller_feels_no_facets() {
-    // What the project asks for.
+    // The target of the project.
     const LARGEST: f64 = 1e-3;
     for kind in [Ground::Flat, Ground::Raceway] {
         let found = ripple(kind, CURED, 8);

@@ -7,7 +7,7 @@ use crate::{Error, Result, Scaling, Sides, Window};
 /// a crash.
 const LONGEST: usize = 1 << 27;
 
-/// What is removed from each segment before the window.
+/// Trend that is removed from each segment before the window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Detrend {
     /// Nothing.
@@ -41,7 +41,7 @@ pub struct WelchOptions {
     pub nfft: usize,
     /// Window laid over each segment.
     pub window: Window,
-    /// What is removed from each segment first.
+    /// Trend that is removed from each segment first.
     pub detrend: Detrend,
     /// Meaning of the values.
     pub scaling: Scaling,

@@ -158,7 +158,7 @@ impl Response {
         }
     }
 
-    /// What the sensor shows of a signal.
+    /// The signal as the sensor records it.
     ///
     /// # Errors
     /// [`Error::NotPositive`], [`Error::TooShort`], [`Error::NotFinite`], [`Error::NoOverlap`] where no line
@@ -168,7 +168,7 @@ impl Response {
         Ok(self.multiplied(signal, sample_rate_hz, |hz| self.at(hz)))
     }
 
-    /// What has passed the response to make a signal: each line over the response, regularised as
+    /// The input of the response, from its output: each line over the response, regularised as
     /// H*/(|H|² + ε²) with ε a twentieth of the median magnitude in the band, so that noise is not magnified
     /// where the response passes little.
     ///

@@ -25,7 +25,8 @@ pub struct Sound {
 }
 
 impl Sound {
-    /// Of a signal sampled `sample_rate_hz` times a second, `slow` times as long: what was at f is at f/slow.
+    /// Of a signal sampled `sample_rate_hz` times a second, `slow` times as long: a line at f moves to
+    /// f/slow.
     ///
     /// # Errors
     /// [`Error::NotPositive`] for a rate or `slow`, [`Error::TooShort`] for an empty signal,

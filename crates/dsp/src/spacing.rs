@@ -158,7 +158,7 @@ fn spacing(lags: [f64; 2], weights: [f64; 2], correlation: f64, sample_rate_hz: 
     }
 }
 
-/// What the correlations of both bands say.
+/// Result of the correlations of both bands.
 fn by_correlation(bands: &[Vec<f64>; 2], sample_rate_hz: f64, lags: &Range<usize>) -> EventSpacing {
     let found = bands.each_ref().map(|band| peak(band, lags.clone()));
     match agreed(&found) {

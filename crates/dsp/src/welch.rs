@@ -204,7 +204,7 @@ fn layout(sample_rate_hz: f64, record: usize, options: &WelchOptions) -> Result<
     })
 }
 
-/// Value at the first sample and slope per sample of what is to be removed.
+/// The trend to remove: its value at the first sample, and its slope per sample.
 fn trend(segment: &[f64], detrend: Detrend) -> (f64, f64) {
     let count = segment.len() as f64;
     let mean = segment.iter().sum::<f64>() / count;

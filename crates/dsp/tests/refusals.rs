@@ -1,4 +1,4 @@
-//! What is refused, and that the message names the field, the value and the limit.
+//! Refused inputs: the message names the field, the value and the limit.
 
 use stribeck_dsp::{
     Averaging, Envelope, EnvelopeSpectrum, Error, Notch, PeriodCount, Welch, WelchOptions, Window, statistics,

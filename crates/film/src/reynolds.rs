@@ -8,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use stribeck_simd::lanes::Number;
 
-/// A film that opens so fast that it ends before this place carries less than a two-hundredth of what it does
+/// A film that opens so fast that it ends before this place carries less than a two-hundredth of its load
 /// at rest: the oil no longer fills the gap.
 pub(crate) const EMPTY: f64 = -5.0;
 

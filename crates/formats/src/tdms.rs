@@ -43,7 +43,7 @@ struct Object {
     count: u64,
     bytes: u64,
     increment_s: Option<f64>,
-    /// What a property such as `SamplingRate` says [Hz].
+    /// Sample rate by a property such as `SamplingRate` [Hz].
     rate_hz: Option<f64>,
     unit: Option<String>,
     /// Properties of its scales, by name.

@@ -67,7 +67,7 @@ enum Found {
     Function(Dataset),
     /// Another one than 58: its number.
     Other(String),
-    /// What is wrong with it, and where.
+    /// Its fault, and where.
     Damaged(String),
 }
 
@@ -175,7 +175,7 @@ fn exponent(x: f64, digits: usize) -> String {
     format!("{mantissa}E{}{:02}", if power < 0 { '-' } else { '+' }, power.abs())
 }
 
-/// Numbers of a line of the head; what is none is NaN.
+/// Numbers of a line of the head; NaN for other words.
 fn numbers(line: &str) -> Vec<f64> {
     line.split_whitespace().map(|w| w.parse::<f64>().unwrap_or(f64::NAN)).collect()
 }
@@ -191,7 +191,7 @@ struct Dataset {
     increment: f64,
     /// Abscissa where uneven, real part, imaginary part where complex; value by value.
     values: Vec<f64>,
-    /// What is odd about it.
+    /// Notes on its irregularities.
     odd: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What is damaged costs that part: the rest is read, with a note, and nothing is made up.
+//! Damage costs the damaged part: the rest is read, with a note, and nothing is invented.
 
 use stribeck_formats::Recording;
 use stribeck_testing::Scratch;
@@ -42,7 +42,7 @@ fn issue_a_damaged_row_of_a_text_costs_its_fields() {
     let found = damaged(40, "\"40\"0.5\"|\"-0.5\"|\"0.5\"");
     let all: Vec<Vec<f64>> = found.channels.iter().map(|c| c.read().unwrap()).collect();
     assert!(all[0][40].is_nan() && all[1][40] == -0.5 && all[2][40] == 0.5, "{:?}", found.notes);
-    // What a row has too many is said.
+    // Surplus cells of a row are noted.
     let found = damaged(40, "\"40.5\"|\"-0.5\"|\"0.5\"|\"41.5\"");
     assert_eq!((found.channels.len(), found.channels[0].len), (3, 100));
     says(&found, "rows with more than 3 fields: 1, the first in line 41");

@@ -1,4 +1,4 @@
-//! What is written is read back, by us and by the programs that the formats belong to.
+//! Written files are read back, by us and by the programs that the formats belong to.
 
 use std::path::Path;
 use std::process::Command;

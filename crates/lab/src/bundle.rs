@@ -41,11 +41,11 @@ const CHECKS: usize = 100;
 /// Of these, so many are the beginning of a stretch that the page steps from the program's own state.
 const STATES: usize = 10;
 
-/// What the page holds of a scene.
+/// Data of a scene in the page.
 pub(crate) struct Bundled {
     /// Its numbers.
     pub(crate) content: Content,
-    /// What the scripts read.
+    /// Values for the scripts.
     pub(crate) facts: Value,
     /// Forces on all rollers at [`CHECKS`] places of the first milliseconds, as the program computes them,
     /// after the samples from one to the next.

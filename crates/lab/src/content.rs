@@ -21,7 +21,7 @@ pub struct Content {
     pub steps_per_sample: usize,
     /// Where a run of the scene starts.
     pub start: Saved,
-    /// What the handles say of the scene.
+    /// Initial positions of the controls, by the scene.
     pub handles: Handles,
     /// The spall that the raceways of `modal` were meshed with.
     pub spall: Option<Spall>,

@@ -18,7 +18,7 @@ pub enum Error {
     Range {
         /// The handle in words.
         name: &'static str,
-        /// What was asked for.
+        /// The requested value.
         value: f64,
         /// Unit.
         unit: &'static str,
@@ -40,7 +40,7 @@ pub enum Error {
     #[cfg(not(target_arch = "wasm32"))]
     #[error("{0}")]
     Simulation(#[from] stribeck_simulation::Error),
-    /// What a lab cannot show.
+    /// A scene that a lab cannot show.
     #[cfg(not(target_arch = "wasm32"))]
     #[error("{0}")]
     Unsuited(String),

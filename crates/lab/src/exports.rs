@@ -42,7 +42,7 @@ fn hand_over(numbers: impl FnOnce(&mut Engine) -> Vec<f64>) -> *const f64 {
     })
 }
 
-/// Room for so many bytes of a bearing.
+/// Allocates this number of bytes for a bearing.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_input(bytes: usize) -> *mut u8 {
     LAB.with_borrow_mut(|lab| {

@@ -93,7 +93,7 @@ pub fn page(scenes: &[Scene], module: &[u8], runs: Option<&Path>, command: &str)
     })
 }
 
-/// What a page holds of a scene. `runs` as for [`page`].
+/// Data of a scene in a page. `runs` as for [`page`].
 ///
 /// # Errors
 /// As [`page`].

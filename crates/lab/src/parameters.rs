@@ -116,7 +116,7 @@ fn polygon(radius: f64, facets: usize) -> Vec<[f64; 2]> {
     (0..facets).map(vertex).collect()
 }
 
-/// Speeds without slip while the inner ring makes so many revolutions a minute.
+/// Speeds without slip at this speed of the inner ring [rpm].
 fn speeds(rates: &Rates, rpm: f64) -> Speeds {
     let [inner, outer] = &rates.speeds;
     let of = |a: f64, b: f64| a * rpm + b * rates.outer_rpm;

@@ -161,7 +161,7 @@ impl Move {
         Ok(Self { vertices, from })
     }
 
-    /// A table of so many numbers a vertex, at the new places.
+    /// A table with this number of columns a vertex, at the new places.
     fn table(&self, old: &[f64]) -> Vec<f64> {
         let width = old.len() / self.from.len();
         let of = |(a, b, share): &(usize, usize, f64)| {

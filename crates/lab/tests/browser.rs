@@ -86,7 +86,7 @@ fn written(folder: &Scratch, name: &str, html: &str) -> PathBuf {
     file
 }
 
-/// What a page answers to a script, and what its console said of errors.
+/// Result of a script in a page, and errors of its console.
 fn asked(browser: &Path, folder: &Scratch, address: &str, script: &str) -> Value {
     let mut tab = Tab::open(browser, &folder.join("profile"));
     tab.go_to(address);

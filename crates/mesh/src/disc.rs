@@ -93,7 +93,7 @@ impl Disc {
 
     /// Most polar layers: those that leave half of the radius to the core.
     pub fn most_layers(&self) -> usize {
-        // The cast makes zero of what is NaN.
+        // The cast turns NaN into zero.
         (0.5 * self.radius / self.facet()) as usize
     }
 

@@ -100,7 +100,7 @@ pub enum Error {
         found: usize,
         /// Entries needed.
         expected: usize,
-        /// What the entries belong to: `nodes` or `elements`.
+        /// Owner of the entries: `nodes` or `elements`.
         of: &'static str,
     },
     /// The sink refused the file.

@@ -211,7 +211,7 @@ mod tests {
         for (angle, by) in [(1.0, 0.1), (1.25, 0.05), (0.75, 0.05), (1.6, 0.0), (-2.0, 0.0)] {
             assert!((one.at(angle) - by).abs() < 1e-15, "{angle}");
         }
-        // Near each other they share what lies between.
+        // Neighbours share the facets between them.
         let two = moves(&[[1.0, 0.1], [1.4, -0.1]]);
         for (angle, by) in [(1.0, 0.1), (1.2, 0.0), (1.4, -0.1), (1.65, -0.05), (0.75, 0.05), (3.0, 0.0)] {
             assert!((two.at(angle) - by).abs() < 1e-15, "{angle}");

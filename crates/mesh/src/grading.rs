@@ -38,7 +38,7 @@ pub struct Grading {
     pub transitions: usize,
 }
 
-/// What the columns of one transition become.
+/// Fine facets that become one in a transition.
 const RATIO: usize = 3;
 
 impl Grading {

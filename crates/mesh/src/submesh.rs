@@ -219,7 +219,7 @@ impl Shape {
         Self { b1, b2, s1: h[0] * b1[0] + h[1] * b1[1], s2: h[0] * b2[0] + h[1] * b2[1], area }
     }
 
-    /// Displacement gradient, and what the hourglass vector sees.
+    /// Displacement gradient, and the hourglass amplitude.
     fn strains(&self, u: [[f64; 2]; 4]) -> ([[f64; 2]; 2], [f64; 2]) {
         let (p, r) = ([u[0][0] - u[2][0], u[0][1] - u[2][1]], [u[1][0] - u[3][0], u[1][1] - u[3][1]]);
         let gradient = [0, 1].map(|i| [0, 1].map(|j| p[i] * self.b1[j] + r[i] * self.b2[j]));

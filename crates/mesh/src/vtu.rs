@@ -40,7 +40,7 @@ impl<'a> Field<'a> {
         Field { name, values: Values::Vectors(values) }
     }
 
-    /// As [`Field::vector`], but with all digits: for what is read again to compute with.
+    /// As [`Field::vector`], but with all digits: for values that are read again to compute with.
     pub fn exact_vector(name: &'a str, values: &'a [[f64; 3]]) -> Field<'a> {
         Field { name, values: Values::ExactVectors(values) }
     }

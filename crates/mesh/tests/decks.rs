@@ -1,4 +1,4 @@
-//! Meshes in files of other programs: what is written is read back, by us and by others; damaged ones get an
+//! Meshes in files of other programs: written files are read back, by us and by others; damaged ones get an
 //! answer.
 
 use std::process::Command;

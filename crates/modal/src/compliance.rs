@@ -101,7 +101,7 @@ pub struct Curve {
     pieces: Vec<[f64; 2]>,
     /// Of each piece: where it begins over y, g there, by how much it grows with y, and where it ends.
     spans: Vec<[f64; 4]>,
-    /// By how much ∫ C dF exceeds at each piece what it would be if all of the curve lay on that piece [J].
+    /// Excess of ∫ C dF at each piece over that of a curve all of which lies on this piece [J].
     more: Vec<f64>,
 }
 
@@ -158,8 +158,8 @@ impl Curve {
 mod tests {
     use super::*;
 
-    /// What is stored grows with the force by as much as the approach does times the force, on every piece
-    /// and from one to the next.
+    /// The stored energy grows with the force as the approach times the force, on every piece and from one to
+    /// the next.
     /// Source: own, d(F C − ∫ C dF)/dF = F dC/dF.
     #[test]
     fn analytic_the_energy_of_a_compliance_is_the_work_of_its_force() {

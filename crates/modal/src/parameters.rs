@@ -100,7 +100,7 @@ pub struct Damping {
 /// The motion of a body that mass damping acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum DampingFrame {
-    /// All of it but the orbit of rollers and their spin: what is left is across the raceways.
+    /// All of it but the orbit of rollers and their spin: motion across the raceways remains.
     Rolling,
     /// Deformation alone.
     RigidMotion,

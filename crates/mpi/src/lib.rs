@@ -1,4 +1,4 @@
-//! Several processes that run one model together, over MPI: what the solver asks of
+//! Several processes that run one model together, over MPI: the solver's trait
 //! [`Ranks`](stribeck_solver::ranks::Ranks).
 //!
 //! Without the feature `mpi` the crate is empty.

@@ -89,7 +89,7 @@ pub(crate) fn resample_poly<'py>(
     Ok(stribeck_dsp::resample_poly(x.as_slice()?, up, down).map_err(refused)?.into_pyarray(py))
 }
 
-/// What a sensor and its recorder make of the signal.
+/// The signal as a sensor and its recorder record it.
 #[pyfunction]
 #[pyo3(signature = (x, fs, rate_hz, resonance, noise_density, range, bits, seed))]
 #[expect(clippy::too_many_arguments, reason = "a signal of two and a sensor of six")]

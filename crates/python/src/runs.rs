@@ -186,7 +186,7 @@ pub(crate) fn channels(py: Python<'_>, run: PathBuf) -> PyResult<Vec<(String, Bo
     Ok(trace.names.into_iter().zip(trace.columns.into_iter().map(|c| c.into_pyarray(py))).collect())
 }
 
-/// What a run comes to, as JSON in the form of `summary.json`.
+/// Findings of a run, as JSON in the form of `summary.json`.
 #[pyfunction]
 pub(crate) fn summary(py: Python<'_>, run: PathBuf) -> PyResult<String> {
     py.detach(|| {

@@ -22,7 +22,7 @@ pub(crate) fn one_of<T: Copy>(flag: &str, word: &str, known: &[(&str, T)]) -> Py
     })
 }
 
-/// What a record shows, as JSON in the form of `findings.json`.
+/// Findings of a record, as JSON in the form of `findings.json`.
 #[pyfunction]
 #[pyo3(signature = (signal, rate_hz, bearing, speed_rpm, unit, name))]
 pub(crate) fn analyse(

@@ -1,4 +1,4 @@
-//! Spectra of arrays, and what is read from them.
+//! Spectra of arrays, and their lines.
 
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;

@@ -271,7 +271,7 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
 const BESIDE: f64 = 0.25;
 
 /// Smallest radius of the outline within reach of a roller over each facet [m]:
-/// as far to either side as a contact on even ground, and beyond that at what stands out so far that the
+/// as far to either side as a contact on even ground, and beyond that at parts that stand out so far that the
 /// roller, which falls away by u² / 2R over u, meets it, such as the edge of a deep spall. `relative` is R
 /// [m].
 fn nearest_about(outline: &Outline, beside: f64, relative: f64) -> Vec<f64> {

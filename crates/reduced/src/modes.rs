@@ -107,7 +107,7 @@ impl Structure {
 
     /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity
     /// [m/s], and by how much more the second vertex of its facet is displaced than the first [m]. Both
-    /// vertices are summed over all modes, and what lies between follows.
+    /// vertices are summed over all modes, and the points between follow.
     #[inline(always)]
     pub(crate) fn moved<S: Simd>(&self, simd: S, point: &RacewayPoint<'_>, modes: &Modes) -> [Vector<S>; 6] {
         let groups = self.groups;

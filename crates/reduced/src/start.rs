@@ -69,86 +69,13 @@ impl Bearing {
     fn equilibrium(&self, solve: Solve<'_>, state: &mut State) -> Result<(), Error> {
         let r = self.reduction.padded;
         let load = self.operation.load_at_start.max(1.0);
-        let further = self.operation.load_change(0.0);
-        let [mass, _] = self.reduction.roller_inertia;
         let mut shapes = vec![0.0; 2 * r * self.rollers.count];
         let (mut farthest, mut last) = (FARTHEST, vec![0.0; r]);
         for iteration in 0..ITERATIONS {
-            let mut force = self.reduction.constant.clone();
-            let mut matrix = vec![0.0; r * r];
-            if let Some(hold) = &state.seat {
-                force.iter_mut().zip(&hold.push).for_each(|(force, push)| *force += push);
-            }
-            for n in 0..r {
-                force[n] += further[0] * self.reduction.load.along[n]
-                    + further[1] * self.reduction.load.across[n]
-                    - self.reduction.squares[n] * state.q[n];
-                matrix[n * r + n] = self.reduction.squares[n] + REGULARISATION;
-            }
+            let (mut matrix, mut force) = self.balance_of_modes(state);
             for i in 0..self.rollers.count {
-                let angle = state.y[i].atan2(state.x[i]);
-                let (s, c) = angle.sin_cos();
                 let under = &mut shapes[2 * r * i..2 * r * (i + 1)];
-                let moved = self.shapes_under(state, i, [c, s], under);
-                let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
-                // The roller's own balance: pressed outwards by the inner raceway and its orbit.
-                let inertia = |rho: f64| {
-                    mass * (self.operation.speeds.cage * self.operation.speeds.cage * rho
-                        - self.rollers.gravity * s)
-                };
-                let mut at = state.x[i].hypot(state.y[i]);
-                let balance = |state: &mut State, rho: f64| {
-                    (state.x[i], state.y[i]) = (rho * c, rho * s);
-                    let [outer, inner] = self.pressed(state, i, moved);
-                    (inner + inertia(rho) - outer, outer)
-                };
-                // The balance falls with the radius: a bracket, then bisection. Films keep a roller with
-                // clearance between the circles; beyond them polygons that do not touch yet would leave it a
-                // second balance.
-                let floats = self.oil.as_ref().and_then(|oil| oil.floating(&self.rollers, state, i, moved));
-                let [mut low, mut high] = floats.unwrap_or([at; 2]);
-                let mut width = 1e-7;
-                while balance(state, low).0 < 0.0 && width < 1e-2 {
-                    low -= width;
-                    width *= 2.0;
-                }
-                width = 1e-7;
-                while balance(state, high).0 > 0.0 && width < 1e-2 {
-                    high += width;
-                    width *= 2.0;
-                }
-                for _ in 0..200 {
-                    at = 0.5 * (low + high);
-                    if balance(state, at).0 > 0.0 {
-                        low = at
-                    } else {
-                        high = at
-                    }
-                    if high - low <= 1e-16 {
-                        break;
-                    }
-                }
-                let (_, outer) = balance(state, at);
-                // How the force grows with the raceway's displacement, the roller following.
-                let step = 1e-9;
-                let [a0, b0] = self.pressed(state, i, moved);
-                let [a1, _] = self.pressed(state, i, [moved[0] - step * c, moved[1] - step * s]);
-                let outer_stiffness = (a1 - a0) / step;
-                (state.x[i], state.y[i]) = ((at - step) * c, (at - step) * s);
-                let [_, b1] = self.pressed(state, i, moved);
-                let inner_stiffness = (b1 - b0) / step;
-                (state.x[i], state.y[i]) = (at * c, at * s);
-                if let Some(hold) = &mut state.seat {
-                    hold.pressed[i] = self.roller_force_at(state.hints[0][i][1], [c, s], outer);
-                }
-                let both = outer_stiffness + inner_stiffness;
-                let together = if both > 0.0 { outer_stiffness * inner_stiffness / both } else { 0.0 };
-                for n in 0..r {
-                    force[n] += outer * radial[n];
-                    for m in 0..r {
-                        matrix[n * r + m] += together * radial[n] * radial[m];
-                    }
-                }
+                self.add_roller(state, i, under, &mut matrix, &mut force);
             }
             // A motion without stiffness, the rotation of ring and adapter, is left to inertia.
             let step = solve(&matrix, &force);
@@ -178,6 +105,110 @@ impl Bearing {
             }
         }
         Ok(())
+    }
+
+    /// Stiffness of the modes, row by row, and the unbalanced forces on them [N] without those of rollers.
+    fn balance_of_modes(&self, state: &State) -> (Vec<f64>, Vec<f64>) {
+        let r = self.reduction.padded;
+        let further = self.operation.load_change(0.0);
+        let mut force = self.reduction.constant.clone();
+        let mut matrix = vec![0.0; r * r];
+        if let Some(seat) = &state.seat {
+            force.iter_mut().zip(&seat.push).for_each(|(force, push)| *force += push);
+        }
+        for n in 0..r {
+            force[n] += further[0] * self.reduction.load.along[n]
+                + further[1] * self.reduction.load.across[n]
+                - self.reduction.squares[n] * state.q[n];
+            matrix[n * r + n] = self.reduction.squares[n] + REGULARISATION;
+        }
+        (matrix, force)
+    }
+
+    /// Brings roller `i` into its own balance between the raceways, and adds its force on the modes and the
+    /// stiffness of its two contacts in series. `under` receives the modes' shapes under it.
+    fn add_roller(
+        &self,
+        state: &mut State,
+        i: usize,
+        under: &mut [f64],
+        matrix: &mut [f64],
+        force: &mut [f64],
+    ) {
+        let r = self.reduction.padded;
+        let angle = state.y[i].atan2(state.x[i]);
+        let (s, c) = angle.sin_cos();
+        let moved = self.shapes_under(state, i, [c, s], under);
+        let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
+        let (at, outer) = self.roller_in_balance(state, i, [c, s], moved);
+        // How the force grows with the raceway's displacement, the roller following.
+        let step = 1e-9;
+        let [a0, b0] = self.pressed(state, i, moved);
+        let [a1, _] = self.pressed(state, i, [moved[0] - step * c, moved[1] - step * s]);
+        let outer_stiffness = (a1 - a0) / step;
+        (state.x[i], state.y[i]) = ((at - step) * c, (at - step) * s);
+        let [_, b1] = self.pressed(state, i, moved);
+        let inner_stiffness = (b1 - b0) / step;
+        (state.x[i], state.y[i]) = (at * c, at * s);
+        if let Some(seat) = &mut state.seat {
+            seat.pressed[i] = self.roller_force_at(state.hints[0][i][1], [c, s], outer);
+        }
+        let both = outer_stiffness + inner_stiffness;
+        let together = if both > 0.0 { outer_stiffness * inner_stiffness / both } else { 0.0 };
+        for n in 0..r {
+            force[n] += outer * radial[n];
+            for m in 0..r {
+                matrix[n * r + m] += together * radial[n] * radial[m];
+            }
+        }
+    }
+
+    /// Moves roller `i` along the direction `[c, s]` of its centre to where the inner raceway and its orbit
+    /// press it outwards as much as the outer raceway, displaced by `moved`, presses it back: its distance
+    /// from the bearing's centre [m], and the force of the outer raceway [N].
+    fn roller_in_balance(
+        &self,
+        state: &mut State,
+        i: usize,
+        [c, s]: [f64; 2],
+        moved: [f64; 2],
+    ) -> (f64, f64) {
+        let [mass, _] = self.reduction.roller_inertia;
+        let inertia = |rho: f64| {
+            mass * (self.operation.speeds.cage * self.operation.speeds.cage * rho - self.rollers.gravity * s)
+        };
+        let mut at = state.x[i].hypot(state.y[i]);
+        let balance = |state: &mut State, rho: f64| {
+            (state.x[i], state.y[i]) = (rho * c, rho * s);
+            let [outer, inner] = self.pressed(state, i, moved);
+            (inner + inertia(rho) - outer, outer)
+        };
+        // The balance falls with the radius: a bracket, then bisection. Films keep a roller with clearance
+        // between the circles; beyond them polygons that do not touch yet would leave it a second balance.
+        let floats = self.oil.as_ref().and_then(|oil| oil.floating(&self.rollers, state, i, moved));
+        let [mut low, mut high] = floats.unwrap_or([at; 2]);
+        let mut width = 1e-7;
+        while balance(state, low).0 < 0.0 && width < 1e-2 {
+            low -= width;
+            width *= 2.0;
+        }
+        width = 1e-7;
+        while balance(state, high).0 > 0.0 && width < 1e-2 {
+            high += width;
+            width *= 2.0;
+        }
+        for _ in 0..200 {
+            at = 0.5 * (low + high);
+            if balance(state, at).0 > 0.0 {
+                low = at
+            } else {
+                high = at
+            }
+            if high - low <= 1e-16 {
+                break;
+            }
+        }
+        (at, balance(state, at).1)
     }
 
     /// Contact of a roller in this direction under `force`, near the facet `hint`.

@@ -11,7 +11,7 @@ use crate::{
 /// Energies and work of one step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Tally {
-    /// Whether energies are computed: after the last step of a sample.
+    /// Whether energies are computed, as in the last step before a sample.
     pub(crate) last: bool,
     pub(crate) stored: Stored,
     pub(crate) spent: Spent,

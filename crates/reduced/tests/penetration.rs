@@ -353,7 +353,7 @@ fn invariant_facets_in_vectors_overlap_as_one_by_one() {
         }
     }
     assert!(seen > 500 && touched > 300, "{seen} seen, {touched} touched");
-    // A wall leans over what is before it: nothing is seen in vectors there.
+    // A wall overhangs the facets before it: vectors do not cover that case.
     let mut vertices: Vec<[f64; 2]> = outer.x.iter().zip(&outer.y).map(|(x, y)| [*x, *y]).collect();
     let [x, y] = vertices[314];
     vertices.insert(314, [1.001 * x, 1.001 * y]);

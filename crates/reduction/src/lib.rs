@@ -23,7 +23,7 @@
 //! |---|---|
 //! | In which order is a scene reduced? | `reduce.rs` |
 //! | Which nodes and forces are taken from the preloaded bearing? | `extraction.rs` |
-//! | Which modes are kept, and how flexible is what they leave out? | `structure.rs` |
+//! | Which modes are kept, and which flexibility do the others have? | `structure.rs` |
 //! | How is the seat divided, and what do its springs hold? | `seat.rs` |
 //! | What do raceway, sensors and loads become? | `raceway.rs`, `sensors.rs`, `loads.rs` |
 //! | How do bodies give way beside a contact? | `compliances.rs`, `local_contact.rs` |

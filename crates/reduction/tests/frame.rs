@@ -23,7 +23,7 @@ fn small(more: &str) -> Scene {
 /// Source: two masses on a spring, Meirovitch 2001, §5.1.
 #[test]
 fn analytic_a_ring_on_springs_bounces_in_its_frame() {
-    // The ring gives way by 1 % of what the springs do.
+    // The ring gives way by 1 % of the springs' deflection.
     const TOLERANCE: f64 = 0.01;
     let (k, c, frame) = (1e6, 100.0, 1.5);
     let scene = small(

@@ -20,7 +20,7 @@ pub struct CampaignIndex {
     pub fields: Vec<String>,
     /// Its runs, in order.
     pub runs: Vec<CampaignRun>,
-    /// Files beside the page: name and what it holds.
+    /// Files beside the page: name and content.
     pub files: Vec<(String, String)>,
 }
 

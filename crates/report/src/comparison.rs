@@ -1,4 +1,4 @@
-//! The page of a comparison: what was changed, what changed with it, and the curves over each other.
+//! The page of a comparison: changed fields, changed results, and the curves over each other.
 
 mod figures;
 

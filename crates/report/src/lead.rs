@@ -1,4 +1,4 @@
-//! The sentence under the title: what was simulated.
+//! The sentence under the title, which sums up the simulation.
 
 use std::path::Path;
 

@@ -22,7 +22,8 @@ const BUDGET_MS: u32 = 20_000;
 /// Names under which Chromium is installed.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// Appended to the page: counts what was drawn and writes it into the title, where `--dump-dom` shows it.
+/// Appended to the page: counts the drawn elements and writes their number into the title, where
+/// `--dump-dom` shows it.
 const PROBE: &str = r#"<script>
 addEventListener("load", () => setTimeout(() => {
   const undrawn = [];

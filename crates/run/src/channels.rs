@@ -1,4 +1,4 @@
-//! **What is recorded, and in which order.** The names are a contract with reports and readers; no other file
+//! **Recorded channels and their order.** The names are a contract with reports and readers; no other file
 //! knows them.
 //!
 //! A model fills a [`Sample`]; [`Channels`] turns it into a row of `trace.npy`. Adding a channel that follows

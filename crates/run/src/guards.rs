@@ -1,4 +1,5 @@
-//! Guard rails of a bearing: what is watched at every sample, when a run carries a warning, when it stops.
+//! Guards of a bearing: quantities checked at every sample, with limits for warnings and limits at which a
+//! run stops.
 //!
 //! | watched | warning | stop |
 //! |---|---|---|

@@ -18,7 +18,7 @@ use stribeck_scene::{
     trace::TraceWriter,
 };
 
-/// A model of a bearing in motion: what the time loop drives from sample to sample.
+/// A model of a bearing in motion, which the time loop drives from sample to sample.
 pub trait Motion: Send {
     /// State from which it continues after a sample.
     type Saved: Serialize + DeserializeOwned;
@@ -109,7 +109,7 @@ struct Saved {
     sample: usize,
     wall_s: f64,
     cost_s: f64,
-    /// A checkpoint could not be written, and that was said.
+    /// A checkpoint could not be written, and a warning was given.
     failed: bool,
 }
 

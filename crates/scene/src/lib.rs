@@ -47,6 +47,7 @@
 //! | How do speed and load vary over time? | [`duty`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
 //! | Which scenes does a campaign make of one? | [`campaign`] |
+//! | What does the file of a growth hold? | [`growth`] |
 //! | Which files are in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
 pub mod advice;
@@ -62,6 +63,7 @@ pub mod ensemble;
 pub mod error;
 mod faults;
 pub mod frames;
+pub mod growth;
 pub mod housing;
 pub mod inference;
 pub mod kinematics;

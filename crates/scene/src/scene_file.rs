@@ -1,7 +1,7 @@
 //! From a RON file to a checked [`Scene`], and back.
 //!
 //! Reading is strict: an unknown field, a wrong type, a number outside its range or bodies that cannot exist
-//! are errors that show the line, the field, the value, what is allowed and what to try. Missing fields take
+//! are errors that show the line, the field, the value, the allowed ones and a remedy. Missing fields take
 //! their defaults, which [`Scene::to_ron`] writes out again, so a run always holds the complete scene.
 
 mod check;

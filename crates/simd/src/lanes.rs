@@ -324,7 +324,7 @@ impl<S: Simd> Vector<S> {
     fn store_joined<const HOW: u8>(simd: S, from: [&[f64]; LANES], to: &mut [f64; LANES]) {
         #[cfg(target_arch = "x86_64")]
         if let Some(v4) = (&simd as &dyn Any).downcast_ref::<V4>() {
-            // Neighbours of two vectors, then what they come from in four and in eight. Written out: loops
+            // Neighbours of two vectors, then their sources in four and in eight. Written out: loops
             // would keep all in memory.
             let [a, b, c, d, e, f, g, h] = from;
             let ab = Self::joined::<HOW>(Self::load(simd, a, 0).neighbours(*v4, Self::load(simd, b, 0)));

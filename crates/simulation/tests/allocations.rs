@@ -17,7 +17,7 @@ use stribeck_testing::Scratch;
 /// than those before them, and grow a list, are far fewer.
 const PER_STEP: f64 = 0.05;
 
-/// A short run of a coarse bearing, oiled or dry; what it allocated.
+/// Allocations of a short run of a coarse bearing, oiled or dry.
 fn run(film: Option<FilmScene>, time_step_factor: f64) -> (RunInfo, u64) {
     let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
     scene.film = film;

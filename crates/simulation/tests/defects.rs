@@ -1,5 +1,5 @@
-//! Defects and other deviations from round, on every surface: where nodes lie, what the time step becomes,
-//! and that runs carry their load and keep their energy.
+//! Defects and other deviations from round, on every surface: positions of nodes, the time step, and that
+//! runs carry their load and keep their energy.
 
 mod common;
 
@@ -191,7 +191,8 @@ fn conserves_energy_and_carries_the_load_over_every_form() {
     assert!(mean(&run) < 0.9 * mean(&other), "{} {}", mean(&run), mean(&other));
 }
 
-/// Oil over what a scene allows under it: a gentle dent, a rounded spall, waves and a small roller.
+/// Oil over the defects that a scene allows under it: a gentle dent, a rounded spall, waves and a small
+/// roller.
 #[test]
 fn conserves_energy_in_oil() {
     let mut scene = coarse(2.5);

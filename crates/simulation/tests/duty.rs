@@ -66,7 +66,7 @@ fn conserves_energy_from_rest_under_a_load_that_swells() {
     const ENERGY: f64 = 0.001;
     // Creep under the load and what facets add on so short a way.
     const ROLLING: f64 = 0.01;
-    // What the ring's lowest modes add, of the load.
+    // Share of the ring's lowest modes, of the load.
     const SWING: f64 = 0.2;
     let folder = Scratch::create("rest");
     let mut scene = coarse(2.0);

@@ -39,7 +39,8 @@ fn example_rollers_float_and_loaded_contacts_are_dry() {
     let channel =
         |name: String| run.trace.channel(&name).expect("readable").expect("a channel of a scene with oil");
     let of = |roller: usize, what: &str| channel(format!("roller.{roller}.{what}"));
-    // Roller 14 stands at the bottom, in the middle of its clearance: 40 µm less what the load has taken.
+    // Roller 14 stands at the bottom, in the middle of its clearance: 40 µm less the deflection under the
+    // load.
     for ring in ["outer", "inner"] {
         assert!(of(14, &format!("{ring}_film_m")).iter().all(|h| (5e-6..80e-6).contains(h)), "{ring}");
         let force = of(14, &format!("{ring}_fy_n"));

@@ -1,4 +1,4 @@
-//! Housings other than the paper's adapter: what they carry, how energy balances, what the rings do.
+//! Housings other than the paper's adapter: their loads, the energy balance, the motion of the rings.
 
 mod common;
 

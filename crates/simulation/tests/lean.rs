@@ -23,7 +23,7 @@ fn assembled(scene: &Scene) -> Assembly {
     Assembly::new(&scene.resolve()).expect("a scene that can be meshed")
 }
 
-/// 30 % of the elements is what a lean scene may have at most; facets that roll stay what they are.
+/// A lean scene may have at most 30 % of the elements; facets that roll stay unchanged.
 #[test]
 fn example_lean_scene_has_a_quarter_of_the_elements() {
     const SHARE: f64 = 0.30;
@@ -153,7 +153,7 @@ fn first_forces(scene: &Scene) -> Vec<f64> {
 /// inside must share the load as fine ones do.
 #[test]
 fn example_graded_bearing_carries_its_load_like_the_uniform_one() {
-    // Of the largest force. What the project asks of a lean scene is 5 %; compliance of the coarse cells
+    // Of the largest force. The project's limit for a lean scene is 5 %; compliance of the coarse cells
     // costs less.
     const TOLERANCE: f64 = 0.02;
     let mut scene = Scene::default();

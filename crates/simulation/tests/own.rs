@@ -1,4 +1,4 @@
-//! Bearings by their own fields run at the first try: what a scene leaves out surrounds them as it should.
+//! Bearings by their own fields run at the first try: omitted fields of the scene fit their size.
 
 mod common;
 

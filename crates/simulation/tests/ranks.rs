@@ -15,7 +15,7 @@ use stribeck_scene::{
 use stribeck_simulation::{follow, resume, simulate};
 use stribeck_testing::Scratch;
 
-/// Runs a scene, or the rest of the run in the folder, over so many ranks; breaks off after `samples` unless
+/// Runs a scene, or the rest of the run in the folder, over `count` ranks; breaks off after `samples` unless
 /// that is zero.
 fn run(scene: Option<&Scene>, folder: &Path, ranks: usize, threads: usize, samples: usize) {
     let mut seen = 0;

@@ -72,7 +72,7 @@ fn peer_contact_damping_of_rolling_is_that_of_the_full_model() {
         assert_eq!(run(&scene, &folder, name, 2).status, Status::Complete);
         let energy = Trace::read(folder.join(name).join("energy.npy")).expect("a ledger");
         let lost = energy.get("contact_damping_j").expect("counted");
-        // What a start at rest rings is over.
+        // The ringing of a start at rest is over.
         lost[lost.len() - 1] - lost[lost.len() / 2]
     };
     let (reduced, full) = (heat("reduced", scene.model.clone()), heat("full", ModelScene::Full));

@@ -97,8 +97,8 @@ fn conserves_energy_and_carries_the_load_with_oil() {
     // As of dry contact at this step (`conserves_energy_and_carries_the_load`); films add the error of an
     // implicit step of the first order, which their heat contains.
     const ENERGY: f64 = 0.005;
-    // The load over a period of the rollers, 5 ms, of which 12 ms are no multiple: what the last part of one
-    // is off by.
+    // The load over a period of the rollers, 5 ms, of which 12 ms are no multiple: the error of the last part
+    // of one.
     const LOAD: f64 = 0.01;
     let folder = Scratch::create("oil-energy");
     let mut scene = coarse(12.0);
@@ -195,7 +195,7 @@ fn example_films_between_turning_rings() {
     const ENERGY: f64 = 0.01;
     const FORCES: f64 = 0.03;
     // A film is as thick as the gap between the circles of roller and inner ring, its least thickness and
-    // what the bodies give under it: 0.4 µm at most where it carries less than 20 N (THEORY §4.6).
+    // the deflection of the bodies under it: 0.4 µm at most where it carries less than 20 N (THEORY §4.6).
     const LITTLE_N: f64 = 20.0;
     const GIVEN_M: f64 = 5e-7;
     let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.5), defect: None, housing: \
@@ -264,7 +264,7 @@ fn example_films_between_turning_rings() {
     assert!(off < FORCES, "{off}");
 }
 
-/// With few modes the panels of the seat answer for more than all of what a roller presses: films, too, give
+/// With few modes the panels of the seat respond with more than all of a roller's force: films, too, give
 /// way with it within the step, and no pass over the panels may change more than the next one takes back. A
 /// step late, this run is off by a quarter of its peak strain energy, and by less with longer steps.
 #[test]

@@ -51,7 +51,7 @@ impl Folder {
     }
 }
 
-/// Breaks a run off after so many samples of its own, counting the steps of the coarse scene.
+/// Breaks a run off after a number of samples of its own, counting the steps of the coarse scene.
 fn until(samples: usize) -> impl FnMut(&Progress) -> ControlFlow<()> {
     let mut seen = 0;
     move |progress| {
@@ -78,7 +78,7 @@ fn go_on(
     resume(&RunDir::reopen(folder)?, &host(threads), watch)
 }
 
-/// What it says when it refuses to go on.
+/// Message of a refused continuation.
 fn refusal(folder: &Folder) -> String {
     go_on(folder.path(), 1, &mut |_| ControlFlow::Continue(())).expect_err("it cannot go on").to_string()
 }
@@ -186,8 +186,8 @@ fn copy(from: &Path, to: &Path) {
     }
 }
 
-/// What `kill -9` leaves is what lies in the folder at that moment: the run goes on from the last checkpoint,
-/// of the start or of the hundredth sample, and forgets what was written after it.
+/// `kill -9` leaves the files of that moment: the run continues from the last checkpoint, of the start or of
+/// the hundredth sample, and drops the samples after it.
 #[test]
 fn survives_a_kill_and_goes_on_from_its_last_checkpoint() {
     let scene = coarse(1.25);
@@ -245,7 +245,7 @@ fn refuses_a_damaged_checkpoint() {
     }
 }
 
-/// Damage under a length and a checksum that fit: what is wrong is found deeper, and gets an answer too. A
+/// Damage under a length and a checksum that fit: it is found later, and gets a message too. A
 /// failure shrinks to the fewest bytes.
 #[test]
 fn refuses_a_forged_checkpoint() {
@@ -368,7 +368,7 @@ fn survives_a_clock_that_jumps() {
     }
 }
 
-/// Where no checkpoint can be written the run goes on and says so, once.
+/// Where no checkpoint can be written the run continues, with one warning.
 #[test]
 fn survives_a_checkpoint_that_cannot_be_written() {
     let folder = Folder::new();

@@ -96,7 +96,7 @@ fn invariant_rings_from_files_carry_as_those_that_are_made() {
         of("outer", [("raceway", outer_race), ("fit", back)]),
         of("inner", [("raceway", race), ("fit", bore)]),
     ]);
-    // Scenes hold what they have read, and say so again.
+    // Scenes hold the meshes that they have read, and write the same fields again.
     assert_eq!(Scene::parse(&read.to_ron(), "here").expect("valid"), read);
     let [made, read] = [forces(&made), forces(&read)];
     let most = made.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
@@ -131,8 +131,8 @@ fn analytic_a_notched_ring_in_a_pedestal_runs_and_carries_its_load() {
     assert!((-carried / info.expected_support_n - 1.0).abs() < 0.02, "{carried} N");
 }
 
-/// A ring as other programs write it, in two files and with what is no mesh, is the ring; and the run lists
-/// what was passed over.
+/// A ring as other programs write it, in two files and with parts that are no mesh, is the ring; and the run
+/// lists the ignored parts.
 #[test]
 fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
     let plain = scene(&[]);

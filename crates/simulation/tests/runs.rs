@@ -71,7 +71,7 @@ fn last_angle_deg(run: &Run, roller: usize) -> f64 {
 /// Source: THEORY §5.1, rolling without slip.
 #[test]
 fn analytic_bearing_rolls_and_carries_its_load() {
-    // Cage, load and ledger within 1 % each: what the project asks of the full scene too. On a 2 mm mesh the
+    // Cage, load and ledger within 1 % each: the project's limits for the full scene too. On a 2 mm mesh the
     // cage runs 1.1 % ahead after 4 ms.
     const TOLERANCE: f64 = 0.01;
     let mut scene = coarse(6.0);
@@ -147,7 +147,7 @@ fn invariant_same_bits_with_1_2_and_3_threads() {
 /// Stiffness damping shortens the step, its heat closes the ledger, and threads change no bit.
 #[test]
 fn example_stiffness_damping_is_paid_and_counted() {
-    /// Of the peak strain energy: what a bearing may miss before it is warned.
+    /// Share of the peak strain energy that the ledger may lack before a bearing gets a warning.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
     // Its heat alone is seen. Loaded bodies that turn drive themselves a little with it (THEORY §2.7): it may
@@ -175,7 +175,7 @@ fn example_stiffness_damping_is_paid_and_counted() {
 /// bit.
 #[test]
 fn example_structural_damping_is_paid_and_counted() {
-    /// Of the peak strain energy: what a bearing may miss before it is warned.
+    /// Share of the peak strain energy that the ledger may lack before a bearing gets a warning.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
     (plain.solver.mass_damping_per_s, plain.solver.structural_damping) = (0.0, None);
@@ -259,7 +259,7 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
 }
 
 /// A step above the critical one creates energy: the run stops by itself, says where and what to try, and
-/// what it wrote stays readable.
+/// its files stay readable.
 #[test]
 fn survives_a_run_that_diverges() {
     let mut scene = coarse(2.0);

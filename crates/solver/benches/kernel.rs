@@ -94,7 +94,7 @@ fn kernel(criterion: &mut Criterion) {
     for (kind, elements, mesh) in strips.chain(gather).chain(congruent) {
         let id = BenchmarkId::new(kind, elements);
         group.throughput(Throughput::Elements(elements as u64));
-        // Only what is asked for on the command line is made.
+        // Only the models named on the command line are made.
         let mut d = None;
         group.bench_function(id, |bench| {
             let d = d.get_or_insert_with(|| in_motion(mesh()));

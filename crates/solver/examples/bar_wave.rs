@@ -29,8 +29,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Time step [s] of a bar with so many columns of elements, and the time [s] at which the front is in its
-/// middle.
+/// Time step [s] of a bar with this number of columns of elements, and the time [s] at which the front is in
+/// its middle.
 fn arrival(steel: Elastic, columns: usize) -> Result<(f64, f64), Box<dyn Error>> {
     let bar = Rectangle { x0: 0.0, y0: 0.0, width: LENGTH, height: HEIGHT, columns, rows: 2 }.part()?;
     let mut mesh = Mesh::new();

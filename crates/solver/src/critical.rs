@@ -64,7 +64,7 @@ impl Dynamics {
         Critical { time_step: 2.0 / rigid, frequency: rigid, residual: 0.0, ..elastic }
     }
 
-    /// Critical time step of elements and of what the forces are as stiff as *now*, at the positions last
+    /// Critical time step of the elements with the *present* stiffness of the forces, at the positions last
     /// given to them: sharp, but good for this configuration alone. Damping and rigid bodies are left out.
     pub fn present_critical_time_step(&self, forces: &[&dyn Force]) -> Critical {
         let mut springs = Vec::new();

@@ -1,10 +1,10 @@
 //! One model over ranks: the tiles of each, their messages in a step, and gathering the whole state.
 //!
 //! A rank sweeps its own tiles as threads do theirs. Their ghosts and whatever nodes its forces read come
-//! from the ranks that own them, once a step, while the tiles that nobody waits for are swept. What a step
-//! counts, and where rigid bodies are, every rank hears after every step; fields of other ranks' tiles are
-//! right only after [`Dynamics::gather`]. Sums are taken tile by tile in one order, as ever, so that ranks
-//! change no bit.
+//! from the ranks that own them, once a step, while the tiles that nobody waits for are swept. Every rank
+//! receives the sums of a step and the places of rigid bodies after every step; fields of other ranks' tiles
+//! are right only after [`Dynamics::gather`]. Sums are taken tile by tile in one order, as ever, so that
+//! ranks change no bit.
 
 use std::sync::Arc;
 
@@ -29,8 +29,8 @@ const ENERGIES: usize = 4;
 /// Length of a rigid body's state and drive.
 const RIGID: usize = 7;
 
-/// A new cut is taken where the busiest rank of the old one has so many times the work of the busiest of the
-/// new one.
+/// A new division is taken where the busiest rank of the old one has this many times the work of the busiest
+/// of the new one.
 const WORTH_A_CUT: f64 = 1.03;
 
 /// Slots from one that counts for the place of its tile to the next.
@@ -38,8 +38,8 @@ const PLACE_EVERY: usize = 61;
 
 impl Dynamics {
     /// Divides the model among ranks from now on, all of which hold the same state: each moves its own tiles
-    /// alone. Every rank has to call the same methods in the same order then, and whoever wants to know the
-    /// whole state calls [`Dynamics::gather`] first.
+    /// alone. Every rank has to call the same methods in the same order then, and [`Dynamics::gather`]
+    /// must precede every reading of the whole state.
     pub fn divide(&mut self, ranks: Arc<dyn Ranks>) {
         let count = ranks.count();
         self.division = Some(Division {
@@ -70,7 +70,7 @@ impl Dynamics {
 
     /// Deals tiles out anew by their work and by `burdens`: slots, and the work that is done for them, in
     /// units of about a nanosecond. The whole state must be known. True where a tile has gone to another
-    /// rank; what is read elsewhere must then be said again.
+    /// rank; the nodes that forces read must then be announced again.
     pub fn balance<'a>(&mut self, burdens: impl Iterator<Item = (&'a [u32], f64)>) -> bool {
         let Some(division) = &self.division else { return false };
         let (rank, count) = (division.ranks.rank(), division.ranks.count());

@@ -1,4 +1,4 @@
-//! The time loop's one step, and what is known about the model while it runs.
+//! One step of the time loop, and the properties of the running model.
 
 use crate::{
     damping::{Frame, MassDamping, PLACE_EVERY},
@@ -254,8 +254,8 @@ impl Dynamics {
     }
 
     /// Lets every rotating node turn at `rate` [rad/s], counter-clockwise positive, from the next step on:
-    /// what was given in the model holds until then. A step turns it by the exact angle `rate` · Δt; what is
-    /// to follow an angle over time is given the mean rate of each step. Restoring a snapshot leaves it as it
+    /// the model's rate holds until then. A step turns it by the exact angle `rate` · Δt; to follow an angle
+    /// over time, give the mean rate of each step. Restoring a snapshot leaves it as it
     /// is.
     ///
     /// # Errors

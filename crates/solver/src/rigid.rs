@@ -69,8 +69,8 @@ impl RigidBody {
         self.turning.is_some()
     }
 
-    /// One step under the forces on its nodes and gravity; moves the nodes. The work [J] of what keeps it
-    /// turning.
+    /// One step under the forces on its nodes and gravity; moves the nodes. Returns the work of its drive
+    /// [J].
     pub(crate) fn advance(
         &self,
         at: &mut RigidState,

@@ -64,7 +64,7 @@ pub(crate) fn pack(slots: &[u32], fields: &[&[f64]], to: &mut Vec<f64>) {
     }
 }
 
-/// Unpacks what [`pack`] has packed; what is left over.
+/// Unpacks the values of [`pack`]; returns the rest of the message.
 pub(crate) fn unpack<'a>(slots: &[u32], fields: &mut [&mut [f64]], mut from: &'a [f64]) -> &'a [f64] {
     for field in fields {
         let (values, rest) = from.split_at(slots.len());

@@ -89,7 +89,7 @@ impl Dynamics {
         factor
     }
 
-    /// Adds up what the springs hold and the dashpots have lost until the present positions. As
+    /// Adds up the energy of the springs and the heat of the dashpots until the present positions. As
     /// [`Dynamics::step`], to be called from within the pool.
     ///
     /// All that branches take is the work of their forces: elements are stiffer by Σ g, which is the change
@@ -160,7 +160,7 @@ impl Dynamics {
         }
     }
 
-    /// What the branches do in the step at hand, if they are evaluated in it.
+    /// Action of the branches in the present step, if they are evaluated in it.
     pub(crate) fn evaluation(&mut self) -> Option<Evaluation> {
         let (step, dt) = (self.state.step, self.time_step());
         let damping = &self.springs.as_ref().filter(|_| step >= self.state.springs.next)?.damping;
@@ -176,7 +176,7 @@ impl Dynamics {
 }
 
 impl SpringState {
-    /// Adds what an evaluation has found.
+    /// Adds the energies of an evaluation.
     pub(crate) fn count(&mut self, held: HeldWork) {
         self.work += held.released - self.taken_up;
         self.taken_up = held.taken_up;

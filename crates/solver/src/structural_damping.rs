@@ -294,7 +294,7 @@ mod tests {
             let damping = StructuralDamping::over_band(0.02, [2e3, 4e4], branches, vec![0]).expect("a band");
             let rate: f64 = damping.branches().iter().map(|b| b.stiffness / b.relaxation_time).sum();
             let stiffer = damping.stiffening(f64::INFINITY);
-            // Far above the band a vibration decays by Σ g/2τ over what makes it stiffer.
+            // Far above the band a vibration decays by Σ g/2τ over its stiffening.
             let expected = 0.5 * rate / stiffer;
             let highest = 2.0 / (dt * stiffer.sqrt());
             let modes = (12..=400).map(|n| 0.0025 * 0.98 * f64::from(n) * highest);

@@ -1,4 +1,4 @@
-//! What a free body keeps: linear and angular momentum, energy, shape under spin.
+//! Conserved quantities of a free body: linear and angular momentum, energy, shape under spin.
 //!
 //! Leapfrog with total-Lagrangian elements conserves the momenta to rounding, whatever the step; the energy
 //! ½ m v⁻·v⁺ + U is exact for a linear force and wobbles with the strain for this one (Hairer, Lubich and
@@ -194,7 +194,7 @@ fn conserves_the_ledger_of_a_driven_ring() {
 #[test]
 fn conserves_the_ledger_of_a_ring_whose_speed_changes() {
     // Driven from rest at a constant acceleration, and given the mean speed of each step: the bore follows
-    // ½αt², and the work of the drive is what the ring holds.
+    // ½αt², and the work of the drive is the ring's energy.
     const ACCELERATION: f64 = 4e5;
     let part = stribeck_mesh::Annulus {
         inner_radius: 0.05,

@@ -31,7 +31,7 @@ fn mesh() -> impl Strategy<Value = Mesh> {
         .prop_map(|(x, y, quads, triangles, bodies, plausible)| {
             let mut mesh = Mesh { x, y, quads, triangles, bodies: Vec::new() };
             if plausible {
-                // One body of everything: what is wrong lies deeper.
+                // One body of everything, so that the fault is reached.
                 mesh.y.resize(mesh.x.len(), 0.5);
                 mesh.bodies.push(Body {
                     name: "body".into(),

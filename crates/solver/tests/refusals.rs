@@ -1,4 +1,4 @@
-//! What the solver refuses, and what it says.
+//! Inputs that the solver refuses, and its messages.
 
 mod common;
 

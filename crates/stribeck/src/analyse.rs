@@ -48,7 +48,7 @@ pub struct Options {
     /// 300 kW
     #[arg(long, value_name = "GROUP", requires = "foundation", value_parser = clap::value_parser!(u8).range(1..=2))]
     iso_group: Option<u8>,
-    /// What the machine stands on, for the zone of the velocity level
+    /// Support of the machine, for the zone of the velocity level
     #[arg(long, value_enum, requires = "iso_group")]
     foundation: Option<Standing>,
     /// Limit of a level, NAME=WARNING..ALARM, for example rms=0.5..1.2; names are rms, velocity (mm/s, 10 to

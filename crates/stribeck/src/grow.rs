@@ -1,7 +1,6 @@
 //! `stribeck grow`: spalls of several units grow by a law, and each unit is recorded at intervals: a
 //! campaign, whose trends and remaining lives get a page of their own.
 
-mod file;
 mod records;
 
 use std::path::{Path, PathBuf};
@@ -14,6 +13,7 @@ use stribeck_formats::parquet::{Column, Values, write_table};
 use stribeck_report::{GrowthFindings, write_growth};
 use stribeck_scene::campaign::Campaign;
 use stribeck_scene::dice::Dice;
+use stribeck_scene::growth::Growth;
 use stribeck_scene::run_dir::{check_folder, write_atomic};
 use stribeck_scene::scene::Scene;
 
@@ -22,7 +22,6 @@ use crate::many_runs::Share;
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
 use crate::sweep::relative;
-use file::File;
 
 /// Flags of `grow`.
 #[derive(Debug, clap::Args)]
@@ -50,21 +49,21 @@ struct Planned {
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let path = place.locate(&options.file);
-    let file = File::read(&path)?;
+    let growth = Growth::read(&path)?;
     let folder = path.parent().unwrap_or(Path::new(""));
-    let base = file.scene.as_ref().map(|scene| folder.join(scene));
+    let base = growth.scene.as_ref().map(|scene| folder.join(scene));
     let scene = match &base {
-        Some(base) => Scene::read_with(base, &file.set)?,
-        None => Scene::singh2014().with_overrides(&file.set)?,
+        Some(base) => Scene::read_with(base, &growth.set)?,
+        None => Scene::singh2014().with_overrides(&growth.set)?,
     };
-    let law = file.law();
-    let planned = planned(&file, &law, &scene)?;
-    let out = options.out.clone().unwrap_or_else(|| place.runs().join(&file.name));
+    let law = law_of(&growth);
+    let planned = planned(&growth, &law, &scene)?;
+    let out = options.out.clone().unwrap_or_else(|| place.runs().join(&growth.name));
     check_folder(&out, &MARKS)?;
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
     let base = base.map(|base| relative(&base, &out)).transpose()?;
-    let text = campaign(&file, base.as_deref());
-    let rows = table(&file, &planned);
+    let text = campaign(&growth, base.as_deref());
+    let rows = table(&growth, &planned);
     match std::fs::read_to_string(out.join(TABLE)) {
         Ok(there) => anyhow::ensure!(
             there == rows,
@@ -74,12 +73,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         Err(_) => write_atomic(&out.join(TABLE), rows.as_bytes())?,
     }
     let campaign = Campaign::parse(&text, &shown(&out.join(CAMPAIGN)), &out)?;
-    tell!("{} units, {} records until the last of them is at its end", file.units, planned.len());
+    tell!("{} units, {} records until the last of them is at its end", growth.units, planned.len());
     let code = carry_out(&campaign, out.clone(), options.share, None)?;
     if !out.join(MARKS[1]).exists() {
         return Ok(code);
     }
-    let findings = records::judged(&file, &law, &planned, &campaign, &out)?;
+    let findings = records::judged(&growth, &law, &planned, &campaign, &out)?;
     write_growth(&out, &findings)?;
     write_table(&out.join("growth.parquet"), &columns(&findings), &[])?;
     let [held, among] = findings.held;
@@ -88,26 +87,38 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     Ok(code)
 }
 
+/// The law by which its spalls grow.
+fn law_of(growth: &Growth) -> Law {
+    Law {
+        onset: (growth.onset.revolutions, growth.onset.scatter),
+        life: (growth.life.revolutions, growth.life.scatter),
+        wander: growth.wander,
+        length_mm: (growth.length_mm.from, growth.length_mm.to),
+        exponent: growth.exponent,
+        every: growth.every_revolutions,
+    }
+}
+
 /// Most records of all units together.
 const MOST_RECORDS: usize = 100_000;
 
 /// The records of all units, from the first revolution to the last record before the end.
-fn planned(file: &File, law: &Law, scene: &Scene) -> Result<Vec<Planned>> {
+fn planned(growth: &Growth, law: &Law, scene: &Scene) -> Result<Vec<Planned>> {
     let mut all = Vec::new();
-    for unit in 1..=file.units {
-        let mut dice = Dice::stream(file.seed, unit as u64);
+    for unit in 1..=growth.units {
+        let mut dice = Dice::stream(growth.seed, unit as u64);
         // Of operation apart, so that more scatter there does not grow other spalls.
-        let mut of_operation = Dice::stream(file.seed ^ 0x5eed, unit as u64);
+        let mut of_operation = Dice::stream(growth.seed ^ 0x5eed, unit as u64);
         let mut course = law.unit(&mut dice);
         let first = all.len();
         while course.end().is_none() {
-            let mut scattered = |x: f64| x * (file.operation_scatter * normal(&mut of_operation)).exp();
+            let mut scattered = |x: f64| x * (growth.operation_scatter * normal(&mut of_operation)).exp();
             let length_mm = course.length_mm(law).map(|mm| round(mm, 1e-3));
             all.push(Planned {
                 unit,
                 revolutions: course.revolutions(),
                 length_mm,
-                depth_mm: length_mm.map(|mm| round(file.depth_mm(mm), 1e-4)),
+                depth_mm: length_mm.map(|mm| round(growth.depth_mm(mm), 1e-4)),
                 speed_rpm: round(scattered(scene.operation.speed_rpm), 1e-2),
                 load_n: round(scattered(scene.operation.load_n), 1e-2),
                 onset: course.onset(),
@@ -133,23 +144,23 @@ fn round(x: f64, to: f64) -> f64 {
 }
 
 /// The campaign that makes the records.
-fn campaign(file: &File, base: Option<&Path>) -> String {
-    let mut text = format!("// Written by `stribeck grow`.\n(\n    name: {:?},\n", file.name);
+fn campaign(growth: &Growth, base: Option<&Path>) -> String {
+    let mut text = format!("// Written by `stribeck grow`.\n(\n    name: {:?},\n", growth.name);
     if let Some(base) = base {
         text += &format!("    scene: {:?},\n", base.display().to_string());
     }
-    text += &format!("    set: {:?},\n    seed: {},\n    keep: signals,\n", file.set, file.seed);
+    text += &format!("    set: {:?},\n    seed: {},\n    keep: signals,\n", growth.set, growth.seed);
     text + &format!("    variants: table({TABLE:?}),\n)\n")
 }
 
-fn table(file: &File, planned: &[Planned]) -> String {
+fn table(growth: &Growth, planned: &[Planned]) -> String {
     let mut text = "operation.speed_rpm, operation.load_n, defects\n".to_owned();
     for record in planned {
         let defects = match (record.length_mm, record.depth_mm) {
             (Some(length), Some(depth)) => format!(
                 "[(on: {}, angle_deg: {:?}, form: spall(length_mm: {length:?}, depth_mm: {depth:?}))]",
-                file.on.word(),
-                file.angle_deg
+                growth.on.name(),
+                growth.angle_deg
             ),
             _ => "[]".to_owned(),
         };

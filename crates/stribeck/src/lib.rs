@@ -85,8 +85,8 @@ pub enum Command {
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and continues
     #[command(after_help = "Example: stribeck campaign starts.ron --out runs/starts")]
     Campaign(campaign::Options),
-    /// Lets spalls of several units grow by a law, records each at intervals, and says what is left of it,
-    /// with the truth beside; the same command starts and goes on
+    /// Lets spalls of several units grow by a law, records each at intervals, and estimates its remaining
+    /// life, with the truth beside; the same command starts and goes on
     #[command(after_help = "Example: stribeck grow growth.ron")]
     Grow(grow::Options),
     /// Runs a scene with several values of some fields, each with every other: a campaign in one line

@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use clap::builder::styling::{AnsiColor, Style};
 
-/// How much is said on the way.
+/// How much is printed during a command.
 #[derive(Debug, Clone, Copy, Default, clap::Args)]
 pub struct Loudness {
     /// Prints results, warnings and errors only
@@ -39,7 +39,7 @@ impl Loudness {
     }
 }
 
-/// Whether nothing is to be said of progress.
+/// Whether progress is not printed.
 pub(crate) fn is_quiet() -> bool {
     LOUDNESS.load(Ordering::Relaxed) == QUIET
 }

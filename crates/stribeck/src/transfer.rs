@@ -20,7 +20,7 @@ const FORM: &str = "\"mass=12, stiffness=2e8, damping=0.02\" in kg, N/m and part
 pub(crate) struct Transfer {
     response: Response,
     per: Per,
-    /// What it is, and what was assumed of it.
+    /// Its description, and the assumptions on it.
     words: String,
 }
 
@@ -72,7 +72,7 @@ impl Transfer {
         Ok(Self { response, per: chosen.per, words })
     }
 
-    /// What a sensor at the end of the path shows of a run: both directions of the force, or every
+    /// A run as recorded by a sensor at the end of the path: both directions of the force, or every
     /// acceleration.
     pub(crate) fn at_sensor(&self, recording: &Recording) -> Result<Vec<Channel>> {
         match self.per {
@@ -85,7 +85,7 @@ impl Transfer {
         }
     }
 
-    /// The same, of the direction of one channel; and in words what was done.
+    /// The same for the direction of one channel, with a description.
     pub(crate) fn of_run(&self, recording: &Recording, channel: &Channel) -> Result<(Channel, String)> {
         let (made, what) = match self.per {
             Per::Force => {
@@ -139,7 +139,7 @@ impl Transfer {
         Ok(made.at_rate(Some(rate_hz)).in_unit(Some("m/s^2".to_owned())))
     }
 
-    /// What came before the path, of a channel that a sensor recorded at its end; and in words what was done.
+    /// The input of the path, from a channel that a sensor recorded at its end, with a description.
     pub(crate) fn before(&self, channel: &Channel, rate_hz: f64) -> Result<(Channel, String)> {
         let unit = channel.unit.as_deref().and_then(AccelerationUnit::parse);
         let samples = channel.scaled(unit.map_or(1.0, AccelerationUnit::in_m_s2)).read()?;

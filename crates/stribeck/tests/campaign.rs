@@ -147,7 +147,7 @@ fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
     for kept in runs(&desk.join("signals")) {
         assert_eq!(files(&kept), ["run.json", "scene.ron", "signals.npy", "summary.json"]);
     }
-    // Nothing is run again, and the tables are made of what is left; by parts, too.
+    // Nothing is run again, and the tables are made of the remaining runs; by parts, too.
     let before = tables(&desk.join("signals"));
     says(&run(&desk, &["--out=signals"]), &["0 of them to be run", "8 of 8"]);
     assert_eq!(before, tables(&desk.join("signals")));
@@ -168,7 +168,7 @@ fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
     assert!(!desk.join("numbers/signals.parquet").exists());
     let kept = runs(&desk.join("numbers"));
     assert_eq!(files(&kept[0]), ["run.json", "scene.ron", "summary.json"]);
-    // What was removed is named when it is asked for.
+    // A removed run is named when it is asked for.
     let report =
         Command::new(env!("CARGO_BIN_EXE_stribeck")).arg("report").arg(&kept[0]).output().expect("it starts");
     assert!(!report.status.success());
@@ -393,7 +393,7 @@ fn example_scripts_for_engines_name_every_part() {
         assert!(!said(&output).contains("|| true"), "{}", said(&output));
         assert!(!desk.join("runs").exists());
     }
-    // Eight runs are eight parts where nobody says how many, and parts are told what the command is told.
+    // Eight runs are eight parts by default, and parts get the flags of the command.
     let limits = ["--threads=4", "--jobs=2", "--memory-gb=1.5"];
     let told = |engine| run(&desk, &[&["--emit", engine][..], &limits].concat());
     let to_program = "/8 --jobs 2 --threads 4 --memory-gb 1.5";
@@ -447,7 +447,7 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
     let words = [script, env!("CARGO_BIN_EXE_stribeck"), "campaign.ron", "B", "4"];
     let output = Command::new(&python).current_dir(desk.path()).args(words).output().expect("it starts");
     says(&output, &["done"]);
-    // What the lost worker left half done is done by the same command.
+    // The same command completes the run that the lost worker left unfinished.
     let last = run(&desk, &["--out=B"]);
     assert!(last.status.success(), "{}", said(&last));
     says(&last, &["8 of 8 runs are complete"]);

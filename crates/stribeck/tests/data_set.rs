@@ -1,5 +1,5 @@
-//! What a campaign leaves for those who learn from it: ground truth, events, and a page that says what is
-//! there.
+//! The data set of a campaign: ground truth, events, and a page that describes
+//! them.
 
 #![cfg(unix)]
 

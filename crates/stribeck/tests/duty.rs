@@ -48,7 +48,7 @@ fn simulated(scene: &Scene, folder: &Path) {
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
 }
 
-/// What a run shows over the angle of its shaft.
+/// Findings of a run over the angle of its shaft.
 struct OverAngle {
     resolution: f64,
     orders: Vec<f64>,
@@ -87,7 +87,7 @@ fn analytic_bpfo_follows_the_tacho_of_a_ramp() {
     let duty = summary.duty.as_ref().expect("a speed that changes");
     assert_eq!((duty.speed_rpm, duty.load_n), ((300.0, 1200.0), (50_000.0, 50_000.0)));
     let orders = duty.envelope.as_ref().expect("turns enough");
-    // What the project asks of every ledger; the reduced model's error goes with the square of its step.
+    // The project's limit for every ledger; the reduced model's error goes with the square of its step.
     assert!(summary.energy.max_relative_error < 0.01, "{:?}", summary.energy);
     let order = Kinematics::new(&scene.bearing, 60.0).bpfo_hz;
     let found = orders.lines[0].measured.expect("a line");
@@ -164,7 +164,7 @@ fn analytic_multiples_of_bpfo_stand_in_the_mean_of_some_run_ups() {
 /// without slip.
 #[test]
 fn analytic_bpfo_follows_the_difference_of_two_speeds() {
-    /// What a roller may move in its pocket and a cage falls behind [rad of the cage on the ring].
+    /// Travel of a roller in its pocket, by which a cage falls behind [rad of the cage on the ring].
     const PLAY: f64 = 0.05;
     let text =
         "(bearing: \"NU 205\", model: reduced(modes_khz: 30.0, step_us: 0.5), film: None, defect: None,
@@ -273,7 +273,7 @@ fn invariant_a_mirrored_run_has_the_same_report() {
 /// Source: THEORY §5.1 and §7.5.
 #[test]
 fn analytic_spalls_of_both_raceways_have_events_and_lengths() {
-    /// What a roller may move in its pocket, 0.2 mm at 2.4 m/s [ms].
+    /// Time of a roller's travel in its pocket, 0.2 mm at 2.4 m/s [ms].
     const POCKET_MS: f64 = 0.1;
     let folder = Scratch::create("both");
     let mut set = vec!["model=reduced(modes_khz: 30.0)", "film=None", "solver.duration_ms=60"];

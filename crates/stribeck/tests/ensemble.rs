@@ -118,7 +118,7 @@ fn survives_an_interruption_and_goes_on_with_what_is_missing() {
     let first =
         fs::metadata(desk.join("pieces/start-001/trace.npy")).and_then(|m| m.modified()).expect("there");
 
-    // What is complete is readable, and counts.
+    // Complete starts are readable, and count.
     let summary_then = summary(&desk, "pieces");
     assert_eq!(summary_then["starts"][0]["ended"], "complete");
     assert_eq!(summary_then["ensemble"]["levels"]["start_g"]["count"].as_u64(), Some(1));
@@ -182,7 +182,8 @@ fn refuses_flags_that_do_not_go_together() {
     assert!(!desk.join("E/ensemble.json").exists() && !desk.join("E/start-001").exists());
 }
 
-/// A time step above the critical one diverges in every start; that is counted and said, and nothing is lost.
+/// A time step above the critical one diverges in every start; they are counted and reported, and nothing is
+/// lost.
 #[test]
 fn survives_starts_that_diverge() {
     let desk = Scratch::create("diverge");

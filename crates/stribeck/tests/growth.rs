@@ -1,4 +1,4 @@
-//! `stribeck grow` and `--path`: what they make, what goes on, and the likely mistakes.
+//! `stribeck grow` and `--path`: their files, continued commands, and the likely mistakes.
 
 use std::fs;
 use std::process::{Command, Output, Stdio};
@@ -62,15 +62,15 @@ fn example_spalls_grow_and_a_second_command_runs_nothing() {
 fn refuses_growths_that_cannot_be() {
     let desk = Scratch::create("grow-refused");
     for (from, to, told) in [
-        ("units: 3", "units: 0", ["`units` is 0", "1 to 10000"]),
+        ("units: 3", "units: 0", ["`units` is 0", "allowed: 1 to 10000"]),
         ("from: 1.0, to: 4.0", "from: 4.0, to: 1.0", ["goes from 4 to 1", "grows"]),
         (
             "life: (revolutions: 4e6",
             "life: (revolutions: -4e6",
-            ["`life.revolutions` is -4000000", "between"],
+            ["`life.revolutions` is -4000000", "allowed: 1 to 1e13"],
         ),
         ("on: outer", "on: cage", ["cage", "outer"]),
-        ("most_depth_mm", "most_deep_mm", ["most_deep_mm", "line"]),
+        ("most_depth_mm", "most_deep_mm", ["did you mean `most_depth_mm`", "g.ron:"]),
         ("defect=None", "defects=None", ["defects", ""]),
     ] {
         fs::write(desk.join("g.ron"), growth(from, to)).expect("written");

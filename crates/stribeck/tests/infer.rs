@@ -1,4 +1,4 @@
-//! Inferences as their users meet them: found, killed, split over machines, asked for what is not there.
+//! Inferences as their users meet them: found, killed, split over machines, asked for missing targets.
 
 #![cfg(unix)]
 
@@ -89,7 +89,7 @@ fn example_load_and_length_are_found_from_a_run_with_both() {
         let width = found["width_of_prior"].as_f64().expect("a number");
         assert!(width < most, "{field}: {width} of the prior");
     }
-    // What runs at draws of the posterior make lies about the targets.
+    // Outputs of runs at draws of the posterior lie about the targets.
     for target in answer["targets"].as_array().expect("a list") {
         let (value, median) = (target["value"].as_f64().expect("a value"), target["run_median"].as_f64());
         let ratio = median.expect("runs") / value;

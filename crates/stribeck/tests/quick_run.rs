@@ -1,4 +1,4 @@
-//! A real run of the coarse bearing through the report: what the events and the pictures are made of is
+//! A real run of the coarse bearing through the report: the data of events and pictures are
 //! simulated here.
 
 use std::ops::ControlFlow;

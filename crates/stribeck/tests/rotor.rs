@@ -61,7 +61,7 @@ fn example_stiffness_as_table_json_and_for_ross() {
     let element = ross.as_object().and_then(|all| all.values().next()).expect("an element");
     assert_eq!(element["frequency"].as_array().map(Vec::len), Some(3));
     assert_eq!(element["kyy"][0], points[3]["stiffness_n_m"]["yy"]["mean"]);
-    // The same command writes over what it wrote.
+    // The same command overwrites its own files.
     assert!(stribeck(&desk, &words).status.success());
 }
 

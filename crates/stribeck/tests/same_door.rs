@@ -23,7 +23,7 @@ const SCENE: &str = r#"(
     output: (frames: None),
 )"#;
 
-/// What a good sensor on a common recorder does.
+/// Noise and resolution of a good sensor on a common recorder.
 const SENSOR: &str =
     "rate_hz=50000, resonance_hz=40000, quality=30, noise_density=0.01, range=5000, bits=24, seed=3";
 

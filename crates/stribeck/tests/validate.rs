@@ -47,7 +47,7 @@ fn example_both_models_from_the_same_starts() {
     assert!(row("forces_percent")["difference"]["mean"].as_f64().unwrap() < 5.0, "{table}");
     let page = fs::read(folder.join("report.html")).unwrap();
 
-    // What is there is not run again, and comes to the same page.
+    // Existing runs are not repeated, and make the same page.
     let again = run(&desk, &words);
     says(&again, &["0 runs to make"]);
     assert_eq!(fs::read(folder.join("report.html")).unwrap(), page);
@@ -74,7 +74,7 @@ fn example_both_models_from_the_same_starts() {
     fs::remove_dir_all(desk.join("runs/fewer")).unwrap();
     fs::remove_dir_all(desk.join("runs/lighter")).unwrap();
 
-    // A reduced run beside it says what is known of its error.
+    // The page of a reduced run beside it states its measured error.
     let near = ["simulate", "scene.ron", "--set", "operation.load_n=45000", "--out=runs/near", "--threads=2"];
     let near = run(&desk, &near);
     assert!(near.status.success(), "{}", said(&near));
@@ -90,7 +90,7 @@ fn example_both_models_from_the_same_starts() {
     let page = fs::read_to_string(desk.join("alone/run/report.html")).unwrap();
     assert!(page.contains("no validation of a scene like it"));
 
-    // A run agrees with itself, and a change of its forces is what is reported.
+    // A run agrees with itself, and a change of its forces is reported.
     let path = folder.join("reduced/start-001");
     let scene = Scene::read(path.join("scene.ron")).unwrap();
     let own = || Run::read(&path).unwrap();
@@ -183,7 +183,7 @@ fn refuses_scenes_that_the_reduced_model_cannot_have() {
     let short = run(&desk, &["validate", "scene.ron", "--set", "solver.duration_ms=1.9", "--starts=1"]);
     assert!(!short.status.success());
     says(&short, &["solver.duration_ms", "1.9", "at least 2"]);
-    // A run may take half an hour: all of this is said before the first.
+    // A run may take half an hour: all of this is refused before the first.
     assert!(!desk.join("runs").exists());
 }
 
@@ -251,7 +251,7 @@ fn issue_no_command_writes_over_a_run_or_among_foreign_files() {
         }
     }
     assert_eq!(before, ["runs/mine", "thesis"].map(files));
-    // What is their own they go on with, and no run is put there.
+    // Folders of users are left alone, and no run is put there.
     for (command, words) in [
         (&["analyse", "a.csv", "--rate-hz=1000"][..], "report"),
         (&["analyse", "a.csv", "a.csv", "--rate-hz=1000", "--out=both"], "side by side"),

@@ -1,4 +1,4 @@
-//! What the compiler made of kernels: operations of vectors are instructions, not functions.
+//! Machine code of kernels: operations of vectors are instructions, not functions.
 #![cfg(all(target_arch = "x86_64", not(debug_assertions)))]
 
 /// What names of functions hold that are the processor's operations, and of those the ones on numbers of

@@ -13,8 +13,8 @@ pub enum Scheme {
         /// φ ≥ 1; 1.03 is customary.
         phi: f64,
     },
-    /// Noh and Bathe: two sub-steps, p and 1 − p, with one evaluation each. Second order; damps what a mesh
-    /// does not resolve (*An explicit time integration scheme for the analysis of wave propagations*,
+    /// Noh and Bathe: two sub-steps, p and 1 − p, with one evaluation each. Second order; damps waves that a
+    /// mesh does not resolve (*An explicit time integration scheme for the analysis of wave propagations*,
     /// Computers & Structures 129 (2013), §2).
     NohBathe {
         /// Split of the step; 0.54 is customary.

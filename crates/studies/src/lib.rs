@@ -6,7 +6,7 @@
 //!
 //! `cargo xtask study` is the command. Nothing that simulates depends on this crate; elements, precisions and
 //! integrators that no run uses live here ([`reference`], [`integrators`]). Like every library here it prints
-//! nothing and reads no clock: what it needs of the program that runs it is its [`Host`].
+//! nothing and reads no clock: all access to the program that runs it is through its [`Host`].
 
 pub mod integrators;
 pub mod reference;

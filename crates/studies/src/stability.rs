@@ -38,7 +38,7 @@ enum Verdict {
     Stopped,
     /// It was refused before it began.
     Refused,
-    /// It ended with a wrong answer and said nothing.
+    /// It ended with a wrong result and without a warning.
     Undetected,
 }
 

@@ -14,7 +14,7 @@ use crate::{
 
 /// A point at the distance d from a facet is compared with the neighbour where it stands closer to an end
 /// than this times d: the line that halves the angle at a joint leans by half the turn there, at most 0.175
-/// at what is no corner.
+/// except at corners.
 const NEAR_END: f64 = 0.25;
 
 /// A chord in present positions.

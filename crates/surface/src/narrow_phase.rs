@@ -2,7 +2,7 @@
 //!
 //! Between two steps a foot moves by a small part of a facet, so the search sets out from the facet where the
 //! point was found last and walks from neighbour to neighbour. parry2d, which does the broad phase, projects
-//! points too; the walk is our own because the gap needs what a closest point does not say: a sign that does
+//! points too; the walk is our own because the gap needs more than a closest point: a sign that does
 //! not depend on a closed interior, a normal that turns without a jump at joints, curves above the chords and
 //! splines, and no descent into a tree for a facet that is already known. On plain polylines both must agree:
 //! a test holds them together (`tests/projection.rs`).

@@ -102,7 +102,7 @@ impl<N: Number> Patch<N> {
     }
 
     /// Foot of `p` on the curve, which goes on beyond its ends, and what part of a facet is left to it.
-    /// Corrections end when the feet of all that are `wanted` are found, or after so many.
+    /// Corrections end when the feet of all that are `wanted` are found, or after this number.
     #[inline(always)]
     pub fn foot(&self, p: [N; 2], wanted: N, corrections: usize) -> (Foot<N>, N) {
         let (half, one, small) = (p[0].constant(0.5), p[0].constant(1.0), p[0].constant(FOUND));

@@ -1,7 +1,7 @@
 //! Vectors in the plane, and choices lane by lane, over any [`Number`].
 //!
-//! Nothing in code over a `Number` is a closure: what a closure does is not compiled for the vectors'
-//! instruction set.
+//! Nothing in code over a `Number` is a closure: its body would not be compiled for the vectors' instruction
+//! set.
 
 use stribeck_simd::lanes::Number;
 

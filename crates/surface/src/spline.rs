@@ -132,7 +132,7 @@ impl Spline {
 /// Rows of the spline on a facet whose nearest corners stand at these offsets from its first vertex (−2 and 3
 /// at most).
 fn matrix(low: i64, high: i64) -> Rows {
-    // A node, or what stands for it beyond a corner, in nodes of the support.
+    // A node, or its substitute beyond a corner, in nodes of the support.
     fn node(offset: i64, low: i64, high: i64) -> [f64; SUPPORT] {
         let corner = match offset {
             o if o < low => low,

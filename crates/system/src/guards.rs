@@ -8,8 +8,8 @@
 //! | area of an element over its area at rest | | `area_stop_percent` |
 //! | time step over the critical one as elements deform | above 1 | |
 //!
-//! A warning is given once, at the first look above its limit. What has been seen is in [`Seen`], and so in
-//! snapshots: a system that is continued warns as an unbroken one does.
+//! A warning is given once, at the first check above its limit. [`Seen`] holds the warnings given so far and
+//! is part of snapshots: a continued system warns as an uninterrupted one does.
 
 use serde::{Deserialize, Serialize};
 
@@ -159,8 +159,8 @@ impl std::fmt::Display for Finding {
 }
 
 impl System {
-    /// Looks whether all is well after [`System::step_with_ledger`], whose ledger it judges: what is beyond
-    /// its limits, in the order of the table above. Every guard looks, so that the worst of each is known.
+    /// Checks the ledger of [`System::step_with_ledger`]: returns the quantities beyond their limits, in the
+    /// order of the table above. Every guard is evaluated, so that the worst of each is known.
     pub fn look(&mut self) -> Vec<Finding> {
         let mut seen = *self.seen();
         seen.looks += 1;

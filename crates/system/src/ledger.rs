@@ -98,8 +98,7 @@ pub struct Balance {
 }
 
 impl Balance {
-    /// Enters a ledger, and completes it; the first one is what it counts from where nothing was entered
-    /// before.
+    /// Enters a ledger, and completes it; the first one is the reference where nothing was entered before.
     pub fn begin_or_enter(&mut self, ledger: &mut Ledger, scale: Scale) {
         self.reference.get_or_insert(ledger.balance());
         self.enter(ledger, scale);

@@ -44,9 +44,9 @@ impl Load {
 impl Force for Load {
     fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
         let LoadMemory { factor, before, supplied } = &mut self.memory;
-        // The velocity times the step is the displacement since the last call, over which the force was that
-        // of then at its beginning and is that of now at its end: their mean is what the leapfrog scheme
-        // conserves.
+        // The velocity times the step is the displacement since the last call. The force at its beginning was
+        // the previous one, at its end it is the present one: the leapfrog scheme conserves energy with their
+        // mean.
         let mean = 0.5 * (*before + *factor);
         for &(slot, fx, fy) in &self.pushes {
             let n = slot as usize;

@@ -12,7 +12,7 @@ use crate::{error::Error, names::nodes_of, system::System};
 const TOLERANCE: f64 = 1e-7;
 
 /// Contacts that change sides for ever keep a preload from its tolerance. Where less than this share of the
-/// load is unbalanced on the worst node, it is accepted and said.
+/// load is unbalanced on the worst node, it is accepted with a note.
 const ENOUGH: f64 = 1e-4;
 
 /// The same for a stage before the last.

@@ -7,7 +7,7 @@ use stribeck_solver::snapshot::Snapshot as MotionSnapshot;
 use crate::{error::Error, forces::Forces, guards::Seen, ledger::Balance, load::LoadMemory, system::System};
 
 /// The state in time. Bodies, pairs, limits, the time step and damping are no part of it; of forces added by
-/// [`Plan::force`](crate::Plan::force) it is what they say that they remember.
+/// [`Plan::force`](crate::Plan::force) it holds the values that they save themselves.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     motion: MotionSnapshot,
@@ -76,7 +76,7 @@ impl System {
         Ok(())
     }
 
-    /// False when a force does not know what it is to remember.
+    /// False when a force cannot restore the values.
     fn recall(&mut self, further: &[Vec<f64>]) -> bool {
         let mut forces = self.forces.further.iter_mut().zip(further);
         forces.all(|((_, force), memory)| force.recall(memory))

@@ -270,8 +270,8 @@ impl System {
         Err(Error::UnannouncedForce { body: self.body_of(node).to_owned(), x_mm: 1e3 * x, y_mm: 1e3 * y })
     }
 
-    /// Takes a system apart, to measure one part of a step alone. What is left speaks in the solver's own
-    /// numbers.
+    /// Takes a system apart, to measure one part of a step alone. The parts use the node numbers of the
+    /// solver.
     pub fn into_parts(self) -> Parts {
         let Forces { contacts, films, loads, further } = self.forces;
         let others = Box::new(Forces { contacts: None, films, loads, further });

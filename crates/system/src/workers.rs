@@ -39,7 +39,7 @@ impl Workers {
     }
 }
 
-/// Starts and ends so many threads at a time, because a pool cannot say that it got fewer.
+/// Starts and ends this number of threads, because a pool does not report that it got fewer.
 fn try_threads(threads: usize) -> std::io::Result<()> {
     let gate = std::sync::Arc::new(std::sync::RwLock::new(()));
     let closed = gate.write();

@@ -1,4 +1,4 @@
-//! What a system refuses, what it keeps, and what a law of the user can do.
+//! Refused plans, conserved quantities, and laws of the user.
 
 use stribeck_contact::Law;
 use stribeck_mesh::{Part, Rectangle};
@@ -80,7 +80,7 @@ fn on_a_spring(at: usize, announced: usize) -> System {
 }
 
 /// Through an impact with friction, under a load and gravity. A penalty law has a corner, which a step cuts:
-/// the error falls with the step, to below what the guards warn of.
+/// the error falls with the step, to below the guards' warnings.
 #[test]
 fn conserves_energy_through_contact_friction_loads_and_gravity() {
     let errors = [0.8, 0.2].map(|factor| {
@@ -206,7 +206,7 @@ fn invariant_names_are_found_or_named() {
     says(system.body("lid").expect_err("no such body"), &["`lid`", "`lower`"]);
 }
 
-/// Far above the critical step the energy grows without bound, and the guard says so with what to try.
+/// Far above the critical step the energy grows without bound, and the guard's message has a remedy.
 #[test]
 fn invariant_an_unstable_step_is_stopped() {
     let mut system = falling(0.8);
@@ -242,8 +242,7 @@ fn invariant_a_settled_system_stays_at_rest() {
     assert!((found / expected - 1.0).abs() < TOLERANCE, "{found} N instead of {expected} N");
 }
 
-/// Present contact forces cancel over both bodies, carry what the preload put on them, and asking changes
-/// nothing.
+/// Present contact forces cancel over both bodies and carry the preload, and a query changes nothing.
 #[test]
 fn conserves_momentum_of_present_contact_forces() {
     let mut system = plan().build(1).expect("a sound plan");

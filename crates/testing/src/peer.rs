@@ -1,12 +1,12 @@
-//! Other programs that tests hold ours against: where one is absent a test says so and checks nothing, unless
-//! it must be there.
+//! Other programs that tests compare ours with: where one is absent a test prints so and checks nothing,
+//! unless it must be there.
 
 use std::process::Command;
 
 /// The Python interpreter in `STRIBECK_PYTHON`, or `python3`, if it has these modules.
 ///
 /// Where the variable is set the modules must be there: a test that needs them fails without them. Otherwise
-/// it says what it leaves out.
+/// it prints which check it skips.
 ///
 /// # Panics
 /// When the interpreter that `STRIBECK_PYTHON` names lacks a module.

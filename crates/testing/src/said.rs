@@ -1,13 +1,13 @@
-//! What a program said on its way.
+//! The output of a program.
 
 use std::process::Output;
 
-/// What it wrote to standard output, then what it wrote to standard error.
+/// Its standard output, then its standard error.
 pub fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
 }
 
-/// Fails unless it said all of these words.
+/// Fails unless its output contains all of these words.
 #[track_caller]
 pub fn says(output: &Output, words: &[&str]) {
     let said = said(output);

@@ -21,7 +21,7 @@ type Place = Vec<String>;
 struct Module {
     /// Paths from the crate's root that it uses.
     uses: Vec<Place>,
-    /// Names that it imports or re-exports, and what they stand for.
+    /// Names that it imports or re-exports, and their paths.
     imports: BTreeMap<String, Place>,
 }
 
@@ -126,7 +126,7 @@ impl Modules {
         Ok(modules)
     }
 
-    /// Notes the paths in the code of the module at `place`, but for what is compiled for tests.
+    /// Notes the paths in the code of the module at `place`, without code for tests.
     fn walk(&mut self, place: &Place, tokens: TokenStream) {
         let tokens: Vec<TokenTree> = tokens.into_iter().collect();
         let mut at = 0;
@@ -172,7 +172,7 @@ impl Modules {
         }
     }
 
-    /// Notes the paths of a `use`, and the names that they get here. `before` is what stands in front of a
+    /// Notes the paths of a `use`, and the names that they get here. `before` is the path in front of a
     /// brace.
     fn import(&mut self, place: &Place, before: &Place, tree: &[TokenTree]) {
         let (path, len) = path_at(tree);
@@ -320,7 +320,7 @@ fn path_at(tokens: &[TokenTree]) -> (Place, usize) {
     (path, at)
 }
 
-/// What stands between the commas of a brace.
+/// The parts between the commas of a brace.
 fn branches(group: &Group) -> Vec<Vec<TokenTree>> {
     let tokens: Vec<TokenTree> = group.stream().into_iter().collect();
     let comma = |token: &TokenTree| matches!(token, TokenTree::Punct(mark) if mark.as_char() == ',');

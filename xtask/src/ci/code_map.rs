@@ -1,4 +1,4 @@
-//! ARCHITECTURE against the tree: what it names exists, and no source file is left out.
+//! ARCHITECTURE against the tree: the files that it names exist, and none is left out.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 
 use super::{layers, markdown, sources, test_names};
 
-/// Files that every crate may have; ARCHITECTURE says once what is in them.
+/// Files that every crate may have; ARCHITECTURE describes them once.
 const EVERYWHERE: [&str; 4] = ["lib.rs", "error.rs", "mod.rs", "tests.rs"];
 
 /// Every file and test that ARCHITECTURE names exists, and its code map names every source file or a folder
@@ -36,7 +36,7 @@ fn compare(
     tests: &BTreeSet<String>,
 ) -> Vec<String> {
     let mut complaints = Vec::new();
-    // What the code map covers: whole files, and folders with a slash at their end.
+    // Entries of the code map: whole files, and folders with a slash at their end.
     let mut covered = Vec::new();
     let mut section = "";
     let mut fenced = false;

@@ -115,7 +115,7 @@ pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
 }
 
 /// The pages of the book of `docs` link to each other and to pictures and tables beside them: a page that
-/// SUMMARY does not list is none of the book, and what lies outside of `docs` is not in it.
+/// SUMMARY does not list is none of the book, and files outside of `docs` are not in it.
 pub(crate) fn check_book(root: &Path) -> Result<Vec<String>> {
     let summary = read(root, "docs/SUMMARY.md")?;
     let pages = markdown::links(&summary).into_iter();
@@ -148,8 +148,8 @@ fn links_out_of_a_book(pages: &[(&str, String)]) -> Vec<String> {
     complaints
 }
 
-/// README, CONTRIBUTING, what lies in `docs/`, `docs/notes/` and `docs/guide/src/`, and the README of every
-/// crate.
+/// README, CONTRIBUTING, the documents in `docs/`, `docs/notes/` and `docs/guide/src/`, and the README of
+/// every crate.
 fn documents(root: &Path) -> Result<Vec<String>> {
     let mut names = vec!["README.md".to_owned(), "CONTRIBUTING.md".to_owned()];
     for folder in ["docs", "docs/notes", "docs/guide/src"] {
@@ -171,7 +171,7 @@ fn wrong_command(root: &Path, command: &str) -> Option<String> {
     let begins = |name: &str| command.starts_with(name).then_some(name.len());
     let at =
         command.find("cargo xtask").map(|at| at + "cargo xtask".len()).or_else(|| begins("stribeck "))?;
-    // What stands behind a comment, a pipe or another command is not ours; nor is a placeholder such as
+    // Words behind a comment, a pipe or another command are not ours; nor is a placeholder such as
     // `[SCENE]`.
     let ours = &command[at..];
     let ends = |(n, sign): &(usize, char)| {
@@ -194,7 +194,7 @@ fn wrong_command(root: &Path, command: &str) -> Option<String> {
     Some(text.lines().next().unwrap_or_default().to_owned())
 }
 
-/// Words of a command line; what stands in quotation marks is one.
+/// Words of a command line; a quoted string is one.
 fn words(command: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut quoted = false;

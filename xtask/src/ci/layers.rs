@@ -7,8 +7,8 @@ use anyhow::{Context, Result};
 /// What tests share: every crate may have it as a dev-dependency, and none otherwise.
 const TESTING: &str = "testing";
 
-/// Every crate and what it depends on of ours beside the program. A new arrow is the one change that needs a
-/// paragraph in ARCHITECTURE.
+/// Every crate beside the program, and those of ours that it depends on. A new arrow is the one change that
+/// needs a paragraph in ARCHITECTURE.
 const LAYERS: [(&str, &[&str]); 26] = [
     (TESTING, &[]),
     ("mesh", &[]),

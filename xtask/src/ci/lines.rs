@@ -6,7 +6,7 @@ use anyhow::{Context, Result};
 
 use super::sources;
 
-/// As `max_width` in `rustfmt.toml` says it of code.
+/// As `max_width` in `rustfmt.toml`, which is for code.
 const COLUMNS: usize = 110;
 
 /// A text of as many characters on one line can be broken with a backslash.
@@ -53,7 +53,7 @@ fn long_lines(text: &str, texts: bool) -> Vec<(usize, usize)> {
     found
 }
 
-/// What stands between quotes on a line.
+/// The text between quotes on a line.
 fn quoted(line: &str) -> impl Iterator<Item = &str> {
     line.split('"').skip(1).step_by(2)
 }

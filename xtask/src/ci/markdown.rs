@@ -1,6 +1,6 @@
 //! The little of Markdown that the checks need.
 
-/// Text of every piece of code: the lines of fenced blocks, and what stands between backticks elsewhere.
+/// Text of every piece of code: the lines of fenced blocks, and the text between backticks elsewhere.
 pub(crate) fn code(text: &str) -> Vec<&str> {
     let mut fenced = false;
     let mut found = Vec::new();
@@ -71,7 +71,7 @@ pub(crate) fn citations(text: &str) -> Vec<&str> {
     found
 }
 
-/// Terms of a glossary, per section: what stands in bold at the start of a line, a list item or a table row.
+/// Terms of a glossary, per section: bold text at the start of a line, a list item or a table row.
 pub(crate) fn terms(text: &str) -> Vec<Vec<&str>> {
     let mut sections = vec![Vec::new()];
     for line in text.lines() {

@@ -1,4 +1,4 @@
-//! What a crate needs before it can be published.
+//! Requirements on a crate before it can be published.
 
 use std::path::Path;
 

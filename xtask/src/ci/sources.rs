@@ -73,7 +73,7 @@ pub(crate) fn check_silence(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// What a line of code, comments apart, prints or asks the clock with.
+/// The macro or function with which a line of code prints or reads the clock, comments apart.
 fn noise(line: &str) -> Option<&'static str> {
     let code = line.split("//").next().unwrap_or_default();
     NOISES.into_iter().find(|noise| code.contains(noise))

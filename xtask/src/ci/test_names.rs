@@ -1,4 +1,4 @@
-//! What the names of tests promise: a prefix that says what each leans on, and a source where one is needed.
+//! Names of tests: a prefix for the basis of the expected result, and a source where one is needed.
 
 use std::path::Path;
 

@@ -64,7 +64,8 @@ fn strays(text: &str, stands: impl Fn(&str, &str) -> bool) -> Vec<String> {
     found
 }
 
-/// Writes the document anew when it differs from the rows in `folder` by more than rounding, and says so.
+/// Writes the document anew when it differs from the rows in `folder` by more than rounding, with a
+/// complaint.
 pub(super) fn renew(root: &Path, folder: &Path) -> Result<Vec<String>> {
     let complaints = compare(root, folder)?;
     if !complaints.is_empty() {
@@ -187,7 +188,7 @@ fn render(rows: &[Row]) -> String {
     text
 }
 
-/// So many significant digits.
+/// A number to this many significant digits.
 fn digits(value: f64, count: usize) -> String {
     if value == 0.0 {
         return "0".into();

@@ -18,10 +18,10 @@ const THEIR_RUN_S: f64 = 0.5;
 pub(super) struct Problem {
     /// Heading of its table.
     pub(super) title: String,
-    /// What it is, for the reader.
+    /// Its name for the reader.
     pub(super) text: String,
     pub(super) elements: usize,
-    /// What the scripts read.
+    /// Input of the scripts.
     pub(super) file: PathBuf,
     /// Steps after which displacements are compared: slow programs reach the first only.
     pub(super) checks: [usize; 2],
@@ -81,7 +81,7 @@ pub(super) struct Absent {
     pub(super) reason: String,
 }
 
-/// A program at work, with what is known of it so far.
+/// A running program, with its measurements so far.
 struct Runner {
     program: Box<dyn Program>,
     entry: Entry,

@@ -5,7 +5,7 @@
 pub(super) struct Peer {
     /// Name for `--peers`; several variants may share it.
     pub(super) name: &'static str,
-    /// What the script is told to run.
+    /// The task of the script.
     pub(super) variant: &'static str,
     pub(super) script: &'static str,
     /// What pip installs for it; versions stand in `requirements.txt`.

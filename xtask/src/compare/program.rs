@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use super::environment::Environment;
 
-/// What a program says of itself.
+/// The report of a program on its run.
 #[derive(Debug, Clone, Deserialize)]
 pub(super) struct About {
     pub(super) program: String,
@@ -29,7 +29,7 @@ pub(super) struct Time {
 
 /// Anything that can take steps of the problem.
 pub(super) trait Program {
-    /// What it is.
+    /// Its report.
     fn about(&self) -> &About;
     /// Takes steps, in the thread or process that nothing else uses.
     fn run(&mut self, steps: usize) -> Result<Time>;

@@ -1,4 +1,4 @@
-//! Chance, and what it does to bytes and text.
+//! Random damage to bytes and text.
 
 use stribeck_scene::dice::Dice;
 
@@ -130,7 +130,7 @@ pub(crate) fn bytes(original: &[u8], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-/// Damages a binary file where its fields are likely: says what was done.
+/// Damages a binary file where its fields are likely; returns a description.
 pub(crate) fn fields(original: &[u8], dice: &mut Dice) -> (&'static str, Vec<u8>) {
     /// Bytes at the beginning and at the end in which most fields are.
     const NEAR: usize = 600;

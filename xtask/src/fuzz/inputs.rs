@@ -124,7 +124,7 @@ fn answered<T, E: std::fmt::Display>(result: Result<T, E>) -> Result<(Answer, Op
 fn scene(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     let base = &inputs.scenes[dice.below(inputs.scenes.len())];
     let (answer, scene) = answered(Scene::parse(&text(base, dice), "generated.ron"))?;
-    // Now and then the bodies are made of what was taken, too.
+    // Now and then the bodies are made of the accepted values, too.
     if let Some(scene) = scene.filter(|scene| small(scene) && dice.one_in(20)).map(|scene| scene.resolve())
         && let (_, Some(assembly)) = answered(Assembly::new(&scene))?
     {
@@ -253,7 +253,7 @@ fn trace(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
 
 fn checkpoint(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     let mut damaged = bytes(&inputs.checkpoint, dice);
-    // Mostly with a length and a checksum that fit: what is wrong lies deeper.
+    // Mostly with a length and a checksum that fit, so that the damage is deeper.
     let fits = damaged.len() > HEADER && !dice.one_in(4);
     if fits {
         let length = (damaged.len() - HEADER) as u64;
@@ -431,7 +431,7 @@ fn shape(_: &Inputs, dice: &mut Dice) -> Result<Answer> {
     ensure!(began.elapsed().as_secs() < 20, "{asked} took {:.1} s", began.elapsed().as_secs_f64());
     let (answer, part) = answered(part)?;
     if let Some(part) = part {
-        // What a generator makes, the solver takes.
+        // The solver accepts every mesh of a generator.
         ensure!(part.x.iter().chain(&part.y).all(|v| v.is_finite()), "{asked} has a node that is no number");
         if part.x.len() < 3000 {
             let mut mesh = Mesh::new();

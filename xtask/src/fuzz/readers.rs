@@ -51,7 +51,7 @@ pub(super) struct Shelf {
 /// A file that was made of a good one.
 pub(super) struct Made {
     pub(super) kind: &'static str,
-    /// The good file, and what was done to it.
+    /// The good file, and its damage.
     pub(super) from: String,
     pub(super) done: &'static str,
     pub(super) bytes: Vec<u8>,
@@ -72,7 +72,7 @@ pub(super) struct Held {
     rate_hz: Option<f64>,
 }
 
-/// What a reader has of a file: channels, or why there are none.
+/// Result of a reader: channels, or the reason why there are none.
 pub(super) type Reading = std::result::Result<Vec<Held>, String>;
 
 impl Shelf {

@@ -235,8 +235,8 @@ fn example_a_short_record_is_not_judged() {
     assert_eq!(found(&judged(&CANDIDATES, &(nobody, Vec::new()))), [""; 0]);
 }
 
-/// Of 99 facets it was said that their comb explains no more than one of any other place, beside a lead of
-/// 0.50: it fitted best 0.55 resolutions off.
+/// The message on 99 facets was that their comb explains no more than one at any other place, beside a lead
+/// of 0.50: it fitted best 0.55 resolutions off.
 #[test]
 fn issue_a_comb_that_leads_off_its_place_is_told_with_its_distance() {
     let sound = Sound { detuned_hz: 22.0, ..Sound::of(CANDIDATES[0].1) };

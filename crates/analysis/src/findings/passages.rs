@@ -29,7 +29,7 @@ const ABOUT: f64 = 3.0;
 /// Slip below which a passage is expected at its time without slip, as a part of a traverse.
 const UNMOVED: f64 = 0.1;
 
-/// Notes of one kind that are said in full; of the others the number.
+/// Most notes of one kind that are written out; the others are counted.
 const NOTED: usize = 3;
 
 /// Passages over all spalls, found roller by roller.

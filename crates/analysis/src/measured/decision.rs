@@ -176,8 +176,6 @@ mod tests {
     /// Found at `measured_hz`, far above noise and anything else.
     fn found(name: Defect, expected_hz: f64, measured_hz: f64) -> Family {
         Family {
-            name,
-            expected_hz,
             measured_hz: Some(measured_hz),
             harmonics: 5,
             level_db: Some(25.0),
@@ -185,15 +183,8 @@ mod tests {
             noise_p_value: 1e-12,
             rank: Some(0.0),
             depth: Some(1.5),
-            depth_band_hz: None,
-            band_hz: None,
-            in_passages: false,
-            over: None,
-            not_told_apart_from: None,
-            claimed: false,
-            reason: Reason::Undecided,
             height_db: 25.0,
-            controls: Vec::new(),
+            ..Family::expected(name, expected_hz)
         }
     }
 

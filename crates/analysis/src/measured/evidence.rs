@@ -1,5 +1,4 @@
-//! What a verdict rests on, for who wants to judge it: the mean over a period of the knocks, and what would
-//! change the verdict.
+//! The evidence for a verdict: the mean over a period of the impacts, and the changes that would reverse it.
 
 use stribeck_dsp::Envelope;
 
@@ -34,8 +33,8 @@ pub struct SynchronousMean {
 }
 
 /// The mean over the period of a family's knocks, and that over an unrelated period, sought and turned in the
-/// same way: what the search alone makes of the record. From the beginning of the record, in the band in
-/// which the family stands highest. `None` for a family without a band, a record too short, or a rate too
+/// same way, which shows the contribution of the search alone. From the beginning of the record, in the band
+/// in which the family stands highest. `None` for a family without a band, a record too short, or a rate too
 /// low.
 ///
 /// # Errors

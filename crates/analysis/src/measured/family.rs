@@ -42,7 +42,7 @@ pub struct Family {
     /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
     /// lines ([`BandEnvelope::autocorrelation`]).
     pub in_passages: bool,
-    /// The family that stands higher, over whose period everything that is said of this one is taken
+    /// The family that stands higher, over whose period all numbers of this one are taken
     /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
     pub over: Option<Defect>,
     /// The family whose lines stand at the same places, so that the record cannot distinguish them.
@@ -92,6 +92,30 @@ impl From<String> for Reason {
 }
 
 impl Family {
+    /// A family before it is looked for.
+    pub(super) fn expected(name: Defect, expected_hz: f64) -> Self {
+        Self {
+            name,
+            expected_hz,
+            measured_hz: None,
+            harmonics: 0,
+            level_db: None,
+            p_value: 1.0,
+            noise_p_value: 1.0,
+            rank: None,
+            depth: None,
+            depth_band_hz: None,
+            band_hz: None,
+            in_passages: false,
+            over: None,
+            not_told_apart_from: None,
+            claimed: false,
+            reason: Reason::Undecided,
+            height_db: f64::NEG_INFINITY,
+            controls: Vec::new(),
+        }
+    }
+
     /// Whether the family is there, defect or not.
     pub fn is_there(&self) -> bool {
         self.noise_p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)

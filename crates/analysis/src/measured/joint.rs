@@ -1,9 +1,9 @@
 //! Several channels of one machine at one time: one verdict.
 //!
-//! Channels hear the same bearing through the same machine, so that what noise does in one it may do in all:
-//! their probabilities are no independent ones and must not be multiplied. The smallest, times the number of
+//! Channels record the same bearing through the same machine, so that noise may do the same in all of them:
+//! their probabilities are not independent and must not be multiplied. The smallest, times the number of
 //! channels, is a bound whatever their dependence (Bonferroni; V. Vovk and R. Wang, Biometrika 107 (2020)
-//! 791–808). Where a defect sits follows from how much of its knocks each channel hears (THEORY §7.9).
+//! 791–808). Where a defect sits follows from how strong its impacts are in each channel (THEORY §7.9).
 
 use serde::Serialize;
 use stribeck_dsp::BandEnvelope;
@@ -36,7 +36,7 @@ pub struct JointFamily {
     pub claimed: bool,
     /// What each channel says, in their order.
     pub channels: Vec<Heard>,
-    /// The channel that hears most of its knocks, where it stands [`NEARER_DB`] above all others.
+    /// The channel in which its impacts are strongest, where they are [`NEARER_DB`] above all others.
     pub nearest: Option<String>,
 }
 
@@ -53,7 +53,7 @@ pub struct Heard {
     pub share: Option<f64>,
 }
 
-/// How much more of the knocks the nearest sensor must hear than any other [dB].
+/// Least level of the impacts at the nearest sensor above that at any other [dB].
 pub const NEARER_DB: f64 = 3.0;
 /// Harmonics whose swing counts.
 const HARMONICS: u32 = 3;
@@ -113,7 +113,7 @@ impl JointFamily {
         })
     }
 
-    /// The highest that a channel which claims it hears it [dB].
+    /// Its greatest height in the channels that claim it [dB].
     fn claimed_at_db(&self) -> f64 {
         let claims = self.channels.iter().filter(|heard| heard.claimed);
         claims.filter_map(|heard| heard.height_db).fold(f64::NEG_INFINITY, f64::max)
@@ -141,14 +141,14 @@ fn loudest(swings: &[f64]) -> Option<usize> {
 }
 
 /// Claims what a channel claims and all together bear out. Of families that different channels claim, the one
-/// that stands highest: what is lower may be its sidebands, which a channel far from it cannot tell.
+/// that stands highest: a lower one may be its sidebands, which a distant channel cannot distinguish.
 fn decide(families: &mut [JointFamily], notes: &mut Vec<String>) {
     let bears_out = |f: &JointFamily| f.p_value < ALPHA && f.channels.iter().any(|heard| heard.claimed);
     let candidates: Vec<usize> = (0..families.len()).filter(|at| bears_out(&families[*at])).collect();
     let by_height =
         |a: &&usize, b: &&usize| families[**a].claimed_at_db().total_cmp(&families[**b].claimed_at_db());
     let Some(first) = candidates.iter().max_by(by_height).copied() else { return };
-    // A channel that hears both has told them apart.
+    // A channel that contains both distinguishes them.
     let beside = |at: usize| {
         let both = families[first].channels.iter().zip(&families[at].channels);
         both.into_iter().any(|(a, b)| a.claimed && b.claimed)

@@ -1,5 +1,5 @@
-//! How long a spall is, from the time between the events at its edges and what the element is pressed
-//! together (THEORY §7.9).
+//! Length of a spall, from the time between the events at its edges and the approach of the element to the
+//! raceways under load (THEORY §7.9).
 
 use std::f64::consts::PI;
 
@@ -17,7 +17,7 @@ pub(crate) const LONGEST: f64 = 0.45;
 /// A second event that is missed is nearer to the first than this part of what would have shown.
 const MISSED: f64 = 2.0;
 
-/// What the record says of the length.
+/// The length by the record.
 #[derive(Debug, Default)]
 pub(super) struct SpallLength {
     /// From two events a passage [mm].

@@ -62,8 +62,8 @@ impl OwnLines {
         times >= 1.0 && times != but && (hz - times * of_hz).abs() < self.width_hz
     }
 
-    /// What is left of a range of fundamentals [Hz] without the multiples of the shaft, and of the cage but
-    /// for that of all elements.
+    /// Parts of a range of fundamentals [Hz] without the multiples of the shaft, and of the cage but for that
+    /// of all elements.
     pub(super) fn ranges_without(&self, low_hz: f64, high_hz: f64) -> Vec<(f64, f64)> {
         let multiples = |of_hz: f64, but: f64| {
             let first = ((low_hz - self.width_hz) / of_hz).ceil().max(1.0) as u32;

@@ -1,7 +1,7 @@
 //! Knocks of a rolling element that lose their phase with every turn of the cage.
 //!
 //! Beyond the load little drives the spin of an element, so it comes back under the load at any angle: its
-//! family has no lines. What is left is the cage's rhythm, and within a passage the time of half a spin
+//! family has no lines. The record shows the cage's rhythm, and within a passage the time of half a spin
 //! between two knocks (THEORY §7.9).
 
 use stribeck_dsp::{Autocorrelation, BandEnvelope};

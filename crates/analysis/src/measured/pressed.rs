@@ -40,7 +40,7 @@ pub(super) struct Loading {
 }
 
 impl Loading {
-    /// What is given, or what bearings usually have; and whether the load was given.
+    /// The given values, or those that bearings usually have; and whether the load was given.
     pub(super) fn of(
         bearing: &CatalogueBearing,
         load_n: Option<(f64, f64)>,

@@ -16,7 +16,7 @@ const TURNS: f64 = 100.0;
 const LEAST_DB: f64 = 13.0;
 /// How far it must lead every other comb in reach [dB].
 const LEAST_LEAD_DB: f64 = 3.0;
-/// Speeds nearer than so many lines to one another are one.
+/// Speeds closer to one another than this number of lines are one.
 const SAME_LINES: f64 = 3.0;
 /// Corrections below this part are within the tolerance of the families as it is.
 const CORRECTED: f64 = 2e-3;

@@ -16,18 +16,18 @@ use crate::Error;
 /// A part of a machine that makes lines, and how fast its shaft turns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Component {
-    /// What it is.
+    /// Its kind.
     pub source: Source,
     /// Speed of its shaft over the one that is given.
     pub ratio: f64,
 }
 
-/// What makes lines.
+/// A machine element that makes lines.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Source {
     /// A bearing.
     Bearing(CatalogueBearing),
-    /// A gear with so many teeth.
+    /// A gear with this number of teeth.
     Gear(u32),
 }
 
@@ -40,7 +40,7 @@ impl Component {
     /// From text such as `bearing=NU 205, ratio=2.5` or `gear=23, ratio=1`; without a ratio it is 1.
     ///
     /// # Errors
-    /// Words on what is wrong, and what is right.
+    /// The problem, and the remedy.
     pub fn parse(text: &str) -> Result<Self, String> {
         const FORM: &str = "such as \"bearing=NU 205, ratio=2.5\" or \"gear=23, ratio=1\"";
         let (ratios, rest): (Vec<&str>, Vec<&str>) =

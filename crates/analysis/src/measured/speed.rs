@@ -3,7 +3,7 @@
 //! Multiples of the shaft in the spectrum, and in the envelope spectra the multiples of the shaft, a family
 //! and its sidebands, all follow from one speed. Each line that stands is evidence for the speeds that have a
 //! line there, each that is missing is a little against them. A single comb is consistent with several
-//! speeds; what the shaft and the bearing have in common is not, because their ratio is no whole number
+//! speeds; combs of shaft and bearing together are not, because their ratio is no whole number
 //! (THEORY §7.9).
 
 use stribeck_dsp::{BandEnvelope, Welch, WelchOptions, Whitened};
@@ -20,7 +20,7 @@ const SHAFT: u32 = 8;
 const SHAFT_OF_ENVELOPE: u32 = 4;
 const HARMONICS: u32 = 5;
 const BESIDE: u32 = 3;
-/// A line that belongs to a speed stands so many times above the background on average, or is not there.
+/// Mean height of a line of the speed over the background; a lower line counts as absent.
 const STANDS: f64 = 20.0;
 /// Probability that it is not there.
 const MISSING: f64 = 0.5;
@@ -175,7 +175,7 @@ impl Scored {
     }
 }
 
-/// Whether a ratio of two speeds is one that lines of the shaft alone do not tell apart.
+/// Whether lines of the shaft alone cannot distinguish two speeds of this ratio.
 fn is_simple(ratio: f64) -> bool {
     [0.25, 1.0 / 3.0, 0.5, 1.0, 2.0, 3.0, 4.0].iter().any(|simple| (ratio / simple - 1.0).abs() < SAME)
 }
@@ -222,7 +222,7 @@ impl Evidence {
             let there = (ratio * (1.0 - 1.0 / STANDS)).min(2.0 * MOST + STANDS).exp() / STANDS;
             (MISSING + (1.0 - MISSING) * there).ln().min(MOST) + (ratio / MOST_FROM).max(1.0).ln()
         };
-        // The lines next to zero hold what the removal of the mean leaves.
+        // The lines next to zero hold the residue of the removal of the mean.
         let lines = (0..spectrum.ratios().len()).map(|n| if n < 3 { 0.0 } else { of(n) }).collect();
         Self { grid_hz: spectrum.grid_hz(), lines }
     }

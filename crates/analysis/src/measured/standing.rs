@@ -35,26 +35,7 @@ pub(super) fn look(
 ) -> (Family, Option<Standing>) {
     let times = name.shocks_per_period();
     let comb_hz = times * expected_hz;
-    let mut family = Family {
-        name,
-        expected_hz,
-        measured_hz: None,
-        harmonics: 0,
-        level_db: None,
-        p_value: 1.0,
-        noise_p_value: 1.0,
-        rank: None,
-        depth: None,
-        depth_band_hz: None,
-        band_hz: None,
-        in_passages: false,
-        over: None,
-        not_told_apart_from: None,
-        claimed: false,
-        reason: Reason::Undecided,
-        height_db: f64::NEG_INFINITY,
-        controls: Vec::new(),
-    };
+    let mut family = Family::expected(name, expected_hz);
     if segment_s * comb_hz < PERIODS {
         family.reason = Reason::Decided(format!(
             "the record of {record_s:.2} s holds {:.1} periods; {:.1} s would hold the ten that are needed",

@@ -1,4 +1,4 @@
-//! A comb that knocks and is no family's: slip, speed or bearing is not what was said.
+//! A comb that knocks and is no family's: slip, speed or bearing differ from those given.
 //!
 //! A claim rests on the place of a comb. Where a comb that belongs to nothing in the bearing stands higher
 //! than all that do, the places are wrong, and a lower comb at one of them is chance or a sideband.

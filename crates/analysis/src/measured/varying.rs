@@ -101,7 +101,7 @@ mod tests {
         let (first, last) = (found.speeds_rpm[0], found.speeds_rpm[found.speeds_rpm.len() - 1]);
         assert!((first - 600.0).abs() < 10.0 && (last - 1800.0).abs() < 10.0, "{first} {last}");
         let orders = found.orders.expect("enough turns");
-        // Knocks are short: their second harmonic is as high as the first, and beyond what is looked at.
+        // Knocks are short: their second harmonic is as high as the first, and above the range of the search.
         let below = (5.4 / orders.grid_hz) as usize;
         let columns: Vec<&[f64]> = orders.values.chunks_exact(orders.lines).collect();
         // A column into which no segment falls has no numbers.

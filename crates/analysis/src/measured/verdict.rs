@@ -14,6 +14,7 @@
 //! than all that are, nothing weaker is claimed (`unexplained.rs`).
 
 use stribeck_dsp::{BandEnvelope, Whitened};
+use stribeck_scene::catalogue::DefectOrders;
 
 use super::controls::{controls, part_as_high, rank};
 use super::decision::{claimed_first, decide, first, share_out, tell_the_element};
@@ -57,7 +58,7 @@ const OWN_LINES: f64 = 1.5;
 /// Least and largest part by which a cage that skids is slower than rolling without slip.
 const SKID: (f64, f64) = (SLIP, 0.06);
 
-/// What is known of the speed beside that of the machine.
+/// Knowledge of the speed beside the machine's.
 pub(super) struct KnownSpeed {
     /// The speed by the lines of the record, which places multiples of the shaft better than one that is
     /// given [Hz].
@@ -74,28 +75,9 @@ pub(super) fn judge(
     record_s: f64,
     segment_s: f64,
 ) -> Verdicts {
-    let mut notes = Vec::new();
-    let nothing = |notes: Vec<String>| {
-        let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
-        Verdicts { families: Vec::new(), verdict, notes, first: None, unexplained: None }
-    };
-    let Some(bearing) = &machine.bearing else {
-        notes.push("no bearing was given: `--bearing \"6205\"`, or its numbers".to_owned());
-        return nothing(notes);
-    };
-    let Some(shaft_hz) = machine.speed_rpm.map(|rpm| rpm / 60.0).filter(|hz| *hz > 0.0 && hz.is_finite())
-    else {
-        notes.push(
-            "no speed was given: `--speed-rpm`, or `--tacho` with the channel of a tachometer".to_owned(),
-        );
-        return nothing(notes);
-    };
-    let orders = match bearing.orders() {
-        Ok(orders) => orders,
-        Err(why) => {
-            notes.push(why);
-            return nothing(notes);
-        }
+    let (orders, shaft_hz) = match orders_and_speed(machine) {
+        Ok(both) => both,
+        Err(note) => return Verdicts::without_families(note),
     };
     // A band without noise (a simulated record, a filter) has no background to stand above.
     let whitened: Vec<(&BandEnvelope, Whitened)> = bands
@@ -104,23 +86,12 @@ pub(super) fn judge(
         .collect();
     // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
     let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
-    let width_hz = OWN_LINES / segment_s;
-    let sharp_hz = known.sharp_hz.unwrap_or(shaft_hz);
-    let around = &machine.around;
-    let in_hz = |orders: &[f64]| orders.iter().map(|order| order * sharp_hz).collect();
-    let mut own = OwnLines {
-        shaft_hz: sharp_hz,
-        cage_hz: None,
-        elements: f64::from(bearing.elements.unwrap_or(0)),
-        width_hz,
-        shafts_hz: in_hz(&around.shafts),
-        meshes_hz: in_hz(&around.meshes),
-    };
+    let mut own = own_lines(machine, known.sharp_hz.unwrap_or(shaft_hz), OWN_LINES / segment_s);
     let places = [orders.bpfo * shaft_hz, orders.bpfi * shaft_hz, orders.bsf * shaft_hz, cage_hz];
     // Turns of another shaft may stand where the cage turns.
     let cage = look(Defect::Ftf, cage_hz, &whitened, &own, record_s, segment_s);
     own.cage_hz = cage.1.as_ref().filter(|_| cage.0.noise_p_value < ALPHA).map(|s| s.comb.fundamental_hz);
-    let mut looked: Vec<(Family, Option<Standing>)> = Defect::ALL[..3]
+    let mut looked: Vec<Looked> = Defect::ALL[..3]
         .iter()
         .zip(places)
         .map(|(name, hz)| look(*name, hz, &whitened, &own, record_s, segment_s))
@@ -133,58 +104,20 @@ pub(super) fn judge(
         }
     }
     let highest_hz = places[..2].iter().fold(0.0_f64, |most, hz| most.max(*hz));
-    let there: Vec<Known> = looked[..3]
-        .iter()
-        .filter(|(family, _)| family.noise_p_value < ALPHA)
-        .filter_map(|(family, standing)| {
-            let turns = family.name == Defect::Bpfi;
-            let Standing { comb, comb_hz, .. } = standing.as_ref()?;
-            let [low_hz, high_hz] = [1.0 - SLIP, 1.0 + SLIP].map(|part| part * comb_hz);
-            Some(Known { comb_hz: comb.fundamental_hz, low_hz, high_hz, turns, height: comb.height })
-        })
-        .collect();
-    let of_others = |hz: f64| around.may_be(hz / shaft_hz);
+    let there = above_noise(&looked[..3]);
+    let of_others = |hz: f64| machine.around.may_be(hz / shaft_hz);
     let stranger = unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
     let first = first(looked.iter().map(|(family, _)| family));
     let first_db = first.map_or(f64::NEG_INFINITY, |at| looked[at].0.height_db);
     let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
-    let mut families: Vec<Family> = looked
-        .into_iter()
-        .map(|(mut family, standing)| {
-            if let Some(Standing { band, comb, comb_hz, times, .. }) = standing {
-                let controls = controls(&comb, comb_hz, &whitened[band].1, first_hz, Some(&own));
-                family.rank = part_as_high(&comb, &controls);
-                family.controls = controls.iter().map(|c| (c.fundamental_hz, decibel(c.height))).collect();
-                if family.is_there() {
-                    family.measured_hz = Some(comb.fundamental_hz / times);
-                }
-            }
-            family.calibrate();
-            family
-        })
-        .collect();
+    let mut families: Vec<Family> =
+        looked.into_iter().map(|looked| beside_controls(looked, &whitened, &own, first_hz)).collect();
     let modulated = is_modulated_by_the_cage(&families, &whitened);
     share_out(&mut families, 1.0 / segment_s, modulated);
-    let higher = stranger.filter(|s| decibel(s.comb.height) > first_db);
-    let mut unexplained = None;
-    if let Some(found) = higher {
-        let skids = known.by_its_lines.then(|| skidding(&families, &found)).flatten();
-        match skids {
-            Some(at) => {
-                let rank =
-                    rank(&found.comb, found.comb.fundamental_hz, &whitened[found.band].1, None, Some(&own));
-                let band = whitened[found.band].0;
-                families[at].take(&found, rank, (band.low_hz, band.high_hz));
-                notes.push(format!(
-                    "{} stands {:+.1} % from its place, farther than rolling without slip allows: beside the \
-                     speed that the lines of the shaft tell, the cage skids, as it does under little load",
-                    families[at].name,
-                    100.0
-                        * (found.comb.fundamental_hz
-                            / (families[at].name.shocks_per_period() * families[at].expected_hz)
-                            - 1.0)
-                ));
-            }
+    let (mut notes, mut unexplained) = (Vec::new(), None);
+    if let Some(found) = stranger.filter(|s| decibel(s.comb.height) > first_db) {
+        match known.by_its_lines.then(|| skidding(&families, &found)).flatten() {
+            Some(at) => notes.push(take_skidding(&mut families[at], &found, &whitened, &own)),
             None => unexplained = Some(found.report(shaft_hz)),
         }
     }
@@ -199,7 +132,92 @@ pub(super) fn judge(
     Verdicts { families, verdict: String::new(), notes, first, unexplained }
 }
 
+/// A family, and the band in which its comb is highest, if there is one.
+type Looked = (Family, Option<Standing>);
+
+/// Orders of the families, and the speed of the shaft [Hz]; a note on what is missing for them.
+fn orders_and_speed(machine: &Machine) -> Result<(DefectOrders, f64), String> {
+    let bearing = machine.bearing.as_ref();
+    let bearing = bearing.ok_or("no bearing was given: `--bearing \"6205\"`, or its numbers")?;
+    let shaft_hz = machine.speed_rpm.map(|rpm| rpm / 60.0).filter(|hz| *hz > 0.0 && hz.is_finite());
+    let shaft_hz =
+        shaft_hz.ok_or("no speed was given: `--speed-rpm`, or `--tacho` with the channel of a tachometer")?;
+    Ok((bearing.orders()?, shaft_hz))
+}
+
+/// Lines of the machine besides its defects, at this speed of the shaft; the cage is not known yet.
+fn own_lines(machine: &Machine, shaft_hz: f64, width_hz: f64) -> OwnLines {
+    let in_hz = |orders: &[f64]| orders.iter().map(|order| order * shaft_hz).collect();
+    OwnLines {
+        shaft_hz,
+        cage_hz: None,
+        elements: f64::from(machine.bearing.as_ref().and_then(|bearing| bearing.elements).unwrap_or(0)),
+        width_hz,
+        shafts_hz: in_hz(&machine.around.shafts),
+        meshes_hz: in_hz(&machine.around.meshes),
+    }
+}
+
+/// The combs of families that are more than noise.
+fn above_noise(looked: &[Looked]) -> Vec<Known> {
+    looked
+        .iter()
+        .filter(|(family, _)| family.noise_p_value < ALPHA)
+        .filter_map(|(family, standing)| {
+            let turns = family.name == Defect::Bpfi;
+            let Standing { comb, comb_hz, .. } = standing.as_ref()?;
+            let [low_hz, high_hz] = [1.0 - SLIP, 1.0 + SLIP].map(|part| part * comb_hz);
+            Some(Known { comb_hz: comb.fundamental_hz, low_hz, high_hz, turns, height: comb.height })
+        })
+        .collect()
+}
+
+/// Ranks a family among unrelated combs of its band, and gives it its probability of a false alarm.
+fn beside_controls(
+    (mut family, standing): Looked,
+    whitened: &[(&BandEnvelope, Whitened)],
+    own: &OwnLines,
+    first_hz: Option<f64>,
+) -> Family {
+    if let Some(Standing { band, comb, comb_hz, times, .. }) = standing {
+        let controls = controls(&comb, comb_hz, &whitened[band].1, first_hz, Some(own));
+        family.rank = part_as_high(&comb, &controls);
+        family.controls = controls.iter().map(|c| (c.fundamental_hz, decibel(c.height))).collect();
+        if family.is_there() {
+            family.measured_hz = Some(comb.fundamental_hz / times);
+        }
+    }
+    family.calibrate();
+    family
+}
+
+/// Takes a comb for this family although it is farther from its place than slip allows; the note on it.
+fn take_skidding(
+    family: &mut Family,
+    found: &unexplained::Found,
+    whitened: &[(&BandEnvelope, Whitened)],
+    own: &OwnLines,
+) -> String {
+    let (band, spectrum) = &whitened[found.band];
+    let comb_hz = found.comb.fundamental_hz;
+    let rank = rank(&found.comb, comb_hz, spectrum, None, Some(own));
+    family.take(found, rank, (band.low_hz, band.high_hz));
+    let place_hz = family.name.shocks_per_period() * family.expected_hz;
+    format!(
+        "{} stands {:+.1} % from its place, farther than rolling without slip allows: beside the speed that \
+         the lines of the shaft tell, the cage skids, as it does under little load",
+        family.name,
+        100.0 * (comb_hz / place_hz - 1.0)
+    )
+}
+
 impl Verdicts {
+    /// No families, with a note on what is missing for them.
+    fn without_families(note: String) -> Self {
+        let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
+        Self { families: Vec::new(), verdict, notes: vec![note], first: None, unexplained: None }
+    }
+
     /// The verdict over all families; `bands` are those that were judged.
     pub(super) fn conclude(&mut self, bands: &[BandEnvelope]) {
         if !self.families.is_empty() {

@@ -14,7 +14,7 @@ pub enum Group {
     Medium,
 }
 
-/// What a machine stands on, in the direction of the measurement.
+/// The support of a machine, in the direction of the measurement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Foundation {
@@ -42,7 +42,7 @@ pub enum Zone {
 pub struct Zoned {
     /// Group of the machine.
     pub group: Group,
-    /// What it stands on.
+    /// Its support.
     pub foundation: Foundation,
     /// Limits between the zones [mm/s RMS].
     pub limits_mm_s: [f64; 3],

@@ -45,8 +45,8 @@ const MOMENTUM_ROUNDING: f64 = 1e-11;
 /// A spring that sets in within a step is not integrated exactly: parts of a per mille of the energy.
 const SET_IN: f64 = 2e-3;
 
-/// Every term is counted over the same span as the others, so that what is missing falls with the square of
-/// the step; where within a step a point sets in is chance, so the order scatters about two.
+/// Every term is counted over the same span as the others, so that the error of the balance falls with the
+/// square of the step; where within a step a point sets in is chance, so the order scatters about two.
 const LEAST_ORDER: f64 = 1.4;
 
 /// An eighth of the step leaves a sixty-fourth of [`SET_IN`], scattered likewise.

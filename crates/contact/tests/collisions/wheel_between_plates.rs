@@ -31,7 +31,7 @@
 //!
 //! # Expected
 //!
-//! The speed in flight stays what it was, and after as many steps back the wheel is where it started.
+//! The speed in flight stays constant, and after as many steps back the wheel is where it started.
 
 use stribeck_contact::{Law, Method, Smoothing};
 use stribeck_solver::{Behaviour, NodeMotion};

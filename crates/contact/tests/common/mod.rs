@@ -149,7 +149,7 @@ pub(crate) struct Balance {
     pub(crate) heat: [f64; 2],
 }
 
-/// Takes one step and says what the energies were at the positions before it.
+/// Takes one step; returns the energies at the positions before it.
 pub(crate) fn step_and_balance(d: &mut Dynamics, contacts: &mut Contacts) -> Balance {
     let elastic = d.elastic_energy();
     let fall = d.gravity_work();

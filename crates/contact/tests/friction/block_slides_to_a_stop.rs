@@ -45,7 +45,7 @@ const SPEED: f64 = 0.02;
 /// The block swings on its tangential springs as it comes to rest, within some micrometres of 10 mm.
 const WAY: f64 = 0.005;
 
-/// What the normal springs damp, and the last swing, are energy too.
+/// The damping of the normal springs, and the last swing, take energy too.
 const HEAT: f64 = 0.01;
 
 /// The swing of the tangential springs after the stop [m].

@@ -2,7 +2,7 @@
 //!
 //! A correlation of the power with itself needs two events of about equal energy: one that is weaker by a
 //! factor `a` stands in it by `a/(1 + a²)`, beneath the ringing of the other. The mean over passages, each
-//! counted from its own strongest event, shows a second one as soon as it stands above what lies between
+//! counted from its own strongest event, shows a second one as soon as it stands above the level between
 //! passages, however much weaker than the first it is. Source: own.
 
 use std::ops::Range;
@@ -30,7 +30,7 @@ const VALLEY: f64 = 0.4;
 /// A second event is the highest within this part of its distance, on either side.
 const ALONE: f64 = 0.05;
 
-/// What is looked for in a record.
+/// Parameters of the search.
 pub(super) struct Search {
     /// Time between passages [samples].
     pub(super) period: f64,
@@ -57,7 +57,7 @@ impl Search {
             return None;
         }
         let [low, high] = bands.each_ref().map(|power| self.seconds(power, &strongest));
-        // Events are no sharper than what they were smoothed with.
+        // Events are no sharper than the filter that smoothed them.
         let sharp = smoothing(self.sample_rate_hz) as f64;
         let agree =
             |a: &Second, b: &Second| (a.lag - b.lag).abs() < (AGREED * a.lag.max(b.lag)).max(0.5 * sharp);

@@ -31,7 +31,7 @@ pub(super) struct Scaler {
 }
 
 impl Scaler {
-    /// What the metadata say behind the index: the scaler of a channel, or why it has none.
+    /// Metadata behind the index: the scaler of a channel, or why it has none.
     pub(super) fn read(text: &mut Metadata<'_>, index: u32) -> Option<Result<Self, String>> {
         let (_, _, count) = (text.word()?, text.word()?, text.long()?);
         let scalers = text.word()?;

@@ -13,14 +13,14 @@ pub struct Frf {
     pub name: String,
     /// Where its dataset begins: a line of the file, from 1.
     pub line: usize,
-    /// What the response is related to.
+    /// The reference of the response.
     pub per: Per,
     /// Frequencies [Hz], as the file has them.
     pub hz: Vec<f64>,
     /// Real and imaginary part, in m/s² per N or in m/s² per m/s², whatever the file has: responses in
     /// velocity and displacement are differentiated, other units converted.
     pub response: Vec<[f64; 2]>,
-    /// What was assumed or converted.
+    /// Notes on assumptions and conversions.
     pub notes: Vec<String>,
 }
 
@@ -66,7 +66,7 @@ pub fn responses(path: &Path) -> Result<(Vec<Frf>, Vec<String>)> {
     Ok((found, others))
 }
 
-/// What the types of function mean, for those who give another one.
+/// Names of the types of function, for the message on another one.
 fn type_in_words(of: f64) -> String {
     let name = match of as i64 {
         0 => "of no stated kind",
@@ -170,7 +170,7 @@ fn response(
     }
 }
 
-/// What a response is related to, and the factor to SI.
+/// Reference of a response, and the factor to SI.
 fn reference(
     kind: Option<f64>,
     unit: Option<String>,

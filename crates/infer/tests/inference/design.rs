@@ -3,7 +3,7 @@
 use stribeck_infer::{Error, sobol};
 
 /// The first 2ᵐ points have one in each of 2ᵐ equal intervals of every dimension, and the first two
-/// dimensions one in each cell of every division into 2ᵐ equal boxes: what makes a (0, m, 2)-net (Sobol 1967;
+/// dimensions one in each cell of every division into 2ᵐ equal boxes: a (0, m, 2)-net (Sobol 1967;
 /// Owen scrambling keeps it).
 #[test]
 fn invariant_every_interval_and_every_box_has_its_point() {

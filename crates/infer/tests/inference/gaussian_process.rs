@@ -1,4 +1,4 @@
-//! What the emulator makes of functions that are known.
+//! The emulator on known functions.
 
 use crate::simulator::{self, FIELDS, OUTPUTS, columns, runs, truths};
 use stribeck_infer::{Emulator, Output, Runs, Scale, sobol};

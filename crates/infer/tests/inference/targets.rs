@@ -1,5 +1,5 @@
-//! Targets that are missing, out of reach, or exclude one another; what runs at the posterior give; what more
-//! would.
+//! Targets that are missing, out of reach, or exclude one another; runs at the posterior, and the gain from
+//! more of them.
 
 use stribeck_infer::{
     Conflict, Emulator, NextOptions, Output, Posterior, PosteriorOptions, Predictive, Prior, Runs, Scale,
@@ -67,8 +67,8 @@ fn example_runs_at_the_posterior_lie_about_their_targets() {
     assert!(predictive[2].below_target.is_none() && (0.3..0.7).contains(&predictive[2].exists));
 }
 
-/// Few runs know little of the ripple; runs where they are asked for narrow the posterior no less than was
-/// expected of any, and the expectation lies between what is known now and the limit.
+/// Few runs do not resolve the ripple; runs at the requested points narrow the posterior no less than was
+/// expected of any, and the expectation lies between the present posterior and the limit.
 #[test]
 fn example_further_runs_narrow_the_posterior() {
     let emulator = emulator(24);

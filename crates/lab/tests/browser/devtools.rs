@@ -47,7 +47,7 @@ impl Tab {
         let told = BufReader::new(browser.stderr.take().expect("piped"));
         let mut lines = told.lines().map_while(Result::ok);
         let line = lines.find(|line| line.contains("ws://")).expect("the browser listens");
-        // What it says further must be read, or it waits.
+        // Its further output must be read, or it blocks.
         std::thread::spawn(move || lines.for_each(drop));
         let host = line
             .split("ws://")
@@ -69,7 +69,7 @@ impl Tab {
         sleep(Duration::from_millis(1500));
     }
 
-    /// What a promise in the page comes to.
+    /// Value of a promise in the page.
     pub(crate) fn answer(&mut self, script: &str) -> Value {
         let said = self.call(
             "Runtime.evaluate",

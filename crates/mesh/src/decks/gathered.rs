@@ -1,4 +1,4 @@
-//! What a reader finds, by the numbers of the file, and the mesh that it makes.
+//! Content of a file, by its own numbers, and the mesh that follows from it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +27,7 @@ pub(super) struct Gathered {
     widest: f64,
     /// The coordinate farthest out of it, of which node, and its line.
     farthest: (f64, u64, usize),
-    /// What was passed over, with the lines where it stands.
+    /// Ignored parts of the file, with their lines.
     notes: Vec<(String, Vec<usize>)>,
 }
 

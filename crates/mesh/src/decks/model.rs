@@ -38,7 +38,7 @@ pub struct Step {
     pub turning: Vec<(Vec<u32>, f64)>,
     /// Velocity of each node at the start [m/s].
     pub velocity: Vec<[f64; 2]>,
-    /// What the formats have no place for, in words: comments of the file.
+    /// Remarks for which the formats have no field: comments of the file.
     pub left_out: Vec<String>,
 }
 

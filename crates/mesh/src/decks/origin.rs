@@ -24,7 +24,7 @@ pub(super) enum Mark<'a> {
     Ends,
 }
 
-/// What a line marks.
+/// Meaning of a line.
 pub(super) fn mark(line: &str) -> Option<Mark<'_>> {
     let words = line.strip_prefix("** ").or_else(|| line.strip_prefix("$ "))?;
     match words.strip_prefix(BEGINS) {

@@ -70,7 +70,7 @@ mod tests {
     use super::*;
 
     /// The corner of the paper's cage in a roller of 112 facets, by all points of both.
-    /// Source: the rules of THEORY §4.2 for where points are and what they weigh.
+    /// Source: the rules of THEORY §4.2 for the points and their weights.
     #[test]
     fn analytic_a_corner_presses_with_all_points_that_lie_in_the_roller() {
         const TOLERANCE: f64 = 0.03;

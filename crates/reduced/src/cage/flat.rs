@@ -22,7 +22,7 @@ impl Shape<'_> {
     }
 }
 
-/// Of a circle that reaches `depth` beyond a flat.
+/// The part of a circle beyond a flat, which it crosses by `depth`.
 fn circle(radius: f64, depth: f64) -> Cut {
     if depth <= 0.0 {
         return Cut::default();
@@ -35,19 +35,19 @@ fn circle(radius: f64, depth: f64) -> Cut {
 /// A roller that is pressed against a flat.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OnFlat {
-    /// Force [N], and where it stands, counter-clockwise from the foot of the centre [m].
+    /// Force [N], and its lever about the foot of the centre, counter-clockwise positive [m].
     pub(crate) force: f64,
     pub(crate) lever: f64,
     /// Length of the contact [m].
     pub(crate) length: f64,
-    /// The part of an approach that the penalty takes.
+    /// Share of an approach that the penalty spring takes [-].
     pub(crate) part: f64,
     /// Energy of penalty and compliance [J].
     pub(crate) stored: f64,
 }
 
-/// Most steps of Newton's method for the force, and the share of it below which the last one leaves its
-/// square.
+/// Most steps of Newton's method for the force, and the relative change at which it ends: the error is then
+/// the square of this.
 const STEPS: usize = 20;
 const ENOUGH: f64 = 1e-6;
 
@@ -90,8 +90,8 @@ mod tests {
         Compliance::through(&[10.0, 1e3, 1e4], &[2e-8, 2e-6, 1.8e-5], 48).curve()
     }
 
-    /// Of many facets it is the circle: 4/3 p √(2Rp), the chord of which is the contact; of few it is what a
-    /// walk along the outline adds up.
+    /// Of many facets it is the circle: 4/3 p √(2Rp), the chord of which is the contact; of few it is the sum
+    /// along the outline.
     /// Source: own, plane geometry.
     #[test]
     fn analytic_what_lies_beyond_a_flat_is_that_of_the_outline() {
@@ -154,7 +154,7 @@ mod tests {
                 let h = 1e-6;
                 let moment =
                     (at(turn + h, distance).stored - at(turn - h, distance).stored) / (2.0 * h * facet);
-                // A turn lowers what lies ahead of the foot, with the force on it.
+                // A turn lowers the part ahead of the foot, with the force on it.
                 let expected = -found.force * found.lever;
                 let size = found.force * RADIUS * facet;
                 assert!((moment - expected).abs() < 1e-4 * size, "{moment} and {expected} N m");

@@ -16,7 +16,7 @@ pub struct Outline {
     /// Both again, with vertices repeated: counter-clockwise and clockwise.
     ahead: [Vec<f64>; 2],
     back: [Vec<f64>; 2],
-    /// Whether neither a facet nor its neighbours are walls.
+    /// Whether neither the facet nor its neighbours are walls, facet by facet.
     plain: Vec<bool>,
 }
 
@@ -140,7 +140,7 @@ impl View<'_> {
     }
 }
 
-/// A facet as it is seen: the line h = base + slope u from one place along t to another [m].
+/// A facet in the frame of the contact: the line h = base + slope u, between two values of u [m].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Facet<N = f64> {
     pub(crate) from: N,
@@ -150,13 +150,13 @@ pub(crate) struct Facet<N = f64> {
 }
 
 impl<N: Number> Facet<N> {
-    /// How far u is from both ends, one times the other [m²].
+    /// Product of the distances of u from both ends [m²].
     #[inline(always)]
     pub(crate) fn inside(&self, u: N) -> N {
         (u - self.from) * (self.to - u)
     }
 
-    /// How much more an arc on the facet curves over u than along it: one over the cube of the cosine of its
+    /// Ratio of an arc's curvature over u to that along the facet: one over the cube of the cosine of its
     /// slope, as a series.
     #[inline(always)]
     pub(crate) fn stretch(&self) -> N {
@@ -168,13 +168,13 @@ impl<N: Number> Facet<N> {
     }
 }
 
-/// Receiver of the parts between two places where neither boundary has a vertex. A trait, because closures
+/// Receiver of the segments between two vertices of either boundary. A trait, because closures
 /// are compiled without the vectors' instruction set.
 pub(crate) trait Parts {
-    /// Takes the part between two places along t [m], below these facets of roller and raceway.
+    /// Adds the segment between two values of u [m], on these facets of roller and raceway.
     fn add(&mut self, ends: [f64; 2], roller: Facet, raceway: Facet);
-    /// Takes a wall of the roller that leans over its own boundary: at `u` one facet of the roller ends and
-    /// another goes on, higher or lower.
+    /// Adds an overhanging wall of the roller: at `u` one facet of the roller ends and another continues,
+    /// higher or lower.
     fn jump(&mut self, u: f64, roller: [Facet; 2], raceway: Facet);
 }
 
@@ -189,9 +189,9 @@ pub(crate) struct Walk<'a> {
     pub(crate) b: [f64; 2],
     next: [f64; 2],
     slope: f64,
-    /// 1 where lower parts hide those behind them, as on raceways, −1 where higher ones do.
+    /// 1 where lower facets hide those behind them, as on raceways, −1 where higher ones do, as on rollers.
     hides: f64,
-    /// How far the facet is seen: a wall behind it may lean over it.
+    /// Where the visible part of the facet ends: a wall behind it may overhang it.
     pub(crate) end: f64,
     /// Whether an overhanging wall was passed; reading resets it.
     pub(crate) jumps: bool,

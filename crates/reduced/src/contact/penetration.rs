@@ -1,6 +1,10 @@
 //! Penetration of a roller into a raceway, integrated exactly over the facets that overlap (THEORY §9.3).
 //!
-//! Both boundaries are heights h over u, and the penetration p(u) is the roller's less the raceway's.
+//! Frame: origin in the roller's centre, d the unit vector from there towards the raceway, t the same turned
+//! counter-clockwise by a right angle, u the coordinate along t. Both boundaries are heights h(u) along d,
+//! and the penetration p(u) is the roller's height less the raceway's. Between two adjacent vertices of
+//! either boundary p is linear, or parabolic on arcs: the integrals are sums of closed forms over such
+//! segments.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, fused};
@@ -11,13 +15,12 @@ use crate::{
     row::Row,
 };
 
-/// How a raceway lies to a roller.
+/// Orientation and curvature of a raceway relative to a roller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sides {
-    /// Whether the vertices of the raceway go by along +t: those of the outer one do.
+    /// Whether u grows from one vertex of the raceway to the next: true for the outer one.
     pub along: bool,
-    /// Height of the parabola over a segment of unit length [1/m]: half the relative curvature for arcs, 0
-    /// for chords.
+    /// Half the relative curvature of roller and raceway [1/m]; 0 for chords.
     pub bulge: f64,
     /// Curvature of the roller [1/m]; 0 for chords.
     pub curvature: f64,
@@ -52,10 +55,10 @@ pub struct Penetration<N = f64> {
     pub slope: N,
     /// ∫ (u + h h′) du over the overlap [m²].
     pub arm: N,
-    /// ∫ p² h′ du, and ⅓ p³ where the overlap ends at a wall (minus where it begins), less what arcs stay as
-    /// d turns [m³]: by how much the square grows with a turn of d by one towards t.
+    /// Derivative of `square` with respect to a rotation of d towards t [m³]: ∫ p² h′ du, plus ⅓ p³ where the
+    /// overlap ends at a wall (minus where it begins), less the part of arcs that rotates with them.
     pub skew: N,
-    /// Decrease of the length with a shift [1]: the sum of 1/|p′| over both ends.
+    /// Decrease of `length` with a shift [-]: the sum of 1/|p′| over both ends.
     pub ends: N,
     /// Deepest penetration [m].
     pub deepest: N,
@@ -138,7 +141,7 @@ impl Penetration<Row> {
         }
     }
 
-    /// Of eight contacts, each from its parts, which lie in the first lanes.
+    /// Sums the segments of eight contacts: those of contact i are the lanes of `parts[i]`.
     #[inline(always)]
     pub(crate) fn sum_up<S: Simd>(&mut self, simd: S, parts: &[Self; LANES]) {
         let of = |number: fn(&Self) -> &Row| parts.each_ref().map(|parts| &number(parts)[..]);
@@ -156,7 +159,7 @@ impl Penetration<Row> {
         Vector::store_largest(simd, of(|of| &of.deepest), &mut self.deepest.0);
     }
 
-    /// Replaces one of them.
+    /// Replaces the overlap in one lane.
     pub(crate) fn set(&mut self, lane: usize, by: &Penetration) {
         self.area[lane] = by.area;
         self.across[lane] = by.across;
@@ -200,16 +203,16 @@ pub struct Pair<'a, S> {
     pub roller: View<'a>,
     /// The raceway.
     pub raceway: View<'a>,
-    /// How the raceway lies to the roller.
+    /// Orientation and curvature of the raceway.
     pub sides: Sides,
-    /// Roller and raceway again, eight facets at once.
+    /// Roller and raceway again, as vectors of eight facets.
     eights: &'a [EightFacets; 2],
-    /// Whether they can be processed so.
+    /// Whether those vectors hold the whole contact.
     pub in_eights: bool,
 }
 
 impl<'a, S: Simd> Pair<'a, S> {
-    /// Of two views, looked at in vectors where it can be; `eights` is room for that.
+    /// A pair, as vectors of eight facets where they suffice; `eights` is scratch space for them.
     #[inline(always)]
     pub fn new(
         simd: S,
@@ -243,7 +246,8 @@ impl<'a, S: Simd> Pair<'a, S> {
         parts
     }
 
-    /// Walks along both boundaries, and passes on the parts between two places where neither has a vertex.
+    /// Walks along both boundaries and passes on their segments: the intervals of u in which neither boundary
+    /// has a vertex.
     #[inline(always)]
     fn walk(&self, reach: f64, parts: &mut impl Parts) {
         let mut u = -reach;
@@ -317,9 +321,9 @@ impl Parts for Arcs {
     }
 }
 
-/// Adds what a wall of the roller that leans over does to the overlap, though no part holds it: its upper
-/// corner hides what is below, and there the penetration goes from one value to another [m]. Both come with
-/// the height of the roller.
+/// Adds the contribution of an overhanging wall of the roller to the overlap, though no part holds it: its
+/// upper corner hides the points below, and there the penetration goes from one value to another [m]. Both
+/// come with the height of the roller.
 #[inline(always)]
 fn jump(sum: &mut Penetration, [[p1, h1], [p2, h2]]: [[f64; 2]; 2]) {
     let [corner, deepest] = [h1.max(h2), p1.max(p2)];
@@ -418,7 +422,7 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
     let (of_r, of_w) = (half * curvature, of_raceway);
     let p1 = p1 + of_r * r.inside(u1) + of_w * w.inside(u1);
     let p2 = p2 + of_r * r.inside(u2) + of_w * w.inside(u2);
-    // A wall of the roller is no arc, and what a raceway curves away over it, narrow as it is, no more than
+    // A wall of the roller is no arc, and the curvature of a raceway over it, narrow as it is, no more than
     // rounding.
     let bulge = half.times_plus(curvature, of_raceway).max(shift.constant(0.0));
     Round { p: [p1, p2], curvature, bulge }
@@ -427,7 +431,7 @@ fn round<N: Number>(ends: [N; 2], r: Facet<N>, w: Facet<N>, sides: Sides, shift:
 /// The outer points of Gauss' rule with three of them, √0.6.
 const GAUSS: f64 = 0.774_596_669_241_483_4;
 
-/// Penetration at τ, times what the arc of the roller stands out from its chord and the slope of that, less
+/// Penetration at τ, times the height of the roller's arc over its chord and the slope of that height, less
 /// the same of the raceway; with half of both curvatures over u [1/m].
 #[inline(always)]
 fn leaning<N: Number>(
@@ -493,7 +497,7 @@ fn arcs<N: Number>(sum: &mut Penetration<N>, [u1, u2]: [N; 2], seen: Round<N>, r
     sum.square = sum.square + square;
     sum.length = sum.length + width;
     sum.first = width.times_plus(middle, sum.first);
-    // The slope of the parabola on the chord is lean − u/R: on a circle lean is what a parabola leaves out,
+    // The slope of the parabola on the chord is lean − u/R: on a circle lean is the difference to a parabola,
     // in a defect more.
     let lean = (half * curvature).times_plus(r.from + r.to, r.slope);
     sum.across = lean.times_plus(i0, sum.across) - curvature * first;

@@ -17,8 +17,8 @@ pub(crate) struct Raceway {
     /// Radius of the circle that touches the raceway from the side of the rollers [m]: inscribed for the
     /// outer one, circumscribed for the inner one.
     pub(crate) bound: f64,
-    /// The same of what is near each facet [m]; of the outer one, which is bent by its load. Empty for the
-    /// inner one.
+    /// The same of the outline near each facet [m]; of the outer one, which is bent by its load. Empty for
+    /// the inner one.
     pub(crate) bounds: Vec<f64>,
     /// Largest relative radius [m].
     pub(crate) relative: f64,

@@ -169,8 +169,8 @@ impl EightFilms {
         all & !self.present
     }
 
-    /// What the films of those rollers that have one do in a step, whose rims are circles of a `radius` [m].
-    /// Forces on the rollers are added to `force` [N], in the frame of the raceway; returns what they push,
+    /// One step of the films of those rollers that have one, whose rims are circles of a `radius` [m].
+    /// Forces on the rollers are added to `force` [N], in the frame of the raceway; returns their forces,
     /// none where there is none.
     #[inline(always)]
     pub(crate) fn flow<S: Simd>(

@@ -43,7 +43,7 @@ fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> RollerView {
     RollerView { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
 }
 
-/// What a weight does to a roller between the raceways: place, velocity and thickness of the outer film above
+/// A roller under its weight between the raceways: place, velocity and thickness of the outer film above
 /// the least, by F = 3√2 π η L (R/h)^{3/2} (−ḣ) in the film that closes, nothing in the one that opens (A.
 /// Cameron, The Principles of Lubrication, Longmans 1966, chapter 7), and springs in series.
 struct Sinking {
@@ -146,7 +146,7 @@ fn analytic_entrainment_follows_from_rolling() {
     }
 }
 
-/// What springs hold is the integral of what they push with.
+/// The energy of springs is the integral of their force.
 #[test]
 fn patch_springs_hold_the_work_that_presses_them_in() {
     // Simpson's rule over 200 steps of a force that grows with the 3/2nd power.
@@ -175,7 +175,7 @@ impl WithSimd for Rolling<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        // The place where a film ends is known to 10⁻⁶ in either; what a step leaves the next one makes up
+        // The place where a film ends is known to 10⁻⁶ in either; the next step makes up for the error of one
         // for, so that sums agree as well.
         const TOLERANCE: f64 = 1e-4;
         let (rim, dt, race) = (Rim::Round(RADIUS), 1e-6, self.race);

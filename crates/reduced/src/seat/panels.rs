@@ -11,8 +11,8 @@ use super::{
 };
 use crate::row::Row;
 
-/// Every other panel, beginning with the first and with the second. Their number is odd, so that the mirrored
-/// seat has mirrored ones.
+/// Masks of every other panel of a row, beginning with the first and with the second. The number of panels is
+/// odd, so that the masks of a mirrored seat are mirrored.
 const EVERY_OTHER: [Row; 2] =
     [Row([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0]), Row([0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0])];
 

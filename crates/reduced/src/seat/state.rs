@@ -11,10 +11,10 @@ pub struct SeatState {
     pub(crate) open: Vec<f64>,
     /// The same before the last step.
     pub(super) before: Vec<f64>,
-    /// Tension that each spring has lost by it [N].
+    /// Tension that each spring has lost by opening and slip [N].
     pub(super) lost: Vec<f64>,
-    /// Modal forces of that [N/√kg].
+    /// Modal forces of the lost tensions [N/√kg].
     pub(crate) push: Vec<f64>,
-    /// Forces of rollers in the last step.
+    /// Forces of the rollers on the outer raceway in the last step.
     pub(crate) pressed: Vec<RollerForce>,
 }

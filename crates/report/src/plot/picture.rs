@@ -22,7 +22,7 @@ pub struct Picture {
     pub sheet: Sheet,
     /// Shown instead of the drawing on a screen: an animation, GIF.
     pub animation: Option<Vec<u8>>,
-    /// True for drawings with so many lines that the page carries pixels instead.
+    /// True for drawings with too many lines for the page, which holds pixels instead.
     pub dense: bool,
     /// Where it is one of several that stand behind tabs.
     pub tab: Option<Tab>,

@@ -34,7 +34,7 @@ pub(crate) const SLIP: f64 = 0.001;
 pub(crate) const SUPPORT_N: f64 = 50_120.0;
 /// Oil films of rollers without load, at the outer and at the inner raceway [m].
 pub(crate) const FLOATING_M: [f64; 2] = [30e-6, 45e-6];
-/// What a roller without load feels from the inner raceway [N].
+/// Force of the inner raceway on a roller without load [N].
 pub(crate) const WEIGHT_N: f64 = 0.39;
 /// Power that oil takes [W].
 pub(crate) const OIL_W: f64 = 0.5;

@@ -89,8 +89,8 @@ impl Table {
     }
 }
 
-/// Cells of a line: where each is written, and what is in it. One in quotes may hold commas, and quotes
-/// written twice.
+/// Cells of a line: the place and the content of each. One in quotes may hold commas, and quotes written
+/// twice.
 fn cells(line: &str) -> Vec<(Range<usize>, String)> {
     let mut cells = Vec::new();
     let mut begin = 0;

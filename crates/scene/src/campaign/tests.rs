@@ -118,7 +118,7 @@ fn refuses_campaigns_that_cannot_be() {
         (with("variants: table(\"none.csv\")"), &["none.csv"]),
         (with("variants: grid([])"), &["a.ron:2:11", "names no field"]),
         (with("variants: grid([(field: \"mesh.size_mm\", values: [])])"), &["a.ron:2:17", "one at least"]),
-        // Refused before so many places are made.
+        // Refused before memory for them is allocated.
         (
             with(
                 "variants: latin_hypercube(count: 1000000000000000, over: [(field: \"seed\", from: 1, to: \

@@ -14,7 +14,7 @@ use crate::scene::{DefectRing, ModelScene, ProfileScene, Scene, Start};
 /// A run of this many elements needs some 10 GB and days; more is taken for a slip of the pen.
 const MAX_ELEMENTS: f64 = 2e7;
 /// Rows of a trace: an hour at 100 kHz, and some more. With 24 rollers ten million are 19 GB; `stribeck plan`
-/// says it before.
+/// gives the size beforehand.
 const MAX_SAMPLES: f64 = 4e8;
 
 /// Upper over lower end of the narrowest band of structural damping.
@@ -23,7 +23,7 @@ const NARROWEST_BAND: f64 = 2.0;
 /// A vertex is a corner when it turns by this angle [°] …
 const CORNER_DEG: f64 = 20.1;
 
-/// … and an edge of a defect turns by its slope less half of what the raceway turns from facet to facet, up
+/// … and an edge of a defect turns by its slope less half of the raceway's turn from facet to facet, up
 /// to a few degrees. None slopes less under oil [°].
 const LEAST_EDGE_DEG: f64 = 22.0;
 

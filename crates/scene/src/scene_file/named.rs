@@ -71,7 +71,7 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     let fields = "give it by its fields, `bearing: (rollers: 13, roller_diameter_mm: 7.5, …)`";
     let known = CatalogueBearing::parse_or_advise(name, fields)?;
     let paper = Scene::default();
-    // Scenes are the paper's where nothing is said.
+    // Omitted fields are those of the paper's scene.
     if known.name == catalogue::PAPER {
         let own = CatalogueBearing::of_scene(&paper);
         let off = [known.diameter_mm - own.diameter_mm, known.pitch_mm - own.pitch_mm, known.angle_deg];

@@ -132,7 +132,7 @@ impl<'a> Scanner<'a> {
         }
     }
 
-    /// Scans one value and what it contains; its byte range, or `None` when the text is broken.
+    /// Scans one value and its content; its byte range, or `None` when the text is broken.
     fn value(&mut self, path: &str, depth: usize) -> Option<Range<usize>> {
         if depth > MAX_DEPTH {
             return None;

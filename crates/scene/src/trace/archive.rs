@@ -1,4 +1,4 @@
-//! Traces of so many channels that their names alone are longer than the header that `numpy.load` reads: the
+//! Traces of very many channels, whose names alone are longer than the header that `numpy.load` reads: the
 //! same channels as a NumPy archive, one array each.
 //!
 //! The file keeps its name, `trace.npy`. `numpy.load` recognises an archive by its first bytes, not by its

@@ -42,7 +42,7 @@ pub struct TraceWriter {
     rows: u64,
     rows_on_disk: u64,
     header_length: u64,
-    /// A write failed; what is on disk stays as it is.
+    /// A write failed; the file on disk stays as it is.
     failed: bool,
 }
 
@@ -173,7 +173,7 @@ impl TraceWriter {
         self.told(written)
     }
 
-    /// After a failure nothing more is written; says what is safe.
+    /// After a failure nothing more is written; the error gives the number of samples on disk.
     fn told(&mut self, done: std::io::Result<()>) -> Result<(), Error> {
         self.failed |= done.is_err();
         done.map_err(|source| Error::Io {
@@ -304,7 +304,7 @@ fn rows_again<S: AsRef<str>>(path: &Path, names: &[S], header_length: usize) -> 
 }
 
 impl Drop for TraceWriter {
-    /// Saves the last rows of a run that ends early; an error has nobody left to hear it.
+    /// Saves the last rows of a run that ends early; an error cannot be reported here.
     fn drop(&mut self) {
         if !self.failed {
             self.write_pending().ok();

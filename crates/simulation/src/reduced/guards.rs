@@ -127,7 +127,7 @@ impl Guards {
         stop.or(self.shared.look(info, &self.placed))
     }
 
-    /// Where rollers and cage are, and what they carry.
+    /// Places of rollers and cage, and their loads.
     fn place(&mut self, bearing: &BearingInMotion) {
         let Placed { centres, carries, cage, penetration_share } = &mut self.placed;
         centres.clear();

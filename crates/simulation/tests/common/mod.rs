@@ -42,7 +42,7 @@ pub(crate) fn run(scene: &Scene, folder: &Scratch, name: &str, threads: usize) -
     simulate(scene, &dir, &host(threads), &mut |_| ControlFlow::Continue(())).expect("the scene is sound")
 }
 
-/// What it recorded.
+/// Its recorded channels.
 pub(crate) fn trace(folder: &Scratch, name: &str) -> Trace {
     Trace::read(folder.join(name).join("trace.npy")).expect("a trace")
 }

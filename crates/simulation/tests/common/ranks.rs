@@ -15,7 +15,7 @@ struct Thread {
     from: Vec<Mutex<Receiver<Vec<u8>>>>,
 }
 
-/// So many ranks.
+/// Ranks that are threads of this process.
 fn threads(count: usize) -> Vec<Arc<dyn Ranks>> {
     let mut to: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
     let mut from: Vec<Vec<_>> = (0..count).map(|_| Vec::new()).collect();
@@ -85,7 +85,7 @@ impl Ranks for Thread {
     }
 }
 
-/// Calls `lead` on the first of so many ranks, and `follow` on all others.
+/// Calls `lead` on the first of `count` ranks, and `follow` on all others.
 pub(crate) fn together<T>(
     count: usize,
     lead: impl FnOnce(Arc<dyn Ranks>) -> T,

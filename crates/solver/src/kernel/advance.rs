@@ -20,7 +20,7 @@ pub(crate) struct StepParameters {
     pub(crate) since_placed: f64,
     /// Whether the heat of damping is counted in this step.
     pub(crate) count_heat: bool,
-    /// Whether strips prefetch what they read next.
+    /// Whether strips prefetch the data that they read next.
     pub(crate) fetch: bool,
     /// Whether tiles are swept in the opposite order, the last ones of the step before first.
     pub(crate) back: bool,
@@ -42,7 +42,7 @@ pub(crate) struct Step<S: Simd> {
     frames: LaneMotion,
     /// αΔt: heat over mass and squared velocity.
     loss: f64,
-    /// Whether strips prefetch what they read next.
+    /// Whether strips prefetch the data that they read next.
     pub(crate) fetch: bool,
 }
 
@@ -108,7 +108,7 @@ pub(crate) struct Nodes<'a> {
 pub(crate) const FETCH: usize = 128;
 
 impl Nodes<'_> {
-    /// Prefetches what a strip will read further on: positions of the row `high`, and the rest of the row
+    /// Prefetches data that a strip will read later: positions of the row `high`, and the rest of the row
     /// `low` if it moves.
     #[inline(always)]
     pub(crate) fn fetch(&self, low: usize, high: usize, moves: bool) {

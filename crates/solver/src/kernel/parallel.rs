@@ -14,7 +14,7 @@ pub(crate) struct TileRuns<'a> {
     pub(crate) tiles: &'a [Tile],
     pub(crate) fields: TileFields<'a>,
     pub(crate) counted: &'a mut [StepEnergies],
-    /// What the branches of structural damping do, in a step that evaluates them.
+    /// Action of the branches of structural damping, in a step that evaluates them.
     pub(crate) evaluation: Option<&'a Evaluation>,
     /// The tiles that are swept; others are left alone.
     pub(crate) turn: Turn,

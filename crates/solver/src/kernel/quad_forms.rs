@@ -6,8 +6,8 @@ use stribeck_simd::lanes::Number;
 
 use crate::element::{CornerForces, QuadReference, Stiffness, corner_forces, hourglass};
 
-/// What a kernel takes of a quadrilateral whose neighbours are of other shapes: the fewest numbers that hold
-/// its shape (THEORY §2.1).
+/// Data of a quadrilateral whose neighbours have other shapes: the fewest numbers that define its shape
+/// (THEORY §2.1).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct QuadShape<T = f64> {
     /// Inner products of the reference diagonals p·p, r·r and p·r [m²].

@@ -82,7 +82,7 @@ fn run<S: Simd, D: Damping, const COMPLETES: bool>(
         groups::<S, D, _, COMPLETES>(simd, &same, start..end, rows, right, stiffness, nodes, step, heat);
     let right =
         groups::<S, D, _, COMPLETES>(simd, &after, end..last, rows, right, stiffness, nodes, step, heat);
-    // What is left of the elements, and the node at the right end.
+    // The remaining elements, and the node at the right end.
     let rest = elements - last;
     let [f1, f2, f3, f4] = if strip.alike.end == elements {
         same.at(simd, nodes, rows, last, stiffness)
@@ -94,7 +94,7 @@ fn run<S: Simd, D: Damping, const COMPLETES: bool>(
     group::<S, D, COMPLETES, true>(simd, forces, nodes, at, rest + 1, right, step, heat);
 }
 
-/// Whole groups of elements; hands on what the last one does to its right corners.
+/// Whole groups of elements; returns the forces of the last one on its right corners.
 #[inline(always)]
 #[allow(clippy::too_many_arguments)] // the arrays of one kernel
 fn groups<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(

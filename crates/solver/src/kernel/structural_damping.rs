@@ -15,7 +15,7 @@ use crate::{
 };
 use stribeck_simd::lanes::{LANES, Number, Vector};
 
-/// What the branches do in a step that evaluates them.
+/// Action of the branches in a step that evaluates them.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Evaluation {
     all: [BranchStep; MAX_BRANCHES],

@@ -96,7 +96,7 @@ impl Cutter<'_> {
         let best = [b, c].into_iter().fold(a, |best, cut| if cut.length < best.length { cut } else { best });
         part.copy_from_slice(&best.sorted);
         let (left, right) = part.split_at_mut(best.left);
-        // What lies on the left and touches the right goes to the end.
+        // Nodes on the left with a neighbour on the right go to the end.
         for &n in &*right {
             self.side[n as usize] = Side::Right;
         }

@@ -31,10 +31,10 @@ const RESIDUAL: f64 = 1e-7;
 /// them.
 const BLOCK: usize = 4;
 
-/// Vectors between two looks at what has converged.
+/// Vectors between two checks of convergence.
 const LOOK_EVERY: usize = 2 * BLOCK;
 
-/// What is left of a vector when all others are taken out, as a share of its length, that is rounding alone.
+/// Share of a vector's length below which its rest, orthogonal to all others, is rounding alone.
 const NOTHING: f64 = 1e-12;
 
 /// Most vectors.
@@ -241,7 +241,7 @@ impl Basis {
     }
 
     /// Takes all vectors out of some more, makes these orthogonal, too, and adds as many as there can be;
-    /// returns them in terms of what was added.
+    /// returns them in terms of the added vectors.
     ///
     /// Where next to nothing is left, as with natural frequencies that come in pairs, rounding has parts
     /// along the basis again: it goes on until hardly anything is taken out any more (Parlett 1998, §6.9).

@@ -104,7 +104,7 @@ impl Undecided {
         modes
     }
 
-    /// Spreads the resultant along each mode over the mass: what is left does not move it.
+    /// Spreads the resultant along each mode over the mass: the remaining forces do not move it.
     fn take_from_forces(&self, d: &Dynamics, fx: &mut [f64], fy: &mut [f64]) {
         for (mode, inertia) in self.modes(d) {
             let resultant: f64 = self

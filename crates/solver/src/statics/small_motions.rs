@@ -1,5 +1,5 @@
 //! Small motions of some bodies about their present positions: stiffness, mass, and solutions with a factor
-//! that serves for many right-hand sides. What is needed to find natural modes and flexibilities.
+//! that serves for many right-hand sides. The basis of natural modes and flexibilities.
 
 use super::{
     factor::Factor,
@@ -131,7 +131,7 @@ impl SmallMotions {
     }
 
     /// Solves (K + σM) u = f in place for one field or several, one after another, which takes less time than
-    /// one by one; what is given for held components is left out.
+    /// one by one; values for held components are ignored.
     pub fn solve(&mut self, fields: &mut [f64]) {
         for field in fields.chunks_exact_mut(self.mass.len()) {
             for (value, mass) in field.iter_mut().zip(&self.mass) {

@@ -1,4 +1,4 @@
-//! What is solved for, and in which order it is eliminated.
+//! The unknowns, and the order in which they are eliminated.
 
 use std::ops::Range;
 

@@ -4,8 +4,8 @@
 //!
 //! # Goal
 //!
-//! What a drive that prescribes the rotation leaves free (the centre), what it fixes (the angle), and the
-//! work it supplies.
+//! A drive that prescribes the rotation: the centre stays free, the angle is fixed, and the work is that of
+//! the drive.
 //!
 //! # Mesh
 //!

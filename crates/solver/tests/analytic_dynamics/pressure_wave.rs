@@ -45,11 +45,11 @@ use stribeck_testing::{assert_close, ledger};
 
 use crate::common::*;
 
-/// A wave of 40 cells, k h = 2π/40, runs (k h)²/24 = 0.1 % slow, less what the time step gives back.
+/// A wave of 40 cells, k h = 2π/40, runs (k h)²/24 = 0.1 % slow, less the lead from the time step.
 const SPEED: f64 = 1e-3;
 
-/// The velocities at the start are those of the continuum. What they lack in the mesh, whose waves are 0.1 %
-/// slower, goes the other way as a wave of half that share.
+/// The velocities at the start are those of the continuum. The difference in the mesh, whose waves are 0.1 %
+/// slower, travels the other way as a wave of half that share.
 const AREA: f64 = 1e-3;
 
 #[test]

@@ -39,8 +39,8 @@ use stribeck_testing::assert_close;
 use crate::ROUNDING;
 use crate::common::*;
 
-/// The hourglass stiffness of a square is exact in bending. What is left is the parabola of shear, which four
-/// linear cells follow in steps, and the clamp, which lets no section warp.
+/// The hourglass stiffness of a square is exact in bending. The error is that of the parabola of shear, which
+/// four linear cells follow in steps, and the clamp, which lets no section warp.
 const FOUR_CELLS: f64 = 0.01;
 
 /// One cell through the height is right for the same reason, and has no parabola at all.

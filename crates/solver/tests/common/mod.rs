@@ -21,7 +21,7 @@ pub(crate) fn rectangle(width: f64, height: f64, columns: usize, rows: usize) ->
     Rectangle { x0: 0.0, y0: 0.0, width, height, columns, rows }.part().expect("a rectangle that can be made")
 }
 
-/// Nodes on the sides of a rectangle of so many cells.
+/// Nodes on the sides of a rectangle, by its numbers of cells.
 pub(crate) fn on_sides(columns: usize, rows: usize) -> impl Iterator<Item = usize> {
     let inside = move |r: usize, c: usize| r > 0 && r < rows && c > 0 && c < columns;
     (0..=rows)
@@ -118,7 +118,7 @@ impl Balance {
     }
 }
 
-/// Takes one step and says what the energies were at the positions before it.
+/// Takes one step; returns the energies at the positions before it.
 pub(crate) fn step_and_balance(d: &mut Dynamics, forces: &mut [&mut dyn Force]) -> Balance {
     let (elastic, gravity_work) = (d.elastic_energy(), d.gravity_work());
     let before = d.velocities();

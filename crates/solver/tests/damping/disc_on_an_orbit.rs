@@ -1,4 +1,4 @@
-//! Mass damping on an orbit takes a disc's velocity across it, and what is not a rigid motion.
+//! Mass damping on an orbit acts on a disc's velocity across it, and on all motion that is not rigid.
 //!
 //! THEORY §2.6.
 //!

@@ -1,4 +1,4 @@
-//! Mass-proportional damping: rates of decay, what it leaves alone, its heat.
+//! Mass-proportional damping: rates of decay, undamped motions, its heat.
 //!
 //! Problems with a closed form have a file each.
 
@@ -88,8 +88,8 @@ fn conserves_rigid_motion_under_relative_damping() {
     let carried = 0.5 * rigid.mass * (rigid.velocity[0].powi(2) + rigid.velocity[1].powi(2))
         + 0.5 * rigid.inertia * rigid.spin.powi(2);
     let vibration = start - carried;
-    // Amplitudes fall as exp(−α t/2), here by exp(−10): what is left is the rigid motion and its static
-    // stretch.
+    // Amplitudes fall as exp(−α t/2), here by exp(−10): the rigid motion and its static stretch
+    // remain.
     let [left, heat] = step_and_count(&mut d);
     assert!(left - carried < 1e-6 * vibration + 1e-5 * carried, "{left} J against {carried} J");
     // The heat is that of the mean velocity of two half steps; the start lies within the first of them.

@@ -1,4 +1,4 @@
-//! Stiffness damping: rates of decay, the edge of stability, its heat, and what it leaves alone.
+//! Stiffness damping: rates of decay, the edge of stability, its heat, and undamped motions.
 //!
 //! Problems with a closed form have a file each.
 
@@ -40,7 +40,7 @@ fn invariant_the_edge_of_stability_is_where_it_is_predicted() {
             shake(&mut d, 1e-3);
             run(&mut d, &mut [], 4000);
             let speeds = massive(&d).into_iter().map(|n| d.state.vx[n].abs());
-            // What has grown beyond all numbers is infinite, not lost.
+            // An amplitude that has overflowed is infinite.
             speeds.map(|v| if v.is_nan() { f64::INFINITY } else { v }).fold(0.0, f64::max)
         };
         // The eigenvalue is bounded within 0.2 %, the step within 0.1 %.

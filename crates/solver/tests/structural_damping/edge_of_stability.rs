@@ -37,7 +37,7 @@ use crate::damp;
 /// The search for the largest eigenvalue stops at most this far above it.
 const BOUND: f64 = 2e-3;
 
-/// Below the edge: the step is known within 0.1 %, half of what the eigenvalue is.
+/// Below the edge: the step is known within 0.1 %, half the error of the eigenvalue.
 const STABLE: f64 = 0.999;
 
 /// Above it by more than the bound of the eigenvalue.

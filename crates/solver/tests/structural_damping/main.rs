@@ -1,4 +1,4 @@
-//! Structural damping: the ratio over a band, what it does to a ring, a bar and a spin, its edge of stability
+//! Structural damping: the ratio over a band, its effect on a ring, a bar and a spin, its edge of stability
 //! and its ledger.
 //!
 //! Problems with a closed form have a file each.
@@ -108,7 +108,7 @@ fn ring_down(d: &mut Dynamics, shape: &[[f64; 2]], guess: f64, cycles: f64) -> [
 /// The ring and all discs; the block is not damped.
 const DAMPED: [usize; 4] = [0, 1, 2, 3];
 
-/// Branches that act on what a small model does in a few thousand steps.
+/// Branches that damp the motion of a small model in a few thousand steps.
 const BRANCHES: [Branch; 2] =
     [Branch { stiffness: 0.08, relaxation_time: 2e-5 }, Branch { stiffness: 0.06, relaxation_time: 2e-6 }];
 

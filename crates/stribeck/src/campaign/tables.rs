@@ -40,7 +40,7 @@ pub(super) struct Row {
     pub(super) start: usize,
     pub(super) values: Vec<String>,
     pub(super) scene: Option<Scene>,
-    /// Families that its record is said to show, joined by `+`; `none` where it shows none, `None` where it
+    /// Families that are claimed in its record, joined by `+`; `none` where it shows none, `None` where it
     /// is not judged.
     pub(super) claimed: Option<String>,
     /// Version and commit of the program that ran it.

@@ -1,26 +1,27 @@
-//! What the records of a growth show, unit by unit.
+//! Findings of the records of a growth, unit by unit.
 
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use stribeck_analysis::growth::{Gauge, Known, Law, Record, Shown, remaining};
+use stribeck_analysis::growth::{Calibration, Known, Law, Record, Shown, remaining};
 use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
-use stribeck_analysis::measured::{Analysis, Machine, MeasuredFindings};
+use stribeck_analysis::measured::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
 use stribeck_formats::{Channel, Recording};
 use stribeck_report::{GrowthFindings, RecordFindings, UnitFindings};
 use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::dice::Dice;
+use stribeck_scene::growth::{Growth, Indicator};
 use stribeck_scene::run_dir::RunDir;
+use stribeck_scene::scene::DefectRing;
 
 use super::Planned;
-use super::file::{By, File};
 use crate::many_runs::ManyRuns;
 
-/// All units with what their records show, and what is said to be left of each.
+/// All units with the findings of their records, and the estimated remaining life of each.
 pub(super) fn judged(
-    file: &File,
+    growth: &Growth,
     law: &Law,
     planned: &[Planned],
     campaign: &Campaign,
@@ -35,34 +36,36 @@ pub(super) fn judged(
             millions(law.onset.0),
             millions(law.life.0)
         ),
-        "A unit's readings are gauged by the records of the other units, whose lengths are known.".to_owned(),
+        "Lengths of a unit are estimated with a calibration by the records of the other units, whose lengths \
+         are known."
+            .to_owned(),
     ];
     let mut records = Vec::with_capacity(planned.len());
     for (plan, variant) in planned.iter().zip(&campaign.runs) {
-        let found = match findings(file, variant, &runs) {
+        let found = match findings(growth, variant, &runs) {
             Ok(found) => Some(found),
             Err(why) => {
                 notes.push(format!("run {} has no record: {why:#}", variant.number));
                 None
             }
         };
-        records.push(record(file, plan, variant.number, found.as_ref()));
+        records.push(record(growth, plan, variant.number, found.as_ref()));
     }
-    let mut units = Vec::with_capacity(file.units);
-    for unit in 1..=file.units {
+    let mut units = Vec::with_capacity(growth.units);
+    for unit in 1..=growth.units {
         let of_unit = |n: &usize| planned[*n].unit == unit;
         let own: Vec<usize> = (0..planned.len()).filter(of_unit).collect();
         let others: Vec<Known> = (0..planned.len())
             .filter(|n| !of_unit(n))
             .filter_map(|n| {
-                let record = shows(file, &records[n])?;
+                let record = shows(growth, &records[n])?;
                 Some(Known { unit: planned[n].unit, length_mm: records[n].length_mm, record })
             })
             .collect();
         let own = own.into_iter().map(|n| records[n].clone()).collect();
         let first = planned.iter().find(|plan| plan.unit == unit);
         let (onset, end) = first.map_or((f64::NAN, f64::NAN), |plan| (plan.onset, plan.end));
-        units.push(unit_findings(file, law, unit, (onset, end), own, &others));
+        units.push(unit_findings(growth, law, unit, (onset, end), own, &others));
     }
     if units.iter().all(|unit| unit.records.iter().all(|record| record.remaining.is_none())) {
         notes.push(
@@ -78,15 +81,32 @@ pub(super) fn judged(
         })
         .collect();
     let held = [told.iter().filter(|held| **held).count(), told.len()];
-    Ok(GrowthFindings { name: file.name.clone(), by: file.by.words().to_owned(), units, held, notes })
+    Ok(GrowthFindings { name: growth.name.clone(), by: words(growth.by).to_owned(), units, held, notes })
+}
+
+/// The family of the defect.
+fn defect(growth: &Growth) -> Defect {
+    match growth.on {
+        DefectRing::Outer => Defect::Bpfo,
+        DefectRing::Inner => Defect::Bpfi,
+    }
+}
+
+fn words(indicator: Indicator) -> &'static str {
+    match indicator {
+        Indicator::Rms => "the logarithm of the root mean square",
+        Indicator::Kurtosis => "the logarithm of the kurtosis",
+        Indicator::Level => "the level of the family",
+        Indicator::Spall => "the logarithm of the length between the two events of a passage",
+    }
 }
 
 fn millions(revolutions: f64) -> String {
     format!("{:.3} million revolutions", 1e-6 * revolutions)
 }
 
-/// What a run's record shows with the machine's noise.
-fn findings(file: &File, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredFindings> {
+/// Findings of a run's record with the machine's noise added.
+fn findings(growth: &Growth, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredFindings> {
     let scene = variant.scene.as_ref().map_err(|why| anyhow::anyhow!("{why}"))?;
     let dir = RunDir::open(runs.run(scene))?;
     let path = if dir.signals().exists() { dir.signals() } else { dir.trace() };
@@ -94,8 +114,8 @@ fn findings(file: &File, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredF
     let leading = |c: &&Channel| c.name.starts_with("sensor.") && c.name.ends_with(".ay_m_s2");
     let channel = recording.channels.iter().find(leading).context("the run recorded no sensor")?;
     let rate_hz = channel.rate_hz.context("the run has no sample rate")?;
-    let mut dice = Dice::stream(file.seed ^ 0x0bad_5eed, variant.number as u64);
-    let noisy = channel.read()?.into_iter().map(|x| x + file.noise_m_s2 * normal(&mut dice)).collect();
+    let mut dice = Dice::stream(growth.seed ^ 0x0bad_5eed, variant.number as u64);
+    let noisy = channel.read()?.into_iter().map(|x| x + growth.noise_m_s2 * normal(&mut dice)).collect();
     let noisy = Channel::held(&channel.name, noisy).at_rate(Some(rate_hz)).in_unit(Some("m/s^2".to_owned()));
     let machine = Machine {
         speed_rpm: Some((scene.operation.speed_rpm - scene.operation.outer_speed_rpm).abs()),
@@ -107,12 +127,12 @@ fn findings(file: &File, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredF
     Ok(Analysis::of(&noisy, rate_hz, &machine)?.findings)
 }
 
-fn record(file: &File, plan: &Planned, run: usize, found: Option<&MeasuredFindings>) -> RecordFindings {
+fn record(growth: &Growth, plan: &Planned, run: usize, found: Option<&MeasuredFindings>) -> RecordFindings {
     let claimed = found.map(|found| {
         let names: Vec<&str> = found.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect();
         if names.is_empty() { "none".to_owned() } else { names.join("+") }
     });
-    let family = found.and_then(|found| found.families.iter().find(|f| f.name == file.on.family()));
+    let family = found.and_then(|found| found.families.iter().find(|f| f.name == defect(growth)));
     RecordFindings {
         run,
         revolutions: plan.revolutions,
@@ -130,22 +150,22 @@ fn record(file: &File, plan: &Planned, run: usize, found: Option<&MeasuredFindin
 }
 
 /// What a record shows; `None` where there is none.
-fn shows(file: &File, record: &RecordFindings) -> Option<Record> {
-    let name = file.on.family().name();
+fn shows(growth: &Growth, record: &RecordFindings) -> Option<Record> {
+    let name = defect(growth).name();
     if !record.claimed.as_ref()?.split('+').any(|claimed| claimed == name) {
         return Some(Record::Sound);
     }
-    let indicator = match file.by {
-        By::Rms => record.rms.map(f64::ln),
-        By::Kurtosis => record.kurtosis.map(f64::ln),
-        By::Level => record.level_db,
-        By::Spall => record.spall_mm.map(f64::ln),
+    let indicator = match growth.by {
+        Indicator::Rms => record.rms.map(f64::ln),
+        Indicator::Kurtosis => record.kurtosis.map(f64::ln),
+        Indicator::Level => record.level_db,
+        Indicator::Spall => record.spall_mm.map(f64::ln),
     };
     Some(indicator.filter(|x| x.is_finite()).map_or(Record::Damaged, Record::Indicates))
 }
 
 fn unit_findings(
-    file: &File,
+    growth: &Growth,
     law: &Law,
     unit: usize,
     (onset, end): (f64, f64),
@@ -153,17 +173,17 @@ fn unit_findings(
     others: &[Known],
 ) -> UnitFindings {
     let shown: Vec<Record> =
-        records.iter().map(|record| shows(file, record).unwrap_or(Record::Sound)).collect();
-    if let Some(gauge) = Gauge::of(others) {
+        records.iter().map(|record| shows(growth, record).unwrap_or(Record::Sound)).collect();
+    if let Some(calibration) = Calibration::of(others) {
         let read: Vec<Shown> = shown
             .iter()
             .map(|record| match record {
                 Record::Sound => Shown::Sound,
                 Record::Damaged => Shown::Damaged,
-                Record::Indicates(x) => Shown::Length(gauge.read_mm(*x)),
+                Record::Indicates(x) => Shown::Length(calibration.length_mm(*x)),
             })
             .collect();
-        let left = remaining(law, &read, &gauge, file.seed ^ unit as u64);
+        let left = remaining(law, &read, &calibration, growth.seed ^ unit as u64);
         for ((record, read), left) in records.iter_mut().zip(read).zip(left) {
             record.read_mm = if let Shown::Length(mm) = read { Some(mm) } else { None };
             record.remaining = left;

@@ -31,7 +31,7 @@ impl Bench {
         Self { system, rest }
     }
 
-    /// Growth of noise over so many steps of `dt` [s].
+    /// Growth of noise over this number of steps of `dt` [s].
     fn growth(&mut self, dt: f64, steps: u64) -> Result<f64> {
         let system = &mut self.system;
         system.set_time_step(dt, None)?;

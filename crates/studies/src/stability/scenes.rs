@@ -1,4 +1,4 @@
-//! Whole bearings, coarse and short, at the ends of what a scene allows and beyond.
+//! Whole bearings, coarse and short, at and beyond the limits of scenes.
 
 use stribeck_scene::run_dir::Run;
 use stribeck_scene::run_info::{RunInfo, Status};

@@ -70,7 +70,7 @@ fn bending(way: &Way, layers: usize, factor: f64) -> Result<(f64, f64)> {
 pub(super) fn ring(host: &dyn Host) -> Result<Problem> {
     let mut curves = Vec::new();
     for way in ways() {
-        // The scheme and the precision matter little for so slow a motion; elements are what is compared.
+        // The scheme and the precision matter little for so slow a motion; the comparison is of elements.
         if way.2.bulk_viscosity > 0.0 || (way.2.rule == Rule::OnePoint && way.0.starts_with("Noh")) {
             continue;
         }

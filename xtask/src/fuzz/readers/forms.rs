@@ -167,7 +167,7 @@ fn encoded(text: &str, head: usize, dice: &mut Dice) -> (&'static str, Vec<u8>, 
     }
 }
 
-/// Damages what stands behind the first `head` bytes.
+/// Damages the bytes after the first `head`.
 fn behind(
     bytes: &[u8],
     head: usize,
@@ -178,7 +178,7 @@ fn behind(
     (done, [&bytes[..head], &rest].concat())
 }
 
-/// Damages lines of a text: what an editor, an export or a copy that broke off does.
+/// Damages lines of a text as an editor, an export or an incomplete copy does.
 pub(super) fn lines(good: &[u8], dice: &mut Dice) -> (&'static str, Vec<u8>) {
     let mut lines: Vec<Vec<u8>> = good.split_inclusive(|b| *b == b'\n').map(<[u8]>::to_vec).collect();
     let at = dice.below(lines.len());

@@ -41,9 +41,9 @@ struct Kind {
 #[derive(Debug, Default)]
 pub(super) struct Tables {
     counts: BTreeMap<&'static str, Counts>,
-    /// By format and in what they differ.
+    /// By format and kind of difference.
     kinds: BTreeMap<(&'static str, &'static str, &'static str), Kind>,
-    /// By format and why we refuse what they read.
+    /// By format and our reason to refuse a file that they read.
     refusals: BTreeMap<(&'static str, String), Kind>,
     pub(super) panics: Vec<String>,
     slowest: Duration,
@@ -67,7 +67,7 @@ fn reader(kind: &str) -> &'static str {
 
 /// Differences of which examples were looked at and lie with the other program: format, in what (all where it
 /// is empty), by what damage (all where it is empty), and why.
-const EXPLAINED: [(&str, &str, &str, &str); 8] = [
+const EXPLAINED: [(&str, &str, &str, &str); 10] = [
     (
         "csv",
         "",
@@ -77,6 +77,14 @@ const EXPLAINED: [(&str, &str, &str, &str); 8] = [
     ),
     ("csv", "samples", "", LINES),
     ("csv", "numbers among the samples", "", LINES),
+    ("csv", "rms", "a bit is turned", LINES),
+    (
+        "wav",
+        "samples",
+        "a piece stands twice",
+        "in the head of an RF64 file the size of the data is another than the mark that sends to the 64-bit \
+         one: soundfile takes the latter, we take all to the end of the file, with a note",
+    ),
     ("inp", "samples", "", SAME_ELEMENT),
     ("msh", "samples", "", SAME_ELEMENT),
     (
@@ -222,7 +230,7 @@ fn explained(kind: &str, what: &str, done: &str) -> Option<&'static str> {
     found.map(|of| of.3)
 }
 
-/// A message without the path of its file, what it quotes and words with digits: messages of one kind are
+/// A message without the path of its file, quoted text and words with digits: messages of one kind are
 /// one.
 fn gist(why: &str) -> String {
     let mut quoted = false;

@@ -51,7 +51,7 @@ impl Peer {
         Ok(Self { child, to, from, versions })
     }
 
-    /// What they read of the files of a list.
+    /// Their readings of the files of a list.
     fn read(&mut self, list: &Path) -> Result<Vec<Reading>> {
         writeln!(self.to, "{}", list.display())?;
         self.to.flush()?;
@@ -63,7 +63,7 @@ impl Peer {
     }
 }
 
-/// A line of what they say.
+/// A line of their output.
 fn reading(line: &str) -> Result<Reading> {
     let said: Value = serde_json::from_str(line).with_context(|| format!("no answer: {line}"))?;
     if let Some(why) = said["refused"].as_str() {
@@ -148,7 +148,7 @@ fn with_rate(theirs: Reading, rate_hz: Option<f64>) -> Reading {
     theirs.map(|all| all.into_iter().map(|held| Held { rate_hz: held.rate_hz.or(rate_hz), ..held }).collect())
 }
 
-/// Keeps a file with what was said of it, for a closer look.
+/// Keeps a file with the readers' messages, for a closer look.
 fn keep_file(keep: &Path, seed: u64, made: &Made, path: &Path, said: &str) -> Result<()> {
     std::fs::create_dir_all(keep)?;
     std::fs::copy(path, keep.join(format!("{seed}.{}", made.kind)))?;

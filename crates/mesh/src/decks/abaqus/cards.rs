@@ -26,7 +26,7 @@ pub(super) fn cells(line: &str) -> impl Iterator<Item = &str> {
     line.split(',').map(|cell| cell.trim().trim_matches('"')).filter(|cell| !cell.is_empty())
 }
 
-/// All cards of a text. What stands before the first one is left out.
+/// All cards of a text, without the lines before the first one.
 pub(super) fn cards(text: &str) -> Vec<Card<'_>> {
     let mut cards: Vec<Card<'_>> = Vec::new();
     let mut lines = text.lines().enumerate().map(|(at, line)| (at + 1, line.trim())).peekable();

@@ -69,7 +69,7 @@ struct File {
 }
 
 impl File {
-    /// What the cards at this place are of. The sets of an assembly are its own.
+    /// Scope of the cards at this place. The sets of an assembly are its own.
     fn scope(&mut self) -> &mut Scope {
         match &self.place {
             Place::Part(name) => self.parts.entry(name.clone()).or_default(),

@@ -9,7 +9,7 @@ use crate::decks::{DeckError, fault};
 /// Sets within sets within sets.
 const DEEPEST: usize = 50;
 
-/// What a set is made of.
+/// Members of a set.
 #[derive(Debug, Clone)]
 pub(super) enum Member {
     Number(u64),
@@ -19,7 +19,7 @@ pub(super) enum Member {
     Named(String),
     /// The nodes of a set of elements.
     NodesOf(String),
-    /// What a member is in an instance.
+    /// A member in an instance.
     In(String, Box<Member>),
 }
 
@@ -128,7 +128,7 @@ pub(super) struct Resolver<'a> {
     /// Sets of the assembly: of nodes, of elements.
     pub(super) assembly: [&'a Sets; 2],
     pub(super) found: &'a Gathered,
-    /// Sets that are known, with what they hold.
+    /// Known sets, with their members.
     pub(super) known: RefCell<BTreeMap<SetKey, Vec<u64>>>,
 }
 

@@ -60,7 +60,7 @@ pub(in crate::decks) fn write(mesh: &Mesh, title: &str) -> String {
     out
 }
 
-/// Rigid bodies are elastic ones here: whoever wants them stiff adds `*RIGID BODY` with a node of their own.
+/// Rigid bodies are elastic ones here: to make them stiff, add `*RIGID BODY` with a node of their own.
 pub(in crate::decks) fn write_model(model: &Model<'_>, title: &str) -> String {
     let Model { mesh, youngs_modulus, poissons_ratio, density, thickness, rigid, contacts, step } = model;
     let mut out = write(mesh, title);

@@ -1,4 +1,4 @@
-//! Defects and deviations that a mesh cannot follow, and what is proposed instead.
+//! Defects and deviations that a mesh cannot follow, and the proposed values.
 
 use super::{mark, only, parse};
 use crate::deviation::{FormScene, RollingSurface};

@@ -1,4 +1,4 @@
-//! Bearings by their own fields: completed, with what was assumed, or refused with what is missing.
+//! Bearings by their own fields: completed, with a list of assumptions, or refused with the missing fields.
 
 use super::*;
 use crate::catalogue;

@@ -1,0 +1,114 @@
+//! Bearings by their names, and their elements and defects.
+
+use super::*;
+
+#[test]
+fn example_a_bearing_by_its_name_starts_from_rest_or_turns_back() {
+    for operation in
+        ["speed_rpm: 0", "speed_rpm: -1500", "speed_rpm: 0, speed_profile: ramp(to_ms: 5, to: 1500)"]
+    {
+        let scene = Scene::parse(&format!("(bearing: \"NU 205\", operation: ({operation}))"), "mine")
+            .expect(operation);
+        let frames = scene.output.frames.expect("pictures");
+        assert!(frames.to_ms <= scene.solver.duration_ms && frames.from_ms < frames.to_ms, "{operation}");
+    }
+}
+
+#[test]
+fn example_a_bearing_by_its_name() {
+    let scene = Scene::parse("(bearing: \"NU 205\", operation: (speed_rpm: 1500))", "mine").unwrap();
+    let b = &scene.bearing;
+    assert_eq!((scene.name.as_str(), b.designation.as_str(), b.rollers), ("nu-205", "NU 205", 13));
+    assert_eq!((b.inner_race_diameter_mm, b.outer_race_diameter_mm), (31.5, 46.5));
+    // Bore 25 and outside diameter 52.
+    assert_eq!((b.inner_ring_thickness_mm, b.outer_ring_thickness_mm), (3.25, 2.75));
+    assert_eq!(scene.operation.speed_rpm, 1500.0);
+    // Facets of the paper's number.
+    assert!((scene.mesh.size_mm / b.roller_diameter_mm - 0.5 / 18.0).abs() < 2e-4);
+    // Fields of the file or the command line stay; the complete scene reads back to itself.
+    let text = "(bearing: \"NU205, elements=12\", cage: (pocket_clearance_um: 80), mesh: (size_mm: 0.4))";
+    let own = Scene::parse(text, "mine").unwrap();
+    assert_eq!((own.bearing.rollers, own.mesh.size_mm), (12, 0.4));
+    let cage = own.cage.as_ref().unwrap();
+    assert!(cage.pocket_clearance_um == 80.0 && cage.outer_diameter_mm < 46.5, "{cage:?}");
+    assert_eq!((cage.pocket, own.contact.friction), (PocketWalls::Corners, 0.05));
+    let straight =
+        Scene::parse("(bearing: \"NU 205\", cage: (pocket: straight), contact: (friction: 0.1))", "mine")
+            .unwrap();
+    assert_eq!((straight.cage.map(|cage| cage.thickness_mm), straight.contact.friction), (Some(2.99), 0.1));
+    assert_eq!(Scene::parse(&own.to_ron(), "complete").unwrap(), own);
+    let set = ["operation.load_n=1000", "bearing=NU 205"];
+    let other = Scene::default().with_overrides(&set).unwrap();
+    assert_eq!((other.operation.load_n, other.bearing.rollers), (1000.0, 13));
+}
+
+#[test]
+fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
+    let mut refused = Vec::new();
+    for bearing in crate::catalogue::all() {
+        let text = format!("(bearing: \"{}\")", bearing.name);
+        match Scene::parse(&text, "mine") {
+            Ok(scene) if bearing.name == crate::catalogue::PAPER => assert_eq!(scene, Scene::default()),
+            Ok(scene) => assert_eq!(scene.bearing.designation, bearing.name),
+            Err(why) => {
+                let why = why.to_string();
+                assert!(why.contains("contact angle") || why.contains("rings of"), "{text}: {why}");
+                refused.push(bearing.name);
+            }
+        }
+    }
+    assert_eq!(refused, ["ZA-2115", "NICE"]);
+    let fewer = Scene::parse("(bearing: \"paper, elements=20\")", "mine").unwrap();
+    assert_eq!(fewer.bearing, BearingScene { rollers: 20, ..BearingScene::default() });
+    let other = Scene::parse("(bearing: \"paper, diameter_mm=17\")", "mine").unwrap_err();
+    assert!(other.to_string().contains("as fields of `bearing`"), "{other}");
+}
+
+#[test]
+fn invariant_balls_are_cylinders_of_their_own_stiffness() {
+    use crate::{line_contact::LineContacts, point_contact};
+    let scene = Scene::parse("(bearing: \"6205\", operation: (load_n: 2000))", "mine").unwrap();
+    let g = scene.resolve();
+    let load = 4.37 * 2000.0 / 9.0;
+    let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
+    let ball = |race| point_contact::approach(g.roller_radius, race, 1.04 * g.roller_radius, load, modulus);
+    let ratio = LineContacts::of(&g).approach(load / g.thickness).0
+        / (ball(g.inner_race_radius) + ball(-g.outer_race_radius));
+    assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+}
+
+#[test]
+fn refuses_a_bearing_that_nobody_knows() {
+    for set in ["bearing=NU 999", "bearing=\"NU 999\""] {
+        let why = Scene::default().with_overrides(&[set]).unwrap_err();
+        assert!(why.to_string().contains("no bearing `NU 999`"), "{why}");
+    }
+    for set in ["bearing=NU 205, elements=200", "bearing=NU 205, diameter_mm=20"] {
+        let why = Scene::default().with_overrides(&[set]).unwrap_err().to_string();
+        assert!(why.contains(&format!("--set {set}")) && why.contains("^^^^"), "{why}");
+    }
+    let why = Scene::parse("(\n  bearing: \"NU 999\",\n)", "mine").unwrap_err().to_string();
+    assert!(why.contains("mine:2:12"), "{why}");
+    assert!(why.contains("`bearing: (rollers: 13") && !why.contains("--bearing"), "{why}");
+    // A slip elsewhere in the line leaves the name as it was written.
+    let why = Scene::parse("(bearing: \"NU 205\", mesh: (sise_mm: 1))", "mine").unwrap_err().to_string();
+    assert!(why.contains("(bearing: \"NU 205\", mesh: (sise_mm: 1))"), "{why}");
+}
+
+#[test]
+fn example_defects_on_either_ring_with_sloped_edges() {
+    let scene = parse("(defect: (ring: inner, edge_slope_deg: 30))").unwrap();
+    let defect = scene.resolve().grooves[0];
+    assert_eq!(defect.ring, crate::scene::DefectRing::Inner);
+    assert!((defect.edge_slope.to_degrees() - 30.0).abs() < 1e-12);
+    for (text, field) in [
+        ("(defect: (edge_slope_deg: 120))", "defect.edge_slope_deg"),
+        ("(film: None, defect: (edge_slope_deg: 6))", "defect.edge_slope_deg"),
+        // A roller would feel a film across the edge.
+        ("(defect: (edge_slope_deg: 20))", "defect.edge_slope_deg"),
+        ("(defect: (ring: middle))", "defect.ring"),
+        ("(defect: (ring: inner, depth_mm: 7))", "defect.depth_mm"),
+    ] {
+        assert_eq!(only(parse(text)).field, field, "{text}");
+    }
+}

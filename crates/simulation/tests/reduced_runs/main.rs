@@ -1,0 +1,77 @@
+//! Whole runs of the reduced bearing: their files, that they continue to the same bytes, and their distance
+//! from the full model.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod energy;
+mod files;
+mod motion;
+
+use std::{f64::consts::TAU, fs, ops::ControlFlow};
+
+use common::{host, run, trace};
+use stribeck_bearing::assembly::Assembly;
+use stribeck_reduced::{
+    bearing::Bearing,
+    motion::{BearingInMotion, Saved},
+};
+use stribeck_reduction::{ReducedMesh, dense, modal_bearing};
+use stribeck_run::host::Progress;
+use stribeck_scene::{
+    kinematics::Kinematics,
+    mesh_file::RunMesh,
+    run_dir::RunDir,
+    run_info::Status,
+    scene::{
+        ContactFormula, HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene,
+        RotatingLoadScene, Scene,
+    },
+    static_load,
+    trace::Trace,
+};
+use stribeck_simulation::{
+    reduced::{Prepared, prepared},
+    resume, simulate,
+};
+use stribeck_testing::Scratch;
+
+/// The paper's bearing, coarse.
+fn coarse(duration_ms: f64) -> Scene {
+    let mut scene = Scene { name: "coarse".into(), ..Scene::default() };
+    scene.model = ModelScene::Reduced(ReducedScene { modes_khz: 15.0, ..ReducedScene::default() });
+    scene.mesh.size_mm = 2.0;
+    scene.mesh.roller_facets = 88;
+    scene.bearing.thickness_mm = 20.0;
+    scene.contact.penalty_scale = 1.0;
+    scene.contact.points_per_facet = 4;
+    // Dry, and quiet by mass damping.
+    scene.film = None;
+    (scene.solver.mass_damping_per_s, scene.solver.structural_damping) = (5000.0, None);
+    scene.solver.duration_ms = duration_ms;
+    scene.output.frames = None;
+    scene
+}
+
+/// The coarse bearing without a defect, its cage guided by the rollers: pockets with corners keep it from
+/// floating away before all rollers run.
+fn guided(duration_ms: f64) -> Scene {
+    let mut scene = coarse(duration_ms);
+    scene.defect = None;
+    scene.cage.iter_mut().for_each(|cage| cage.pocket = PocketWalls::Corners);
+    scene
+}
+
+/// One of the scenes that come with the program, with some fields of its own.
+fn of(file: &str, fields: &[&str]) -> Scene {
+    let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/");
+    Scene::read_with(format!("{scenes}{file}"), fields).expect("valid")
+}
+
+fn bytes(folder: &Scratch, name: &str, file: &str) -> Vec<u8> {
+    fs::read(folder.join(name).join(file)).expect("readable")
+}
+
+fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
+    trace.get(name).unwrap_or_else(|| panic!("the trace has no `{name}`"))
+}
