@@ -249,7 +249,8 @@ mod tests {
             records: vec![record(1, None), record(2, Some(left)), record(3, Some(left))],
         };
         let figure = life(&unit).expect("two records with something left");
-        let edges: Vec<&Series> = figure.series.iter().filter(|series| series.edge).collect();
+        let edges: Vec<&Series> =
+            figure.series.iter().filter(|series| matches!(series.style, crate::plot::Style::Edge)).collect();
         assert_eq!(edges.len(), 2);
         assert!(edges[0].y.iter().zip(&edges[1].y).all(|(upper, lower)| upper > lower));
     }
