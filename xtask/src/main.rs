@@ -53,7 +53,7 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
+    let cli = stribeck::command_line::parse::<Cli>();
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
         Command::Program(command) => lab::with_module(command)

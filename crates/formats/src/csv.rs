@@ -11,6 +11,7 @@ mod head;
 mod lines;
 mod stamp;
 
+use std::collections::VecDeque;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -85,12 +86,20 @@ pub fn open(path: &Path) -> Result<Recording> {
         first += 1;
     }
     let columns = columns(&start[first..], dialect);
-    while first > 0 && is_damaged_row(&start[first - 1], dialect, columns) {
+    let rows: Vec<&String> = start[first..].iter().filter(|line| !dialect.is_empty(line)).collect();
+    if first == 0 && lie_across(&rows, columns) {
+        return across(path, &rows, dialect);
+    }
+    let rate_hz = head::rate_hz(&start[..first], dialect);
+    let numbers = columns_of_numbers(rows.first().map_or("", |row| row.as_str()), dialect);
+    while first > 0
+        && (is_damaged_row(&start[first - 1], dialect, columns)
+            || is_row_beside_words(&start[first - 1], dialect, columns, &numbers))
+    {
         first -= 1;
     }
     let (names, units) = head::names(&start[..first], dialect, columns);
     let (census, rows, mut notes) = census(path, coding, dialect, first as u64, columns)?;
-    let rate_hz = head::rate_hz(&start[..first], dialect);
     let mut channels = Vec::new();
     for (at, (name, census)) in names.into_iter().zip(census).enumerate() {
         if let Some(why) = census.refusal() {
@@ -156,6 +165,51 @@ fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
         }
 }
 
+/// Places of the numbers of a row.
+fn columns_of_numbers(row: &str, dialect: Dialect) -> Vec<usize> {
+    let fields = dialect.split(row).into_iter().enumerate();
+    fields.filter(|(_, field)| matches!(dialect.field(field), Field::Number(_))).map(|(at, _)| at).collect()
+}
+
+/// Whether a line above the table is a row of it with words beside: it has numbers, one with a fraction at
+/// least, where the rows below have theirs. Oscilloscopes write what they say of a record beside its first
+/// samples.
+fn is_row_beside_words(line: &str, dialect: Dialect, columns: usize, numbers: &[usize]) -> bool {
+    let fields = dialect.split(line);
+    let of = |at: &usize| fields.get(*at).copied().unwrap_or_default();
+    fields.len() == columns
+        && numbers.len() > 1
+        && numbers.iter().all(|at| matches!(dialect.field(of(at)), Field::Number(_)))
+        && numbers.iter().any(|at| of(at).contains(if dialect.decimal_comma { ',' } else { '.' }))
+}
+
+/// Fewest samples of rows that are channels.
+const WIDE: usize = 256;
+
+/// Whether rows are the channels: they are few and long, as a vector that was written as a row.
+fn lie_across(rows: &[&String], columns: usize) -> bool {
+    columns >= WIDE && rows.len() < SAMPLE / 2 && columns > 16 * rows.len()
+}
+
+/// Channels of a table whose rows they are.
+fn across(path: &Path, rows: &[&String], dialect: Dialect) -> Result<Recording> {
+    let value = |field: &str| match dialect.field(field) {
+        Field::Number(x) => x,
+        _ => f64::NAN,
+    };
+    let row = |(n, row): (usize, &&String)| {
+        let mut samples: Vec<f64> = dialect.split(row).into_iter().map(value).collect();
+        // A separator at the end of a row makes no sample.
+        if row.trim_end().ends_with(dialect.separator) {
+            samples.pop();
+        }
+        Channel::held(format!("row {}", n + 1), samples)
+    };
+    let channels = rows.iter().enumerate().map(row).collect();
+    let notes = vec!["each row is a channel, as the table has fewer rows than columns".to_owned()];
+    Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
+}
+
 /// Columns of the first rows.
 fn columns(rows: &[String], dialect: Dialect) -> usize {
     let counts =
@@ -175,6 +229,8 @@ fn census(
     let (mut rows, mut notes, mut short) = (0, Vec::new(), None);
     // Rows that hold more than there are columns, and the first of them.
     let mut longer: (u64, u64) = (0, 0);
+    // The last rows, and in which of the first columns they hold a word.
+    let mut tail: VecDeque<(u64, u64)> = VecDeque::new();
     let mut lines = Lines::open(path, coding)?;
     while let Some(line) = lines.next(path)? {
         if lines.read <= preamble || dialect.is_empty(&line) {
@@ -186,9 +242,18 @@ fn census(
         if fields.iter().skip(columns).any(|field| !field.is_empty()) {
             longer = (longer.0 + 1, if longer.0 == 0 { lines.read } else { longer.1 });
         }
+        let mut words = 0;
         for (at, census) in all.iter_mut().enumerate() {
             let field = fields.get(at).copied().unwrap_or_default();
-            census.take(dialect.field(field), field, lines.read);
+            let kind = dialect.field(field);
+            // A damaged number has digits.
+            let word = kind == Field::Text && !field.contains(|c: char| c.is_ascii_digit());
+            words |= u64::from(word).checked_shl(at as u32).unwrap_or(0);
+            census.take(kind, field, lines.read);
+        }
+        tail.push_back((lines.read, words));
+        if tail.len() > SUMMARY {
+            tail.pop_front();
         }
     }
     if let (count @ 1.., line) = longer {
@@ -200,8 +265,34 @@ fn census(
     if let Some(line) = short {
         notes.push(format!("line {line}, the last, is cut off and left out"));
         rows -= 1;
+        tail.pop_back();
     }
+    rows -= summary(&mut all, &tail, &mut notes);
     Ok((all, rows, notes))
+}
+
+/// Rows at the end of a table that are no samples, at most.
+const SUMMARY: usize = 12;
+
+/// How many rows at the end begin with a word where all others have a number: sums and means, which are no
+/// samples. With a note.
+fn summary(all: &mut [Census], tail: &VecDeque<(u64, u64)>, notes: &mut Vec<String>) -> u64 {
+    let Some(at) = all.iter().position(|census| census.refusal().is_none()).filter(|at| *at < 64) else {
+        return 0;
+    };
+    let is_word = |(_, words): &&(u64, u64)| words >> at & 1 == 1;
+    let words: Vec<u64> = tail.iter().rev().take_while(is_word).map(|(line, _)| *line).collect();
+    let Some(&first) = words.last().filter(|_| words.len() < SUMMARY) else { return 0 };
+    // In a table of one column it may be one sample that is no number.
+    if all.len() < 2 {
+        return 0;
+    }
+    let census = &mut all[at];
+    census.texts -= words.len() as u64;
+    let word = census.first.take_if(|(line, _)| *line >= first);
+    let word = word.map_or(String::new(), |(_, word)| format!(", which begins with `{word}`"));
+    notes.push(format!("the rows from line {first} on{word}, are no samples and are left out"));
+    words.len() as u64
 }
 
 impl Census {

@@ -13,10 +13,9 @@ use hdf5_pure::{
 };
 
 use crate::curve::Curve;
-use crate::hdf5_links::{self, Links};
 use crate::number::{Kind, Number};
 use crate::recording::{Strided, left_out};
-use crate::{Channel, Error, Recording, Result, hdf5_chunks, shape, units};
+use crate::{Channel, Error, Recording, Result, hdf5_chunks, hdf5_links, shape, units};
 
 const FORMAT: &str = "MATLAB 7.3 (HDF5)";
 /// Structs within structs; a forged file may hold itself.
@@ -46,8 +45,7 @@ pub fn open(path: &Path) -> Result<Recording> {
             notes: Vec::new(),
             rates: Vec::new(),
         };
-        let links = hdf5_links::of_file(path);
-        found.group(&file.root(), "", 0, links.as_ref());
+        found.group(&file.root(), "", &mut Vec::new());
         Ok(found)
     });
     let found = read.map_err(|_| Error::damaged(path, FORMAT, "its structure contradicts itself"))??;
@@ -89,20 +87,23 @@ struct Found {
 
 impl Found {
     /// Adds the channels of a group; unreadable ones are noted, and do not affect the rest.
-    fn group(&mut self, group: &Group, prefix: &str, depth: usize, links: Option<&Links>) {
+    fn group(&mut self, group: &Group, prefix: &str, trail: &mut Vec<String>) {
         let names = match (group.datasets(), group.groups()) {
             (Ok(sets), Ok(groups)) => (sets, groups),
             (Err(why), _) | (_, Err(why)) => {
-                // A link to another object spoils the library's list of an old group; each name alone can be
-                // opened.
-                let Some(links) = links else {
+                // A link to another object, or a damaged one, spoils the library's list of a group; each name
+                // alone can be opened.
+                let Some(members) = hdf5_links::members(&self.path, trail) else {
                     self.notes.push(left_out(&format!("{prefix}*"), &why.to_string()));
                     return;
                 };
-                for soft in &links.soft {
-                    self.notes.push(left_out(&format!("{prefix}{soft}"), "it is a link to another object"));
+                let (objects, links): (Vec<_>, Vec<_>) =
+                    members.into_iter().partition(hdf5_links::Member::is_object);
+                for link in links {
+                    let name = format!("{prefix}{}", link.name);
+                    self.notes.push(left_out(&name, "it is a link to another object"));
                 }
-                links.hard.iter().map(|(name, _)| name.clone()).partition(|name| group.dataset(name).is_ok())
+                objects.into_iter().map(|of| of.name).partition(|name| group.dataset(name).is_ok())
             }
         };
         if let Ok(attributes) = group.attrs() {
@@ -117,12 +118,16 @@ impl Found {
         }
         for name in names.1 {
             // Data referenced by cells and objects have no names.
-            if depth >= DEEPEST || name.starts_with('#') {
+            if trail.len() >= DEEPEST || name.starts_with('#') {
                 continue;
             }
-            let inner = links.and_then(|links| links.hard.iter().find(|(of, _)| *of == name)?.1.as_ref());
             match group.group(&name) {
-                Ok(group) => self.group(&group, &format!("{prefix}{name}."), depth + 1, inner),
+                Ok(group) => {
+                    let prefix = format!("{prefix}{name}.");
+                    trail.push(name);
+                    self.group(&group, &prefix, trail);
+                    trail.pop();
+                }
                 Err(why) => self.notes.push(left_out(&format!("{prefix}{name}"), &why.to_string())),
             }
         }

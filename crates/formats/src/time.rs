@@ -15,6 +15,9 @@ const LEAST: usize = 10;
 const RARE: usize = 250;
 /// Rates that differ by less than this part are one: clocks drift.
 const SAME_RATE: f64 = 1e-3;
+/// Seconds from 1970 to 1990, and to 2060.
+const DATES_S: std::ops::Range<f64> = 6.3e8..2.84e9;
+
 /// How a channel rises.
 #[derive(Debug, Default)]
 struct Course {
@@ -286,6 +289,14 @@ impl Course {
             if date && step * 86_400.0 < SLOWEST_S {
                 let hz = units::rounded(1.0 / (step * 86_400.0));
                 notes.push(format!("`{name}` counts days, as Excel and MATLAB do: {hz} Hz"));
+                return Some(hz);
+            }
+            // Of all units only one makes a date of our time of it.
+            let epoch = [(1e3, "milliseconds"), (1e6, "microseconds"), (1e9, "nanoseconds")].into_iter();
+            let mut epoch = epoch.map(|(a_second, unit)| (a_second, unit, self.first.1 / a_second));
+            if let Some((a_second, unit, _)) = epoch.find(|(.., s)| DATES_S.contains(s)) {
+                let hz = units::rounded(a_second / step);
+                notes.push(format!("`{name}` counts {unit} from 1970 on: {hz} Hz"));
                 return Some(hz);
             }
             let slow = step > SLOWEST_S * (1.0 + SAME_RATE);

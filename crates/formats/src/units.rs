@@ -130,7 +130,9 @@ fn bare(unit: &str) -> String {
 /// The seconds of a unit of time, and its usual spelling.
 pub(crate) fn seconds(unit: &str) -> Option<(&'static str, f64)> {
     let unit = bare(unit);
-    let of = TIMES.iter().find(|(_, _, names)| names.contains(&unit.as_str()));
+    // netCDF counts from a date: `seconds since 2024-05-01`.
+    let unit = unit.split_once(" since ").map_or(unit.as_str(), |(unit, _)| unit.trim_end());
+    let of = TIMES.iter().find(|(_, _, names)| names.contains(&unit));
     of.map(|(name, seconds, _)| (*name, *seconds))
 }
 

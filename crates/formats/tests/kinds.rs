@@ -225,6 +225,66 @@ fn issue_thousands_minus_signs_and_times_with_their_unit() {
 }
 
 #[test]
+fn issue_rows_that_are_no_samples_and_rows_that_are_channels() {
+    let desk = Scratch::create("formats-kinds-rows");
+    let table = lines(|n| format!("{:.9},{:.4}", n as f64 / RATE_HZ, signal(n)));
+    // Sums below the table.
+    for below in ["\nTotal,300\nMean,0.01\n", "Max,1\n", "\nSum;300\n"] {
+        let (rate_hz, found) = samples(&desk, &format!("t [s],acc [g]\n{table}{below}"));
+        assert_eq!((rate_hz, found.len(), found[299]), (Some(RATE_HZ), 300, signal(299)), "{below}");
+    }
+    // A damaged time at the end costs no sample.
+    let (_, found) = samples(&desk, &format!("t [s],acc [g]\n{table}0.o3,0.5\n"));
+    assert_eq!((found.len(), found[300]), (301, 0.5));
+    // What an oscilloscope says of a record, beside its first samples.
+    let words = ["Record Length,300,,", "Sample Interval,7.8125e-05,,", "Trigger Point,0,,", ",,,"];
+    let row = |n: usize| {
+        let beside = words.get(n).map_or(",,,", |words| words);
+        format!("{beside}{:.9},{:.4}", (n as f64 - 150.0) / RATE_HZ, signal(n))
+    };
+    let found = opened(&desk, "b.csv", lines(row).as_bytes());
+    let channel = found.channel("column 5").unwrap();
+    assert_eq!((channel.rate_hz, channel.len), (Some(RATE_HZ), 300), "{:?}", found.notes);
+    assert_eq!(channel.read().unwrap()[..3], [0, 1, 2].map(|n| (1e4 * signal(n)).round() / 1e4));
+    // LabVIEW heads a column of comments that the rows leave out.
+    let rows = lines(|n| format!("\t{:.4}\t{:.4}", signal(n), signal(n + 1)));
+    let head = "LabVIEW Measurement\nX_Columns\tNo\n***End_of_Header***\t\n\t\nChannels\t2\t\n\
+                Delta_X\t7.8125E-5\t7.8125E-5\n***End_of_Header***\t\t\t\n\
+                X_Value\tone\ttwo\tComment\n";
+    let found = opened(&desk, "c.lvm", (head.to_owned() + &rows).as_bytes());
+    let channel = found.channel("two").unwrap();
+    assert_eq!((channel.rate_hz, channel.read().unwrap()[7]), (Some(RATE_HZ), signal(8)));
+    // A vector that was written as a row, and two.
+    let vector: Vec<String> = (0..300).map(|n| signal(n).to_string()).collect();
+    for (text, rows) in [(vector.join(",") + "\n", 1), (format!("{0}\n{0}\n", vector.join("\t")), 2)] {
+        let found = opened(&desk, "d.csv", text.as_bytes());
+        assert_eq!((found.channels.len(), found.channels[rows - 1].len), (rows, 300));
+        assert_eq!(
+            found.channels[rows - 1].read().unwrap()[..],
+            (0..300).map(signal).collect::<Vec<_>>()[..]
+        );
+    }
+}
+
+#[test]
+fn issue_times_since_1970_say_their_unit() {
+    let desk = Scratch::create("formats-kinds-epoch");
+    for (a_second, digits) in [(1e6, 3), (1e9, 0)] {
+        let row = |n: usize| {
+            format!("{:.digits$},{:.4}", a_second * (1.714_550_4e9 + n as f64 / RATE_HZ), signal(n))
+        };
+        let (rate_hz, _) = samples(&desk, &("timestamp,acc\n".to_owned() + &lines(row)));
+        assert!((rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-3, "{a_second}: {rate_hz:?}");
+    }
+    // Milliseconds of a slow record.
+    let row = |n: usize| format!("{:.0},{:.4}", 1.714_550_4e12 + 5.0 * n as f64, signal(n));
+    assert_eq!(samples(&desk, &("timestamp,acc\n".to_owned() + &lines(row))).0, Some(200.0));
+    // Others stay without a rate.
+    let row = |n: usize| format!("{:.6},{:.4}", 4e12 + 78.125 * n as f64, signal(n));
+    assert_eq!(samples(&desk, &("timestamp,acc\n".to_owned() + &lines(row))).0, None);
+}
+
+#[test]
 fn issue_lines_above_a_table_say_its_rate() {
     let desk = Scratch::create("formats-kinds-rate");
     for head in [

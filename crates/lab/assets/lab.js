@@ -6,7 +6,7 @@ import { PRESETS } from "./presets.js";
 import { Record, envelope, lineNear, notch, spectrum } from "./signals.js";
 import { Sound } from "./sound.js";
 import { Stage, readPicture } from "./stage.js";
-import { G, colourOf, frequencies, shown } from "./words.js";
+import { G, colourOf, forgetColours, frequencies, shown } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -129,6 +129,13 @@ function turn(wanted) {
   lab.engine.send({ task: "turn", asked: changed });
 }
 
+// What a key has moved on the stage, for who cannot see it.
+function tellStage() {
+  if (!lab.tell) return;
+  lab.tell = false;
+  $("told").textContent = `Sensor at ${lab.facts.sensors[lab.handles.sensor].deg}°; roller ${lab.handles.roller + 1} of ${lab.facts.rollers} is watched.`;
+}
+
 function watch(roller) {
   $("follow").checked = false;
   turn({ roller });
@@ -226,6 +233,7 @@ function receive(message) {
       stage.still(message);
       if (message.anew || message.opened || lab.lastSensor !== lab.handles.sensor) lab.record.clear();
       lab.lastSensor = lab.handles.sensor;
+      tellStage();
       showHandles();
       sayWords();
       if (message.opened) ready();
@@ -233,6 +241,7 @@ function receive(message) {
     },
     handles() {
       lab.handles = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, message.handles[i]]));
+      tellStage();
       showHandles();
     },
     picture() { lab.picture = readPicture(message.picture, lab.layout); lab.displacement = message.displacement; lab.dirty = true; },
@@ -277,6 +286,8 @@ const stage = new Stage($("stage"), $("inset"), {
     if (best !== lab.handles.sensor && best !== lab.askedSensor) { lab.askedSensor = best; turn({ sensor: best }); }
   },
   onRoller: (roller) => watch(roller),
+  // Said once the engine has turned what the key asked for.
+  onKey: () => { lab.tell = true; },
 });
 
 const plots = {
@@ -323,7 +334,8 @@ function drawTraces() {
   plots.force.show({ range, series: [
     { name: "inner raceway", colour: colourOf("c-orange"), y: lab.record.last(4, n), x0, dx },
     { name: "outer raceway", colour: colourOf("c-blue"), y: lab.record.last(3, n), x0, dx }] });
-  const [ox, oy] = [lab.record.last(7, 4096), lab.record.last(8, 4096)];
+  // Every fourth sample shows the path, and draws four times as fast.
+  const thinned = (column) => lab.record.last(column, 4096).filter((_, i) => i % 4 === 3), [ox, oy] = [thinned(7), thinned(8)];
   let reach = 1e-9, [mx, my] = [0, 0];
   ox.forEach((x, i) => { mx += x / ox.length; my += oy[i] / ox.length; });
   ox.forEach((x, i) => { reach = Math.max(reach, Math.abs(x - mx), Math.abs(oy[i] - my)); });
@@ -417,7 +429,7 @@ function caption() {
   return lines;
 }
 
-let lastTraces = 0, lastSpectra = 0, frames = 0, lastCount = 0;
+let lastTraces = 0, lastSpectra = 0, lastSpeed = 0, frames = 0, lastCount = 0;
 
 function frame(now) {
   requestAnimationFrame(frame);
@@ -436,6 +448,9 @@ function frame(now) {
     lastSpectra = now;
     showNumbers();
   }
+  // Words make the browser lay the page out anew: twice a second is as often as they can be read.
+  if (lab.running && now - lastSpeed < 500) return;
+  lastSpeed = now;
   $("speed").textContent = lab.running && lab.speed ? `${shown(1000 * lab.speed.achieved)} ms of the bearing a second (${shown(1000 * lab.speed.possible)} possible), ${Math.round(lab.framesPerSecond || 0)} pictures a second` : lab.running ? "" : "paused";
 }
 
@@ -475,7 +490,7 @@ function connect() {
   for (const id of ["component", "at-tone", "span", "reach", "low", "high"]) $(id).addEventListener("change", () => { lastTraces = lastSpectra = 0; lab.dirty = true; });
   $("bearing").addEventListener("change", () => { open(Number($("bearing").value)).catch((error) => trouble(error.message)); });
   addEventListener("hashchange", () => takePreset(decodeURIComponent(location.hash.slice(1))));
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { lab.dirty = true; lastTraces = lastSpectra = 0; });
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { forgetColours(); lab.dirty = true; lastTraces = lastSpectra = 0; });
   addEventListener("resize", () => { lab.dirty = true; lastTraces = lastSpectra = 0; });
   const name = () => `${lab.facts.name}-lab`;
   $("csv").addEventListener("click", () => {
@@ -483,7 +498,7 @@ function connect() {
     save(`${name()}.csv`, csv(names, names.map((_, c) => lab.record.last(c, n))), "text/csv");
   });
   $("png").addEventListener("click", async () => {
-    const parts = ["stage", "inset", "trace", "force", "spectrum", "envelope", "orbit"].map((id) => ({ canvas: $(id), name: $(id).getAttribute("aria-label") }));
+    const parts = ["stage", "inset", "trace", "force", "spectrum", "envelope", "orbit"].map((id) => ({ canvas: $(id), name: $(id).getAttribute("aria-label").split(". ")[0] }));
     save(`${name()}.png`, await poster(parts, `${lab.facts.title}: ${$("words").textContent.slice(0, 110)}…`, colourOf("paper"), colourOf("ink")), "image/png");
   });
   $("ron").addEventListener("click", () => save(`${name()}.ron`, sceneText(lab.facts, lab.scene, lab.handles), "text/plain"));

@@ -26,7 +26,12 @@ export class Plot {
   // `x` and `y` are { name, unit, scale }: scale makes what is drawn of what is given.
   constructor(canvas, { x, y, log = false, square = false }) {
     Object.assign(this, { canvas, x, y, log, square, series: [], markers: [], window: null, cursor: null, note: "" });
-    canvas.tabIndex = 0;
+    // Where there is a cursor, arrow keys move it: for a screen reader the plot is a slider whose value is what it reads.
+    if (!square) {
+      canvas.tabIndex = 0;
+      for (const [name, value] of [["role", "slider"], ["aria-valuemin", 0], ["aria-valuemax", 1], ["aria-valuenow", 0], ["aria-valuetext", "no cursor"]]) canvas.setAttribute(name, value);
+      canvas.setAttribute("aria-description", "arrow keys move the cursor, plus and minus zoom, 0 shows all");
+    }
     canvas.addEventListener("pointermove", (event) => { this.cursor = event.offsetX; this.draw(); });
     canvas.addEventListener("pointerleave", () => { this.cursor = null; this.draw(); });
     canvas.addEventListener("dblclick", () => { this.window = null; this.draw(); });
@@ -49,6 +54,24 @@ export class Plot {
     event.preventDefault();
     keys[event.key]();
     this.draw();
+    this.tell();
+  }
+
+  // What the cursor reads, for who cannot see it.
+  tell() {
+    if (this.cursor === null || !(this.right > this.left)) return;
+    this.canvas.setAttribute("aria-valuenow", Math.min(1, Math.max(0, (this.cursor - this.left) / (this.right - this.left))).toFixed(3));
+    this.canvas.setAttribute("aria-valuetext", this.reading().join(", "));
+  }
+
+  // The place of the cursor, and the value of each line there.
+  reading() {
+    const at = this.atPixel(this.cursor), words = [`${shown(at, this.x.base || this.x.unit)}`];
+    for (const s of this.series.filter((one) => !one.x)) {
+      const i = Math.round((at - s.x0) / s.dx);
+      if (i >= 0 && i < s.y.length) words.push(`${s.name ? `${s.name} ` : ""}${shown(s.y[i] * (this.y.scale || 1), this.y.unit)}`);
+    }
+    return words;
   }
 
   zoom(at, by) {
@@ -211,11 +234,7 @@ export class Plot {
 
   drawCursor(c, px) {
     if (this.cursor === null || this.square || this.cursor < this.left || this.cursor > this.right) return;
-    const at = this.atPixel(this.cursor), words = [`${shown(at, this.x.base || this.x.unit)}`];
-    for (const s of this.series.filter((one) => !one.x)) {
-      const i = Math.round((at - s.x0) / s.dx);
-      if (i >= 0 && i < s.y.length) words.push(shown(s.y[i] * (this.y.scale || 1), this.y.unit));
-    }
+    const at = this.atPixel(this.cursor), words = this.reading();
     c.strokeStyle = colourOf("ink");
     c.globalAlpha = 0.5;
     c.beginPath();

@@ -1,24 +1,37 @@
 // Spectra and filters, with the conventions of the program's `dsp`: one-sided, amplitudes of a sine at its line.
 
+// Cosines and sines of a transform of `n`, kept from one to the next.
+const circles = new Map();
+
+function circle(n) {
+  if (!circles.has(n)) {
+    const of = (f) => Float64Array.from({ length: n / 2 }, (_, k) => f(2 * Math.PI * k / n));
+    circles.set(n, [of(Math.cos), of(Math.sin)]);
+  }
+  return circles.get(n);
+}
+
 // Fourier transform in place, of a power of two.
 export function fft(re, im) {
-  const n = re.length;
+  const n = re.length, [cosines, sines] = circle(n);
   for (let i = 1, j = 0; i < n; i += 1) {
     let bit = n >> 1;
     for (; j & bit; bit >>= 1) j ^= bit;
     j ^= bit;
-    if (i < j) { [re[i], re[j]] = [re[j], re[i]]; [im[i], im[j]] = [im[j], im[i]]; }
+    if (i < j) {
+      const x = re[i], y = im[i];
+      re[i] = re[j]; im[i] = im[j];
+      re[j] = x; im[j] = y;
+    }
   }
   for (let length = 2; length <= n; length <<= 1) {
-    const half = length >> 1, angle = -2 * Math.PI / length;
-    const c = Math.cos(angle), s = Math.sin(angle);
+    const half = length >> 1, stride = n / length;
     for (let first = 0; first < n; first += length) {
-      let wr = 1, wi = 0;
-      for (let k = first; k < first + half; k += 1) {
-        const xr = re[k + half] * wr - im[k + half] * wi, xi = re[k + half] * wi + im[k + half] * wr;
+      for (let k = first, at = 0; k < first + half; k += 1, at += stride) {
+        const c = cosines[at], s = sines[at], x = re[k + half], y = im[k + half];
+        const xr = x * c + y * s, xi = y * c - x * s;
         re[k + half] = re[k] - xr; im[k + half] = im[k] - xi;
         re[k] += xr; im[k] += xi;
-        [wr, wi] = [wr * c - wi * s, wr * s + wi * c];
       }
     }
   }
@@ -33,22 +46,32 @@ function hann(n) {
 
 // Mean amplitude spectrum over segments that overlap by a half, Hann's window; `n` is a power of two.
 export function spectrum(signal, rate, n) {
-  const window = hann(n), power = new Float64Array(n / 2 + 1);
-  const re = new Float64Array(n), im = new Float64Array(n);
-  let segments = 0;
-  for (let first = signal.length - n; first >= 0; first -= n / 2) {
-    let mean = 0;
-    for (let i = 0; i < n; i += 1) mean += signal[first + i];
-    mean /= n;
-    for (let i = 0; i < n; i += 1) { re[i] = (signal[first + i] - mean) * window[i]; im[i] = 0; }
+  const power = new Float64Array(n / 2 + 1), re = new Float64Array(n), im = new Float64Array(n);
+  const starts = [];
+  for (let first = signal.length - n; first >= 0; first -= n / 2) starts.push(first);
+  // Two segments are one transform: the powers of its two halves add up to those of both.
+  for (let at = 0; at < starts.length; at += 2) {
+    windowed(signal, starts[at], re);
+    if (at + 1 < starts.length) windowed(signal, starts[at + 1], im); else im.fill(0);
     fft(re, im);
-    for (let k = 0; k <= n / 2; k += 1) power[k] += re[k] * re[k] + im[k] * im[k];
-    segments += 1;
+    for (let k = 0; k <= n / 2; k += 1) {
+      const back = (n - k) % n;
+      power[k] += 0.5 * (re[k] * re[k] + im[k] * im[k] + re[back] * re[back] + im[back] * im[back]);
+    }
   }
   // The window has a mean of one half.
   const scale = 2 / (0.5 * n);
-  const amplitude = power.map((p) => scale * Math.sqrt(p / Math.max(1, segments)));
-  return { amplitude, step: rate / n, segments };
+  const amplitude = power.map((p) => scale * Math.sqrt(p / Math.max(1, starts.length)));
+  return { amplitude, step: rate / n, segments: starts.length };
+}
+
+// A segment without its mean, under the window.
+function windowed(signal, first, out) {
+  const window = hann(out.length);
+  let mean = 0;
+  for (let i = 0; i < out.length; i += 1) mean += signal[first + i];
+  mean /= out.length;
+  for (let i = 0; i < out.length; i += 1) out[i] = (signal[first + i] - mean) * window[i];
 }
 
 // Envelope of what lies in a band [Hz], of the last power of two of samples.
@@ -64,7 +87,7 @@ export function envelope(signal, rate, low, high) {
   }
   // The inverse transform is the transform with both parts exchanged.
   fft(im, re);
-  return Float64Array.from(re, (x, i) => Math.hypot(x, im[i]) / n);
+  return re.map((x, i) => Math.sqrt(x * x + im[i] * im[i]) / n);
 }
 
 // Second-order notch of the quality factor q, forwards and backwards: zero phase, as in the paper.
@@ -76,7 +99,8 @@ export function notch(signal, rate, hz, q) {
     let [x1, x2, y1, y2] = [x[0] || 0, x[0] || 0, x[0] || 0, x[0] || 0];
     for (let i = 0; i < x.length; i += 1) {
       const out = b0 * x[i] + b1 * x1 + b2 * x2 - a1 * y1 - a2 * y2;
-      [x2, x1, y2, y1] = [x1, x[i], y1, out];
+      x2 = x1; x1 = x[i];
+      y2 = y1; y1 = out;
       y[i] = out;
     }
     return y;

@@ -23,8 +23,16 @@ export function readPicture(numbers, layout) {
     energies: { kinetic, strain, contact, friction, damping, contactDamping, film, external, drive, imbalance } };
 }
 
+// An outline as a path that is drawn again and again.
+function closed(outline) {
+  const path = new Path2D();
+  for (let i = 0; i < outline.length; i += 2) if (i) path.lineTo(outline[i], outline[i + 1]); else path.moveTo(outline[i], outline[i + 1]);
+  path.closePath();
+  return path;
+}
+
 export class Stage {
-  constructor(canvas, inset, { onSensor, onRoller }) {
+  constructor(canvas, inset, { onSensor, onRoller, onKey }) {
     Object.assign(this, { canvas, inset, exaggeration: 0 });
     let dragging = false;
     const place = (event) => [(event.offsetX - this.cx) / this.scale, (this.cy - event.offsetY) / this.scale];
@@ -41,16 +49,21 @@ export class Stage {
     canvas.tabIndex = 0;
     canvas.addEventListener("keydown", (event) => {
       const [round, next] = [{ ArrowLeft: 15, ArrowRight: -15 }[event.key], { ArrowUp: 1, ArrowDown: -1 }[event.key]], count = this.facts.rollers;
-      if (round) sensorAt(this.facts.sensors[this.handles.sensor].deg + round);
-      else if (next) onRoller((this.handles.roller + next + count) % count);
-      else return;
+      if (!round && !next) return;
       event.preventDefault();
+      if (round) sensorAt(this.facts.sensors[this.handles.sensor].deg + round);
+      else onRoller((this.handles.roller + next + count) % count);
+      onKey();
     });
   }
 
   open(facts) { this.facts = facts; this.largest = 0; }
 
-  still(outlines) { this.outlines = outlines; this.largest = 0; }
+  still(outlines) {
+    this.outlines = outlines;
+    this.largest = 0;
+    this.paths = { inner: closed(outlines.inner), roller: closed(outlines.roller) };
+  }
 
   draw(picture, displacement, { handles, load, direction, caption }) {
     Object.assign(this, { picture, displacement, handles, load, direction, caption });
@@ -119,7 +132,7 @@ export class Stage {
 
   // The raceway as it is meshed, and moved as far as it is exaggerated.
   drawRings(c, ring) {
-    const { outer, inner } = this.outlines, { facts, displacement } = this;
+    const { outer } = this.outlines, { facts, displacement } = this;
     const moved = this.exaggeration > 0 && displacement.length === outer.length;
     const path = (grow) => {
       for (let i = 0; i < outer.length; i += 2) {
@@ -139,14 +152,11 @@ export class Stage {
     c.stroke();
     c.save();
     c.rotate(this.picture.shaft);
-    c.beginPath();
-    for (let i = 0; i < inner.length; i += 2) if (i) c.lineTo(inner[i], inner[i + 1]); else c.moveTo(inner[i], inner[i + 1]);
-    c.closePath();
-    const bore = Math.max(0.2 * facts.inner, facts.inner - facts.innerThickness);
-    c.moveTo(bore, 0);
-    c.arc(0, 0, bore, 0, TAU);
-    c.fill("evenodd");
-    c.stroke();
+    const bore = Math.max(0.2 * facts.inner, facts.inner - facts.innerThickness), track = new Path2D(this.paths.inner);
+    track.moveTo(bore, 0);
+    track.arc(0, 0, bore, 0, TAU);
+    c.fill(track, "evenodd");
+    c.stroke(track);
     c.fillStyle = colourOf("steel-edge");
     c.beginPath();
     c.arc(0.5 * (bore + facts.inner), 0, 0.12 * facts.innerThickness, 0, TAU);
@@ -193,19 +203,16 @@ export class Stage {
   }
 
   drawRoller(c, roller, n) {
-    const { outlines, facts } = this, share = roller.outer / this.largest, outline = outlines.roller;
+    const { outlines, facts } = this, share = roller.outer / this.largest, outline = this.paths.roller;
     c.save();
     c.translate(roller.x, roller.y);
     c.rotate(roller.spin + outlines.vertexAngles[n]);
     c.fillStyle = colourOf("roller");
     c.strokeStyle = n === this.handles.roller ? colourOf("link") : colourOf("steel-edge");
     c.lineWidth = (n === this.handles.roller ? 2.5 : 1) / this.scale;
-    c.beginPath();
-    for (let i = 0; i < outline.length; i += 2) if (i) c.lineTo(outline[i], outline[i + 1]); else c.moveTo(outline[i], outline[i + 1]);
-    c.closePath();
-    c.fill();
-    if (share > 0.02) { c.globalAlpha = 0.25 + 0.6 * share; c.fillStyle = loadColour(share); c.fill(); c.globalAlpha = 1; }
-    c.stroke();
+    c.fill(outline);
+    if (share > 0.02) { c.globalAlpha = 0.25 + 0.6 * share; c.fillStyle = loadColour(share); c.fill(outline); c.globalAlpha = 1; }
+    c.stroke(outline);
     c.lineWidth = 1.5 / this.scale;
     c.strokeStyle = colourOf("steel-edge");
     c.beginPath();

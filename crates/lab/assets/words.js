@@ -14,7 +14,16 @@ export function shown(value, unit = "") {
   return `${scaled.toFixed(digits)} ${prefix}${unit}`.trim();
 }
 
-export const colourOf = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+// Colours of the page by name, asked for once: the browser takes longer to look one up than to draw a line.
+const colours = new Map();
+
+export function colourOf(name) {
+  if (!colours.has(name)) colours.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return colours.get(name);
+}
+
+// A page that turned from light to dark has others.
+export const forgetColours = () => colours.clear();
 
 // Frequencies of the bearing at a speed [rpm]: those of its facets too.
 export function frequencies(facts, rpm, facets, arcs) {

@@ -171,6 +171,59 @@ fn example_presets_are_links_and_arcs_take_the_tone_away() {
     assert!(number(&said, "arcs") < 0.3 * number(&said, "facets"), "{said}");
 }
 
+/// Every control has a name for who cannot see it, arrow keys do what a mouse does, numbers that are none are
+/// refused, and a phone shows the page without scrolling sideways.
+#[test]
+fn example_a_phone_has_room_and_controls_have_names() {
+    let Some((browser, module)) = tools() else { return };
+    let folder = Scratch::create("lab-phone");
+    let file = written(&folder, "lab.html", &page_of(&coarse(), &module));
+    let mut tab = Tab::open(&browser, &folder.join("profile"));
+    let phone = serde_json::json!({ "width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": true });
+    tab.call("Emulation.setDeviceMetricsOverride", phone);
+    tab.go_to(&format!("file://{}", file.display()));
+    let script = r#"
+      await until(() => lab.picture.time > 0.03);
+      const key = (id, name) => document.getElementById(id).dispatchEvent(new KeyboardEvent("keydown", { key: name }));
+      const sensor = lab.handles.sensor, roller = lab.handles.roller;
+      key("stage", "ArrowLeft");
+      await until(() => lab.handles.sensor !== sensor && text("told") !== "");
+      const told = text("told");
+      key("spectrum", "ArrowRight");
+      const read = document.getElementById("spectrum").getAttribute("aria-valuetext");
+      const refused = {};
+      for (const value of ["NaN", "", "1e999", "-3"]) { set("handle-load", value); refused[value] = document.querySelector("[data-key=load] .why").textContent; }
+      document.getElementById("run").click();
+      const beyond = [...document.querySelectorAll("body *")].filter((e) => e.offsetParent && e.getBoundingClientRect().right > innerWidth + 1).map((e) => e.id || e.className || e.tagName);
+      return { told, read, refused, load: lab.handles.load, wide: document.scrollingElement.scrollWidth, beyond, trouble: text("trouble") };
+    "#;
+    let said = tab.answer(&format!("(async () => {{ {TOOLS} {script} }})()"));
+    assert_eq!(tab.errors(), Vec::<String>::new(), "in the console");
+    assert_eq!(said["trouble"], "", "{said}");
+    assert!(said["told"].as_str().is_some_and(|words| words.starts_with("Sensor at ")), "{said}");
+    assert!(said["read"].as_str().is_some_and(|words| words.contains("Hz")), "{said}");
+    for (given, why) in said["refused"].as_object().expect("answers") {
+        let why = why.as_str().expect("words");
+        assert!(why.contains("must be a number between 1 and 1000000 N"), "{given}: {why}");
+    }
+    assert_eq!(number(&said, "load"), coarse().operation.load_n);
+    assert!(number(&said, "wide") <= 390.0 && said["beyond"] == serde_json::json!([]), "{said}");
+    let tree = tab.call("Accessibility.getFullAXTree", serde_json::json!({}));
+    let controls: Vec<&Value> =
+        tree["nodes"].as_array().expect("a tree").iter().filter(|node| is_control(node)).collect();
+    assert!(controls.len() > 40, "{} controls", controls.len());
+    let nameless = |node: &&&Value| node["name"]["value"].as_str().is_none_or(|name| name.trim().is_empty());
+    let nameless: Vec<_> = controls.iter().filter(nameless).collect();
+    assert!(nameless.is_empty(), "without a name: {nameless:?}");
+}
+
+/// Whether a node of the tree that screen readers are given takes the keyboard, the page itself aside.
+fn is_control(node: &Value) -> bool {
+    let focusable = |property: &Value| property["name"] == "focusable" && property["value"]["value"] == true;
+    node["role"]["value"] != "RootWebArea"
+        && node["properties"].as_array().is_some_and(|properties| properties.iter().any(focusable))
+}
+
 /// A file that was cut short says so, whatever is left of it.
 #[test]
 fn refuses_a_file_cut_in_half() {

@@ -163,12 +163,13 @@ fn fault(line: usize, what: impl Into<String>) -> DeckError {
     DeckError { file: None, line, what: what.into() }
 }
 
-/// A text of any encoding that has ASCII in it.
+/// A text of any encoding that has ASCII in it. Its lines may end as those of old Macintoshes do.
 fn text_of(bytes: &[u8]) -> Cow<'_, str> {
-    match std::str::from_utf8(bytes) {
+    let text: Cow<'_, str> = match std::str::from_utf8(bytes) {
         Ok(text) => text.into(),
         Err(_) => bytes.iter().map(|byte| char::from(*byte)).collect::<String>().into(),
-    }
+    };
+    if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n").into() } else { text }
 }
 
 /// Letters and digits of a name, in capitals, others as `_`: a name that every program accepts.

@@ -312,6 +312,47 @@ fn issue_lsdyna_cards_as_their_programs_write_them() {
 }
 
 #[test]
+fn issue_gmsh_names_sets_of_lsdyna_in_comments() {
+    let text = "$# LS-DYNA Keyword file created by Gmsh
+*KEYWORD
+*TITLE
+ two.key
+*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 2, 0, 0
+4, 0, 1, 0
+5, 1, 1, 0
+6, 2, 1, 0
+*ELEMENT_BEAM
+$#SET_ELEMENT=raceway1
+1, 1000001, 1, 2
+2, 1000001, 2, 3
+*ELEMENT_SHELL
+$#SET_ELEMENT=steel1
+3, 2000001, 1, 2, 5, 4
+4, 2000001, 2, 3, 6, 5
+*SET_NODE_LIST
+$# raceway
+1
+1, 2, 3
+*SET_NODE_LIST
+$# fit
+2
+4, 5, 6
+*END
+";
+    for text in [text.to_owned(), text.replace('\n', "\r\n"), text.replace('\n', "\r"), text.to_lowercase()] {
+        check("Gmsh", Deck::LsDyna, text.as_bytes(), "");
+    }
+    // The headings that LS-PrePost writes there are no names.
+    let other =
+        text.replace("created by Gmsh", "by LS-PrePost").replace("$# raceway", "$#     sid       da1");
+    let read = Deck::LsDyna.read(&other).expect("a mesh");
+    assert_eq!(read.node_sets.keys().collect::<Vec<_>>(), ["set 1", "set 2"]);
+}
+
+#[test]
 fn issue_lines_are_those_of_the_included_file() {
     let text = format!(
         "*HEADING\n** *INCLUDE, INPUT=part.inp\n{}*NSET, NSET=raceway\n1, 2, 3\n*NSET, NSET=fit\n4, 5, \
@@ -457,6 +498,125 @@ fn msh(version: &str, binary: bool) -> Vec<u8> {
     }
     text(&mut out, "\n$EndElements\n");
     out
+}
+
+/// A binary file as a machine with the other order of bytes writes it: every number the other way round.
+fn turned(bytes: &[u8], version: &str) -> Vec<u8> {
+    let (mut out, mut at) = (Vec::new(), 0);
+    // The numbers of a section have these widths; a line of text stands before those of format 2.2.
+    let mut section = |name: &str, widths: &[usize]| {
+        let head = format!("${name}\n");
+        let start =
+            bytes[at..].windows(head.len()).position(|w| w == head.as_bytes()).unwrap() + at + head.len();
+        out.extend(&bytes[at..start]);
+        at = start;
+        if version == "2.2" || name == "MeshFormat" {
+            let line = bytes[at..].iter().position(|byte| *byte == b'\n').unwrap() + 1;
+            out.extend(&bytes[at..at + line]);
+            at += line;
+        }
+        for width in widths {
+            out.extend(bytes[at..at + width].iter().rev());
+            at += width;
+        }
+    };
+    section("MeshFormat", &[4]);
+    if version == "2.2" {
+        section("Nodes", &[4, 8, 8, 8].repeat(6));
+        // Six lines of two nodes, two squares, and one of them again.
+        section("Elements", &[4].repeat(6 * 8 + 3 * 10));
+    } else {
+        let tags = |groups: usize, bounds: usize| {
+            [vec![4], vec![8; 7], vec![4; groups], vec![8], vec![4; bounds]].concat()
+        };
+        let point = vec![4, 8, 8, 8, 8];
+        section("Entities", &[vec![8; 4], point, tags(2, 2), tags(1, 0), tags(1, 2)].concat());
+        let head = || vec![4, 4, 4, 8];
+        let block = |own: usize| [head(), vec![8; 3 + 3 * own]].concat();
+        section("Nodes", &[vec![8; 4], block(4), block(3)].concat());
+        let of = |numbers: usize| [head(), vec![8; numbers]].concat();
+        section("Elements", &[vec![8; 4], of(6), of(6), of(10)].concat());
+    }
+    out.extend(&bytes[at..]);
+    out
+}
+
+#[test]
+fn issue_gmsh_files_of_the_other_order_of_bytes() {
+    for version in ["2.2", "4.1"] {
+        let bytes = msh(version, true);
+        check(version, Deck::Gmsh, &turned(&bytes, version), "steel");
+        // Neither the one nor the other.
+        let damaged = String::from_utf8_lossy(&bytes).find('\n').unwrap() + 1;
+        let place = damaged + bytes[damaged..].iter().position(|byte| *byte == b'\n').unwrap() + 1;
+        let mut bytes = bytes;
+        bytes[place] = 7;
+        assert!(Deck::Gmsh.read_bytes(&bytes).expect_err("no one").what.contains("number 1"));
+    }
+}
+
+#[test]
+fn issue_gmsh_nodes_with_parameters_and_partitions() {
+    // As Gmsh 4.15 writes them with `Mesh.SaveParametric` in format 2.2.
+    let text = String::from_utf8(msh("2.2", false)).expect("text");
+    let places = ["0 1", "1 2 0.5", "0 2", "1 4 0.25", "2 1 0.5 0.5", "3 1"];
+    let mut rows = places.iter();
+    let text: Vec<String> = (text.lines())
+        .map(|line| match line.split_whitespace().count() {
+            4 => format!("{line}{}", rows.next().expect("six nodes")),
+            _ => line.replace("$Nodes", "$ParametricNodes").replace("$EndNodes", "$EndParametricNodes"),
+        })
+        .collect();
+    check("parameters", Deck::Gmsh, text.join("\n").as_bytes(), "steel");
+    // Each square in a partition; `raceway` is curve 3 in one and 4 in the other.
+    let partitions = r#"$MeshFormat
+4.1 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 1 "raceway"
+1 2 "fit"
+2 1 "steel"
+$EndPhysicalNames
+$Entities
+1 2 1 0
+1 0 0 0 0
+1 0 0 0 2 0 0 1 1 0
+2 0 1 0 2 1 0 1 2 0
+1 0 0 0 2 1 0 1 1 2 1 2
+$EndEntities
+$PartitionedEntities
+2
+1 9 1
+1 4 2 0
+2 0 1 1 1 0 0 0 0
+3 1 1 1 1 0 0 0 1 0 0 1 1 0
+4 1 1 1 2 1 0 0 2 0 0 1 1 0
+5 1 2 2 1 2 0 1 0 2 1 0 1 2 0
+6 2 1 2 1 2 1 0 0 1 1 0 0 0
+2 2 1 1 1 0 0 0 1 1 0 1 1 2 3 5
+3 2 1 1 2 1 0 0 2 1 0 1 1 0
+$EndPartitionedEntities
+$Nodes
+1 6 1 6
+2 2 0 6
+1 2 3 4 5 6
+0 0 0  1 0 0  2 0 0  0 1 0  1 1 0  2 1 0
+$EndNodes
+$GhostElements
+0
+$EndGhostElements
+$Elements
+6 7 1 7
+1 3 1 1  1 1 2
+1 4 1 1  2 2 3
+1 5 1 2  3 4 5  4 5 6
+1 6 1 1  5 2 5
+2 2 3 1  6 1 2 5 4
+2 3 3 1  7 2 3 6 5
+$EndElements
+"#;
+    check("partitions", Deck::Gmsh, partitions.as_bytes(), "steel");
 }
 
 #[test]

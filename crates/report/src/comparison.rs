@@ -248,7 +248,8 @@ fn rows(comparison: &Comparison, rows: &[Row]) -> Markup {
                                 None => { td class="n absent" { "–" } td {} },
                                 Some(contrast) => {
                                     td class="n" { (difference(contrast)) }
-                                    td { @if contrast.verdict == Verdict::Differs { strong { (contrast.verdict.words()) } } @else { (contrast.verdict.words()) } }
+                                    @let words = by_chance(contrast, sides);
+                                    td { @if contrast.verdict == Verdict::Differs { strong { (words) } } @else { (words) } }
                                 },
                             }
                         }
@@ -257,9 +258,21 @@ fn rows(comparison: &Comparison, rows: &[Row]) -> Markup {
             }
         }
         p class="hint" {
-            "Where a side has several starts: mean ± standard deviation of one start. Differences with their \
-             95 % interval; a number differs where that leaves zero out."
+            @if sides.iter().any(|side| side.scene.is_some()) {
+                "Where a side has several starts: mean ± standard deviation of one start. Differences with \
+                 their 95 % interval; a number differs where that leaves zero out."
+            } @else {
+                "One record of each: how far a further one would scatter, nobody knows."
+            }
         }
+    }
+}
+
+/// Whether a difference may be chance, in words. Records have no starts.
+pub fn by_chance(contrast: &Contrast, sides: &[Side]) -> &'static str {
+    match contrast.verdict {
+        Verdict::Unknown if sides.iter().all(|side| side.scene.is_none()) => "one record each",
+        verdict => verdict.words(),
     }
 }
 

@@ -1,4 +1,4 @@
-//! The page of spalls that grow: findings of each record of each unit, and estimates of its remaining
+//! The page of spalls that grow: what each record of each unit shows, and what is said to be left of the
 //! unit.
 
 use std::path::Path;
@@ -18,7 +18,7 @@ use crate::plot::{Axis, Colour, Figure, Mark, Series};
 pub struct GrowthFindings {
     /// Name of the growth file.
     pub name: String,
-    /// The quantity from which the length is estimated, in words.
+    /// What a length is read from, in words.
     pub by: String,
     /// Units.
     pub units: Vec<UnitFindings>,
@@ -38,7 +38,7 @@ pub struct UnitFindings {
     pub onset: f64,
     /// Revolutions at the end, in truth.
     pub end: f64,
-    /// Revolutions of the first record that claims a defect.
+    /// Revolutions of the first record that claims the defect and whose next one does, too.
     pub claimed_at: Option<f64>,
     /// Revolutions of the first record above the alarm of the root mean square.
     pub alarm_at: Option<f64>,
@@ -65,15 +65,15 @@ pub struct RecordFindings {
     pub kurtosis: Option<f64>,
     /// Level of the family of the damaged part [dB].
     pub level_db: Option<f64>,
-    /// Families that are claimed in the record, joined by `+`; `none` where there are none.
+    /// Families that the record is said to show, joined by `+`; `none` where it shows none.
     pub claimed: Option<String>,
     /// Length by the two events of a passage [mm], as `analyse` has it.
     pub spall_mm: Option<f64>,
     /// Length that the indicator tells by the records of other units [mm].
     pub read_mm: Option<f64>,
-    /// Estimated remaining life [revolutions].
+    /// What is left [revolutions].
     pub remaining: Option<Remaining>,
-    /// True remaining life [revolutions].
+    /// What is left in truth [revolutions].
     pub remaining_true: f64,
 }
 
@@ -107,9 +107,17 @@ fn page(of: &GrowthFindings) -> Result<Markup, Error> {
                 h2 #units { "Units" }
                 div class="scroll" { (table(of)) }
                 h2 #trends { "Trends" }
+                p {
+                    "A curve for each unit, a point for each record. Before its onset a unit has no spall: a \
+                     length that is read there, by a record that is claimed all the same, is a false one."
+                }
                 div class="pairs-of-figures" { @for figure in &all { (figure) } }
                 h2 #left { "What is left" }
-                p { "Length is read from " (of.by) ", calibrated by the records of the other units." }
+                p {
+                    "Length is read from " (of.by) ", gauged by the records of the other units, and goes on to \
+                     the end by the law of growth. Shaded: the interval of 90 %; blue: its median; \
+                     orange: the truth."
+                }
                 div class="pairs-of-figures" { @for figure in lives.iter().flatten() { (figure) } }
                 h2 #notes { "Limits" }
                 ul class="notes" { @for note in &of.notes { li { (note) } } }
@@ -129,7 +137,7 @@ fn table(of: &GrowthFindings) -> Markup {
     html! {
         table {
             tr {
-                th { "Unit" } th { "Records" } th { "Onset, in truth" } th { "First claim" } th { "Alarm" }
+                th { "Unit" } th { "Records" } th { "Onset, in truth" } th { "Claimed twice running from" } th { "Alarm" }
                 th { "End, in truth" } th { "Left at the last record" } th { "Left in truth" }
             }
             @for unit in &of.units {
@@ -148,8 +156,9 @@ fn table(of: &GrowthFindings) -> Markup {
             }
         }
         p class="hint" {
-            "Millions of revolutions; intervals of 90 %. Alarm: the first record whose root mean square \
-             lies above the limit that the unit's first three records set."
+            "Millions of revolutions; intervals of 90 %. First claim: the first record that the verdict \
+             calls damaged; before the onset it is a false alarm. Alarm: the first record whose root mean \
+             square lies above the limit that the unit's first three records set."
         }
     }
 }
@@ -179,7 +188,7 @@ fn figures(of: &GrowthFindings) -> Vec<Figure> {
     .collect()
 }
 
-/// Remaining life of one unit over the revolutions, with its interval and the truth.
+/// What is left of one unit over the revolutions, with its interval and the truth.
 fn life(unit: &UnitFindings) -> Option<Figure> {
     let told: Vec<(&RecordFindings, Remaining)> =
         unit.records.iter().filter_map(|record| Some((record, record.remaining?))).collect();
@@ -196,12 +205,52 @@ fn life(unit: &UnitFindings) -> Option<Figure> {
         Series::listed(name, colour, x.clone(), y)
     };
     figure = figure
-        .with(curve("5 % below", Colour::Blue, &|_, left| left.low).as_edge())
+        // The upper edge first: the ground between them is drawn downwards from it.
         .with(curve("95 % below", Colour::Blue, &|_, left| left.high).as_edge())
+        .with(curve("5 % below", Colour::Blue, &|_, left| left.low).as_edge())
         .with(curve("median", Colour::Blue, &|_, left| left.median))
         .with(curve("truth", Colour::Orange, &|record, _| record.remaining_true));
     if let Some(at) = unit.alarm_at {
         figure.marks.push(Mark { x: 1e-6 * at, label: "alarm".into(), colour: Colour::Red, dashed: false });
     }
     Some(figure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The interval of what is left was in the numbers and not in the picture: its ground is drawn from the
+    /// upper edge downwards, and the lower one had come first.
+    #[test]
+    fn issue_the_upper_edge_of_an_interval_comes_first() {
+        let record = |run: usize, remaining: Option<Remaining>| RecordFindings {
+            run,
+            revolutions: 1e6 * run as f64,
+            length_mm: Some(1.0),
+            depth_mm: Some(0.1),
+            rms: Some(10.0),
+            kurtosis: Some(3.0),
+            level_db: None,
+            claimed: None,
+            spall_mm: None,
+            read_mm: None,
+            remaining,
+            remaining_true: 2e6,
+        };
+        let left = Remaining { median: 2e6, low: 1e6, high: 4e6 };
+        let unit = UnitFindings {
+            unit: 1,
+            onset: 0.0,
+            end: 4e6,
+            claimed_at: Some(0.0),
+            alarm_at: None,
+            alarm_rms: None,
+            records: vec![record(1, None), record(2, Some(left)), record(3, Some(left))],
+        };
+        let figure = life(&unit).expect("two records with something left");
+        let edges: Vec<&Series> = figure.series.iter().filter(|series| series.edge).collect();
+        assert_eq!(edges.len(), 2);
+        assert!(edges[0].y.iter().zip(&edges[1].y).all(|(upper, lower)| upper > lower));
+    }
 }

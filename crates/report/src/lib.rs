@@ -59,7 +59,9 @@ mod error;
 
 pub use agreement::write_agreement;
 pub use campaign::{CampaignIndex, CampaignRun, write_campaign};
-pub use comparison::{MOST_COMPARED, answer as comparison_in_words, difference, mean, write_comparison};
+pub use comparison::{
+    MOST_COMPARED, answer as comparison_in_words, by_chance, difference, mean, write_comparison,
+};
 pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use growth::{GrowthFindings, RecordFindings, UnitFindings, write_growth};

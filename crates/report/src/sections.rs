@@ -147,6 +147,13 @@ pub(super) fn families(summary: &Summary) -> Markup {
     if unsteady(summary) {
         return no_lines();
     }
+    // A record too short for any of them has one reason, and no numbers.
+    if let [first, others @ ..] = &summary.families[..]
+        && summary.families.iter().all(|f| f.predicted_hz.is_none() && f.carrier_hz.is_none())
+        && others.iter().all(|f| f.verdict == first.verdict)
+    {
+        return html! { p class="hint" { (first.verdict) "." } };
+    }
     let hz = |v: Option<f64>| v.map(|v| format!("{v:.1}"));
     let signed = |v: Option<f64>| v.map(|v| format!("{v:+.1}").replace('-', "−"));
     let lines = summary.families.iter().flat_map(|f| &f.lines).filter(|l| l.measured_hz.is_some());

@@ -301,6 +301,9 @@ impl CatalogueBearing {
     /// As [`parse`](Self::parse).
     pub fn parse_or_advise(text: &str, advice: &str) -> Result<Self, String> {
         let mut parts = text.split(',').map(str::trim).filter(|part| !part.is_empty()).peekable();
+        if parts.peek().is_none() {
+            return Err(format!("the name of the bearing is empty; {advice}, or a name such as `6205`"));
+        }
         let named = match parts.peek() {
             Some(name) if !name.contains('=') => {
                 let found = known().and_then(|known| names::find(name, known, advice));
@@ -334,6 +337,12 @@ impl CatalogueBearing {
                     bearing.elements = Some(number as u32);
                 }
                 "elements" => return Err(format!("a bearing has 3 to 200 rolling elements, not {number}")),
+                name if name.contains(' ') => {
+                    return Err(format!(
+                        "`{name}` is no number of a bearing: a comma parts a name from its numbers, as in \
+                         `NU 205, elements=13`"
+                    ));
+                }
                 "diameter_mm" => bearing.diameter_mm = number,
                 "pitch_mm" => bearing.pitch_mm = number,
                 "angle_deg" => bearing.angle_deg = number,

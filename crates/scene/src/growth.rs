@@ -111,6 +111,8 @@ pub enum Indicator {
     Kurtosis,
     /// Height of the defect's family above the background of the envelope spectrum.
     Level,
+    /// Length between the two events of a passage.
+    Spall,
 }
 
 fn one() -> u64 {

@@ -45,9 +45,15 @@ pub(crate) fn read(file: &Path, most: u64) -> Result<String, String> {
     Ok(text.out)
 }
 
-/// Text in any encoding that contains ASCII: anything but UTF-8 is taken for Latin-1, which maps every byte.
-/// UTF-16 is recognised by its byte order mark.
+/// Text in any encoding that contains ASCII, whose lines may end as those of old Macintoshes do.
 fn text_of(bytes: Vec<u8>) -> String {
+    let text = decoded(bytes);
+    if text.contains('\r') && !text.contains('\n') { text.replace('\r', "\n") } else { text }
+}
+
+/// Anything but UTF-8 is taken for Latin-1, which maps every byte. UTF-16 is recognised by its byte order
+/// mark.
+fn decoded(bytes: Vec<u8>) -> String {
     let units = |order: fn([u8; 2]) -> u16| {
         let units = bytes[2..].as_chunks().0.iter().map(|pair| order(*pair));
         char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect()
@@ -237,6 +243,7 @@ mod tests {
             ("main.k", "*KEYWORD\n*INCLUDE\n$ c\nparts/ +\na.k\n*NODE\n*END\n"),
             ("parts/a.k", "*NODE\n       1\n*END\nnever read\n"),
             ("none.inp", "*INCLUDE, INPUT=none.txt\n"),
+            ("old.inp", "*INCLUDE, INPUT=main_b.inp\r*NSET, NSET=x\r1\r"),
         ] {
             std::fs::write(folder.join(name), text).expect("written");
         }
@@ -248,6 +255,11 @@ mod tests {
                 1, 0, 0\n** end of included\n** *INCLUDE, INPUT=main_b.inp\n** included: main_b.inp\n** \
                 b\n** end of included\n\
                 ** end of included\n*NSET, NSET=x\n1\n")
+        );
+        assert_eq!(
+            text("old.inp").as_deref(),
+            Ok("** *INCLUDE, INPUT=main_b.inp\n** included: main_b.inp\n** b\n** end of included\n*NSET, \
+                NSET=x\n1\n")
         );
         assert_eq!(
             text("main.k").as_deref(),

@@ -57,7 +57,7 @@ const FIGURES: &str = "figures";
 const FRAMES: &str = "frames";
 const LOCK: &str = ".lock";
 /// Suffix of a file while it is written; it is then renamed over the target, so that a reader sees the old
-/// file or the new one, never a part.
+/// file or the new one, never a part. Before it stands the process that writes it, where several may.
 const PARTIAL: &str = ".part";
 
 /// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no
@@ -206,6 +206,7 @@ impl RunDir {
     /// [`Error::Io`] when the disk refuses.
     pub fn go_on(&self, scene: &Scene, info: &RunInfo) -> Result<(), Error> {
         self.reservation.start();
+        files::remove_partial(&self.path)?;
         // The scene first: with it and the checkpoint alone a run can be continued.
         let text = scene.to_ron();
         if std::fs::read(self.scene()).ok().as_deref() != Some(text.as_bytes()) {

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::Error as AnalysisError;
 use stribeck_analysis::comparison::{Comparison, Row, Side};
-use stribeck_report::{MOST_COMPARED, comparison_in_words, difference, mean, write_comparison};
+use stribeck_report::{MOST_COMPARED, by_chance, comparison_in_words, difference, mean, write_comparison};
 use stribeck_scene::run_dir::{RunDir, check_folder};
 
 use crate::analyse::{Reading, Speed, examine};
@@ -90,7 +90,11 @@ fn folder(asked: &Path, place: &Place) -> Result<Option<PathBuf>> {
     if !path.exists() {
         let known = known(place);
         let known = if known.is_empty() {
-            format!("`{}` holds no runs", shown(&place.runs()))
+            format!(
+                "`{}` holds no runs. `{} simulate` makes one; a measured record is given by its file",
+                shown(&place.runs()),
+                place.program
+            )
         } else {
             format!("`{}` holds {known}", shown(&place.runs()))
         };
@@ -204,14 +208,14 @@ fn print(comparison: &Comparison) {
         say!("  {:<36} {}", field.field, values.join("  |  "));
     }
     for row in &comparison.rows {
-        say!("  {}", in_line(row));
+        say!("  {}", in_line(row, &comparison.sides));
     }
     for note in &comparison.notes {
         say!("  note: {note}");
     }
 }
 
-fn in_line(row: &Row) -> String {
+fn in_line(row: &Row, sides: &[Side]) -> String {
     let unit = if row.unit.is_empty() { String::new() } else { format!(" [{}]", row.unit) };
     let values: Vec<String> =
         row.values.iter().map(|value| value.as_ref().map_or("–".to_owned(), mean)).collect();
@@ -219,7 +223,7 @@ fn in_line(row: &Row) -> String {
         .against_first
         .iter()
         .flatten()
-        .map(|contrast| format!("{}, {}", difference(contrast), contrast.verdict.words()))
+        .map(|contrast| format!("{}, {}", difference(contrast), by_chance(contrast, sides)))
         .collect();
     let what = format!("{}{unit}", row.quantity);
     format!("{what:<44} {}  {}", values.join("  |  "), contrasts.join("  |  ")).trim_end().to_owned()

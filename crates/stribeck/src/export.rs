@@ -21,6 +21,7 @@ use stribeck_scene::scene::ModelScene;
 
 use crate::out::{caution, say};
 use crate::place::{Place, shown};
+use crate::shelf::existing;
 use crate::transfer::Transfer;
 
 /// Flags of `export`.
@@ -99,7 +100,7 @@ impl Format {
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let folder = match &options.run {
-        Some(run) => place.locate_run(run),
+        Some(run) => existing(run, place)?,
         None => place.newest_single_run()?,
     };
     let dir = RunDir::open(&folder)?;

@@ -162,19 +162,10 @@ fn enter(out: &std::path::Path, inference: &Inference) -> Result<()> {
         ),
         Err(_) => {
             std::fs::create_dir_all(out).with_context(|| format!("cannot make `{}`", shown(out)))?;
-            write_alike(&path, inference.text.as_bytes())?;
+            write_atomic(&path, inference.text.as_bytes())?;
         }
     }
     Ok(())
-}
-
-/// Writes what other parts of the inference may be writing at the same time, with the same content: each has
-/// a file of its own, and the last one to be renamed stays. Hidden, it makes no foreign folder of it.
-fn write_alike(path: &std::path::Path, bytes: &[u8]) -> Result<()> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let own = path.with_file_name(format!(".{name}.{}", std::process::id()));
-    write_atomic(&own, bytes)?;
-    std::fs::rename(&own, path).with_context(|| format!("cannot write `{}`", shown(path)))
 }
 
 /// An inference under way.

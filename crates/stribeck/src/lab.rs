@@ -58,11 +58,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         "{} scenes in one page: at most {MOST_SCENES}. Make several pages",
         options.scenes.len()
     );
-    let module = module(options.module.as_deref(), place)?;
     let files = options.scenes.iter().map(|file| Some(file.as_path()));
     let files: Vec<Option<&Path>> = if options.scenes.is_empty() { vec![None] } else { files.collect() };
     let scenes: Vec<Scene> =
         files.iter().map(|file| place.scene(*file, &options.set)).collect::<Result<_>>()?;
+    let module = module(options.module.as_deref(), place)?;
     write(&scenes, &module, &place.runs(), &again(options, place), &options.out)?;
     if options.open {
         open(&options.out)?;

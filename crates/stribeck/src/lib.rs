@@ -2,6 +2,7 @@
 //!
 //! Glue only: paths, flags, progress and exit codes. All computation is in the crates below.
 
+pub mod command_line;
 pub mod host;
 pub mod interrupt;
 pub mod place;
@@ -71,47 +72,69 @@ impl Cli {
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
     /// Writes a scene of your own, by five questions or by flags, that runs as it is
+    #[command(
+        after_help = "Example: stribeck new mine.ron --bearing \"NU 205\" --load-n 3000 --defect inner"
+    )]
     New(new::Options),
     /// Runs a scene and writes its report
+    #[command(after_help = "Example: stribeck simulate mine.ron --set operation.load_n=2000")]
     Simulate(simulate::Options),
     /// Writes the report of a run again
+    #[command(after_help = "Example: stribeck report mine --pdf")]
     Report(report::Options),
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and continues
+    #[command(after_help = "Example: stribeck campaign starts.ron --out runs/starts")]
     Campaign(campaign::Options),
     /// Lets spalls of several units grow by a law, records each at intervals, and estimates its remaining
     /// life, with the truth beside; the same command starts and goes on
+    #[command(after_help = "Example: stribeck grow growth.ron")]
     Grow(grow::Options),
     /// Runs a scene with several values of some fields, each with every other: a campaign in one line
+    #[command(after_help = "Example: stribeck sweep mine.ron --set operation.load_n=1000,2000,4000")]
     Sweep(sweep::Options),
     /// Infers unknown fields of a scene from observed numbers: which values are consistent with them, and
     /// which are not
+    #[command(after_help = "Example: stribeck infer unknown.ron")]
     Infer(infer::Options),
     /// Runs a scene by the full and by the reduced model, and compares them
+    #[command(after_help = "Example: stribeck validate mine.ron")]
     Validate(validate::Options),
     /// Predicts a run before it is made: lines, levels, steps, cost, advice
+    #[command(after_help = "Example: stribeck plan mine.ron --set mesh.size_mm=1")]
     Plan(plan::Options),
     /// Stiffness and damping of a bearing over load, speed and cage angle, for rotor dynamics
+    #[command(after_help = "Example: stribeck stiffness mine.ron")]
     Stiffness(stiffness::Options),
     /// Makes a page in which bearings run: one file for a browser, with handles and instruments
+    #[command(after_help = "Example: stribeck lab mine.ron --out mine.html --open")]
     Lab(lab::Options),
     /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are
     /// from
+    #[command(after_help = "Example: stribeck bearings \"NU 205\"")]
     Bearings(bearings::Options),
     /// Analyses a measured record: which defects, how certain, and what it does not decide
+    #[command(after_help = "Example: stribeck analyse record.mat --bearing 6205 --speed-rpm 1797")]
     Analyse(analyse::Options),
     /// Compares runs, ensembles and measured records: changed fields, and changed results
+    #[command(after_help = "Example: stribeck compare mine other record.mat")]
     Compare(compare::Options),
     /// Writes the signals or the stress frames of a run in a format of other programs
+    #[command(after_help = "Example: stribeck export mine --to wav --slow 10")]
     Export(export::Options),
     /// Lists the runs and other results
+    #[command(after_help = "Example: stribeck list")]
     List(list::Options),
     /// Opens the page of a run in a browser
+    #[command(after_help = "Example: stribeck open mine")]
     Open(open::Options),
     /// Removes runs, after asking
+    #[command(after_help = "Example: stribeck rm mine other")]
     Rm(remove::Options),
     /// Writes the completions of commands and flags for a shell
+    #[command(after_help = "Example: stribeck completions bash > stribeck.bash")]
     Completions(shell::Completions),
     /// Writes the pages of the manual
+    #[command(after_help = "Example: stribeck man ~/.local/share/man/man1")]
     Man(shell::Man),
 }
 

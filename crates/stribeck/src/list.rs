@@ -27,7 +27,7 @@ const CACHE: &str = ".reduced";
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let folder = options.folder.clone().unwrap_or_else(|| place.runs());
     ensure!(
-        options.folder.is_none() || folder.is_dir(),
+        folder.is_dir() || options.folder.is_none() || folder == place.runs(),
         "there is no folder `{}`: `{} list` without one lists `{}`",
         folder.display(),
         place.program,

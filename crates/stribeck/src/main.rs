@@ -2,11 +2,10 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use stribeck::{Cli, Place, conclude};
+use stribeck::{Cli, Place, command_line, conclude};
 
 fn main() -> ExitCode {
-    conclude(Cli::parse().run(&Place::here()))
+    conclude(command_line::parse::<Cli>().run(&Place::here()))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail};
 use stribeck_bearing::{error::Error, own_mesh};
 use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
@@ -141,8 +141,8 @@ impl Place {
     fn newest(&self, files: &[&str]) -> Result<PathBuf> {
         let folder = self.runs();
         let advice = format!("start one with `{} simulate`, or name a run's folder", self.program);
-        let entries = std::fs::read_dir(&folder)
-            .with_context(|| format!("no runs in `{}`: {advice}", folder.display()))?;
+        // A folder that is not there yet holds none.
+        let entries = std::fs::read_dir(&folder).into_iter().flatten();
         let written = |path: &Path| -> Option<SystemTime> {
             files.iter().filter_map(|name| path.join(name).metadata().ok()?.modified().ok()).max()
         };

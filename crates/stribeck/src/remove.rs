@@ -5,7 +5,7 @@ use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use crate::out::say;
 use crate::place::{Place, shown};
@@ -26,7 +26,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     // All are looked at before the first is removed.
     let mut items: Vec<Item> = Vec::new();
     for asked in &options.runs {
-        let item = find(asked, place)?;
+        let item = find(asked, place).map_err(|why| anyhow!("{why}. Nothing was removed"))?;
         removable(&item)?;
         if items.iter().all(|other| other.path != item.path) {
             items.push(item);

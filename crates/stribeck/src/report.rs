@@ -10,6 +10,7 @@ use crate::lab;
 use crate::out::{caution, detail, say};
 use crate::pdf;
 use crate::place::{Place, shown};
+use crate::shelf::existing;
 
 /// Flags of `report`.
 #[derive(Debug, clap::Args)]
@@ -49,7 +50,7 @@ impl Options {
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let folder = match &options.run {
-        Some(run) => place.locate_run(run),
+        Some(run) => existing(run, place)?,
         None => place.newest_run()?,
     };
     let time_s = options.from_s.unwrap_or(f64::NEG_INFINITY)..options.to_s.unwrap_or(f64::INFINITY);

@@ -97,6 +97,12 @@ pub(crate) fn items(folder: &Path) -> Vec<Item> {
     items
 }
 
+/// The path of something that is there, whatever it is; a missing one is answered with the likeliest name.
+pub(crate) fn existing(asked: &Path, place: &Place) -> Result<PathBuf> {
+    let path = place.locate_run(asked);
+    if path.exists() { Ok(path) } else { find(asked, place).map(|item| item.path) }
+}
+
 /// The folder that somebody means by a path or a name below `runs/`.
 pub(crate) fn find(asked: &Path, place: &Place) -> Result<Item> {
     let path = place.locate_run(asked);
@@ -105,8 +111,7 @@ pub(crate) fn find(asked: &Path, place: &Place) -> Result<Item> {
     }
     if path.exists() {
         bail!(
-            "`{}` holds no run, and nothing that was made of runs: it is left alone. `{} list` shows what \
-             there is",
+            "`{}` holds no run, and nothing that was made of runs. `{} list` shows what there is",
             shown(&path),
             place.program
         );
@@ -117,7 +122,9 @@ pub(crate) fn find(asked: &Path, place: &Place) -> Result<Item> {
     let meant = all.iter().min_by_key(distance).filter(|item| distance(item) <= 3);
     let hint = match meant {
         Some(item) => format!("did you mean `{}`?", item.name),
-        None if all.is_empty() => format!("there are no runs in `{}`", shown(&place.runs())),
+        None if all.is_empty() => {
+            format!("there are no runs in `{}`; `{} simulate` makes one", shown(&place.runs()), place.program)
+        }
         None => format!("`{} list` shows the {} that there are", place.program, all.len()),
     };
     bail!("there is no `{asked}`, as a path or below `{}`: {hint}", shown(&place.runs()));

@@ -15,6 +15,7 @@ use crate::place::shown;
 #[derive(Debug, clap::Args)]
 pub struct Completions {
     /// Shell
+    #[arg(ignore_case = true)]
     shell: Shell,
 }
 
@@ -38,7 +39,12 @@ pub(crate) fn man(options: &Man) -> Result<ExitCode> {
     let folder = &options.folder;
     let written =
         std::fs::create_dir_all(folder).and_then(|()| clap_mangen::generate_to(Cli::command(), folder));
-    written.with_context(|| format!("cannot write pages to `{}`", folder.display()))?;
+    written.with_context(|| {
+        format!(
+            "cannot write pages to `{}`: name a folder that may be made and written, such as `man`",
+            folder.display()
+        )
+    })?;
     say!("{}", shown(&folder.join("stribeck.1")));
     Ok(ExitCode::SUCCESS)
 }

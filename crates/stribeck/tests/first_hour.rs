@@ -331,7 +331,7 @@ fn example_runs_are_listed_opened_and_removed_after_asking() {
     fs::create_dir(desk.0.join("runs/thesis")).expect("a folder");
     fs::write(desk.0.join("runs/thesis/draft.txt"), "text").expect("writable");
     desk.refuses(&["rm", "a"], &["nothing was removed", "--yes"]);
-    desk.refuses(&["rm", "thesis", "--yes"], &["holds no run", "left alone"]);
+    desk.refuses(&["rm", "thesis", "--yes"], &["holds no run", "Nothing was removed"]);
     desk.refuses(&["rm", "aa", "--yes"], &["did you mean `a`?"]);
     // One that cannot be removed keeps the others.
     desk.refuses(&["rm", "a", "quick.ron", "--yes"], &["`quick.ron` holds no run"]);

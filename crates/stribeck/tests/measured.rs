@@ -202,6 +202,34 @@ fn example_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle()
 }
 
 #[test]
+fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
+    let desk = Scratch::create("measured-tacho");
+    let rate_hz = 12_800.0;
+    // 18 t + 0.3 t² turns: the record lasts 5.12 s, the tachometer 6.25 s.
+    let turns = |n: usize| 18.0 * n as f64 / rate_hz + 0.3 * (n as f64 / rate_hz).powi(2);
+    let acc = knocks(rate_hz)[..65_536].to_vec();
+    let tacho = (0..80_000).map(|n| f64::from(turns(n).fract() < 0.1)).collect();
+    let speed = (0..acc.len()).map(|n| 60.0 * (18.0 + 0.6 * n as f64 / rate_hz)).collect();
+    let channels = [("acc", acc), ("tacho", tacho), ("n_rpm", speed), ("fs", vec![rate_hz])];
+    let channels = channels.map(|(name, samples)| Channel::held(name, samples));
+    mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
+    for tacho in ["tacho", "n_rpm"] {
+        let output = stribeck(
+            desk.path(),
+            &["analyse", "a.mat", "--channel=acc", "--tacho", tacho, "--bearing=6205", "--out", tacho],
+        );
+        let text = said(&output);
+        assert!(output.status.success(), "{text}");
+        assert!(text.contains("the record was taken over the angle of the shaft"), "{text}");
+        let findings = std::fs::read_to_string(desk.join(format!("{tacho}/findings.json"))).unwrap();
+        let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
+        // The mean speed of the record: 18 + 0.3 · 5.12 turns a second, to a turn of 100.
+        let rpm = findings["speed_rpm"].as_f64().unwrap();
+        assert!((rpm / (60.0 * (18.0 + 0.3 * 5.12)) - 1.0).abs() < 0.01, "{tacho}: {rpm}");
+    }
+}
+
+#[test]
 fn example_limits_are_given_or_follow_from_sound_records() {
     let desk = Scratch::create("alarm");
     let mut noise = Noise::new(10);

@@ -32,6 +32,10 @@ fn words(line: &str, dialect: Dialect, columns: usize) -> Option<Vec<String>> {
         while all.len() > columns && all.last().is_some_and(String::is_empty) {
             all.pop();
         }
+        // LabVIEW heads a column that rows without a comment leave out.
+        if all.len() == columns + 1 && all.last().is_some_and(|word| word.eq_ignore_ascii_case("comment")) {
+            all.pop();
+        }
         if all.len() + 1 == columns && columns > 2 {
             all.push(String::new());
         }
@@ -66,7 +70,10 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
         // The head may have another decimal sign than the table.
         let plain = |text: &str| text.parse().ok();
         let value = plain(number).or_else(|| dialect.number(number));
-        let value = value.or_else(|| plain(&number.replacen(',', ".", 1)))?;
+        let value = value.or_else(|| plain(&number.replacen(',', ".", 1)));
+        // Fields of the table may stand behind it.
+        let field = || number.split_once(dialect.separator).filter(|_| dialect.separator == ',');
+        let value = value.or_else(|| plain(field()?.0))?;
         let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || word.ends_with("Hz"));
         // A word that is no unit may be one that is not known; a sentence goes on behind a comma or a point.
         let alone = behind.trim().is_empty() || unit.is_some() || behind.starts_with(['\t', ';', ',']);

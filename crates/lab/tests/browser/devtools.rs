@@ -84,7 +84,8 @@ impl Tab {
         self.errors.clone()
     }
 
-    fn call(&mut self, method: &str, params: Value) -> Value {
+    /// What the browser answers to a call of its protocol.
+    pub(crate) fn call(&mut self, method: &str, params: Value) -> Value {
         self.calls += 1;
         let id = self.calls;
         send(&mut self.stream, &json!({ "id": id, "method": method, "params": params }).to_string());

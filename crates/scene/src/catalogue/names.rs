@@ -38,7 +38,18 @@ pub(super) fn find(
     if let Some(why) = asked.iter().find_map(|asked| beyond_a_plane(asked)) {
         return Err(format!("`{name}` is {why}"));
     }
-    Err(format!("no bearing `{name}` is known; {advice}, or one of {}", tables::names()))
+    let meant = match nearest(&whole, &known)[..] {
+        [] => String::new(),
+        ref near => format!(", did you mean {}?", near.join(" or ")),
+    };
+    Err(format!("no bearing `{name}` is known{meant}; {advice}, or one of {}", tables::names()))
+}
+
+/// Names that are one letter or digit away from what was asked, at most four.
+fn nearest(asked: &str, known: &[CatalogueBearing]) -> Vec<String> {
+    const MOST: usize = 4;
+    let near = known.iter().filter(|bearing| strsim::levenshtein(&plain(&bearing.name), asked) == 1);
+    near.map(|bearing| format!("`{}`", bearing.name)).take(MOST).collect()
 }
 
 fn fits(asked: &str, bearing: &CatalogueBearing) -> bool {

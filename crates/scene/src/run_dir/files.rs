@@ -1,8 +1,9 @@
 //! Files of a run, written whole and removed by name.
 
-use std::fs::File;
-use std::io::{Read, Write};
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use serde::de::DeserializeOwned;
 
@@ -14,7 +15,8 @@ use crate::run_info::RunInfo;
 /// `run.json` holds a page of text and at most some thousand warnings.
 const MAX_INFO_BYTES: u64 = 1 << 24;
 
-/// Replaces the file at `path` by `bytes`, whole or not at all.
+/// Replaces the file at `path` by `bytes`, whole or not at all. Several processes may write the same file at
+/// the same time: that of the last one stays.
 ///
 /// # Errors
 ///
@@ -22,17 +24,48 @@ const MAX_INFO_BYTES: u64 = 1 << 24;
 pub fn write_atomic(path: &Path, bytes: &[u8]) -> Result<(), Error> {
     const KEPT: &str =
         "What was there before is still there; check the free space and the permissions of the folder";
-    let mut partial = path.as_os_str().to_owned();
-    partial.push(PARTIAL);
-    let partial = PathBuf::from(partial);
-    let written = File::create(&partial).and_then(|mut file| {
-        file.write_all(bytes)?;
-        // The name must not reach the disk before the content.
-        file.sync_data()
-    });
+    let failed = |e| cannot("write", path, KEPT, e);
+    let (partial, mut file) = partial(path).map_err(failed)?;
+    // The name must not reach the disk before the content.
+    let written = file.write_all(bytes).and_then(|()| file.sync_data());
+    drop(file);
     written.and_then(|()| std::fs::rename(&partial, path)).map_err(|e| {
         std::fs::remove_file(&partial).ok();
-        cannot("write", path, KEPT, e)
+        failed(e)
+    })
+}
+
+/// A new file beside `path` that no other writer has. It is hidden, so that what a killed process leaves
+/// makes no foreign folder; [`remove_partial`] takes that away.
+fn partial(path: &Path) -> std::io::Result<(PathBuf, File)> {
+    /// Files that this process has begun.
+    static BEGUN: AtomicU64 = AtomicU64::new(0);
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    loop {
+        let number = BEGUN.fetch_add(1, Ordering::Relaxed);
+        let beside = path.with_file_name(format!(".{name}.{}-{number}{PARTIAL}", std::process::id()));
+        match OpenOptions::new().write(true).create_new(true).open(&beside) {
+            // One that a killed process left, or of a process with this number on another machine.
+            Err(e) if e.kind() == ErrorKind::AlreadyExists => {}
+            opened => return opened.map(|file| (beside, file)),
+        }
+    }
+}
+
+/// Removes what killed processes have left of the files of a run or its report in `folder`.
+pub(super) fn remove_partial(folder: &Path) -> Result<(), Error> {
+    let names = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.file_name());
+    for name in names.filter(|name| name.to_str().is_some_and(is_partial)) {
+        remove(&folder.join(name))?;
+    }
+    Ok(())
+}
+
+/// Whether a name is one of [`partial`], for a file of a run or its report.
+fn is_partial(name: &str) -> bool {
+    let own = name.strip_prefix('.').and_then(|name| name.strip_suffix(PARTIAL));
+    own.and_then(|own| own.rsplit_once('.')).is_some_and(|(file, writer)| {
+        FILES.contains(&file) && writer.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-')
     })
 }
 
@@ -45,6 +78,7 @@ pub(super) fn remove_run(folder: &Path) -> Result<(), Error> {
     for name in FILES {
         remove(&folder.join(name))?;
     }
+    remove_partial(folder)?;
     for (name, _) in FOLDERS {
         remove_filled(folder, name)?;
     }
@@ -92,7 +126,7 @@ pub(super) fn start_folders(folder: &Path) -> Vec<PathBuf> {
 
 pub(super) fn remove(path: &Path) -> Result<(), Error> {
     match std::fs::remove_file(path) {
-        Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
+        Err(e) if e.kind() != ErrorKind::NotFound => {
             Err(cannot("remove", path, "The other files of the earlier run may already be gone", e))
         }
         _ => Ok(()),

@@ -1,3 +1,5 @@
+use std::path::Path;
+
 use stribeck_testing::Scratch;
 
 use super::*;
@@ -292,5 +294,51 @@ fn refuses_missing_and_broken_runs() {
     let error = RunDir::create(file.join("x")).expect_err("below a file").to_string();
     assert!(error.contains("--out"), "{error}");
     assert!(write_atomic(&file.join("x"), b"").is_err());
-    assert!(!folder.join("scene.ron.part").exists());
+    assert!(partial_files(folder.path()).is_empty());
+}
+
+/// Names of files that were not written to their end.
+fn partial_files(folder: &Path) -> Vec<String> {
+    let names = std::fs::read_dir(folder).expect("a folder").flatten().map(|entry| entry.file_name());
+    names.filter_map(|name| name.into_string().ok()).filter(|name| name.ends_with(PARTIAL)).collect()
+}
+
+#[test]
+fn survives_many_writers_of_one_file() {
+    let folder = Scratch::create("writers");
+    let path = folder.join("inference.ron");
+    let text = |writer: usize| vec![b'a' + writer as u8; 20_000];
+    std::thread::scope(|scope| {
+        for writer in 0..8 {
+            let path = &path;
+            scope.spawn(move || {
+                for _ in 0..40 {
+                    write_atomic(path, &text(writer)).expect("another writer takes nothing away");
+                    // Whole, whoever wrote it.
+                    let there = std::fs::read(path).expect("there is always one");
+                    assert_eq!(there, text(usize::from(there[0] - b'a')));
+                }
+            });
+        }
+    });
+    assert!(partial_files(folder.path()).is_empty());
+    // A target that cannot be replaced leaves nothing either.
+    std::fs::create_dir_all(folder.join("taken/within")).expect("writable");
+    assert!(write_atomic(&folder.join("taken"), b"x").is_err());
+    assert!(partial_files(folder.path()).is_empty());
+}
+
+#[test]
+fn survives_files_that_a_killed_writer_left() {
+    let folder = Scratch::new("left");
+    write_run(folder.path());
+    let own = format!(".run.json.{}-", std::process::id());
+    // The names that this process takes next, and those of others.
+    for name in (0..200).map(|n| format!("{own}{n}{PARTIAL}")).chain([".trace.npy.7-0.part".to_owned()]) {
+        std::fs::write(folder.join(name), "{").expect("writable");
+    }
+    std::fs::write(folder.join(".notes.7-0.part"), "the owner's").expect("writable");
+    write_atomic(&folder.join(INFO), b"{}").expect("it takes another name");
+    super::files::remove_partial(folder.path()).expect("they can be removed");
+    assert_eq!(partial_files(folder.path()), [".notes.7-0.part"]);
 }

@@ -36,8 +36,9 @@ pub(crate) struct Reading {
     /// there is followed over the record, and a record whose speed varies is analysed over the angle
     #[arg(long, conflicts_with = "tacho", value_parser = Speed::parse, allow_hyphen_values = true)]
     pub(crate) speed_rpm: Option<Speed>,
-    /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise, or of the angle
-    /// of the shaft in rad, its name ending in `_rad`; a record whose speed varies is analysed over the angle
+    /// Channel of a tachometer, one pulse a turn unless `--pulses-per-turn` says otherwise; of the angle of
+    /// the shaft in rad, its name ending in `_rad`; or of its speed over time, in a unit such as `rpm`; a
+    /// record whose speed varies is analysed over the angle
     #[arg(long)]
     pub(crate) tacho: Option<String>,
     /// Pulses of the tachometer a turn, such as the teeth of its wheel
@@ -228,10 +229,18 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
         scaled = before;
         notes.push(note);
     }
-    let (machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
-    // Pulses count from the beginning of the file.
-    let moved = |all: Vec<f64>| all.into_iter().map(|at| at - from as f64).filter(|at| *at >= 0.0).collect();
-    let pulses: Option<Vec<f64>> = pulses.map(moved);
+    let (mut machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
+    let pulses = pulses.map(|all| {
+        // They count from the beginning of the file, and a tachometer may go on behind the end of the record.
+        let last = scaled.len.saturating_sub(1) as f64;
+        let moved = all.iter().map(|at| at - from as f64).filter(|at| (0.0..=last).contains(at));
+        let kept: Vec<f64> = moved.collect();
+        // The mean speed is that of the record.
+        if let (Some(of_all), Some(of_kept)) = (mean_gap(&all), mean_gap(&kept)) {
+            machine.speed_rpm = machine.speed_rpm.map(|rpm| rpm * of_all / of_kept);
+        }
+        kept
+    });
     let over_angle = match &pulses {
         Some(pulses) => {
             let even = over_angle(&scaled, rate_hz, pulses)?;
@@ -254,6 +263,12 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     );
     let turning = pulses.map(|pulses| Turning { signal: scaled, rate_hz, pulses });
     Ok(Read { signal: even, rate_hz: even_hz, machine, notes, of_run, turning })
+}
+
+/// Mean distance of pulses.
+fn mean_gap(pulses: &[f64]) -> Option<f64> {
+    let [first, .., last] = pulses else { return None };
+    Some((last - first) / (pulses.len() - 1) as f64)
 }
 
 /// The file of a record, and the scene where it is that of a run.
@@ -371,11 +386,7 @@ fn machine(
         // A tachometer may have a rate of its own.
         let own_hz =
             channel.rate_hz.filter(|_| !options.force_rate || channel.len != samples).unwrap_or(rate_hz);
-        let mut turns = if channel.name.ends_with("_rad") {
-            tacho::of_angle(channel, own_hz)?
-        } else {
-            tacho::pulses(channel, own_hz, options.pulses_per_turn)?
-        };
+        let mut turns = tacho::of(channel, own_hz, options.pulses_per_turn)?;
         turns.pulses.iter_mut().for_each(|at| *at *= rate_hz / own_hz);
         notes.append(&mut turns.notes);
         if turns.variation > STEADY {

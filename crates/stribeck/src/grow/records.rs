@@ -1,9 +1,9 @@
-//! Findings of the records of a growth, unit by unit.
+//! What the records of a growth show, unit by unit.
 
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use stribeck_analysis::growth::{Calibration, Law, remaining};
+use stribeck_analysis::growth::{Gauge, Known, Law, Record, Shown, remaining};
 use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
 use stribeck_analysis::measured::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
@@ -19,7 +19,7 @@ use stribeck_scene::scene::DefectRing;
 use super::Planned;
 use crate::many_runs::ManyRuns;
 
-/// All units with the findings of their records, and the estimated remaining life of each.
+/// All units with what their records show, and what is said to be left of each.
 pub(super) fn judged(
     growth: &Growth,
     law: &Law,
@@ -36,9 +36,7 @@ pub(super) fn judged(
             millions(law.onset.0),
             millions(law.life.0)
         ),
-        "Lengths of a unit are estimated with a calibration by the records of the other units, whose lengths \
-         are known."
-            .to_owned(),
+        "A unit's readings are gauged by the records of the other units, whose lengths are known.".to_owned(),
     ];
     let mut records = Vec::with_capacity(planned.len());
     for (plan, variant) in planned.iter().zip(&campaign.runs) {
@@ -55,9 +53,12 @@ pub(super) fn judged(
     for unit in 1..=growth.units {
         let of_unit = |n: &usize| planned[*n].unit == unit;
         let own: Vec<usize> = (0..planned.len()).filter(of_unit).collect();
-        let others: Vec<(f64, f64)> = (0..planned.len())
+        let others: Vec<Known> = (0..planned.len())
             .filter(|n| !of_unit(n))
-            .filter_map(|n| Some((indicator(growth, &records[n])?, records[n].length_mm?)))
+            .filter_map(|n| {
+                let record = shows(growth, &records[n])?;
+                Some(Known { unit: planned[n].unit, length_mm: records[n].length_mm, record })
+            })
             .collect();
         let own = own.into_iter().map(|n| records[n].clone()).collect();
         let first = planned.iter().find(|plan| plan.unit == unit);
@@ -94,6 +95,7 @@ fn words(indicator: Indicator) -> &'static str {
         Indicator::Rms => "the logarithm of the root mean square",
         Indicator::Kurtosis => "the logarithm of the kurtosis",
         Indicator::Level => "the level of the family",
+        Indicator::Spall => "the logarithm of the length between the two events of a passage",
     }
 }
 
@@ -101,7 +103,7 @@ fn millions(revolutions: f64) -> String {
     format!("{:.3} million revolutions", 1e-6 * revolutions)
 }
 
-/// Findings of a run's record with the machine's noise added.
+/// What a run's record shows with the machine's noise.
 fn findings(growth: &Growth, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredFindings> {
     let scene = variant.scene.as_ref().map_err(|why| anyhow::anyhow!("{why}"))?;
     let dir = RunDir::open(runs.run(scene))?;
@@ -145,16 +147,19 @@ fn record(growth: &Growth, plan: &Planned, run: usize, found: Option<&MeasuredFi
     }
 }
 
-/// The quantity from which the length is estimated, of a record in which the defect is claimed.
-fn indicator(growth: &Growth, record: &RecordFindings) -> Option<f64> {
+/// What a record shows; `None` where there is none.
+fn shows(growth: &Growth, record: &RecordFindings) -> Option<Record> {
     let name = defect(growth).name();
-    record.claimed.as_ref()?.split('+').find(|claimed| *claimed == name)?;
-    let value = match growth.by {
-        Indicator::Rms => record.rms?.ln(),
-        Indicator::Kurtosis => record.kurtosis?.ln(),
-        Indicator::Level => record.level_db?,
+    if !record.claimed.as_ref()?.split('+').any(|claimed| claimed == name) {
+        return Some(Record::Sound);
+    }
+    let indicator = match growth.by {
+        Indicator::Rms => record.rms.map(f64::ln),
+        Indicator::Kurtosis => record.kurtosis.map(f64::ln),
+        Indicator::Level => record.level_db,
+        Indicator::Spall => record.spall_mm.map(f64::ln),
     };
-    Some(value).filter(|value| value.is_finite())
+    Some(indicator.filter(|x| x.is_finite()).map_or(Record::Damaged, Record::Indicates))
 }
 
 fn unit_findings(
@@ -163,16 +168,23 @@ fn unit_findings(
     unit: usize,
     (onset, end): (f64, f64),
     mut records: Vec<RecordFindings>,
-    others: &[(f64, f64)],
+    others: &[Known],
 ) -> UnitFindings {
-    if let Some(calibration) = Calibration::of(others) {
-        let read: Vec<Option<f64>> = records
+    let shown: Vec<Record> =
+        records.iter().map(|record| shows(growth, record).unwrap_or(Record::Sound)).collect();
+    if let Some(gauge) = Gauge::of(others) {
+        let read: Vec<Shown> = shown
             .iter()
-            .map(|record| indicator(growth, record).map(|x| calibration.length_mm(x)))
+            .map(|record| match record {
+                Record::Sound => Shown::Sound,
+                Record::Damaged => Shown::Damaged,
+                Record::Indicates(x) => Shown::Length(gauge.read_mm(*x)),
+            })
             .collect();
-        let left = remaining(law, &read, calibration.sigma, growth.seed ^ unit as u64);
+        let left = remaining(law, &read, &gauge, growth.seed ^ unit as u64);
         for ((record, read), left) in records.iter_mut().zip(read).zip(left) {
-            (record.read_mm, record.remaining) = (read, left);
+            record.read_mm = if let Shown::Length(mm) = read { Some(mm) } else { None };
+            record.remaining = left;
         }
     }
     let first: Vec<f64> = records.iter().take(LEAST_RECORDS).filter_map(|record| record.rms).collect();
@@ -183,7 +195,10 @@ fn unit_findings(
         unit,
         onset,
         end,
-        claimed_at: records.iter().find(|r| indicator(growth, r).is_some()).map(|r| r.revolutions),
+        claimed_at: shown
+            .windows(2)
+            .position(|two| !two.contains(&Record::Sound))
+            .map(|first| records[first].revolutions),
         alarm_at: records.iter().skip(LEAST_RECORDS).find(above).map(|r| r.revolutions),
         alarm_rms: alarm,
         records,

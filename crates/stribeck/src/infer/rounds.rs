@@ -8,7 +8,7 @@ use anyhow::{Result, ensure};
 use stribeck_infer::Prior;
 use stribeck_scene::ensemble::start;
 use stribeck_scene::inference::{Inference, Unknown, Values};
-use stribeck_scene::run_dir::Keep;
+use stribeck_scene::run_dir::{Keep, write_atomic};
 use stribeck_scene::scene::Scene;
 
 use crate::many_runs::{ManyRuns, Stage, Wanted};
@@ -130,7 +130,7 @@ impl<'a> Rounds<'a> {
             writeln!(text, "{},{}", numbers.join(","), written.collect::<Vec<_>>().join(","))?;
         }
         path.parent().map_or(Ok(()), std::fs::create_dir_all)?;
-        super::write_alike(&path, text.as_bytes())?;
+        write_atomic(&path, text.as_bytes())?;
         Ok(shares.iter().enumerate().map(|(n, shares)| self.point(round, n + 1, shares.clone())).collect())
     }
 

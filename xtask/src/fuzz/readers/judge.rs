@@ -14,7 +14,7 @@ pub(super) enum Verdict {
     BothRefuse,
     OursRefuses,
     TheirsRefuses,
-    /// What both have is equal, and we leave out some channels.
+    /// What both have is equal, and we leave out some channels; they may leave out others.
     OursHasFewer,
     /// What both have is equal, and they leave out some.
     TheirsHasFewer,
@@ -48,8 +48,14 @@ pub(super) fn judge(ours: &Reading, theirs: &Reading) -> Verdict {
         (Some(own), Some(first)) => {
             // Rather one of the same name.
             let last = |name: &str| name.rsplit(['/', '\'', '.']).find(|s| !s.is_empty()).map(str::to_owned);
+            let is_same = |own: &Held, of: &Held| last(&own.name) == last(&of.name);
             let pairs = rest.iter().flat_map(|own| only_theirs.iter().map(move |of| (own, of)));
-            let pair = pairs.into_iter().find(|(own, of)| last(&own.name) == last(&of.name));
+            let pair = pairs.into_iter().find(|(own, of)| is_same(own, of));
+            // Where both take the names of the file, and these are others: each leaves out one.
+            let named = ours.iter().any(|own| theirs.iter().any(|of| is_same(own, of)));
+            if pair.is_none() && named {
+                return Verdict::OursHasFewer;
+            }
             let (own, of) = pair.unwrap_or((own, first));
             Verdict::Differ(
                 unlike(own, of).unwrap_or("samples"),
@@ -109,6 +115,10 @@ mod tests {
                 matches!(judge(&one(), &Ok(vec![other])), Verdict::Differ(in_what, _) if in_what == what)
             );
         }
+        // Each leaves out what the other has under another name.
+        let named = |name: &str, rms: f64| Ok(vec![held("a", 9, 1.0), held(name, 9, rms)]);
+        assert_eq!(judge(&named("b", 2.0), &named("c", 3.0)), Verdict::OursHasFewer);
+        assert!(matches!(judge(&named("b", 2.0), &named("b", 3.0)), Verdict::Differ("rms", _)));
         let fast = Held { rate_hz: Some(9.0), ..held("a", 9, 1.0) };
         let slow = Held { rate_hz: Some(8.0), ..held("a", 9, 1.0) };
         assert!(matches!(judge(&Ok(vec![fast]), &Ok(vec![slow])), Verdict::Differ("rate", _)));

@@ -67,7 +67,7 @@ fn reader(kind: &str) -> &'static str {
 
 /// Differences of which examples were looked at and lie with the other program: format, in what (all where it
 /// is empty), by what damage (all where it is empty), and why.
-const EXPLAINED: [(&str, &str, &str, &str); 8] = [
+const EXPLAINED: [(&str, &str, &str, &str); 10] = [
     (
         "csv",
         "",
@@ -77,6 +77,14 @@ const EXPLAINED: [(&str, &str, &str, &str); 8] = [
     ),
     ("csv", "samples", "", LINES),
     ("csv", "numbers among the samples", "", LINES),
+    ("csv", "rms", "a bit is turned", LINES),
+    (
+        "wav",
+        "samples",
+        "a piece stands twice",
+        "in the head of an RF64 file the size of the data is another than the mark that sends to the 64-bit \
+         one: soundfile takes the latter, we take all to the end of the file, with a note",
+    ),
     ("inp", "samples", "", SAME_ELEMENT),
     ("msh", "samples", "", SAME_ELEMENT),
     (

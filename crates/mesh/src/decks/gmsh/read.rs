@@ -43,16 +43,12 @@ pub(in crate::decks) fn read(bytes: &[u8]) -> Result<ReadDeck, DeckError> {
         match section {
             "MeshFormat" => file.format()?,
             "PhysicalNames" => file.physical_names()?,
-            "Entities" => file.entities()?,
+            "Entities" => file.entities(false)?,
+            "PartitionedEntities" => file.partitions()?,
             "Nodes" => file.nodes()?,
+            "ParametricNodes" => file.parametric_nodes()?,
             "Elements" => file.elements()?,
             "Comments" => {}
-            "PartitionedEntities" => {
-                return Err(fault(
-                    line,
-                    "`$PartitionedEntities` is not read: save the mesh without partitions",
-                ));
-            }
             "NOD" | "ELM" => {
                 return Err(fault(line, format!("`${section}` is of format 1: {SAVE_AS}")));
             }
@@ -106,11 +102,11 @@ impl File<'_> {
         self.source.size = size;
         if kind == "1" {
             self.source.binary = true;
-            if self.source.int()? != 1 {
-                return Err(fault(
-                    line,
-                    "the binary file is of a machine with another order of bytes: save it as text",
-                ));
+            match self.source.int()? {
+                1 => {}
+                // The number one of a machine with the other order of bytes.
+                0x0100_0000 => self.source.big_endian = true,
+                _ => return Err(fault(line, "the head of a binary file ends in the number 1")),
             }
         }
         Ok(())
@@ -137,7 +133,20 @@ impl File<'_> {
         self.names.get(&(dimension, number)).cloned().unwrap_or_else(|| format!("physical {number}"))
     }
 
-    fn entities(&mut self) -> Result<(), DeckError> {
+    /// Counts of the partitions, and of the copies of elements that they have of each other, with the tags of
+    /// these; then their points, curves and surfaces.
+    fn partitions(&mut self) -> Result<(), DeckError> {
+        self.source.count()?;
+        for _ in 0..self.source.count()? {
+            self.source.int()?;
+            self.source.int()?;
+        }
+        self.entities(true)
+    }
+
+    /// Groups of points, curves and surfaces; those of partitions name the one that they are part of, and
+    /// their partitions.
+    fn entities(&mut self, partitioned: bool) -> Result<(), DeckError> {
         let mut counts = [0; 4];
         for count in &mut counts {
             *count = self.source.count()?;
@@ -145,6 +154,11 @@ impl File<'_> {
         for (dimension, count) in (0..).zip(counts) {
             for _ in 0..count {
                 let tag = self.source.int()?;
+                if partitioned {
+                    self.source.int()?;
+                    self.source.int()?;
+                    self.tags()?;
+                }
                 // A box, or for points of 4.1 the place.
                 let numbers = if dimension == 0 && self.version == Version::FourOne { 3 } else { 6 };
                 for _ in 0..numbers {
@@ -202,6 +216,22 @@ impl File<'_> {
                     let line = self.source.line_ahead();
                     self.node(tag, more, line)?;
                 }
+            }
+        }
+        Ok(())
+    }
+
+    /// Nodes of format 2.2 with dimension and tag of the curve or surface that they are on, and their places
+    /// along it.
+    fn parametric_nodes(&mut self) -> Result<(), DeckError> {
+        for _ in 0..self.leading_count()? {
+            let line = self.source.line_ahead();
+            let tag = self.tag()?;
+            self.node(tag, 0, line)?;
+            let (dimension, _) = (self.source.int()?, self.source.int()?);
+            // Nodes within a body have no place along it.
+            for _ in 0..if (1..=2).contains(&dimension) { dimension } else { 0 } {
+                self.source.real()?;
             }
         }
         Ok(())

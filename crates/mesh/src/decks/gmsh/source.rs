@@ -11,6 +11,8 @@ pub(super) struct Source<'a> {
     at: usize,
     /// Numbers of nodes and elements are bytes.
     pub(super) binary: bool,
+    /// The highest byte of a number comes first.
+    pub(super) big_endian: bool,
     /// Bytes of a count.
     pub(super) size: usize,
     /// A place in the file, and the ends of lines before it.
@@ -19,7 +21,7 @@ pub(super) struct Source<'a> {
 
 impl<'a> Source<'a> {
     pub(super) fn of(bytes: &'a [u8]) -> Self {
-        Self { bytes, at: 0, binary: false, size: 8, counted: (0, 0) }
+        Self { bytes, at: 0, binary: false, big_endian: false, size: 8, counted: (0, 0) }
     }
 
     /// The line that is being read, from 1.
@@ -105,13 +107,17 @@ impl<'a> Source<'a> {
         Ok(word)
     }
 
+    /// Bytes of a number, the lowest first.
     fn take<const N: usize>(&mut self) -> Result<[u8; N], DeckError> {
-        let Some(bytes) = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk()) else {
+        let Some(&(mut bytes)) = self.bytes.get(self.at..).and_then(|rest| rest.first_chunk::<N>()) else {
             self.at = self.bytes.len();
             return Err(self.ends());
         };
         self.at += N;
-        Ok(*bytes)
+        if self.big_endian {
+            bytes.reverse();
+        }
+        Ok(bytes)
     }
 
     /// A whole number as a word.

@@ -54,6 +54,9 @@ pub(in crate::decks) fn read(text: &str) -> Result<Gathered, DeckError> {
     for (line, raw) in (1..).zip(text.lines()) {
         if raw.starts_with('$') {
             file.comment(raw);
+            if let (Card::Set(_), 0) = (at.0, at.2) {
+                file.name_of_set(raw);
+            }
             continue;
         }
         if let Some(keyword) = raw.strip_prefix('*') {
@@ -83,6 +86,8 @@ pub(in crate::decks) fn read(text: &str) -> Result<Gathered, DeckError> {
 #[derive(Default)]
 struct File {
     format: Format,
+    /// Whether Gmsh wrote it.
+    by_gmsh: bool,
     /// Formats of the files that include the one whose lines come.
     outer: Vec<Format>,
     /// Titles by the number of the part.
@@ -99,7 +104,14 @@ impl File {
         match origin::mark(raw) {
             Some(Mark::Begins(_)) => self.outer.push(self.format),
             Some(Mark::Ends) => self.format = self.outer.pop().unwrap_or(self.format),
-            None => {}
+            None => self.by_gmsh |= raw.to_ascii_lowercase().contains("created by gmsh"),
+        }
+    }
+
+    /// Gmsh writes the name of a set into a comment before its number.
+    fn name_of_set(&mut self, raw: &str) {
+        if let (true, Some(name)) = (self.by_gmsh, raw.strip_prefix("$# ")) {
+            self.sets.call(name);
         }
     }
 

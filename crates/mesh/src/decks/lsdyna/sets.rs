@@ -92,6 +92,11 @@ pub(super) struct NodeSets {
 }
 
 impl NodeSets {
+    /// The title of the set that is about to be read.
+    pub(super) fn call(&mut self, title: &str) {
+        title.trim().clone_into(&mut self.title);
+    }
+
     /// Reads the line `row`, from 1, of a set.
     pub(super) fn line(
         &mut self,
@@ -109,7 +114,7 @@ impl NodeSets {
         if row == head.lines() {
             self.number = whole(cells.first().copied().unwrap_or_default(), line)?;
             self.members.entry(self.number).or_default();
-            let title = if head.titled { std::mem::take(&mut self.title) } else { String::new() };
+            let title = std::mem::take(&mut self.title);
             if !title.is_empty() {
                 self.titles.insert(self.number, title);
             }

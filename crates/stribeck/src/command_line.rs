@@ -1,0 +1,76 @@
+//! The command line: a mistake in it is answered with an example of its command.
+
+use clap::error::{ContextKind, Error, ErrorKind};
+use clap::{Command, Parser};
+
+/// The parsed command line. Help, the version and mistakes end the program.
+pub fn parse<C: Parser>() -> C {
+    C::try_parse().unwrap_or_else(|error| {
+        let words: Vec<String> = std::env::args().skip(1).collect();
+        let example = example(&C::command(), &words);
+        let mistake = error.use_stderr();
+        without_trailing(error).print().ok();
+        if let (true, Some(example)) = (mistake, example) {
+            eprintln!("{example}");
+        }
+        std::process::exit(if mistake { 2 } else { 0 })
+    })
+}
+
+/// The example in the help of the command that `words` begin with.
+fn example(program: &Command, words: &[String]) -> Option<String> {
+    let command = words.iter().find_map(|word| program.find_subcommand(word))?;
+    command.get_after_help().map(ToString::to_string)
+}
+
+/// Without the advice to pass an unknown flag as a value, as `-- --flag`: nobody means that here.
+fn without_trailing(mut error: Error) -> Error {
+    if error.kind() == ErrorKind::UnknownArgument && error.get(ContextKind::SuggestedArg).is_none() {
+        error.remove(ContextKind::Suggested);
+    }
+    error
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+    use crate::Cli;
+
+    /// Words of a line as a shell has them: between blanks outside of quotes, up to a redirection.
+    fn words(line: &str) -> Vec<String> {
+        let mut words = vec![String::new()];
+        let mut quoted = false;
+        for c in line.chars() {
+            match c {
+                '"' => quoted = !quoted,
+                ' ' if !quoted => words.push(String::new()),
+                _ => words.last_mut().expect("one at least").push(c),
+            }
+        }
+        words.into_iter().take_while(|word| word != ">").collect()
+    }
+
+    #[test]
+    fn example_every_command_has_an_example_that_is_right() {
+        let program = Cli::command();
+        for command in program.get_subcommands() {
+            let example = example(&program, &[command.get_name().to_owned()]).expect(command.get_name());
+            let line = example.strip_prefix("Example: ").expect("how it begins");
+            assert!(line.starts_with(&format!("stribeck {}", command.get_name())), "{line}");
+            assert!(Cli::try_parse_from(words(line)).is_ok(), "{line}");
+        }
+    }
+
+    #[test]
+    fn refuses_an_unknown_flag_without_absurd_advice() {
+        let said = |line: &str| {
+            let error = Cli::try_parse_from(words(line)).expect_err(line);
+            without_trailing(error).to_string()
+        };
+        let all = said("stribeck rm --all");
+        assert!(all.contains("unexpected argument '--all'") && !all.contains("as a value"), "{all}");
+        assert!(said("stribeck list --jsn").contains("'--json'"));
+    }
+}
