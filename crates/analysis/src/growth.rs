@@ -1,4 +1,4 @@
-//! A spall that grows: its law, the units that are drawn from it, and what is left of a unit's life by its
+//! A spall that grows: its law, the units that are drawn from it, and the remaining life of a unit by its
 //! records.
 //!
 //! Progress goes from 0, where the spall begins, to 1, where the unit is at its end: dL/dN ∝ Lᵐ makes
@@ -6,10 +6,10 @@
 //! (1963) 528, with the spall's length in place of a crack's). A unit draws its onset and its rate, and each
 //! interval between two records a factor of its own.
 
-mod gauge;
+mod calibration;
 mod remaining;
 
-pub use gauge::{Gauge, Known, Record};
+pub use calibration::{Calibration, Known, Record};
 pub use remaining::{Remaining, Shown, remaining};
 use stribeck_scene::dice::Dice;
 

@@ -1,6 +1,6 @@
-//! What is left of a unit whose spall grows: intervals over many made units, growth against its closed form.
+//! Remaining life of a unit whose spall grows: intervals over many units, growth against its closed form.
 
-use stribeck_analysis::growth::{Gauge, Known, Law, Record, Shown, remaining};
+use stribeck_analysis::growth::{Calibration, Known, Law, Record, Shown, remaining};
 use stribeck_analysis::records::normal;
 use stribeck_scene::dice::Dice;
 
@@ -38,19 +38,19 @@ fn made(seed: u64) -> (Vec<(Option<f64>, Record)>, f64) {
     (records, course.end().unwrap_or(f64::NAN))
 }
 
-/// The gauge from some units, none of which is judged by it.
-fn gauge(units: std::ops::Range<u64>) -> Gauge {
+/// The calibration from some units, none of which is judged by it.
+fn calibration(units: std::ops::Range<u64>) -> Calibration {
     let known: Vec<Known> = units
         .flat_map(|unit| {
             let of_unit = move |(length_mm, record)| Known { unit: unit as usize, length_mm, record };
             made(unit).0.into_iter().map(of_unit)
         })
         .collect();
-    Gauge::of(&known).expect("a gauge")
+    Calibration::of(&known).expect("a calibration")
 }
 
 /// Share of the units whose end the interval at a record between onset and end holds.
-fn held(law: &Law, gauge: &Gauge, units: std::ops::Range<u64>) -> f64 {
+fn held(law: &Law, calibration: &Calibration, units: std::ops::Range<u64>) -> f64 {
     let (mut tried, mut held) = (0, 0);
     for unit in units {
         let (records, end) = made(unit);
@@ -59,13 +59,13 @@ fn held(law: &Law, gauge: &Gauge, units: std::ops::Range<u64>) -> f64 {
             .map(|(_, record)| match record {
                 Record::Sound => Shown::Sound,
                 Record::Damaged => Shown::Damaged,
-                Record::Indicates(x) => Shown::Length(gauge.read_mm(*x)),
+                Record::Indicates(x) => Shown::Length(calibration.length_mm(*x)),
             })
             .collect();
         let Some(first) = records.iter().position(|record| record.0.is_some()) else { continue };
         // A record of each unit, anywhere behind its onset.
         let at = first + (read.len() - first) * (unit as usize % 10) / 10;
-        let Some(left) = remaining(law, &read[..=at], gauge, unit)[at] else { continue };
+        let Some(left) = remaining(law, &read[..=at], calibration, unit)[at] else { continue };
         tried += 1;
         let truth = end - at as f64 * LAW.every;
         held += usize::from((left.low..=left.high).contains(&truth));
@@ -75,17 +75,20 @@ fn held(law: &Law, gauge: &Gauge, units: std::ops::Range<u64>) -> f64 {
 
 #[test]
 fn example_a_gauge_tells_what_units_share_from_what_records_do() {
-    let gauge = gauge(1000..1200);
-    assert!((gauge.of_records - OF_RECORDS).abs() < 0.02, "{gauge:?}");
-    assert!((gauge.of_units - OF_UNITS).abs() < 0.05, "{gauge:?}");
-    assert!((gauge.false_claims - FALSE_CLAIMS).abs() < 0.03 && gauge.missed < 0.01, "{gauge:?}");
+    let calibration = calibration(1000..1200);
+    assert!((calibration.of_records - OF_RECORDS).abs() < 0.02, "{calibration:?}");
+    assert!((calibration.of_units - OF_UNITS).abs() < 0.05, "{calibration:?}");
+    assert!(
+        (calibration.false_claims - FALSE_CLAIMS).abs() < 0.03 && calibration.missed < 0.01,
+        "{calibration:?}"
+    );
 }
 
 #[test]
 fn invariant_intervals_of_ninety_per_cent_hold_as_many_units() {
     // 200 units that set nothing: 90 % within what chance leaves of so many; by many units, and by six.
     for others in [1000..1040, 1000..1006] {
-        let held = held(&LAW, &gauge(others), 0..200);
+        let held = held(&LAW, &calibration(others), 0..200);
         println!("{held} of the units are held");
         assert!((0.85..=0.95).contains(&held), "{held}");
     }
@@ -94,7 +97,7 @@ fn invariant_intervals_of_ninety_per_cent_hold_as_many_units() {
 #[test]
 fn invariant_intervals_that_are_too_sure_miss() {
     let sure = Law { life: (8e6, 0.05), wander: 0.05, ..LAW };
-    let many = gauge(1000..1040);
+    let many = calibration(1000..1040);
     let by_law = held(&sure, &many, 0..60);
     assert!(by_law < 0.7, "{by_law}");
     // Records that are taken to err each on its own.
@@ -127,6 +130,6 @@ fn analytic_growth_is_exponential_or_of_a_power() {
 #[test]
 fn refuses_a_gauge_of_few_records() {
     let known = Known { unit: 1, length_mm: Some(1.0), record: Record::Indicates(1.0) };
-    assert_eq!(Gauge::of(&[known; 3]), None);
-    assert_eq!(Gauge::of(&[known; 9]), None);
+    assert_eq!(Calibration::of(&[known; 3]), None);
+    assert_eq!(Calibration::of(&[known; 9]), None);
 }

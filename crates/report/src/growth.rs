@@ -1,4 +1,4 @@
-//! The page of spalls that grow: what each record of each unit shows, and what is said to be left of the
+//! The page of spalls that grow: findings of each record of each unit, and estimates of its remaining
 //! unit.
 
 use std::path::Path;
@@ -18,7 +18,7 @@ use crate::plot::{Axis, Colour, Figure, Mark, Series};
 pub struct GrowthFindings {
     /// Name of the growth file.
     pub name: String,
-    /// What a length is read from, in words.
+    /// The quantity from which the length is estimated, in words.
     pub by: String,
     /// Units.
     pub units: Vec<UnitFindings>,
@@ -65,15 +65,15 @@ pub struct RecordFindings {
     pub kurtosis: Option<f64>,
     /// Level of the family of the damaged part [dB].
     pub level_db: Option<f64>,
-    /// Families that the record is said to show, joined by `+`; `none` where it shows none.
+    /// Families that are claimed in the record, joined by `+`; `none` where there are none.
     pub claimed: Option<String>,
     /// Length by the two events of a passage [mm], as `analyse` has it.
     pub spall_mm: Option<f64>,
     /// Length that the indicator tells by the records of other units [mm].
     pub read_mm: Option<f64>,
-    /// What is left [revolutions].
+    /// Estimated remaining life [revolutions].
     pub remaining: Option<Remaining>,
-    /// What is left in truth [revolutions].
+    /// True remaining life [revolutions].
     pub remaining_true: f64,
 }
 
@@ -114,7 +114,7 @@ fn page(of: &GrowthFindings) -> Result<Markup, Error> {
                 div class="pairs-of-figures" { @for figure in &all { (figure) } }
                 h2 #left { "What is left" }
                 p {
-                    "Length is read from " (of.by) ", gauged by the records of the other units, and goes on to \
+                    "Length is read from " (of.by) ", calibrated by the records of the other units, and goes on to \
                      the end by the law of growth. Shaded: the interval of 90 %; blue: its median; \
                      orange: the truth."
                 }
@@ -188,7 +188,7 @@ fn figures(of: &GrowthFindings) -> Vec<Figure> {
     .collect()
 }
 
-/// What is left of one unit over the revolutions, with its interval and the truth.
+/// Remaining life of one unit over the revolutions, with its interval and the truth.
 fn life(unit: &UnitFindings) -> Option<Figure> {
     let told: Vec<(&RecordFindings, Remaining)> =
         unit.records.iter().filter_map(|record| Some((record, record.remaining?))).collect();

@@ -111,7 +111,7 @@ pub enum Indicator {
     Kurtosis,
     /// Height of the defect's family above the background of the envelope spectrum.
     Level,
-    /// Length between the two events of a passage.
+    /// Length of the spall by the two events of a passage, which takes many passages.
     Spall,
 }
 

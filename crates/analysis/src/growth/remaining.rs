@@ -2,7 +2,7 @@
 
 use stribeck_scene::dice::Dice;
 
-use super::{Course, Gauge, Law};
+use super::{Calibration, Course, Law};
 use crate::statistic::quantile;
 
 /// What is left of a life [revolutions]: the median, and the ends of an interval of 90 %.
@@ -21,7 +21,7 @@ const COURSES: usize = 16_000;
 /// Courses that are followed to their ends.
 const ENDED: usize = 1000;
 
-/// What a record of the unit shows, after it was gauged.
+/// What a record of the unit shows, after it was calibrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shown {
     /// No defect.
@@ -39,16 +39,17 @@ struct Followed {
     off: f64,
 }
 
-/// What is left after each record of a unit by what its records so far show, with the errors of `gauge`.
+/// What is left after each record of a unit by what its records so far show, with the errors of `calibration`.
 /// `None` before the first record that shows a defect.
 ///
 /// A particle filter: courses drawn from the law, each with an error that all readings of the unit share, are
 /// weighted by how likely each makes what was read, drawn anew where few carry the weight, and run on to
 /// their ends. Source: N. J. Gordon, D. J. Salmond and A. F. M. Smith, IEE Proc. F 140 (1993) 107.
-pub fn remaining(law: &Law, shown: &[Shown], gauge: &Gauge, seed: u64) -> Vec<Option<Remaining>> {
+pub fn remaining(law: &Law, shown: &[Shown], calibration: &Calibration, seed: u64) -> Vec<Option<Remaining>> {
     let mut dice = Dice::new(seed);
-    let mut followed: Vec<Followed> =
-        (0..COURSES).map(|_| Followed { course: law.unit(&mut dice), off: gauge.drawn(&mut dice) }).collect();
+    let mut followed: Vec<Followed> = (0..COURSES)
+        .map(|_| Followed { course: law.unit(&mut dice), off: calibration.drawn(&mut dice) })
+        .collect();
     let mut weights = vec![1.0; COURSES];
     let mut seen = false;
     let mut all = Vec::with_capacity(shown.len());
@@ -59,7 +60,7 @@ pub fn remaining(law: &Law, shown: &[Shown], gauge: &Gauge, seed: u64) -> Vec<Op
         for (followed, weight) in followed.iter().zip(&mut weights) {
             // A unit at its end has no record.
             let ended = followed.course.end().is_some();
-            *weight *= if ended { 0.0 } else { likelihood(law, followed, *record, gauge) };
+            *weight *= if ended { 0.0 } else { likelihood(law, followed, *record, calibration) };
         }
         let sum: f64 = weights.iter().sum();
         if sum <= 0.0 {
@@ -79,19 +80,20 @@ pub fn remaining(law: &Law, shown: &[Shown], gauge: &Gauge, seed: u64) -> Vec<Op
 }
 
 /// Of a record, up to a factor that is the same for all courses.
-fn likelihood(law: &Law, followed: &Followed, shown: Shown, gauge: &Gauge) -> f64 {
+fn likelihood(law: &Law, followed: &Followed, shown: Shown, calibration: &Calibration) -> f64 {
     // What is read from a sound record may be any length, each ratio of lengths as likely as the other.
-    let anywhere =
-        (gauge.of_records * std::f64::consts::TAU.sqrt() / (law.length_mm.1 / law.length_mm.0).ln()).min(1.0);
+    let anywhere = (calibration.of_records * std::f64::consts::TAU.sqrt()
+        / (law.length_mm.1 / law.length_mm.0).ln())
+    .min(1.0);
     match (followed.course.length_mm(law), shown) {
-        (None, Shown::Sound) => 1.0 - gauge.false_claims,
-        (None, Shown::Damaged) => gauge.false_claims,
-        (None, Shown::Length(_)) => gauge.false_claims * anywhere,
-        (Some(_), Shown::Sound) => gauge.missed,
-        (Some(_), Shown::Damaged) => 1.0 - gauge.missed,
+        (None, Shown::Sound) => 1.0 - calibration.false_claims,
+        (None, Shown::Damaged) => calibration.false_claims,
+        (None, Shown::Length(_)) => calibration.false_claims * anywhere,
+        (Some(_), Shown::Sound) => calibration.missed,
+        (Some(_), Shown::Damaged) => 1.0 - calibration.missed,
         (Some(length), Shown::Length(read)) => {
-            let off = ((read / length).ln() - followed.off) / gauge.of_records;
-            (1.0 - gauge.missed) * (-0.5 * off * off).exp()
+            let off = ((read / length).ln() - followed.off) / calibration.of_records;
+            (1.0 - calibration.missed) * (-0.5 * off * off).exp()
         }
     }
 }

@@ -1,9 +1,9 @@
-//! What the records of a growth show, unit by unit.
+//! Findings of the records of a growth, unit by unit.
 
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use stribeck_analysis::growth::{Gauge, Known, Law, Record, Shown, remaining};
+use stribeck_analysis::growth::{Calibration, Known, Law, Record, Shown, remaining};
 use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
 use stribeck_analysis::measured::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
@@ -19,7 +19,7 @@ use stribeck_scene::scene::DefectRing;
 use super::Planned;
 use crate::many_runs::ManyRuns;
 
-/// All units with what their records show, and what is said to be left of each.
+/// All units with the findings of their records, and the estimated remaining life of each.
 pub(super) fn judged(
     growth: &Growth,
     law: &Law,
@@ -36,7 +36,9 @@ pub(super) fn judged(
             millions(law.onset.0),
             millions(law.life.0)
         ),
-        "A unit's readings are gauged by the records of the other units, whose lengths are known.".to_owned(),
+        "Lengths of a unit are estimated with a calibration by the records of the other units, whose lengths \
+         are known."
+            .to_owned(),
     ];
     let mut records = Vec::with_capacity(planned.len());
     for (plan, variant) in planned.iter().zip(&campaign.runs) {
@@ -103,7 +105,7 @@ fn millions(revolutions: f64) -> String {
     format!("{:.3} million revolutions", 1e-6 * revolutions)
 }
 
-/// What a run's record shows with the machine's noise.
+/// Findings of a run's record with the machine's noise added.
 fn findings(growth: &Growth, variant: &Variant, runs: &ManyRuns) -> Result<MeasuredFindings> {
     let scene = variant.scene.as_ref().map_err(|why| anyhow::anyhow!("{why}"))?;
     let dir = RunDir::open(runs.run(scene))?;
@@ -172,16 +174,16 @@ fn unit_findings(
 ) -> UnitFindings {
     let shown: Vec<Record> =
         records.iter().map(|record| shows(growth, record).unwrap_or(Record::Sound)).collect();
-    if let Some(gauge) = Gauge::of(others) {
+    if let Some(calibration) = Calibration::of(others) {
         let read: Vec<Shown> = shown
             .iter()
             .map(|record| match record {
                 Record::Sound => Shown::Sound,
                 Record::Damaged => Shown::Damaged,
-                Record::Indicates(x) => Shown::Length(gauge.read_mm(*x)),
+                Record::Indicates(x) => Shown::Length(calibration.length_mm(*x)),
             })
             .collect();
-        let left = remaining(law, &read, &gauge, growth.seed ^ unit as u64);
+        let left = remaining(law, &read, &calibration, growth.seed ^ unit as u64);
         for ((record, read), left) in records.iter_mut().zip(read).zip(left) {
             record.read_mm = if let Shown::Length(mm) = read { Some(mm) } else { None };
             record.remaining = left;

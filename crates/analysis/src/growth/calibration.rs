@@ -15,7 +15,7 @@ pub struct Known {
     pub record: Record,
 }
 
-/// What a record shows, before it is gauged.
+/// What a record shows, before it is calibrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Record {
     /// No defect.
@@ -33,7 +33,7 @@ pub enum Record {
 /// their sensor, clearance and depth are the same. The variance about the line is split into that of units and that of records by the analysis of variance of one random
 /// factor (S. R. Searle, G. Casella and C. E. McCulloch, *Variance Components*, Wiley 1992, §3.6).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gauge {
+pub struct Calibration {
     a: f64,
     b: f64,
     /// Standard deviation over units of what all records of one are off by, in ln L.
@@ -50,12 +50,12 @@ pub struct Gauge {
     pub missed: f64,
 }
 
-/// Fewest records of a gauge.
+/// Fewest records of a calibration.
 const LEAST_RECORDS: usize = 6;
-/// No gauge is taken to be better than this.
+/// No calibration is taken to be better than this.
 const LEAST_ERROR: f64 = 0.02;
 
-impl Gauge {
+impl Calibration {
     /// From records of known spalls; `None` for fewer than six that tell a size, or lengths or indicators that
     /// are all one.
     pub fn of(known: &[Known]) -> Option<Self> {
@@ -93,7 +93,7 @@ impl Gauge {
     }
 
     /// The length that an indicator tells [mm].
-    pub fn read_mm(&self, indicator: f64) -> f64 {
+    pub fn length_mm(&self, indicator: f64) -> f64 {
         ((indicator - self.a) / self.b).exp()
     }
 
