@@ -219,6 +219,7 @@ fn life(unit: &UnitFindings) -> Option<Figure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::Style;
 
     /// The interval of what is left was in the numbers and not in the picture: its ground is drawn from the
     /// upper edge downwards, and the lower one had come first.
@@ -249,7 +250,7 @@ mod tests {
             records: vec![record(1, None), record(2, Some(left)), record(3, Some(left))],
         };
         let figure = life(&unit).expect("two records with something left");
-        let edges: Vec<&Series> = figure.series.iter().filter(|series| series.edge).collect();
+        let edges: Vec<&Series> = figure.series.iter().filter(|series| series.style == Style::Edge).collect();
         assert_eq!(edges.len(), 2);
         assert!(edges[0].y.iter().zip(&edges[1].y).all(|(upper, lower)| upper > lower));
     }
