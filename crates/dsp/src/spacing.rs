@@ -333,7 +333,7 @@ mod tests {
         }
     }
 
-    /// An element that bounces as it leaves a spall knocks twice within a millisecond, both times louder
+    /// A body that bounces at the second event knocks twice within a millisecond, both times louder
     /// than the next one that enters.
     #[test]
     fn example_a_bounce_is_not_taken_for_the_second_event() {

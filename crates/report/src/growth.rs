@@ -219,6 +219,7 @@ fn life(unit: &UnitFindings) -> Option<Figure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::Style;
 
     /// The interval of what is left was in the numbers and not in the picture: its ground is drawn from the
     /// upper edge downwards, and the lower one had come first.

@@ -30,8 +30,9 @@ pub enum Record {
 ///
 /// The line x = a + b ln L, by least squares over records of known spalls, is read backwards. A line of ln L
 /// on x would read all lengths nearer to their mean, by as much as x errs. Records of one unit err together:
-/// their sensor, clearance and depth are the same. The variance about the line is split into that of units and that of records by the analysis of variance of one random
-/// factor (S. R. Searle, G. Casella and C. E. McCulloch, *Variance Components*, Wiley 1992, §3.6).
+/// their sensor, clearance and depth are the same. The variance about the line is split into that of units
+/// and that of records by the analysis of variance of one random factor (S. R. Searle, G. Casella and C. E.
+/// McCulloch, *Variance Components*, Wiley 1992, §3.6).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Calibration {
     a: f64,
@@ -56,8 +57,8 @@ const LEAST_RECORDS: usize = 6;
 const LEAST_ERROR: f64 = 0.02;
 
 impl Calibration {
-    /// From records of known spalls; `None` for fewer than six that tell a size, or lengths or indicators that
-    /// are all one.
+    /// From records of known spalls; `None` for fewer than six that tell a size, or lengths or indicators
+    /// that are all one.
     pub fn of(known: &[Known]) -> Option<Self> {
         let told: Vec<(usize, f64, f64)> = known
             .iter()

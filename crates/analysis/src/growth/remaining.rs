@@ -39,8 +39,8 @@ struct Followed {
     off: f64,
 }
 
-/// What is left after each record of a unit by what its records so far show, with the errors of `calibration`.
-/// `None` before the first record that shows a defect.
+/// What is left after each record of a unit by what its records so far show, with the errors of
+/// `calibration`. `None` before the first record that shows a defect.
 ///
 /// A particle filter: courses drawn from the law, each with an error that all readings of the unit share, are
 /// weighted by how likely each makes what was read, drawn anew where few carry the weight, and run on to
