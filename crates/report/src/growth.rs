@@ -251,7 +251,7 @@ mod tests {
         };
         let figure = life(&unit).expect("two records with something left");
         let edges: Vec<&Series> =
-            figure.series.iter().filter(|series| matches!(series.style, crate::plot::Style::Edge)).collect();
+            figure.series.iter().filter(|series| matches!(series.style, Style::Edge)).collect();
         assert_eq!(edges.len(), 2);
         assert!(edges[0].y.iter().zip(&edges[1].y).all(|(upper, lower)| upper > lower));
     }
