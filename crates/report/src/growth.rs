@@ -156,9 +156,9 @@ fn table(of: &GrowthFindings) -> Markup {
             }
         }
         p class="hint" {
-            "Millions of revolutions; intervals of 90 %. First claim: the first record that the verdict \
-             calls damaged; before the onset it is a false alarm. Alarm: the first record whose root mean \
-             square lies above the limit that the unit's first three records set."
+            "Millions of revolutions; intervals of 90 %. Claimed twice running: two records, one after the \
+             other, that the verdict calls damaged; before the onset they are a false alarm. Alarm: the first \
+             record whose root mean square lies above the limit that the unit's first three records set."
         }
     }
 }
