@@ -253,7 +253,7 @@ mod tests {
     fn issue_a_ring_out_of_round_keeps_no_floor_where_its_spall_was() {
         let oval = |vertices: Vec<[f64; 2]>| -> Vec<[f64; 2]> {
             let stretched = |[x, y]: [f64; 2]| {
-                let share = 1.0 + 1.05e-4 / RADIUS * (2.0 * y.atan2(x)).cos();
+                let share = 1.0 + 1.05e-4 / x.hypot(y) * (2.0 * y.atan2(x)).cos();
                 [share * x, share * y]
             };
             vertices.into_iter().map(stretched).collect()

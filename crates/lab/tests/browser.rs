@@ -189,8 +189,9 @@ fn example_a_phone_has_room_and_controls_have_names() {
       key("stage", "ArrowLeft");
       await until(() => lab.handles.sensor !== sensor && text("told") !== "");
       const told = text("told");
-      key("spectrum", "ArrowRight");
-      const read = document.getElementById("spectrum").getAttribute("aria-valuetext");
+      const spoken = () => document.getElementById("spectrum").getAttribute("aria-valuetext");
+      await until(() => { key("spectrum", "ArrowRight"); return spoken().includes("Hz"); });
+      const read = spoken();
       const refused = {};
       for (const value of ["NaN", "", "1e999", "-3"]) { set("handle-load", value); refused[value] = document.querySelector("[data-key=load] .why").textContent; }
       document.getElementById("run").click();
