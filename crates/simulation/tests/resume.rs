@@ -372,12 +372,19 @@ fn survives_a_clock_that_jumps() {
 #[test]
 fn survives_a_checkpoint_that_cannot_be_written() {
     let folder = Folder::new();
-    // A folder in the place of the new file stands for a disk that refuses it.
-    fs::create_dir_all(folder.file("checkpoint.part")).expect("writable");
-    let info = start(&sudden(), 1, &folder, &mut until(3));
+    // From the first sample on a folder in the place of the file stands for a disk that refuses it.
+    let (checkpoint, mut stop) = (folder.file("checkpoint"), until(3));
+    let info = start(&sudden(), 1, &folder, &mut |progress| {
+        if progress.phase == "run" && checkpoint.is_file() {
+            fs::remove_file(&checkpoint).and_then(|()| fs::create_dir(&checkpoint)).expect("writable");
+            fs::write(checkpoint.join("in the way"), "").expect("writable");
+        }
+        stop(progress)
+    });
+    fs::remove_dir_all(&checkpoint).expect("nobody took it away");
     assert_eq!((info.status, info.samples), (Status::Interrupted, 3));
     let [warning] = info.warnings.as_slice() else { panic!("{:?}", info.warnings) };
-    assert!(warning.contains("no checkpoint at 0.000 ms") && warning.contains("went on"), "{warning}");
+    assert!(warning.contains("no checkpoint at 0.030 ms") && warning.contains("went on"), "{warning}");
     assert!(
         RunDir::open(folder.path()).and_then(|dir| dir.read_info()).expect("readable").warnings
             == info.warnings
