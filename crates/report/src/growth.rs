@@ -156,9 +156,9 @@ fn table(of: &GrowthFindings) -> Markup {
             }
         }
         p class="hint" {
-            "Millions of revolutions; intervals of 90 %. First claim: the first record that the verdict \
-             calls damaged; before the onset it is a false alarm. Alarm: the first record whose root mean \
-             square lies above the limit that the unit's first three records set."
+            "Millions of revolutions; intervals of 90 %. Claimed twice running: two records, one after the \
+             other, that the verdict calls damaged; before the onset they are a false alarm. Alarm: the first \
+             record whose root mean square lies above the limit that the unit's first three records set."
         }
     }
 }
@@ -250,7 +250,8 @@ mod tests {
             records: vec![record(1, None), record(2, Some(left)), record(3, Some(left))],
         };
         let figure = life(&unit).expect("two records with something left");
-        let edges: Vec<&Series> = figure.series.iter().filter(|series| series.style == Style::Edge).collect();
+        let edges: Vec<&Series> =
+            figure.series.iter().filter(|series| matches!(series.style, Style::Edge)).collect();
         assert_eq!(edges.len(), 2);
         assert!(edges[0].y.iter().zip(&edges[1].y).all(|(upper, lower)| upper > lower));
     }

@@ -12,6 +12,7 @@ use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
 use crate::{Error, course, kurtogram, sound};
 use stribeck_analysis::measured::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
+use stribeck_analysis::words::significant;
 
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;
@@ -63,8 +64,8 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
             body {
                 h1 { (title) }
                 p class="lead" {
-                    (format!("{:.2} s at {} Hz", findings.duration_s, findings.rate_hz))
-                    @if let Some(rpm) = findings.speed_rpm { (format!("; the shaft turns at {rpm:.1} rpm")) }
+                    (format!("{:.2} s at {} Hz", findings.duration_s, significant(findings.rate_hz, 7)))
+                    @if let Some(rpm) = findings.speed_rpm { (turning(rpm, analysis)) }
                     @if let Some(bearing) = &findings.bearing { "; " (bearing) }
                     "."
                     @if let Some(baseline) = baseline { " In grey behind it: " (baseline.name) "." }
@@ -121,6 +122,19 @@ fn levels_of(baseline: &Baseline, with_velocity: bool) -> Markup {
             @if with_velocity { td { (findings.velocity_mm_s.map_or("–".to_owned(), |v| format!("{v:.4}"))) } }
         }
     }
+}
+
+/// The speed of the shaft, and its range where it varies.
+fn turning(rpm: f64, analysis: &Analysis) -> String {
+    let speeds = analysis.varying.iter().flat_map(|varying| &varying.speeds_rpm).copied();
+    let (least, most) = speeds.fold((rpm, rpm), |(least, most), speed| (least.min(speed), most.max(speed)));
+    if least == most {
+        return format!("; the shaft turns at {rpm:.1} rpm");
+    }
+    format!(
+        "; the shaft turns at {least:.0} to {most:.0} rpm, {rpm:.1} rpm on average, at which spectra over \
+         its angle are given"
+    )
 }
 
 /// The kurtogram; the record over time, and where the speed varies over speed and angle.

@@ -147,7 +147,7 @@ pub enum Style {
     Line,
     /// Separate dots.
     Points,
-    /// One edge of a shaded ground; the next series of this style, at the same positions, is the other.
+    /// The upper edge of a shaded ground; the next series of this style, at the same positions, is the lower.
     Edge,
 }
 

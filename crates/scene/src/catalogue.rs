@@ -499,7 +499,7 @@ mod tests {
             ("62055", "no bearing `62055`"),
             ("62052", "no bearing `62052`"),
             ("6205-12", "no bearing `6205-12`"),
-            ("", "is no bearing"),
+            ("", "the name of the bearing is empty"),
             ("6205, balls=9", "`balls`"),
             ("6205, elements=2.5", "3 to 200"),
             ("diameter_mm=8, pitch_mm=8", "is no bearing"),

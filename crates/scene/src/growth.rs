@@ -308,7 +308,7 @@ mod tests {
             ("to: 3.0", "to: 0.5", "g.ron:5:16", "goes from 1 to 0.5"),
             ("from: 1.0", "from: -1", "g.ron:5:23", "allowed: 0.001 to 1000"),
             (", to: 3.0", "", "g.ron:5:", "`length_mm` lacks `to`"),
-            ("0.08", "0.08, wander: 9", "g.ron:6:33", "allowed: 0 to 3"),
+            ("0.08", "0.08, wander: 9", "g.ron:6:34", "allowed: 0 to 3"),
             ("2e6", "-2e6", "g.ron:7:26", "`onset.revolutions` is -2000000"),
             ("1e6,\n)", "NaN,\n)", "g.ron:9:24", "`every_revolutions` is NaN"),
             ("1e6,\n)", "1e6, set: [\"operation.load=1\"])", "g.ron:9:", "load_n"),

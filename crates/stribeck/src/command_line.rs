@@ -56,7 +56,7 @@ mod tests {
     fn example_every_command_has_an_example_that_is_right() {
         let program = Cli::command();
         for command in program.get_subcommands() {
-            let example = example(&program, &[command.get_name().to_owned()]).expect(command.get_name());
+            let example = example(&program, &[command.get_name().to_owned()]).expect("an example");
             let line = example.strip_prefix("Example: ").expect("how it begins");
             assert!(line.starts_with(&format!("stribeck {}", command.get_name())), "{line}");
             assert!(Cli::try_parse_from(words(line)).is_ok(), "{line}");

@@ -100,9 +100,10 @@ pub(super) fn edges(samples: &[f64], levels: Levels) -> Vec<f64> {
     edges
 }
 
-/// How many times the samples rise at once, by at least this part of their largest rises: the edges of
-/// pulses, whatever they stand on.
+/// How many times the samples rise at once, by most of their largest rises: the edges of pulses, whatever they
+/// stand on.
 pub(super) fn steps(samples: &[f64]) -> usize {
+    /// Of the largest rise.
     const PART: f64 = 0.75;
     let rises: Vec<f64> = samples.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted: Vec<f64> = rises.iter().copied().filter(|rise| rise.is_finite()).collect();
