@@ -100,8 +100,8 @@ pub(super) fn edges(samples: &[f64], levels: Levels) -> Vec<f64> {
     edges
 }
 
-/// How many times the samples rise at once, by most of their largest rises: the edges of pulses, whatever they
-/// stand on.
+/// How many times the samples rise at once, by most of their largest rises: the edges of pulses, whatever
+/// they stand on.
 pub(super) fn steps(samples: &[f64]) -> usize {
     /// Of the largest rise.
     const PART: f64 = 0.75;
