@@ -36,7 +36,7 @@ pub(crate) fn build(options: &Options) -> Result<ExitCode> {
     );
     let zig = has(&options.python, "ziglang");
     let mut maturin = Command::new(&options.python);
-    maturin.current_dir(&root).args(["-m", "maturin", "build", "--profile", "wheel"]);
+    maturin.current_dir(&root).args(["-m", "maturin", "build", "--profile", "dist"]);
     maturin.args(["--compression-level", "9", "--out"]).arg(&out);
     if zig {
         maturin.args(["--zig", "--compatibility", POLICY]);
