@@ -10,7 +10,7 @@ mod calibration;
 mod remaining;
 
 pub use calibration::{Calibration, Known, Record};
-pub use remaining::{Remaining, Shown, remaining};
+pub use remaining::{Remaining, remaining};
 use stribeck_scene::dice::Dice;
 
 use crate::records::normal;

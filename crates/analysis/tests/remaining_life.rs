@@ -1,6 +1,6 @@
 //! Remaining life of a unit whose spall grows: intervals over many units, growth against its closed form.
 
-use stribeck_analysis::growth::{Calibration, Known, Law, Record, Shown, remaining};
+use stribeck_analysis::growth::{Calibration, Known, Law, Record, remaining};
 use stribeck_analysis::records::normal;
 use stribeck_scene::dice::Dice;
 
@@ -54,18 +54,11 @@ fn held(law: &Law, calibration: &Calibration, units: std::ops::Range<u64>) -> f6
     let (mut tried, mut held) = (0, 0);
     for unit in units {
         let (records, end) = made(unit);
-        let read: Vec<Shown> = records
-            .iter()
-            .map(|(_, record)| match record {
-                Record::Sound => Shown::Sound,
-                Record::Damaged => Shown::Damaged,
-                Record::Indicates(x) => Shown::Length(calibration.length_mm(*x)),
-            })
-            .collect();
+        let shown: Vec<Option<Record>> = records.iter().map(|record| Some(record.1)).collect();
         let Some(first) = records.iter().position(|record| record.0.is_some()) else { continue };
         // A record of each unit, anywhere behind its onset.
-        let at = first + (read.len() - first) * (unit as usize % 10) / 10;
-        let Some(left) = remaining(law, &read[..=at], calibration, unit)[at] else { continue };
+        let at = first + (shown.len() - first) * (unit as usize % 10) / 10;
+        let Some(left) = remaining(law, &shown[..=at], calibration, unit)[at] else { continue };
         tried += 1;
         let truth = end - at as f64 * LAW.every;
         held += usize::from((left.low..=left.high).contains(&truth));
@@ -127,8 +120,23 @@ fn analytic_growth_is_exponential_or_of_a_power() {
     assert!((course.end().expect("at its end") - 3e6).abs() < 1.0);
 }
 
+/// A record that could not be made is not one of a sound unit.
 #[test]
-fn refuses_a_gauge_of_few_records() {
+fn invariant_a_missing_record_says_nothing_of_the_spall() {
+    let many = calibration(1000..1040);
+    // A defect shows in the fifth record. Where the three before it are sound, the spall has just begun and
+    // has its whole life before it; where they are missing, most likely not.
+    let of = |between: Option<Record>| {
+        let shown = [Some(Record::Sound), between, between, between, Some(Record::Damaged)];
+        remaining(&Law { every: 2e6, ..LAW }, &shown, &many, 1)[4].expect("a defect shows").median
+    };
+    let (missing, sound) = (of(None), of(Some(Record::Sound)));
+    println!("{missing} where records are missing, {sound} where they are sound");
+    assert!(sound > 1.3 * missing, "{missing} {sound}");
+}
+
+#[test]
+fn refuses_a_calibration_of_few_records() {
     let known = Known { unit: 1, length_mm: Some(1.0), record: Record::Indicates(1.0) };
     assert_eq!(Calibration::of(&[known; 3]), None);
     assert_eq!(Calibration::of(&[known; 9]), None);

@@ -192,7 +192,8 @@ fn figures(of: &GrowthFindings) -> Vec<Figure> {
 fn life(unit: &UnitFindings) -> Option<Figure> {
     let told: Vec<(&RecordFindings, Remaining)> =
         unit.records.iter().filter_map(|record| Some((record, record.remaining?))).collect();
-    if told.is_empty() {
+    // A single record is no curve; its numbers are in the table.
+    if told.len() < 2 {
         return None;
     }
     let title = format!("Unit {}", unit.unit);

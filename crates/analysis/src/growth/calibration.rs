@@ -15,7 +15,7 @@ pub struct Known {
     pub record: Record,
 }
 
-/// What a record shows, before it is calibrated.
+/// What a record shows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Record {
     /// No defect.

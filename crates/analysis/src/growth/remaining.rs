@@ -2,7 +2,7 @@
 
 use stribeck_scene::dice::Dice;
 
-use super::{Calibration, Course, Law};
+use super::{Calibration, Course, Law, Record};
 use crate::statistic::quantile;
 
 /// What is left of a life [revolutions]: the median, and the ends of an interval of 90 %.
@@ -21,17 +21,6 @@ const COURSES: usize = 16_000;
 /// Courses that are followed to their ends.
 const ENDED: usize = 1000;
 
-/// What a record of the unit shows, after it was calibrated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Shown {
-    /// No defect.
-    Sound,
-    /// A defect, whose size it does not tell.
-    Damaged,
-    /// A spall of this length [mm].
-    Length(f64),
-}
-
 /// A course, and what all readings of the unit are off by on it, in ln L.
 #[derive(Debug, Clone, Copy)]
 struct Followed {
@@ -39,13 +28,19 @@ struct Followed {
     off: f64,
 }
 
-/// What is left after each record of a unit by what its records so far show, with the errors of
-/// `calibration`. `None` before the first record that shows a defect.
+/// What is left after each record of a unit by what its records so far show, read by `calibration` and with
+/// its errors. A record that is missing, `None`, says that the unit was not at its end, no more. `None`
+/// before the first record that shows a defect.
 ///
 /// A particle filter: courses drawn from the law, each with an error that all readings of the unit share, are
 /// weighted by how likely each makes what was read, drawn anew where few carry the weight, and run on to
 /// their ends. Source: N. J. Gordon, D. J. Salmond and A. F. M. Smith, IEE Proc. F 140 (1993) 107.
-pub fn remaining(law: &Law, shown: &[Shown], calibration: &Calibration, seed: u64) -> Vec<Option<Remaining>> {
+pub fn remaining(
+    law: &Law,
+    shown: &[Option<Record>],
+    calibration: &Calibration,
+    seed: u64,
+) -> Vec<Option<Remaining>> {
     let mut dice = Dice::new(seed);
     let mut followed: Vec<Followed> = (0..COURSES)
         .map(|_| Followed { course: law.unit(&mut dice), off: calibration.drawn(&mut dice) })
@@ -73,26 +68,28 @@ pub fn remaining(law: &Law, shown: &[Shown], calibration: &Calibration, seed: u6
             followed = drawn(COURSES, &followed, &weights, &mut dice);
             weights.fill(1.0);
         }
-        seen |= *record != Shown::Sound;
+        seen |= record.is_some_and(|record| record != Record::Sound);
         all.push(seen.then(|| ends(law, &followed, &weights, &mut dice)));
     }
     all
 }
 
 /// Of a record, up to a factor that is the same for all courses.
-fn likelihood(law: &Law, followed: &Followed, shown: Shown, calibration: &Calibration) -> f64 {
+fn likelihood(law: &Law, followed: &Followed, shown: Option<Record>, calibration: &Calibration) -> f64 {
+    let Some(shown) = shown else { return 1.0 };
     // What is read from a sound record may be any length, each ratio of lengths as likely as the other.
     let anywhere = (calibration.of_records * std::f64::consts::TAU.sqrt()
         / (law.length_mm.1 / law.length_mm.0).ln())
     .min(1.0);
     match (followed.course.length_mm(law), shown) {
-        (None, Shown::Sound) => 1.0 - calibration.false_claims,
-        (None, Shown::Damaged) => calibration.false_claims,
-        (None, Shown::Length(_)) => calibration.false_claims * anywhere,
-        (Some(_), Shown::Sound) => calibration.missed,
-        (Some(_), Shown::Damaged) => 1.0 - calibration.missed,
-        (Some(length), Shown::Length(read)) => {
-            let off = ((read / length).ln() - followed.off) / calibration.of_records;
+        (None, Record::Sound) => 1.0 - calibration.false_claims,
+        (None, Record::Damaged) => calibration.false_claims,
+        (None, Record::Indicates(_)) => calibration.false_claims * anywhere,
+        (Some(_), Record::Sound) => calibration.missed,
+        (Some(_), Record::Damaged) => 1.0 - calibration.missed,
+        (Some(length), Record::Indicates(indicator)) => {
+            let off =
+                ((calibration.length_mm(indicator) / length).ln() - followed.off) / calibration.of_records;
             (1.0 - calibration.missed) * (-0.5 * off * off).exp()
         }
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use stribeck_analysis::growth::{Calibration, Known, Law, Record, Shown, remaining};
+use stribeck_analysis::growth::{Calibration, Known, Law, Record, remaining};
 use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
 use stribeck_analysis::measured::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
@@ -172,20 +172,13 @@ fn unit_findings(
     mut records: Vec<RecordFindings>,
     others: &[Known],
 ) -> UnitFindings {
-    let shown: Vec<Record> =
-        records.iter().map(|record| shows(growth, record).unwrap_or(Record::Sound)).collect();
+    let shown: Vec<Option<Record>> = records.iter().map(|record| shows(growth, record)).collect();
     if let Some(calibration) = Calibration::of(others) {
-        let read: Vec<Shown> = shown
-            .iter()
-            .map(|record| match record {
-                Record::Sound => Shown::Sound,
-                Record::Damaged => Shown::Damaged,
-                Record::Indicates(x) => Shown::Length(calibration.length_mm(*x)),
-            })
-            .collect();
-        let left = remaining(law, &read, &calibration, growth.seed ^ unit as u64);
-        for ((record, read), left) in records.iter_mut().zip(read).zip(left) {
-            record.read_mm = if let Shown::Length(mm) = read { Some(mm) } else { None };
+        let left = remaining(law, &shown, &calibration, growth.seed ^ unit as u64);
+        for ((record, shown), left) in records.iter_mut().zip(&shown).zip(left) {
+            if let Some(Record::Indicates(x)) = shown {
+                record.read_mm = Some(calibration.length_mm(*x));
+            }
             record.remaining = left;
         }
     }
@@ -199,7 +192,7 @@ fn unit_findings(
         end,
         claimed_at: shown
             .windows(2)
-            .position(|two| !two.contains(&Record::Sound))
+            .position(|two| two.iter().all(|shown| shown.is_some_and(|shown| shown != Record::Sound)))
             .map(|first| records[first].revolutions),
         alarm_at: records.iter().skip(LEAST_RECORDS).find(above).map(|r| r.revolutions),
         alarm_rms: alarm,
