@@ -1,6 +1,7 @@
 //! The reduced bearing: its reduction, its steps, its start.
 
 pub mod motion;
+mod on_shaft;
 
 mod guards;
 
@@ -24,6 +25,7 @@ use crate::{
     model::{Misfit, Model, Preparation},
 };
 use guards::Guards;
+pub use on_shaft::on_shaft;
 use motion::{ReducedMotion, Saved};
 
 /// A reduced bearing before its first step.

@@ -10,6 +10,7 @@ use crate::{
     rollers::block::Block,
     row::Row,
     sensors::SensorMotion,
+    shaft::Frame,
     state::{State, Stored},
 };
 
@@ -33,6 +34,8 @@ pub struct Scratch {
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
     pub(crate) deepest: f64,
+    /// The frame of the shaft, where that is moved.
+    pub(crate) frame: Option<Frame>,
 }
 
 impl Scratch {

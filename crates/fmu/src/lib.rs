@@ -1,0 +1,4 @@
+//! The reduced bearing as an FMU.
+
+pub mod error;
+pub mod session;
