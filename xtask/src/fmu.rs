@@ -8,7 +8,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, ensure};
 use stribeck::Place;
-use stribeck_reduced::shaft::{BearingOnShaft, OnShaft, ShaftPoint};
+use stribeck_reduced::shaft::{BearingOnShaft, OnShaft, ShaftPoint, variables::RESOURCE};
 use stribeck_reduction::dense;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_simulation::reduced::on_shaft;
@@ -32,9 +32,6 @@ pub(crate) struct Options {
 /// Package of the shared library, and its name, which FMI asks for as the identifier of the model.
 const PACKAGE: &str = "stribeck-fmu";
 const IDENTIFIER: &str = "stribeck_fmu";
-
-/// Name of the file with the bearing, as the library has it.
-const RESOURCE: &str = "resources/bearing.postcard";
 
 /// Folder of the library for this machine, as FMI 3.0 names it.
 const PLATFORM: &str = if cfg!(windows) {
@@ -85,16 +82,13 @@ fn try_it(bearing: &OnShaft) -> Result<()> {
     Ok(())
 }
 
-/// The shared library, built where a build finds the same name again.
+/// The shared library, built beside the program, whose libraries it shares.
 fn library() -> Result<PathBuf> {
     let root = workspace::root();
-    // A folder of its own: cargo would wait for the one that runs this command.
-    let folder =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("fmu");
+    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.current_dir(&root).args(["build", "--quiet", "--release", "-p", PACKAGE, "--lib"]);
-    cargo.args(["--features", "export", "--target-dir"]).arg(&folder);
-    let done = cargo.status().context("cannot start cargo")?;
+    let done = cargo.args(["--features", "export"]).status().context("cannot start cargo")?;
     ensure!(
         done.success(),
         "the library of the FMU cannot be built. Its bindings to FMI are made with libclang: `apt-get install \
@@ -108,10 +102,11 @@ fn library() -> Result<PathBuf> {
 fn archive(scene: &Scene, bearing: &OnShaft, library: &Path) -> Result<Vec<u8>> {
     let library = std::fs::read(library).with_context(|| format!("cannot read `{}`", library.display()))?;
     let binary = format!("binaries/{PLATFORM}/{IDENTIFIER}{}", std::env::consts::DLL_SUFFIX);
+    let resource = format!("resources/{RESOURCE}");
     let files = [
         ("modelDescription.xml", description::xml(scene, bearing).into_bytes()),
         (binary.as_str(), library),
-        (RESOURCE, postcard::to_stdvec(bearing)?),
+        (resource.as_str(), postcard::to_stdvec(bearing)?),
         ("resources/scene.ron", scene.to_ron().into_bytes()),
     ];
     let mut zip = ZipWriter::new(std::io::Cursor::new(Vec::new()));

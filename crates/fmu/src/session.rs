@@ -5,13 +5,11 @@ use std::path::Path;
 use faer::{Mat, linalg::solvers::Solve};
 use serde::{Deserialize, Serialize};
 use stribeck_reduced::shaft::{
-    BearingOnShaft, LEAST_STEPS, OnShaft, SavedOnShaft, ShaftPoint, variables::SENSORS,
+    BearingOnShaft, LEAST_STEPS, OnShaft, SavedOnShaft, ShaftPoint,
+    variables::{OUTPUTS, RESOURCE, SENSORS},
 };
 
 use crate::error::Error;
-
-/// Name of the file with the bearing in the resources of an FMU.
-pub const FILE: &str = "bearing.postcard";
 
 /// What an importer reads, at the end of a communication step.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -28,6 +26,16 @@ pub struct Outputs {
     pub shaft_angle: f64,
     /// Mean acceleration of each sensor over the communication step [m/s²].
     pub acceleration: [[f64; 2]; SENSORS],
+}
+
+impl Outputs {
+    /// In the order of [`OUTPUTS`].
+    pub fn values(&self) -> [f64; OUTPUTS.len()] {
+        let Self { force: [fx, fy], mean_force: [mx, my], largest_roller, cage_angle, shaft_angle, acceleration } =
+            *self;
+        let [[ax, ay], [bx, by], [cx, cy], [dx, dy]] = acceleration;
+        [fx, fy, mx, my, largest_roller, cage_angle, shaft_angle, ax, ay, bx, by, cx, cy, dx, dy]
+    }
 }
 
 /// A bearing that an importer drives.
@@ -51,7 +59,7 @@ impl Session {
     /// # Errors
     /// When the file is not there, or is not that of a bearing.
     pub fn open(resources: &Path) -> Result<Self, Error> {
-        let path = resources.join(FILE);
+        let path = resources.join(RESOURCE);
         let bytes = std::fs::read(&path).map_err(|error| Error::Resource { path, error })?;
         Self::from_bytes(&bytes)
     }

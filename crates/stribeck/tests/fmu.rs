@@ -42,7 +42,7 @@ fn line(samples: &[f64], interval_s: f64, hz: f64) -> f64 {
     (0..=40).map(|n| at(hz * (0.98 + 1e-3 * f64::from(n)))).fold(0.0, f64::max)
 }
 
-/// FMPy 0.3.30 finds no fault with the archive; a rotor of 10 kg that it steps in Python settles where the
+/// FMPy 0.3.32 finds no fault with the archive; a rotor of 10 kg that it steps in Python settles where the
 /// same load displaces the housing of a run the other way, and has the line at BPFO of that run.
 #[test]
 fn peer_fmpy_runs_a_rotor_on_our_fmu() {
@@ -78,8 +78,8 @@ fn peer_fmpy_runs_a_rotor_on_our_fmu() {
     let moved = centre[1] + run.start.q[1] * reduction.shapes[reduction.padded + 1];
     println!("rotor at {:.3} {:.3} µm, force {fx:.2} {fy:.2} N", 1e6 * x, 1e6 * y);
     let what = "place of a rotor at rest on an FMU";
-    compare(what, "the housing of a run under the same load; FMPy 0.3.30", "m", y, -moved, PLACE);
-    compare("force of an FMU on a rotor at rest", "its load, by FMPy 0.3.30", "N", -fy, load, FORCE);
+    compare(what, "the housing of a run under the same load; FMPy 0.3.32", "m", y, -moved, PLACE);
+    compare("force of an FMU on a rotor at rest", "its load, by FMPy 0.3.32", "N", -fy, load, FORCE);
     assert!(fx.abs() < FORCE * load, "{fx}");
     let stribeck = |words: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_stribeck"));

@@ -3,13 +3,10 @@
 use std::fmt::Write;
 
 use stribeck_reduced::shaft::OnShaft;
-use stribeck_reduced::shaft::variables::{BEFORE_SENSORS, INPUTS, OUTPUTS, SENSORS, Variable};
+use stribeck_reduced::shaft::variables::{BEFORE_SENSORS, INPUTS, OUTPUTS, SENSORS, TOKEN, Variable};
 use stribeck_scene::scene::Scene;
 
 use super::IDENTIFIER;
-
-/// Token by which an importer makes sure that library and description belong together.
-pub(super) const TOKEN: &str = "{stribeck_fmu}";
 
 /// Units of the variables, by base units of SI.
 const UNITS: [(&str, &str); 6] = [

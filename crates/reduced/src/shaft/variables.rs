@@ -48,3 +48,9 @@ pub const SENSORS: usize = 4;
 
 /// Outputs before those of the sensors.
 pub const BEFORE_SENSORS: usize = OUTPUTS.len() - 2 * SENSORS;
+
+/// Token by which an importer makes sure that library and description of an FMU belong together.
+pub const TOKEN: &str = concat!("{stribeck-", env!("CARGO_PKG_VERSION"), "}");
+
+/// Name of the file with the numbers of the bearing in the resources of an FMU.
+pub const RESOURCE: &str = "bearing.postcard";
