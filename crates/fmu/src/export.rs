@@ -1,6 +1,6 @@
 //! What an importer calls: the functions of FMI 3.0, by fmi-export.
 #![allow(unsafe_code, reason = "the names of FMI are unsafe attributes; nothing else here is")]
-#![allow(unexpected_cfgs, missing_docs, unreachable_pub, reason = "of the functions that the macro makes")]
+#![allow(missing_docs, unreachable_pub, reason = "of the functions that the macro makes")]
 
 use fmi::fmi3::{Fmi3Error, binding::fmi3ValueReference};
 use fmi::schema::fmi3::{ModelStructure, ModelVariables};

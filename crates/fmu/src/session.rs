@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use faer::{Mat, linalg::solvers::Solve};
 use serde::{Deserialize, Serialize};
-use stribeck_reduced::shaft::{
-    BearingOnShaft, LEAST_STEPS, OnShaft, SavedOnShaft, ShaftPoint,
-    variables::{OUTPUTS, RESOURCE, SENSORS},
+use stribeck_reduced::{
+    dense,
+    shaft::{
+        BearingOnShaft, LEAST_STEPS, OnShaft, SavedOnShaft, ShaftPoint,
+        variables::{OUTPUTS, RESOURCE, SENSORS},
+    },
 };
 
 use crate::error::Error;
@@ -31,8 +33,14 @@ pub struct Outputs {
 impl Outputs {
     /// In the order of [`OUTPUTS`].
     pub fn values(&self) -> [f64; OUTPUTS.len()] {
-        let Self { force: [fx, fy], mean_force: [mx, my], largest_roller, cage_angle, shaft_angle, acceleration } =
-            *self;
+        let Self {
+            force: [fx, fy],
+            mean_force: [mx, my],
+            largest_roller,
+            cage_angle,
+            shaft_angle,
+            acceleration,
+        } = *self;
         let [[ax, ay], [bx, by], [cx, cy], [dx, dy]] = acceleration;
         [fx, fy, mx, my, largest_roller, cage_angle, shaft_angle, ax, ay, bx, by, cx, cy, dx, dy]
     }
@@ -78,7 +86,7 @@ impl Session {
     /// # Errors
     /// When the shaft is too far away, or there is no equilibrium.
     pub fn start(&mut self, shaft: ShaftPoint) -> Result<(), Error> {
-        let bearing = || BearingOnShaft::start(self.from.clone(), shaft, &solve);
+        let bearing = || BearingOnShaft::start(self.from.clone(), shaft, &dense::solve);
         // Forces are those of steps: two of them, by another bearing, show those of the start.
         let mut ahead = bearing()?;
         let length = LEAST_STEPS * self.from.time_step;
@@ -155,10 +163,16 @@ fn read(bearing: &BearingOnShaft) -> Outputs {
     }
 }
 
-/// Solves a dense system, row by row, by LU with partial pivoting.
-fn solve(matrix: &[f64], right: &[f64]) -> Vec<f64> {
-    let n = right.len();
-    let matrix = Mat::from_fn(n, n, |i, j| matrix[n * i + j]);
-    let solution = matrix.partial_piv_lu().solve(&Mat::from_fn(n, 1, |i, _| right[i]));
-    (0..n).map(|i| solution[(i, 0)]).collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refuses_resources_without_a_bearing() {
+        let nowhere = std::env::temp_dir().join("stribeck-no-such-fmu");
+        let told = Session::open(&nowhere).expect_err("nothing is there").to_string();
+        assert!(told.contains("bearing.postcard") && told.contains("no bearing"), "{told}");
+        let told = Session::from_bytes(&[1, 2, 3]).expect_err("no bearing").to_string();
+        assert!(told.contains("not a bearing"), "{told}");
+    }
 }

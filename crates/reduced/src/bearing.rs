@@ -10,13 +10,13 @@ use crate::{
     contact::{outline::Outline, penetration::Sides, raceway::Raceway},
     drive::Operation,
     error::Error,
+    housing::Housing,
     law::ContactLaw,
     modes::Structure,
     oil::Lubrication,
     rollers::Rollers,
     seat::Springs,
     sensors::Sensors,
-    shaft::Housing,
     state::State,
 };
 

@@ -30,9 +30,7 @@ pub enum Error {
     HousingNotFree,
 
     /// The outer ring turns about a centre that is displaced.
-    #[error(
-        "the shaft cannot be moved where the outer ring turns: take `operation.outer_speed_rpm: 0`"
-    )]
+    #[error("the shaft cannot be moved where the outer ring turns: take `operation.outer_speed_rpm: 0`")]
     OuterRingTurns,
 
     /// The shaft is farther away than a bearing can carry.
@@ -65,7 +63,9 @@ pub enum Error {
     OtherBearing,
 
     /// Forces are no numbers any more.
-    #[error("the bearing diverged at {time:.6} s: take a smaller `model.step_us`, or shorter communication steps")]
+    #[error(
+        "the bearing diverged at {time:.6} s: take a smaller `model.step_us`, or shorter communication steps"
+    )]
     Diverged {
         /// Time of the bearing [s].
         time: f64,

@@ -5,24 +5,22 @@
 //! force of inertia. A program hands over where the shaft is at the end of each communication step, and reads
 //! the force of the bearing on it.
 
-mod housing;
-mod path;
 pub mod variables;
 
 use serde::{Deserialize, Serialize};
 use stribeck_modal::ModalBearing;
 
+pub use crate::frame::ShaftPoint;
 use crate::{
     bearing::Bearing,
     error::Error,
+    frame::Frame,
+    housing::Housing,
     motion::{BearingInMotion, Energies, Saved},
     rollers::block::Block,
     start::Solve,
     state::State,
 };
-pub(crate) use housing::Housing;
-pub use path::ShaftPoint;
-pub(crate) use path::Frame;
 
 /// Fewest steps of the bearing in a communication step: what sensors measure beyond the modes is a difference
 /// between two of them.

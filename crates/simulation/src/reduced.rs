@@ -25,8 +25,8 @@ use crate::{
     model::{Misfit, Model, Preparation},
 };
 use guards::Guards;
-pub use on_shaft::on_shaft;
 use motion::{ReducedMotion, Saved};
+pub use on_shaft::on_shaft;
 
 /// A reduced bearing before its first step.
 pub(crate) struct Reduced {

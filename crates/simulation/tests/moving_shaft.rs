@@ -156,7 +156,9 @@ fn invariant_a_roller_that_touches_nothing_stays_where_it_is() {
 }
 
 fn stored(e: &Energies) -> f64 {
-    e.kinetic + e.strain + e.contact + e.friction + e.damping + e.contact_damping + e.film - e.external - e.drive
+    e.kinetic + e.strain + e.contact + e.friction + e.damping + e.contact_damping + e.film
+        - e.external
+        - e.drive
 }
 
 /// Shaken by some micrometres at 400 Hz, the bearing gains what shaft, inertia and drive put in: the ledger of
@@ -223,7 +225,8 @@ fn refuses_what_cannot_be_moved() {
         let told = result.map(|_| ()).expect_err("it is refused").to_string();
         assert!(words.iter().all(|word| told.contains(word)), "{told}");
     };
-    let begin = |scene: &Scene, at: ShaftPoint| BearingOnShaft::start(parts(scene, &folder), at, &dense::solve);
+    let begin =
+        |scene: &Scene, at: ShaftPoint| BearingOnShaft::start(parts(scene, &folder), at, &dense::solve);
     let guided = loaded(270, "housing: pedestal(width_mm: 70, base_mm: 35, top_mm: 35)");
     said(begin(&guided, at([0.0; 2])), &["guided", "housing: rigid()", "springs"]);
     let mut turning = sound(RIGID);

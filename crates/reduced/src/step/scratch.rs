@@ -5,12 +5,12 @@ use stribeck_simd::lanes::LANES;
 use crate::{
     bearing::Bearing,
     contact::penetration::Penetration,
+    frame::Frame,
     modes::Modes,
     roller_force::RollerForce,
     rollers::block::Block,
     row::Row,
     sensors::SensorMotion,
-    shaft::Frame,
     state::{State, Stored},
 };
 

@@ -2,15 +2,7 @@
 
 use stribeck_modal::Reduction;
 
-use crate::{
-    cage::Cage,
-    error::Error,
-    modes::Modes,
-    rollers::{Rollers, block::Block},
-    shaft::Frame,
-    state::State,
-    tally::Tally,
-};
+use crate::{error::Error, modes::Modes, state::State, tally::Tally};
 
 /// ω² below which a mode is free [rad²/s²]: 5 Hz. Rings on springs begin at hundreds of hertz.
 const FREE: f64 = 1e3;
@@ -48,8 +40,7 @@ impl Housing {
         if determinant.abs() < UNIFORM * ax.hypot(ay) * bx.hypot(by) {
             return Err(Error::HousingNotFree);
         }
-        let by_displacement =
-            [[by / determinant, -bx / determinant], [-ay / determinant, ax / determinant]];
+        let by_displacement = [[by / determinant, -bx / determinant], [-ay / determinant, ax / determinant]];
         Ok(Self { modes: [a, b], by_displacement, centre })
     }
 
@@ -125,41 +116,5 @@ impl Housing {
             tally.spent.damped -= dt * mass_damping * mean * mean;
             *push = ((1.0 + h) * new - (1.0 - h) * v) / dt;
         }
-    }
-}
-
-impl Frame {
-    /// Adds the inertia in this frame to the forces on a group of rollers. Returns the sum of their velocities.
-    #[inline(always)]
-    pub(crate) fn pull(&self, rollers: &Rollers, block: &mut Block) -> [f64; 2] {
-        let [mass, _] = rollers.inertia;
-        [0, 1].map(|c: usize| {
-            let force = -mass * self.acceleration[c];
-            block.downhill[c][..block.count].iter_mut().for_each(|sum| *sum += force);
-            block.velocity[c][..block.count].iter().sum::<f64>()
-        })
-    }
-
-    /// Work of that force in a step of `dt` [s] on rollers with these sums of velocities before it [J].
-    #[inline(always)]
-    pub(crate) fn work(&self, rollers: &Rollers, block: &Block, before: [f64; 2], dt: f64) -> f64 {
-        let [mass, _] = rollers.inertia;
-        let along = |c: usize| {
-            self.acceleration[c] * (before[c] + block.velocity[c][..block.count].iter().sum::<f64>())
-        };
-        -0.5 * dt * mass * (along(0) + along(1))
-    }
-
-    /// Adds the inertia to the forces on a cage.
-    #[inline(always)]
-    pub(crate) fn pull_cage(&self, cage: &Cage, on_cage: &mut [f64; 3]) {
-        on_cage.iter_mut().zip(self.acceleration).for_each(|(force, a)| *force -= cage.mass * a);
-    }
-
-    /// Work of that force on a cage with the velocities `before` and now [J].
-    #[inline(always)]
-    pub(crate) fn work_on_cage(&self, cage: &Cage, before: [f64; 3], now: [f64; 3], dt: f64) -> f64 {
-        let along = |c: usize| self.acceleration[c] * (before[c] + now[c]);
-        -0.5 * dt * cage.mass * (along(0) + along(1))
     }
 }

@@ -2,6 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::{
+    cage::Cage,
+    rollers::{Rollers, block::Block},
+};
+
 /// Displacement of a shaft from the centre of its housing [m] and velocity relative to the ground [m/s], x and
 /// y.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
@@ -86,6 +91,40 @@ impl Frame {
     /// Change of its velocity in the communication step [m/s].
     pub(crate) fn gained(&self) -> [f64; 2] {
         [self.rate[0] - self.rate_before[0], self.rate[1] - self.rate_before[1]]
+    }
+
+    /// Adds the inertia in this frame to the forces on a group of rollers. Returns the sum of their velocities.
+    #[inline(always)]
+    pub(crate) fn pull(&self, rollers: &Rollers, block: &mut Block) -> [f64; 2] {
+        let [mass, _] = rollers.inertia;
+        [0, 1].map(|c: usize| {
+            let force = -mass * self.acceleration[c];
+            block.downhill[c][..block.count].iter_mut().for_each(|sum| *sum += force);
+            block.velocity[c][..block.count].iter().sum::<f64>()
+        })
+    }
+
+    /// Work of that force in a step of `dt` [s] on rollers with these sums of velocities before it [J].
+    #[inline(always)]
+    pub(crate) fn work(&self, rollers: &Rollers, block: &Block, before: [f64; 2], dt: f64) -> f64 {
+        let [mass, _] = rollers.inertia;
+        let along = |c: usize| {
+            self.acceleration[c] * (before[c] + block.velocity[c][..block.count].iter().sum::<f64>())
+        };
+        -0.5 * dt * mass * (along(0) + along(1))
+    }
+
+    /// Adds the inertia to the forces on a cage.
+    #[inline(always)]
+    pub(crate) fn pull_cage(&self, cage: &Cage, on_cage: &mut [f64; 3]) {
+        on_cage.iter_mut().zip(self.acceleration).for_each(|(force, a)| *force -= cage.mass * a);
+    }
+
+    /// Work of that force on a cage with the velocities `before` and now [J].
+    #[inline(always)]
+    pub(crate) fn work_on_cage(&self, cage: &Cage, before: [f64; 3], now: [f64; 3], dt: f64) -> f64 {
+        let along = |c: usize| self.acceleration[c] * (before[c] + now[c]);
+        -0.5 * dt * cage.mass * (along(0) + along(1))
     }
 }
 
