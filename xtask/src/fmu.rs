@@ -91,8 +91,8 @@ fn library() -> Result<PathBuf> {
     let done = cargo.args(["--features", "export"]).status().context("cannot start cargo")?;
     ensure!(
         done.success(),
-        "the library of the FMU cannot be built. Its bindings to FMI are made with libclang: `apt-get install \
-         libclang-dev` on Debian"
+        "the library of the FMU cannot be built. Its bindings to FMI are made with libclang: `apt-get \
+         install libclang-dev` on Debian"
     );
     let name = format!("{}{IDENTIFIER}{}", std::env::consts::DLL_PREFIX, std::env::consts::DLL_SUFFIX);
     Ok(folder.join("release").join(name))

@@ -1,4 +1,4 @@
-//! A bearing between two communication points: what an importer sets, what it reads, and a state to go back to.
+//! A bearing between two communication points: what an importer sets and reads, and a state to go back to.
 
 use std::path::Path;
 

@@ -35,8 +35,8 @@ pub enum Error {
 
     /// The shaft is farther away than a bearing can carry.
     #[error(
-        "the shaft is {um:.1} µm from the centre of its housing: at most {most_um:.0} µm, half the radius of a \
-         roller. Displacements are in metres; a coupled rotor may be unstable, with communication steps that \
+        "the shaft is {um:.1} µm from the centre of its housing: at most {most_um:.0} µm, half the radius of \
+         a roller. Displacements are in metres; a coupled rotor may be unstable, with communication steps that \
          are too long"
     )]
     ShaftTooFar {

@@ -7,8 +7,8 @@ use crate::{
     rollers::{Rollers, block::Block},
 };
 
-/// Displacement of a shaft from the centre of its housing [m] and velocity relative to the ground [m/s], x and
-/// y.
+/// Displacement of a shaft from the centre of its housing [m] and its velocity relative to the ground [m/s],
+/// x and y.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ShaftPoint {
     /// Displacement.
@@ -93,7 +93,8 @@ impl Frame {
         [self.rate[0] - self.rate_before[0], self.rate[1] - self.rate_before[1]]
     }
 
-    /// Adds the inertia in this frame to the forces on a group of rollers. Returns the sum of their velocities.
+    /// Adds the inertia in this frame to the forces on a group of rollers. Returns the sum of their
+    /// velocities.
     #[inline(always)]
     pub(crate) fn pull(&self, rollers: &Rollers, block: &mut Block) -> [f64; 2] {
         let [mass, _] = rollers.inertia;
@@ -136,7 +137,7 @@ mod tests {
         ShaftPoint { displacement: [x, -x], velocity: [vx, -vx] }
     }
 
-    /// x = t³ − 2t² + 3 between t = 1 and 3, which is a cubic itself.
+    /// x = t³ − 2t² + 3 between t = 1 and 3, which is a cubic itself (THEORY §9.7).
     #[test]
     fn analytic_a_cubic_is_its_own_path() {
         let x = |t: f64| t * t * t - 2.0 * t * t + 3.0;

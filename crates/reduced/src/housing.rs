@@ -93,8 +93,8 @@ impl Housing {
     }
 
     /// Replaces the forces on both modes by those that bring the housing to its place beside a shaft that is
-    /// displaced after a step of `dt` [s], and counts their work. Mass damping [1/s] does not act on a housing
-    /// that stands still.
+    /// displaced after a step of `dt` [s], and counts their work. Mass damping [1/s] does not act on a
+    /// housing that stands still.
     #[inline(always)]
     pub(crate) fn push(
         &self,

@@ -161,8 +161,8 @@ fn stored(e: &Energies) -> f64 {
         - e.drive
 }
 
-/// Shaken by some micrometres at 400 Hz, the bearing gains what shaft, inertia and drive put in: the ledger of
-/// the moving frame closes.
+/// Shaken by some micrometres at 400 Hz, the bearing gains what shaft, inertia and drive put in: the ledger
+/// of the moving frame closes.
 #[test]
 fn conserves_energy_on_a_shaken_shaft() {
     // Share of the work that goes in and out; the step's error scales with its square.

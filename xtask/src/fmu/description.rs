@@ -1,4 +1,4 @@
-//! `modelDescription.xml` of an FMU (FMI 3.0, §2.4): its variables, with units, and what its outputs depend on.
+//! `modelDescription.xml` of an FMU (FMI 3.0, §2.4): its variables, with units and causality.
 
 use std::fmt::Write;
 
