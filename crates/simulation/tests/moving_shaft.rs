@@ -61,8 +61,8 @@ fn under_load(scene: &Scene, parts: &OnShaft, folder: &Scratch) -> [f64; 2] {
 /// Source: the same bearing under that load, at the equilibrium that its runs start from (THEORY §9.5).
 #[test]
 fn analytic_a_displaced_shaft_has_the_load_of_its_displacement() {
-    // Two steps after the start at equilibrium, the rollers a thousandth of a pitch further.
-    const TOLERANCE: f64 = 1e-3;
+    // On springs the ring takes its share of the mass, a four-hundredth, of the force that holds both.
+    const TOLERANCE: f64 = 2e-3;
     for (name, housing) in [("rigid", RIGID), ("springs", SPRINGS)] {
         let folder = Scratch::create(&format!("shaft-static-{name}"));
         let scene = sound(housing);
@@ -81,7 +81,8 @@ fn analytic_a_displaced_shaft_has_the_load_of_its_displacement() {
 }
 
 /// A rotor of 10 kg on the bearing, damped, comes to rest where the load displaces the housing the other way.
-/// Source: as above. Rings stand still, because the place varies by a micrometre as the cage turns on.
+/// Source: as above. Rings stand still, because the place varies by a micrometre as the cage turns on, and
+/// friction holds the rollers, which eccentric rings squeeze out of the load zone otherwise.
 #[test]
 fn analytic_a_rotor_settles_where_the_load_displaces_the_housing() {
     const TOLERANCE: f64 = 1e-3;
@@ -90,6 +91,7 @@ fn analytic_a_rotor_settles_where_the_load_displaces_the_housing() {
     let folder = Scratch::create("shaft-rotor");
     let mut scene = sound(RIGID);
     scene.operation.speed_rpm = 0.0;
+    scene.contact.friction = 0.1;
     let parts = parts(&scene, &folder);
     let [x, y] = under_load(&scene, &parts, &folder);
     let (s, c) = 240.0_f64.to_radians().sin_cos();
@@ -110,9 +112,8 @@ fn analytic_a_rotor_settles_where_the_load_displaces_the_housing() {
         force = bearing.force().last;
     }
     println!("shaft at {:?} µm after {:.1} ms", u.map(|u| 1e6 * u), 1e3 * bearing.motion().time());
-    for (axis, got, want) in [("x", u[0], -x), ("y", u[1], -y)] {
-        let what = format!("place of a rotor at rest along {axis}");
-        compare(&what, "the same bearing under the load", "m", got, want, TOLERANCE);
+    for (got, want) in [(u[0], -x), (u[1], -y)] {
+        assert!((got / want - 1.0).abs() < TOLERANCE, "{got:e} {want:e}");
     }
 }
 
@@ -165,8 +166,8 @@ fn stored(e: &Energies) -> f64 {
 /// of the moving frame closes.
 #[test]
 fn conserves_energy_on_a_shaken_shaft() {
-    // Share of the work that goes in and out; the step's error scales with its square.
-    const OFF: f64 = 2e-3;
+    // Share of the work that goes in and out: the error of steps of half a microsecond.
+    const OFF: f64 = 2e-4;
     for (name, housing) in [("rigid", RIGID), ("springs", SPRINGS)] {
         let folder = Scratch::create(&format!("shaft-energy-{name}"));
         let mut scene = sound(housing);
