@@ -56,6 +56,10 @@ pub(crate) fn build(options: &Options) -> Result<ExitCode> {
         "`model` is full, and an FMU holds the reduced bearing: take --set 'model=reduced()'"
     );
     let out = options.out.clone().unwrap_or_else(|| PathBuf::from(format!("{}.fmu", scene.name)));
+    let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+    if let Some(folder) = folder {
+        ensure!(folder.is_dir(), "there is no folder `{}` for the FMU", folder.display());
+    }
     println!("modes of {} …", scene.name);
     let bearing = on_shaft(&scene.resolve(), Some(&place.runs()))?;
     try_it(&bearing)?;
