@@ -54,6 +54,8 @@ pub(crate) struct Frame {
     rate_before: [f64; 2],
     /// Acceleration in this step [m/s²].
     pub(crate) acceleration: [f64; 2],
+    /// Force of the inner raceway on all rollers in the last two steps [N], the last one first.
+    forces: Option<[[f64; 2]; 2]>,
 }
 
 impl Frame {
@@ -86,6 +88,24 @@ impl Frame {
         self.acceleration = [0, 1].map(|c: usize| (rate[c] - self.rate[c]) / dt);
         (self.displacement, self.rate) = (next, rate);
         next
+    }
+
+    /// Keeps the force of the inner raceway on all rollers in this step.
+    #[inline(always)]
+    pub(crate) fn keep(&mut self, blocks: &[Block]) {
+        let now = [0, 1].map(|c: usize| {
+            blocks.iter().map(|block| block.force[1][c][..block.count].iter().sum::<f64>()).sum()
+        });
+        let before = self.forces.map_or(now, |[last, _]| last);
+        self.forces = Some([now, before]);
+    }
+
+    /// Force on the shaft at the communication point [N]: a step of `dt` [s] has the forces of the positions
+    /// before it, which are extrapolated from its last two, because a force that is late drives a rotor.
+    pub(crate) fn force(&self, dt: f64) -> [f64; 2] {
+        let Some([last, before]) = self.forces else { return [0.0; 2] };
+        let late = 1.0 + (self.segment.length - self.elapsed) / dt;
+        [0, 1].map(|c: usize| -last[c] - late * (last[c] - before[c]))
     }
 
     /// Change of its velocity in the communication step [m/s].

@@ -17,7 +17,6 @@ use crate::{
     frame::Frame,
     housing::Housing,
     motion::{BearingInMotion, Energies, Saved},
-    rollers::block::Block,
     start::Solve,
     state::State,
 };
@@ -56,7 +55,7 @@ pub struct SavedOnShaft {
 /// Force of the bearing on its shaft [N], x and y: of the inner raceway, by contact and oil.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ShaftForce {
-    /// In the last step.
+    /// At the end of the communication step, extrapolated from the last two steps.
     pub last: [f64; 2],
     /// Mean over the communication step.
     pub mean: [f64; 2],
@@ -118,16 +117,15 @@ impl BearingOnShaft {
 
     /// Force of the bearing on the shaft.
     pub fn force(&self) -> ShaftForce {
-        let scratch = &self.motion.scratch;
-        let sum = |of: &dyn Fn(&Block) -> [f64; 2]| {
-            scratch.blocks.iter().map(of).fold([0.0; 2], |[x, y], [bx, by]| [x - bx, y - by])
-        };
-        let of_all = |block: &Block, rows: &crate::row::Rows| -> [f64; 2] {
-            [0, 1].map(|c: usize| rows[c][..block.count].iter().sum())
-        };
+        let (scratch, dt) = (&self.motion.scratch, self.motion.bearing.time_step);
         let steps = scratch.summed.max(1) as f64;
-        let mean = sum(&|block| of_all(block, &block.sums[1]));
-        ShaftForce { last: sum(&|block| of_all(block, &block.force[1])), mean: mean.map(|sum| sum / steps) }
+        let sum = |c: usize| -> f64 {
+            scratch.blocks.iter().map(|block| block.sums[1][c][..block.count].iter().sum::<f64>()).sum()
+        };
+        ShaftForce {
+            last: scratch.frame.as_ref().map_or([0.0; 2], |frame| frame.force(dt)),
+            mean: [0, 1].map(|c: usize| -sum(c) / steps),
+        }
     }
 
     /// Mean acceleration of a sensor over the last communication step, relative to the ground [m/s²].

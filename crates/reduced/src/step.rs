@@ -64,6 +64,9 @@ impl Bearing {
         let shaft = scratch.frame.as_mut().map(|frame| frame.advance(dt));
         self.settle_seat(simd, state, scratch, &mut tally);
         let mut on_cage = self.advance_rollers(simd, state, scratch, &drive, &mut tally);
+        if let Some(frame) = &mut scratch.frame {
+            frame.keep(&scratch.blocks);
+        }
         if let (Some(housing), Some(shaft)) = (&self.housing, shaft) {
             let damping = self.structure.mass_damping;
             housing.push(dt, damping, shaft, state, &mut scratch.modes, &mut tally);
