@@ -183,7 +183,8 @@ fn halve(
     let Standing { band, comb, .. } = standing.as_ref().filter(|_| family.name != Defect::Bsf)?;
     let half = comb_at_half(comb, &whitened[*band].1, own)?;
     family.reason = Reason::Decided(format!(
-        "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements pass",
+        "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
+         pass",
         half.hz
     ));
     Some(half)
