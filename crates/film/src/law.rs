@@ -182,8 +182,8 @@ impl<S: Spring> FilmLaw<S> {
     }
 }
 
-/// End of the film whose force `lift` · G [N] presses the springs in by `room` less its opening `opened` · q
-/// [m]. `None` when no film can follow.
+/// Thickness at the end of the step of a film whose force `lift` · G [N] compresses the springs by `room`
+/// less its opening `opened` · q [m]. `None` when no film can follow.
 fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, FilmForce)> {
     let need = |c: f64| {
         let film: FilmForce = FilmForce::until(c);

@@ -152,7 +152,7 @@ fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
     });
     let fractions = fractions.count();
     let alone = || {
-        // A single column has no neighbours that would tell: signs of numbers alone, and no date.
+        // A single column has no neighbours to compare with: characters of numbers alone, and no date.
         let signs = fields[0].chars().all(|c| c.is_ascii_digit() || ".,+-eE".contains(c));
         signs && fields[0].len() > 4 && dialect.field(fields[0]) == Field::Text
     };
@@ -172,8 +172,8 @@ fn columns_of_numbers(row: &str, dialect: Dialect) -> Vec<usize> {
 }
 
 /// Whether a line above the table is a row of it with words beside: it has numbers, one with a fraction at
-/// least, where the rows below have theirs. Oscilloscopes write what they say of a record beside its first
-/// samples.
+/// least, where the rows below have theirs. Oscilloscopes write their settings beside the first samples of
+/// a record.
 fn is_row_beside_words(line: &str, dialect: Dialect, columns: usize, numbers: &[usize]) -> bool {
     let fields = dialect.split(line);
     let of = |at: &usize| fields.get(*at).copied().unwrap_or_default();

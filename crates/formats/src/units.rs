@@ -22,7 +22,7 @@ const TIMES: [(&str, f64, &[&str]); 7] = [
             "millis",
         ],
     ),
-    // The second is the micro sign, the third the Greek letter, the fourth what is left of one in another
+    // The second is the micro sign, the third the Greek letter, the fourth the remains of one in another
     // encoding.
     (
         "us",

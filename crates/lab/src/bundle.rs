@@ -38,7 +38,7 @@ const BETWEEN_SENSORS_DEG: usize = 15;
 const CHECKED_S: f64 = 0.01;
 const CHECKS: usize = 100;
 
-/// Of these, so many are the beginning of a stretch that the page steps from the program's own state.
+/// Number of these at which the page restarts from the program's own state.
 const STATES: usize = 10;
 
 /// Data of a scene in the page.

@@ -31,7 +31,7 @@ const TOOLS: &str = r#"
     if (!what()) throw new Error(`in vain: ${what}; the page says “${document.getElementById("trouble").textContent}”`);
   };
   const set = (id, value) => { const field = document.getElementById(id); field.value = value; field.dispatchEvent(new Event("change")); };
-  // What is saved and what is played is kept here.
+  // Saved files and played sounds are kept here.
   const saved = [], played = [], urlOf = URL.createObjectURL.bind(URL);
   URL.createObjectURL = (blob) => { saved.push(blob); return urlOf(blob); };
   HTMLAnchorElement.prototype.click = () => {};
@@ -171,7 +171,7 @@ fn example_presets_are_links_and_arcs_take_the_tone_away() {
     assert!(number(&said, "arcs") < 0.3 * number(&said, "facets"), "{said}");
 }
 
-/// Every control has a name for who cannot see it, arrow keys do what a mouse does, numbers that are none are
+/// Every control has a name for screen readers, arrow keys do what a mouse does, text that is no number is
 /// refused, and a phone shows the page without scrolling sideways.
 #[test]
 fn example_a_phone_has_room_and_controls_have_names() {
@@ -263,7 +263,7 @@ fn refuses_a_browser_without_vectors() {
     assert!(said.as_str().is_some_and(|words| words.contains("no vectors in WebAssembly (SIMD)")), "{said}");
 }
 
-/// A run that goes wrong stops with the words of the program, and starts anew from handles that are right.
+/// A diverging run stops with the program's message, and restarts from valid handles.
 #[test]
 fn refuses_to_go_on_with_a_run_that_goes_wrong() {
     let Some((browser, module)) = tools() else { return };

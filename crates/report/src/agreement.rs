@@ -84,7 +84,7 @@ fn table(agreement: &Agreement) -> Markup {
                     td { (format!("{:+.3} {}", row.difference.mean, row.scale.unit())) @if row.over_bands() { ", mean of the bands" } }
                     td { (interval(row)) }
                     td { (format!("{} {}", row.limit, row.scale.unit())) }
-                    td { @if row.told && !row.within { strong { "no" } } @else { (row.verdict(agreement.starts)) } }
+                    td { @if row.decided && !row.within { strong { "no" } } @else { (row.verdict(agreement.starts)) } }
                 }
             }
         }

@@ -54,7 +54,7 @@ enum Kept {
     Numbers,
 }
 
-/// The first words of a file that this command wrote, which it may write anew.
+/// The first words of a file that this command wrote, which it may replace.
 const WRITTEN_BY: &str = "// Written by `stribeck sweep`";
 
 /// Most runs of a sweep; a campaign may have more.

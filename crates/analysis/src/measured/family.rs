@@ -156,7 +156,7 @@ impl Family {
         if self.p_value < 1e-9 { "< 1e-9".to_owned() } else { format!("{:.1e}", self.p_value) }
     }
 
-    /// Whether it is more than noise and as deep as knocks, whoever makes them.
+    /// Whether it is more than noise and modulated as deeply as by knocks, whatever their cause.
     pub(super) fn knocks(&self) -> bool {
         self.noise_p_value < ALPHA && self.depth.is_some_and(|depth| depth >= KNOCK)
     }
