@@ -15,6 +15,7 @@ use stribeck_scene::{
     advice,
     housing::HousingScene,
     kinematics::Kinematics,
+    load_rating::is_ball_bearing,
     lubrication::loaded_films,
     resolved::ResolvedScene,
     scene::{
@@ -284,6 +285,7 @@ fn facts(
         "name": scene.name,
         "title": title,
         "rollers": resolved.rollers,
+        "balls": is_ball_bearing(scene),
         "outer": resolved.outer_race_radius, "outerThickness": resolved.outer_ring_thickness,
         "inner": resolved.inner_race_radius, "innerThickness": resolved.inner_ring_thickness,
         "roller": resolved.roller_radius, "width": resolved.thickness, "clearance": resolved.clearance,
@@ -323,7 +325,7 @@ fn fixed(scene: &Scene) -> Value {
     };
     json!([
         [
-            "Rollers",
+            if is_ball_bearing(scene) { "Balls" } else { "Rollers" },
             format!("{} of {} mm", bearing.rollers, bearing.roller_diameter_mm),
             "bearing.rollers=20"
         ],

@@ -310,7 +310,8 @@ fn example_a_page_with_three_bearings_goes_from_one_to_another() {
         set("bearing", n);
         await until(() => lab.opened === n && lab.picture && lab.picture.time > 0.02 && lab.record.count > 100);
         seen.push({ n, title: lab.facts.title, rollers: lab.picture.rollers.length, load: lab.handles.load,
-          largest: Math.max(...lab.picture.rollers.map((r) => r.outer)), lead: text("lead"), running: lab.running });
+          largest: Math.max(...lab.picture.rollers.map((r) => r.outer)), lead: text("lead"), running: lab.running,
+          watched: document.getElementById("roller").parentElement.textContent.trim(), force: text("force-name") });
       }
       // From one to the next before the first is there.
       set("bearing", 0); set("bearing", 1); set("bearing", 2);
@@ -332,6 +333,10 @@ fn example_a_page_with_three_bearings_goes_from_one_to_another() {
             "{seen}"
         );
         assert_eq!(seen["running"], true);
+        // A 6205 has balls.
+        let element = if n == 2 { "ball" } else { "roller" };
+        let words = [&seen["watched"], &seen["force"], &seen["lead"]].map(|text| text.as_str().unwrap_or(""));
+        assert!(words[0] == element && words.iter().all(|text| text.contains(element)), "{seen}");
     }
     assert_eq!(number(&said, "last"), rollers[2]);
 }

@@ -36,6 +36,8 @@ mod sound;
 
 mod answer;
 mod course;
+mod element_words;
+mod field_words;
 mod figures;
 mod kurtogram;
 mod moving;

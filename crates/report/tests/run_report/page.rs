@@ -179,3 +179,26 @@ fn invariant_the_same_directory_gives_the_same_bytes() {
     report::write(&folder.0).expect("a second report");
     assert!(first == read(&folder.0, "report.html"), "the page changed");
 }
+
+/// A 6205 has balls, and its page and pictures call them so; names of channels and fields stay.
+#[test]
+fn issue_the_page_of_a_ball_bearing_speaks_of_balls() {
+    let folder = Scratch::new("balls");
+    let scene = Scene::parse("(bearing: \"6205\", model: full)", "here").expect("a bearing of the catalogue");
+    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
+    report::write(&folder.0).expect("a report");
+    let page = read(&folder.0, "report.html");
+    let text = page.split("<pre>").next().expect("what is before the scene");
+    for words in ["9 balls, modelled as cylinders,", "Largest ball force", ">Ball</th>"] {
+        assert!(text.contains(words), "{words}");
+    }
+    // What is left are names: of channels, fields, figures and their parts.
+    let odd = ["a roller ", "rollers ", " roller 1", "Rollers", "the roller", ">Roller"];
+    for words in odd {
+        let found = text.find(words).map(|at| text[at.saturating_sub(60)..].chars().take(140).collect::<String>());
+        assert_eq!(found, None, "{words}");
+    }
+    let picture = read(&folder.0, "figures/spin.svg");
+    assert!(picture.contains("balls") && !picture.contains("rollers"), "the picture's words");
+    assert!(page.contains("roller_diameter_mm"), "the scene keeps its fields");
+}
