@@ -327,7 +327,7 @@ fn finding(
             let names: Vec<String> = others.iter().map(|&other| cases[other].spoken()).collect();
             finding.not_told_apart_from = others.iter().map(|&other| cases[other].name.to_owned()).collect();
             format!(
-                "not told apart from {}: a comb is there, and this record does not say whose",
+                "not distinguishable from {}: a comb is there, and this record does not show whose",
                 names.join(" and ")
             )
         }

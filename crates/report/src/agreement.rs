@@ -65,7 +65,7 @@ fn verdict(agreement: &Agreement) -> String {
     let (all, open) = (agreement.rows.len(), agreement.open().count());
     let cannot = match open {
         0 => String::new(),
-        _ => format!(" Of {open} so many starts cannot tell: there chance may be larger than the limit."),
+        _ => format!(" For {open} there are too few starts: the scatter may be larger than the limit."),
     };
     match failures.len() {
         0 if open == 0 => format!("All {all} quantities are within their limits."),

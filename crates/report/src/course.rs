@@ -91,8 +91,8 @@ pub(super) fn order_map(
         picture.sheet.text([right, y - 4.0], 12.0, Anchor::End, INK, &words);
     }
     picture.caption =
-        "What knocks so many times a turn stands at its order as a horizontal line, whatever the \
-                       speed; what keeps its frequency slants."
+        "A source that knocks n times a turn is a horizontal line at order n, whatever the speed; one with a \
+         fixed frequency slants."
             .into();
     picture.note = format!(
         "Squared envelope of {:.0} to {:.0} Hz, averaged over equal steps of the shaft's angle; in dB re 1 \

@@ -64,7 +64,7 @@ fn joint_page(joint: &Joint, entries: &[TrendEntry]) -> Markup {
                 h1 { (title) }
                 p class="lead" { (joint.verdict) }
                 @for note in &joint.notes { p class="hint" { (note) } }
-                h2 #shares { "What each channel hears" }
+                h2 #shares { "Share of each channel" }
                 div class="scroll" { (families_by_channel(joint)) }
                 p class="hint" {
                     "The part of each channel in the power that swings with a family, and the height of the \

@@ -182,7 +182,7 @@ impl Guards {
             info.warnings.push(format!(
                 "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a \
                  real one would rub on a ring, \
-                 which the model does not know. To hold it, take {}",
+                 which the model does not have. To hold it, take {}",
                 1e3 * off,
                 room.in_words(),
                 self.holds_cage

@@ -156,7 +156,7 @@ fn example_two_combs_of_one_motion_are_not_distinguished() {
     for (one, other) in [(0, 1), (1, 0)] {
         assert_eq!(families[one].not_told_apart_from, [twins[other].0]);
         assert!(families[one].carrier_hz.is_some() && !families[one].lines.is_empty());
-        assert!(families[one].verdict.starts_with("not told apart"), "{families:#?}");
+        assert!(families[one].verdict.starts_with("not distinguishable"), "{families:#?}");
     }
     assert!(families[2].carrier_hz.is_none() && families[2].not_told_apart_from.is_empty(), "{families:#?}");
 }

@@ -47,7 +47,7 @@ pub(super) fn share_out(families: &mut [Family], resolution_hz: f64, modulated: 
         });
         let Some(other) = other else { continue };
         let why = if cannot_be(&families[at]) {
-            "and no turn of the cage is heard in them, as it is where a spot on a rolling element comes \
+            "and they are not modulated by the cage, as it is where a spot on a rolling element comes \
              under the load"
         } else {
             "which are nearer to their place"

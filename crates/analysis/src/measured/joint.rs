@@ -195,7 +195,7 @@ fn conclude(families: &[JointFamily], channels: &[(String, &Analysis)]) -> Strin
         return format!("The {} channels together show {}.", channels.len(), claimed.join(" and "));
     }
     let single = families.iter().any(|f| f.channels.iter().any(|evidence| evidence.claimed));
-    let one = "one channel claims a defect by itself, which so many channels make more likely by chance";
+    let one = "one channel claims a defect by itself, which several channels make more likely by chance";
     let none = "none claims one by itself";
     format!("The {} channels together show no defect: {}.", channels.len(), if single { one } else { none })
 }

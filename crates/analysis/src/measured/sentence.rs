@@ -56,7 +56,7 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     let highest = families.iter().filter(|f| f.knocks()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
     if let Some(highest) = highest {
         return format!(
-            "The record knocks, and does not say where: {} stands highest, but unrelated combs stand as \
+            "The record has knocks, and does not show where: {} stands highest, but unrelated combs stand as \
              high. A longer record, or one \
              nearer to the bearing, may tell.",
             highest.name
@@ -75,7 +75,7 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
         verdict += &format!(" {} can be seen, without knocks: watch the trend.", weak.join(" and "));
     }
     if !unheard.is_empty() {
-        verdict += &format!(" It cannot speak of {}.", unheard.join(" and "));
+        verdict += &format!(" It does not decide about {}.", unheard.join(" and "));
     }
     verdict
 }

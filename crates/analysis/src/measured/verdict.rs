@@ -205,7 +205,7 @@ fn take_skidding(
     let place_hz = family.name.shocks_per_period() * family.expected_hz;
     format!(
         "{} stands {:+.1} % from its place, farther than rolling without slip allows: beside the speed that \
-         the lines of the shaft tell, the cage skids, as it does under little load",
+         the lines of the shaft give, the cage skids, as it does under little load",
         family.name,
         100.0 * (comb_hz / place_hz - 1.0)
     )

@@ -471,7 +471,7 @@ impl<'a> Checked<'a> {
             return None;
         }
         let message = format!(
-            "`film` is there, and `defects[{}]` lies on {}: oil knows round rollers, and raceways that slope \
+            "`film` is there, and `defects[{}]` lies on {}: oil needs round rollers, and raceways that slope \
              by {:.0}° at most \
              without kinks, but for walls at right angles{}",
             self.index,

@@ -99,7 +99,7 @@ fn oiled_edges(scene: &Scene) -> Option<Finding> {
         return None;
     }
     let message = format!(
-        "`film` is there, and the edges of `defect` slope by {}°: oil knows edges of {least}° or more on \
+        "`film` is there, and the edges of `defect` slope by {}°: oil needs edges of {least}° or more on \
          facets of {} mm",
         number(defect.edge_slope_deg),
         number(facet)
@@ -115,7 +115,7 @@ fn reduced_starts(scene: &Scene) -> Option<Finding> {
         return None;
     }
     let message =
-        "`solver.start` is `sudden`, and the reduced model knows small motions about the preload alone"
+        "`solver.start` is `sudden`, and the reduced model has small motions about the preload only"
             .to_owned();
     Some(Finding::new(
         message,

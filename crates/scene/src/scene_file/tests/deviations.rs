@@ -129,7 +129,7 @@ fn refuses_a_defect_beside_a_groove_and_in_oil() {
     assert!(parse("(film: None, defects: [(on: inner, form: dent())])").is_ok());
     let oil =
         only(parse("(defect: None, defects: [(on: roller(2), form: dent(length_mm: 4, depth_mm: 0.02))])"));
-    assert!(oil.message.contains("oil knows round rollers"), "{oil}");
+    assert!(oil.message.contains("oil needs round rollers"), "{oil}");
     assert_eq!(oil.repair.as_deref(), Some("film=None"));
 }
 
