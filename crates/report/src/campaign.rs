@@ -283,7 +283,11 @@ fn means(name: &str, colour: Colour, x: &[f64], y: &[f64]) -> Option<Series> {
         places.push(all[0]);
         means.push(y[from..from + all.len()].iter().sum::<f64>() / all.len() as f64);
     }
-    let name = if places.len() < x.len() { format!("{name}, mean") } else { format!("{name}, line through the dots") };
+    let name = if places.len() < x.len() {
+        format!("{name}, mean")
+    } else {
+        format!("{name}, line through the dots")
+    };
     (places.len() > 1).then(|| Series::listed(&name, colour, places, means))
 }
 

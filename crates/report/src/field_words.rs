@@ -79,7 +79,9 @@ impl FieldWords {
         let (group, name) = field.rsplit_once('.').unwrap_or(("", field));
         let (stem, unit) = UNITS
             .iter()
-            .find_map(|(end, unit)| Some((name.strip_suffix(end)?, *unit)).filter(|(stem, _)| !stem.is_empty()))
+            .find_map(|(end, unit)| {
+                Some((name.strip_suffix(end)?, *unit)).filter(|(stem, _)| !stem.is_empty())
+            })
             .unwrap_or((name, ""));
         if let Some((_, words)) = KNOWN.iter().find(|(path, _)| *path == field) {
             return Self { words: (*words).to_owned(), unit };

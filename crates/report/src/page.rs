@@ -10,8 +10,8 @@ use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
 use crate::Error;
-use crate::figures::Item;
 use crate::element_words::ElementWords;
+use crate::figures::Item;
 use crate::plot;
 
 /// Writes every figure, on all cores.

@@ -17,7 +17,7 @@ use stribeck_dsp::{BandEnvelope, Whitened};
 use stribeck_scene::catalogue::DefectOrders;
 
 use super::controls::{controls, part_as_high, rank};
-use super::decision::{claimed_first, decide, first, share_out, name_the_element};
+use super::decision::{claimed_first, decide, first, name_the_element, share_out};
 use super::family::Family;
 use super::limits::{ALPHA, decibel};
 use super::machine_lines::OwnLines;

@@ -2,10 +2,10 @@
 
 use std::fs;
 
+use stribeck_report as report;
 use stribeck_scene::housing::{HousingScene, RigidHousingScene};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ContactSurface, Scene};
-use stribeck_report as report;
 
 use crate::synthetic::{self, Scratch};
 use crate::{SAMPLES, read, whole};
@@ -195,7 +195,8 @@ fn issue_the_page_of_a_ball_bearing_speaks_of_balls() {
     // What is left are names: of channels, fields, figures and their parts.
     let odd = ["a roller ", "rollers ", " roller 1", "Rollers", "the roller", ">Roller"];
     for words in odd {
-        let found = text.find(words).map(|at| text[at.saturating_sub(60)..].chars().take(140).collect::<String>());
+        let found =
+            text.find(words).map(|at| text[at.saturating_sub(60)..].chars().take(140).collect::<String>());
         assert_eq!(found, None, "{words}");
     }
     let picture = read(&folder.0, "figures/spin.svg");

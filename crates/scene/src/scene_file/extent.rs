@@ -225,4 +225,3 @@ fn too_many_samples(scene: &Scene) -> Option<Finding> {
         ],
     ))
 }
-

@@ -70,7 +70,8 @@ pub(super) fn table(sheet: &mut Sheet, ends: &[Ends<'_>], told: &[Option<JointVe
             .filter(|((r, _), _)| r.part == part)
             .filter_map(|(r, t)| Some((r, t.as_ref()?)))
             .collect();
-        let count = |asked: &dyn Fn(&Ends<'_>, &JointVerdict) -> bool| of.iter().filter(|(r, t)| asked(r, t)).count();
+        let count =
+            |asked: &dyn Fn(&Ends<'_>, &JointVerdict) -> bool| of.iter().filter(|(r, t)| asked(r, t)).count();
         let counts = [
             of.len(),
             count(&|_, t| t.alone),
