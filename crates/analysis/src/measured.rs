@@ -420,8 +420,8 @@ fn found_speed(
         )
     } else {
         format!(
-            "the record does not determine the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain about \
-             as much of it"
+            "the record does not determine the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain \
+             about as much of it"
         )
     });
     found.is_accepted.then_some(found)

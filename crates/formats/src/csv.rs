@@ -21,6 +21,7 @@ pub(crate) use lines::is_wide;
 use lines::{Coding, Lines};
 
 use crate::recording::{equal_lengths, left_out};
+use crate::units;
 use crate::{Channel, Error, Recording, Result};
 
 /// Lines before the first row of numbers, at most.
@@ -123,8 +124,8 @@ pub fn open(path: &Path) -> Result<Recording> {
         let column = Column { path: path.to_owned(), at, preamble: first as u64, dialect, coding, origin_s };
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
         let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
-        let channel = Channel::text(name, rows, column).at_rate(rate_hz);
-        channels.push(channel.in_unit(unit.filter(|unit| !unit.is_empty())));
+        let unit = unit.filter(|unit| !unit.is_empty()).or_else(|| units::in_brackets(&name));
+        channels.push(Channel::text(name, rows, column).at_rate(rate_hz).in_unit(unit));
     }
     Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
 }

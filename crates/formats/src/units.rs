@@ -136,6 +136,15 @@ pub(crate) fn seconds(unit: &str) -> Option<(&'static str, f64)> {
     of.map(|(name, seconds, _)| (*name, *seconds))
 }
 
+/// The unit at the end of a name, `acc [g]`, where it is a known one.
+pub(crate) fn in_brackets(name: &str) -> Option<String> {
+    let within = name.trim_end().strip_suffix([']', ')'])?;
+    let unit = within.rsplit_once(['[', '('])?.1.trim();
+    // A number in brackets counts channels.
+    let is_symbol = unit.contains(|c: char| c.is_alphabetic() || "°%".contains(c));
+    (is_symbol && is_unit(unit)).then(|| unit.to_owned())
+}
+
 /// Whether a field of a table is a unit: one of the lists, one in brackets, a fraction or a power of some.
 pub(crate) fn is_unit(field: &str) -> bool {
     let bracketed = field.len() > 2 && field.starts_with(['[', '(']) && field.ends_with([']', ')']);

@@ -57,7 +57,7 @@ const QUANTITIES: [(&str, &str, &str); 12] = [
     ("diagnosis.ftf_level_db", "Level of FTF", "dB"),
     ("levels.exit_g", "Peak at exits from the defect", "g"),
     ("levels.gap_rms_g", "Root mean square between passages", "g"),
-    ("load.max_roller_n", "Largest force on a roller", "N"),
+    ("load.max_roller_n", "Largest force on a rolling element", "N"),
     ("kinematics.cage_hz", "Cage", "Hz"),
     ("energy.heat_j", "Heat of friction and damping", "J"),
 ];

@@ -121,7 +121,7 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
         largest.sort_by(|a, b| b.0.total_cmp(&a.0));
         let named = largest.iter().take(NAMED).map(|(_, row)| row_in_words(row));
         format!(
-            "Largest differences: {}. Each is a single signal, so change and scatter cannot be distinguished.",
+            "Largest differences: {}. Each is a single signal, so change and scatter are not distinguished.",
             named.collect::<Vec<_>>().join("; ")
         )
     } else if differ.is_empty() {

@@ -1,8 +1,8 @@
 //! Pages of a ball bearing call its rolling elements balls.
 //!
-//! The texts of all pages are written for rollers. This pass goes over a finished page or drawing and replaces
-//! the word where people read it: in text, in names for screen readers, and in the labels of charts. Code,
-//! scenes, scripts, channels such as `roller_1` and the keys of data stay as they are.
+//! The texts of all pages are written for rollers. This pass goes over a finished page or drawing and
+//! replaces the word where people read it: in text, in names for screen readers, and in the labels of charts.
+//! Code, scenes, scripts, channels such as `roller_1` and the keys of data stay as they are.
 
 use stribeck_scene::load_rating::is_ball_bearing;
 use stribeck_scene::scene::Scene;

@@ -80,7 +80,13 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     verdict
 }
 
-/// A probability in words: one that is 1 says no more than that.
+/// A probability in words.
 pub(super) fn probability(p: f64) -> String {
-    if p >= 0.1 { format!("{p:.1}") } else { format!("{p:.3}") }
+    if p >= 0.95 {
+        "nearly 1".to_owned()
+    } else if p >= 0.1 {
+        format!("{p:.1}")
+    } else {
+        format!("{p:.3}")
+    }
 }

@@ -1,5 +1,6 @@
 //! Arrays of MATLAB 4 and 5 and of NumPy: their shapes, and both byte orders.
 
+use stribeck_formats::Recording;
 use stribeck_testing::Scratch;
 
 use crate::{COUNT, RATE_HZ, holds, notes, opened, signal};

@@ -5,7 +5,7 @@ use stribeck_mesh::decks::Deck;
 use crate::{NODES, check};
 
 /// Nodes and elements of an LS-DYNA file in columns of these widths.
-fn k(keyword: &str, node: &str, shell: &str, widths: [usize; 3]) -> String {
+pub(crate) fn k(keyword: &str, node: &str, shell: &str, widths: [usize; 3]) -> String {
     let [n, c, e] = widths;
     let mut text = format!(
         "{keyword}\n$ comment\n*PART\nsteel\n{:>2$}{:>2$}\n*NODE{node}\n",
@@ -31,7 +31,7 @@ fn k(keyword: &str, node: &str, shell: &str, widths: [usize; 3]) -> String {
     text
 }
 
-fn k_sets(width: usize) -> String {
+pub(crate) fn k_sets(width: usize) -> String {
     let mut text = String::new();
     for (number, title, nodes) in [(1, "raceway", [1, 2, 3]), (2, "fit", [4, 5, 6])] {
         text += &format!("*SET_NODE_LIST_TITLE\n{title}\n{number:>width$}\n");

@@ -16,6 +16,7 @@ mod ls_dyna;
 
 use std::process::Command;
 
+use ls_dyna::{k, k_sets};
 use stribeck_mesh::decks::{Deck, ReadDeck, included};
 use stribeck_testing::{Scratch, peer::python_with, said};
 
