@@ -39,6 +39,7 @@ mod element_rhythm;
 mod enhanced;
 pub mod evidence;
 mod family;
+mod halved;
 mod halves;
 pub mod joint;
 mod length;
@@ -77,7 +78,7 @@ pub use enhanced::Enhanced;
 pub use family::{Family, Reason};
 pub(crate) use length::{LONGEST, SHORTEST_S};
 use pass::Pass;
-pub use pressed::usual_load_n;
+pub use pressed::{Pressed, usual_load_n};
 pub use screening::Health;
 pub(crate) use sidebands::sidebands_seen;
 pub use unexplained::Unexplained;
@@ -103,6 +104,9 @@ pub struct Machine {
     /// Compliance of the outer ring and its housing at the loaded place, least and most [µm/kN]; `None` for a
     /// rigid one.
     pub housing_um_per_kn: Option<(f64, f64)>,
+    /// How far an element is pressed together over a spall, by simulation; `None` to compute it for rigid
+    /// rings from load, clearance and compliance.
+    pub pressed: Option<Pressed>,
     /// Other shafts, gears and bearings.
     pub around: sources::Surroundings,
 }

@@ -165,6 +165,9 @@ pub struct Event {
     pub entry_ms: Option<f64>,
     /// Re-stressing read from the force [ms].
     pub exit_ms: Option<f64>,
+    /// Time between the two [ms].
+    #[serde(default)]
+    pub free_ms: Option<f64>,
     /// Centre over the leading edge without slip [ms].
     pub expected_entry_ms: f64,
     /// Centre over the trailing edge without slip [ms].

@@ -181,6 +181,24 @@ fn issue_a_comb_that_is_no_family_is_named_and_nothing_weaker_is_claimed() {
     assert!((other.order - 4.3).abs() < 0.01 && findings.verdict.contains("times the shaft, which is no"));
 }
 
+/// What knocks half as often as elements pass has lines where the outer raceway has its own. Elements of
+/// which every second one knocks a third more are still the raceway’s.
+#[test]
+fn issue_a_comb_at_half_the_frequency_of_a_raceway_is_not_the_raceway() {
+    let passing_hz = 3.585 * 20.0;
+    let with_noise = |knocks: Vec<f64>| {
+        let sum = knocks.iter().zip(coloured(5, SAMPLES)).map(|(x, noise)| x + noise).collect();
+        analysed(sum, 1200.0)
+    };
+    let half = with_noise(knocks(0.5 * passing_hz, SAMPLES, |_| 1.0));
+    assert!(claimed(&half).is_empty(), "{half:#?}");
+    let other = half.unexplained.unwrap_or_else(|| panic!("no comb: {}", half.verdict));
+    assert!((other.hz / (0.5 * passing_hz) - 1.0).abs() < 2e-3, "{other:?}");
+    let each = |at: f64| if (at * passing_hz).round() % 2.0 < 0.5 { 1.15 } else { 0.85 };
+    let raceway = with_noise(knocks(passing_hz, SAMPLES, each));
+    assert_eq!(claimed(&raceway), ["BPFO"], "{raceway:#?}");
+}
+
 /// Knocks about the middle of each turn of a cage, at times [s] from it that `spread` draws from a number
 /// from −1 to 1 for each of them, five in a turn.
 fn passages(cage_hz: f64, samples: usize, spread: impl Fn(usize, [f64; 2]) -> f64) -> Vec<f64> {

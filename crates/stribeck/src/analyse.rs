@@ -4,6 +4,7 @@ mod baseline;
 mod components;
 mod gaps;
 mod reading;
+mod simulated;
 mod together;
 mod turning;
 
@@ -39,6 +40,11 @@ pub struct Options {
     /// Its speed of the shaft [1/min] where that was another one
     #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
     baseline_rpm: Option<Speed>,
+    /// A scene of the bearing in its housing, by the reduced model: how far it presses an element together
+    /// over a spall is simulated, for three lengths at either end of --load-n and --clearance-um, instead of
+    /// computed for rings that do not bend
+    #[arg(long, value_name = "SCENE", conflicts_with_all = ["components", "together", "housing_um_per_kn"])]
+    simulate: Option<PathBuf>,
     /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU
     /// 205, ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
     #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
@@ -206,8 +212,13 @@ const TREND: &str = "trend.json";
 /// Analyses one record and writes its findings and its page into `out`.
 fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
     let mut analysis = examine(asked, &options.reading, place)?;
-    analysis.findings.zone = zoned(options, &analysis);
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
+    if let Some(scene) = &options.simulate {
+        // What is known without it stays when the simulation is interrupted.
+        write_measured(out, &name, &analysis, None)?;
+        analysis = simulated::again(analysis, scene, asked, &options.reading, out, place)?;
+    }
+    analysis.findings.zone = zoned(options, &analysis);
     let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
     let baseline = baseline.transpose()?;
     write_measured(out, &name, &analysis, baseline.as_ref())?;

@@ -273,6 +273,7 @@ fn passages_of(
         event.floor_n = floor.map(|strike| strike.force_n);
         event.floor_by = floor.map(|strike| strike.by);
         let run_s = picked.exit_s.zip(picked.entry_s).map(|(exit, entry)| exit - entry);
+        event.free_ms = run_s.map(|run_s| 1e3 * run_s);
         let length = |(run_s, load_n)| 1e3 * edge.length_m(speed_m_s * run_s, load_n);
         event.spall_mm = run_s.zip(picked.level_n).map(length);
         events.push((at, (event, picked.notes)));
@@ -404,6 +405,7 @@ impl Event {
             ring,
             entry_ms: None,
             exit_ms: None,
+            free_ms: None,
             expected_entry_ms: 1e3 * passage.entry_s,
             expected_exit_ms: 1e3 * passage.exit_s,
             path_entry_ms: None,

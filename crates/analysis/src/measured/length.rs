@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use stribeck_dsp::{EventSpacing, Spacing, passage_spacing};
 use stribeck_scene::catalogue::CatalogueBearing;
 
-use super::pressed::Loading;
+use super::pressed::{Loading, Pressed};
 use super::{Defect, Family, Interval, Machine};
 
 /// Events closer than this cannot be distinguished from the ringing of one [s].
@@ -77,10 +77,13 @@ fn of_two_events(
     let (run, off) = (speed_mm_s * spacing.lag_s, speed_mm_s * spacing.uncertainty_s);
     let (loading, is_given) =
         Loading::of(bearing, machine.load_n, machine.clearance_um, machine.housing_um_per_kn);
-    let (pressed, least, most) = loading.pressed_mm(bearing, raceway);
+    let simulated = machine.pressed.map(Pressed::with_error);
+    let (pressed, least, most) = simulated.unwrap_or_else(|| loading.pressed_mm(bearing, raceway));
     let advice = if is_given { "" } else { "; `--load-n` with a narrower range narrows the interval" };
     let (stiff, soft) = loading.housing_um_per_kn;
-    let housing = if soft > 0.0 {
+    let housing = if simulated.is_some() {
+        "the housing of a simulated scene".to_owned()
+    } else if soft > 0.0 {
         format!("a housing that gives {stiff:.0} to {soft:.0} µm/kN")
     } else {
         "a rigid housing".to_owned()

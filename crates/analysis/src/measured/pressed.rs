@@ -30,6 +30,17 @@ const STATIC_ROLLER: f64 = 44.0;
 /// Elements in an even ring, where the bearing does not say how many.
 const ELEMENTS: u32 = 9;
 
+/// How far a bearing presses an element together over a spall, D [mm], where that has been simulated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pressed {
+    /// As it is expected.
+    pub expected_mm: f64,
+    /// Over the ranges of load and clearance, without the model's own error.
+    pub least_mm: f64,
+    /// The most of them.
+    pub most_mm: f64,
+}
+
 /// The load of a bearing [N] and its radial internal clearance [µm], as ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Loading {
@@ -66,7 +77,15 @@ impl Loading {
         let (loose_um, tight_um) = (self.clearance_um.1, self.clearance_um.0);
         let (least, most) = (of(self.load_n.0, loose_um, stiff), of(self.load_n.1, tight_um, soft));
         let middle_n = (self.load_n.0 * self.load_n.1).sqrt();
-        (of(middle_n, 0.5 * (loose_um + tight_um), 0.5 * (stiff + soft)), MODEL.0 * least, MODEL.1 * most)
+        let expected_mm = of(middle_n, 0.5 * (loose_um + tight_um), 0.5 * (stiff + soft));
+        Pressed { expected_mm, least_mm: least, most_mm: most }.with_error()
+    }
+}
+
+impl Pressed {
+    /// As it is expected, and its ends with the model's own error [mm].
+    pub(super) fn with_error(self) -> (f64, f64, f64) {
+        (self.expected_mm, MODEL.0 * self.least_mm, MODEL.1 * self.most_mm)
     }
 }
 

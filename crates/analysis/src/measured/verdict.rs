@@ -18,7 +18,8 @@ use stribeck_scene::catalogue::DefectOrders;
 
 use super::controls::{controls, part_as_high, rank};
 use super::decision::{claimed_first, decide, first, name_the_element, share_out};
-use super::family::Family;
+use super::family::{Family, Reason};
+use super::halved::comb_at_half;
 use super::limits::{ALPHA, decibel};
 use super::machine_lines::OwnLines;
 use super::sentence::conclude;
@@ -108,13 +109,14 @@ pub(super) fn judge(
     let of_others = |hz: f64| machine.around.may_be(hz / shaft_hz);
     let stranger = unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
     let first = first(looked.iter().map(|(family, _)| family));
+    let halved = first.and_then(|at| halve(&mut looked[at], &whitened, &own));
     let first_db = first.map_or(f64::NEG_INFINITY, |at| looked[at].0.height_db);
     let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
     let mut families: Vec<Family> =
         looked.into_iter().map(|looked| beside_controls(looked, &whitened, &own, first_hz)).collect();
     let modulated = is_modulated_by_the_cage(&families, &whitened);
     share_out(&mut families, 1.0 / segment_s, modulated);
-    let (mut notes, mut unexplained) = (Vec::new(), None);
+    let (mut notes, mut unexplained) = (Vec::new(), halved);
     if let Some(found) = stranger.filter(|s| decibel(s.comb.height) > first_db) {
         match known.by_its_lines.then(|| skidding(&families, &found)).flatten() {
             Some(at) => notes.push(take_skidding(&mut families[at], &found, &whitened, &own)),
@@ -170,6 +172,22 @@ fn above_noise(looked: &[Looked]) -> Vec<Known> {
             Some(Known { comb_hz: comb.fundamental_hz, low_hz, high_hz, turns, height: comb.height })
         })
         .collect()
+}
+
+/// Decides that a raceway is not what knocks where the comb stands at half its frequency, too; that comb.
+fn halve(
+    (family, standing): &mut Looked,
+    whitened: &[(&BandEnvelope, Whitened)],
+    own: &OwnLines,
+) -> Option<Unexplained> {
+    let Standing { band, comb, .. } = standing.as_ref().filter(|_| family.name != Defect::Bsf)?;
+    let half = comb_at_half(comb, &whitened[*band].1, own)?;
+    family.reason = Reason::Decided(format!(
+        "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
+         pass",
+        half.hz
+    ));
+    Some(half)
 }
 
 /// Ranks a family among unrelated combs of its band, and gives it its probability of a false alarm.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::measured::{Analysis, Machine, over_angle, ridge, tacho};
+use stribeck_analysis::measured::{Analysis, Machine, Pressed, over_angle, ridge, tacho};
 use stribeck_analysis::record;
 use stribeck_formats::{Channel, Recording, says_time};
 use stribeck_scene::catalogue::CatalogueBearing;
@@ -55,6 +55,9 @@ pub(crate) struct Reading {
     /// compliant seat presses an element farther into a defect [default: 0]
     #[arg(long, value_name = "RANGE", value_parser = range)]
     pub(super) housing_um_per_kn: Option<(f64, f64)>,
+    /// How far an element is pressed together over a spall, as a scene of `--simulate` says.
+    #[arg(skip)]
+    pub(super) pressed: Option<Pressed>,
     /// Factor of every sample, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     pub(super) scale: f64,
@@ -437,6 +440,7 @@ fn machine(
         load_n: options.load_n,
         clearance_um: options.clearance_um,
         housing_um_per_kn: options.housing_um_per_kn,
+        pressed: options.pressed,
         ..Machine::default()
     };
     Ok((machine, pulses))

@@ -17,13 +17,14 @@ const GROUP: usize = 1 << 16;
 type Field = (&'static str, fn(&Event) -> Option<f64>);
 
 /// Numbers of an event, under the names of `summary.json`.
-const NUMBERS: [Field; 14] = [
+const NUMBERS: [Field; 15] = [
     ("expected_entry_ms", |e| Some(e.expected_entry_ms)),
     ("expected_exit_ms", |e| Some(e.expected_exit_ms)),
     ("path_entry_ms", |e| e.path_entry_ms),
     ("path_exit_ms", |e| e.path_exit_ms),
     ("entry_ms", |e| e.entry_ms),
     ("exit_ms", |e| e.exit_ms),
+    ("free_ms", |e| e.free_ms),
     ("level_n", |e| e.level_n),
     ("floor_ms", |e| e.floor_ms),
     ("floor_n", |e| e.floor_n),
