@@ -20,9 +20,11 @@ use stribeck_report::{TrendEntry, write_measured, write_trend};
 use stribeck_scene::run_dir::{check_folder, write_atomic};
 
 use crate::causes;
+use crate::interrupt::Interrupt;
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
 pub(crate) use reading::{Reading, Speed, examine};
+use simulated::Simulation;
 
 /// Flags of `analyse`.
 #[derive(Debug, clap::Args)]
@@ -97,6 +99,11 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             options.files.len()
         );
     }
+    // Once a process, however many records are simulated.
+    let simulation = match &options.simulate {
+        Some(scene) => Some(Simulation { scene: place.locate(scene), interrupt: Interrupt::listen()? }),
+        None => None,
+    };
     if options.together {
         return together::run(options, place);
     }
@@ -106,7 +113,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
-        let analysis = analyse(file, &out, options, place)?;
+        let analysis = analyse(file, &out, options, simulation.as_ref(), place)?;
         if options.json {
             say!("{}", serde_json::to_string_pretty(&analysis.findings)?);
             return Ok(ExitCode::SUCCESS);
@@ -131,7 +138,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let mut entries = Vec::new();
     for (file, folder) in options.files.iter().zip(folders) {
-        let done = analyse(file, &out.join(&folder), options, place);
+        let done = analyse(file, &out.join(&folder), options, simulation.as_ref(), place);
         let (findings, error) = match done {
             Ok(analysis) => (Some(analysis.findings), None),
             Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
@@ -210,13 +217,19 @@ fn passed(judged: &Judged) -> String {
 const TREND: &str = "trend.json";
 
 /// Analyses one record and writes its findings and its page into `out`.
-fn analyse(asked: &Path, out: &Path, options: &Options, place: &Place) -> Result<Analysis> {
+fn analyse(
+    asked: &Path,
+    out: &Path,
+    options: &Options,
+    simulation: Option<&Simulation>,
+    place: &Place,
+) -> Result<Analysis> {
     let mut analysis = examine(asked, &options.reading, place)?;
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    if let Some(scene) = &options.simulate {
+    if let Some(simulation) = simulation {
         // What is known without it stays when the simulation is interrupted.
         write_measured(out, &name, &analysis, None)?;
-        analysis = simulated::again(analysis, scene, asked, &options.reading, out, place)?;
+        analysis = simulation.again(analysis, asked, &options.reading, out, place)?;
     }
     analysis.findings.zone = zoned(options, &analysis);
     let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));

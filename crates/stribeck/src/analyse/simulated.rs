@@ -1,7 +1,7 @@
 //! How far a bearing presses an element together over a spall, by simulating a scene of it: three lengths at
 //! either end of the load and of the clearance (THEORY §7.9).
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use stribeck_analysis::findings::Findings;
@@ -29,36 +29,39 @@ const SHORTEST_MM: f64 = 0.5;
 /// Dimensions of the scene’s bearing are those of the record’s within this part.
 const SAME: f64 = 0.01;
 
-/// The analysis again, with what a scene says; as it is where no length of a spall hangs on it.
-///
-/// # Errors
-/// When the scene is another bearing, or not of the reduced model, or cannot be read or run; at Ctrl-C.
-pub(super) fn again(
-    analysis: Analysis,
-    scene: &Path,
-    file: &Path,
-    options: &Reading,
-    out: &Path,
-    place: &Place,
-) -> Result<Analysis> {
-    let Some(length) = analysis.findings.spall_mm else {
-        tell!("note: nothing is simulated: the record tells no length of a spall");
-        return Ok(analysis);
-    };
-    let scenes = scenes(&analysis, scene, options, place, [length.low, length.value, length.high])?;
-    let pressed = simulate(&scenes, out)?;
-    examine(file, &Reading { pressed: Some(pressed), ..options.clone() }, place)
+/// A scene of the bearing in its housing, to be simulated with spalls.
+pub(super) struct Simulation {
+    pub(super) scene: PathBuf,
+    pub(super) interrupt: Interrupt,
+}
+
+impl Simulation {
+    /// The analysis again, with what the scene says; as it is where no length of a spall hangs on it.
+    ///
+    /// # Errors
+    /// When the scene is another bearing, or not of the reduced model, or cannot be read or run; at Ctrl-C.
+    pub(super) fn again(
+        &self,
+        analysis: Analysis,
+        file: &Path,
+        options: &Reading,
+        out: &Path,
+        place: &Place,
+    ) -> Result<Analysis> {
+        let Some(length) = analysis.findings.spall_mm else {
+            tell!("note: nothing is simulated: the record tells no length of a spall");
+            return Ok(analysis);
+        };
+        let lengths_mm = [length.low, length.value, length.high];
+        let scenes = scenes(&analysis, &self.scene, options, lengths_mm)?;
+        let pressed = simulate(&scenes, out, &self.interrupt)?;
+        examine(file, &Reading { pressed: Some(pressed), ..options.clone() }, place)
+    }
 }
 
 /// The scenes: every length at the least load and the widest clearance, and at the largest load and the
 /// narrowest clearance.
-fn scenes(
-    analysis: &Analysis,
-    file: &Path,
-    options: &Reading,
-    place: &Place,
-    lengths_mm: [f64; 3],
-) -> Result<Vec<Scene>> {
+fn scenes(analysis: &Analysis, file: &Path, options: &Reading, lengths_mm: [f64; 3]) -> Result<Vec<Scene>> {
     let findings = &analysis.findings;
     let claimed = findings.families.iter().find(|family| family.claimed).context("no defect is claimed")?;
     let ring = if claimed.name == Defect::Bpfi { "inner" } else { "outer" };
@@ -68,7 +71,6 @@ fn scenes(
     let known = CatalogueBearing::parse(named).map_err(anyhow::Error::msg)?;
     let (least, most) = options.load_n.unwrap_or_else(|| usual_load_n(&known));
     let duration_ms = 1e3 * (PASSAGES / hz).max(TURNS * 60.0 / rpm);
-    let path = place.locate(file);
     let mut scenes: Vec<Scene> = Vec::new();
     for (load_n, loose) in [(least, true), (most, false)] {
         for length_mm in lengths_mm.map(|mm| mm.max(SHORTEST_MM)) {
@@ -83,7 +85,7 @@ fn scenes(
                 let um = if loose { loose_um } else { tight_um };
                 set.push(format!("bearing.clearance_change_um={um:.3}"));
             }
-            let scene = Scene::read_with(&path, &set)
+            let scene = Scene::read_with(file, &set)
                 .with_context(|| format!("`{}` with a spall of this record", file.display()))?;
             if scenes.iter().all(|other| other.hash() != scene.hash()) {
                 scenes.push(scene);
@@ -114,13 +116,12 @@ fn fits(scene: &Scene, known: &CatalogueBearing, named: &str, file: &Path) -> Re
 }
 
 /// Runs the scenes, and takes from their forces how far the element is pressed together.
-fn simulate(scenes: &[Scene], out: &Path) -> Result<Pressed> {
-    let interrupt = Interrupt::listen()?;
+fn simulate(scenes: &[Scene], out: &Path, interrupt: &Interrupt) -> Result<Pressed> {
     let runs = ManyRuns(out.join("simulated"));
     let wanted = scenes.iter().enumerate().map(|(number, scene)| Wanted { number, scene: Ok(scene) });
-    let due = runs.due(Keep::All, wanted, &interrupt)?;
+    let due = runs.due(Keep::All, wanted, interrupt)?;
     let share = Share { jobs: None, threads: None, memory_gb: None };
-    runs.make(Keep::All, &due, share, &interrupt, &|jobs| {
+    runs.make(Keep::All, &due, share, interrupt, &|jobs| {
         tell!("{} spalls are simulated, {}: {}", scenes.len(), jobs.shown(), shown(&runs.0));
     });
     ensure!(!interrupt.is_pressed(), "interrupted; the same command goes on from here");

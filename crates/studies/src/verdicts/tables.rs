@@ -503,6 +503,13 @@ pub(super) fn numbers(sheet: &mut Sheet) {
             "a comb that shares lines with a family is its own from this much power on",
             "a convention, after one wrong claim on the chosen part at a speed 1.5 % too high",
         ],
+        [
+            "`AS_HIGH` = 0.5",
+            "odd lines of a comb at half the frequency of a raceway, over the even ones beside them, from which \
+             on the comb is not the raceway’s",
+            "a convention; compared with the weakest even line instead, it had silenced one record of the \
+             chosen part (OR5_600)",
+        ],
     ];
     sheet.table(&["number", "what it is", "chosen on"], &rows.map(|r| r.map(str::to_owned).to_vec()));
 }
