@@ -505,8 +505,8 @@ pub(super) fn numbers(sheet: &mut Sheet) {
         ],
         [
             "`AS_HIGH` = 0.5",
-            "odd lines of a comb at half the frequency of a raceway, over the even ones beside them, from which \
-             on the comb is not the raceway’s",
+            "odd lines of a comb at half the frequency of a raceway, over the even ones beside them, from \
+             which on the comb is not the raceway’s",
             "a convention; compared with the weakest even line instead, it had silenced one record of the \
              chosen part (OR5_600)",
         ],
