@@ -7,6 +7,7 @@ mod book;
 mod ci;
 mod compare;
 mod fields;
+mod fmu;
 mod fuzz;
 mod lab;
 mod study;
@@ -44,6 +45,8 @@ enum Command {
     Book,
     /// Builds the wheel of the Python module, which needs no Rust where it is installed
     Wheel(wheel::Options),
+    /// Packs the reduced bearing of a scene as an FMU: the shaft's motion in, forces out
+    Fmu(fmu::Options),
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
@@ -63,6 +66,7 @@ fn main() -> ExitCode {
         Command::LabModule(options) => lab::build_module(&options),
         Command::Wheel(options) => wheel::build(&options),
         Command::Book => book::run(),
+        Command::Fmu(options) => fmu::build(&options),
         Command::Fields(options) => fields::run(&options),
         Command::Fuzz(options) => fuzz::run(&options),
         Command::Ci(options) => ci::run(&options),

@@ -2,12 +2,12 @@
 
 use stribeck_reduced::{
     bearing::Bearing,
+    dense,
     motion::{BearingInMotion, Energies, Saved},
 };
 
 use crate::{
     content::Content,
-    dense,
     error::Error,
     handles::{self, HANDLES, Handles, at},
     limits::{Limits, Stop},

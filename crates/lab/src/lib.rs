@@ -17,7 +17,6 @@
 //! | How does a raceway get another spall? | `spall.rs` |
 //! | What does the page read of it? | `readings.rs` |
 //! | What does the page call? | `exports.rs` |
-//! | How is the start found without a library? | `dense.rs` |
 //! | How is the page made? | `page.rs`, from `bundle.rs` and `assets/` |
 
 pub mod content;
@@ -29,7 +28,6 @@ mod parameters;
 pub mod readings;
 pub mod spall;
 
-mod dense;
 pub mod error;
 
 #[cfg(target_arch = "wasm32")]

@@ -10,6 +10,7 @@ use crate::{
     contact::{outline::Outline, penetration::Sides, raceway::Raceway},
     drive::Operation,
     error::Error,
+    housing::Housing,
     law::ContactLaw,
     modes::Structure,
     oil::Lubrication,
@@ -42,6 +43,8 @@ pub struct Bearing {
     pub(crate) sensors: Sensors,
     /// Speeds and load.
     pub(crate) operation: Operation,
+    /// The housing that stands still, where the shaft is moved.
+    pub(crate) housing: Option<Housing>,
 }
 
 impl Bearing {
@@ -88,6 +91,7 @@ impl Bearing {
             oil: oil.transpose()?,
             sensors: Sensors::new(&reduction),
             operation: Operation::new(&parameters, reduction.load.force),
+            housing: None,
             reduction,
         })
     }

@@ -89,6 +89,8 @@ pub(crate) struct Operation {
     /// Load at the start and at the preload [N].
     pub(crate) load_at_start: f64,
     preload: f64,
+    /// Whether no load acts, because a shaft that is moved brings it.
+    pub(crate) released: bool,
 }
 
 impl Operation {
@@ -100,6 +102,7 @@ impl Operation {
             duty: duty.clone(),
             load_at_start: *load_at_start,
             preload,
+            released: false,
         }
     }
 
@@ -107,6 +110,9 @@ impl Operation {
     /// it.
     #[inline(always)]
     pub(crate) fn load_change(&self, time: f64) -> [f64; 2] {
+        if self.released {
+            return [-1.0, 0.0];
+        }
         let Some(duty) = &self.duty else { return [0.0; 2] };
         let per = 1.0 / self.preload;
         [duty.load_n(time) * per - 1.0, duty.load_across_n(time).map_or(0.0, |across| across * per)]

@@ -20,4 +20,54 @@ pub enum Error {
         /// Newton iterations.
         iterations: usize,
     },
+
+    /// The housing is guided, or holds its ring on one side only.
+    #[error(
+        "the shaft cannot be moved in this housing: it is guided along its edge and carries the ring on the \
+         side of the load only. Take `housing: rigid()` or `housing: springs(…)`, which stand still in every \
+         direction"
+    )]
+    HousingNotFree,
+
+    /// The outer ring turns about a centre that is displaced.
+    #[error("the shaft cannot be moved where the outer ring turns: take `operation.outer_speed_rpm: 0`")]
+    OuterRingTurns,
+
+    /// The shaft is farther away than a bearing can carry.
+    #[error(
+        "the shaft is {um:.1} µm from the centre of its housing: at most {most_um:.0} µm, half the radius of \
+         a roller. Displacements are in metres; a coupled rotor may be unstable, with communication steps that \
+         are too long"
+    )]
+    ShaftTooFar {
+        /// Displacement [µm].
+        um: f64,
+        /// Largest one [µm].
+        most_um: f64,
+    },
+
+    /// A communication step in which the bearing takes no two steps.
+    #[error(
+        "the communication step is {us:.3} µs: at least {least_us:.3} µs, two steps of the bearing. Take a \
+         longer one, or a smaller `model.step_us` in the scene"
+    )]
+    ShortStep {
+        /// Its length [µs].
+        us: f64,
+        /// Shortest one [µs].
+        least_us: f64,
+    },
+
+    /// A state of another bearing.
+    #[error("the state belongs to another bearing than this one")]
+    OtherBearing,
+
+    /// Forces are no numbers any more.
+    #[error(
+        "the bearing diverged at {time:.6} s: take a smaller `model.step_us`, or shorter communication steps"
+    )]
+    Diverged {
+        /// Time of the bearing [s].
+        time: f64,
+    },
 }

@@ -16,6 +16,7 @@
 //! | What does a time loop drive, and what is read of it? | `motion.rs`, `motion/readings.rs` |
 //! | What is a bearing, and how does it start? | `bearing.rs`, in parts; `start.rs` |
 //! | What changes in time? | `state.rs` |
+//! | How is the shaft moved, and which force has it? | `shaft.rs`, `shaft/`; `housing.rs`, `frame.rs` |
 //! | What is one step? | `step.rs`, a page of stages in files of `step/` |
 //! | How do rings and housing move? | `modes.rs` |
 //! | How do rollers press on raceways? | `contact/`, the geometry; `law/`, the forces |
@@ -30,8 +31,11 @@ pub mod step;
 
 mod cage;
 pub mod contact;
+pub mod dense;
 mod drive;
 mod film_forces;
+mod frame;
+mod housing;
 mod law;
 mod modes;
 pub mod oil;
@@ -45,6 +49,7 @@ mod tally;
 
 pub mod motion;
 pub use motion::readings;
+pub mod shaft;
 
 pub mod error;
 

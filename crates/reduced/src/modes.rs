@@ -78,7 +78,7 @@ pub(crate) struct Structure {
     /// dampers.
     pub(crate) dampers: Vec<Row>,
     /// Mass damping [1/s] and stiffness damping [s].
-    mass_damping: f64,
+    pub(crate) mass_damping: f64,
     stiffness_damping: f64,
     /// Branches of the structural damping.
     pub(crate) branches: Vec<Branch>,

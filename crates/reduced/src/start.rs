@@ -42,7 +42,12 @@ impl Bearing {
     /// # Errors
     /// When the iteration does not converge.
     pub fn at_start(&self, solve: Solve<'_>) -> Result<State, Error> {
-        let mut state = self.rest();
+        self.in_equilibrium(self.rest(), solve)
+    }
+
+    /// As [`at_start`](Self::at_start), from a state at rest.
+    pub(crate) fn in_equilibrium(&self, rest: State, solve: Solve<'_>) -> Result<State, Error> {
+        let mut state = rest;
         self.equilibrium(solve, &mut state)?;
         if let Some(seat) = &self.seat {
             // Rollers stand elsewhere than at the preload of the reduction: the seat slips until friction
@@ -76,6 +81,9 @@ impl Bearing {
             for i in 0..self.rollers.count {
                 let under = &mut shapes[2 * r * i..2 * r * (i + 1)];
                 self.add_roller(state, i, under, &mut matrix, &mut force);
+            }
+            if let Some(housing) = &self.housing {
+                housing.hold(&mut matrix, &mut force);
             }
             // A motion without stiffness, the rotation of ring and adapter, is left to inertia.
             let step = solve(&matrix, &force);

@@ -61,11 +61,26 @@ impl Bearing {
             self.sensors.measure(simd, state, roller_forces, &modes.tension, before);
         }
         self.follow_rollers(simd, scratch, &drive);
+        let shaft = scratch.frame.as_mut().map(|frame| frame.advance(dt));
         self.settle_seat(simd, state, scratch, &mut tally);
-        let on_cage = self.advance_rollers(simd, state, scratch, &drive, &mut tally);
+        let mut on_cage = self.advance_rollers(simd, state, scratch, &drive, &mut tally);
+        if let Some(frame) = &mut scratch.frame {
+            frame.keep(&scratch.blocks);
+        }
+        if let (Some(housing), Some(shaft)) = (&self.housing, shaft) {
+            let damping = self.structure.mass_damping;
+            housing.push(dt, damping, shaft, state, &mut scratch.modes, &mut tally);
+        }
         self.structure.advance(simd, dt, &self.reduction, state, &scratch.modes, &load, &mut tally);
         if let Some(cage) = &self.cage {
+            let before = state.cage_velocity;
+            if let Some(frame) = &scratch.frame {
+                frame.pull_cage(cage, &mut on_cage);
+            }
             cage.advance(dt, self.rollers.gravity, on_cage, state, &mut tally);
+            if let Some(frame) = &scratch.frame {
+                tally.spent.external += frame.work_on_cage(cage, before, state.cage_velocity, dt);
+            }
         }
         state.shaft += dt * drive.inner.rate;
         tally.enter(state, dt);

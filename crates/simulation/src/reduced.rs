@@ -1,6 +1,7 @@
 //! The reduced bearing: its reduction, its steps, its start.
 
 pub mod motion;
+mod on_shaft;
 
 mod guards;
 
@@ -25,6 +26,7 @@ use crate::{
 };
 use guards::Guards;
 use motion::{ReducedMotion, Saved};
+pub use on_shaft::on_shaft;
 
 /// A reduced bearing before its first step.
 pub(crate) struct Reduced {

@@ -9,7 +9,7 @@ const TESTING: &str = "testing";
 
 /// Every crate beside the program, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 26] = [
+const LAYERS: [(&str, &[&str]); 27] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -29,6 +29,7 @@ const LAYERS: [(&str, &[&str]); 26] = [
     ("reduced", &["duty", "film", "modal", "simd", "surface"]),
     ("simulation", &["bearing", "mesh", "modal", "reduced", "reduction", "run", "scene", "solver", "system"]),
     ("lab", &["duty", "modal", "reduced", "reduction", "run", "scene", "simulation"]),
+    ("fmu", &["reduced"]),
     ("dsp", &[]),
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),

@@ -74,7 +74,11 @@ impl Bearing {
                     *sum += part;
                 }
             }
+            let before = scratch.frame.as_ref().map(|frame| frame.pull(&self.rollers, block));
             self.rollers.advance(simd, self.time_step, block, tally.last, &mut sums);
+            if let (Some(frame), Some(before)) = (&scratch.frame, before) {
+                tally.spent.external += frame.work(&self.rollers, block, before, self.time_step);
+            }
         }
         tally.add(&sums, drive, self.time_step);
         on_cage

@@ -5,6 +5,7 @@ use stribeck_simd::lanes::LANES;
 use crate::{
     bearing::Bearing,
     contact::penetration::Penetration,
+    frame::Frame,
     modes::Modes,
     roller_force::RollerForce,
     rollers::block::Block,
@@ -33,6 +34,8 @@ pub struct Scratch {
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
     pub(crate) deepest: f64,
+    /// The frame of the shaft, where that is moved.
+    pub(crate) frame: Option<Frame>,
 }
 
 impl Scratch {

@@ -1,11 +1,11 @@
-//! A dense system of equations, for the equilibrium at the start: the module holds no library for it.
+//! A dense system of equations, for the equilibrium at the start: for programs that hold no library for it.
 
 /// Solves a square system from its matrix, row by row, and its right-hand side, by elimination with partial
 /// pivoting.
 ///
 /// # Panics
 /// When the matrix has not as many numbers as the square of the right-hand side.
-pub(crate) fn solve(matrix: &[f64], right: &[f64]) -> Vec<f64> {
+pub fn solve(matrix: &[f64], right: &[f64]) -> Vec<f64> {
     let n = right.len();
     assert_eq!(matrix.len(), n * n, "a square matrix");
     let (mut a, mut b) = (matrix.to_vec(), right.to_vec());
