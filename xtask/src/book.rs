@@ -14,7 +14,7 @@ use crate::{Cli, lab, workspace};
 /// Scene of the lab in the book: the paper's bearing with larger elements, whose page is small.
 const SCENE: &str = "fixtures/scenes/lab.ron";
 
-/// The page of the guide below the book, the lab beside its pictures, and where the page has room for it.
+/// The page of the guide below the book, the lab beside its pictures, and the place in the page for it.
 const PAGE: &str = "target/book/guide/src/lab.html";
 const LAB: &str = "target/book/guide/src/lab/lab.html";
 const ROOM: &str = "<div id=\"lab-here\"></div>";

@@ -102,7 +102,7 @@ fn write(root: &Path, name: &str, text: &str) -> Result<()> {
     Ok(())
 }
 
-/// Load average over the last minute, where the system tells it.
+/// Load average over the last minute, where the system has it.
 fn load_average() -> Option<f64> {
     std::fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 /// The root of the repository.
 pub(crate) fn root() -> PathBuf {
-    // Cargo tells a running program where its package lies now; the compiled-in path is for a binary started
+    // Cargo sets this variable for a program that it runs; the compiled-in path is for a binary started
     // by hand.
     let package = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
     let package = PathBuf::from(package);

@@ -144,12 +144,12 @@ impl Agreement {
 
     /// Rows that do not keep their limit.
     pub fn failures(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(|row| row.told && !row.within)
+        self.rows.iter().filter(|row| row.decided && !row.within)
     }
 
     /// Rows for which the starts do not suffice for a verdict.
     pub fn open(&self) -> impl Iterator<Item = &Row> {
-        self.rows.iter().filter(|row| !row.told)
+        self.rows.iter().filter(|row| !row.decided)
     }
 }
 

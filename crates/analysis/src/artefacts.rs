@@ -260,7 +260,7 @@ impl Artefact {
         let verdict = match (carrier, tooth, tone.measured_hz) {
             (Some(family), _, _) => family.verdict.clone(),
             (None, Some((name, multiple)), _) => {
-                format!("{name} ×{multiple} stands at the same place: not told apart")
+                format!("{name} ×{multiple} stands at the same place: not distinguishable")
             }
             (None, None, Some(_)) if found => "a line at the harmonic of a family that was found".to_owned(),
             (None, None, Some(hz)) => {

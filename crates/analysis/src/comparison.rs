@@ -220,7 +220,7 @@ fn notes(sides: &[Side], one_unit: bool) -> Vec<String> {
     }
     if sides.iter().all(|side| side.signals == 1) {
         notes.push(
-            "every side is a single signal, and nobody knows what chance does to it: a peak changes by tens \
+            "every side is a single signal, and its scatter is unknown: a peak changes by tens \
              of per cent from one start to another. `stribeck simulate SCENE --starts 8` makes a side with a \
              scatter"
                 .to_owned(),

@@ -266,8 +266,7 @@ fn judge(motion: &RecordedMotion, channels: &Channels, cases: &mut [Case<'_>]) {
     }
 }
 
-/// Takes down that case `n`, which as `alone` explains as much as the accepted one, is not told apart from
-/// it.
+/// Marks case `n`, which `alone` explains as much as the accepted one, as not distinguishable from it.
 fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
     let lead = alone.score - cases[accepted].trial.as_ref().map_or(0.0, |(trial, _)| trial.score);
     cases[n].trial = Some((alone, lead));
@@ -328,7 +327,7 @@ fn finding(
             let names: Vec<String> = others.iter().map(|&other| cases[other].spoken()).collect();
             finding.not_told_apart_from = others.iter().map(|&other| cases[other].name.to_owned()).collect();
             format!(
-                "not told apart from {}: a comb is there, and this record does not say whose",
+                "not distinguishable from {}: a comb is there, and this record does not show whose",
                 names.join(" and ")
             )
         }
@@ -426,7 +425,7 @@ impl FamilyFinding {
         (-SIDEBANDS..=SIDEBANDS).any(|m| (off - f64::from(m) * bpfo_hz.unwrap_or(0.0)).abs() <= reach_hz)
     }
 
-    /// Its name in running text, with those that are not told apart from it.
+    /// Its name in running text, with those that cannot be distinguished from it.
     pub fn spoken(&self) -> String {
         let names: Vec<String> =
             [&self.name].into_iter().chain(&self.not_told_apart_from).map(|n| n.replace('_', " ")).collect();

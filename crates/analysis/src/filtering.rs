@@ -11,7 +11,7 @@ pub const QUALITY: f64 = 15.0;
 pub const PAPER_CENTRE_HZ: f64 = 4671.0;
 /// The other tone that the paper reads from its trace [Hz]: a cursor artefact, 100 kHz / 22.
 pub const PAPER_BEAT_HZ: f64 = 4545.0;
-/// The transient counts as gone when the filter's ringing has fallen by this much [dB].
+/// The transient counts as over when the filter's ringing has fallen by this much [dB].
 const SETTLED_DB: f64 = 60.0;
 
 /// Attenuation of a tone by the notch, for the summary.

@@ -6,8 +6,8 @@
 //! approach. So a force counts as an impact from twice m (ω²r + g) on: 7 N for the rollers of the paper's
 //! bearing, which carry 12 kN before. No force needs to be larger because of noise: a dry contact without
 //! penetration exerts exactly none, and a film that floats the roller exerts m (ω²r + g). The force is sought
-//! where the edges cannot carry the roller, [`Edge::floor_m`](crate::spall::Edge::floor_m) away from either.
-//! (Own.)
+//! where the edges cannot carry the roller, [`Edge::floor_m`](crate::spall_length::Edge::floor_m) away from
+//! either. (Own.)
 //!
 //! The contact is metallic where the film is at its least, which the tips of the roughness or the stiffened
 //! oil of a loaded contact hold (THEORY §4.6), at any time while the roller presses with more than that, and

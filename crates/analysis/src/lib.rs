@@ -82,7 +82,7 @@ pub mod reading;
 pub mod ring;
 pub mod rolling;
 pub mod signal;
-pub mod spall;
+pub mod spall_length;
 pub mod tones;
 
 pub mod artefacts;

@@ -35,6 +35,7 @@ mod angular;
 mod controls;
 mod course;
 mod decision;
+mod element_rhythm;
 mod enhanced;
 pub mod evidence;
 mod family;
@@ -43,9 +44,8 @@ mod halves;
 pub mod joint;
 mod length;
 mod limits;
-mod own;
+mod machine_lines;
 mod pass;
-mod passage;
 mod pressed;
 pub mod ridge;
 mod screening;
@@ -213,7 +213,7 @@ pub struct Analysis {
     pub over: Vec<BandEnvelope>,
     /// Density over time.
     pub course: Course,
-    /// Spectra over speed and angle where the speed varies; filled by the caller, who has the times of the
+    /// Spectra over speed and angle where the speed varies; filled by the caller, which has the times of the
     /// turns.
     pub varying: Option<Varying>,
     /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
@@ -286,7 +286,7 @@ impl Analysis {
         };
         let known = verdict::KnownSpeed {
             sharp_hz: sharp.map(|sharp| sharp.hz),
-            by_its_lines: shaft.is_some_and(|shaft| shaft.is_told()),
+            by_its_lines: shaft.is_some_and(|shaft| shaft.is_distinct()),
         };
         let mut judged = verdict::judge(&bands, machine, &known, record_s, segment_s);
         let mut over = Vec::new();
@@ -386,7 +386,7 @@ fn sharp_speed(
     machine: &Machine,
 ) -> Option<Sharp> {
     let given_hz = machine.speed_rpm.filter(|rpm| *rpm > 0.0)? / 60.0;
-    if let Some(shaft) = shaft.filter(|shaft| shaft.is_told()) {
+    if let Some(shaft) = shaft.filter(|shaft| shaft.is_distinct()) {
         let sharp =
             Sharp { hz: shaft.hz, uncertainty_hz: shaft.uncertainty_hz, by: "the lines of the shaft" };
         return Some(sharp)
@@ -395,9 +395,9 @@ fn sharp_speed(
     let asked = !machine.speed_is_exact && machine.outer_speed_rpm == 0.0;
     let bearing = machine.bearing.as_ref().filter(|_| asked)?;
     samples.iter().all(|x| x.is_finite()).then_some(())?;
-    let told = speed::near(samples, rate_hz, bands, bearing, given_hz).filter(|told| told.is_told)?;
+    let found = speed::near(samples, rate_hz, bands, bearing, given_hz).filter(|found| found.is_accepted)?;
     let by = "the lines of the shaft and of the bearing together";
-    Some(Sharp { hz: told.hz, uncertainty_hz: told.uncertainty_hz, by })
+    Some(Sharp { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
 }
 
 /// The speed by shaft and bearing together, where the user gives none; a note where it is not found.
@@ -407,28 +407,28 @@ fn found_speed(
     bands: &[BandEnvelope],
     machine: &Machine,
     notes: &mut Vec<String>,
-) -> Option<speed::Told> {
+) -> Option<speed::SpeedEstimate> {
     let bearing = machine.bearing.as_ref().filter(|_| machine.speed_rpm.is_none())?;
     samples.iter().all(|x| x.is_finite()).then_some(())?;
-    let told = speed::from_nothing(samples, rate_hz, bands, bearing)?;
-    let (rpm, next_rpm, lead) = (60.0 * told.hz, 60.0 * told.next_hz, told.lead);
-    notes.push(if told.is_told {
+    let found = speed::without_any_given(samples, rate_hz, bands, bearing)?;
+    let (rpm, next_rpm, lead) = (60.0 * found.hz, 60.0 * found.next_hz, found.lead);
+    notes.push(if found.is_accepted {
         format!(
             "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} \
              rpm, of all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} \
              behind in the logarithm of the likelihood, where {:.0} are asked",
-            60.0 * told.uncertainty_hz,
+            60.0 * found.uncertainty_hz,
             60.0 * speed::FROM_HZ,
             60.0 * speed::TO_HZ,
             speed::LEAST_LEAD
         )
     } else {
         format!(
-            "the record does not tell the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain about \
-             as much of it"
+            "the record does not determine the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain \
+             about as much of it"
         )
     });
-    told.is_told.then_some(told)
+    found.is_accepted.then_some(found)
 }
 
 /// The shaft by its lines, where a speed is given and the outer ring stands still.
@@ -461,7 +461,7 @@ fn enhanced_up_to_hz(families: &[Family]) -> f64 {
     if fastest_hz > 0.0 { HARMONICS * fastest_hz } else { UNKNOWN_HZ }
 }
 
-/// The bands of a channel over the period of a frequency [Hz]: the samples are gone through again.
+/// The bands of a channel over the period of a frequency [Hz]: the samples are read again.
 fn over_period(
     channel: &Channel,
     rate_hz: f64,

@@ -25,7 +25,7 @@ pub struct RecordFinding {
 pub struct PassageSignature {
     /// Time between the two events of a passage; `None` where no second one shows.
     pub spacing: Option<f64>,
-    /// Time from which on a second event would have shown; `None` where one shows, or nothing is told.
+    /// Time from which on a second event would have shown; `None` where one shows, or nothing is known.
     pub clear_from: Option<f64>,
     /// Energy of the first event over that of the second [dB].
     pub first_over_second_db: Option<f64>,

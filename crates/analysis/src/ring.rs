@@ -18,8 +18,8 @@ pub fn bending_mode_hz(n: u32, radius: f64, thickness: f64, modulus: f64, poisso
     n * (n * n - 1.0) / (2.0 * PI * radius * radius) * (stiffness / (density * (n * n + 1.0))).sqrt()
 }
 
-/// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz]; none of one that does not
-/// deform.
+/// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz]; empty for a rigid
+/// ring.
 pub fn outer_ring_modes(scene: &ResolvedScene, last: u32) -> Vec<(u32, f64)> {
     if scene.outer_ring_rigid {
         return Vec::new();

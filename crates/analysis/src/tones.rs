@@ -149,8 +149,8 @@ pub struct NearestLine {
 }
 
 /// The line of `spectrum`, a density [g²/Hz], that is nearest to `expected_hz`, whatever makes it: within
-/// [`REACH`], or within the width of a line at −6 dB where that is more. Peaks that are as far below the
-/// highest one as the side lobes of its window are none of their own.
+/// [`REACH`], or within the width of a line at −6 dB where that is more. Peaks as far below the
+/// highest one as the side lobes of its window do not count as lines.
 ///
 /// # Errors
 /// [`Error::Signal`] when the spectrum cannot be searched.
@@ -315,7 +315,7 @@ mod tests {
         assert!(found.above_db.unwrap() > 20.0, "{found:?}");
         let fifth = nearest(&spectrum, 5.0 * 4655.0).unwrap();
         assert!((fifth.hz.unwrap() - 23_275.0).abs() < 10.0 && fifth.above_db.unwrap() > 10.0, "{fifth:?}");
-        // Nothing stands out elsewhere; how far the highest peak stands out is told all the same.
+        // No line elsewhere; the height of the highest peak is returned nevertheless.
         let none = nearest(&spectrum, 11_000.0).unwrap();
         assert!(none.hz.is_none() && none.above_db.is_some_and(|db| db < 10.0), "{none:?}");
         let silence = spectrum_of(&vec![0.0; 3000]);

@@ -32,6 +32,26 @@ pub fn kilonewtons(force_n: f64) -> String {
     format!("{} kN", significant(1e-3 * force_n, 4))
 }
 
+/// A probability as it is said: `certain`, `40 %`, `1 in 300`, `1 in 2 million`.
+pub fn chance(p: f64) -> String {
+    if !p.is_finite() {
+        return "unknown".to_owned();
+    }
+    if p >= 0.995 {
+        return "certain".to_owned();
+    }
+    if p >= 0.01 {
+        return format!("{:.0} %", 100.0 * p);
+    }
+    // Far beyond any test of the noise only a bound is given.
+    if p < 1e-9 {
+        return "below 1 in a billion".to_owned();
+    }
+    let digits = 10_f64.powf((1.0 / p).log10().floor());
+    let count = (1.0 / p / digits).round() * digits;
+    if count >= 1e6 { format!("1 in {:.0} million", 1e-6 * count) } else { format!("1 in {count:.0}") }
+}
+
 /// A stress in the unit that suits it.
 pub fn pascals(stress_pa: f64) -> String {
     if stress_pa >= 1e8 {
@@ -51,6 +71,10 @@ mod tests {
         assert_eq!([1499.97, 1.399_405, 0.5, 468_396.351_5].map(digits), ["1500", "1.399", "0.5", "468396"]);
         assert_eq!([0.0, -2.0, 1e-9].map(digits), ["0", "-2", "1.000e-9"]);
         assert_eq!([0.0, 0.0312, 9.96, 26.4, 435.4].map(level), ["0", "0.031", "10", "26", "435"]);
+        let chances = [1.0, 0.42, 0.031, 3.2e-3, 4.6e-5, 4.6e-7, 1e-12].map(chance);
+        let said =
+            ["certain", "42 %", "3 %", "1 in 300", "1 in 20000", "1 in 2 million", "below 1 in a billion"];
+        assert_eq!(chances, said);
         assert_eq!((pascals(3e8), pascals(2.5e5)), ("0.30 GPa".into(), "0.25 MPa".into()));
     }
 }

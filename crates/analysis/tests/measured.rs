@@ -76,7 +76,7 @@ fn invariant_noise_is_no_defect_and_false_alarms_are_as_rare_as_stated() {
 }
 
 #[test]
-fn example_each_defect_is_told_from_the_others_with_slip() {
+fn example_each_defect_is_distinguished_from_the_others_with_slip() {
     let shaft_hz = 20.0;
     let always = |_| 1.0;
     let with_the_shaft = move |t: f64| 1.0 + (TAU * shaft_hz * t).cos();
@@ -104,7 +104,7 @@ fn under_the_load(shaft_hz: f64) -> impl Fn(f64) -> f64 {
 }
 
 #[test]
-fn example_a_second_defect_is_told_from_the_sidebands_of_the_first() {
+fn example_a_second_defect_is_distinguished_from_the_sidebands_of_the_first() {
     let shaft_hz = 20.0;
     let (outer_hz, inner_hz) = (3.585 * 0.995 * shaft_hz, 5.415 * 1.003 * shaft_hz);
     let outer = knocks(outer_hz, SAMPLES, |_| 1.0);
@@ -219,10 +219,10 @@ fn passages(cage_hz: f64, samples: usize, spread: impl Fn(usize, [f64; 2]) -> f6
 }
 
 #[test]
-fn example_an_element_that_loses_its_spin_beyond_the_load_is_told_from_the_cage() {
+fn example_an_element_that_loses_its_spin_beyond_the_load_is_distinguished_from_the_cage() {
     let shaft_hz = 20.0;
     let (cage_hz, knocks_hz) = (0.398 * shaft_hz, 2.0 * 2.357 * shaft_hz);
-    // Half a spin apart, from a phase that every turn draws anew.
+    // Half a spin apart, from a phase that is drawn for every turn.
     let element =
         passages(cage_hz, SAMPLES, |knock, [turn, _]| (knock as f64 - 2.0 + 0.5 * turn) / knocks_hz);
     let findings = analysed(element, 60.0 * shaft_hz);
@@ -349,7 +349,7 @@ fn example_a_short_record_says_how_long_it_should_be() {
     let cage = findings.families.iter().find(|f| f.name == Defect::Ftf).unwrap();
     // The cage turns 1.99 times a second: ten periods take 5.0 s.
     assert!(cage.reason.to_string().contains("holds 2.0 periods; 5.0 s"), "{}", cage.reason);
-    assert!(findings.verdict.contains("It cannot speak of FTF"), "{}", findings.verdict);
+    assert!(findings.verdict.contains("It does not decide about FTF"), "{}", findings.verdict);
 }
 
 #[test]
@@ -403,7 +403,7 @@ fn inner_raceway(shaft_hz: f64) -> Vec<f64> {
 }
 
 #[test]
-fn issue_the_speed_is_told_by_shaft_and_bearing_together() {
+fn issue_the_speed_is_found_by_shaft_and_bearing_together() {
     let unknown = Machine { speed_rpm: None, ..machine(0.0) };
     let of = |samples| Analysis::of(&Channel::held("a", samples), RATE_HZ, &unknown).unwrap().findings;
     // No whole number, and none of which another is a simple multiple within reach.
@@ -418,11 +418,11 @@ fn issue_the_speed_is_told_by_shaft_and_bearing_together() {
     // To 1.2 rpm: the part that is not corrected.
     assert!((findings.speed_rpm.unwrap() / (60.0 * shaft_hz) - 1.0).abs() < 2e-3, "{:?}", findings.notes);
     assert_eq!(claimed(&findings), ["BPFI"], "{findings:?}");
-    // Noise tells none.
+    // Noise has no speed.
     let findings = of(coloured(8, SAMPLES));
     assert!(findings.speed_rpm.is_none() && findings.families.is_empty(), "{findings:?}");
     assert!(
-        findings.notes.iter().any(|note| note.contains("does not tell the speed")),
+        findings.notes.iter().any(|note| note.contains("does not determine the speed")),
         "{:?}",
         findings.notes
     );

@@ -18,7 +18,7 @@ const OF_RECORDS: f64 = 0.15;
 const OF_UNITS: f64 = 0.3;
 const FALSE_CLAIMS: f64 = 0.1;
 
-/// A made unit: lengths and what is read at its records, and its end.
+/// A synthetic unit: lengths and readings at its records, and its end.
 fn made(seed: u64) -> (Vec<(Option<f64>, Record)>, f64) {
     let mut dice = Dice::stream(99, seed);
     let off = OF_UNITS * normal(&mut dice);
@@ -79,7 +79,7 @@ fn example_a_gauge_tells_what_units_share_from_what_records_do() {
 
 #[test]
 fn invariant_intervals_of_ninety_per_cent_hold_as_many_units() {
-    // 200 units that set nothing: 90 % within what chance leaves of so many; by many units, and by six.
+    // 200 units without a part in the calibration: 90 % within the scatter of 200; by many units, and by six.
     for others in [1000..1040, 1000..1006] {
         let held = held(&LAW, &calibration(others), 0..200);
         println!("{held} of the units are held");

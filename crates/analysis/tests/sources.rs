@@ -21,7 +21,7 @@ const TEETH: f64 = 23.0;
 /// defects are named (two minutes).
 const DRAWS: u64 = 12;
 /// Least part of the defects that is named: knocks are as weak as twice the noise, and a family that slip
-/// brings within a resolution of a multiple of a shaft cannot be told from it.
+/// brings within a resolution of a multiple of a shaft cannot be distinguished from it.
 const NAMED: f64 = 0.8;
 
 /// Which families the two bearings have; none where they are sound.
@@ -109,7 +109,7 @@ fn judged(draw: u64) -> (Sources, Truth) {
 }
 
 #[test]
-fn example_a_gear_and_two_bearings_are_told_apart() {
+fn example_a_gear_and_two_bearings_are_distinguished() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|draws| draws.parse().ok());
     let first = asked("STRIBECK_FIRST_DRAW").unwrap_or(0);
     let (mut missed, mut wrong, mut defects) = (Vec::new(), Vec::new(), 0);

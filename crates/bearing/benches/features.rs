@@ -138,7 +138,7 @@ impl Moving {
     }
 }
 
-/// Time that this thread has had on a processor [ns]; where the system does not tell, time on the wall.
+/// Time that this thread has had on a processor [ns]; where the system has no such clock, wall-clock time.
 fn now_ns() -> f64 {
     // The system brings this number up to date when a thread offers its processor, and else every few
     // milliseconds.

@@ -32,7 +32,7 @@ pub(crate) fn roller_core_mm(mesh: &MeshScene, facet_mm: f64) -> f64 {
 }
 
 /// Polar layers of a graded roller: as many as a raceway has rows of full fineness, the last of which begins
-/// its transition. With one fewer the pattern of the core can be felt at the rim: the tone is off by up to 9
+/// its transition. With one fewer the pattern of the core shows at the rim: the tone is off by up to 9
 /// % instead of 5 %.
 pub(crate) fn roller_layers(grading: &GradingScene) -> usize {
     grading.fine_layers + 1

@@ -15,8 +15,8 @@ use crate::{error::Error, grading, own_mesh};
 /// narrower would set the time step.
 const FLATTEST: f64 = 0.91;
 
-/// A frame on springs stands so far off the ring, and is so thick, in radii of its bore: it is drawn, and has
-/// a mass, no more.
+/// Distance of a frame on springs from the ring, and its thickness, in radii of its bore: both are for
+/// pictures and its mass alone.
 const FRAME_GAP: f64 = 0.02;
 const FRAME_THICKNESS: f64 = 0.04;
 

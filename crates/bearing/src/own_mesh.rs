@@ -26,7 +26,7 @@ const ROUND: f64 = 1e-3;
 /// Bodies that a message names.
 const MOST_NAMED: usize = 4;
 
-/// The mesh of a file, and who asked for it.
+/// The mesh of a file, and the field that named it.
 struct OwnMesh<'a> {
     /// Group of the scene.
     group: &'static str,

@@ -59,8 +59,8 @@ pub fn preload(
         acceleration: rolling_acceleration(bearing, k),
         ..Preload::default()
     };
-    // A rounded contact law first: idle bodies then feel both sides of their clearance and settle between
-    // them. Rollers in a wide clearance feel its sides from farther away.
+    // A rounded contact law first: both sides of its clearance then act on an idle body, which settles
+    // between them. In a wide clearance the law is rounded over a larger gap.
     let wide = (scene.clearance / CLEARANCE).max(1.0);
     preload.softness.iter_mut().for_each(|softness| *softness *= wide);
     let settled = bearing.system.settle(&preload)?;

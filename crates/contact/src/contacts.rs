@@ -92,7 +92,7 @@ pub struct Contacts {
     preload: Option<f64>,
     parallel: bool,
     together: bool,
-    /// Whether ranks share the pairs, so that energies are counted once all have told theirs.
+    /// Whether ranks share the pairs, so that energies are summed once all ranks have sent theirs.
     divided: bool,
     energy: Energy,
 }

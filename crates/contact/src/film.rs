@@ -71,7 +71,7 @@ pub struct Films {
     first: Vec<usize>,
     /// Whether films are those of steady rolling, in a static preload.
     preload: bool,
-    /// Whether ranks share the films, so that heat is counted once all have told theirs.
+    /// Whether ranks share the films, so that heat is summed once all ranks have sent theirs.
     divided: bool,
     heat: f64,
 }
@@ -183,7 +183,7 @@ impl Films {
     /// For a static preload: films have the thickness of steady rolling at any moment.
     pub fn set_preload(&mut self, preload: bool) {
         self.preload = preload;
-        // Each begins anew from the positions that it then finds.
+        // Each restarts from the positions of the next evaluation.
         self.films.iter_mut().for_each(|film| (film.memory.layer, film.memory.next_look) = (None, 0));
     }
 

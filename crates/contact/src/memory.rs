@@ -95,7 +95,7 @@ pub(crate) struct Histories {
 }
 
 impl Histories {
-    /// Whether there is one for each of `n` points, and room behind them.
+    /// Whether there is one for each of `n` points, and padding after them.
     pub(crate) fn serve(&self, n: usize) -> bool {
         self.slip.len() == n + LANES && self.damping.len() == n + LANES
     }
@@ -124,7 +124,7 @@ impl Memory {
         }
     }
 
-    /// Makes room behind the last point.
+    /// Pads the arrays after the last point to whole vectors.
     pub(crate) fn pad(&mut self) {
         let padded = self.nearest.len() + LANES;
         self.inactive_until.resize(padded);

@@ -180,7 +180,7 @@ fn issue_a_raceway_that_tilts_to_and_fro_draws_in_no_oil() {
     }
 }
 
-/// A roller that is led over the groove feels its film fade and come again, without a jump. In the middle of
+/// On a roller that is led over the groove the film fades and returns, without a jump. In the middle of
 /// the groove only the floor carries, with the share that a squeeze film between two open ends has: ∫ X²/(1 +
 /// X²)³ dX between them over π/8, by quadrature (A. Cameron, The Principles of Lubrication, Longmans 1966,
 /// chapter 7).

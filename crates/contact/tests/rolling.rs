@@ -1,8 +1,8 @@
 //! A roller pressed on a flat and into a raceway: does the force see where facets and nodes are?
 //!
 //! The middle of a disc is held at a fixed approach while the disc takes the positions of rolling over one
-//! facet, each in static equilibrium. Nothing yields to a change of force, as it would under a dead load: the
-//! ripple is the largest that any rolling could show.
+//! facet, each in static equilibrium. The centre does not move with the force, as it would under a constant
+//! load: the ripple is the largest that any rolling could show.
 
 mod common;
 
@@ -115,7 +115,7 @@ fn ripple(kind: Ground, recipe: Recipe, positions: usize) -> f64 {
 }
 
 #[test]
-fn example_a_rolling_roller_feels_no_facets() {
+fn example_facets_do_not_act_on_a_rolling_roller() {
     // The target of the project.
     const LARGEST: f64 = 1e-3;
     for kind in [Ground::Flat, Ground::Raceway] {

@@ -183,7 +183,7 @@ impl DiscInRing {
 
     fn forces(&self, contacts: &mut Contacts, x: &[f64], y: &[f64]) -> NodeForces {
         let mut force = NodeForces::zeros(x.len());
-        // Step 0 each time: every evaluation searches anew.
+        // Step 0 each time: every evaluation searches again.
         contacts.set_preload(None);
         let at = Moment { step: 0, time: 0.0, dt: 1e-4, x, y, vx: &self.vx, vy: &self.vy };
         contacts.accumulate(at, &mut force);

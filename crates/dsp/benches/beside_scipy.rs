@@ -189,7 +189,7 @@ struct Done {
     magnitude: f64,
 }
 
-/// Processor time of this process [s], where the system tells it; else time on the wall.
+/// Processor time of this process [s], where the system has it; else wall-clock time.
 fn clock(began: Instant) -> f64 {
     std::thread::yield_now();
     let ticks = std::fs::read_to_string("/proc/self/schedstat").ok();

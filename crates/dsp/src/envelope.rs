@@ -168,7 +168,7 @@ pub enum PeriodVerdict {
     TooFew,
     /// Ten periods or more: the line is found.
     Enough,
-    /// Twenty-seven periods or more: its sidebands can be told apart, too.
+    /// Twenty-seven periods or more: its sidebands can be resolved, too.
     Comfortable,
 }
 

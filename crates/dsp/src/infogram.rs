@@ -1,7 +1,7 @@
 //! The infogram: which band holds impulses, which holds what repeats, and which both?
 //!
-//! A kurtogram responds to one accidental impulse as to a hundred that repeat. Two negentropies tell them
-//! apart: that of the squared envelope grows with impulses, that of its spectrum with lines at a rate and its
+//! A kurtogram responds to one accidental impulse as to a hundred that repeat. Two negentropies distinguish
+//! them: that of the squared envelope grows with impulses, that of its spectrum with lines at a rate and its
 //! multiples.
 //!
 //! Source: J. Antoni, Mech. Syst. Signal Process. 74 (2016) 73–94.

@@ -22,7 +22,7 @@ const BAND: (f64, f64) = (0.25, 1.0);
 /// Passages of a piece of a record: enough for their rhythm, few enough that a simulated bearing makes them
 /// in a second or two.
 pub const PASSAGES: f64 = 30.0;
-/// Lags within a passage at which the correlation is told.
+/// Lags within a passage at which the correlation is returned.
 pub const WITHIN: usize = 24;
 /// The least and the greatest of them, over the period.
 const LAGS: (f64, f64) = (0.03, 0.45);
@@ -54,7 +54,7 @@ pub struct Signature {
     /// Time between the two events of a passage over its period; `None` where no second event shows.
     pub spacing: Option<f64>,
     /// Time from which on a second event would have shown, over the period; `None` where one shows, or
-    /// nothing is told.
+    /// nothing is known.
     pub clear_from: Option<f64>,
     /// Energy of the first event over that of the second [dB]; `None` where no second shows.
     pub first_over_second_db: Option<f64>,

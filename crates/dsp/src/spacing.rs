@@ -54,7 +54,7 @@ const BANDS: [(f64, f64); 2] = [(0.25, 0.5), (0.5, 1.0)];
 /// Length over which correlations are smoothed [s]: events are no sharper.
 const SMOOTHED_S: f64 = 0.3e-3;
 /// Two events nearer than this many times one over the width of the narrower band are there, but their
-/// distance is uncertain by more than an eighth, and is not told.
+/// distance is uncertain by more than an eighth, and is not returned.
 const RESOLVED: f64 = 4.0;
 /// Least correlation in one of the bands.
 const LEAST: f64 = 0.05;

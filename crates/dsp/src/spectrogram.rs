@@ -52,7 +52,7 @@ impl Spectrograph {
         self.spectrum.frequencies_hz()
     }
 
-    /// Leaves out `samples` samples, and those that wait: segments begin anew behind them.
+    /// Skips `samples` samples, and drops those of an unfinished segment: the next segment starts after them.
     pub fn skip(&mut self, samples: usize) {
         self.passed += (self.waiting.len() + samples) as u64;
         self.waiting.clear();

@@ -96,7 +96,7 @@ fn example_amplitude_of_a_sine_is_read_back() {
 
 #[test]
 fn example_amplitude_with_every_window() {
-    // A boxcar leaks as 1/distance, so the mirror image 280 bins away is felt most there.
+    // A boxcar leaks as 1/distance, so the mirror image 280 bins away matters most there.
     for (window, tolerance) in [
         (Window::Boxcar, 3e-3),
         (Window::Hann, 1e-5),

@@ -182,8 +182,8 @@ impl<S: Spring> FilmLaw<S> {
     }
 }
 
-/// End of the film whose force `lift` · G [N] presses the springs in by `room` less its opening `opened` · q
-/// [m]. `None` when no film can follow.
+/// Thickness at the end of the step of a film whose force `lift` · G [N] compresses the springs by `room`
+/// less its opening `opened` · q [m]. `None` when no film can follow.
 fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) -> Option<(f64, FilmForce)> {
     let need = |c: f64| {
         let film: FilmForce = FilmForce::until(c);
@@ -218,4 +218,58 @@ fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) ->
         };
     }
     Some((c, FilmForce::until(c)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Bed;
+
+    const LENGTH: f64 = 30e-3;
+    const SPEED: f64 = 2.4;
+    /// Bisection to 80 halvings; the rest is rounding.
+    const ROUNDING: f64 = 1e-9;
+
+    fn law() -> FilmLaw<Bed> {
+        let oil = Oil { viscosity: 0.05, least: 0.5e-6 };
+        FilmLaw::new(oil, 9e-3, LENGTH, Bed::new(2e13 * LENGTH, 9e-3))
+    }
+
+    fn close(ours: f64, theirs: f64) {
+        assert!((ours / theirs - 1.0).abs() < ROUNDING, "{ours}, not {theirs}");
+    }
+
+    /// Film and springs carry the same force in series; what the film adds is beyond that of dry contact, and
+    /// nothing where the surfaces press through it.
+    /// Source: THEORY §4.6, equilibrium of film and springs.
+    #[test]
+    fn analytic_a_settled_film_adds_what_dry_contact_lacks() {
+        let law = law();
+        for gap in [5e-6, 0.0, -0.05e-6] {
+            let (layer, pushed) = law.settled(gap, SPEED, 1.0);
+            let dry = law.spring.force((-gap).max(0.0));
+            close(pushed.force + dry, layer.force);
+            close(layer.force, law.wedge * SPEED * law.steady / law.thickness(&layer));
+            close(layer.force, law.spring.force(law.thickness(&layer) - law.least - gap));
+            assert!(pushed.force > 0.0, "{pushed:?}");
+        }
+        // At this depth the springs carry more than the thinnest film.
+        let (layer, pushed) = law.settled(-4e-6, SPEED, 1.0);
+        assert_eq!((layer.above, pushed.force), (0.0, 0.0));
+        close(layer.force, law.spring.force(4e-6));
+    }
+
+    /// Oil resists: a film that is closed carries more than in steady rolling, one that is opened less.
+    #[test]
+    fn invariant_a_film_acts_against_its_closing_and_its_opening() {
+        let law = law();
+        let (settled, steady) = law.settled(5e-6, SPEED, 1.0);
+        let after = |gap: f64| {
+            let mut layer = settled;
+            law.flow(&mut layer, gap, SPEED, 1.0, 1e-7)
+        };
+        let (closed, opened) = (after(4.99e-6), after(5.01e-6));
+        assert!(closed.force > steady.force && opened.force < steady.force, "{closed:?} {opened:?}");
+        assert!(opened.force > 0.0, "{opened:?}");
+    }
 }

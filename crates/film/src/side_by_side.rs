@@ -231,7 +231,7 @@ impl<P: SpringInLanes> FilmLaw<P> {
             c = next.max(all(EMPTY));
         }
         let above = opened.times_plus(opens, had);
-        // A film that cannot follow, or that is gone.
+        // A film that cannot follow the surfaces, or that has collapsed.
         let ends = end.choose_below(all(EMPTY), one, above.choose_below(zero, one, zero));
         let alone = left | (ends.bits() & wanted.films & !solid.bits());
         let force = carried.max(zero);

@@ -4,7 +4,7 @@ use pulp::Simd;
 use stribeck_simd::lanes::Vector;
 
 /// Deepest indentation at which the force follows the growing contact; beyond it the force is linear, so that
-/// the stiffness has a bound for the critical time step [m]. A film that presses so hard is gone within
+/// the stiffness has a bound for the critical time step [m]. A film under such a force collapses within
 /// microseconds.
 const DEEPEST: f64 = 2e-6;
 

@@ -21,6 +21,7 @@ pub(crate) use lines::is_wide;
 use lines::{Coding, Lines};
 
 use crate::recording::{equal_lengths, left_out};
+use crate::units;
 use crate::{Channel, Error, Recording, Result};
 
 /// Lines before the first row of numbers, at most.
@@ -123,8 +124,8 @@ pub fn open(path: &Path) -> Result<Recording> {
         let column = Column { path: path.to_owned(), at, preamble: first as u64, dialect, coding, origin_s };
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
         let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
-        let channel = Channel::text(name, rows, column).at_rate(rate_hz);
-        channels.push(channel.in_unit(unit.filter(|unit| !unit.is_empty())));
+        let unit = unit.filter(|unit| !unit.is_empty()).or_else(|| units::in_brackets(&name));
+        channels.push(Channel::text(name, rows, column).at_rate(rate_hz).in_unit(unit));
     }
     Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
 }
@@ -152,7 +153,7 @@ fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
     });
     let fractions = fractions.count();
     let alone = || {
-        // A single column has no neighbours that would tell: signs of numbers alone, and no date.
+        // A single column has no neighbours to compare with: characters of numbers alone, and no date.
         let signs = fields[0].chars().all(|c| c.is_ascii_digit() || ".,+-eE".contains(c));
         signs && fields[0].len() > 4 && dialect.field(fields[0]) == Field::Text
     };
@@ -172,8 +173,8 @@ fn columns_of_numbers(row: &str, dialect: Dialect) -> Vec<usize> {
 }
 
 /// Whether a line above the table is a row of it with words beside: it has numbers, one with a fraction at
-/// least, where the rows below have theirs. Oscilloscopes write what they say of a record beside its first
-/// samples.
+/// least, where the rows below have theirs. Oscilloscopes write their settings beside the first samples of
+/// a record.
 fn is_row_beside_words(line: &str, dialect: Dialect, columns: usize, numbers: &[usize]) -> bool {
     let fields = dialect.split(line);
     let of = |at: &usize| fields.get(*at).copied().unwrap_or_default();

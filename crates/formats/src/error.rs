@@ -19,7 +19,7 @@ pub enum Error {
         /// Error of the operating system.
         source: std::io::Error,
     },
-    /// The file is none of the known formats.
+    /// The file has none of the known formats.
     #[error(
         "`{}` is no signal that can be read: {seen}. Known are CSV, .npy, .npz, .mat (versions 4, 5 and \
          7.3), .uff/.unv (dataset 58), \

@@ -1,5 +1,5 @@
-//! FLAC: whole numbers of up to 24 bits, scaled to ±1 as those of WAV. Read only: it holds no floats, and WAV
-//! does.
+//! FLAC: whole numbers of up to 24 bits, scaled to ±1 as those of WAV. Read only: FLAC holds no
+//! floating-point numbers, and WAV does.
 
 use std::fs::File;
 use std::io::BufReader;

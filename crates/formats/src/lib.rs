@@ -20,8 +20,8 @@
 //! | FLAC | [`flac`] | no: it holds no floats |
 //! | WAV and RF64: 8 to 32 bits, floats | [`wav`] | as 64-bit floats |
 //!
-//! Times are told from signals by how they rise, and the sample rate follows from them where the file does
-//! not say it. Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
+//! Channels of time are recognised by their steady rise, and the sample rate follows from them where the file
+//! does not state it. Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
 
 mod curve;
 mod error;

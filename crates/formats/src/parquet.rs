@@ -370,7 +370,7 @@ fn guarded<T>(
         .unwrap_or_else(|_| Err(ParquetError::General("its structure contradicts itself".to_owned())))
 }
 
-/// Passes on all values of a column of one group of rows; false when `take` wants no more.
+/// Passes all values of a column of one row group to `take`; false when `take` has asked to stop.
 fn each<T: parquet::data_type::DataType>(
     reader: &mut parquet::column::reader::ColumnReaderImpl<T>,
     defined: i16,

@@ -86,7 +86,7 @@ pub fn open(path: &Path) -> Result<Recording> {
             notes.push("the file was not closed, or is cut off: its last samples may be missing".to_owned());
         }
         if raw > next && long(12) > behind && at > 0 {
-            // The recorder stopped in the middle of the metadata: what is before is sound.
+            // The recorder stopped in the middle of the metadata: earlier segments are sound.
             break;
         }
         if raw > next || raw > MAX_METADATA {
@@ -155,7 +155,7 @@ pub fn open(path: &Path) -> Result<Recording> {
 }
 
 /// Notes where the values of a segment lie: chunk after chunk, in each one channel after the other or value
-/// by value. Says what is odd about them.
+/// by value. Returns a note on anything unusual.
 fn place(
     path: &Path,
     (start, held): (u64, u64),

@@ -34,7 +34,7 @@ struct Course {
     change: Option<(f64, f64)>,
 }
 
-/// A step that is none of the others.
+/// A step of time unlike all others.
 #[derive(Debug, Clone, Copy)]
 struct Gap {
     /// Place and value before it.

@@ -363,7 +363,7 @@ impl Lines<'_> {
         let width = if double { 8 } else { 4 };
         let parts = 1 + usize::from(complex);
         let needed = count.saturating_mul(parts * width + if even { 0 } else { 4 });
-        // pyuff counts a complex value once, whose two parts follow all the same.
+        // pyuff counts a complex value once, although its two parts follow.
         let there = self.bytes.len().saturating_sub(self.at);
         let halved = complex && bytes < needed as u64 && there >= needed;
         let bytes = if halved { needed as u64 } else { bytes };

@@ -22,7 +22,7 @@ const TIMES: [(&str, f64, &[&str]); 7] = [
             "millis",
         ],
     ),
-    // The second is the micro sign, the third the Greek letter, the fourth what is left of one in another
+    // The second is the micro sign, the third the Greek letter, the fourth the remains of one in another
     // encoding.
     (
         "us",
@@ -134,6 +134,15 @@ pub(crate) fn seconds(unit: &str) -> Option<(&'static str, f64)> {
     let unit = unit.split_once(" since ").map_or(unit.as_str(), |(unit, _)| unit.trim_end());
     let of = TIMES.iter().find(|(_, _, names)| names.contains(&unit));
     of.map(|(name, seconds, _)| (*name, *seconds))
+}
+
+/// The unit at the end of a name, `acc [g]`, where it is a known one.
+pub(crate) fn in_brackets(name: &str) -> Option<String> {
+    let within = name.trim_end().strip_suffix([']', ')'])?;
+    let unit = within.rsplit_once(['[', '('])?.1.trim();
+    // A number in brackets counts channels.
+    let is_symbol = unit.contains(|c: char| c.is_alphabetic() || "°%".contains(c));
+    (is_symbol && is_unit(unit)).then(|| unit.to_owned())
 }
 
 /// Whether a field of a table is a unit: one of the lists, one in brackets, a fraction or a power of some.

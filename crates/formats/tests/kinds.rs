@@ -26,6 +26,25 @@ fn table(head: &str, separator: char, comma: bool, end: &str) -> String {
     head.to_owned() + &rows.collect::<String>()
 }
 
+/// The commonest head of all, and the unit in it was not read.
+#[test]
+fn issue_a_unit_in_the_name_of_a_column_is_its_unit() {
+    let desk = Scratch::create("formats-kinds");
+    for (name, unit) in [
+        ("acc [g]", Some("g")),
+        ("acc (m/s\u{b2})", Some("m/s\u{b2}")),
+        ("acc [raw]", None),
+        ("acc (2)", None),
+        ("acc", None),
+    ] {
+        let text = table(&format!("time [ms],{name}\n"), ',', false, "");
+        let found = opened(&desk, "a.csv", text.as_bytes());
+        let channel = found.channels.iter().find(|c| !c.is_time).unwrap();
+        assert_eq!((channel.name.as_str(), channel.unit.as_deref()), (name, unit));
+        assert!((channel.rate_hz.unwrap() / RATE_HZ - 1.0).abs() < 1e-3);
+    }
+}
+
 #[test]
 fn issue_texts_keep_their_units_columns_and_rows() {
     let desk = Scratch::create("formats-kinds");

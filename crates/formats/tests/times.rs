@@ -1,4 +1,4 @@
-//! Times are told from signals, and the sample rate follows from them.
+//! Channels of time are distinguished from signals, and the sample rate follows from them.
 
 use stribeck_formats::{Channel, Recording, npz, parquet};
 use stribeck_testing::{Noise, Scratch};
@@ -26,7 +26,7 @@ fn read(recording: &Recording) -> (Vec<bool>, Option<f64>) {
 
 /// The time column of `t,acc` was taken for the signal, and that in milliseconds for one in seconds.
 #[test]
-fn issue_times_are_told_by_how_they_rise_and_in_any_unit() {
+fn issue_times_are_recognised_by_how_they_rise_and_in_any_unit() {
     let desk = Scratch::create("formats-times");
     for (head, separator, per_second, digits) in [
         ("t,acc\n", ",", 1.0, 7),
@@ -147,7 +147,7 @@ fn roundtrip_a_foreign_table_has_its_rate_from_its_times() {
     assert_eq!(read(&found), (vec![true, false], Some(RATE_HZ)));
 }
 
-/// A late sample is no missing one: what it adds the next step takes back.
+/// A late sample is not a missing one: the next step is shorter by the same amount.
 #[test]
 fn issue_times_that_jitter_have_no_gaps() {
     let desk = Scratch::create("formats-jitter");

@@ -12,7 +12,7 @@
 //! | Question | Where |
 //! |---|---|
 //! | Where shall the first runs be? | [`sobol`] |
-//! | Where shall the next be, and what would they tell? | [`next`], [`expected_gain`] |
+//! | Where shall the next be, and how much would they add? | [`next`], [`expected_gain`] |
 //! | What does a run at a point give? | [`Emulator::predict`], [`Emulator::interval`] |
 //! | How good are these predictions? | [`Emulator::quality`] |
 //! | Which points make the targets? | [`Posterior::of`] |

@@ -58,7 +58,7 @@ export function serve(say, now, later) {
   let running = false, pace = 0, scheduled = false, unread = 0, batch = 4;
   let simulated = 0, since = 0, busy = 0;
   // As long as a turn may take [ms]: a picture comes 30 times a second and more.
-  // A clock that stands still must not keep it: so many samples at most.
+  // A clock that stands still must not keep it: a limit on the samples.
   const TURN = 14, UNREAD = 2, MOST = 20000;
 
   const fresh = () => new Bearing(new WebAssembly.Instance(module, {}));
@@ -86,7 +86,7 @@ export function serve(say, now, later) {
       spent = now() - began;
       anew = bearing.began;
     }
-    // So many samples that the clock is read often enough, and seldom.
+    // As many samples between two readings of the clock as take about two milliseconds.
     if (spent > 0 && taken > 0) batch = Math.max(1, Math.min(4096, Math.round(taken * 2 / Math.max(spent, 0.2))));
     simulated += taken * interval;
     busy += now() - began;

@@ -1,4 +1,4 @@
-// The page: what is shown, what is turned, and what the engine says.
+// The page: instruments, handles, and the messages of the engine.
 import { missing, startEngine, unpack, elementText } from "./driver.js";
 import { csv, poster, save, sceneText } from "./files.js";
 import { Plot } from "./plots.js";
@@ -6,7 +6,7 @@ import { PRESETS } from "./presets.js";
 import { Record, envelope, lineNear, notch, spectrum } from "./signals.js";
 import { Sound } from "./sound.js";
 import { Stage, readPicture } from "./stage.js";
-import { G, colourOf, forgetColours, frequencies, shown } from "./words.js";
+import { G, colourOf, forgetColours, frequencies, named, shown } from "./words.js";
 
 const $ = (id) => document.getElementById(id);
 
@@ -15,6 +15,27 @@ const lab = {
   facts: null, all: null, engine: null, handles: {}, scene: {}, layout: { perSample: 10 }, record: null, picture: null,
   displacement: new Float32Array(0), running: false, frozen: false, preset: null, speed: null, errors: 0, opened: -1, spectra: {},
 };
+
+const inWords = (text) => named(text, lab.facts);
+
+// Texts and names of the page itself that speak of rollers, as they were written.
+const written = [];
+
+function collectWritten() {
+  const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  for (let node = texts.nextNode(); node; node = texts.nextNode()) {
+    const isProse = !["SCRIPT", "STYLE", "CODE"].includes(node.parentElement.tagName);
+    if (isProse && /oller/.test(node.data)) written.push({ node, text: node.data });
+  }
+  document.querySelectorAll("[aria-label*=oller]").forEach((element) => written.push({ element, text: element.getAttribute("aria-label") }));
+}
+
+function nameWritten() {
+  for (const { node, element, text } of written) {
+    if (node) node.data = inWords(text);
+    else element.setAttribute("aria-label", inWords(text));
+  }
+}
 
 function trouble(words) {
   lab.errors += words ? 1 : 0;
@@ -83,17 +104,17 @@ function handleRow(spec) {
   row.dataset.key = spec.key;
   const id = `handle-${spec.key}`;
   const choices = CHOICES[spec.key];
-  row.innerHTML = `<label for="${id}">${SHORT[spec.key]}</label><span class="value">${choices
+  row.innerHTML = `<label for="${id}">${inWords(SHORT[spec.key])}</label><span class="value">${choices
     ? `<select id="${id}">${choices.map(([value, name]) => `<option value="${value}">${name}</option>`).join("")}</select>`
     : `<input id="${id}" inputmode="decimal" aria-describedby="unit-${spec.key}"><span class="unit" id="unit-${spec.key}">${spec.unit}</span>`}</span>`;
   const field = row.querySelector("input, select");
-  field.title = `${spec.name}${spec.unit ? ` [${spec.unit}]` : ""}, ${spec.least} to ${spec.most}${spec.live ? "" : "; starts the bearing anew"}`;
+  field.title = `${inWords(spec.name)}${spec.unit ? ` [${spec.unit}]` : ""}, ${spec.least} to ${spec.most}${spec.live ? "" : "; restarts the bearing"}`;
   field.addEventListener("change", () => enter(spec, field.value));
   const range = choices ? null : sliderRange(spec, lab.scene[spec.key]);
   if (range) {
     const slider = Object.assign(document.createElement("input"), { type: "range", min: range[0], max: range[1], step: "any" });
     if (spec.key === "facets") slider.step = 4;
-    slider.setAttribute("aria-label", `${spec.name}${spec.unit ? ` [${spec.unit}]` : ""}`);
+    slider.setAttribute("aria-label", `${inWords(spec.name)}${spec.unit ? ` [${spec.unit}]` : ""}`);
     slider.addEventListener("input", () => { field.value = round(+slider.value); });
     slider.addEventListener("change", () => enter(spec, round(+slider.value)));
     row.append(slider);
@@ -111,7 +132,7 @@ function enter(spec, text) {
   const value = String(text).trim() === "" ? NaN : Number(text);
   const why = document.querySelector(`[data-key="${spec.key}"] .why`);
   if (!(value >= spec.least && value <= spec.most)) {
-    if (why) why.textContent = `${SHORT[spec.key] || spec.name} = ${text === "" ? "nothing" : text}: must be a number between ${spec.least} and ${spec.most}${spec.unit ? ` ${spec.unit}` : ""}. It stays at ${lab.handles[spec.key]}.`;
+    if (why) why.textContent = `${inWords(SHORT[spec.key] || spec.name)} = ${text === "" ? "nothing" : text}: must be a number between ${spec.least} and ${spec.most}${spec.unit ? ` ${spec.unit}` : ""}. It stays at ${lab.handles[spec.key]}.`;
     return;
   }
   if (why) why.textContent = "";
@@ -129,11 +150,11 @@ function turn(wanted) {
   lab.engine.send({ task: "turn", asked: changed });
 }
 
-// What a key has moved on the stage, for who cannot see it.
+// What a key has moved on the stage, for screen readers.
 function tellStage() {
   if (!lab.tell) return;
   lab.tell = false;
-  $("told").textContent = `Sensor at ${lab.facts.sensors[lab.handles.sensor].deg}°; roller ${lab.handles.roller + 1} of ${lab.facts.rollers} is watched.`;
+  $("told").textContent = inWords(`Sensor at ${lab.facts.sensors[lab.handles.sensor].deg}°; roller ${lab.handles.roller + 1} of ${lab.facts.rollers} is watched.`);
 }
 
 function watch(roller) {
@@ -183,8 +204,8 @@ function takePreset(id) {
 
 function sayWords() {
   const f = tones();
-  $("words").textContent = lab.preset ? lab.preset.words(f, lab.handles)
-    : `${lab.facts.rollers} rollers under ${shown(lab.handles.load, "N")} at ${lab.handles.speed} rpm. Take one of the settings above, or turn a handle: the bearing answers at once.`;
+  $("words").textContent = inWords(lab.preset ? lab.preset.words(f, lab.handles)
+    : `${lab.facts.rollers} rollers under ${shown(lab.handles.load, "N")} at ${lab.handles.speed} rpm. Take one of the settings above, or turn a handle: the bearing answers at once.`);
 }
 
 const tones = () => frequencies(lab.facts, lab.handles.speed, lab.handles.facets, Boolean(lab.handles.arcs));
@@ -213,7 +234,8 @@ async function open(n) {
   lab.scene = Object.fromEntries(lab.facts.specs.map((spec, i) => [spec.key, lab.facts.handles[i]]));
   lab.handles = { ...lab.scene };
   const f = lab.facts;
-  $("lead").textContent = `${f.title}: ${f.rollers} rollers of ${shown(2 * f.roller, "m")}, raceways ${shown(2 * f.outer, "m")} and ${shown(2 * f.inner, "m")}, ${f.modes} modes below ${shown(f.highestHz * 1.02, "Hz")}`;
+  nameWritten();
+  $("lead").textContent = inWords(`${f.title}: ${f.rollers} rollers of ${shown(2 * f.roller, "m")}${f.balls ? ", modelled as cylinders" : ""}, raceways ${shown(2 * f.outer, "m")} and ${shown(2 * f.inner, "m")}, ${f.modes} modes below ${shown(f.highestHz * 1.02, "Hz")}`);
   buildHandles();
   buildFixed();
   stage.open(f);
@@ -273,8 +295,8 @@ function showCheck({ alone, guided, largest, close, course, pieces, until, took 
   const share = (off) => (off === 0 ? "nothing" : `${(off / largest).toExponential(1)} of the largest force`);
   lab.checked = { alone: alone / largest, guided: guided / largest, largest, close, course: course.map((off) => off / largest) };
   const good = guided < 1e-9 * largest;
-  $("checked").innerHTML = `<strong class="${good ? "good" : "bad"}">${share(guided)}</strong> is the largest difference, of forces of both raceways on all rollers up to ${shown(largest, "N")}, from ${pieces} states of the program’s run over ${shown(until / pieces, "s")} each. `
-    + `In one piece from the start they agree to a billionth until ${shown(close, "s")} and differ by ${share(alone)} at most within ${shown(until, "s")}: two numbers are added at a time here and eight there, products are rounded on their own here, and a roller that strikes makes what that changes larger. (${shown(took / 1000, "s")} of computing.)`;
+  $("checked").innerHTML = inWords(`<strong class="${good ? "good" : "bad"}">${share(guided)}</strong> is the largest difference, of forces of both raceways on all rollers up to ${shown(largest, "N")}, from ${pieces} states of the program’s run over ${shown(until / pieces, "s")} each. `
+    + `In one piece from the start they agree to a billionth until ${shown(close, "s")} and differ by ${share(alone)} at most within ${shown(until, "s")}: two numbers are added at a time here and eight there, products are rounded on their own here, and a roller that strikes makes what that changes larger. (${shown(took / 1000, "s")} of computing.)`);
 }
 
 // ---- pictures
@@ -286,7 +308,7 @@ const stage = new Stage($("stage"), $("inset"), {
     if (best !== lab.handles.sensor && best !== lab.askedSensor) { lab.askedSensor = best; turn({ sensor: best }); }
   },
   onRoller: (roller) => watch(roller),
-  // Said once the engine has turned what the key asked for.
+  // Announced once the engine has applied the change.
   onKey: () => { lab.tell = true; },
 });
 
@@ -330,7 +352,7 @@ function drawTraces() {
   plots.trace.show({ range, series: cleaned
     ? [{ name: "as it is", colour: colourOf("c-grey"), y: raw, x0, dx }, { name: "behind the notch", colour: colourOf("c-blue"), y: cleaned, x0, dx, width: 1.6 }]
     : [{ name: "", colour: colourOf("c-blue"), y: raw, x0, dx }] });
-  $("force-name").textContent = $("follow").checked && stage.spall() ? `Force on the roller at the spall, now no. ${lab.handles.roller + 1}` : `Force on roller ${lab.handles.roller + 1}`;
+  $("force-name").textContent = inWords($("follow").checked && stage.spall() ? `Force on the roller at the spall, now no. ${lab.handles.roller + 1}` : `Force on roller ${lab.handles.roller + 1}`);
   plots.force.show({ range, series: [
     { name: "inner raceway", colour: colourOf("c-orange"), y: lab.record.last(4, n), x0, dx },
     { name: "outer raceway", colour: colourOf("c-blue"), y: lab.record.last(3, n), x0, dx }] });
@@ -344,7 +366,7 @@ function drawTraces() {
     series: [{ name: "", colour: colourOf("c-teal"), x: ox, y: oy, dot: true }] });
 }
 
-// Spectra are of so many samples at most: a page that computes for longer drops pictures.
+// Most samples of a spectrum: a page that computes for longer drops pictures.
 const SPECTRA = 1 << 16;
 
 function drawSpectra(which) {
@@ -367,7 +389,7 @@ function drawSpectrum(signal, rate, f) {
     series: [{ name: "", colour: colourOf("c-blue"), y: s.amplitude, x0: 0, dx: s.step }] });
   const line = f.facets > 0 && f.facets < 0.5 * rate ? lineNear(s, f.facets, Math.max(3 * s.step, 0.005 * f.facets)) : null;
   $("tone").textContent = lab.handles.arcs ? "Arcs have no corners: no line is expected where facets would pass."
-    : line ? `Corners of rollers pass at ${shown(f.facets, "Hz")}; the highest line there stands at ${shown(line.hz, "Hz")}, ${shown(line.level, "g")}, ${line.above.toFixed(0)} dB above its surroundings.` : "";
+    : line ? inWords(`Corners of rollers pass at ${shown(f.facets, "Hz")}; the highest line there stands at ${shown(line.hz, "Hz")}, ${shown(line.level, "g")}, ${line.above.toFixed(0)} dB above its surroundings.`) : "";
   lab.spectra.tone = line;
   // Where corners would pass, also where there are none.
   const corners = lab.handles.facets * f.spin;
@@ -404,8 +426,8 @@ function showNumbers() {
   const { rollers, energies: e } = lab.picture, loaded = rollers.filter((r) => r.outer > 0.01 * Math.max(...rollers.map((one) => one.outer)));
   const b = balance();
   lab.balance = b;
-  $("numbers").textContent = `${loaded.length} rollers carry; the most loaded ${shown(Math.max(...rollers.map((r) => r.outer)), "N")}.`
-    + (b ? ` Rollers carry ${shown(b.carried, "N")} on average of ${shown(b.load, "N")} (load and weight).` : "");
+  $("numbers").textContent = inWords(`${loaded.length} rollers carry; the most loaded ${shown(Math.max(...rollers.map((r) => r.outer)), "N")}.`
+    + (b ? ` Rollers carry ${shown(b.carried, "N")} on average of ${shown(b.load, "N")} (load and weight).` : ""));
   const rows = [["in motion", e.kinetic], ["bending rings", e.strain], ["contacts", e.contact], ["friction, heat", e.friction], ["damping, heat", e.damping], ["contact damping, heat", e.contactDamping], ["oil, heat", e.film], ["work of the load", e.external], ["work of the drive", e.drive], ["imbalance", e.imbalance]];
   const most = Math.max(...rows.map(([, v]) => Math.abs(v)), 1e-12);
   $("energy").innerHTML = rows.map(([name, v]) => `<tr><td>${name}</td><td class="n">${shown(v, "J")}</td><td style="width:35%"><span class="level" style="width:${(100 * Math.abs(v) / most).toFixed(1)}%"></span></td></tr>`).join("");
@@ -485,7 +507,7 @@ function connect() {
   $("roller").addEventListener("change", () => {
     const n = Number($("roller").value);
     if (Number.isInteger(n) && n >= 1 && n <= lab.facts.rollers) watch(n - 1);
-    else { trouble(`Roller ${$("roller").value}: must be a whole number between 1 and ${lab.facts.rollers}.`); $("roller").value = lab.handles.roller + 1; }
+    else { trouble(inWords(`Roller ${$("roller").value}: must be a whole number between 1 and ${lab.facts.rollers}.`)); $("roller").value = lab.handles.roller + 1; }
   });
   for (const id of ["component", "at-tone", "span", "reach", "low", "high"]) $(id).addEventListener("change", () => { lastTraces = lastSpectra = 0; lab.dirty = true; });
   $("bearing").addEventListener("change", () => { open(Number($("bearing").value)).catch((error) => trouble(error.message)); });
@@ -518,7 +540,7 @@ async function check() {
 }
 
 async function begin() {
-  // For whoever wants more than the page shows, and for its tests.
+  // For programs that read more than the page shows, and for its tests.
   window.stribeckLab = lab;
   const lacks = missing();
   if (lacks) { $("incomplete").hidden = true; trouble(lacks); return; }
@@ -530,6 +552,7 @@ async function begin() {
     $("bearing").replaceChildren(...lab.all.bearings.map((b, n) => Object.assign(document.createElement("option"), { value: n, textContent: b.title })));
     $("bearing-label").hidden = lab.all.bearings.length < 2;
     $("about").textContent = `Stribeck ${lab.all.version}. The bearing is the reduced model: rings in their natural modes, rollers rigid with the facets that they are meshed with, contact with local compliance, cage, oil and friction. Nothing is fetched from a network.`;
+    collectWritten();
     buildPresets();
     connect();
     requestAnimationFrame(frame);

@@ -345,6 +345,6 @@ export class Stage {
     c.textAlign = "left";
     c.textBaseline = "top";
     const magnified = sy / sx;
-    c.fillText(`${spall ? `the spall on the ${inner ? "inner" : "outer"} raceway` : "under the watched roller"}, heights × ${magnified.toFixed(0)}; ${shown(2 * span, "m")} wide`, 6, 4);
+    c.fillText(`${spall ? `the spall on the ${inner ? "inner" : "outer"} raceway` : `under the watched ${this.facts.balls ? "ball" : "roller"}`}, heights × ${magnified.toFixed(0)}; ${shown(2 * span, "m")} wide`, 6, 4);
   }
 }

@@ -25,6 +25,12 @@ export function colourOf(name) {
 // A page that turned from light to dark has others.
 export const forgetColours = () => colours.clear();
 
+// Texts are written for rollers; those of a bearing with balls say balls.
+export function named(text, facts) {
+  if (!facts || !facts.balls) return text;
+  return text.replace(/\b([rR])oller(s?)\b/g, (_, first, many) => (first === "R" ? "Ball" : "ball") + many);
+}
+
 // Frequencies of the bearing at a speed [rpm]: those of its facets too.
 export function frequencies(facts, rpm, facets, arcs) {
   const relative = Math.abs(rpm - facts.outerRpm), at = facts.hzPerRpm;

@@ -15,6 +15,7 @@ use stribeck_scene::{
     advice,
     housing::HousingScene,
     kinematics::Kinematics,
+    load_rating::is_ball_bearing,
     lubrication::loaded_films,
     resolved::ResolvedScene,
     scene::{
@@ -38,7 +39,7 @@ const BETWEEN_SENSORS_DEG: usize = 15;
 const CHECKED_S: f64 = 0.01;
 const CHECKS: usize = 100;
 
-/// Of these, so many are the beginning of a stretch that the page steps from the program's own state.
+/// Number of these at which the page restarts from the program's own state.
 const STATES: usize = 10;
 
 /// Data of a scene in the page.
@@ -284,6 +285,7 @@ fn facts(
         "name": scene.name,
         "title": title,
         "rollers": resolved.rollers,
+        "balls": is_ball_bearing(scene),
         "outer": resolved.outer_race_radius, "outerThickness": resolved.outer_ring_thickness,
         "inner": resolved.inner_race_radius, "innerThickness": resolved.inner_ring_thickness,
         "roller": resolved.roller_radius, "width": resolved.thickness, "clearance": resolved.clearance,
@@ -323,7 +325,7 @@ fn fixed(scene: &Scene) -> Value {
     };
     json!([
         [
-            "Rollers",
+            if is_ball_bearing(scene) { "Balls" } else { "Rollers" },
             format!("{} of {} mm", bearing.rollers, bearing.roller_diameter_mm),
             "bearing.rollers=20"
         ],

@@ -77,8 +77,8 @@ impl Engine {
         Ok(())
     }
 
-    /// Turns the handles that were asked for: the bearing runs on, or starts anew where one of them needs it.
-    /// Whether it starts anew.
+    /// Applies the requested handles: the bearing runs on, or restarts where one of them needs it. Returns
+    /// whether it restarts.
     ///
     /// # Errors
     /// When there is no such bearing or it has no equilibrium; the handles are then as they were.
@@ -97,7 +97,7 @@ impl Engine {
         }
     }
 
-    /// Starts anew with the handles that were asked for.
+    /// Restarts with the requested handles.
     ///
     /// # Errors
     /// As [`apply`](Self::apply).
@@ -145,7 +145,7 @@ impl Engine {
         saved.state.steps = (time / bearing.time_step).round() as u64;
         let start = Saved::first(&bearing, saved.state);
         if !start.fits(&bearing) {
-            // Oil that comes or goes with the speed: films are begun anew.
+            // Whether there are films depends on the speed: they start from their equilibrium.
             let state = bearing.at_start(&dense::solve)?;
             let start = Saved::first(&bearing, state);
             self.take(bearing, steps, start);
@@ -188,12 +188,12 @@ impl Engine {
         (self.first, self.most_stored, self.energies) = (None, 0.0, Energies::default());
     }
 
-    /// Takes so many samples, which are then in [`samples`](Self::samples). Where the cage has left the place
-    /// that the model has for it, the run begins anew behind fewer of them, and the reason is returned: a run
-    /// of the program ends there.
+    /// Steps until there are `samples` samples, which are then in [`samples`](Self::samples). Where the cage
+    /// has left its place between the raceways, there are fewer, the run restarts after them, and the reason
+    /// is returned: a run of the program ends there.
     ///
     /// # Errors
-    /// When the run has gone wrong.
+    /// When the run has diverged.
     pub fn run(&mut self, samples: usize) -> Result<Option<String>, Error> {
         self.samples.clear();
         self.samples.reserve(samples * PER_SAMPLE);

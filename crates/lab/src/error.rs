@@ -33,7 +33,7 @@ pub enum Error {
     /// The reduced bearing cannot be made or has no equilibrium.
     #[error("{0}")]
     Bearing(#[from] stribeck_reduced::error::Error),
-    /// The run has gone wrong.
+    /// The run has diverged.
     #[error("{0}")]
     Diverged(String),
     /// A scene cannot be reduced.

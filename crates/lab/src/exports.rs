@@ -76,19 +76,19 @@ pub(crate) extern "C" fn lab_ask(handle: usize, value: f64) -> u32 {
     with_engine(|engine| engine.ask(handle, value).map(|()| 0))
 }
 
-/// Turns the handles that were asked for: 1 where the bearing starts anew.
+/// Applies the requested handles: 1 where the run restarts.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_apply() -> u32 {
     with_engine(|engine| engine.apply().map(u32::from))
 }
 
-/// Starts anew.
+/// Restarts the run.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_restart() -> u32 {
     with_engine(|engine| engine.restart().map(|()| 0))
 }
 
-/// Takes so many samples: 1 where the run has begun anew behind some of them, with the reason in the text.
+/// Steps until there are `samples` samples: 1 where the run restarted before, with the reason in the text.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_run(samples: usize) -> u32 {
     with(|lab| {

@@ -20,7 +20,7 @@ pub struct Handle {
     pub least: f64,
     /// Largest value.
     pub most: f64,
-    /// Whether the bearing runs on when it is turned; otherwise it starts anew from its equilibrium.
+    /// Whether the bearing runs on when it is changed; otherwise the run restarts from its equilibrium.
     pub live: bool,
 }
 

@@ -31,9 +31,9 @@ pub struct Limits {
 /// Why a run stops, in words.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Stop {
-    /// It has gone wrong.
+    /// It has diverged.
     Diverged(String),
-    /// Its cage has gone where the model has nothing that holds it.
+    /// Its cage has moved to where the model has nothing that guides it.
     CageLeft(String),
 }
 

@@ -101,7 +101,7 @@ pub fn content(scene: &Scene, runs: Option<&Path>) -> Result<Content, Error> {
     Ok(bundle::bundle(scene, runs)?.content)
 }
 
-/// A script as it runs after the others: what it imports is there, and nobody imports it.
+/// A script to be run after the others, without its imports and exports: all names are in one scope.
 fn plain(script: &str) -> String {
     let kept = script.lines().filter(|line| !line.starts_with("import "));
     let lines: Vec<&str> = kept.map(|line| line.strip_prefix("export ").unwrap_or(line)).collect();

@@ -28,7 +28,7 @@ pub struct Spall {
 /// Facets on the floor and beside the spall at least.
 const LEAST: usize = 2;
 
-/// How far beyond the ends of a spall its walls may have gone with the ring under load [m].
+/// How far beyond the ends of a spall its walls may be displaced with the ring under load [m].
 const ABOUT: f64 = 2e-4;
 
 /// A raceway without its spall: what it deviates by from its circle, and where its vertices are.
@@ -71,7 +71,7 @@ impl Plain {
 }
 
 /// Radii of a raceway with its spall filled up. A ring under load is out of round by as much as a spall is
-/// deep, so that the floor is what lies below the raceway on both sides of it.
+/// deep, so that the floor is recognised by lying below the raceway on both sides of it.
 fn filled(angles: &[f64], radii: &[f64], typical: f64, spall: &Spall, outwards: f64) -> Vec<f64> {
     let half = (0.5 * spall.length + ABOUT) / typical;
     let beside = |side: f64| {

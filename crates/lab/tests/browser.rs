@@ -31,7 +31,7 @@ const TOOLS: &str = r#"
     if (!what()) throw new Error(`in vain: ${what}; the page says “${document.getElementById("trouble").textContent}”`);
   };
   const set = (id, value) => { const field = document.getElementById(id); field.value = value; field.dispatchEvent(new Event("change")); };
-  // What is saved and what is played is kept here.
+  // Saved files and played sounds are kept here.
   const saved = [], played = [], urlOf = URL.createObjectURL.bind(URL);
   URL.createObjectURL = (blob) => { saved.push(blob); return urlOf(blob); };
   HTMLAnchorElement.prototype.click = () => {};
@@ -171,7 +171,7 @@ fn example_presets_are_links_and_arcs_take_the_tone_away() {
     assert!(number(&said, "arcs") < 0.3 * number(&said, "facets"), "{said}");
 }
 
-/// Every control has a name for who cannot see it, arrow keys do what a mouse does, numbers that are none are
+/// Every control has a name for screen readers, arrow keys do what a mouse does, text that is no number is
 /// refused, and a phone shows the page without scrolling sideways.
 #[test]
 fn example_a_phone_has_room_and_controls_have_names() {
@@ -263,7 +263,7 @@ fn refuses_a_browser_without_vectors() {
     assert!(said.as_str().is_some_and(|words| words.contains("no vectors in WebAssembly (SIMD)")), "{said}");
 }
 
-/// A run that goes wrong stops with the words of the program, and starts anew from handles that are right.
+/// A diverging run stops with the program's message, and restarts from valid handles.
 #[test]
 fn refuses_to_go_on_with_a_run_that_goes_wrong() {
     let Some((browser, module)) = tools() else { return };
@@ -310,7 +310,8 @@ fn example_a_page_with_three_bearings_goes_from_one_to_another() {
         set("bearing", n);
         await until(() => lab.opened === n && lab.picture && lab.picture.time > 0.02 && lab.record.count > 100);
         seen.push({ n, title: lab.facts.title, rollers: lab.picture.rollers.length, load: lab.handles.load,
-          largest: Math.max(...lab.picture.rollers.map((r) => r.outer)), lead: text("lead"), running: lab.running });
+          largest: Math.max(...lab.picture.rollers.map((r) => r.outer)), lead: text("lead"), running: lab.running,
+          watched: document.getElementById("roller").parentElement.textContent.trim(), force: text("force-name") });
       }
       // From one to the next before the first is there.
       set("bearing", 0); set("bearing", 1); set("bearing", 2);
@@ -332,6 +333,10 @@ fn example_a_page_with_three_bearings_goes_from_one_to_another() {
             "{seen}"
         );
         assert_eq!(seen["running"], true);
+        // A 6205 has balls.
+        let element = if n == 2 { "ball" } else { "roller" };
+        let words = [&seen["watched"], &seen["force"], &seen["lead"]].map(|text| text.as_str().unwrap_or(""));
+        assert!(words[0] == element && words.iter().all(|text| text.contains(element)), "{seen}");
     }
     assert_eq!(number(&said, "last"), rollers[2]);
 }

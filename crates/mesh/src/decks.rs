@@ -12,8 +12,8 @@
 //! | Abaqus `.inp` | `*NODE`, `*PART` and `*INSTANCE` | `*ELEMENT` of CPE4, CPE4R, CPS4, S4 …, CPE3 … | `ELSET=`, `*ELSET`, `NSET=`, `*NSET` |
 //! | Gmsh `.msh` 2.2, 4.0, 4.1, text or binary | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
 //!
-//! A set of line elements is a set of their nodes. An `*INCLUDE` is for whoever reads the files to follow
-//! ([`included`]).
+//! A set of line elements is a set of their nodes. An `*INCLUDE` is followed by the caller, who reads the
+//! files ([`included`]).
 //!
 //! [`Deck::write_model`] adds what makes the mesh a model ([`Model`]): `*MAT_ELASTIC`, `*SECTION_SHELL` and
 //! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT

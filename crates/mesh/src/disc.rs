@@ -124,7 +124,7 @@ impl Disc {
         if let Some((element, area)) = inside_out(&part) {
             return Err(Error::Tangled { shape: SHAPE, element, area, advice: SIZE_ADVICE });
         }
-        // Many turns are no more than the rest of one, and a large angle would swallow those of the columns.
+        // Whole turns change nothing, and a large angle would round away the digits of the columns' angles.
         let rotation = self.rotation % TAU;
         let mut part = part.rotated(rotation);
         self.place_rim(&mut part, rotation);

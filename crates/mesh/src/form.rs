@@ -8,7 +8,7 @@ use crate::smoothing::{enough, inside_out};
 use crate::walls::shape_by_walls;
 use crate::{Error, Part};
 
-/// Facets on either side of a corner over which the spacing of the nodes goes back to what it was.
+/// Facets on either side of a corner over which the spacing of the nodes returns to the regular one.
 const BESIDE: f64 = 8.0;
 
 /// Two corners nearer than this share of a facet are the ends of a wall.
@@ -108,7 +108,8 @@ impl FormDeviation<'_> {
         shape_by_walls(part, plain, &movable, SIDE * facet, enough(facet), layers as usize);
     }
 
-    /// Where a node goes that takes these shares of what the surface moves along itself and into the body.
+    /// New position of a node that takes these shares of the surface's displacement along itself and into the
+    /// body.
     fn place(&self, at: [f64; 2], [along, share]: [f64; 2], moves: &Moves) -> [f64; 2] {
         let angle = at[1].atan2(at[0]);
         let by = along * moves.at(angle);

@@ -263,7 +263,7 @@ impl Plan {
             return Ok(Plan { cuts, angle, rise, back, bent });
         };
         let (mut back, mut bent) = (angle.clone(), Vec::new());
-        // Bent columns of the grooves since the last room: where they begin, and how many.
+        // Bent columns of the grooves since the last gap with radial columns: where they begin, and how many.
         let mut begun = None;
         for k in (1..=cuts.len()).map(|k| (last + k) % cuts.len()) {
             let cut = &cuts[k];

@@ -269,8 +269,8 @@ mod tests {
         2.0 / submesh.modes_above(0.0, &at)[0].square.sqrt()
     }
 
-    /// Of several grooves each is shaped by itself: beside others one costs what it costs alone, around a
-    /// ring and as near as two may be.
+    /// Each of several grooves is shaped by itself: beside others, around a ring and as close as two may
+    /// be, one costs as much as alone.
     #[test]
     fn example_several_grooves_keep_the_time_step_of_one() {
         let at = |angle, depth| Groove::rectangular(angle, 0.01, depth);

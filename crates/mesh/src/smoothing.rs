@@ -6,7 +6,7 @@ use crate::error::Error;
 use crate::part::signed_area;
 
 /// Powers of the sum that stands for the smallest length, used one after the other. The larger the power, the
-/// more the worst element counts; a small one first lets its neighbours give way before they get stuck.
+/// more the worst element counts; a small one first moves its neighbours before they get stuck.
 const POWERS: [i32; 3] = [6, 12, 20];
 
 /// Sine of the sharpest corner angle that is not penalised. The one-point length sees only the diagonals

@@ -17,7 +17,7 @@ const STEP: f64 = 1e-6;
 /// Units: a length, the density and the speed of pressure waves c_p. A frequency ω is then 2/L, where L / c_p
 /// is the critical time step and L = 1 that of endless squares with sides of the unit of length. Elements are
 /// those of [`characteristic_length`](crate::characteristic_length), and here their hourglass stiffness
-/// counts: that which gives squares their exact stiffness in bending.
+/// counts: the one with which squares have their exact bending stiffness.
 pub(crate) struct Submesh {
     /// Nodes of the part; the movable ones come first.
     pub(crate) nodes: Vec<u32>,
@@ -47,7 +47,7 @@ struct Moduli {
     hourglass: f64,
 }
 
-/// What forces and energies of an element need to know of its shape.
+/// Shape of an element, as its forces and energies need it.
 #[derive(Clone, Copy)]
 struct Shape {
     b1: [f64; 2],

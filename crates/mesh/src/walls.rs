@@ -19,7 +19,7 @@ const LENGTH: f64 = 0.95;
 
 /// Moves the `movable` nodes of a part that was `plain` before its groove was made, for the critical step of
 /// the assembled cells: fine ones have sides of `side` [m], and where cells are put into order one by one,
-/// those of the length `enough` [m] need not become larger. The groove is as deep as so many `layers`.
+/// those of the length `enough` [m] need not become larger. The groove is `layers` layers deep.
 pub(crate) fn shape_by_walls(
     part: &mut Part,
     plain: &Part,

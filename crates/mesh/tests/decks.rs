@@ -90,7 +90,7 @@ fn model(mesh: &Mesh) -> Model<'_> {
 }
 
 /// Material, sections and contacts stand beside the same mesh, surfaces are closed lines of its boundary, and
-/// what the reader does not take is named.
+/// what the reader does not support is named.
 #[test]
 fn roundtrip_a_model() {
     let mesh = mesh();
@@ -362,7 +362,7 @@ fn peer_meshio_reads_the_same_mesh() {
     let mesh = mesh();
     let folder = Scratch::create("decks");
     for (deck, extension) in &ALL[1..] {
-        // It knows elements of plane stress, and none of plane strain.
+        // It has elements of plane stress, and none of plane strain.
         let text = deck.write_model(&model(&mesh), "a bearing").replace("CPE", "CPS");
         std::fs::write(folder.join(format!("a.{extension}")), text).expect("it is written");
     }

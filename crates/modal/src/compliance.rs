@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Approach C(F) = F g(√F) of two bodies at the load F [m], beyond what modes and penalty tell.
+/// Approach C(F) = F g(√F) of two bodies at the load F [m], beyond the approach in modes and penalty.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Compliance {
     /// Distance of the knots over y = √F [√N].
@@ -138,7 +138,7 @@ impl Curve {
         self.spans[((y * self.per_spacing) as usize).min(self.spans.len() - 1)]
     }
 
-    /// Approach and derivative, most likely on a piece that is known.
+    /// Approach and derivative, with a guess of the piece.
     #[inline(always)]
     pub fn approach_near(&self, force: f64, piece: usize) -> [f64; 2] {
         let y = force.sqrt();

@@ -2,7 +2,7 @@
 //! them from finite elements (`stribeck-reduction`) and the crate that steps them in time
 //! (`stribeck-reduced`).
 //!
-//! Nothing here reads a file, meshes, factorises or knows the time, so that data and step run wherever Rust
+//! Nothing here reads a file or a clock, meshes or factorises, so that data and step run wherever Rust
 //! does, in a browser too. All lengths are in metres, forces in newtons, angles in radians, counter-clockwise
 //! positive; modes are normalised to unit modal mass, so that their coordinates have the unit √kg m and their
 //! shapes 1/√kg.

@@ -31,7 +31,7 @@ pub struct Seat {
     /// Residual displacement of each sensor by a unit tension of each spring [m/N]; for normal springs, of
     /// missing tension.
     pub at_sensors: Vec<Vec<[f64; 2]>>,
-    /// Displacement of the raceway at each vertex under a unit force there if the whole seat lets go [m/N].
+    /// Displacement of the raceway at each vertex under a unit force there if the whole seat opens [m/N].
     /// Empty until the numbers of a scene are known, because the tables above are rounded before.
     pub flexibility: Vec<f64>,
 }

@@ -21,7 +21,7 @@ use stribeck_simulation as simulation;
 
 use crate::raise;
 
-/// How often Python is asked whether Ctrl-C was pressed, and told how far a run is.
+/// Interval at which Python is asked whether Ctrl-C was pressed, and gets the progress of a run.
 const PACE: Duration = Duration::from_millis(100);
 
 /// The command line of the program.
@@ -51,7 +51,7 @@ pub(crate) fn command(py: Python<'_>, arguments: Vec<String>) -> i32 {
     })
 }
 
-/// Watches a run for Python: asks for signals, tells of progress.
+/// Watches a run for Python: checks for signals, reports progress.
 struct Watch {
     progress: Option<Py<PyAny>>,
     last: Instant,

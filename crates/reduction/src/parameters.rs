@@ -34,8 +34,8 @@ pub fn modal_bearing(scene: &ResolvedScene, reduction: Reduction) -> Result<Moda
 }
 
 /// Rounds the tables that a step looks up to single precision, once for all that is computed from them, and
-/// levels what cannot differ: a roller that passes over a wall has no height to tell its ends apart by. Mass
-/// damping brakes no frame.
+/// equalises what cannot differ: on a roller that passes over a wall both ends have the same height. Mass
+/// damping does not act on a frame.
 fn prepare(reduction: &mut Reduction, parameters: &Parameters) {
     let per_angle = per_angle(&parameters.outlines.outer);
     level_walls(&mut reduction.shapes, &per_angle);

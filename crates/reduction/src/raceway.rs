@@ -41,7 +41,7 @@ pub(crate) fn taken_back(seat: Option<&Seat>, modes: usize, vertex: usize) -> im
     seat.map_or(&[][..], |seat| &seat.taken_back).iter().skip(vertex * modes).take(modes)
 }
 
-/// Vertices of the raceway without the dents of the rollers, which the local compliance makes anew [m].
+/// Vertices of the raceway without the dents of the rollers, which the local compliance adds again [m].
 pub(crate) fn without_dents(
     extraction: &Extraction,
     structure: &mut Structure,

@@ -343,8 +343,8 @@ impl Panels {
 }
 
 /// Force that presses each spring at the preload [N]: that on each node of the ring goes through the springs
-/// that reach the node, by their parts of the stiffness there. A panel that held whole nodes instead would
-/// let go too early or too late where its edges lie between them.
+/// that reach the node, by their parts of the stiffness there. A panel of whole nodes instead would open too
+/// early or too late where its edges lie between them.
 fn pressing(parts: &Parts<'_>) -> Vec<f64> {
     let mut inwards = vec![0.0; parts.x.len()];
     for (slot, [fx, fy]) in parts.back {

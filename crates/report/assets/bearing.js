@@ -13,12 +13,13 @@
     const play = figure.querySelector(".play"), scrubber = figure.querySelector("input[type=range]");
     const slow = figure.querySelector("select"), said = figure.querySelector("output");
     const count = spec.rollers.length, largest = spec.largest_n;
+    const element = spec.element[0].toUpperCase() + spec.element.slice(1);
     const orbit = shorts(spec.orbit), spin = shorts(spec.spin), shaft = shorts(spec.shaft), ring = shorts(spec.ring);
     const cage = spec.cage && shorts(spec.cage);
     const outer = bytes(spec.outer), inner = bytes(spec.inner);
     const extremes = spec.trace && shorts(spec.trace.extremes);
     let at = spec.first, playing = false, last = 0, colours = {};
-    let followed = Math.max(0, spec.rollers.findIndex((n) => spec.events.some(([, words]) => words.startsWith(`roller ${n} `))));
+    let followed = Math.max(0, spec.rollers.findIndex((n) => spec.events.some(([, words]) => words.startsWith(`${spec.element} ${n} `))));
 
     const timeOf = (frame) => spec.start_s + (frame + 0.5) * spec.step_s;
     const frame = () => Math.min(spec.frames - 1, Math.max(0, Math.round(at)));
@@ -159,7 +160,7 @@
         }
         ctx.stroke();
       });
-      panel(160, 140, width < 440 ? `Roller ${spec.rollers[followed]}: outer, inner, to ${kilo(largest)}` : `Roller ${spec.rollers[followed]}: outer (blue) and inner raceway (orange), to ${kilo(largest)}`, (top, high) => {
+      panel(160, 140, width < 440 ? `${element} ${spec.rollers[followed]}: outer, inner, to ${kilo(largest)}` : `${element} ${spec.rollers[followed]}: outer (blue) and inner raceway (orange), to ${kilo(largest)}`, (top, high) => {
         for (const [of, colour] of [[inner, colours.orange], [outer, colours.blue]]) {
           ctx.strokeStyle = colour; ctx.lineWidth = 1.5; ctx.beginPath();
           for (let f = 0; f < spec.frames; f++) ctx.lineTo(x(f), top + high * (1 - of[f * count + followed] / 255));

@@ -65,7 +65,7 @@ fn verdict(agreement: &Agreement) -> String {
     let (all, open) = (agreement.rows.len(), agreement.open().count());
     let cannot = match open {
         0 => String::new(),
-        _ => format!(" Of {open} so many starts cannot tell: there chance may be larger than the limit."),
+        _ => format!(" For {open} there are too few starts: the scatter may be larger than the limit."),
     };
     match failures.len() {
         0 if open == 0 => format!("All {all} quantities are within their limits."),
@@ -84,7 +84,7 @@ fn table(agreement: &Agreement) -> Markup {
                     td { (format!("{:+.3} {}", row.difference.mean, row.scale.unit())) @if row.over_bands() { ", mean of the bands" } }
                     td { (interval(row)) }
                     td { (format!("{} {}", row.limit, row.scale.unit())) }
-                    td { @if row.told && !row.within { strong { "no" } } @else { (row.verdict(agreement.starts)) } }
+                    td { @if row.decided && !row.within { strong { "no" } } @else { (row.verdict(agreement.starts)) } }
                 }
             }
         }

@@ -50,7 +50,7 @@ pub(super) fn paragraphs(run: &Run, findings: &Findings) -> Markup {
     }
 }
 
-/// The first thing to bear in mind: a run that warned, or whose contact is a choice as every scene's is.
+/// The main caveat: warnings of the run, or else that the contact's stiffness is chosen, as in every scene.
 fn caution(run: &Run, summary: &Summary) -> String {
     match warnings(run, summary).len() {
         0 => "The run gave no warning; levels in g still depend on choices of the scene.".to_owned(),

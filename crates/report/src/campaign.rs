@@ -8,6 +8,7 @@ use stribeck_analysis::words::significant;
 use stribeck_scene::run_dir::write_atomic;
 
 use crate::Error;
+use crate::field_words::FieldWords;
 use crate::page::head;
 use crate::plot::{Axis, Colour, Figure, Series};
 
@@ -56,7 +57,7 @@ const QUANTITIES: [(&str, &str, &str); 12] = [
     ("diagnosis.ftf_level_db", "Level of FTF", "dB"),
     ("levels.exit_g", "Peak at exits from the defect", "g"),
     ("levels.gap_rms_g", "Root mean square between passages", "g"),
-    ("load.max_roller_n", "Largest force on a roller", "N"),
+    ("load.max_roller_n", "Largest force on a rolling element", "N"),
     ("kinematics.cage_hz", "Cage", "Hz"),
     ("energy.heat_j", "Heat of friction and damping", "J"),
 ];
@@ -98,7 +99,7 @@ fn page(index: &CampaignIndex) -> Result<Markup, Error> {
                 p class="lead" { (lead(index)) }
                 @if complete < index.runs.len() { (banner(index, complete)) }
                 @for (place, (field, figures)) in sections.iter().enumerate() {
-                    h2 { "Over " code { (field) } }
+                    h2 { "Over the " (FieldWords::of(field).inside()) " " small { code { (field) } } }
                     @if figures.is_empty() { p { "No run has a number that could be drawn." } }
                     // One field at a time; the others are a click away.
                     @if place == 0 { div class="pairs-of-figures" { @for figure in figures { (figure) } } }
@@ -122,7 +123,9 @@ fn page(index: &CampaignIndex) -> Result<Markup, Error> {
 
 fn lead(index: &CampaignIndex) -> String {
     let starts = index.runs.iter().map(|run| run.start).max().unwrap_or(1);
-    let over = |field: &String| format!("{field} ({} values)", values(index, field).len());
+    let over = |field: &String| {
+        format!("the {} ({} values)", FieldWords::of(field).inside(), values(index, field).len())
+    };
     let of_starts = if starts > 1 { format!(", {starts} starts each") } else { String::new() };
     format!(
         "{} runs over {}{of_starts}.",
@@ -169,6 +172,7 @@ struct Abscissa {
 impl Abscissa {
     fn of(index: &CampaignIndex, at: usize) -> Self {
         let field = &index.fields[at];
+        let title = FieldWords::of(field);
         let numbers: Option<Vec<f64>> =
             index.runs.iter().map(|run| run.values.get(at)?.parse::<f64>().ok()).collect();
         let Some(numbers) = numbers else {
@@ -182,7 +186,7 @@ impl Abscissa {
             let words: Vec<String> =
                 all.iter().enumerate().map(|(n, value)| format!("{} is {value}", n + 1)).collect();
             return Self {
-                axis: Axis::counted(field, all.len()),
+                axis: Axis::counted(&title.words, all.len()),
                 places: index.runs.iter().map(place).collect(),
                 words: format!(" {}.", words.join(", ")),
             };
@@ -191,11 +195,11 @@ impl Abscissa {
         let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if least > 0.0 && most / least > DECADES_FROM {
             let places = numbers.iter().map(|x| x.log10()).collect();
-            return Self { axis: Axis::decades(field, ""), places, words: String::new() };
+            return Self { axis: Axis::decades(&title.words, title.unit), places, words: String::new() };
         }
         // Room beside the outer ones.
         let margin = if most > least { 0.04 * (most - least) } else { 0.5 * most.abs().max(1.0) };
-        let axis = Axis::plain(field, "").over(least - margin, most + margin);
+        let axis = Axis::plain(&title.words, title.unit).over(least - margin, most + margin);
         Self { axis, places: numbers, words: String::new() }
     }
 
@@ -225,7 +229,11 @@ fn figure(
     let other = (0..index.fields.len()).find(|n| *n != at).filter(|_| index.fields.len() == 2);
     let other = other.filter(|n| values(index, &index.fields[*n]).len() <= Colour::FOREGROUNDS.len());
     let group = |run: &CampaignRun| match other {
-        Some(n) => format!("{} {}", last(&index.fields[n]), run.values.get(n).map_or("–", String::as_str)),
+        Some(n) => {
+            let title = FieldWords::of(&index.fields[n]);
+            let value = run.values.get(n).map_or("–", String::as_str);
+            format!("{} {value} {}", title.inside(), title.unit).trim_end().to_owned()
+        }
         None => run.claimed.as_ref().map_or("not judged".to_owned(), |claimed| match claimed.as_str() {
             "none" => "nothing claimed".to_owned(),
             claimed => format!("{claimed} claimed"),
@@ -238,7 +246,7 @@ fn figure(
         }
     }
     let id = format!("{}-{at}", path.replace(['.', '_'], "-"));
-    let title = format!("{words} over {}", index.fields[at]);
+    let title = format!("{words} over the {}", FieldWords::of(&index.fields[at]).inside());
     let mut figure = Figure::new(&id, &title, abscissa.axis.clone(), Axis::plain(words, unit));
     let joined = other.is_some() || index.fields.len() == 1;
     let (mut lines, mut dots) = (Vec::new(), Vec::new());
@@ -275,7 +283,11 @@ fn means(name: &str, colour: Colour, x: &[f64], y: &[f64]) -> Option<Series> {
         places.push(all[0]);
         means.push(y[from..from + all.len()].iter().sum::<f64>() / all.len() as f64);
     }
-    let name = if places.len() < x.len() { format!("{name}, mean") } else { format!("{name}, joined") };
+    let name = if places.len() < x.len() {
+        format!("{name}, mean")
+    } else {
+        format!("{name}, line through the dots")
+    };
     (places.len() > 1).then(|| Series::listed(&name, colour, places, means))
 }
 
@@ -291,11 +303,6 @@ fn side_by_side(x: &[f64], width: f64) -> Vec<f64> {
         .collect()
 }
 
-/// The last word of a field's path.
-fn last(field: &str) -> &str {
-    field.rsplit('.').next().unwrap_or(field)
-}
-
 fn table(index: &CampaignIndex) -> Markup {
     let listed: Vec<&(&str, &str, &str)> = QUANTITIES
         .iter()
@@ -307,7 +314,7 @@ fn table(index: &CampaignIndex) -> Markup {
             table {
                 tr {
                     th { "Run" }
-                    @for field in &index.fields { th { (last(field)) } }
+                    @for field in &index.fields { th title=(field) { (FieldWords::of(field).with_unit()) } }
                     th { "Ended" } th { "Claimed" }
                     @for (_, words, unit) in &listed { th class="n" { (words) @if !unit.is_empty() { " (" (unit) ")" } } }
                 }

@@ -121,7 +121,7 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
         largest.sort_by(|a, b| b.0.total_cmp(&a.0));
         let named = largest.iter().take(NAMED).map(|(_, row)| row_in_words(row));
         format!(
-            "Largest differences: {}. Each is a single signal, so chance is not told apart from change.",
+            "Largest differences: {}. Each is a single signal, so change and scatter are not distinguished.",
             named.collect::<Vec<_>>().join("; ")
         )
     } else if differ.is_empty() {
@@ -262,7 +262,7 @@ fn rows(comparison: &Comparison, rows: &[Row]) -> Markup {
                 "Where a side has several starts: mean ± standard deviation of one start. Differences with \
                  their 95 % interval; a number differs where that leaves zero out."
             } @else {
-                "One record of each: how far a further one would scatter, nobody knows."
+                "One record of each: how far a further one would scatter is unknown."
             }
         }
     }

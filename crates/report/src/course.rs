@@ -7,6 +7,8 @@ use stribeck_analysis::measured::Course;
 
 /// Decibels from the darkest shade to the brightest.
 const RANGE_DB: f64 = 60.0;
+/// The same on an order map, each of whose columns is relative to its own mean.
+const ORDER_RANGE_DB: f64 = 30.0;
 /// Shades, and rows of the picture.
 const SHADES: usize = 24;
 const ROWS: usize = 160;
@@ -38,7 +40,7 @@ pub(super) fn picture(course: &Course, unit: &str) -> Picture {
     let time = Span { label: "Time", end: course.step_s * columns as f64, unit: "s", prefixed: true };
     let end = course.grid_hz * (course.lines - 1) as f64;
     let frequency = Span { label: "Frequency", end, unit: "Hz", prefixed: true };
-    let mut picture = heat(course, unit, ("spectrogram", "Spectrogram"), &time, &frequency);
+    let mut picture = heat(course, RANGE_DB, ("spectrogram", "Spectrogram"), &time, &frequency);
     picture.caption =
         "Horizontal bands are resonances and steady lines, slanted ones follow the speed, vertical ones are \
          knocks and events."
@@ -57,27 +59,26 @@ const ORDERS: f64 = 4.5;
 const LEAST_ORDERS: f64 = 12.0;
 
 /// The envelope of a band over the angle: `course` counts turns of the shaft in the place of seconds. Those
-/// of `orders` are marked.
-pub(super) fn order_map(
-    course: &Course,
-    unit: &str,
-    band_hz: (f64, f64),
-    orders: &[(String, f64)],
-) -> Picture {
-    let columns = course.values.len() / course.lines;
+/// of `orders` are marked. Each column is relative to its own mean, because levels rise with the speed.
+pub(super) fn order_map(course: &Course, band_hz: (f64, f64), orders: &[(String, f64)]) -> Picture {
+    // The last one may be empty: the record ends before it.
+    let is_filled = |column: &[f64]| column.iter().skip(2).any(|power| *power > 0.0);
+    let columns = course.values.chunks_exact(course.lines).rposition(is_filled).map_or(0, |last| last + 1);
     let fastest = orders.iter().map(|(_, order)| *order).fold(0.0, f64::max);
     let lines = ((ORDERS * fastest).max(LEAST_ORDERS) / course.grid_hz).ceil() as usize + 1;
     let lines = lines.min(course.lines);
     // The lower part of each column; slow changes of level fill its first lines.
-    let values = course.values.chunks_exact(course.lines).flat_map(|column| {
-        column[..lines].iter().enumerate().map(|(n, p)| if n < 2 { f64::NAN } else { *p })
+    let values = course.values.chunks_exact(course.lines).take(columns).flat_map(|column| {
+        let known = column[..lines].iter().skip(2);
+        let mean = known.clone().sum::<f64>() / known.len() as f64;
+        column[..lines].iter().enumerate().map(move |(n, p)| if n < 2 { f64::NAN } else { *p / mean })
     });
     let part = Course { lines, values: values.collect(), ..course.clone() };
     let end = course.step_s * columns as f64;
     let turns = Span { label: "Turns of the shaft", end, unit: "", prefixed: false };
     let top = course.grid_hz * (lines - 1) as f64;
     let axis = Span { label: "Order (knocks a turn)", end: top, unit: "", prefixed: false };
-    let mut picture = heat(&part, unit, ("order-map", "Order map of the envelope"), &turns, &axis);
+    let mut picture = heat(&part, ORDER_RANGE_DB, ("order-map", "Order map of the envelope"), &turns, &axis);
     // Labels side by side: orders of raceways and elements lie close together.
     for (n, (name, order)) in orders.iter().filter(|(_, order)| *order < top).enumerate() {
         let y = AT[1] + SIZE[1] * (1.0 - order / top);
@@ -91,25 +92,24 @@ pub(super) fn order_map(
         picture.sheet.text([right, y - 4.0], 12.0, Anchor::End, INK, &words);
     }
     picture.caption =
-        "What knocks so many times a turn stands at its order as a horizontal line, whatever the \
-                       speed; what keeps its frequency slants."
+        "A source that knocks n times a turn is a horizontal line at order n, whatever the speed; one with a \
+         fixed frequency slants."
             .into();
     picture.note = format!(
-        "Squared envelope of {:.0} to {:.0} Hz, averaged over equal steps of the shaft's angle; in dB re 1 \
-         ({unit})⁴ an order, lines {:.2} orders apart, Hann window; each column is the mean over {:.2} turns.",
+        "Squared envelope of {:.0} to {:.0} Hz, averaged over equal steps of the shaft's angle; in dB over \
+         the mean of each column, lines {:.2} orders apart, Hann window; each column is the mean over {:.2} turns.",
         band_hz.0, band_hz.1, course.grid_hz, course.step_s
     );
     picture
 }
 
-fn heat(course: &Course, unit: &str, (id, title): (&str, &str), x: &Span<'_>, y: &Span<'_>) -> Picture {
-    let shades = Shades::of(course);
+fn heat(course: &Course, range_db: f64, (id, title): (&str, &str), x: &Span<'_>, y: &Span<'_>) -> Picture {
+    let shades = Shades::of(course, range_db);
     let mut sheet = Sheet::new(880.0, 390.0);
     draw_cells(&mut sheet, &shades);
     draw_axes(&mut sheet, x, y);
-    draw_key(&mut sheet, shades.top_db);
+    draw_key(&mut sheet, &shades);
     let mut picture = Picture::new(id, title, sheet);
-    picture.note = format!("In dB re 1 ({unit})².");
     picture.dense = true;
     picture
 }
@@ -228,13 +228,14 @@ struct Shades {
     rows: usize,
     /// Levels [dB re 1 unit²/Hz], one column after the other.
     levels_db: Vec<f64>,
-    /// The largest.
+    /// The largest, and from it down to the darkest.
     top_db: f64,
+    range_db: f64,
 }
 
 impl Shades {
     /// Means of the powers that share a cell.
-    fn of(course: &Course) -> Self {
+    fn of(course: &Course, range_db: f64) -> Self {
         let rows = ROWS.min(course.lines);
         let level = |powers: &[f64], row: usize| {
             let (first, end) = (row * powers.len() / rows, (row + 1) * powers.len() / rows);
@@ -245,12 +246,12 @@ impl Shades {
             columns.flat_map(|powers| (0..rows).map(move |row| level(powers, row))).collect();
         let finite = levels_db.iter().copied().filter(|l| l.is_finite());
         let top_db = finite.fold(f64::NEG_INFINITY, f64::max);
-        Self { rows, levels_db, top_db }
+        Self { rows, levels_db, top_db, range_db }
     }
 
     /// Number of the shade of a level; `None` where the record holds none.
     fn shade(&self, level_db: f64) -> Option<usize> {
-        let part = (level_db - self.top_db) / RANGE_DB + 1.0;
+        let part = (level_db - self.top_db) / self.range_db + 1.0;
         level_db.is_finite().then(|| (part.clamp(0.0, 1.0) * (SHADES - 1) as f64).round() as usize)
     }
 }
@@ -304,14 +305,14 @@ fn draw_axes(sheet: &mut Sheet, x: &Span<'_>, y: &Span<'_>) {
 }
 
 /// The key, brightest at the top.
-fn draw_key(sheet: &mut Sheet, top_db: f64) {
+fn draw_key(sheet: &mut Sheet, &Shades { top_db, range_db, .. }: &Shades) {
     let x = AT[0] + SIZE[0] + 16.0;
     let step = SIZE[1] / SHADES as f64;
     for n in 0..SHADES {
         let y = AT[1] + SIZE[1] - step * (n + 1) as f64;
         sheet.outline(&format!("M{x:.1} {y:.1}h14v{:.1}h-14z", step + 0.3), &fill(n));
     }
-    for (level, y) in [(top_db, AT[1] + 4.0), (top_db - RANGE_DB, AT[1] + SIZE[1])] {
+    for (level, y) in [(top_db, AT[1] + 4.0), (top_db - range_db, AT[1] + SIZE[1])] {
         let words =
             if level.is_finite() { Scale::ONE.text(level.round(), 1.0, "dB") } else { "–".to_owned() };
         sheet.text([x + 18.0, y + 4.0], 12.0, Anchor::Start, INK, &words);
@@ -362,11 +363,24 @@ mod tests {
         }
     }
 
+    /// A run-up is louder at its end, and the line of a family was lost in the rise of all orders.
+    #[test]
+    fn issue_a_line_of_an_order_map_has_one_shade_whatever_the_level() {
+        let column = [1.0, 1.0, 1.0, 100.0, 1.0, 1.0];
+        let louder: Vec<f64> = (0..10).flat_map(|n| column.map(|power| power * 10_f64.powi(n))).collect();
+        let course = Course { step_s: 1.0, grid_hz: 2.4, lines: 6, values: louder };
+        let drawn = order_map(&course, (0.0, 1.0), &[]).sheet.to_svg();
+        // All cells have one of two shades: the line and the rest, beside the key.
+        let of = |shade: usize| drawn.matches(&format!("\"{}\"", fill(shade))).count();
+        let used: Vec<usize> = (0..SHADES).filter(|shade| of(*shade) > 1).collect();
+        assert_eq!(used.len(), 2, "{used:?}");
+    }
+
     #[test]
     fn example_pictures_name_their_axes() {
         let svg = |picture: Picture| picture.sheet.to_svg();
         assert!(svg(picture(&course(), "g")).contains(">Frequency<"));
-        assert!(svg(order_map(&course(), "g", (0.0, 1.0), &[])).contains(">Turns of the shaft<"));
+        assert!(svg(order_map(&course(), (0.0, 1.0), &[])).contains(">Turns of the shaft<"));
         assert!(svg(waterfall(&course(), "g", None).expect("rows")).contains(">20 dB<"));
     }
 }

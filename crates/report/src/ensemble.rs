@@ -10,6 +10,7 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, html};
 use stribeck_scene::run_dir::{RunDir, write_atomic};
 
+use crate::element_words::ElementWords;
 use crate::figures::Item;
 use crate::lead::lead;
 use crate::page::{head, json, section, sentence, write_figures};
@@ -29,11 +30,12 @@ pub fn write_ensemble(folder: &Path) -> Result<EnsembleSummary, Error> {
     write_atomic(&dir.summary(), json(&findings.summary)?.as_bytes())?;
     let figures = Figures::of(&findings);
     let all: Vec<&Item> = figures.all().collect();
-    write_figures(&all, &dir.figures())?;
+    let words = ElementWords::of(&findings.scene.written);
+    write_figures(&all, &dir.figures(), words)?;
     // The scene as written, comments and all; an ensemble without it was refused above.
     let scene = std::fs::read_to_string(dir.scene()).unwrap_or_default();
     let page = page(&findings, &figures, &scene, dir.path())?.into_string();
-    write_atomic(&dir.report(), page.as_bytes())?;
+    write_atomic(&dir.report(), words.markup(page).as_bytes())?;
     Ok(findings.summary)
 }
 

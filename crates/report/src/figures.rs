@@ -171,7 +171,7 @@ fn over_time(record: &Record<'_>, findings: &Findings) -> Result<Vec<Picture>, E
     pictures.extend(course::waterfall(&course, "g", speeds).map(|picture| picture.tabbed(TABS, "waterfall")));
     let orders = findings.summary.duty.as_ref().map_or(&[][..], |duty| &duty.orders);
     pictures.extend(varying.as_ref().and_then(|varying| {
-        let map = course::order_map(varying.orders.as_ref()?, "g", varying.band_hz, orders);
+        let map = course::order_map(varying.orders.as_ref()?, varying.band_hz, orders);
         Some(map.tabbed(TABS, "order map"))
     }));
     Ok(pictures)

@@ -22,7 +22,7 @@ pub struct GrowthFindings {
     pub by: String,
     /// Units.
     pub units: Vec<UnitFindings>,
-    /// Intervals that hold what was left in truth, and how many there are: one a record from the first claim
+    /// Intervals that hold the true remaining life, and how many there are: one a record from the first claim
     /// on.
     pub held: [usize; 2],
     /// What limits all this.
@@ -69,7 +69,7 @@ pub struct RecordFindings {
     pub claimed: Option<String>,
     /// Length by the two events of a passage [mm], as `analyse` has it.
     pub spall_mm: Option<f64>,
-    /// Length that the indicator tells by the records of other units [mm].
+    /// Length read from the indicator by the calibration on other units [mm].
     pub read_mm: Option<f64>,
     /// Estimated remaining life [revolutions].
     pub remaining: Option<Remaining>,
@@ -222,8 +222,8 @@ mod tests {
     use super::*;
     use crate::plot::Style;
 
-    /// The interval of what is left was in the numbers and not in the picture: its ground is drawn from the
-    /// upper edge downwards, and the lower one had come first.
+    /// The interval of the remaining life was in the numbers and not in the picture: its area is filled from
+    /// the upper edge downwards, and the lower one had been given first.
     #[test]
     fn issue_the_upper_edge_of_an_interval_comes_first() {
         let record = |run: usize, remaining: Option<Remaining>| RecordFindings {

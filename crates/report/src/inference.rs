@@ -78,7 +78,7 @@ pub struct FieldFound {
     /// Central 90 % interval.
     pub interval_90: Option<[f64; 2]>,
     /// Width of the 90 % interval over that of the prior; of choices the entropy over that of the prior. 1
-    /// where nothing was told.
+    /// where nothing was learnt.
     pub width_of_prior: f64,
     /// Probability by equal parts of the prior, or by choice.
     pub bars: Vec<f64>,

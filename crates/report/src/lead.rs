@@ -6,6 +6,7 @@ use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::words::{kilonewtons, significant};
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::housing::HousingScene;
+use stribeck_scene::load_rating::is_ball_bearing;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::ring_mesh::RingMeshScene;
 use stribeck_scene::scene::DefectRing;
@@ -30,8 +31,10 @@ pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_
         "" => String::new(),
         name => format!("{name}: "),
     };
+    // The page calls them balls where the bearing has balls.
+    let as_cylinders = if is_ball_bearing(&scene.written) { ", modelled as cylinders," } else { "" };
     format!(
-        "{name}{} rollers{} under {} at {}, {defect}; {:.1} ms on record.",
+        "{name}{} rollers{as_cylinders}{} under {} at {}, {defect}; {:.1} ms on record.",
         scene.written.rollers_in_place().count(),
         own_rings(scene) + &housing(scene),
         load(scene, duty),

@@ -36,6 +36,8 @@ mod sound;
 
 mod answer;
 mod course;
+mod element_words;
+mod field_words;
 mod figures;
 mod kurtogram;
 mod moving;
@@ -51,7 +53,7 @@ mod ensemble;
 mod growth;
 pub mod inference;
 mod measured;
-mod run;
+mod run_page;
 mod sources;
 mod trend;
 
@@ -66,7 +68,7 @@ pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use growth::{GrowthFindings, RecordFindings, UnitFindings, write_growth};
 pub use measured::{Baseline, write_measured};
-pub use run::{write, write_between};
+pub use run_page::{write, write_between};
 pub use sources::write_sources;
 pub use trend::{TrendEntry, write_joint, write_trend};
 

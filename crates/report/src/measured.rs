@@ -132,8 +132,8 @@ fn turning(rpm: f64, analysis: &Analysis) -> String {
         return format!("; the shaft turns at {rpm:.1} rpm");
     }
     format!(
-        "; the shaft turns at {least:.0} to {most:.0} rpm, {rpm:.1} rpm on average, at which spectra over \
-         its angle are given"
+        "; the shaft turns at {least:.0} to {most:.0} rpm, {rpm:.1} rpm on average; samples are taken \
+         over its angle, and frequencies are those at the mean speed"
     )
 }
 
@@ -156,9 +156,11 @@ fn pictures(analysis: &Analysis, unit: &str) -> Vec<Picture> {
                 Some(rpm) => orders_of(&findings.families, rpm / 60.0),
                 None => Vec::new(),
             };
-            pictures.extend(varying.orders.as_ref().map(|map| {
-                course::order_map(map, unit, varying.band_hz, &orders).tabbed(TABS, "over the angle")
-            }));
+            pictures.extend(
+                varying.orders.as_ref().map(|map| {
+                    course::order_map(map, varying.band_hz, &orders).tabbed(TABS, "over the angle")
+                }),
+            );
         }
         None => {
             pictures.push(course::picture(&analysis.course, unit).tabbed(TABS, "spectrogram"));

@@ -37,6 +37,8 @@ struct Sent<'a> {
     step_s: f64,
     frames: usize,
     angles_every: usize,
+    /// Word for a rolling element, which the page of a ball bearing replaces.
+    element: &'static str,
     /// Numbers of the rollers.
     rollers: Vec<usize>,
     /// Angles of the pockets at the start.
@@ -173,6 +175,7 @@ pub(super) fn figure(record: &Record<'_>, findings: &Findings) -> Result<Option<
         step_s,
         frames: stretch.frames(),
         angles_every: ANGLES_EVERY,
+        element: "roller",
         pockets: numbers.iter().map(|n| scene.pocket_angle(n - 1)).collect(),
         pocket_half_rad: pocket_half_rad(scene),
         orbit: turns(&forces.orbit),

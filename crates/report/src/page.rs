@@ -10,15 +10,16 @@ use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
 use crate::Error;
+use crate::element_words::ElementWords;
 use crate::figures::Item;
 use crate::plot;
 
 /// Writes every figure, on all cores.
-pub(crate) fn write_figures(figures: &[&Item], folder: &Path) -> Result<(), Error> {
+pub(crate) fn write_figures(figures: &[&Item], folder: &Path, words: ElementWords) -> Result<(), Error> {
     fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
     let figures = Mutex::new(figures.iter());
     let next = || figures.lock().unwrap_or_else(PoisonError::into_inner).next();
-    let write_some = || std::iter::from_fn(next).try_for_each(|figure| write_figure(figure, folder));
+    let write_some = || std::iter::from_fn(next).try_for_each(|figure| write_figure(figure, folder, words));
     let cores = thread::available_parallelism().map_or(1, usize::from);
     thread::scope(|scope| {
         let others: Vec<_> = (1..cores).map(|_| scope.spawn(write_some)).collect();
@@ -29,12 +30,12 @@ pub(crate) fn write_figures(figures: &[&Item], folder: &Path) -> Result<(), Erro
 }
 
 /// A figure as SVG and as PNG; one that moves as GIF too.
-fn write_figure(figure: &Item, folder: &Path) -> Result<(), Error> {
+fn write_figure(figure: &Item, folder: &Path, words: ElementWords) -> Result<(), Error> {
     let write = |form: &str, bytes: &[u8]| {
         let path = folder.join(format!("{}.{form}", figure.id()));
         fs::write(&path, bytes).map_err(|why| Error::Write { path, why })
     };
-    let svg = figure.to_svg()?;
+    let svg = words.markup(figure.to_svg()?);
     write("svg", svg.as_bytes())?;
     write("png", &plot::png(figure.id(), &svg)?)?;
     figure.animation().map_or(Ok(()), |gif| write("gif", gif))

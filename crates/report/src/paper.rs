@@ -169,7 +169,7 @@ impl<'a> PaperCase<'a> {
                 self.starts.len()
             )
         } else {
-            "A single run does not know how much starts scatter: levels are granted 30 %, the notch 2 dB, \
+            "A single run does not show the scatter of starts: levels are granted 30 %, the notch 2 dB, \
              the tone 10 Hz. `--starts 12` measures it."
                 .to_owned()
         };

@@ -12,6 +12,7 @@ use crate::plot::{Axis, Colour, Figure, Level, Series};
 use stribeck_analysis::measured::alarm::{Judged, Limit, Quantity, State};
 use stribeck_analysis::measured::joint::Joint;
 use stribeck_analysis::measured::{Defect, Family, MeasuredFindings};
+use stribeck_analysis::words::chance;
 
 /// One record of a trend.
 #[derive(Debug, Serialize)]
@@ -63,7 +64,7 @@ fn joint_page(joint: &Joint, entries: &[TrendEntry]) -> Markup {
                 h1 { (title) }
                 p class="lead" { (joint.verdict) }
                 @for note in &joint.notes { p class="hint" { (note) } }
-                h2 #shares { "What each channel hears" }
+                h2 #shares { "Share of each channel" }
                 div class="scroll" { (families_by_channel(joint)) }
                 p class="hint" {
                     "The part of each channel in the power that swings with a family, and the height of the \
@@ -97,7 +98,7 @@ fn families_by_channel(joint: &Joint) -> Markup {
                         @let text = format!("{share}, {}", number(channel.height_db, "dB", 1.0));
                         td { @if channel.claimed { strong { (text) } } @else { (text) } }
                     }
-                    td { (format!("{:.1e}", family.p_value)) }
+                    td { (chance(family.p_value)) }
                     td { (family.nearest.as_deref().filter(|_| family.claimed).unwrap_or("–")) }
                     td { @if family.claimed { strong { "a defect" } } @else { "none" } }
                 }

@@ -119,7 +119,7 @@ impl Channels {
     }
 
     /// The row of a sample. `row` keeps its memory from sample to sample.
-    pub(crate) fn write(&self, sample: &Sample, row: &mut Vec<f64>) {
+    pub fn write(&self, sample: &Sample, row: &mut Vec<f64>) {
         row.clear();
         self.visit(sample, &mut |_, value| row.push(value));
     }

@@ -125,7 +125,7 @@ fn parse(header: &[u8], scene: &str) -> Result<(u64, u32), String> {
     let version = u32::from_le_bytes(*version);
     if version != VERSION {
         return Err(format!(
-            "its checkpoint has the version {version}, and this program knows {VERSION}. Continue the run \
+            "its checkpoint has the version {version}, and this program reads {VERSION}. Continue the run \
              with the program that began \
              it, named in `run.json`"
         ));

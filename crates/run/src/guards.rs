@@ -6,7 +6,7 @@
 //! | penetration over the bearing's own deflection | above 1 | |
 //! | time without a loaded roller | `unsupported_warning_ms` | |
 //! | rollers out of the space between the raceways | | [`OUT_OF_PLACE`] |
-//! | the cage's offset over its room between the raceways | above 1 | a cage's thickness beyond |
+//! | the cage's offset over its clearance to the raceways | above 1 | a cage's thickness beyond |
 //!
 //! The fields are those of `guards` in the scene. Energy, penetration over element size and other limits that
 //! depend on the model are watched by the model. A warning is issued once, at the first sample above its
@@ -182,7 +182,7 @@ impl Guards {
             info.warnings.push(format!(
                 "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a \
                  real one would rub on a ring, \
-                 which the model does not know. To hold it, take {}",
+                 which the model does not have. To hold it, take {}",
                 1e3 * off,
                 room.in_words(),
                 self.holds_cage

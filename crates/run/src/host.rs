@@ -1,4 +1,4 @@
-//! The program around a run: identity, threads, clocks, and the progress that it is told of.
+//! The program around a run: identity, threads, clocks, and the progress that it reports.
 
 use std::sync::Arc;
 

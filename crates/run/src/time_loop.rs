@@ -29,8 +29,8 @@ pub trait Motion: Send {
     /// When the model cannot take steps at all.
     fn interval(&mut self, steps: usize) -> Result<Ledger, Error>;
 
-    /// The sample at the end of the interval. Called once an interval: means and changes count from there
-    /// anew.
+    /// The sample at the end of the interval. Called once an interval: the next means and changes start from
+    /// here.
     fn sample(&mut self) -> &Sample;
 
     /// Steps taken.

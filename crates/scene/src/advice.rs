@@ -22,9 +22,9 @@ pub fn holds_cage(scene: &Scene) -> String {
 mod tests {
     use super::*;
 
-    /// A run with friction at its limit and a cage with corners was told to take both.
+    /// A run that had friction at its limit and a cage with corners was advised to take both.
     #[test]
-    fn issue_a_cage_that_left_is_not_told_what_the_scene_has_already() {
+    fn issue_a_cage_that_left_is_not_advised_what_the_scene_has_already() {
         let told = holds_cage(&Scene::default());
         assert!(
             told.starts_with("`cage.pocket: corners`") && told.contains("more `contact.friction`, or"),

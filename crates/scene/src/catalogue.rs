@@ -94,7 +94,7 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
     if !bearing.assumed.is_empty() {
         return bearing.assumed.iter().map(|what| assumption(*what, bearing)).collect();
     }
-    // A file that cannot be read any more is none of the scene's business.
+    // A file that can no longer be read does not concern the scene.
     let bearings = self::known().unwrap_or_else(|_| all());
     let Some(known) = bearings.into_iter().find(|known| known.name == bearing.designation) else {
         return Vec::new();

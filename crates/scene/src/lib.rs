@@ -1,6 +1,6 @@
 //! Scenes of rolling element bearings (the input), their kinematics, and run folders and traces (the output).
 //!
-//! Nothing here meshes or simulates, so that whoever only reads a run links neither.
+//! Nothing here meshes or simulates, so that a program that only reads runs links neither.
 //!
 //! # A scene: its speeds and its load distribution
 //!

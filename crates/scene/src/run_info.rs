@@ -195,7 +195,7 @@ impl Default for GuardInfo {
     }
 }
 
-/// JSON knows no infinity: it is written as `null`. The binary checkpoint holds it as it is.
+/// JSON has no infinity: it is written as `null`. The binary checkpoint holds infinity itself.
 fn null_is_infinite<'de, D: serde::Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     if !from.is_human_readable() {
         return f64::deserialize(from);
@@ -223,7 +223,7 @@ mod tests {
     /// A second of the reduced model is off by 35.785 % of the peak strain energy, which reads as a failure,
     /// and by 0.02 % of the heat: a rigid housing stores millionths of the dissipated energy.
     #[test]
-    fn issue_an_imbalance_is_told_by_the_larger_of_strain_and_heat() {
+    fn issue_an_imbalance_is_relative_to_the_larger_of_strain_and_heat() {
         let energy = |max_relative_error, peak_strain_j, heat_j| EnergyInfo {
             max_relative_error,
             peak_strain_j,

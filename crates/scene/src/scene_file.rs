@@ -7,6 +7,7 @@
 mod check;
 mod deviations;
 pub(crate) mod dialect;
+mod exclusions;
 mod extent;
 mod finding;
 mod foreign;
@@ -14,6 +15,7 @@ mod geometry;
 mod limits;
 mod load;
 mod named;
+mod operation;
 mod origin;
 pub(crate) mod outline;
 mod overrides;

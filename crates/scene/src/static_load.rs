@@ -101,7 +101,7 @@ impl RigidRings {
             return Err(Error::Input {
                 field: "bearing.rollers",
                 value: angles_deg.len() as f64,
-                allowed: "so many that two that carry stand less than half a turn apart about the load"
+                allowed: "more, until two loaded ones are less than half a turn apart about the load"
                     .to_owned(),
                 suggestion: "The ring would fall past the rollers: take more of them, or fewer that are \
                     missing or over a defect",

@@ -25,7 +25,7 @@ use crate::{
     reduced::Reduced,
 };
 
-/// Is told about every sample and may break off the run.
+/// Called at every sample; may stop the run.
 pub type Watch<'a> = &'a mut dyn FnMut(&Progress) -> ControlFlow<()>;
 
 /// Something that is done with the model of a scene.
@@ -44,7 +44,7 @@ fn dispatch<T: Task>(scene: &ResolvedScene, task: T) -> T::Output {
 
 /// Runs a scene and leaves its results in `dir`.
 ///
-/// `watch` is told about every sample and may break off the run, which then ends as
+/// `watch` is called at every sample and may stop the run, which then ends as
 /// [`Interrupted`](stribeck_scene::run_info::Status::Interrupted). A checkpoint is written at the start, now
 /// and then, and at an interruption; [`resume`] continues from it.
 ///

@@ -211,5 +211,5 @@ fn conserves_energy_in_oil() {
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     assert!(info.energy.max_relative_error < 0.01, "{}", info.energy.max_relative_error);
     let kinked = scene.with_overrides(&["defects=[(on: outer, form: spall())]"]);
-    assert!(kinked.expect_err("a kink").to_string().contains("oil knows round rollers"));
+    assert!(kinked.expect_err("a kink").to_string().contains("oil needs round rollers"));
 }

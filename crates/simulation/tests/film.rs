@@ -54,7 +54,7 @@ fn example_rollers_float_and_loaded_contacts_are_dry() {
     assert!(of(24, "outer_film_m").iter().all(|h| *h == least));
     let heat = run.energy.channel("film_j").expect("readable").expect("a column of a scene with oil");
     assert!(heat.iter().all(|heat| heat.is_finite()) && heat.last() != Some(&0.0));
-    // NumPy reads longer headers only when it is told to.
+    // NumPy reads longer headers only with `max_header_size`.
     let file = std::fs::read(folder.path().join("trace.npy")).expect("what was just written");
     assert!(u16::from_le_bytes([file[8], file[9]]) < 10_000);
 }

@@ -192,7 +192,7 @@ fn conserves_energy_where_a_roller_leaves_a_deep_spall() {
     let info = run(&scene, &folder, "run", 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     assert!(info.energy.max_relative_error < ENERGY, "{}", info.energy.max_relative_error);
-    // It has gone over the edge, and the edge has pressed it.
+    // It has passed the edge, under force from it.
     let trace = trace(&folder, "run");
     let of = |name: &str| trace.get(name).unwrap_or_else(|| panic!("no `{name}`"));
     let force = of("roller.1.outer_fx_n").iter().zip(of("roller.1.outer_fy_n")).map(|(x, y)| x.hypot(*y));

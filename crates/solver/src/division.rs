@@ -68,8 +68,8 @@ impl Dynamics {
         self.division.as_ref().map_or(0, |division| division.rank_of[tile])
     }
 
-    /// Deals tiles out anew by their work and by `burdens`: slots, and the work that is done for them, in
-    /// units of about a nanosecond. The whole state must be known. True where a tile has gone to another
+    /// Reassigns tiles by their work and by `burdens`: slots, and the work that is done for them, in units of
+    /// about a nanosecond. The whole state must be gathered before. True where a tile has moved to another
     /// rank; the nodes that forces read must then be announced again.
     pub fn balance<'a>(&mut self, burdens: impl Iterator<Item = (&'a [u32], f64)>) -> bool {
         let Some(division) = &self.division else { return false };
@@ -177,7 +177,7 @@ impl Dynamics {
         self.division = Some(division);
     }
 
-    /// Drops pushes on nodes that other ranks move: they know them, too.
+    /// Drops pushes on nodes that other ranks move: those ranks have them, too.
     pub(crate) fn drop_pushes_elsewhere(&mut self) {
         if self.division.is_none() {
             return;
@@ -266,8 +266,8 @@ impl Dynamics {
         }
     }
 
-    /// Moves rigid bodies, each on one rank, and lets every rank know where they are and what tiles have
-    /// counted.
+    /// Moves rigid bodies, each on one rank, and sends their positions and the counters of tiles to all
+    /// ranks.
     pub(crate) fn move_rigid_and_share(&mut self, parameters: &StepParameters, evaluates: bool) {
         let (dt, gravity) = (self.time_step, self.gravity);
         let Some(Division { ranks, rank_of, rank_of_rigid, shared, .. }) = &mut self.division else {

@@ -14,8 +14,7 @@ pub trait Ranks: Debug + Send + Sync {
     fn count(&self) -> usize;
 
     /// Sends `outgoing[r]` to each rank r and receives `incoming[r]` from it, while `meanwhile` goes on.
-    /// Lengths are those that both sides know; between two ranks that have nothing for each other nothing is
-    /// sent.
+    /// Both sides know the lengths beforehand; nothing is sent between two ranks without common data.
     fn exchange(&self, outgoing: &[Vec<f64>], incoming: &mut [Vec<f64>], meanwhile: &mut dyn FnMut());
 
     /// Gathers the parts of all ranks, one after the other, in `all`; `lengths` are those of the parts.
@@ -31,8 +30,8 @@ pub fn broadcast(ranks: &dyn Ranks, own: &[u8]) -> Vec<u8> {
     ranks.all_gather_bytes(own).into_iter().next().unwrap_or_default()
 }
 
-/// What ranks tell each other of items each of which belongs to one of them: every rank adds the numbers of
-/// its own, all are gathered, and each is read in the same order.
+/// Numbers of items, each of which belongs to one rank: every rank adds those of its own items, all are
+/// gathered, and every rank reads them in the same order.
 #[derive(Debug, Default)]
 pub struct Shared {
     own: Vec<f64>,
@@ -48,7 +47,7 @@ impl Shared {
         self.own.extend(numbers);
     }
 
-    /// Gathers what all have told; `items` are the rank of each item and how many numbers it has.
+    /// Gathers the numbers of all ranks; `items` are the rank of each item and how many numbers it has.
     pub fn gather(&mut self, ranks: &dyn Ranks, items: impl Iterator<Item = (usize, usize)>) {
         let Self { own, all, lengths, next } = self;
         lengths.clear();

@@ -33,8 +33,8 @@ pub(crate) struct Route {
 }
 
 impl Route {
-    /// From what each rank reads of others; `owner` is the rank of a slot, `None` for one that every rank
-    /// knows.
+    /// From the slots of others that each rank reads; `owner` is the rank of a slot, `None` for one that
+    /// every rank has.
     pub(crate) fn new(
         mut wanted: Vec<Vec<u32>>,
         rank: usize,

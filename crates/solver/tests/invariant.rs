@@ -117,7 +117,7 @@ fn example_forces_on_nodes_that_were_not_announced_are_lost() {
     d.set_time_step(1e-8).expect("a positive time step");
     let (dropped, taken) = (slot(&d, 0), slot(&d, 24));
     d.step(&mut [&mut NodalLoad::new(vec![(dropped as u32, 1.0, 0.0), (taken as u32, 1.0, 0.0)])]);
-    // A body at rest feels the rounding of its own positions.
+    // A body at rest moves by the rounding of its own positions.
     assert!(d.state.vx[dropped].abs() < 1e-9 * d.state.vx[taken], "{}", d.state.vx[dropped]);
 }
 

@@ -43,7 +43,7 @@ pub(crate) fn script(engine: Engine, command: &str, file: &Path, out: &Path, par
         std::path::absolute(path).with_context(|| format!("`{}` has no absolute path", path.display()))
     };
     let Part { of, jobs, threads, memory_gb } = part;
-    let program = std::env::current_exe().context("the program does not know its own path")?;
+    let program = std::env::current_exe().context("the path of the program is unknown")?;
     let line = |number: &str| -> Result<String> {
         Ok(format!(
             "{} {command} {} --out {} --shard {number}/{of}{} --threads {threads}{}",

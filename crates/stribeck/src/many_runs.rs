@@ -164,7 +164,7 @@ impl ManyRuns {
     }
 }
 
-/// Whether a run that has come to its end has its numbers and no more than is to be kept. Where all is kept,
+/// Whether a finished run has its numbers and only the files that are to be kept. Where all is kept,
 /// numbers can be made at any time.
 fn is_settled(path: &Path, keep: Keep) -> Result<bool> {
     let dir = RunDir::open(path)?;

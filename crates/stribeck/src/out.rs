@@ -115,7 +115,7 @@ fn marked(word: &str, colour: AnsiColor) -> String {
     format!("{style}{word}{style:#}")
 }
 
-/// Why standard output took no more, once it did not.
+/// The error that closed standard output, once it is closed.
 static CLOSED: Mutex<Option<Error>> = Mutex::new(None);
 
 /// Writes a line to standard output, as `println!` does. Where it is closed, as by `| head` after some lines,

@@ -68,7 +68,7 @@ impl Place {
             .map(|Replaced { field, written, now }| format!("`{field}` {now} instead of {written}"));
         let told = told.collect::<Vec<_>>().join(", ");
         caution!(
-            "with another bearing than that of `{}` goes what surrounds it: {told}. Give with \
+            "with another bearing than that of `{}` its surroundings change: {told}. Give with \
              --set what is to stay",
             file.display()
         );

@@ -1,4 +1,4 @@
-//! `stribeck report`: the report of a run, written again.
+//! `stribeck report`: writes the report of a run that exists already.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

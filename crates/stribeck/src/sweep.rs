@@ -54,7 +54,7 @@ enum Kept {
     Numbers,
 }
 
-/// The first words of a file that this command wrote, which it may write anew.
+/// The first words of a file that this command wrote, which it may replace.
 const WRITTEN_BY: &str = "// Written by `stribeck sweep`";
 
 /// Most runs of a sweep; a campaign may have more.
@@ -157,7 +157,7 @@ fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&As
     if let (Some(file), false) = (file, fields.is_empty()) {
         let fields = fields.into_iter().collect::<Vec<_>>().join(", ");
         caution!(
-            "with each bearing goes what surrounds it, in the place of what `{}` says: {fields}. Give with \
+            "with each bearing its surroundings change, in the place of those of `{}`: {fields}. Give with \
              --set what is to stay",
             file.display()
         );

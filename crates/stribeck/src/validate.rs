@@ -175,8 +175,8 @@ fn print(agreement: &Agreement) {
     );
     for row in &agreement.rows {
         let verdict = match row.verdict(agreement.starts) {
-            _ if row.told && row.within => "kept".to_owned(),
-            _ if row.told => "NOT KEPT".to_owned(),
+            _ if row.decided && row.within => "kept".to_owned(),
+            _ if row.decided => "NOT KEPT".to_owned(),
             open => open,
         };
         say!("  {:<58} {}; {verdict}", row.quantity, words(row));

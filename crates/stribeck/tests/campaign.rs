@@ -92,7 +92,7 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     let table = Recording::open(desk.join("A/runs.parquet")).expect("a table");
     let loads = table.channel("scene.operation.load_n").expect("a column").read().expect("numbers");
     assert_eq!(loads.len(), 8);
-    // Once more: nothing is run, and the tables stay; what a kill has left beside them does not, and files of
+    // Once more: nothing is run, and the tables stay; files that a kill has left do not, and files of
     // the owner's do.
     let (left, own) = (desk.join("A/runs.4711.new"), desk.join("A/notes.new"));
     for path in [&left, &own] {
@@ -103,7 +103,7 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
 }
 
-/// The campaign, of whose runs no more is to stay than this.
+/// The campaign with `keep: what`.
 fn keeping(what: &str) -> String {
     CAMPAIGN.replace("    variants:", &format!("    keep: {what},\n    variants:"))
 }

@@ -114,7 +114,7 @@ fn analytic_bpfo_follows_the_tacho_of_a_ramp() {
 }
 
 /// The power over the orders of four starts of the same run-up: the first four multiples of BPFO stand within
-/// one resolution of what the cage does. One start tells the first alone: others are 3 to 15 dB high from
+/// one resolution of what the cage does. One start shows the first alone: others are 3 to 15 dB high from
 /// starts 0.01° apart. Source: THEORY §5.1; the limit that of noise: a mean of four has a χ² distribution of
 /// eight degrees of freedom, which exceeds 3.56 times its median once in a thousand, as often as a single
 /// power exceeds ten times its own.

@@ -252,8 +252,8 @@ fn invariant_the_program_says_what_it_is_and_needs_no_files() {
     assert!(!desk.0.join("runs").exists());
 }
 
-/// A housing for another bearing is told in the line of the scene that names it, and no folder is left by any
-/// command.
+/// A housing for another bearing is an error at the line of the scene that names it, and no command leaves a
+/// folder.
 #[test]
 fn refuses_the_mesh_of_another_bearing_where_the_scene_names_it() {
     let desk = Desk::new("another-housing");
@@ -344,7 +344,7 @@ fn example_a_reduced_run_from_its_plan_to_a_deck() {
 
 /// The advice for an ensemble named no start of it, and the newest run to export was one.
 #[test]
-fn issue_an_ensemble_is_told_by_its_starts() {
+fn issue_an_ensemble_is_described_by_its_starts() {
     let desk = Desk::new("ensemble-told");
     desk.complete(&["--starts=2", "--jobs=1", "--out=runs/ens"]);
     let told = ["`runs/ens` is an ensemble", "2 starts", "`runs/ens/start-001`"];
@@ -377,7 +377,7 @@ fn issue_hints_are_those_of_their_command() {
     says(&still, &["nothing turns"]);
 }
 
-/// What a reader has closed ends quietly, as `| head` leaves it; a full disk is told.
+/// A closed pipe, as after `| head`, ends a command quietly; a full disk is an error.
 #[test]
 fn survives_an_output_that_is_closed_or_full() {
     let desk = Desk::new("closed");

@@ -225,7 +225,9 @@ fn example_a_sweep_has_a_page_and_takes_further_values() {
     let by_name = format!("{folder}/by_name/3-load_n=40000");
     says(&desk.succeeds(&["report", &by_name]), &["report.html"]);
     let page = desk.text(&format!("{folder}/index.html"));
-    assert!(page.contains("Root mean square over operation.load_n") && page.contains("runs.parquet"));
+    for words in ["Root mean square over the load", "<code>operation.load_n</code>", "runs.parquet"] {
+        assert!(page.contains(words), "{words}");
+    }
     let table = Recording::open(desk.0.join(folder).join("runs.parquet")).expect("a table");
     assert!(table.channels.iter().any(|c| c.name == "summary.levels.record.kurtosis"), "{}", table.names());
     // Its file is a campaign like any other.

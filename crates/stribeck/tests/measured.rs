@@ -316,7 +316,7 @@ fn example_several_records_are_set_side_by_side() {
     }
     let words =
         ["analyse", "before.mat", "after.mat", "none.mat", "--rate-hz=12800", "--bearing=6205", "--out=T"];
-    // The others are done, and the one that is missing is told once.
+    // The others are analysed, and the missing one is reported once.
     let output = stribeck(desk.path(), &words);
     let text = said(&output);
     assert!(!output.status.success() && text.contains("1 of 3 records could not be analysed"), "{text}");
@@ -444,7 +444,7 @@ fn issue_a_gap_in_the_times_is_noted() {
 
 /// One sample of 1000 hid a defect that stands by 30 dB, without a word.
 #[test]
-fn issue_a_sample_that_hides_a_defect_is_told() {
+fn issue_a_sample_that_hides_a_defect_is_reported() {
     let desk = Scratch::create("measured-spurious");
     let mut samples = knocks(12_800.0);
     samples[33_333] = -1000.0;

@@ -125,7 +125,7 @@ fn refuses_the_likeliest_mistakes_with_the_way_out() {
             command.current_dir(desk.path()).args(*words).stdin(Stdio::null()).output().expect("it starts");
         let answer = said(&output);
         let missing: Vec<_> = told.iter().filter(|part| !answer.contains(**part)).collect();
-        // 1 for what a command refuses, 2 for a command line that is none.
+        // 1 where a command refuses, 2 for a command line that cannot be parsed.
         if !matches!(output.status.code(), Some(1 | 2)) || !missing.is_empty() || answer.contains("panicked")
         {
             wrong.push(format!("stribeck {}\n{answer}lacks {missing:?}", words.join(" ")));

@@ -112,13 +112,13 @@ fn example_both_models_from_the_same_starts() {
         "{:?}",
         thinned.correlations
     );
-    // Between them third octaves tell what samples fold down, and little else at 500 Hz.
+    // Third octaves of the two differ by what sampling aliases down, and by little else at 500 Hz.
     let octaves = &thinned.sensors[0];
     assert!((octaves.reduced_db[0] - octaves.full_db[0]).abs() < 0.5, "{octaves:?}");
-    // One start has no scatter, and tells nothing.
-    assert!(same.rows.iter().all(|row| !row.told));
+    // One start has no scatter, and decides nothing.
+    assert!(same.rows.iter().all(|row| !row.decided));
     let twice = Agreement::of(&scene, &[[own(), own()], [own(), own()]]).unwrap();
-    assert!(twice.rows.iter().all(|row| row.told && row.within), "{twice:?}");
+    assert!(twice.rows.iter().all(|row| row.decided && row.within), "{twice:?}");
     let louder = desk.join("louder");
     fs::create_dir(&louder).unwrap();
     for name in ["scene.ron", "run.json", "energy.npy"] {

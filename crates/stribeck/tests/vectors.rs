@@ -8,8 +8,8 @@ const ON_NUMBERS: [&[u8]; 2] = [b"_mm512_", b"_mm256_"];
 const PRECISION: &[u8] = b"_pd";
 
 /// A closure over an array had been compiled without the instruction set of the vectors in it: each product
-/// was a function that was called, and a second of the reduced bearing took 7.6 s instead of 3.1. Nothing but
-/// the clock had told.
+/// was a function that was called, and a second of the reduced bearing took 7.6 s instead of 3.1. Only the
+/// clock had shown it.
 #[test]
 fn issue_no_operation_on_a_vector_is_a_function() {
     let program = std::fs::read(env!("CARGO_BIN_EXE_stribeck")).expect("it has been built");

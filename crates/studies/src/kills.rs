@@ -34,7 +34,7 @@ const PATIENCE_S: f64 = 600.0;
 #[derive(Debug, Default, Clone, Copy)]
 struct Tally {
     kills: usize,
-    /// Before there was a checkpoint: the run begins anew.
+    /// Before there was a checkpoint: the run restarts.
     too_early: usize,
     /// While it was being continued from an earlier kill.
     again: usize,

@@ -19,7 +19,7 @@ mod impulse;
 mod kills;
 mod long;
 mod noise;
-mod own;
+mod own_bearings;
 mod paper;
 mod reduced;
 mod rig;
@@ -71,7 +71,7 @@ pub enum Study {
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
     Impulse(impulse::Options),
     /// Bearings by their own fields, at the first try, by both models
-    Own(own::Options),
+    Own(own_bearings::Options),
     /// Measured records of known state through the verdict of `analyse`, beside plainer methods
     Verdicts(verdicts::Options),
 }
@@ -97,7 +97,7 @@ impl Study {
             Self::Spalls(options) => spalls::run(options, host),
             Self::Reduced(options) => reduced::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
-            Self::Own(options) => own::run(options, host),
+            Self::Own(options) => own_bearings::run(options, host),
             Self::Verdicts(options) => verdicts::run(options, host),
         }
     }

@@ -1,9 +1,9 @@
 //! `cargo xtask study paper`: which reading of the paper agrees with it best, and whether its hypothesis
 //! holds.
 
-mod base;
 mod hypothesis;
 mod knocks;
+mod open_choices;
 
 use anyhow::Result;
 use stribeck_analysis::summary::Summary;
@@ -51,8 +51,8 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
          side (0°), unless stated.",
     );
     // The other half is shown as far as it has been run.
-    let base = runner.run_if(wanted(Part::Base), &base::variants())?;
-    base::write(&mut sheet, &base)?;
+    let base = runner.run_if(wanted(Part::Base), &open_choices::variants())?;
+    open_choices::write(&mut sheet, &base)?;
     let hypothesis = runner.run_if(wanted(Part::Hypothesis), &hypothesis::variants())?;
     hypothesis::write(&mut sheet, &hypothesis)?;
     let knocking = runner.run_if(wanted(Part::Hypothesis), &knocks::variants())?;

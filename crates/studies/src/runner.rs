@@ -45,7 +45,7 @@ impl Flags {
         self.tables_only
     }
 
-    /// The same for a command that runs several scenes itself, side by side unless it is told otherwise.
+    /// The same for a command that runs several scenes itself, side by side unless a flag forbids it.
     pub(crate) fn of_a_command(&self) -> Vec<String> {
         let jobs = if self.jobs > 1 { Some(format!("--jobs={}", self.jobs)) } else { None };
         let threads = self.threads.or((self.jobs > 1).then_some(self.jobs)).map(|n| format!("--threads={n}"));

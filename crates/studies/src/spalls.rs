@@ -47,7 +47,7 @@ struct Case {
 }
 
 /// Findings on the record of a case.
-struct Told {
+struct Reading {
     case: Case,
     found: Found,
     /// Recorded passages, those with both events in the force, and those in which the floor is touched.
@@ -114,7 +114,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
         }
         let folder = out.join(format!("{}-analysed", case.variant.name));
         let found = analyse(host, &run.folder, &[], &folder, case.family)?;
-        told.push(Told::of(case, found, run));
+        told.push(Reading::of(case, found, run));
     }
     let mut sheet = Sheet::new(host.root(), "spalls", "Simulated spalls of known length");
     sheet.say(
@@ -138,7 +138,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     Ok(Answer::on(sheet.write()?))
 }
 
-impl Told {
+impl Reading {
     fn of(case: Case, found: Found, run: &Finished) -> Self {
         let events = run.numbers().map(|summary| summary.events.as_slice()).unwrap_or_default();
         let events: Vec<_> = events.iter().filter(|event| event.ring == DefectRing::Outer).collect();
@@ -179,7 +179,7 @@ impl Told {
     }
 
     /// Estimate, lower and upper end [mm] of the reading for spalls of this length, shorter or longer than
-    /// half of the distance of two elements: the record tells both, and not which.
+    /// half of the distance of two elements: the record gives both lengths, and does not decide between them.
     fn reading_mm(&self) -> Option<[f64; 3]> {
         if self.is_short() { self.found.spall_mm } else { self.found.otherwise_mm }
     }
@@ -222,7 +222,7 @@ impl Told {
     }
 }
 
-fn table(sheet: &mut Sheet, told: &[Told]) {
+fn table(sheet: &mut Sheet, told: &[Reading]) {
     sheet.heading("Lengths");
     let mm = |value: f64| number(value, 2);
     let none = || "–".to_owned();
@@ -284,11 +284,11 @@ fn table(sheet: &mut Sheet, told: &[Told]) {
 }
 
 /// How many of which sort hold the truth.
-fn counts(sheet: &mut Sheet, told: &[Told]) {
+fn counts(sheet: &mut Sheet, told: &[Reading]) {
     sheet.heading("What may be believed");
     let mut lines = Vec::new();
-    let mut line = |what: &str, of: &dyn Fn(&&Told) -> bool| {
-        let all: Vec<&Told> = told.iter().filter(of).collect();
+    let mut line = |what: &str, of: &dyn Fn(&&Reading) -> bool| {
+        let all: Vec<&Reading> = told.iter().filter(of).collect();
         let held = all.iter().filter(|t| t.holds()).count();
         let mut off: Vec<f64> =
             all.iter().filter_map(|t| Some((t.reading_mm()?[0] / t.case.length_mm - 1.0).abs())).collect();

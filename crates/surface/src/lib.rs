@@ -6,7 +6,7 @@
 //!    and where.
 //! 3. A [`Law`] holds the numbers of contact between two surfaces: penalty, damping, Coulomb friction.
 //!
-//! Positions are arrays by slot, which the caller owns and moves. The crate knows neither elements nor a time
+//! Positions are arrays by slot, which the caller owns and moves. The crate has neither elements nor a time
 //! loop; contact evaluates surfaces in its kernels through the modules below, whose mathematics stands once,
 //! over a [`Number`](stribeck_simd::lanes::Number): `f64` for single points, a vector for many.
 //!

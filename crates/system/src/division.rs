@@ -97,8 +97,8 @@ impl System {
         Ok(())
     }
 
-    /// Where interactions are to be looked for in the next step, does so with all nodes of surfaces, and
-    /// deals them out anew.
+    /// Where interactions are due for a search in the next step, searches with all nodes of surfaces, and
+    /// reassigns them.
     fn look_over_ranks(&mut self) -> Result<(), Error> {
         let step = self.steps();
         let Some(division) = &self.division else { return Ok(()) };
@@ -131,8 +131,8 @@ impl System {
         Ok(())
     }
 
-    /// Assigns interactions: each to the ranks that move nodes within its reach, the first of which speaks
-    /// for it.
+    /// Assigns interactions: each to the ranks that move nodes within its reach, the first of which reports
+    /// its numbers.
     fn assign(&mut self) {
         let (Some(division), Some(ranks)) = (&mut self.division, self.dynamics.ranks()) else { return };
         let (rank, count, moment) = (ranks.rank(), ranks.count(), self.dynamics.moment());

@@ -36,7 +36,7 @@ pub struct Limits {
     /// Penetration over the element size above which there is a warning [%].
     pub penetration_warning_percent: f64,
     /// … and above which to stop [%]; at 200 % contact takes a point for one on the far side of a body and
-    /// lets go.
+    /// opens.
     pub penetration_stop_percent: f64,
     /// Area of an element over its area at rest below which to stop [%].
     pub area_stop_percent: f64,

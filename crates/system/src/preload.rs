@@ -31,7 +31,7 @@ pub struct Preload {
     /// The load that tolerances are shares of [N]; `None` takes the sum of all loads and weights.
     pub load: Option<f64>,
     /// Gaps over which the contact law is rounded, stage by stage [m]; the last stage, zero, is the law
-    /// itself. Bodies that nothing touches yet feel others over such a gap and find their place.
+    /// itself. Over such a gap contact acts on bodies that nothing touches yet, and they settle.
     pub softness: Vec<f64>,
     /// A body moves at most this far as a whole in one iteration [m].
     pub longest_step: f64,

@@ -140,7 +140,7 @@ impl System {
 
     /// Lets all nodes that were constrained to rotate turn at `rate` [rad/s], counter-clockwise positive,
     /// from the next step on. No part of a [`Snapshot`](crate::Snapshot): it is a function of time, which
-    /// whoever drives a system knows.
+    /// the caller has.
     ///
     /// # Errors
     /// When the rate is not finite or beyond π·10⁶.
@@ -319,7 +319,7 @@ impl System {
     }
 
     /// Force of all contact pairs on each node of the mesh at the present positions [N], in and out of
-    /// equilibrium. Nothing moves and contact remembers no more than before, but resultants are those of the
+    /// equilibrium. Nothing moves and the state of contact stays as it is, but resultants are those of the
     /// present positions from here on.
     pub fn contact_forces(&mut self) -> Vec<[f64; 2]> {
         let mut force = NodeForces::zeros(self.dynamics.state.x.len());

@@ -150,8 +150,8 @@ fn conserves_momentum_and_energy_through_oil() {
     for k in 0..2 {
         assert!((after[k] - before[k]).abs() < ROUNDING * before[1].abs(), "{k}: {before:?} {after:?}");
     }
-    // Forces turn nothing where they are placed; until they are placed anew, after sixteen steps, their ends
-    // slide apart.
+    // Where they are placed the two forces have no moment; until they are updated, after sixteen steps, their
+    // points of action slide apart.
     let impulse = 2.0 * before[1].abs();
     let lever = 16.0 * system.time_step() * (0.4 + 30.0 * RADIUS);
     assert!((after[2] - before[2]).abs() < impulse * lever, "{before:?} {after:?}");

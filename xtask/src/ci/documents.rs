@@ -115,7 +115,7 @@ pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
 }
 
 /// The pages of the book of `docs` link to each other and to pictures and tables beside them: a page that
-/// SUMMARY does not list is none of the book, and files outside of `docs` are not in it.
+/// SUMMARY does not list is not in the book, and files outside of `docs` are not in it.
 pub(crate) fn check_book(root: &Path) -> Result<Vec<String>> {
     let summary = read(root, "docs/SUMMARY.md")?;
     let pages = markdown::links(&summary).into_iter();

@@ -30,7 +30,7 @@ struct Row {
     tolerance: f64,
 }
 
-/// Checks the document against the rows in the folder that the environment names, and writes it anew when
+/// Checks the document against the rows in the folder that the environment names, and rewrites it when
 /// they differ. Without one, checks that each row's test stands in the crate of its section: a test that has
 /// moved or another name is found without being run.
 pub(super) fn check(root: &Path) -> Result<Vec<String>> {
@@ -47,7 +47,7 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>> {
     }
 }
 
-/// Rows of the document whose test does not stand in the crate of their section, as `stands` knows.
+/// Rows of the document whose test is not in the crate of their section, which `stands` decides.
 fn strays(text: &str, stands: impl Fn(&str, &str) -> bool) -> Vec<String> {
     let mut package = "";
     let mut found = Vec::new();
@@ -64,7 +64,7 @@ fn strays(text: &str, stands: impl Fn(&str, &str) -> bool) -> Vec<String> {
     found
 }
 
-/// Writes the document anew when it differs from the rows in `folder` by more than rounding, with a
+/// Rewrites the document when it differs from the rows in `folder` by more than rounding, with a
 /// complaint.
 pub(super) fn renew(root: &Path, folder: &Path) -> Result<Vec<String>> {
     let complaints = compare(root, folder)?;

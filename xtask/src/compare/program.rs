@@ -46,7 +46,7 @@ pub(super) fn timed(work: impl FnOnce()) -> Time {
     Time { wall_s, cpu_s }
 }
 
-/// Processor time of this thread [s], where the system tells it.
+/// Processor time of this thread [s], where the system has it.
 fn thread_cpu_s() -> Option<f64> {
     // The system brings this number up to date when a thread offers its processor, and else every few
     // milliseconds.

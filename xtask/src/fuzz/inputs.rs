@@ -1,4 +1,4 @@
-//! Kinds of input, and who must answer for each.
+//! Kinds of input, and the program that is tested with each.
 
 use std::path::{Path, PathBuf};
 

@@ -55,7 +55,7 @@ pub(super) struct Made {
     pub(super) from: String,
     pub(super) done: &'static str,
     pub(super) bytes: Vec<u8>,
-    /// What pandas is told of a text, and the rate that it has [Hz].
+    /// Arguments of pandas for a text, and its sample rate [Hz].
     told: Option<Value>,
     rate_hz: Option<f64>,
 }

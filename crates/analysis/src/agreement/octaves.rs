@@ -32,14 +32,14 @@ impl Octaves {
         let sure = |sign: f64| {
             off.iter().zip(&self.error_db).map(move |(off, error)| off.abs() + sign * 2.0 * error)
         };
-        let told = !self.error_db.is_empty()
+        let decided = !self.error_db.is_empty()
             && (sure(1.0).all(|most| most <= BAND_LIMIT_DB) || sure(-1.0).any(|least| least > BAND_LIMIT_DB));
         Some(Row {
             name: format!("octaves_{}_db", self.sensor),
             quantity: format!("third octaves at the sensor {}, 0.5 to 10 kHz", self.sensor),
             scale: Scale::ThirdOctaves,
             within: difference.most.max(-difference.least) <= BAND_LIMIT_DB,
-            told,
+            decided,
             difference,
             limit: BAND_LIMIT_DB,
         })

@@ -39,8 +39,8 @@ pub struct Row {
     pub within: bool,
     /// Whether the starts suffice for a verdict: their interval, or the error of each band, leaves no other
     /// answer.
-    #[serde(default)]
-    pub told: bool,
+    #[serde(default, alias = "told")]
+    pub decided: bool,
 }
 
 impl Scale {
@@ -64,17 +64,17 @@ impl Row {
         difference: Statistic,
         limit: f64,
     ) -> Self {
-        let told = difference
+        let decided = difference
             .low
             .zip(difference.high)
             .is_some_and(|(low, high)| low.abs().max(high.abs()) <= limit || low > limit || high < -limit);
         let within = difference.mean.abs() <= limit;
-        Self { name, quantity, scale, within, told, difference, limit }
+        Self { name, quantity, scale, within, decided, difference, limit }
     }
 
     /// The verdict in words.
     pub fn verdict(&self, starts: usize) -> String {
-        match (self.told, self.within) {
+        match (self.decided, self.within) {
             (true, true) => "yes".to_owned(),
             (true, false) => "no".to_owned(),
             (false, _) if starts == 1 => "one start cannot tell".to_owned(),

@@ -135,7 +135,7 @@ fn example_of_a_long_record_the_last_part_is_judged() {
 }
 
 #[test]
-fn example_each_family_is_told_from_its_neighbours() {
+fn example_each_family_is_distinguished_from_its_neighbours() {
     for (name, source) in CANDIDATES {
         let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[Sound::of(source)], 8.0, 5));
         assert_eq!(found(&families), [name], "{families:#?}");
@@ -147,7 +147,7 @@ fn example_each_family_is_told_from_its_neighbours() {
 }
 
 #[test]
-fn example_two_combs_of_one_motion_are_not_told_apart() {
+fn example_two_combs_of_one_motion_are_not_distinguished() {
     // A fiftieth of a facet is 0.08 Hz, and three degrees of phase from one end of the load zone to the
     // other.
     let twins = [CANDIDATES[1], ("other_race_nodes", Source::OuterNodes(1255.02)), CANDIDATES[0]];
@@ -156,7 +156,7 @@ fn example_two_combs_of_one_motion_are_not_told_apart() {
     for (one, other) in [(0, 1), (1, 0)] {
         assert_eq!(families[one].not_told_apart_from, [twins[other].0]);
         assert!(families[one].carrier_hz.is_some() && !families[one].lines.is_empty());
-        assert!(families[one].verdict.starts_with("not told apart"), "{families:#?}");
+        assert!(families[one].verdict.starts_with("not distinguishable"), "{families:#?}");
     }
     assert!(families[2].carrier_hz.is_none() && families[2].not_told_apart_from.is_empty(), "{families:#?}");
 }
@@ -235,10 +235,10 @@ fn example_a_short_record_is_not_judged() {
     assert_eq!(found(&judged(&CANDIDATES, &(nobody, Vec::new()))), [""; 0]);
 }
 
-/// The message on 99 facets was that their comb explains no more than one at any other place, beside a lead
+/// The message on 99 facets was that their comb explains as much as one at any other place, beside a lead
 /// of 0.50: it fitted best 0.55 resolutions off.
 #[test]
-fn issue_a_comb_that_leads_off_its_place_is_told_with_its_distance() {
+fn issue_a_comb_that_leads_off_its_place_is_named_with_its_distance() {
     let sound = Sound { detuned_hz: 22.0, ..Sound::of(CANDIDATES[0].1) };
     let families = judged(&CANDIDATES[..1], &sounding(silent(SAMPLES, 0.0), &[sound], 1.0, 5));
     let [vertices] = &families[..] else { panic!("{families:#?}") };

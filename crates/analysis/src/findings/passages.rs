@@ -16,7 +16,7 @@ use crate::floor::{FloorFilm, OverFloor, Strike};
 use crate::levels::Visit;
 use crate::prediction::{DefectEdges, Prediction, SpallCourse};
 use crate::record::{Record, Roller};
-use crate::spall::Edge;
+use crate::spall_length::Edge;
 use crate::summary::Event;
 
 /// Passages of rollers that carry less than this part of the largest load are left out: they lie outside the

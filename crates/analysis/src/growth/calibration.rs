@@ -20,7 +20,7 @@ pub struct Known {
 pub enum Record {
     /// No defect.
     Sound,
-    /// A defect, whose size it does not tell.
+    /// A defect of unknown size.
     Damaged,
     /// A defect with an indicator of its size.
     Indicates(f64),
@@ -57,8 +57,8 @@ const LEAST_RECORDS: usize = 6;
 const LEAST_ERROR: f64 = 0.02;
 
 impl Calibration {
-    /// From records of known spalls; `None` for fewer than six that tell a size, or lengths or indicators
-    /// that are all one.
+    /// From records of known spalls; `None` for fewer than six with an indicator, or where all lengths or all
+    /// indicators are equal.
     pub fn of(known: &[Known]) -> Option<Self> {
         let told: Vec<(usize, f64, f64)> = known
             .iter()
@@ -93,7 +93,7 @@ impl Calibration {
         })
     }
 
-    /// The length that an indicator tells [mm].
+    /// The length that belongs to an indicator [mm].
     pub fn length_mm(&self, indicator: f64) -> f64 {
         ((indicator - self.a) / self.b).exp()
     }

@@ -1,4 +1,4 @@
-//! What is left of a unit's life by what its records show.
+//! Remaining life of a unit from its records, by a particle filter.
 
 use stribeck_scene::dice::Dice;
 
@@ -16,7 +16,7 @@ pub struct Remaining {
     pub high: f64,
 }
 
-/// Courses that are followed: of 4000 too few are left that differ in what a unit's readings share.
+/// Courses that are followed: of 4000 too few distinct values of the error common to a unit remain.
 const COURSES: usize = 16_000;
 /// Courses that are followed to their ends.
 const ENDED: usize = 1000;
@@ -28,13 +28,13 @@ struct Followed {
     off: f64,
 }
 
-/// What is left after each record of a unit by what its records so far show, read by `calibration` and with
-/// its errors. A record that is missing, `None`, says that the unit was not at its end, no more. `None`
-/// before the first record that shows a defect.
+/// Remaining life after each record of a unit, given its records so far, read by `calibration` and with its
+/// errors. A missing record, `None`, says only that the unit was not at its end. The result is `None` before
+/// the first record that shows a defect.
 ///
 /// A particle filter: courses drawn from the law, each with an error that all readings of the unit share, are
-/// weighted by how likely each makes what was read, drawn anew where few carry the weight, and run on to
-/// their ends. Source: N. J. Gordon, D. J. Salmond and A. F. M. Smith, IEE Proc. F 140 (1993) 107.
+/// weighted by the likelihood of the readings, resampled where few carry the weight, and run on to their
+/// ends. Source: N. J. Gordon, D. J. Salmond and A. F. M. Smith, IEE Proc. F 140 (1993) 107.
 pub fn remaining(
     law: &Law,
     shown: &[Option<Record>],

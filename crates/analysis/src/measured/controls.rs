@@ -2,7 +2,7 @@
 
 use stribeck_dsp::{Comb, CombTest, Whitened};
 
-use super::own::OwnLines;
+use super::machine_lines::OwnLines;
 use super::unrelated::{SLIP, is_the_same, unrelated_hz};
 
 /// Largest part of unrelated combs that may stand as high.
@@ -24,9 +24,9 @@ pub(super) fn part_as_high(comb: &Comb, controls: &[Comb]) -> Option<f64> {
     (!controls.is_empty()).then(|| as_high as f64 / controls.len() as f64)
 }
 
-/// The highest combs about fundamentals that are unrelated to a comb's, which share what is not the bearing's
-/// with it. Those of the `first` family [Hz], of the machine itself (`own`) and sidebands of this one are
-/// none of them, and one that is found from several sides is one.
+/// The highest combs about fundamentals unrelated to a comb's: control combs, which see the same signal of
+/// the rest of the machine. Fundamentals of the `first` family [Hz], of the machine itself (`own`) and
+/// sidebands of this one are left out, and a comb that is found from several sides counts once.
 pub(super) fn controls(
     comb: &Comb,
     comb_hz: f64,

@@ -8,11 +8,11 @@ use super::limits::{ALPHA, KNOCK};
 use super::sentence::probability;
 use super::unexplained::Unexplained;
 use super::unrelated::is_the_same;
-use super::{Defect, passage};
+use super::{Defect, element_rhythm};
 
 /// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling
-/// element, unless the cage modulates them (`modulated`). Where both have their places within a resolution,
-/// neither is told from the other.
+/// element, unless the cage modulates them (`modulated`). Where both are expected within a resolution of each
+/// other, they are not distinguished.
 pub(super) fn share_out(families: &mut [Family], resolution_hz: f64, modulated: bool) {
     let cannot_be = |family: &Family| family.name == Defect::Bsf && !modulated;
     let comb = |family: &Family| {
@@ -47,7 +47,7 @@ pub(super) fn share_out(families: &mut [Family], resolution_hz: f64, modulated: 
         });
         let Some(other) = other else { continue };
         let why = if cannot_be(&families[at]) {
-            "and no turn of the cage is heard in them, as it is where a spot on a rolling element comes \
+            "and they are not modulated by the cage, as it is where a spot on a rolling element comes \
              under the load"
         } else {
             "which are nearer to their place"
@@ -135,7 +135,7 @@ pub(super) fn decide(families: &mut [Family], unexplained: Option<&Unexplained>,
 /// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a
 /// rolling element that knocks twice a spin, by the whole range or by the band in which the cage stands
 /// highest.
-pub(super) fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
+pub(super) fn name_the_element(families: &mut [Family], bands: &[BandEnvelope]) {
     let place = |name: Defect| families.iter().position(|family| family.name == name);
     let (Some(element), Some(cage)) = (place(Defect::Bsf), place(Defect::Ftf)) else { return };
     // A spot on a rolling element meets both raceways in a turn.
@@ -147,7 +147,7 @@ pub(super) fn tell_the_element(families: &mut [Family], bands: &[BandEnvelope]) 
     let loudest = |band: &&BandEnvelope| families[cage].band_hz == Some((band.low_hz, band.high_hz));
     let asked = [bands.first(), bands.iter().find(loudest)];
     let told = asked.into_iter().flatten().find_map(|band| {
-        let hz = passage::rhythm(band, knocks_hz)?;
+        let hz = element_rhythm::repeating_hz(band, knocks_hz)?;
         Some(((band.low_hz, band.high_hz), hz))
     });
     let Some((band_hz, hz)) = told else { return };
@@ -209,7 +209,7 @@ mod tests {
             let names: Vec<Defect> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
             assert_eq!(names, [claimed], "{families:?}");
         }
-        // Diameters of 1 to 5 put twice BSF on BPFO: whatever is measured, the record does not tell.
+        // Diameters of 1 to 5 put twice BSF on BPFO: whatever is measured, the record does not decide.
         for measured_hz in [94.404, 96.3] {
             let mut families = [
                 found(Defect::Bpfo, 96.0048, measured_hz),

@@ -7,6 +7,7 @@ use super::limits::{ALPHA, KNOCK};
 use super::unrelated::unrelated_hz;
 use super::{Analysis, Family, MeasuredFindings};
 use crate::Error;
+use crate::words::chance;
 
 /// Steps of a period, at most.
 const STEPS: usize = 72;
@@ -103,9 +104,10 @@ pub fn what_would_change(findings: &MeasuredFindings) -> Vec<String> {
     for family in findings.families.iter().filter(|f| f.claimed) {
         said.push(format!(
             "{} is claimed as long as each of these holds: probability of a false alarm {} (limit \
-             {ALPHA:.0e}), {:.0} % of unrelated combs as high (limit {:.0} %), power swinging by {:.0} % (limit {:.0} %).",
+             {}), {:.0} % of unrelated combs as high (limit {:.0} %), power swinging by {:.0} % (limit {:.0} %).",
             family.name,
             family.false_alarm(),
+            chance(ALPHA),
             100.0 * family.rank.unwrap_or(1.0),
             100.0 * MOST_AS_HIGH,
             100.0 * family.depth.unwrap_or(0.0),
@@ -140,8 +142,11 @@ pub fn what_would_change(findings: &MeasuredFindings) -> Vec<String> {
 fn missing(family: &Family) -> String {
     let mut lacks = Vec::new();
     if family.p_value >= ALPHA {
-        lacks
-            .push(format!("a probability of a false alarm below {ALPHA:.0e} ({} now)", family.false_alarm()));
+        lacks.push(format!(
+            "a probability of a false alarm below {} ({} now)",
+            chance(ALPHA),
+            family.false_alarm()
+        ));
     }
     if let Some(rank) = family.rank.filter(|rank| *rank > MOST_AS_HIGH) {
         lacks.push(format!(

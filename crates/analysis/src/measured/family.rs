@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use super::controls::MOST_AS_HIGH;
 use super::limits::{ALPHA, KNOCK, decibel};
 use super::{Defect, unexplained};
+use crate::words::chance;
 
 /// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
 /// same records.
@@ -151,12 +152,12 @@ impl Family {
         self.p_value = by_depth.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0);
     }
 
-    /// The probability of a false alarm in words. Far beyond any test of the noise only a bound is given.
+    /// The probability of a false alarm in words.
     pub fn false_alarm(&self) -> String {
-        if self.p_value < 1e-9 { "< 1e-9".to_owned() } else { format!("{:.1e}", self.p_value) }
+        chance(self.p_value)
     }
 
-    /// Whether it is more than noise and as deep as knocks, whoever makes them.
+    /// Whether it is more than noise and modulated as deeply as by knocks, whatever their cause.
     pub(super) fn knocks(&self) -> bool {
         self.noise_p_value < ALPHA && self.depth.is_some_and(|depth| depth >= KNOCK)
     }

@@ -1,19 +1,19 @@
-//! A comb at half the frequency of a raceway: the raceway's lines are its even ones, and what knocks comes
+//! A comb at half the frequency of a raceway: the raceway's lines are its even ones, and the source knocks
 //! half as often as elements pass.
 
 use stribeck_dsp::{Comb, CombTest, Whitened};
 
 use super::limits::decibel;
-use super::own::OwnLines;
+use super::machine_lines::OwnLines;
 use super::unexplained::Unexplained;
 
-/// An odd line of a comb at half the frequency over the even ones beside it, in power. Knocks of 1 + m and 1
-/// − m in turn have (2m/(1 + m²))²; from 0.5 on the weaker ones have two fifths of the others' amplitude at
+/// An odd line of a comb at half the frequency over the even ones beside it, in power. Knocks of 1 + m and
+/// 1 − m in turn have (2m/(1 + m²))²; from 0.5 on the weaker ones have two fifths of the others' amplitude at
 /// most.
 const AS_HIGH: f64 = 0.5;
 
-/// The comb at half the frequency of another one, where four of its first five odd lines stand about as high
-/// as the even ones beside them. Lines of the machine itself (`own`) are no evidence of it.
+/// The comb at half the frequency of another one, where four of its first five odd lines are about as high as
+/// the even ones beside them. Lines of the machine itself (`own`) are no evidence of it.
 pub(super) fn comb_at_half(comb: &Comb, spectrum: &Whitened, own: &OwnLines) -> Option<Unexplained> {
     let half_hz = 0.5 * comb.fundamental_hz;
     let stands = |n: &usize| {

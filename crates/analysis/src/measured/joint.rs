@@ -35,14 +35,14 @@ pub struct JointFamily {
     /// Whether this is called a defect.
     pub claimed: bool,
     /// What each channel says, in their order.
-    pub channels: Vec<Heard>,
+    pub channels: Vec<ChannelEvidence>,
     /// The channel in which its impacts are strongest, where they are [`NEARER_DB`] above all others.
     pub nearest: Option<String>,
 }
 
 /// What one channel says of a family.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Heard {
+pub struct ChannelEvidence {
     /// Whether the channel claims it by itself.
     pub claimed: bool,
     /// Probability of a false alarm in this channel.
@@ -97,7 +97,7 @@ impl JointFamily {
             channels.iter().map(|(_, a)| a.bands.first().map_or(0.0, |band| swing(band, comb_hz))).collect();
         let total: f64 = swings.iter().sum();
         let share = |at: usize| (alike && total > 0.0).then(|| swings[at] / total);
-        let heard = families.iter().enumerate().map(|(at, family)| Heard {
+        let evidence = families.iter().enumerate().map(|(at, family)| ChannelEvidence {
             claimed: family.is_some_and(|f| f.claimed),
             p_value: family.map_or(1.0, |f| f.p_value),
             height_db: family.map(|f| f.score_db()).filter(|db| db.is_finite()),
@@ -108,20 +108,20 @@ impl JointFamily {
             name,
             p_value: (channels.len() as f64 * smallest).min(1.0),
             claimed: false,
-            channels: heard.collect(),
+            channels: evidence.collect(),
             nearest,
         })
     }
 
     /// Its greatest height in the channels that claim it [dB].
     fn claimed_at_db(&self) -> f64 {
-        let claims = self.channels.iter().filter(|heard| heard.claimed);
-        claims.filter_map(|heard| heard.height_db).fold(f64::NEG_INFINITY, f64::max)
+        let claims = self.channels.iter().filter(|evidence| evidence.claimed);
+        claims.filter_map(|evidence| evidence.height_db).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
 /// How much the power of a band swings with a comb, in the square of its unit: its mean power times the depth
-/// of the modulation beyond what the lines around have.
+/// of the modulation beyond that of the lines around.
 fn swing(band: &BandEnvelope, comb_hz: f64) -> f64 {
     let of = |n: u32| {
         let hz = f64::from(n) * comb_hz;
@@ -140,10 +140,11 @@ fn loudest(swings: &[f64]) -> Option<usize> {
     (swings[at] > 0.0 && swings[at] >= next * 10.0_f64.powf(0.1 * NEARER_DB)).then_some(at)
 }
 
-/// Claims what a channel claims and all together bear out. Of families that different channels claim, the one
-/// that stands highest: a lower one may be its sidebands, which a distant channel cannot distinguish.
+/// Claims a family that one channel claims and all channels together confirm. Of families that different
+/// channels claim, the highest one: a lower one may be its sidebands, which a distant channel cannot
+/// distinguish.
 fn decide(families: &mut [JointFamily], notes: &mut Vec<String>) {
-    let bears_out = |f: &JointFamily| f.p_value < ALPHA && f.channels.iter().any(|heard| heard.claimed);
+    let bears_out = |f: &JointFamily| f.p_value < ALPHA && f.channels.iter().any(|evidence| evidence.claimed);
     let candidates: Vec<usize> = (0..families.len()).filter(|at| bears_out(&families[*at])).collect();
     let by_height =
         |a: &&usize, b: &&usize| families[**a].claimed_at_db().total_cmp(&families[**b].claimed_at_db());
@@ -166,13 +167,13 @@ fn decide(families: &mut [JointFamily], notes: &mut Vec<String>) {
 
 fn conclude(families: &[JointFamily], channels: &[(String, &Analysis)]) -> String {
     let of = |family: &JointFamily| {
-        let by = family.channels.iter().zip(channels).filter(|(heard, _)| heard.claimed);
+        let by = family.channels.iter().zip(channels).filter(|(evidence, _)| evidence.claimed);
         let by: Vec<&str> = by.map(|(_, (name, _))| name.as_str()).collect();
         let shares: Vec<String> = family
             .channels
             .iter()
             .zip(channels)
-            .filter_map(|(heard, (name, _))| Some(format!("{name} {:.0} %", 100.0 * heard.share?)))
+            .filter_map(|(evidence, (name, _))| Some(format!("{name} {:.0} %", 100.0 * evidence.share?)))
             .collect();
         let place = match (&family.nearest, shares.is_empty()) {
             (_, true) => String::new(),
@@ -193,8 +194,8 @@ fn conclude(families: &[JointFamily], channels: &[(String, &Analysis)]) -> Strin
     if !claimed.is_empty() {
         return format!("The {} channels together show {}.", channels.len(), claimed.join(" and "));
     }
-    let single = families.iter().any(|f| f.channels.iter().any(|heard| heard.claimed));
-    let one = "one channel claims a defect by itself, which so many channels make more likely by chance";
+    let single = families.iter().any(|f| f.channels.iter().any(|evidence| evidence.claimed));
+    let one = "one channel claims a defect by itself, which several channels make more likely by chance";
     let none = "none claims one by itself";
     format!("The {} channels together show no defect: {}.", channels.len(), if single { one } else { none })
 }

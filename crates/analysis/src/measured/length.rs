@@ -107,7 +107,7 @@ fn of_two_events(
     }
 }
 
-/// A single event bounds a length and does not tell it.
+/// A single event bounds a length and does not determine it.
 fn of_one_event(below_mm: f64, apart_mm: f64) -> SpallLength {
     let note = format!(
         "no second event follows each knock: if entry and exit both knock, the spall is shorter than \

@@ -56,7 +56,7 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     let highest = families.iter().filter(|f| f.knocks()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
     if let Some(highest) = highest {
         return format!(
-            "The record knocks, and does not say where: {} stands highest, but unrelated combs stand as \
+            "The record has knocks, and does not show where: {} stands highest, but unrelated combs stand as \
              high. A longer record, or one \
              nearer to the bearing, may tell.",
             highest.name
@@ -75,12 +75,18 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
         verdict += &format!(" {} can be seen, without knocks: watch the trend.", weak.join(" and "));
     }
     if !unheard.is_empty() {
-        verdict += &format!(" It cannot speak of {}.", unheard.join(" and "));
+        verdict += &format!(" It does not decide about {}.", unheard.join(" and "));
     }
     verdict
 }
 
-/// A probability in words: one that is 1 says no more than that.
+/// A probability in words.
 pub(super) fn probability(p: f64) -> String {
-    if p >= 0.1 { format!("{p:.1}") } else { format!("{p:.3}") }
+    if p >= 0.95 {
+        "nearly 1".to_owned()
+    } else if p >= 0.1 {
+        format!("{p:.1}")
+    } else {
+        format!("{p:.3}")
+    }
 }

@@ -35,8 +35,8 @@ pub(super) struct Shaft {
 }
 
 impl Shaft {
-    /// Whether it is told apart from all other combs in reach.
-    pub(super) fn is_told(&self) -> bool {
+    /// Whether it is distinct from all other combs in reach.
+    pub(super) fn is_distinct(&self) -> bool {
         self.height_db >= LEAST_DB && self.lead_db >= LEAST_LEAD_DB
     }
 }

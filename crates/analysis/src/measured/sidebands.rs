@@ -1,4 +1,5 @@
-//! Sidebands of a family: a spot on a rolling element knocks as the cage brings it under the load.
+//! Sidebands of a family at the distance of the cage's frequency: they distinguish a spot on a rolling
+//! element, which knocks only while the cage carries it through the load zone.
 
 use stribeck_dsp::{BandEnvelope, Whitened};
 

@@ -31,7 +31,7 @@ const MOST_FROM: f64 = 8.0;
 /// Slip of a family, either way, and steps in which it is tried.
 const SLIP: f64 = 0.02;
 const SLIP_STEPS: i32 = 20;
-/// Lead over all other speeds, but for simple multiples of the one that is found, from which it is told
+/// Least lead over all other speeds, except simple multiples of the best one, with which it is accepted
 /// [nats]: on every second record of bearings 6205 no wrong one leads by more than 17.
 pub(super) const LEAST_LEAD: f64 = 20.0;
 /// Speeds nearer to one another than this part are one.
@@ -50,17 +50,17 @@ const REACH: f64 = 0.07;
 const SAME_NEAR: f64 = 0.006;
 /// The lead over all others within reach from which a given speed is corrected [nats].
 const LEAST_LEAD_NEAR: f64 = 20.0;
-/// Evidence of the shaft's own multiples in the spectrum without which no speed is told [nats], three lines
-/// that stand: a comb of the bearing alone is consistent with any speed from which slip, or another bearing,
-/// makes it a family.
+/// Least evidence of the shaft's own multiples in the spectrum with which a speed is accepted [nats], three
+/// lines that stand: a comb of the bearing alone is consistent with any speed from which slip, or another
+/// bearing, makes it a family.
 const LEAST_OF_SHAFT: f64 = 15.0;
 /// Turns that a record must hold: with fewer, the multiples of neighbouring speeds are not resolved.
 const TURNS: f64 = 50.0;
 const TURNS_NEAR: f64 = 100.0;
 
-/// The speed that a record tells.
+/// The speed found in a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Told {
+pub(super) struct SpeedEstimate {
     pub(super) hz: f64,
     /// Half of the resolution over the highest multiple of the shaft that was looked at [Hz].
     pub(super) uncertainty_hz: f64,
@@ -69,10 +69,10 @@ pub(super) struct Told {
     /// The speed that comes next [Hz].
     pub(super) next_hz: f64,
     /// Whether it leads far enough, and the shaft itself shows.
-    pub(super) is_told: bool,
+    pub(super) is_accepted: bool,
 }
 
-impl Told {
+impl SpeedEstimate {
     fn of(hz: f64, score: f64, next: (f64, f64), spectrum: &Evidence, least_lead: f64) -> Self {
         let shaft_shows = spectrum.comb(hz, SHAFT) >= LEAST_OF_SHAFT;
         Self {
@@ -80,45 +80,45 @@ impl Told {
             uncertainty_hz: 0.5 * spectrum.grid_hz / f64::from(SHAFT),
             lead: score - next.1,
             next_hz: next.0,
-            is_told: shaft_shows && score - next.1 >= least_lead,
+            is_accepted: shaft_shows && score - next.1 >= least_lead,
         }
     }
 }
 
-/// The speed for which most speaks; `None` for a record too short to look.
-pub(super) fn from_nothing(
+/// The speed with the largest evidence; `None` for a record too short to search.
+pub(super) fn without_any_given(
     samples: &[f64],
     rate_hz: f64,
     bands: &[BandEnvelope],
     bearing: &CatalogueBearing,
-) -> Option<Told> {
+) -> Option<SpeedEstimate> {
     let spectrum = Evidence::of_samples(samples, rate_hz)?;
     let scored = Scored::between((FROM_HZ, TO_HZ), &spectrum, bands, bearing)?;
     let found = scored.highest(|_| true)?;
     let hz = scored.lowest_of(&spectrum, found);
     let next = scored.highest(|other| !is_simple(other / hz))?;
     let holds = samples.len() as f64 / rate_hz * hz >= TURNS;
-    holds.then(|| Told::of(hz, found.1, next, &spectrum, LEAST_LEAD))
+    holds.then(|| SpeedEstimate::of(hz, found.1, next, &spectrum, LEAST_LEAD))
 }
 
-/// The speed near one that is given for which most speaks; `None` for a record too short to look.
+/// The speed near a given one with the largest evidence; `None` for a record too short to search.
 pub(super) fn near(
     samples: &[f64],
     rate_hz: f64,
     bands: &[BandEnvelope],
     bearing: &CatalogueBearing,
     given_hz: f64,
-) -> Option<Told> {
+) -> Option<SpeedEstimate> {
     (samples.len() as f64 / rate_hz * given_hz >= TURNS_NEAR).then_some(())?;
     let spectrum = Evidence::of_samples(samples, rate_hz)?;
     let reach = ((1.0 - REACH) * given_hz, (1.0 + REACH) * given_hz);
     let scored = Scored::between(reach, &spectrum, bands, bearing)?;
     let (hz, score) = scored.highest(|_| true)?;
     let next = scored.highest(|other| (other / hz - 1.0).abs() > SAME_NEAR)?;
-    Some(Told::of(hz, score, next, &spectrum, LEAST_LEAD_NEAR))
+    Some(SpeedEstimate::of(hz, score, next, &spectrum, LEAST_LEAD_NEAR))
 }
 
-/// Speeds [Hz] and what speaks for each [nats].
+/// Speeds [Hz] and the evidence for each [nats].
 struct Scored {
     speeds: Vec<f64>,
     scores: Vec<f64>,
@@ -255,7 +255,7 @@ impl Evidence {
         (1..=BESIDE).flat_map(beside).sum()
     }
 
-    /// Whether lines stand at multiples of `hz` that are none of `parts` times it.
+    /// Whether there are lines at multiples of `hz` that are not multiples of `parts` times it.
     fn stands_between(&self, hz: f64, parts: u32) -> bool {
         let asked: Vec<u32> =
             (1..4 * parts).filter(|n| !n.is_multiple_of(parts)).take(2 * parts as usize).collect();

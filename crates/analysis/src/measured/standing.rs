@@ -4,7 +4,7 @@ use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::family::{Family, Reason};
 use super::limits::{ALPHA, decibel};
-use super::own::OwnLines;
+use super::machine_lines::OwnLines;
 use super::unrelated::SLIP;
 use super::{Defect, HIGHEST_HZ, LOWEST};
 

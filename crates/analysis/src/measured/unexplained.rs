@@ -7,7 +7,7 @@ use serde::Serialize;
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use super::limits::{ALPHA, KNOCK, decibel};
-use super::own::OwnLines;
+use super::machine_lines::OwnLines;
 
 /// The highest comb that nothing in the bearing accounts for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

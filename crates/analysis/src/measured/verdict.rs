@@ -10,18 +10,18 @@
 //!    of a band must swing by 60 % of its mean.
 //!
 //! The highest that passes is claimed; `second.rs` looks for a second defect beside it. Multiples of the
-//! shaft and of the cage are nobody's defect (`own.rs`), and where a comb that is no family's stands higher
-//! than all that are, nothing weaker is claimed (`unexplained.rs`).
+//! shaft and of the cage are nobody's defect (`machine_lines.rs`), and where a comb that is no family's
+//! stands higher than all that are, nothing weaker is claimed (`unexplained.rs`).
 
 use stribeck_dsp::{BandEnvelope, Whitened};
 use stribeck_scene::catalogue::DefectOrders;
 
 use super::controls::{controls, part_as_high, rank};
-use super::decision::{claimed_first, decide, first, share_out, tell_the_element};
+use super::decision::{claimed_first, decide, first, name_the_element, share_out};
 use super::family::{Family, Reason};
 use super::halved::comb_at_half;
 use super::limits::{ALPHA, decibel};
-use super::own::OwnLines;
+use super::machine_lines::OwnLines;
 use super::sentence::conclude;
 use super::sidebands::is_modulated_by_the_cage;
 use super::standing::{Standing, deepen, look};
@@ -223,7 +223,7 @@ fn take_skidding(
     let place_hz = family.name.shocks_per_period() * family.expected_hz;
     format!(
         "{} stands {:+.1} % from its place, farther than rolling without slip allows: beside the speed that \
-         the lines of the shaft tell, the cage skids, as it does under little load",
+         the lines of the shaft give, the cage skids, as it does under little load",
         family.name,
         100.0 * (comb_hz / place_hz - 1.0)
     )
@@ -239,7 +239,7 @@ impl Verdicts {
     /// The verdict over all families; `bands` are those that were judged.
     pub(super) fn conclude(&mut self, bands: &[BandEnvelope]) {
         if !self.families.is_empty() {
-            tell_the_element(&mut self.families, bands);
+            name_the_element(&mut self.families, bands);
             self.verdict = conclude(&self.families, self.unexplained.as_ref());
         }
     }

@@ -59,7 +59,7 @@ impl Loads {
 /// Below this static safety rolling elements leave dents (ISO 76 asks for 1.5 and more where it runs
 /// quietly).
 const SAFE: f64 = 1.0;
-/// A cage that nothing holds has fallen through its room after this many times a free fall over it.
+/// A cage without guidance has fallen through its clearance after this many times a free fall over it.
 const FALLS: f64 = 3.0;
 
 /// Problems to expect, each with its reason and remedy.

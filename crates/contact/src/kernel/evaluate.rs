@@ -275,7 +275,7 @@ impl<S: Facet, P: Facet> Facets<'_, S, P> {
     /// Finishes a facet: evaluates the remaining points, adds forces to nodes and finds when it is active
     /// again.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)] // what a pass remembers, field by field
+    #[allow(clippy::too_many_arguments)] // the state of a pass, field by field
     fn finish<V: Simd>(
         &mut self,
         simd: V,

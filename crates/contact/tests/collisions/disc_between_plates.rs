@@ -37,7 +37,7 @@ use stribeck_solver::NodeMotion;
 use crate::common::*;
 use crate::penalty;
 
-/// Each time a contact point sets in or lets go the energy errs at random by parts of a per mille.
+/// Each time a contact point closes or opens the energy changes at random by parts of a per mille.
 const BOUNCES: f64 = 5e-3;
 
 #[test]

@@ -72,7 +72,7 @@ impl Scaler {
     }
 }
 
-/// Notes where the values of a segment lie. Says what is odd about them.
+/// Locates the values of a segment. Returns a note on anything unusual.
 pub(super) fn place(
     path: &Path,
     (start, held): (u64, u64),

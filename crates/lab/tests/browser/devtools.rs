@@ -79,7 +79,7 @@ impl Tab {
         said["result"]["value"].clone()
     }
 
-    /// Errors that the page has told its console.
+    /// Errors in the page's console.
     pub(crate) fn errors(&self) -> Vec<String> {
         self.errors.clone()
     }
@@ -116,7 +116,7 @@ fn tab_address(host: &str) -> String {
     while started.elapsed() < PATIENCE {
         let mut stream = TcpStream::connect(host).expect("the browser listens");
         write!(stream, "GET /json HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").expect("sent");
-        // The browser keeps the connection open: what has come after a while is all.
+        // The browser keeps the connection open: the answer ends where nothing more arrives.
         stream.set_read_timeout(Some(Duration::from_millis(300))).expect("a time limit");
         let mut bytes = Vec::new();
         stream.read_to_end(&mut bytes).ok();

@@ -62,7 +62,8 @@ pub(super) fn numbers(nodes: &[u32]) -> Vec<usize> {
     nodes.iter().map(|n| *n as usize + 1).collect()
 }
 
-/// A mesh with what it lacks to be computed elsewhere. All bodies are of one material, in plane strain.
+/// A mesh with the material, contacts and loads that another program needs to compute it. All bodies are of
+/// one material, in plane strain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model<'a> {
     /// Nodes, elements and bodies.

@@ -2,7 +2,7 @@
 //!
 //! A part lies between two places where neither roller nor raceway has a vertex. Which facets meet in it
 //! changes when vertices pass each other or the middle of the contact, every fifty steps or so; in between
-//! their vertices only have to be seen anew, all in vectors.
+//! only the positions of their vertices are updated, all in vectors.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, fused, vector_starts};
@@ -87,7 +87,7 @@ impl Segments {
         wrong == 0 && before != every && behind != every && (middle >> self.middle) & 1 == 1
     }
 
-    /// Lists the parts anew, as far as to `reach` [m] to either side. None are left where a wall is among
+    /// Rebuilds the list of parts, up to `reach` [m] to either side. None are left where a wall is among
     /// them or there are too many.
     #[inline(always)]
     pub(crate) fn list(&mut self, [roller, raceway]: &[View<'_>; 2], along: bool, reach: f64) {
@@ -105,7 +105,7 @@ impl Segments {
         let mut parts = 0;
         let mut reached = false;
         self.present = [0.0; MOST];
-        // Further parts cost nothing while there is room in a vector, and make the list last.
+        // Further parts cost nothing up to a whole vector, and make the list valid for longer.
         while parts < MOST && !(reached && parts % LANES == 0) && r.is_plain() && w.is_plain() {
             let vertices = [r.ends(), w.ends()];
             let columns = vertices.as_flattened().as_flattened();

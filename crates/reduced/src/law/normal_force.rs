@@ -167,8 +167,8 @@ impl ContactLaw {
         }
     }
 
-    /// Integrates over all overlaps at the forces that are expected, as far as they may reach then; `parts`
-    /// is room for that. Returns those that have to be looked at by themselves, because a wall is near.
+    /// Integrates over all overlaps at the predicted forces, as far as they may reach then; `parts` is
+    /// scratch. Returns those that need the general integration, because a wall is near.
     #[inline(always)]
     fn integrate<S: Simd>(
         simd: S,
@@ -239,7 +239,7 @@ impl ContactLaw {
                 flexibility = (half * y).times_plus(slope, g);
                 now = found.shifted_area(more);
             }
-            // It may have gone on to another piece of the compliance.
+            // It may have moved to another piece of the compliance.
             let before = (Vector::load(simd, &contacts.force, at) + Vector::load(simd, &contacts.growth, at))
                 .max(zero);
             let off = (force - start).max(start - force);

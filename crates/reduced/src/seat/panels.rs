@@ -38,8 +38,9 @@ impl Springs {
         moved
     }
 
-    /// Tensions at the coordinates `q` of the modes, while rollers press, less what has been lost before this
-    /// step and by the springs that have `moved` since, a bit for each; across the seat beyond the preload.
+    /// Tensions at the coordinates `q` of the modes under the rollers' forces, less those released before
+    /// this step and by the springs that have `moved` since, a bit for each; across the seat beyond the
+    /// preload.
     #[inline(always)]
     pub(super) fn tensions<S: Simd>(
         &self,

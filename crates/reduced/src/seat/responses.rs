@@ -25,7 +25,7 @@ pub(crate) struct RollerResponses {
     /// Forces of rollers that do not answer, at the vertices of the raceway, where films make all of them
     /// press [N].
     pub(super) fixed: Vec<(usize, f64)>,
-    /// Springs that move, with their displacements: room for a list.
+    /// Springs that move, with their displacements: scratch.
     pub(super) moves: Vec<(usize, f64)>,
 }
 

@@ -62,7 +62,7 @@ pub(super) fn add_all<S: Simd, R: AsMut<[f64]>, N: Numbers>(
     }
 }
 
-/// Lists springs, a bit for each, with how far each of them moves, so that they can be gone through several
+/// Lists springs, a bit for each, with how far each of them moves, so that they can be iterated over several
 /// times.
 #[inline(always)]
 pub(super) fn listed(

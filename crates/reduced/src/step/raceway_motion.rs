@@ -138,8 +138,8 @@ impl Bearing {
         }
     }
 
-    /// How the rays to eight rollers go through the facets of the outer raceway that they went through last.
-    /// Returns those that have gone on to another one.
+    /// Intersects the rays to eight rollers with the facets of the outer raceway that they crossed last.
+    /// Returns those that have moved on to another facet.
     #[inline(always)]
     fn test_facets<S: Simd>(&self, simd: S, block: &mut Block, outer: Option<RingRotation>) -> u64 {
         let (zero, one) = (Vector::all(simd, 0.0), Vector::all(simd, 1.0));

@@ -89,7 +89,7 @@ fn predicted(summary: &EnsembleSummary) -> String {
         said.push(format!("the most loaded roller carries {} kN{at_rest}", mean(force, 1e-3, 2)));
     }
     if said.is_empty() {
-        return "There is no complete start to tell from.".into();
+        return "There is no complete start.".into();
     }
     let short = !families.is_empty() && families.iter().all(|f| f.number("lead").is_none());
     let tone = if short { " The records are too short to tell families of facet lines." } else { "" };

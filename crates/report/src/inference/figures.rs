@@ -284,7 +284,7 @@ pub(super) fn pulls(answer: &Answer) -> Picture {
     }
     let mut picture = Picture::new("pulls", "How each target moves each unknown", sheet);
     picture.caption = "Number: shift of the unknown's mean by that target, in standard deviations of the \
-        posterior. Red: to larger values, blue: to smaller ones; the stronger, the more it tells."
+        posterior. Red: to larger values, blue: to smaller ones; the stronger, the more it contributes."
         .to_owned();
     picture
 }

@@ -30,7 +30,7 @@ pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
                 (targets?)
                 h2 #reach { "What no scene makes" }
                 (reach(answer))
-                h2 #pulls { "Which target tells what" }
+                h2 #pulls { "What each target contributes" }
                 (pulls?)
                 h2 #trust { "How far to believe it" }
                 (trust(answer))
@@ -134,7 +134,7 @@ fn targets_table(answer: &Answer) -> Markup {
         }
         p { "“Off at best” is how far a target lies from the prediction at the point of the prior that comes \
             nearest, in standard deviations of scatter, tolerance and the emulator's doubt. A target seen \
-            below 5 % or above 95 % of emulated runs is one that the other targets speak against." }
+            below 5 % or above 95 % of emulated runs contradicts the other targets." }
     }
 }
 

@@ -26,7 +26,7 @@ pub(super) fn picture(scene: &ResolvedScene, mesh: &RunMesh) -> Picture {
         "A roller of {facets} facets looks round, and yet each facet lies {sag_um:.2} µm inside the circle \
          in its middle: {}.",
         if scene.written.contact.surface == ContactSurface::Facet {
-            "that is what the contacts hear"
+            "that is what excites the contacts"
         } else {
             "contact on arcs takes that away"
         }

@@ -1,5 +1,5 @@
-//! Base64 (RFC 4648, section 4) of little-endian 32-bit floats: a third more than binary, and any page holds
-//! it.
+//! Base64 (RFC 4648, section 4) of little-endian 32-bit floats: a third longer than binary, and text
+//! that any page can hold.
 
 const ALPHABET: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 

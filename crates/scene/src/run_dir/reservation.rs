@@ -22,7 +22,7 @@ struct State {
     path: PathBuf,
     /// Folders that were made for it, the deepest first.
     made: Vec<PathBuf>,
-    /// Held by whoever writes the run, `None` for readers.
+    /// Held by the writer of the run, `None` for readers.
     lock: Option<File>,
     started: bool,
 }

@@ -314,7 +314,7 @@ fn survives_many_writers_of_one_file() {
             scope.spawn(move || {
                 for _ in 0..40 {
                     write_atomic(path, &text(writer)).expect("another writer takes nothing away");
-                    // Whole, whoever wrote it.
+                    // Whole, whichever writer was last.
                     let there = std::fs::read(path).expect("there is always one");
                     assert_eq!(there, text(usize::from(there[0] - b'a')));
                 }

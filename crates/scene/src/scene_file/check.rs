@@ -6,7 +6,7 @@ use super::origin::Origin;
 use super::overrides;
 use super::problem::SceneError;
 use super::schema::Schema;
-use super::{deviations, extent, geometry, limits, ring_meshes};
+use super::{deviations, exclusions, extent, geometry, limits, operation, ring_meshes};
 use crate::scene::Scene;
 
 /// Refuses a scene with a number outside its range, or with bodies or demands that are impossible.
@@ -29,6 +29,8 @@ fn findings(scene: &Scene) -> Vec<Finding> {
     let mut found = geometry::findings(scene);
     found.extend(deviations::findings(scene));
     found.extend(extent::findings(scene));
+    found.extend(exclusions::findings(scene));
+    found.extend(operation::findings(scene));
     found.extend(ring_meshes::findings(scene));
     found
 }

@@ -182,7 +182,7 @@ impl<'a> Checked<'a> {
     }
 
     fn edge(&self, edge: f64, length: f64) -> Option<Finding> {
-        // A length that was written with few digits is a facet all the same.
+        // A length written with few digits may be a little short of a facet.
         let (least, most) = (0.99 * self.facet, 0.5 * length);
         if edge == 0.0 || (least..=most).contains(&edge) {
             return None;
@@ -420,7 +420,7 @@ impl<'a> Checked<'a> {
         Some(Finding::new(message, vec![Remedy::new(format!("defects[{other}].on"), "another roller")]))
     }
 
-    /// Corners of two spalls would want the same nodes, and about a groove the mesh is cut.
+    /// Corners of two spalls would need the same nodes, and around a groove the mesh is cut.
     fn meets_spall(&self) -> Option<Finding> {
         let own = self.deviation.form.length_mm()?;
         let is_spall = |deviation: &DeviationScene| matches!(deviation.form, FormScene::Spall(_));
@@ -471,7 +471,7 @@ impl<'a> Checked<'a> {
             return None;
         }
         let message = format!(
-            "`film` is there, and `defects[{}]` lies on {}: oil knows round rollers, and raceways that slope \
+            "`film` is there, and `defects[{}]` lies on {}: oil needs round rollers, and raceways that slope \
              by {:.0}° at most \
              without kinks, but for walls at right angles{}",
             self.index,

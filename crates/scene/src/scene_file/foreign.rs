@@ -11,7 +11,7 @@ pub(crate) struct Habit {
     pub(crate) suggestion: String,
 }
 
-/// The format of a text that is no RON at all, told from its first line.
+/// The format of a text that is not RON, recognised by its first line.
 pub(crate) fn other_format(text: &str) -> Option<Habit> {
     let (at, line) = first_line(text)?;
     let range = at..at + line.len();
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_formats_are_told_from_their_first_line() {
+    fn example_formats_are_recognised_by_their_first_line() {
         for (text, words) in [
             ("{\"name\": \"x\"}", "JSON"),
             ("\n  {\n \"name\": 1}", "JSON"),

@@ -69,7 +69,7 @@ fn rings(scene: &Scene) -> Option<Finding> {
         number(roller),
         number(clearance)
     );
-    // Sums of decimal fractions leave rounding dust; a nanometre is none of the user's business.
+    // Sums of decimal fractions have rounding errors; less than a nanometre is not worth a message.
     let message = if clearance < -1e-6 {
         format!("the rollers do not fit between the rings, the bodies overlap: {sum}")
     } else if clearance > MAX_CLEARANCE_RATIO * roller {

@@ -91,6 +91,9 @@ impl<'a> Origin<'a> {
             _ if blamed.field.contains('[') => {
                 problem.suggestion = "take a value that is allowed there".to_owned();
             }
+            _ if candidates.len() == 1 => {
+                problem.suggestion = format!("give `{}` an allowed value", blamed.field);
+            }
             _ => {
                 problem.suggestion =
                     "no single value repairs this; change several of the fields together".to_owned()

@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn example_single_values_are_told_from_fragments() {
+    fn example_single_values_are_distinguished_from_fragments() {
         for good in ["1.0", "None", "(a: 1)", "[1, 2]", "\"x\"", "Some((a: (b: 2)))", " -3e4 "] {
             assert!(is_single_value(good), "{good}");
         }

@@ -89,7 +89,7 @@ impl Recorder {
         self.steps += 1;
     }
 
-    /// The sample at the end of an interval; sums begin anew.
+    /// The sample at the end of an interval; resets the sums.
     pub(super) fn sample(&mut self, bearing: &BearingSystem) -> &Sample {
         self.sample.time = bearing.system.time();
         self.sensors(bearing);

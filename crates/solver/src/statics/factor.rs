@@ -32,7 +32,7 @@ impl Factor {
     /// Its numbers take over the memory of those of a factor that is done with: fresh memory costs as much as
     /// half a factorisation.
     pub(super) fn new(matrix: &Matrix, memory: Vec<f64>) -> Result<Self, Error> {
-        // Without an ordering the analysis wants the upper triangle and the numbers the lower one.
+        // Without an ordering the symbolic analysis needs the upper triangle and the numeric one the lower.
         let upper = matrix.pattern().transpose().to_col_major().map_err(failed)?;
         let order = SymmetricOrdering::Identity;
         // By dense blocks, whatever the size: one column after the other takes longer on graded meshes, too.

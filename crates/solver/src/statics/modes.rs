@@ -63,8 +63,8 @@ pub fn modes_below(motions: &mut SmallMotions, hertz: f64) -> Result<Modes, Erro
         basis.take_out_the_last(&mut images);
         let m = basis.len();
         let lengths = basis.extend(images);
-        // Of a block that is cut short because hardly any room is left, nothing is known before it has been
-        // taken through.
+        // A block that is cut short because hardly any dimensions are left has no estimate before it has been
+        // multiplied.
         let all = m == basis.len();
         if !all && (lengths.ncols() < BLOCK || !m.is_multiple_of(LOOK_EVERY)) {
             continue;

@@ -17,7 +17,7 @@ const TRACK_HOLD: f64 = 1e10;
 /// The same for a motion that is a rotation alone: a ring bends at lower frequencies than a disc.
 const TURN_HOLD: f64 = 1e7;
 
-/// New contacts may fill the factor to this multiple of its size; beyond it the nodes are ordered anew.
+/// New contacts may fill the factor to this multiple of its size; beyond it the nodes are reordered.
 const FILL: f64 = 1.1;
 
 /// Tangent stiffness over a pattern that holds every contact so far.

@@ -4,7 +4,7 @@
 //!
 //! # Goal
 //!
-//! A prescribed rate that is set anew before each step: the angle it leads to, and the work of the drive.
+//! A prescribed rate that changes before each step: the angle it leads to, and the work of the drive.
 //!
 //! # Mesh
 //!

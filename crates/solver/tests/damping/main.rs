@@ -83,7 +83,7 @@ fn conserves_rigid_motion_under_relative_damping() {
     let flight = before[0].abs();
     assert!((after[0] - before[0]).abs() < 1e-10 * flight, "{after:?} from {before:?}");
     assert!((after[1] - before[1]).abs() < 1e-10 * flight, "{after:?} from {before:?}");
-    // The frame is placed anew every 64 steps, while the moment of inertia breathes by 2e-5.
+    // The frame is updated every 64 steps, while the moment of inertia breathes by 2e-5.
     assert!((after[2] - before[2]).abs() < 1e-4 * before[2].abs(), "{after:?} from {before:?}");
     let carried = 0.5 * rigid.mass * (rigid.velocity[0].powi(2) + rigid.velocity[1].powi(2))
         + 0.5 * rigid.inertia * rigid.spin.powi(2);

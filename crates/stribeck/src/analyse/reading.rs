@@ -334,7 +334,7 @@ fn pick<'a>(recording: &'a Recording, asked: Option<&str>, of_run: bool) -> Resu
 }
 
 /// Whether at least one sample in a hundred differs from the one before it; a channel that cannot be read is
-/// told later.
+/// reported later.
 pub(super) fn moves(channel: &Channel) -> bool {
     let (mut before, mut changes) = (f64::NAN, 0_u64);
     let read = channel.for_each_block(|block| {

@@ -122,7 +122,7 @@ fn analyses(sources: &[Source], reading: &Reading, place: &Place) -> Result<Vec<
     let Some(rpm) = told.first().copied().filter(|_| told.len() < sources.len()) else { return Ok(analyses) };
     ensure!(
         told.iter().all(|other| (other / rpm - 1.0).abs() < SAME_SPEED),
-        "the channels tell different speeds, {} rpm: give `--speed-rpm`",
+        "the channels have different speeds, {} rpm: give `--speed-rpm`",
         told.iter().map(|rpm| format!("{rpm:.0}")).collect::<Vec<_>>().join(" and ")
     );
     for (analysis, source) in analyses.iter_mut().zip(sources) {
@@ -131,7 +131,7 @@ fn analyses(sources: &[Source], reading: &Reading, place: &Place) -> Result<Vec<
             analysis
                 .findings
                 .notes
-                .insert(0, format!("the speed of {rpm:.1} rpm is what another channel tells"));
+                .insert(0, format!("the speed of {rpm:.1} rpm is that of another channel"));
         }
     }
     Ok(analyses)

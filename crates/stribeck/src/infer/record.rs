@@ -235,9 +235,9 @@ fn text(
     text
 }
 
-/// Targets of the record: name, number of the summary, value, tolerance. The time between two events is held
-/// against the force of the simulated element, which loses and regains its load at the edges: behind a path
-/// most simulated records have only a hump there.
+/// Targets of the record: name, number of the summary, value, tolerance. The time between two events is
+/// compared with the force of the simulated element, which loses and regains its load at the edges: behind a
+/// path most simulated records have only a hump there.
 fn targets(told: &PassageSignature) -> [(&'static str, &'static str, String, f64); 6] {
     let value = |value: f64| format!("value: {value:.5}");
     let within: Vec<String> = told.within.iter().map(|value| format!("{value:.4}")).collect();

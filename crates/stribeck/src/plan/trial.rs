@@ -96,7 +96,7 @@ impl Drop for Folder {
     }
 }
 
-/// Begins a run of the scene in a folder of its own, which is gone afterwards. Modes that it makes are kept
+/// Begins a run of the scene in a temporary folder, which is removed afterwards. Modes that it makes are kept
 /// for the run where there are runs.
 pub(super) fn begin(scene: &ResolvedScene, plan: &Plan, place: &Place) -> Result<Trial> {
     let written = &scene.written;
@@ -192,7 +192,7 @@ mod tests {
 
     /// A plan of a full model beside other work promised 8:45 for a run that took 3:17 on the machine alone.
     #[test]
-    fn issue_a_busy_machine_is_told_from_a_slow_run() {
+    fn issue_a_busy_machine_is_distinguished_from_a_slow_run() {
         let cost = Cost::of(525.0, 394.0, 2);
         assert_eq!((cost.busy_s, cost.quiet_s), (525.0, 197.0));
         // Without a count of processor time there is the clock alone.

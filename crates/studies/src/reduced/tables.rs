@@ -78,7 +78,7 @@ const NONE: &str = "–";
 fn cell(row: &Row, decimals: usize) -> String {
     let d = &row.difference;
     let half = d.high.map_or(String::new(), |high| format!(" ± {}", number(high - d.mean, decimals)));
-    marked(format!("{}{half}", number(d.mean, decimals)), row.told && !row.within)
+    marked(format!("{}{half}", number(d.mean, decimals)), row.decided && !row.within)
 }
 
 fn marked(text: String, outside: bool) -> String {
@@ -108,13 +108,13 @@ impl Band<'_> {
     }
 
     /// Whether that is more than chance.
-    fn is_told(&self) -> bool {
+    fn is_certain(&self) -> bool {
         self.error_db.is_some_and(|error| self.off_db.abs() - 2.0 * error > BAND_LIMIT_DB)
     }
 
     fn off(&self) -> String {
         let error = self.error_db.map_or(String::new(), |error| format!(" ± {}", number(error, 1)));
-        marked(format!("{}{error}", number(self.off_db, 1)), self.is_told())
+        marked(format!("{}{error}", number(self.off_db, 1)), self.is_certain())
     }
 
     fn place(&self) -> String {
@@ -192,19 +192,19 @@ pub(super) fn outside(sheet: &mut Sheet, all: &[Compared]) {
     sheet.heading("What is not kept, and what cannot be told");
     let mut rows = Vec::new();
     for Compared { words, agreement, .. } in all {
-        let kept = agreement.rows.iter().filter(|row| row.told && row.within).count();
-        let failed = agreement.rows.iter().filter(|row| !row.over_bands() && row.told && !row.within);
+        let kept = agreement.rows.iter().filter(|row| row.decided && row.within).count();
+        let failed = agreement.rows.iter().filter(|row| !row.over_bands() && row.decided && !row.within);
         let mut outside: Vec<String> =
             failed.map(|row| format!("{}: {} {}", row.quantity, cell(row, 3), row.scale.unit())).collect();
         let bands = || agreement.sensors.iter().flat_map(Band::all_of).filter(Band::is_outside);
         let of_band = |band: Band<'_>| format!("{}: {} dB", band.place(), band.off());
-        outside.extend(bands().filter(Band::is_told).map(of_band));
+        outside.extend(bands().filter(Band::is_certain).map(of_band));
         let mut open: Vec<String> = agreement
             .open()
             .filter(|row| !row.over_bands() && !row.within)
             .map(|row| format!("{}: {} {}", row.quantity, cell(row, 3), row.scale.unit()))
             .collect();
-        open.extend(bands().filter(|band| !band.is_told()).map(of_band));
+        open.extend(bands().filter(|band| !band.is_certain()).map(of_band));
         let said = |list: Vec<String>| if list.is_empty() { NONE.to_owned() } else { list.join("; ") };
         rows.push(vec![
             words.clone(),
@@ -298,12 +298,12 @@ mod tests {
     fn example_a_band_is_outside_where_two_standard_errors_leave_no_other_answer() {
         let band = |off_db, error_db| Band { sensor: "seat", hz: 6349.6, off_db, error_db };
         let sure = band(-2.9, Some(0.6));
-        assert!(sure.is_outside() && sure.is_told());
+        assert!(sure.is_outside() && sure.is_certain());
         assert_eq!((sure.off(), sure.place()), ("**−2.9 ± 0.6**".to_owned(), "seat, 6.3 kHz".to_owned()));
         let chance = band(-1.9, Some(0.7));
-        assert!(chance.is_outside() && !chance.is_told());
+        assert!(chance.is_outside() && !chance.is_certain());
         assert_eq!(chance.off(), "−1.9 ± 0.7");
         // One start has no scatter, and decides nothing.
-        assert!(!band(9.0, None).is_told());
+        assert!(!band(9.0, None).is_certain());
     }
 }

@@ -161,7 +161,7 @@ impl Passage {
         }
     }
 
-    /// Whether it rolled without slip, but for the share `room` of the way that its pocket leaves it.
+    /// Whether it rolled without slip, within the share `room` of the way that its pocket's clearance allows.
     fn is_right(self, room: f64) -> bool {
         let crossed = self.crossing.is_some_and(|share| (share - 1.0).abs() < CROSSING + room);
         let shown = self.events.iter().all(|share| share.is_some_and(|share| share.abs() < EVENTS));

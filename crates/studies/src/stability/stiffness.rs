@@ -67,7 +67,7 @@ pub(super) fn collide(
     system.launch(a, [speed, 0.0], 0.0);
     let before = [a, b].map(|body| system.motion_of(body).velocity[0]);
     let mass = [a, b].map(|body| system.motion_of(body).mass);
-    // Until the slowest wave has gone to and fro and back, and a soft spring has swung.
+    // Two round trips of the slowest wave, and a period of a soft spring.
     let slowest = materials.iter().map(Elastic::dilatational_speed).fold(f64::INFINITY, f64::min);
     let swing = 4.0 * length / slowest * (1.0 + (0.03 / scale).sqrt() * 2.0);
     let swing = swing * if materials[0].density() == materials[1].density() { 1.0 } else { 3.0 };

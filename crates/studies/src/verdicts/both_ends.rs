@@ -20,7 +20,7 @@ pub(super) fn pairs(records: &[Labelled]) -> Vec<Ends<'_>> {
 
 /// Joint verdict of both channels.
 #[derive(Debug, Clone)]
-pub(super) struct Told {
+pub(super) struct JointVerdict {
     pub(super) claimed: Vec<Defect>,
     /// Whether the end of the damage is named as the nearest; `None` where none is named.
     pub(super) nearest_is_right: Option<bool>,
@@ -29,7 +29,7 @@ pub(super) struct Told {
 }
 
 /// The bearing of the damaged end, looked for at both.
-pub(super) fn judge((damaged, other): &Ends<'_>) -> Option<Told> {
+pub(super) fn judge((damaged, other): &Ends<'_>) -> Option<JointVerdict> {
     let machine = Machine {
         speed_rpm: Some(damaged.speed_rpm),
         bearing: Some(damaged.bearing.clone()),
@@ -47,7 +47,7 @@ pub(super) fn judge((damaged, other): &Ends<'_>) -> Option<Told> {
     let joint = Joint::of(&both)?;
     let claimed = joint.families.iter().filter(|f| f.claimed);
     let nearest = claimed.clone().find_map(|f| f.nearest.clone());
-    Some(Told {
+    Some(JointVerdict {
         claimed: claimed.map(|f| f.name).collect(),
         nearest_is_right: nearest.map(|name| name == damaged.name),
         alone: here.findings.families.iter().any(|f| f.claimed && Some(f.name) == damaged.truth),
@@ -55,7 +55,7 @@ pub(super) fn judge((damaged, other): &Ends<'_>) -> Option<Told> {
 }
 
 /// Both ends of a shaft together.
-pub(super) fn table(sheet: &mut Sheet, ends: &[Ends<'_>], told: &[Option<Told>]) {
+pub(super) fn table(sheet: &mut Sheet, ends: &[Ends<'_>], told: &[Option<JointVerdict>]) {
     sheet.heading("Both ends of a shaft");
     sheet.say(
         "The channels of both ends of a shaft, of which one has a damaged bearing, with the geometry of that \
@@ -64,13 +64,14 @@ pub(super) fn table(sheet: &mut Sheet, ends: &[Ends<'_>], told: &[Option<Told>])
     );
     let mut rows = Vec::new();
     for (part, what) in [(Part::Chosen, "damage at the drive end"), (Part::Quoted, "damage at the fan end")] {
-        let of: Vec<(&Ends<'_>, &Told)> = ends
+        let of: Vec<(&Ends<'_>, &JointVerdict)> = ends
             .iter()
             .zip(told)
             .filter(|((r, _), _)| r.part == part)
             .filter_map(|(r, t)| Some((r, t.as_ref()?)))
             .collect();
-        let count = |asked: &dyn Fn(&Ends<'_>, &Told) -> bool| of.iter().filter(|(r, t)| asked(r, t)).count();
+        let count =
+            |asked: &dyn Fn(&Ends<'_>, &JointVerdict) -> bool| of.iter().filter(|(r, t)| asked(r, t)).count();
         let counts = [
             of.len(),
             count(&|_, t| t.alone),

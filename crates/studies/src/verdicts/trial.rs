@@ -16,7 +16,7 @@ pub(super) enum Change {
     Speed(f64),
     /// No speed is stated.
     NoSpeed,
-    /// A bearing that is none of the rigs'.
+    /// A bearing that none of the test rigs has.
     Bearing(&'static str),
     /// Only the first seconds [s].
     First(f64),

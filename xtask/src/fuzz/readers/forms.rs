@@ -81,7 +81,7 @@ impl Form {
     }
 }
 
-/// A table in some dialect, damaged or not, with what pandas must be told to read it.
+/// A table in some dialect, damaged or not, with the arguments with which pandas reads it.
 pub(super) fn table(dice: &mut Dice) -> Made {
     let form = Form::of(dice);
     let (timed, columns) = (!dice.one_in(4), 1 + dice.below(3));

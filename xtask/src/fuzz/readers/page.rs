@@ -154,7 +154,7 @@ impl Tables {
         self.counts.values().map(|of| of.differ).sum()
     }
 
-    /// Differences that no line of [`EXPLAINED`] speaks of.
+    /// Differences that no line of [`EXPLAINED`] covers.
     pub(super) fn unexplained(&self) -> u64 {
         self.kinds
             .iter()

@@ -25,7 +25,7 @@ impl Mended {
         self.missing.len() + self.double.len()
     }
 
-    /// Pulses for which there is room before the first and behind the last, in a record of so many samples.
+    /// Pulses that would fit before the first and after the last, in a record of `samples` samples.
     pub(super) fn outside(&self, samples: usize) -> usize {
         let [first, second, .., before, last] = self.pulses[..] else { return 0 };
         let room = |gap: f64, step: f64| if gap < 1.5 * step { 0 } else { (gap / step) as usize };

@@ -323,9 +323,9 @@ impl File {
     }
 }
 
-/// Puts all sets into the mesh, but those with members that are not there: meshio writes such, and who asks
-/// for one is told. Those of the assembly have their names, as have those of an instance that no other has,
-/// too; others have that of the instance before theirs.
+/// Puts all sets into the mesh except those with missing members: meshio writes such, and asking for one is
+/// an error. Sets of the assembly keep their names, as do those of an instance whose name is unique; others
+/// are prefixed with the name of the instance.
 fn sets(placed: &[Placed], assembly: &[Sets; 2], found: &mut Gathered) {
     let mut made = Vec::new();
     let resolver =

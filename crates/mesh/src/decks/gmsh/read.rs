@@ -127,7 +127,7 @@ impl File<'_> {
         Ok(())
     }
 
-    /// The name of a group. A negative number is the same group, gone through backwards.
+    /// The name of a group. A negative number is the same group with its curve reversed.
     fn name(&self, dimension: i64, number: i64) -> String {
         let number = number.abs();
         self.names.get(&(dimension, number)).cloned().unwrap_or_else(|| format!("physical {number}"))

@@ -156,7 +156,7 @@ impl<'a> Source<'a> {
         word.replace(['d', 'D'], "e").parse().map_err(|_| self.fault(format!("`{word}` is no number")))
     }
 
-    /// As many counts, of which no more are kept than the file can hold.
+    /// `many` counts; memory is reserved only for as many as the file can hold.
     pub(super) fn counts(&mut self, many: i64) -> Result<Vec<u64>, DeckError> {
         let mut all = Vec::new();
         for _ in 0..many {

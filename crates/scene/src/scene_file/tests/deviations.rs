@@ -129,13 +129,13 @@ fn refuses_a_defect_beside_a_groove_and_in_oil() {
     assert!(parse("(film: None, defects: [(on: inner, form: dent())])").is_ok());
     let oil =
         only(parse("(defect: None, defects: [(on: roller(2), form: dent(length_mm: 4, depth_mm: 0.02))])"));
-    assert!(oil.message.contains("oil knows round rollers"), "{oil}");
+    assert!(oil.message.contains("oil needs round rollers"), "{oil}");
     assert_eq!(oil.repair.as_deref(), Some("film=None"));
 }
 
 /// The advice for a spall with sloped edges in oil was to go without oil, though upright walls go with it.
 #[test]
-fn issue_a_spall_in_oil_is_told_of_walls_at_right_angles() {
+fn issue_a_spall_in_oil_is_advised_to_have_walls_at_right_angles() {
     let spall = |on: &str, form: &str| format!("(defect: None, defects: [(on: {on}, form: spall({form}))])");
     let told = |text: String| only(parse(&text)).message.contains("`edge: rectangular`");
     assert!(told(spall("outer", "length_mm: 6.0, depth_mm: 0.2, edge_mm: 1.0")));

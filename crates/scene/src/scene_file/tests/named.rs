@@ -104,7 +104,7 @@ fn example_defects_on_either_ring_with_sloped_edges() {
     for (text, field) in [
         ("(defect: (edge_slope_deg: 120))", "defect.edge_slope_deg"),
         ("(film: None, defect: (edge_slope_deg: 6))", "defect.edge_slope_deg"),
-        // A roller would feel a film across the edge.
+        // A film across the edge would act on a roller.
         ("(defect: (edge_slope_deg: 20))", "defect.edge_slope_deg"),
         ("(defect: (ring: middle))", "defect.ring"),
         ("(defect: (ring: inner, depth_mm: 7))", "defect.depth_mm"),

@@ -134,3 +134,14 @@ fn refuses_bearings_that_lack_something_or_contradict_themselves() {
     let problem = only(Scene::default().with_overrides(&["bearing=NU 205", "bearing.pitch_mm=45"]));
     assert_eq!(problem.field, "bearing.pitch_mm");
 }
+
+/// A diameter with a minus sign was answered with "no single value repairs this", which was false: the other
+/// dimensions would follow the right one.
+#[test]
+fn issue_a_negative_roller_diameter_is_answered_with_its_field_and_range() {
+    let problem = only(parse("(bearing: (rollers: 8, roller_diameter_mm: -5))"));
+    assert_eq!(problem.field, "bearing.roller_diameter_mm");
+    assert!(problem.message.contains("is -5, outside its range"), "{problem}");
+    assert_eq!(problem.allowed, "more than 0, at most 5000 mm");
+    assert_eq!(problem.suggestion, "give `bearing.roller_diameter_mm` an allowed value");
+}

@@ -8,21 +8,21 @@ use stribeck_dsp::{Autocorrelation, BandEnvelope};
 
 use super::unrelated::{SLIP, unrelated_hz};
 
-/// Knocks of a passage after the first one that must keep the rhythm.
+/// Knocks of a passage after the first one that must be periodic.
 const REPEATS: usize = 3;
-/// Steps in which a rhythm is looked for between its ends.
+/// Steps of the search over the range of slip.
 const STEPS: usize = 16;
 
-/// The frequency within slip of `knocks_hz` at which knocks repeat most, if they do so more than at any
-/// unrelated one [Hz].
-pub(super) fn rhythm(band: &BandEnvelope, knocks_hz: f64) -> Option<f64> {
+/// The frequency within slip of `knocks_hz` at which the envelope repeats most, if it does so more than at
+/// any unrelated one [Hz].
+pub(super) fn repeating_hz(band: &BandEnvelope, knocks_hz: f64) -> Option<f64> {
     let correlation = band.autocorrelation().ok()?;
     let (height, hz) = highest(&correlation, knocks_hz)?;
     let mut others = unrelated_hz(knocks_hz).filter_map(|hz| Some(highest(&correlation, hz)?.0)).peekable();
     (others.peek().is_some() && height > 0.0 && others.all(|other| other < height)).then_some(hz)
 }
 
-/// How much a rhythm within slip of `hz` repeats, and its frequency [Hz].
+/// Largest correlation of the envelope at a rhythm within slip of `hz`, and its frequency [Hz].
 fn highest(correlation: &Autocorrelation, hz: f64) -> Option<(f64, f64)> {
     let tried = (0..=STEPS).map(|n| hz * (1.0 - SLIP + 2.0 * SLIP * n as f64 / STEPS as f64));
     let heights = tried.filter_map(|hz| {

@@ -267,8 +267,9 @@ fn thirty(sheet: &mut Sheet, runs: &[&Finished]) {
 fn sensors(sheet: &mut Sheet, run: &Finished) -> Result<()> {
     let Some(summary) = run.numbers() else { return Ok(()) };
     sheet.heading("Where the sensor is");
-    sheet
-        .say("`base-default`, heard all around the outer ring; the adapter's seat reaches from 43° to 137°.");
+    sheet.say(
+        "`base-default`, at sensors all around the outer ring; the adapter's seat reaches from 43° to 137°.",
+    );
     let cell = |v: Option<f64>, decimals| v.map_or("–".to_owned(), |v| number(v, decimals));
     let rows: Vec<Vec<String>> = summary
         .levels

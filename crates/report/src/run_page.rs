@@ -14,6 +14,7 @@ use stribeck_scene::run_dir::{LAB, Run, write_atomic};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::ModelScene;
 
+use crate::element_words::ElementWords;
 use crate::figures::{self, Figures, Item};
 use crate::lead::lead;
 use crate::page::{head, json, section, sentence, with_code, write_figures};
@@ -53,12 +54,13 @@ pub fn write_between(run_dir: &Path, time_s: Range<f64>) -> Result<Summary, Erro
         figures.forces.clear();
     }
     let all: Vec<&Item> = figures.all().collect();
-    write_figures(&all, &run_dir.join("figures"))?;
+    let words = ElementWords::of(&run.scene.written);
+    write_figures(&all, &run_dir.join("figures"), words)?;
     // The scene as written, comments and all; a run without it was refused above.
     let scene = fs::read_to_string(run_dir.join("scene.ron")).unwrap_or_default();
     let moving = moving::figure(&record, &findings)?;
     let page = page(&run, run_dir, &findings, &figures, moving.as_ref(), &scene)?.into_string();
-    write_atomic(&run_dir.join("report.html"), page.as_bytes())?;
+    write_atomic(&run_dir.join("report.html"), words.markup(page).as_bytes())?;
     Ok(findings.summary)
 }
 

@@ -1,0 +1,93 @@
+//! HDF5 and netCDF: objects that cannot be read beside others, damage, rates, times and scale factors.
+
+use stribeck_formats::Recording;
+use stribeck_testing::Scratch;
+
+use crate::{COUNT, RATE_HZ, holds, notes, signal};
+
+/// Files that h5py wrote, by `fixtures/signals/make.py`.
+fn fixture(name: &str) -> Recording {
+    let path = format!("{}/../../fixtures/signals/{name}", env!("CARGO_MANIFEST_DIR"));
+    Recording::open(&path).unwrap_or_else(|why| panic!("{name}: {why}"))
+}
+
+#[test]
+fn issue_one_object_of_hdf5_does_not_spoil_the_others() {
+    for (file, name, words) in [
+        ("links.h5", "raw.acc", &["`alias` is left out", "link"][..]),
+        ("blosc.h5", "acc", &["`packed` is left out", "blosc"]),
+        ("btree2.h5", "acc", &["`two` is left out"]),
+        ("virtual.h5", "acc", &["`put_together` is left out", "virtual"]),
+        ("cube.h5", "acc", &["`cube` is left out", "3 dimensions, 10 × 2 × 3"]),
+        ("table.h5", "acc", &["`table` is left out", "records (t, a)"]),
+    ] {
+        let found = fixture(file);
+        let channel = found.channel(name).unwrap_or_else(|why| panic!("{file}: {why} {:?}", found.notes));
+        holds(channel, COUNT, |n| signal(n) as f32 as f64);
+        notes(&found, words);
+    }
+}
+
+#[test]
+fn issue_a_damaged_object_of_hdf5_costs_that_object_only() {
+    let desk = Scratch::create("formats-damaged-object");
+    for (file, sets) in [("few.h5", 3), ("many.h5", 60)] {
+        let path = format!("{}/../../fixtures/signals/{file}", env!("CARGO_MANIFEST_DIR"));
+        let (good, all) = (std::fs::read(path).unwrap(), fixture(file));
+        assert_eq!(all.channels.len(), sets);
+        let headers: Vec<usize> = (0..good.len() - 4).filter(|at| good[*at..].starts_with(b"OHDR")).collect();
+        // Those of the sets, of the group and of the root.
+        assert_eq!(headers.len(), sets + 2);
+        let mut costs = Vec::new();
+        for at in headers {
+            // The name of the header, its checksum's sum, or its end: the file is cut off there.
+            for damage in 0..2 {
+                let mut bytes = good.clone();
+                bytes[at + 12 * damage] ^= 0x55;
+                let path = desk.join("a.h5");
+                std::fs::write(&path, &bytes).unwrap();
+                let found = Recording::open(&path);
+                let there = found.as_ref().map_or(&[][..], |found| &found.channels);
+                let kept = |name: &str| there.iter().find(|c| c.name == name);
+                let lost: Vec<_> = all.channels.iter().filter(|c| kept(&c.name).is_none()).collect();
+                for of in &all.channels {
+                    if let Some(channel) = kept(&of.name) {
+                        assert_eq!(channel.read().unwrap(), of.read().unwrap());
+                    }
+                }
+                if let (Ok(found), [only]) = (&found, &lost[..]) {
+                    notes(found, &[&format!("`{}` is left out", only.name)]);
+                }
+                costs.push(lost.len());
+            }
+        }
+        costs.sort_unstable();
+        // Every set but those that lie in the group, and the root.
+        let in_group = if sets == 3 { 2 } else { 60 };
+        let mut expected = vec![1; 2 * sets];
+        expected.extend([in_group, in_group, sets, sets]);
+        assert_eq!(costs, expected, "{file}");
+    }
+}
+
+#[test]
+fn issue_attributes_of_hdf5_say_rate_and_unit() {
+    let found = fixture("attributes.h5");
+    let channel = found.channel("near.acc").unwrap();
+    assert_eq!((channel.rate_hz, channel.unit.as_deref()), (Some(RATE_HZ), Some("g")), "{:?}", found.notes);
+    // A group has a rate of its own.
+    assert_eq!(found.channel("far.acc").unwrap().rate_hz, Some(3200.0), "{:?}", found.notes);
+}
+
+#[test]
+fn issue_times_of_netcdf_count_from_a_date() {
+    let found = fixture("since.h5");
+    let channel = found.channel("acc").unwrap();
+    assert_eq!((channel.rate_hz, channel.len), (Some(RATE_HZ), COUNT as u64), "{:?}", found.notes);
+}
+
+#[test]
+fn issue_scale_factors_of_hdf5_are_applied() {
+    let found = fixture("scaled.h5");
+    holds(found.channel("acc").unwrap(), COUNT, |n| 0.5 + 0.001 * (1000.0 * signal(n)).round());
+}

@@ -1,0 +1,94 @@
+//! Arrays of MATLAB 4 and 5 and of NumPy: their shapes, and both byte orders.
+
+use stribeck_formats::Recording;
+use stribeck_testing::Scratch;
+
+use crate::{COUNT, RATE_HZ, holds, notes, opened, signal};
+
+/// An element of a MATLAB 5 file.
+fn mat5_element(kind: u32, data: &[u8]) -> Vec<u8> {
+    let mut out = [kind, data.len() as u32].map(u32::to_le_bytes).concat();
+    out.extend(data);
+    out.resize(out.len().next_multiple_of(8), 0);
+    out
+}
+
+/// A matrix of doubles.
+pub(crate) fn mat5_matrix(name: &str, shape: &[i32], values: impl Iterator<Item = f64>) -> Vec<u8> {
+    let parts = [
+        mat5_element(6, &[6_u32, 0].map(u32::to_le_bytes).concat()),
+        mat5_element(5, &shape.iter().flat_map(|n| n.to_le_bytes()).collect::<Vec<u8>>()),
+        mat5_element(1, name.as_bytes()),
+        mat5_element(9, &values.flat_map(f64::to_le_bytes).collect::<Vec<u8>>()),
+    ];
+    mat5_element(14, &parts.concat())
+}
+
+#[test]
+fn issue_arrays_of_matlab_5_keep_their_shape() {
+    let desk = Scratch::create("formats-mat5-shape");
+    let mut head = b"MATLAB 5.0 MAT-file".to_vec();
+    head.resize(124, b' ');
+    head.extend([0, 1, b'I', b'M']);
+    let bytes = [
+        head,
+        mat5_matrix("cube", &[2, 3, 50], (0..COUNT).map(signal)),
+        mat5_matrix("thin", &[1, 1, 300], (0..COUNT).map(signal)),
+        mat5_matrix("two", &[150, 2], (0..COUNT).map(signal)),
+        mat5_matrix("fs", &[1, 1], std::iter::once(RATE_HZ)),
+    ];
+    let found = opened(&desk, "a.mat", &bytes.concat());
+    assert!(!found.channels.iter().any(|c| c.name.contains("cube")), "{}", found.names());
+    notes(&found, &["`cube` is left out", "3 dimensions, 2 × 3 × 50"]);
+    holds(found.channel("thin").unwrap(), COUNT, signal);
+    holds(found.channel("two(:,2)").unwrap(), 150, |n| signal(150 + n));
+    assert_eq!(found.channel("thin").unwrap().rate_hz, Some(RATE_HZ));
+}
+
+#[test]
+fn issue_matlab_4_is_read_in_both_byte_orders() {
+    let desk = Scratch::create("formats-mat4");
+    for is_big in [false, true] {
+        let word = |n: u32| if is_big { n.to_be_bytes() } else { n.to_le_bytes() };
+        let matrix = |name: &str, kind: u32, rows: u32, columns: u32, data: Vec<u8>| {
+            let kind = kind + if is_big { 1000 } else { 0 };
+            let head = [kind, rows, columns, 0, name.len() as u32 + 1].map(word).concat();
+            [head, name.as_bytes().to_vec(), vec![0], data].concat()
+        };
+        let double = |x: f64| if is_big { x.to_be_bytes() } else { x.to_le_bytes() };
+        let short = |x: i16| if is_big { x.to_be_bytes() } else { x.to_le_bytes() };
+        let bytes = [
+            matrix("acc", 0, COUNT as u32, 1, (0..COUNT).flat_map(|n| double(signal(n))).collect()),
+            matrix("counts", 30, 2, 150, (0..COUNT).flat_map(|n| short(n as i16 - 9)).collect()),
+            matrix("sr", 0, 1, 1, double(RATE_HZ).to_vec()),
+        ];
+        let found = opened(&desk, "a.mat", &bytes.concat());
+        holds(found.channel("acc").unwrap(), COUNT, signal);
+        assert_eq!(found.channel("acc").unwrap().rate_hz, Some(RATE_HZ));
+        holds(found.channel("counts(2,:)").unwrap(), 150, |n| (2 * n + 1) as f64 - 9.0);
+    }
+}
+
+#[test]
+fn issue_arrays_of_numpy_keep_their_shape() {
+    let desk = Scratch::create("formats-npy-shape");
+    let file = |shape: &str| {
+        let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}\n");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend((header.len() as u16).to_le_bytes());
+        bytes.extend(header.into_bytes());
+        bytes.extend((0..COUNT).flat_map(|n| signal(n).to_le_bytes()));
+        bytes
+    };
+    holds(&opened(&desk, "a.npy", &file("(1, 300, 1)")).channels[0], COUNT, signal);
+    let path = desk.join("b.npy");
+    std::fs::write(&path, file("(2, 3, 50)")).unwrap();
+    let said = match Recording::open(&path) {
+        Err(why) => why.to_string(),
+        Ok(found) => {
+            assert!(found.channels.is_empty(), "{}", found.names());
+            found.notes.join("; ")
+        }
+    };
+    assert!(said.contains("3 dimensions, 2 × 3 × 50"), "{said}");
+}

@@ -1,0 +1,102 @@
+//! The paper's numbers and figures, beside those of the run.
+
+use crate::synthetic::{TONE_G, TONE_HZ};
+use crate::{close, read, whole};
+
+#[test]
+fn example_every_number_of_the_paper_has_a_row_without_a_blank() {
+    let (folder, summary) = whole("paper");
+    let page = read(&folder.0, "report.html");
+    for row in &summary.paper {
+        for cell in [&row.quantity, &row.paper, &row.ours, &row.difference, &row.why] {
+            assert!(!cell.trim().is_empty(), "{row:?}");
+        }
+    }
+    // As the paper prints them, in the order in which it does.
+    let printed = [
+        "200 mm",
+        "163.96 mm",
+        "196 mm",
+        "18 mm",
+        "160 mm",
+        "40 mm",
+        "0.2 mm",
+        "7850 kg/m³",
+        "200 GPa",
+        "0.3",
+        "0.5 mm",
+        "97",
+        "5",
+        "113",
+        "15",
+        "4 °",
+        "15 °",
+        "50 kN",
+        "500 rpm",
+        "0.1",
+        "0.005",
+        "2 %",
+        "30 ms",
+        "0.01 ms",
+        "100 kHz",
+        "90.07 Hz",
+        "0.011 s",
+        "90.91 Hz",
+        "0.9 %",
+        "180 g",
+        "50 g",
+        "20 g",
+        "3 Hz",
+        "4671 Hz",
+        "23 kHz",
+        "4712 Hz",
+        "3864 Hz",
+        "0.8 %",
+        "4545 Hz",
+        "17 %",
+        "10–15 ms",
+        "5–16 ms, less 17–28 ms",
+        "25 dB",
+        "4 dB",
+        "4–6 kHz",
+        "≈ 5 ms",
+        "16–17 ms",
+        "≈ 28 ms",
+    ];
+    for number in printed {
+        assert!(summary.paper.iter().any(|row| row.paper == number), "{number} has no row");
+        assert!(page.contains(number), "{number} is not in the page");
+    }
+    let ours = |quantity: &str| &summary.paper.iter().find(|r| r.quantity == quantity).expect("a row").ours;
+    assert_eq!(ours("Taken at 4545 Hz"), "3.96 dB");
+    assert_eq!(ours("Elements per bending wavelength at 40 kHz"), "97.59");
+}
+
+/// The sensors have 1, 1.4, 0.7 and 2 times the paper's impulse; the one at the bottom is the most radial
+/// outside the seat, and its levels are twice the paper's.
+#[test]
+fn example_the_paper_is_answered_figure_by_figure() {
+    let (folder, summary) = whole("figures");
+    let page = read(&folder.0, "report.html");
+    let section = &page[page.find("id=\"numbers\"").expect("a section")..];
+    assert!(section.contains("ours is “bottom” at 270°"), "the sensor is not said");
+    let bottom = summary.levels.sensors.iter().find(|s| s.sensor == "bottom").expect("a sensor at 270°");
+    close(bottom.tone_hz, TONE_HZ, 2.0, "tone at the bottom");
+    close(bottom.tone_g, 2.0 * TONE_G, 0.05 * 2.0 * TONE_G, "its amplitude");
+    assert!(bottom.tone_db > Some(15.0) && bottom.fifth_hz.is_none() && bottom.fifth_db < Some(10.0));
+    // Filtered at its own tone, as the leading sensor is.
+    close(bottom.notch_hz, TONE_HZ, 2.0, "its notch");
+    let leading = &summary.levels.sensors[0];
+    let notch = summary.notch.as_ref().expect("a notch");
+    assert_eq!((leading.notch_hz, leading.notch_db), (Some(notch.centre_hz), notch.attenuation_db));
+    // What differs stands first: no fifth harmonic and no touch of the floor are farther off than any level.
+    let verdict = &section[section.find("Different by more than").expect("a verdict")..];
+    let place = |words: &str| verdict.find(words).unwrap_or_else(|| panic!("`{words}` is missing"));
+    let order = ["its fifth harmonic", "is not found", "between the impulses, peak", "The other ", "<table"];
+    assert!(order.map(place).is_sorted(), "{:?}", order.map(place));
+    assert!(place("#2, the roller strikes the floor: 0 passages") < place("The other "));
+    // In the order of the paper.
+    let figures = ["paper-2", "paper-3", "beat", "beat-zoom", "paper-6", "paper-7a", "paper-7b", "paper-8a"];
+    let at = figures.map(|id| page.find(&format!("<figure id=\"{id}\"")).expect("a figure"));
+    assert!(at.is_sorted(), "{at:?}");
+}

@@ -1,0 +1,127 @@
+//! Choices that exclude each other: two kinds of damping, oil over gentle edges, a sudden start of the
+//! reduced model; and bands and lists of damping that must not be empty.
+
+use super::finding::{Finding, Remedy};
+use super::wording::number;
+use crate::deviation::RollingSurface;
+use crate::faults::rolling_circle;
+use crate::scene::{DefectRing, ModelScene, Scene, Start};
+
+/// Upper over lower end of the narrowest band of structural damping.
+const NARROWEST_BAND: f64 = 2.0;
+
+/// A vertex is a corner when it turns by this angle [°] …
+const CORNER_DEG: f64 = 20.1;
+
+/// … and an edge of a defect turns by its slope less half of the raceway's turn from facet to facet, up
+/// to a few degrees. None slopes less under oil [°].
+const LEAST_EDGE_DEG: f64 = 22.0;
+
+/// Every choice that excludes another, in a scene whose numbers are in range.
+pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
+    let groups = [damped_band, damped_bodies, damped_twice, oiled_edges, reduced_starts];
+    groups.iter().filter_map(|group| group(scene)).collect()
+}
+
+/// A band of structural damping wide enough for its branches.
+fn damped_band(scene: &Scene) -> Option<Finding> {
+    const FROM: &str = "solver.structural_damping.from_khz";
+    const TO: &str = "solver.structural_damping.to_khz";
+    let damping = scene.solver.structural_damping.as_ref()?;
+    let (from, to) = (damping.from_khz, damping.to_khz);
+    if to >= NARROWEST_BAND * from {
+        return None;
+    }
+    let message = format!(
+        "`{TO}` is {}, less than {NARROWEST_BAND} times `{FROM}` ({} kHz): the damped band is too narrow",
+        number(to),
+        number(from)
+    );
+    let (least, most) = (NARROWEST_BAND * from, to / NARROWEST_BAND);
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(TO, format!("at least {} kHz", number(least))).number(20.0 * from, "a usual band"),
+            Remedy::new(FROM, format!("at most {} kHz", number(most))).number(to / 20.0, "a usual band"),
+        ],
+    ))
+}
+
+/// Structural damping of at least one body, and of none twice.
+fn damped_bodies(scene: &Scene) -> Option<Finding> {
+    const BODIES: &str = "solver.structural_damping.bodies";
+    let bodies = &scene.solver.structural_damping.as_ref()?.bodies;
+    let twice = (1..bodies.len()).any(|i| bodies[..i].contains(&bodies[i]));
+    let message = match (bodies.is_empty(), twice) {
+        (true, _) => format!("`{BODIES}` is empty: nothing would be damped"),
+        (_, true) => format!("`{BODIES}` names a body twice"),
+        _ => return None,
+    };
+    let allowed = "`outer_ring`, `inner_ring`, `adapter`, `rollers`, each once";
+    let remedy =
+        Remedy::new(BODIES, allowed.to_owned()).value("[outer_ring, inner_ring, adapter]", "the default");
+    Some(Finding::new(message, vec![remedy]))
+}
+
+/// Structural or stiffness damping: both let elements see other positions than those of the nodes.
+fn damped_twice(scene: &Scene) -> Option<Finding> {
+    const STRUCTURAL: &str = "solver.structural_damping";
+    const STIFFNESS: &str = "solver.stiffness_damping_ns";
+    let solver = &scene.solver;
+    if solver.structural_damping.is_none() || solver.stiffness_damping_ns == 0.0 {
+        return None;
+    }
+    let message = format!(
+        "`{STRUCTURAL}` and `{STIFFNESS}` = {} exclude each other",
+        number(solver.stiffness_damping_ns)
+    );
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new(STIFFNESS, "0 ns".to_owned()).value("0.0", "structural damping alone"),
+            Remedy::new(STRUCTURAL, "`None`".to_owned()).value("None", "stiffness damping alone"),
+        ],
+    ))
+}
+
+/// Oil ends at the edges of a defect: walls that a surface turns into more gently are no end, and a film
+/// would lie across them.
+fn oiled_edges(scene: &Scene) -> Option<Finding> {
+    scene.film.as_ref()?;
+    let defect = scene.defect.as_ref()?;
+    let ring = match defect.ring {
+        DefectRing::Outer => RollingSurface::Outer,
+        DefectRing::Inner => RollingSurface::Inner,
+    };
+    let [diameter, facet] = rolling_circle(scene, ring);
+    let least = LEAST_EDGE_DEG.max((CORNER_DEG + (facet / diameter).to_degrees()).ceil());
+    if defect.edge_slope_deg >= least {
+        return None;
+    }
+    let message = format!(
+        "`film` is there, and the edges of `defect` slope by {}°: oil needs edges of {least}° or more on \
+         facets of {} mm",
+        number(defect.edge_slope_deg),
+        number(facet)
+    );
+    let slope = Remedy::new("defect.edge_slope_deg", format!("{least}° or more"));
+    let dry = Remedy::new("film", "`None`").value("None", "dry");
+    Some(Finding::new(message, vec![slope.number(30.0, ""), dry]))
+}
+
+/// The reduced model is made about the preload.
+fn reduced_starts(scene: &Scene) -> Option<Finding> {
+    if scene.model == ModelScene::Full || scene.solver.start == Start::Preloaded {
+        return None;
+    }
+    let message =
+        "`solver.start` is `sudden`, and the reduced model has small motions about the preload only"
+            .to_owned();
+    Some(Finding::new(
+        message,
+        vec![
+            Remedy::new("solver.start", "`preloaded`".to_owned()).value("preloaded", ""),
+            Remedy::new("model", "`full`".to_owned()).value("full", ""),
+        ],
+    ))
+}
