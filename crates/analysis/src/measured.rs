@@ -32,6 +32,7 @@
 
 pub mod alarm;
 mod angular;
+mod comb_at_half;
 mod controls;
 mod course;
 mod decision;
@@ -39,7 +40,6 @@ mod element_rhythm;
 mod enhanced;
 pub mod evidence;
 mod family;
-mod halved;
 mod halves;
 pub mod joint;
 mod length;

@@ -16,10 +16,10 @@
 use stribeck_dsp::{BandEnvelope, Whitened};
 use stribeck_scene::catalogue::DefectOrders;
 
+use super::comb_at_half::comb_at_half;
 use super::controls::{controls, part_as_high, rank};
 use super::decision::{claimed_first, decide, first, name_the_element, share_out};
 use super::family::{Family, Reason};
-use super::halved::comb_at_half;
 use super::limits::{ALPHA, decibel};
 use super::machine_lines::OwnLines;
 use super::sentence::conclude;

@@ -143,5 +143,5 @@ fn issue_a_negative_roller_diameter_is_answered_with_its_field_and_range() {
     assert_eq!(problem.field, "bearing.roller_diameter_mm");
     assert!(problem.message.contains("is -5, outside its range"), "{problem}");
     assert_eq!(problem.allowed, "more than 0, at most 5000 mm");
-    assert_eq!(problem.suggestion, "give `bearing.roller_diameter_mm` an allowed value");
+    assert!(problem.suggestion.contains("roller_diameter_mm"), "{problem}");
 }
