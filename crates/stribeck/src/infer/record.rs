@@ -46,8 +46,8 @@ const FACETS: usize = 100;
 const STEP_US: f64 = 2.0;
 /// The record that is made for comparison [s].
 const SYNTHETIC_S: f64 = 2.0;
-/// Standard deviation of the time between two events from that by force: a tenth and less for simulated spalls
-/// from 3 mm on; entries of 2 mm are found late by up to a fifth of it (docs/results/spalls.md).
+/// Standard deviation of the time between two events from that by force: a tenth and less for simulated
+/// spalls from 3 mm on; entries of 2 mm are found late by up to a fifth of it (docs/results/spalls.md).
 const FREE_TOLERANCE: f64 = 0.1;
 /// Samples a second of sounds [Hz].
 const PLAYED_HZ: u32 = 48_000;
