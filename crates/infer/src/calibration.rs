@@ -13,11 +13,11 @@ use crate::{
     posterior::{self, Posterior, PosteriorOptions},
     prior::{Prior, snapped},
     random::{Random, normal_quantile},
-    runs::Target,
+    runs::{Output, Scale, Target},
 };
 
 /// Points of the prior that all truths share; a posterior with too few of them is sampled on its own.
-const POOL: usize = 8192;
+pub(crate) const POOL: usize = 8192;
 
 /// Least effective number of points from the pool.
 const ENOUGH: f64 = 200.0;
@@ -79,7 +79,8 @@ struct Answer {
 }
 
 impl Calibration {
-    /// Infers every truth from its own outputs. `columns` are those that count, each with its tolerance.
+    /// Infers every truth from its own outputs. `columns` are those that count, each with its tolerance, and
+    /// every output gets a random error of that size: what the posterior takes for granted.
     ///
     /// # Errors
     /// When there are no truths, their shapes do not fit, or a target is invalid.
@@ -103,9 +104,11 @@ impl Calibration {
             .collect();
         let pool = Pool::new(emulator, columns, pool);
         let mut random = Random::stream(options.seed, 2);
+        let mut errors = Random::stream(options.seed, 5);
+        let outputs: Vec<Output> = emulator.outputs().cloned().collect();
         let mut answers = Vec::with_capacity(truths.len());
         for (number, truth) in truths.iter().enumerate() {
-            let targets = targets(truth, columns, number)?;
+            let targets = targets(&outputs, &truth.outputs, columns, number, &mut errors)?;
             let options = PosteriorOptions { seed: options.seed.wrapping_add(number as u64), ..options };
             answers.push(pool.answer(emulator, priors, truth, &targets, options, &mut random)?);
         }
@@ -124,11 +127,25 @@ impl Calibration {
     }
 }
 
-fn targets(truth: &Truth, columns: &[(usize, f64)], number: usize) -> Result<Vec<Target>, Error> {
-    let target = |&(output, tolerance): &(usize, f64)| match truth.outputs.get(output) {
-        Some(&value) => Ok(Target { output, value, tolerance }),
+/// The outputs of a truth, each with an error of its tolerance, on the scale of the output.
+pub(crate) fn targets(
+    outputs: &[Output],
+    values: &[Option<f64>],
+    columns: &[(usize, f64)],
+    number: usize,
+    errors: &mut Random,
+) -> Result<Vec<Target>, Error> {
+    let target = |&(output, tolerance): &(usize, f64)| match values.get(output) {
+        Some(&value) => {
+            let scale = outputs.get(output).map_or(Scale::Linear, |column| column.scale);
+            let with_error = |value: f64| {
+                scale.back(scale.forward(value) + errors.normal() * tolerance / scale.slope(value))
+            };
+            let value = if tolerance > 0.0 { value.map(with_error) } else { value };
+            Ok(Target { output, value, tolerance })
+        }
         None => {
-            let found = truth.outputs.len();
+            let found = values.len();
             Err(Error::Shape { what: "outputs of truth", number, found, expected: output + 1 })
         }
     };

@@ -114,7 +114,7 @@ impl<'a> Likelihood<'a> {
         self.see(points).iter().map(|seen| self.density(seen, |_| true)).collect()
     }
 
-    /// Logarithm of the joint density of those targets that are kept.
+    /// Logarithm of the joint density of those targets that are kept, by the emulator's power.
     pub(crate) fn density(&self, seen: &[Seen], keep: impl Fn(usize) -> bool) -> f64 {
         let mut sum = 0.0;
         let mut normal: Vec<(usize, f64, f64)> = Vec::with_capacity(seen.len());
@@ -127,7 +127,7 @@ impl<'a> Likelihood<'a> {
                 normal.push((i, tails.normal(t), scale / whole));
             }
         }
-        sum + self.copula(&normal)
+        self.emulator.power() * (sum + self.copula(&normal))
     }
 
     /// Logarithm of the copula's density, of normal deviates and the share of each that is due to the runs.
@@ -179,7 +179,7 @@ impl<'a> Likelihood<'a> {
             (0.5 * (tails.log_density(t + step) - tails.log_density(t - step))).powi(2)
                 + (0.5 * step * step).powi(2)
         };
-        self.asked.iter().zip(seen).map(one).sum::<f64>().sqrt()
+        self.emulator.power() * self.asked.iter().zip(seen).map(one).sum::<f64>().sqrt()
     }
 
     /// Probability that the output exists, or does not, as the target asks.

@@ -56,6 +56,9 @@ pub struct Answer {
     pub pulls: Vec<Pulled>,
     /// How well outputs are emulated.
     pub quality: Vec<Quality>,
+    /// How often intervals hold the scenes of the first round, each inferred from its own numbers by an
+    /// emulator of the others; `None` where these are too few.
+    pub own: Option<OwnRuns>,
     /// How often intervals hold truths that were drawn from the prior, by unknown.
     pub calibration: Option<Vec<FieldCalibrated>>,
 }
@@ -173,6 +176,19 @@ pub struct Quality {
     pub coverage_90: Option<f64>,
     /// Scatter of starts, in the output's unit or relative.
     pub scatter: Option<f64>,
+}
+
+/// Scenes of the first round, each inferred from its own numbers by an emulator of the others.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OwnRuns {
+    /// Scenes.
+    pub truths: usize,
+    /// Share of them, over all unknowns, in their 90 % intervals.
+    pub held_90_plain: f64,
+    /// Power of the likelihood in this answer: 1, or the largest with which 90 % are held.
+    pub power: f64,
+    /// The same share with this power.
+    pub held_90: f64,
 }
 
 /// How often the intervals of one unknown hold the truth.

@@ -6,6 +6,7 @@ mod design;
 mod gaussian_process;
 mod modes;
 mod posterior_linear;
+mod power;
 mod priors;
 mod refusals;
 mod simulator;

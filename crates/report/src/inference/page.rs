@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, html};
 
-use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, TargetFound, figures, short};
+use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, OwnRuns, TargetFound, figures, short};
 use crate::Error;
 use crate::page::head;
 
@@ -168,8 +168,9 @@ fn trust(answer: &Answer) -> Markup {
     let percent =
         |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     html! {
+        @if let Some(own) = &answer.own { p { (own_runs(own)) } }
         p { (format!("The draws of the posterior count for {:.0} independent ones. Outputs are emulated by \
-            Gaussian processes; each point is predicted from the others:", answer.effective_draws)) }
+            Gaussian processes; each run, with all of its readings, is predicted from the others:", answer.effective_draws)) }
         div class="scroll" {
             table {
                 tr { th { "Output" } th { "Runs that have it" } th { "Variance that is predicted" } th { "Runs in their 90 % interval" } th { "Scatter of starts" } }
@@ -187,6 +188,25 @@ fn trust(answer: &Answer) -> Markup {
     }
 }
 
+/// What the runs themselves say of the intervals.
+fn own_runs(own: &OwnRuns) -> String {
+    let OwnRuns { truths, held_90_plain, power, held_90 } = own;
+    let held = format!(
+        "Each of the {truths} scenes of the first round was inferred from its own numbers by an emulator of \
+         the others: over all unknowns 90 % intervals hold {:.0} % of them.",
+        100.0 * held_90_plain
+    );
+    if *power < 1.0 {
+        format!(
+            "{held} So the evidence counts for less than it seems to: likelihoods stand to the power of \
+             {power:.2}, with which they hold {:.0} %, here and in all intervals of this page.",
+            100.0 * held_90
+        )
+    } else {
+        format!("{held} So they stand as they are.")
+    }
+}
+
 fn calibrated(fields: &[FieldCalibrated]) -> Result<Markup, Error> {
     let share = |[share, low, high]: [f64; 3]| {
         format!("{:.0} % ({:.0} … {:.0})", 100.0 * share, 100.0 * low, 100.0 * high)
@@ -195,8 +215,9 @@ fn calibrated(fields: &[FieldCalibrated]) -> Result<Markup, Error> {
     Ok(html! {
         h2 #calibration { "Calibration" }
         p { (format!(
-            "{} scenes were drawn from the prior, run, and inferred from their own numbers. A 90 % \
-             interval is one if it holds the truth in 90 % of them.",
+            "{} scenes were drawn from the prior, run, and inferred from their own numbers, each with a \
+             random error of its target's tolerance. A 90 % interval is one if it holds the truth in 90 % \
+             of them.",
             fields.first().map_or(0, |field| field.truths)
         )) }
         div class="scroll" {

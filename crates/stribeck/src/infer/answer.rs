@@ -5,11 +5,11 @@ use std::path::Path;
 use anyhow::Result;
 use stribeck_formats::parquet::{Column, Values as Cells, write_table};
 use stribeck_infer::{
-    Calibration, Conflict, Emulator, NextOptions, Posterior, PosteriorOptions, Predictive, Prior, Truth,
-    expected_gain, interval, next, pulls, quantile,
+    Calibration, Conflict, Emulator, NextOptions, Posterior, PosteriorOptions, Power, Predictive, Prior,
+    Truth, expected_gain, interval, next, pulls, quantile,
 };
 use stribeck_report::inference::{
-    Answer, Choice, Excluded, FieldCalibrated, FieldFound, Pulled, Quality, TargetFound,
+    Answer, Choice, Excluded, FieldCalibrated, FieldFound, OwnRuns, Pulled, Quality, TargetFound,
 };
 use stribeck_scene::inference::{Inference, Seen, Unknown};
 
@@ -25,6 +25,7 @@ pub(super) struct Known<'a> {
     pub(super) rounds: usize,
     pub(super) table: Table,
     pub(super) emulator: Emulator,
+    pub(super) power: Power,
     pub(super) posterior: Posterior,
     /// Runs at draws of the posterior.
     pub(super) check: Vec<Row>,
@@ -107,6 +108,12 @@ pub(super) fn of(known: &Known<'_>) -> Result<Answer> {
                 scatter: Some(quality.scatter).filter(|x| x.is_finite()),
             })
             .collect(),
+        own: (known.power.truths > 0).then(|| OwnRuns {
+            truths: known.power.truths,
+            held_90_plain: known.power.held_plain,
+            power: known.power.power,
+            held_90: known.power.held,
+        }),
         calibration: known.truths.as_deref().map(|truths| calibration(known, truths)).transpose()?,
     })
 }
@@ -224,7 +231,7 @@ fn calibration(known: &Known<'_>, truths: &[Row]) -> Result<Vec<FieldCalibrated>
     let rows = Table::rows_like(known.inference, &known.table, truths);
     let truths: Vec<Truth> =
         truths.iter().zip(rows).map(|(row, outputs)| Truth { point: row.point.clone(), outputs }).collect();
-    let columns: Vec<(usize, f64)> = known.table.targets.iter().map(|t| (t.output, t.tolerance)).collect();
+    let columns = known.table.columns();
     let options = PosteriorOptions { draws: DRAWS_OF_ROUND, seed: known.inference.seed };
     let calibration = Calibration::of(&known.emulator, &known.priors, &truths, &columns, options)?;
     let named = known.inference.unknowns.iter().zip(calibration.fields);
