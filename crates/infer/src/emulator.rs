@@ -36,8 +36,6 @@ pub struct Emulator {
     columns: Vec<Column>,
     /// Of the residuals, as normal deviates.
     correlations: Mat<f64>,
-    /// Of likelihoods.
-    power: f64,
 }
 
 /// Prediction of one output at one point, in the output's unit. Where it is emulated on a logarithmic scale,
@@ -142,18 +140,7 @@ impl Emulator {
         let (columns, residuals): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
         let simulations: Vec<usize> = (0..runs.points.len()).map(|row| runs.simulation(row)).collect();
         let correlations = correlation::correlations(&residuals, &simulations);
-        Ok(Self { dimensions, columns, correlations, power: 1.0 })
-    }
-
-    /// The same, with likelihoods by a power, 0 … 1 ([`crate::Power`]): below 1 posteriors are wider.
-    #[must_use]
-    pub fn with_power(self, power: f64) -> Self {
-        Self { power: power.clamp(0.0, 1.0), ..self }
-    }
-
-    /// The power of likelihoods.
-    pub(crate) fn power(&self) -> f64 {
-        self.power
+        Ok(Self { dimensions, columns, correlations })
     }
 
     /// Dimensions of a point.

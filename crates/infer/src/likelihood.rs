@@ -104,6 +104,11 @@ impl<'a> Likelihood<'a> {
         rows
     }
 
+    /// The emulator's predictions of outputs at points.
+    pub(crate) fn predictions(&self, outputs: &[usize], points: &[Vec<f64>]) -> Predictions {
+        Predictions::of(self.emulator, outputs, points)
+    }
+
     /// Logarithm of the joint density against predictions, whose columns are the targets.
     pub(crate) fn at_predicted(&self, predictions: &Predictions) -> Vec<f64> {
         self.compare(predictions).iter().map(|seen| self.density(seen, |_| true)).collect()
@@ -114,7 +119,7 @@ impl<'a> Likelihood<'a> {
         self.see(points).iter().map(|seen| self.density(seen, |_| true)).collect()
     }
 
-    /// Logarithm of the joint density of those targets that are kept, by the emulator's power.
+    /// Logarithm of the joint density of those targets that are kept.
     pub(crate) fn density(&self, seen: &[Seen], keep: impl Fn(usize) -> bool) -> f64 {
         let mut sum = 0.0;
         let mut normal: Vec<(usize, f64, f64)> = Vec::with_capacity(seen.len());
@@ -127,7 +132,7 @@ impl<'a> Likelihood<'a> {
                 normal.push((i, tails.normal(t), scale / whole));
             }
         }
-        self.emulator.power() * (sum + self.copula(&normal))
+        sum + self.copula(&normal)
     }
 
     /// Logarithm of the copula's density, of normal deviates and the share of each that is due to the runs.
@@ -179,7 +184,7 @@ impl<'a> Likelihood<'a> {
             (0.5 * (tails.log_density(t + step) - tails.log_density(t - step))).powi(2)
                 + (0.5 * step * step).powi(2)
         };
-        self.emulator.power() * self.asked.iter().zip(seen).map(one).sum::<f64>().sqrt()
+        self.asked.iter().zip(seen).map(one).sum::<f64>().sqrt()
     }
 
     /// Probability that the output exists, or does not, as the target asks.

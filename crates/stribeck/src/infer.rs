@@ -14,7 +14,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_infer::{Emulator, NextOptions, Posterior, PosteriorOptions, Power, next, snapped, sobol};
+use stribeck_infer::{Emulator, Levels, NextOptions, Posterior, PosteriorOptions, next, snapped, sobol};
 use stribeck_report::inference::write_inference;
 use stribeck_scene::inference::Inference;
 use stribeck_scene::run_dir::{Keep, check_folder, write_atomic};
@@ -209,8 +209,9 @@ impl Study<'_> {
         }
         let table = Table::of(inference, &rows)?;
         let columns = table.columns();
-        let power = Power::of(&table.runs, &table.outputs, rounds.priors(), &columns, drawn, inference.seed)?;
-        let emulator = Emulator::fit(&table.runs, &table.outputs, inference.seed)?.with_power(power.power);
+        let levels =
+            Levels::of(&table.runs, &table.outputs, rounds.priors(), &columns, drawn, inference.seed)?;
+        let emulator = Emulator::fit(&table.runs, &table.outputs, inference.seed)?;
         let posterior = self.posterior(&emulator, &table, DRAWS)?;
         let Some(check) = self.check(&posterior)? else { return Ok(None) };
         let truths = match self.options.calibrate {
@@ -228,7 +229,7 @@ impl Study<'_> {
             rounds: number - 1,
             table,
             emulator,
-            power,
+            levels,
             posterior,
             check,
             truths,

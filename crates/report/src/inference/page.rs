@@ -2,7 +2,7 @@
 
 use maud::{DOCTYPE, Markup, html};
 
-use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, OwnRuns, TargetFound, figures, short};
+use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, TargetFound, figures, short};
 use crate::Error;
 use crate::page::head;
 
@@ -168,7 +168,7 @@ fn trust(answer: &Answer) -> Markup {
     let percent =
         |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     html! {
-        @if let Some(own) = &answer.own { p { (own_runs(own)) } }
+        @if answer.own_runs > 0 { (own_runs(answer)) }
         p { (format!("The draws of the posterior count for {:.0} independent ones. Outputs are emulated by \
             Gaussian processes; each run, with all of its readings, is predicted from the others:", answer.effective_draws)) }
         div class="scroll" {
@@ -189,21 +189,27 @@ fn trust(answer: &Answer) -> Markup {
 }
 
 /// What the runs themselves say of the intervals.
-fn own_runs(own: &OwnRuns) -> String {
-    let OwnRuns { truths, held_90_plain, power, held_90 } = own;
-    let held = format!(
-        "Each of the {truths} scenes of the first round was inferred from its own numbers by an emulator of \
-         the others: over all unknowns 90 % intervals hold {:.0} % of them.",
-        100.0 * held_90_plain
-    );
-    if *power < 1.0 {
-        format!(
-            "{held} So the evidence counts for less than it seems to: likelihoods stand to the power of \
-             {power:.2}, with which they hold {:.0} %, here and in all intervals of this page.",
-            100.0 * held_90
-        )
-    } else {
-        format!("{held} So they stand as they are.")
+fn own_runs(answer: &Answer) -> Markup {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    html! {
+        p { (format!(
+            "Each of the {} scenes of the first round was inferred from its own numbers by an emulator of \
+             the others. Where the central 90 % of an unknown's draws hold fewer than 90 % of them, the \
+             intervals of this page take in as large a share of the draws as does.",
+            answer.own_runs
+        )) }
+        div class="scroll" {
+            table {
+                tr { th { "Unknown" } th { "Scenes in the central 90 % of draws" } th { "Share of draws in the 90 % interval" } }
+                @for field in &answer.fields {
+                    tr {
+                        td { (field.name) }
+                        td { (field.own_runs_in_90.map_or_else(|| "–".to_owned(), percent)) }
+                        td { (format!("{:.1} %", 100.0 * field.level_90)) }
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -222,10 +228,10 @@ fn calibrated(fields: &[FieldCalibrated]) -> Result<Markup, Error> {
         )) }
         div class="scroll" {
             table {
-                tr { th { "Unknown" } th { "In the 50 % interval" } th { "In the 90 % interval" } th { "Ranks even, p" } th { "Width, of the prior" } }
+                tr { th { "Unknown" } th { "In the 50 % interval" } th { "In the 90 % interval" } th { "In the central 90 % of draws" } th { "Ranks even, p" } th { "Width, of the prior" } }
                 @for field in fields {
                     tr {
-                        td { (field.name) } td { (share(field.held_50)) } td { (share(field.held_90)) }
+                        td { (field.name) } td { (share(field.held_50)) } td { (share(field.held_90)) } td { (share(field.held_90_of_draws)) }
                         td { (format!("{:.3}", field.p_value)) } td { (format!("{:.0} %", 100.0 * field.width_of_prior)) }
                     }
                 }

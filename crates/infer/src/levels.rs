@@ -1,13 +1,14 @@
-//! Are intervals honest? Each run that was drawn from the prior is inferred from its own outputs by an
-//! emulator that has not seen it. Where too few of them lie in their 90 % intervals, the likelihood gets a
-//! power below 1, the largest with which they do: one number for all fields, which widens the posterior as if
-//! so large a part of the evidence counted (N. Syring and R. Martin, *Calibrating general posterior credible
-//! regions*, Biometrika 106, 2019).
+//! Are intervals as wide as they have to be? Each run that was drawn from the prior is inferred from its own
+//! outputs by an emulator that has not seen it. Where the central 90 % of an unknown's draws hold fewer than
+//! 90 % of these runs, its interval takes in the share of draws that does (conformal prediction with ranks as
+//! scores: V. Vovk, A. Gammerman and G. Shafer, *Algorithmic Learning in a Random World*, Springer 2005; as
+//! quantiles are widened by Y. Romano, E. Patterson and E. Candès, *Conformalized quantile regression*,
+//! NeurIPS 2019). No interval becomes narrower.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{
-    calibration::{POOL, targets},
+    calibration::targets,
     design,
     emulator::{Emulator, members},
     error::Error,
@@ -22,32 +23,38 @@ use crate::{
 /// Parts of the runs, each of which is inferred by an emulator of the others.
 const PARTS: usize = 5;
 
-/// From fewer truths no power is found.
+/// Fewer truths say nothing.
 const LEAST_TRUTHS: usize = 40;
 
-/// Share of truths that 90 % intervals are to hold.
-const WANTED: f64 = 0.9;
+/// Points of the prior that stand for it.
+const POOL: usize = 32_768;
 
-/// Powers that are tried, from 1 downwards.
-const STEP: f64 = 0.05;
-const LEAST_POWER: f64 = 0.2;
+/// No interval takes in more of the draws than this.
+const MOST: f64 = 0.998;
 
-/// The power of the likelihood, and what it is chosen by.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Power {
-    /// The power, 1 where intervals hold as they are.
-    pub power: f64,
-    /// Number of runs that were inferred; 0 where they are too few, and the power is 1.
+/// How much of the draws an interval has to take in.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Levels {
+    /// Runs that were inferred by an emulator of others.
     pub truths: usize,
-    /// Share of truths in their 90 % intervals, over all fields, with a power of 1.
-    pub held_plain: f64,
-    /// The same with the power.
-    pub held: f64,
+    /// In the order of the coordinates.
+    pub fields: Vec<FieldLevels>,
 }
 
-impl Power {
+/// The same of one coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FieldLevels {
+    /// Share of these runs in the central 90 % of the draws.
+    pub held_90: f64,
+    /// Share of the draws whose central interval holds half of the runs, ½ at least.
+    pub level_50: f64,
+    /// Share of the draws whose central interval holds 90 % of the runs, 0.9 at least.
+    pub level_90: f64,
+}
+
+impl Levels {
     /// From runs whose first `drawn` rows are draws of the prior. `columns` are the outputs that count, each
-    /// with its tolerance.
+    /// with its tolerance. None where they are too few.
     ///
     /// # Errors
     /// When runs, priors or columns do not fit together.
@@ -58,47 +65,51 @@ impl Power {
         columns: &[(usize, f64)],
         drawn: usize,
         seed: u64,
-    ) -> Result<Self, Error> {
+    ) -> Result<Option<Self>, Error> {
+        runs.check(outputs)?;
         let scenes = scenes(runs);
         let truths = truths(runs, &scenes, drawn);
         let dimensions = runs.dimensions();
         if truths.len() < LEAST_TRUTHS || dimensions != priors.len() {
-            return Ok(Self { power: 1.0, truths: 0, held_plain: f64::NAN, held: f64::NAN });
+            return Ok(None);
         }
         let pool: Vec<Vec<f64>> = design::points(seed ^ 0xca11, dimensions, 0..POOL)
             .iter()
             .map(|point| snapped(priors, point))
             .collect();
-        let fields: Vec<Vec<f64>> =
-            (0..dimensions).map(|field| pool.iter().map(|point| point[field]).collect()).collect();
         let asked: Vec<usize> = columns.iter().map(|column| column.0).collect();
         let mut random = Random::stream(seed, 6);
-        let powers: Vec<f64> = (0..)
-            .map(|n| 1.0 - STEP * f64::from(n))
-            .take_while(|power| *power > LEAST_POWER - 0.5 * STEP)
-            .collect();
-        let mut held = vec![0_usize; powers.len()];
+        let mut scores = vec![Vec::with_capacity(truths.len()); dimensions];
         for part in 0..PARTS {
             let emulator = Emulator::fit(&without(runs, &scenes, part), outputs, seed)?;
             let predictions = Predictions::of(&emulator, &asked, &pool);
             for &row in truths.iter().filter(|&&row| scenes[row] % PARTS == part) {
                 let targets = targets(outputs, &runs.outputs[row], columns, row, &mut random)?;
                 let logs = Likelihood::new(&emulator, &targets)?.at_predicted(&predictions);
-                let ties: Vec<f64> = (0..dimensions).map(|_| random.share()).collect();
-                for (power, held) in powers.iter().zip(&mut held) {
-                    let (weights, _) = posterior::weights(&logs, *power);
-                    let within = |field: &usize| {
-                        let rank = rank(runs.points[row][*field], &fields[*field], &weights, ties[*field]);
-                        (rank - 0.5).abs() <= 0.5 * WANTED
-                    };
-                    *held += (0..dimensions).filter(within).count();
+                let (weights, _) = posterior::weights(&logs, 1.0);
+                for (field, scores) in scores.iter_mut().enumerate() {
+                    let draws: Vec<f64> = pool.iter().map(|point| point[field]).collect();
+                    let rank = rank(runs.points[row][field], &draws, &weights, random.share());
+                    scores.push((2.0 * rank - 1.0).abs());
                 }
             }
         }
-        let all = (truths.len() * dimensions) as f64;
-        let share = |n: usize| held[n] as f64 / all;
-        let chosen = (0..powers.len()).find(|&n| share(n) >= WANTED).unwrap_or(powers.len() - 1);
-        Ok(Self { power: powers[chosen], truths: truths.len(), held_plain: share(0), held: share(chosen) })
+        let fields = scores.into_iter().map(FieldLevels::of).collect();
+        Ok(Some(Self { truths: truths.len(), fields }))
+    }
+}
+
+impl FieldLevels {
+    /// From the share of draws that each run's smallest central interval takes in.
+    fn of(mut scores: Vec<f64>) -> Self {
+        scores.sort_by(f64::total_cmp);
+        let n = scores.len();
+        let level = |share: f64| {
+            let place = ((n as f64 + 1.0) * share).ceil() as usize;
+            scores.get(place.max(1) - 1).copied().unwrap_or(1.0).clamp(share, MOST)
+        };
+        let held = scores.iter().filter(|score| **score <= 0.9).count();
+        Self { held_90: held as f64 / n as f64, level_50: level(0.5), level_90: level(0.9) }
     }
 }
 
