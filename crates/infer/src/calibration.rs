@@ -20,7 +20,7 @@ use crate::{
 
 /// Points of the prior that all truths share: few, and more for a posterior with too few of them. One with
 /// too few of these is sampled on its own.
-const POOLS: [usize; 2] = [8192, 65_536];
+const POOLS: [usize; 2] = [8192, 32_768];
 
 /// Least effective number of points from the pool.
 const ENOUGH: f64 = 200.0;

@@ -27,7 +27,7 @@ const PARTS: usize = 5;
 const LEAST_TRUTHS: usize = 40;
 
 /// Points of the prior that stand for it.
-const POOL: usize = 32_768;
+const POOL: usize = 16_384;
 
 /// No interval takes in more of the draws than this.
 const MOST: f64 = 0.998;

@@ -32,17 +32,19 @@ const CAMPAIGN: &str = "fixtures/campaigns/spall_size.ron";
 const HEALTHY: &str = "fixtures/scenes/studies/loop.ron";
 /// Starts of the bearing without a spall: places of the first ball [°].
 const HEALTHY_AT: [f64; 3] = [90.0, 103.0, 117.0];
-/// The largest force of a passage is looked for so far along the raceway from the middle of the spall, either
-/// way: behind the widest spall 1.5 mm are left for the blow [mm].
-const REACH_MM: f64 = 4.0;
+/// The blow is looked for so far behind the trailing edge, and the force before the spall as far before the
+/// leading one, but not nearer to it than the second, where a ball gives way to the edge [mm].
+const REACH_MM: [f64; 2] = [1.5, 0.3];
+/// Width at which the bearing without a spall is read [mm].
+const LIKE_MM: f64 = 2.0;
 /// Passages count from here on, when the bearing has settled [s].
 const FROM_S: f64 = 0.03;
 
-/// The largest forces of the passages over one place, and how they went.
+/// The passages over one place, and how they went.
 #[derive(Default)]
 struct Passages {
-    /// Largest force of the ball on the outer raceway in each [N].
-    peaks_n: Vec<f64>,
+    /// Mean force of the ball on the outer raceway before the place in each, and the largest behind it [N].
+    forces_n: Vec<[f64; 2]>,
     /// Events of the spall, those in which the ball comes free, and in which it touches the floor.
     events: usize,
     free: usize,
@@ -55,7 +57,7 @@ struct Size {
     depth_mm: f64,
     sagitta_mm: f64,
     passages: Passages,
-    /// Largest forces over the mean of those without a spall.
+    /// Largest forces behind the spall over the means before it.
     ratio: Sample,
 }
 
@@ -71,7 +73,6 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     }
     let first = campaign.runs.iter().find_map(|run| run.scene.as_ref().ok()).context("no scene")?;
     let healthy = healthy(options, host, first)?;
-    let sound = Sample::of(&healthy.peaks_n);
     let mut sizes: Vec<Size> = Vec::new();
     for variant in &campaign.runs {
         let Ok(scene) = &variant.scene else { continue };
@@ -89,14 +90,16 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
             });
         }
         sizes[at].passages.read(&folder)?;
+        sizes[at].passages.count(&folder)?;
     }
     for size in &mut sizes {
-        let ratios: Vec<f64> = size.passages.peaks_n.iter().map(|n| n / sound.mean).collect();
+        let ratios: Vec<f64> =
+            size.passages.forces_n.iter().map(|[before, behind]| behind / before).collect();
         size.ratio = Sample::of(&ratios);
     }
     let mut sheet =
         Sheet::new(host.root(), "spall_size", "The force at the exit by depth and width of a spall");
-    introduce(&mut sheet, first, &healthy, &sound);
+    introduce(&mut sheet, first, &healthy, &sizes);
     table(&mut sheet, &sizes);
     pictures(&mut sheet, &sizes)?;
     answers(&mut sheet, &sizes);
@@ -116,22 +119,31 @@ fn healthy(options: &Options, host: &dyn Host, like: &Scene) -> Result<Passages>
     for run in Runner::new("spall_size", &options.flags, host).run(&variants)? {
         passages.read(&run.folder)?;
     }
-    ensure!(!passages.peaks_n.is_empty(), "the bearing without a spall has not been run");
+    ensure!(!passages.forces_n.is_empty(), "the bearing without a spall has not been run");
     Ok(passages)
 }
 
 impl Passages {
-    /// Adds those of a run.
+    /// Adds the forces of a run.
     fn read(&mut self, folder: &Path) -> Result<()> {
         let run = Run::read(folder)?;
         let record = Record::whole(&run)?;
-        let scene = &run.scene;
-        let middle = scene.written.defect.as_ref().map_or(90.0, |spall| spall.angle_deg).to_radians();
-        let reach = 1e-3 * REACH_MM / scene.outer_race_radius;
+        let spall = run.scene.written.defect.as_ref();
+        let (degrees, length_mm) = spall.map_or((90.0, LIKE_MM), |spall| (spall.angle_deg, spall.length_mm));
         for roller in record.rollers() {
-            let off: Vec<f64> = roller.orbit().iter().map(|at| around(at - middle)).collect();
-            self.peaks_n.extend(largest(&off, &roller.outer_normal(), reach, record.time_s()));
+            let orbit = roller.orbit();
+            let ahead = if orbit.last() < orbit.first() { -1e3 } else { 1e3 } * run.scene.outer_race_radius;
+            let past_mm: Vec<f64> =
+                orbit.iter().map(|at| ahead * around(at - degrees.to_radians())).collect();
+            let from = record.time_s().iter().position(|t| *t >= FROM_S).unwrap_or(past_mm.len());
+            let force = roller.outer_normal();
+            self.forces_n.extend(forces(&past_mm[from..], &force[from..], 0.5 * length_mm));
         }
+        Ok(())
+    }
+
+    /// Adds how the passages over the spall of a run of the campaign went.
+    fn count(&mut self, folder: &Path) -> Result<()> {
         let path = folder.join("summary.json");
         let text =
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;
@@ -148,25 +160,26 @@ fn around(angle: f64) -> f64 {
     angle - TAU * (angle / TAU).round()
 }
 
-/// The largest force of each passage from `reach` before the middle to `reach` behind it, of those that are
-/// wholly on record.
-fn largest(off: &[f64], force: &[f64], reach: f64, time: &[f64]) -> Vec<f64> {
-    let mut peaks = Vec::new();
-    let mut from = None;
-    for n in 0..off.len() {
-        match (off[n].abs() < reach, from) {
-            (true, None) => from = Some(n),
-            (false, Some(first)) => {
-                let crosses = off[first] * off[n] < 0.0;
-                if first > 0 && time[first] >= FROM_S && crosses {
-                    peaks.push(force[first..n].iter().copied().fold(0.0, f64::max));
-                }
-                from = None;
+/// Mean force before a place of this half width and the largest behind it, of each passage that is wholly on
+/// record. `past_mm` is how far the ball is past the middle.
+fn forces(past_mm: &[f64], force: &[f64], half_mm: f64) -> Vec<[f64; 2]> {
+    let [far, near] = REACH_MM;
+    let mut all = Vec::new();
+    let (mut sum, mut count, mut largest) = (0.0, 0, 0.0_f64);
+    for (past, force) in past_mm.iter().zip(force) {
+        if *past < -half_mm - far || *past > half_mm + far {
+            if count > 0 && largest > 0.0 {
+                all.push([sum / f64::from(count), largest]);
             }
-            _ => {}
+            (sum, count, largest) = (0.0, 0, 0.0);
+        } else if *past < -half_mm - near {
+            sum += force;
+            count += 1;
+        } else if *past > half_mm {
+            largest = largest.max(*force);
         }
     }
-    peaks
+    all
 }
 
 /// Depth [mm] from which on a ball that does not give rests on both edges of a spall this wide and cannot reach
@@ -176,7 +189,7 @@ fn sagitta_mm(scene: &Scene, length_mm: f64) -> f64 {
     sagitta(scene.bearing.roller_diameter_mm) - sagitta(scene.bearing.outer_race_diameter_mm)
 }
 
-fn introduce(sheet: &mut Sheet, scene: &Scene, healthy: &Passages, sound: &Sample) {
+fn introduce(sheet: &mut Sheet, scene: &Scene, healthy: &Passages, sizes: &[Size]) {
     let operation = &scene.operation;
     sheet.say(&format!(
         "Li, Yan and others (J. Vibroengineering 2022, doi 10.21595/jve.2022.22773) have an explicit model in \
@@ -184,21 +197,30 @@ fn introduce(sheet: &mut Sheet, scene: &Scene, healthy: &Passages, sound: &Sampl
          indicator, the contact force with the defect over that without, grows with the depth of the defect \
          and with its width. Their numbers were not at hand, so the *trend* alone is compared, with a bearing \
          of ours and nothing fitted: a 6205 in a pedestal by the reduced model, {} N, {} rpm, rectangular \
-         spalls at the loaded place of the outer raceway (`{CAMPAIGN}`), three starts each.",
+         spalls in the middle of the loaded half of the outer raceway (`{CAMPAIGN}`), three starts each.",
         operation.load_n, operation.speed_rpm,
     ));
+    let [far, near] = REACH_MM;
+    let before = |of: &[[f64; 2]]| of.iter().map(|pair| pair[0]).sum::<f64>() / of.len() as f64;
+    let sound = before(&healthy.forces_n);
+    let all: Vec<f64> = sizes.iter().map(|size| before(&size.passages.forces_n)).collect();
+    let ends = [f64::min, f64::max].map(|end| all.iter().copied().reduce(end).unwrap_or(f64::NAN));
     sheet.say(&format!(
-        "The indicator here: the largest force between ball and outer raceway from {REACH_MM} mm before the \
-         middle of the spall to {REACH_MM} mm behind it, over the mean of the same in the bearing without a \
-         spall ({} N, standard deviation {} N, {} passages). *Free* are the passages in which the ball loses \
-         its load, *floor* those in which it touches the floor; *sagitta* is the depth from which on a ball \
-         that does not give rests on both edges and cannot reach the floor.",
-        number(sound.mean, 0),
-        number(sound.scatter, 0),
-        healthy.peaks_n.len(),
+        "The indicator here: the largest force between ball and outer raceway from the trailing edge to {far} \
+         mm behind it, over its mean from {far} to {near} mm before the leading edge in the same passage, where \
+         the place is symmetric to the other. *Free* are the passages in which the ball loses its load, \
+         *floor* those in which it touches the floor; *sagitta* is the depth from which on a ball that does \
+         not give rests on both edges and cannot reach the floor.",
     ));
-    sheet.value("healthy", "all starts", "mean N", Some(sound.mean));
-    sheet.value("healthy", "all starts", "standard deviation N", Some(sound.scatter));
+    sheet.say(&format!(
+        "The bearing without a spall is no measure: its balls have {} N at this place, those before a spall \
+         {} to {} N, the shallowest and shortest among them, so the difference is that of the meshes with and \
+         without a groove, several times larger than the blow.",
+        number(sound, 0),
+        number(ends[0], 0),
+        number(ends[1], 0),
+    ));
+    sheet.value("healthy", "all starts", "force N", Some(sound));
 }
 
 fn table(sheet: &mut Sheet, sizes: &[Size]) {
@@ -206,7 +228,7 @@ fn table(sheet: &mut Sheet, sizes: &[Size]) {
     let rows: Vec<Vec<String>> = sizes
         .iter()
         .map(|size| {
-            let Passages { events, free, floor, peaks_n } = &size.passages;
+            let Passages { events, free, floor, forces_n } = &size.passages;
             vec![
                 size.length_mm.to_string(),
                 size.depth_mm.to_string(),
@@ -214,7 +236,7 @@ fn table(sheet: &mut Sheet, sizes: &[Size]) {
                 number(size.ratio.mean, 3),
                 number(size.ratio.error(), 3),
                 number(size.ratio.scatter, 3),
-                peaks_n.len().to_string(),
+                forces_n.len().to_string(),
                 format!("{free} of {events}"),
                 format!("{floor} of {events}"),
             ]
@@ -272,7 +294,10 @@ const WIDTH: fn(&Size) -> f64 = |size| size.length_mm;
 fn pictures(sheet: &mut Sheet, sizes: &[Size]) -> Result<()> {
     let curves =
         |id: &str, title: &str, x: &str, fixed: fn(&Size) -> f64, along: fn(&Size) -> f64, of: &str| {
-            let axes = (Axis::decades(x, "mm"), Axis::plain("largest force over that without a spall", ""));
+            let axes = (
+                Axis::decades(x, "mm"),
+                Axis::plain("largest force behind the spall over that before it", ""),
+            );
             let mut figure = Figure::new(id, title, axes.0, axes.1);
             for (value, colour) in values(sizes, fixed).into_iter().zip(Colour::FOREGROUNDS) {
                 let sizes = line(sizes, fixed, value, along);
@@ -293,10 +318,10 @@ fn apart(from: &Size, to: &Size) -> f64 {
     (to.ratio.mean - from.ratio.mean) / to.ratio.error().hypot(from.ratio.error())
 }
 
-/// How the indicator goes along a line of sizes: from where on it stays within two standard errors of its
-/// last value, and whether it rises and falls by more than that anywhere on the way.
+/// How the indicator goes along a line of sizes: where it is largest, and whether it rises to there and falls
+/// from there on by more than two standard errors.
 struct Course {
-    same_from: usize,
+    largest: usize,
     rises: bool,
     falls: bool,
 }
@@ -304,27 +329,22 @@ struct Course {
 impl Course {
     fn of(sizes: &[&Size]) -> Self {
         let last = sizes.len() - 1;
-        let differs = |n: &usize| apart(sizes[*n], sizes[last]).abs() > 2.0;
-        let same_from = (0..last).rev().find(differs).map_or(0, |n| n + 1);
-        let steps = || sizes.windows(2).map(|pair| apart(pair[0], pair[1]));
-        Self { same_from, rises: apart(sizes[0], sizes[last]) > 2.0, falls: steps().any(|step| step < -2.0) }
+        let mean = |n: usize| sizes[n].ratio.mean;
+        let largest = (0..=last).max_by(|a, b| mean(*a).total_cmp(&mean(*b))).unwrap_or(last);
+        let [rises, falls] = [(0, largest), (last, largest)]
+            .map(|(end, top)| end != top && apart(sizes[end], sizes[top]) > 2.0);
+        Self { largest, rises, falls }
     }
 
     fn in_words(&self, sizes: &[&Size], along: fn(&Size) -> f64) -> String {
-        let [first, last] = [sizes[0], sizes[sizes.len() - 1]].map(|size| number(size.ratio.mean, 3));
-        let way = match (self.rises, self.falls) {
-            (true, false) => "grows",
-            (true, true) => "grows, not at every step",
-            (false, true) => "does not grow, and falls on the way",
-            (false, false) => "stays",
-        };
-        let same = along(sizes[self.same_from]);
-        let end = match self.same_from {
-            0 => "no size differs from the largest".to_owned(),
-            n if n + 1 < sizes.len() => format!("from {same} mm on all are the same"),
-            _ => "the largest differs from the one before".to_owned(),
-        };
-        format!("{way}, {first} to {last}; {end}")
+        let at = |n: usize| number(sizes[n].ratio.mean, 3);
+        let top = format!("{} at {} mm", at(self.largest), along(sizes[self.largest]));
+        match (self.rises, self.falls) {
+            (true, false) => format!("grows from {} to {top}", at(0)),
+            (true, true) => format!("grows from {} to {top}, then falls to {}", at(0), at(sizes.len() - 1)),
+            (false, true) => format!("falls from {} to {}", at(0), at(sizes.len() - 1)),
+            (false, false) => format!("stays, {} to {}", at(0), at(sizes.len() - 1)),
+        }
     }
 }
 
@@ -341,7 +361,7 @@ fn answers(sheet: &mut Sheet, sizes: &[Size]) {
         for value in &all {
             let sizes = line(sizes, fixed, *value, along);
             let course = Course::of(&sizes);
-            grown += usize::from(course.rises && !course.falls);
+            grown += usize::from(course.rises);
             rows.push(vec![what.to_owned(), format!("{of} {value} mm"), course.in_words(&sizes, along)]);
         }
         format!("with {what} it grows at {grown} of {} {of}s", all.len())
@@ -364,14 +384,13 @@ mod tests {
     }
 
     #[test]
-    fn example_the_largest_force_of_a_passage_that_is_wholly_on_record() {
-        let off: Vec<f64> = (0..41).map(|n| 0.1 * (f64::from(n) - 20.5)).collect();
-        let time: Vec<f64> = (0..41).map(|n| FROM_S + 1e-3 * f64::from(n)).collect();
-        let force: Vec<f64> = (0..41).map(|n| if n == 22 { 9.0 } else { f64::from(n % 3) }).collect();
-        assert_eq!(largest(&off, &force, 0.5, &time), [9.0]);
-        // One that begins within reach, and one that turns back.
-        assert!(largest(&off[18..], &force[18..], 0.5, &time).is_empty());
-        let back: Vec<f64> = off.iter().map(|x| x.abs()).collect();
-        assert!(largest(&back, &force, 0.5, &time).is_empty());
+    fn example_forces_before_and_behind_of_passages_that_are_wholly_on_record() {
+        let past: Vec<f64> = (0..81).map(|n| 0.1 * (f64::from(n) - 40.5)).collect();
+        let force: Vec<f64> = past.iter().map(|x| if *x < 0.0 { 2.0 } else { 3.0 + x }).collect();
+        let [pair] = forces(&past, &force, 1.0)[..] else { panic!("one passage") };
+        assert!((pair[0] - 2.0).abs() < 1e-12 && (pair[1] - 5.45).abs() < 1e-12, "{pair:?}");
+        // One that begins over the place, and one that ends there.
+        assert!(forces(&past[40..], &force[40..], 1.0).is_empty());
+        assert!(forces(&past[..40], &force[..40], 1.0).is_empty());
     }
 }

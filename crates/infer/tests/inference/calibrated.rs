@@ -39,7 +39,7 @@ fn issue_readings_of_one_run_counted_as_runs() {
     let worst = |calibration: &Calibration| {
         calibration.fields.iter().map(|field| field.coverage_90.share).fold(1.0, f64::min)
     };
-    let together = readings(8, 96, 4);
+    let together = readings(8, 80, 3);
     let told = calibration_by(&together, 1.0);
     assert!(worst(&told) >= 0.85, "{told:?}");
     let apart = calibration_by(&Runs { simulations: Vec::new(), ..together }, 1.0);

@@ -10,11 +10,11 @@ const OPTIONS: PosteriorOptions = PosteriorOptions { draws: 300, seed: 9 };
 /// narrow, and the intervals that the runs ask for hold truths that no run has seen.
 #[test]
 fn example_evidence_that_counts_three_times_is_found_out_by_the_runs() {
-    let runs = runs(8, 128, 2);
+    let runs = runs(8, 80, 2);
     let once: Vec<(usize, f64)> = (0..OUTPUTS).map(|output| (output, 0.0)).collect();
     let thrice = once.repeat(3);
     let levels = Levels::of(&runs, &columns(), &PRIORS, &thrice, usize::MAX, 3).unwrap().unwrap();
-    assert_eq!(levels.truths, 128);
+    assert_eq!(levels.truths, 80);
     let emulator = Emulator::fit(&runs, &columns(), 0).unwrap();
     let truths = truths(80, TRUTHS, 1.0);
     let calibration = Calibration::of(&emulator, &PRIORS, &truths, &thrice, OPTIONS).unwrap();
@@ -34,7 +34,7 @@ fn example_evidence_that_counts_three_times_is_found_out_by_the_runs() {
 #[test]
 fn example_sound_intervals_stay_and_few_runs_say_nothing() {
     let all: Vec<(usize, f64)> = (0..OUTPUTS).map(|output| (output, 0.0)).collect();
-    let levels = Levels::of(&runs(8, 128, 2), &columns(), &PRIORS, &all, usize::MAX, 3).unwrap().unwrap();
+    let levels = Levels::of(&runs(8, 80, 2), &columns(), &PRIORS, &all, usize::MAX, 3).unwrap().unwrap();
     assert!(levels.fields.iter().all(|field| (0.9..0.97).contains(&field.level_90)), "{levels:?}");
     assert!(Levels::of(&runs(8, 30, 1), &columns(), &PRIORS, &all, usize::MAX, 3).unwrap().is_none());
 }
