@@ -214,9 +214,6 @@ impl Reading {
                 "one knock: most elements stay loaded".to_owned()
             }
             (None, _) if self.is_bounded() => "one knock, though elements unload".to_owned(),
-            (None, Some(by_load)) if by_load > 0.45 * apart && apart - by_load > 0.45 * apart => {
-                "neither distance is looked at".to_owned()
-            }
             (None, _) => "cannot tell".to_owned(),
         }
     }

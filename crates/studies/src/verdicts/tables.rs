@@ -494,6 +494,19 @@ pub(super) fn numbers(sheet: &mut Sheet) {
              among several, too",
         ],
         [
+            "`SCATTERS` = 4; `ABOVE` = 2 in one band, `ABOVE_IN_HALF` = 1.5 in the other",
+            "least height of a faint second event over the scatter of the mean between passages, and over its \
+             median",
+            "the first a convention, the second the numbers of a clear one; that both are asked of bands \
+             together, on four simulated spalls under a heavy load and one record of HIT-SM without a second \
+             event (IR2_600, 3.4 times the scatter)",
+        ],
+        [
+            "`BEGINS` = 0.5",
+            "an event of several peaks begins with the first of this height over the one with the deepest fall",
+            "a convention, after one simulated spall (6205, 14 mm, 1200 rpm)",
+        ],
+        [
             "`RESOLVED` = 4",
             "distances below four times one over the width of the narrower band are not told",
             "a convention, after wrong lengths on one rig of the quoted part (UESTC)",
