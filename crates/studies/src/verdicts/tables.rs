@@ -198,6 +198,9 @@ pub(super) fn choices(sheet: &mut Sheet, records: &[Labelled], judged: &[Judged]
     sheet.say(
         "*Choice* counts the damaged bearings whose part has the highest score of the four families, that \
          of the cage read as a rolling element, which comes under the load once a turn of the cage. The \
+         verdict scores families that knock by their height, before all that do not and without the cage, \
+         which modulates whatever knocks; the others by how far they stand above nine of ten unrelated \
+         combs of their band. The rule was chosen on the rolling elements of the chosen part. The \
          *area* under the ROC curve is over all families of all records, sound ones too: the probability \
          that a family of a damaged part scores higher than one of a part that is not.",
     );
