@@ -29,8 +29,9 @@ pub(super) fn told(
     (is_half(Defect::Bpfo) || is_half(Defect::Bpfi)).then_some(())?;
     samples.iter().all(|x| x.is_finite()).then_some(())?;
     let half_hz = rpm / 120.0;
+    let stands = |hz: f64| speed::stands_at_half(samples, rate_hz, hz);
     let by_shaft = shaft::near(samples, rate_hz, half_hz)
-        .filter(|shaft| shaft.is_distinct() && speed::stands_at_half(samples, rate_hz, shaft.hz))
+        .filter(|shaft| shaft.is_distinct() && stands(shaft.hz))
         .map(|shaft| Sharp {
             hz: shaft.hz,
             uncertainty_hz: shaft.uncertainty_hz,
@@ -38,7 +39,7 @@ pub(super) fn told(
         });
     by_shaft.or_else(|| {
         let found = speed::without_any_given(samples, rate_hz, bands, bearing)?;
-        let agrees = found.is_accepted && (found.hz / half_hz - 1.0).abs() < SLIP;
+        let agrees = found.is_accepted && (found.hz / half_hz - 1.0).abs() < SLIP && stands(found.hz);
         let by = "the lines of the shaft and of the bearing together";
         agrees.then_some(Sharp { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
     })
