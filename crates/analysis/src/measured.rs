@@ -40,6 +40,7 @@ mod element_rhythm;
 mod enhanced;
 pub mod evidence;
 mod family;
+mod half_speed;
 mod halves;
 pub mod joint;
 mod length;
@@ -76,7 +77,7 @@ pub use angular::over_angle;
 pub use course::Course;
 pub use enhanced::Enhanced;
 pub use family::{Family, Reason};
-pub(crate) use length::{LONGEST, SHORTEST_S};
+pub(crate) use length::SHORTEST_S;
 use pass::Pass;
 pub use pressed::{Pressed, usual_load_n};
 pub use screening::Health;
@@ -289,6 +290,12 @@ impl Analysis {
             by_its_lines: shaft.is_some_and(|shaft| shaft.is_distinct()),
         };
         let mut judged = verdict::judge(&bands, machine, &known, record_s, segment_s);
+        let halved = half_speed::told(&judged, &kept, rate_hz, &bands, machine).and_then(|half| {
+            let (machine, again) = half_speed::judge(half, &bands, machine, (record_s, segment_s))?;
+            judged = again;
+            Some((half, machine))
+        });
+        let machine = halved.as_ref().map_or(machine, |(_, machine)| machine);
         let mut over = Vec::new();
         if let Some(first) = &judged.first {
             over = over_period(channel, rate_hz, segment, first.comb_hz)?;
@@ -296,6 +303,8 @@ impl Analysis {
         }
         one_half_only(&mut judged.families, &kept, rate_hz)?;
         judged.conclude(&bands);
+        let said = halved.as_ref().zip(given_rpm).map(|((half, _), rpm)| half_speed::sentence(*half, rpm));
+        judged.verdict.extend(said.iter().flat_map(|said| [" ", said.as_str()]));
         notes.extend(judged.notes.iter().cloned());
         let spall = length::estimate(&kept, rate_hz, machine, &judged.families);
         notes.push(spall.note);
@@ -308,7 +317,7 @@ impl Analysis {
                 samples: screening.count(),
                 duration_s: screening.count() as f64 / rate_hz,
                 speed_rpm: machine.speed_rpm,
-                speed_given_rpm: corrected_hz.and(given_rpm),
+                speed_given_rpm: (corrected_hz.is_some() || halved.is_some()).then_some(given_rpm).flatten(),
                 speed_uncertainty_rpm: found.map(|found| 60.0 * found.uncertainty_hz),
                 bearing: machine.bearing.as_ref().map(|b| format!("{}: {b}", b.name)),
                 resolution_hz,

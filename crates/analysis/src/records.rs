@@ -7,7 +7,10 @@ use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::{DefectRing, Scene};
 
 use crate::Error;
-use crate::measured::{LONGEST, SHORTEST_S};
+use crate::measured::SHORTEST_S;
+
+/// Longest distance of two events over the time between passages: the correlation within a passage ends there.
+const LONGEST: f64 = 0.45;
 
 /// One record: the signature of its passages, and the noise that was added.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -449,7 +449,7 @@ impl Force for Contacts {
         let mut own = vec![0.0_f64; bound.len()];
         for pair in &self.pairs {
             let law = &pair.spec.law;
-            let lagged = if dt > 0.0 { 2.0 * law.damping / dt } else { 0.0 };
+            let lagged = if dt > 0.0 { law.damping_stiffness(dt) } else { 0.0 };
             let k = (law.stiffness + lagged) * self.thickness;
             // The gap's gradient is a little longer than one where a curve leaves its chord (THEORY §4.4).
             let steepest = [pair.spec.first, pair.spec.second].map(|s| self.surfaces[s].steepest());

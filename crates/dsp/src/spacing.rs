@@ -110,7 +110,7 @@ pub fn passage_spacing(
 ) -> Result<EventSpacing> {
     check_positive("passing_hz", passing_hz)?;
     let lags = lags(signal, sample_rate_hz, shortest_s, longest_s)?;
-    if longest_s * passing_hz > 0.5 {
+    if longest_s > 0.5 / passing_hz {
         let why = "the longest distance is more than half of the time between passages";
         return Err(Error::Undefined { quantity: "distance of events", why });
     }
@@ -331,6 +331,36 @@ mod tests {
             let EventSpacing::Pairs(found) = found else { panic!("{louder}: {found:?}") };
             assert!((found.lag_s - 3.1e-3).abs() < 0.1e-3 && found.uncertainty_s >= 0.1e-3, "{found:?}");
         }
+    }
+
+    /// A second event that stands twice above what lies between passages in one band only.
+    #[test]
+    fn example_a_faint_second_event_shows_in_both_bands_together() {
+        let found = passage_spacing(&unequal(3.1e-3, 0.2e-3, 0.16), RATE_HZ, 60.0, 0.5e-3, 8e-3).unwrap();
+        let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
+        assert!((found.lag_s - 3.1e-3).abs() < 0.1e-3, "{found:?}");
+        // At a tenth of the strength it is no higher than what scatters.
+        let found = passage_spacing(&unequal(3.1e-3, 0.2e-3, 0.08), RATE_HZ, 60.0, 0.5e-3, 8e-3).unwrap();
+        assert!(!matches!(found, EventSpacing::Pairs(_)), "{found:?}");
+    }
+
+    /// Half of a period is looked at, where an event is as far from the passage before as from the next.
+    #[test]
+    fn example_a_second_event_halfway_between_passages_shows() {
+        let found = passage_spacing(&unequal(8.2e-3, 0.2e-3, 0.4), RATE_HZ, 60.0, 0.5e-3, 0.5 / 60.0).unwrap();
+        let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
+        assert!((found.lag_s - 8.2e-3).abs() < 0.1e-3, "{found:?}");
+    }
+
+    /// An element that is let go knocks twice, the second time louder: the entry is the first of them.
+    #[test]
+    fn example_an_event_of_two_peaks_begins_with_the_first() {
+        let first = unequal(5e-3, 0.2e-3, 0.5);
+        let second = unequal(5.5e-3, 0.2e-3, 0.6);
+        let signal: Vec<f64> = first.iter().zip(&second).map(|(x, y)| 0.5 * (x + y)).collect();
+        let found = passage_spacing(&signal, RATE_HZ, 60.0, 0.5e-3, 8e-3).unwrap();
+        let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
+        assert!((found.lag_s - 5e-3).abs() < 0.1e-3, "{found:?}");
     }
 
     /// A body that bounces at the second event knocks twice within a millisecond, both times louder

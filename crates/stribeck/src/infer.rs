@@ -194,11 +194,19 @@ impl Study<'_> {
                     rounds.plan(round, &self.following(&rows, number, count)?)?
                 }
             };
+            // A target that no run has is refused after the first scene, not after the first round.
+            let one = planned.iter().position(|point| point.scenes.is_ok()).map_or(0, |first| first + 1);
+            if number == 1 && self.options.shard.is_none() {
+                if !self.make(round, &planned[..one])? {
+                    return Ok(None);
+                }
+                self.knows_targets(&planned[..one])?;
+            }
             if !self.make(round, &planned)? {
                 return Ok(None);
             }
-            if number == 1 {
-                self.check_targets(&planned)?;
+            if number == 1 && !self.knows_targets(&planned)? {
+                bail!("no scene of the first round could be run. The first: {}", self.why_not(&planned));
             }
             rows.extend(outputs::rows(inference, rounds, &planned)?);
             points.extend(planned);
@@ -294,20 +302,26 @@ impl Study<'_> {
         Ok(true)
     }
 
-    /// Refuses targets that no run has, as soon as a run has ended.
-    fn check_targets(&self, points: &[Point]) -> Result<()> {
+    /// Whether one of these scenes has run; refuses targets that a run does not have.
+    fn knows_targets(&self, points: &[Point]) -> Result<bool> {
         for wanted in Rounds::wanted(points) {
             if let (Ok(scene), Stage::Done) = (wanted.scene, self.rounds.runs().stage(Keep::Numbers, wanted)?)
             {
-                return outputs::check(self.inference, &summary_of(&self.rounds.runs().run(scene))?);
+                outputs::check(self.inference, &summary_of(&self.rounds.runs().run(scene))?)?;
+                return Ok(true);
             }
         }
-        let why =
-            Rounds::wanted(points).find_map(|wanted| match self.rounds.runs().stage(Keep::Numbers, wanted) {
-                Ok(Stage::Refused(why) | Stage::Failed(why)) => Some(why),
-                _ => None,
-            });
-        bail!("no scene of the first round could be run. The first: {}", why.unwrap_or_default())
+        Ok(false)
+    }
+
+    /// Why the first of these scenes that could not be run has no run.
+    fn why_not(&self, points: &[Point]) -> String {
+        let stage = |wanted| self.rounds.runs().stage(Keep::Numbers, wanted);
+        let why = Rounds::wanted(points).find_map(|wanted| match stage(wanted) {
+            Ok(Stage::Refused(why) | Stage::Failed(why)) => Some(why),
+            _ => None,
+        });
+        why.unwrap_or_default()
     }
 
     /// Runs draws of the posterior.

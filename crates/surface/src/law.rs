@@ -9,7 +9,8 @@ use crate::error::Error;
 pub struct Law {
     /// Penalty stiffness [Pa/m]: pressure a metre of penetration.
     pub stiffness: f64,
-    /// Contact damping [Pa s/m]: pressure a metre a second of approach; zero for none.
+    /// Contact damping [Pa s/m]: pressure a metre a second of approach; zero for none. Its dashpot stands in
+    /// series with a spring of the penalty stiffness.
     pub damping: f64,
     /// Coulomb coefficient [-]; zero for none.
     pub friction: f64,
@@ -44,6 +45,21 @@ impl Law {
         // Two equal masses on one spring: the reduced mass is half of one.
         self.damping = 2.0 * ratio * (self.stiffness * 0.5 * mass).sqrt();
         Ok(self)
+    }
+
+    /// Part of its damping pressure that a point keeps over a step of `dt` [s] (THEORY §4.2).
+    pub fn damping_kept(&self, dt: f64) -> f64 {
+        if self.damping > 0.0 { self.damping / (self.damping + self.stiffness * dt) } else { 0.0 }
+    }
+
+    /// Stiffness of the damping beside the penalty at the highest frequency that steps of `dt` [s] resolve
+    /// [Pa/m], at most the penalty's own (THEORY §4.2).
+    pub fn damping_stiffness(&self, dt: f64) -> f64 {
+        if self.damping > 0.0 {
+            self.stiffness / (1.0 + 0.5 * self.stiffness * dt / self.damping)
+        } else {
+            0.0
+        }
     }
 
     /// Rounds the corner of the law over gaps of up to `onset` [m] to either side.
@@ -107,4 +123,59 @@ impl<N: Number> Onset<N> {
 
 fn check(field: &'static str, value: f64, ok: bool, allowed: &'static str) -> Result<(), Error> {
     if value.is_finite() && ok { Ok(()) } else { Err(Error::OutOfRange { field, value, allowed }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Growth of a vibration from step to step [-] of a mass [kg/m²] that stays in contact, in steps of `dt`
+    /// [s].
+    fn growth(law: &Law, mass: f64, dt: f64) -> f64 {
+        let (mut x, mut v, mut damping) = (1.0_f64, 0.0_f64, 0.0_f64);
+        let kept = law.damping_kept(dt);
+        let (steps, mut logarithm) = (40_000, 0.0);
+        for step in 0..steps {
+            damping = kept * damping - (1.0 - kept) * law.damping * v;
+            v += dt / mass * (damping - law.stiffness * x);
+            x += dt * v;
+            let energy = x * x + mass / law.stiffness * v * v;
+            let size = (energy + (damping / law.stiffness).powi(2)).sqrt();
+            (x, v, damping) = (x / size, v / size, damping / size);
+            // The first half lets what decays faster die away.
+            logarithm += if 2 * step >= steps { size.ln() } else { 0.0 };
+        }
+        2.0 * logarithm / f64::from(steps)
+    }
+
+    /// Whatever the damping, steps are stable up to the bound that the critical step takes, and no farther.
+    #[test]
+    fn analytic_damped_contacts_are_stable_to_their_bound() {
+        for ratio in [0.01, 0.1, 0.8, 2.0] {
+            for mass in [0.5, 2.0, 10.0] {
+                let law = Law::penalty(2e13).and_then(|law| law.with_damping(ratio, 2.0)).expect("a law");
+                // The bound depends on the step; some turns settle both.
+                let mut dt = 2.0 * (mass / law.stiffness).sqrt();
+                for _ in 0..60 {
+                    dt = 2.0 * (mass / (law.stiffness + law.damping_stiffness(dt))).sqrt();
+                }
+                assert!(law.damping_stiffness(dt) <= law.stiffness);
+                for (factor, grows) in [(0.5, false), (0.98, false), (0.999, false), (1.002, true)] {
+                    let growth = growth(&law, mass, factor * dt);
+                    assert_eq!(growth > 0.0, grows, "{ratio}, {mass}, {factor}: {growth:e} a step");
+                }
+            }
+        }
+    }
+
+    /// Slow vibrations lose what a dashpot alone takes from them.
+    #[test]
+    fn analytic_slow_vibrations_lose_what_a_dashpot_takes() {
+        let law = Law::penalty(2e13).and_then(|law| law.with_damping(0.8, 2.0)).expect("a law");
+        let (mass, dt) = (2000.0, 70e-9);
+        let expected = -0.5 * law.damping / mass * dt;
+        let lost = (law.stiffness / mass).sqrt() * law.damping / law.stiffness;
+        let found = growth(&law, mass, dt);
+        assert!((found / expected - 1.0).abs() < 2.0 * lost * lost + 0.01, "{found:e}, not {expected:e}");
+    }
 }

@@ -128,6 +128,16 @@ impl Family {
         self.height_db
     }
 
+    /// Height of the family's comb over that of the unrelated ones of its band, of which a tenth stand as high
+    /// [dB]; `None` where it was not looked for, or nothing unrelated was.
+    pub fn above_unrelated_db(&self) -> Option<f64> {
+        let mut heights: Vec<f64> = self.controls.iter().map(|(_, height_db)| *height_db).collect();
+        let last = heights.len().checked_sub(1)?;
+        heights.sort_by(f64::total_cmp);
+        let at = ((1.0 - MOST_AS_HIGH) * last as f64).round() as usize;
+        Some(self.height_db - heights[at]).filter(|db| db.is_finite())
+    }
+
     /// Takes a comb that stands farther from its place than slip of little load allows.
     pub(super) fn take(&mut self, found: &unexplained::Found, rank: Option<f64>, band_hz: (f64, f64)) {
         let comb = &found.comb;
@@ -158,7 +168,7 @@ impl Family {
     }
 
     /// Whether it is more than noise and modulated as deeply as by knocks, whatever their cause.
-    pub(super) fn knocks(&self) -> bool {
+    pub fn knocks(&self) -> bool {
         self.noise_p_value < ALPHA && self.depth.is_some_and(|depth| depth >= KNOCK)
     }
 }

@@ -11,9 +11,9 @@ use super::{Defect, Family, Interval, Machine};
 
 /// Events closer than this cannot be distinguished from the ringing of one [s].
 pub(crate) const SHORTEST_S: f64 = 0.4e-3;
-/// Longest spall over the distance of two rolling elements: with a longer one the next element enters before
-/// one leaves.
-pub(crate) const LONGEST: f64 = 0.45;
+/// Longest distance of two events over that of two passages: a longer one is the shorter distance of the exit
+/// and the next entry.
+const LONGEST: f64 = 0.5;
 /// A second event that is missed is nearer to the first than this part of what would have shown.
 const MISSED: f64 = 2.0;
 

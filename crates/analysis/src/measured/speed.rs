@@ -118,6 +118,12 @@ pub(super) fn near(
     Some(SpeedEstimate::of(hz, score, next, &spectrum, LEAST_LEAD_NEAR))
 }
 
+/// Whether lines of the shaft stand at a speed and between its even multiples, which are all that twice the
+/// speed has.
+pub(super) fn stands_at_half(samples: &[f64], rate_hz: f64, hz: f64) -> bool {
+    Evidence::of_samples(samples, rate_hz).is_some_and(|spectrum| spectrum.stands_between(hz, 2))
+}
+
 /// Speeds [Hz] and the evidence for each [nats].
 struct Scored {
     speeds: Vec<f64>,

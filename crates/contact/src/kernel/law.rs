@@ -16,6 +16,8 @@ pub(crate) struct LawKernel<N> {
     /// Per weight of a point: the factor of [`PointState::weight`].
     stiffness: N,
     dashpot: N,
+    /// Part of a damping force that is left after a step [-].
+    kept: N,
     tangential: N,
     /// Elastic slip at which a point slides, per penetration [-].
     ratio: N,
@@ -102,9 +104,11 @@ impl<N: Number> LawKernel<N> {
         pace: f64,
     ) -> Self {
         let law = &w.law;
+        let kept = law.damping_kept(dt);
         Self {
             stiffness: like.constant(law.stiffness * thickness),
-            dashpot: like.constant(law.damping * thickness),
+            kept: like.constant(kept),
+            dashpot: like.constant((1.0 - kept) * law.damping * thickness),
             tangential: like.constant(law.tangential),
             ratio: like.constant(law.friction / law.tangential),
             dt: like.constant(dt),
@@ -187,7 +191,7 @@ impl<N: Number> LawKernel<N> {
             };
         }
         // Damping sets in with the stiffness, and the sum of both is never tensile.
-        let damping = (-(dashpot * opening)).max(-elastic);
+        let damping = self.kept.times_plus(points.damping, -(dashpot * opening)).max(-elastic);
         // Work of a force over a step is the mean of its two ends times the displacement (THEORY §2.5).
         let damping_heat = -(half * self.dt * (points.damping + damping) * opening);
         let kt = self.tangential * k;
@@ -241,7 +245,7 @@ mod tests {
     type Acted = [f64; 7];
 
     /// The law as a textbook has it, branch by branch: a penalty with a parabola about the corner, a dashpot
-    /// that never pulls, and Coulomb friction by return mapping (Wriggers, Computational Contact Mechanics,
+    /// behind a spring, both of which never pull, and Coulomb friction by return mapping (Wriggers, Computational Contact Mechanics,
     /// 2nd ed., §§5.2, 6.5).
     fn textbook(law: &Law, [gap, weight, opening, along, slip, damping]: State) -> Acted {
         let (k, c, e) = (law.stiffness * weight * THICKNESS, law.damping * weight * THICKNESS, law.onset);
@@ -255,7 +259,8 @@ mod tests {
             let share = (e - gap) / (2.0 * e);
             (e * share * share, share, 2.0 * e * e * share * share * share / 3.0)
         };
-        let mut dashpot = -c * slope * opening;
+        let kept = law.damping_kept(DT);
+        let mut dashpot = kept * damping - (1.0 - kept) * c * slope * opening;
         if k * depth + dashpot < 0.0 {
             dashpot = -k * depth;
         }

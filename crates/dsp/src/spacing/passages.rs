@@ -5,6 +5,8 @@
 //! counted from its own strongest event, shows a second one as soon as it stands above the level between
 //! passages, however much weaker than the first it is. Source: own.
 
+mod faint;
+
 use std::ops::Range;
 
 use super::{AGREED, smoothing};
@@ -29,6 +31,10 @@ const ABOVE_IN_HALF: f64 = 1.5;
 const VALLEY: f64 = 0.4;
 /// A second event is the highest within this part of its distance, on either side.
 const ALONE: f64 = 0.05;
+/// The mean is looked at up to this many times the longest distance, so that an event there has both flanks.
+const BEYOND: f64 = 1.1;
+/// An event of several peaks begins with the first that has this part of the height of the one taken.
+const BEGINS: f64 = 0.5;
 
 /// Parameters of the search.
 pub(super) struct Search {
@@ -39,8 +45,21 @@ pub(super) struct Search {
     pub(super) sample_rate_hz: f64,
 }
 
+/// Mean power of one band about the strongest events, from before them to as long after, over its median
+/// between passages.
+struct Mean {
+    all: Vec<f64>,
+    /// Those of every other passage.
+    halves: [Vec<f64>; 2],
+    /// Place of the strongest event.
+    reach: usize,
+}
+
 /// A second event in one band.
+#[derive(Clone, Copy)]
 struct Second {
+    /// Its place in the mean.
+    at: usize,
     /// Distance from the strongest event, before or after it [samples].
     lag: f64,
     /// How far the power falls between the two, over the power of the second.
@@ -56,17 +75,28 @@ impl Search {
         if strongest.len() < FEWEST {
             return None;
         }
-        let [low, high] = bands.each_ref().map(|power| self.seconds(power, &strongest));
+        let means = bands.each_ref().map(|power| self.mean(power, &strongest));
+        self.clear(&means).or_else(|| self.faint(&means).map(|lag| [lag; 2]))
+    }
+
+    /// Distances of an event that stands in either band by itself [samples].
+    fn clear(&self, means: &[Mean; 2]) -> Option<[f64; 2]> {
+        let [low, high] = means.each_ref().map(|mean| self.seconds(mean));
         // Events are no sharper than the filter that smoothed them.
         let sharp = smoothing(self.sample_rate_hz) as f64;
         let agree =
             |a: &Second, b: &Second| (a.lag - b.lag).abs() < (AGREED * a.lag.max(b.lag)).max(0.5 * sharp);
-        let pairs = low.iter().flat_map(|a| high.iter().filter(move |b| agree(a, b)).map(move |b| (a, b)));
+        let pairs: Vec<[Second; 2]> = low
+            .iter()
+            .flat_map(|a| high.iter().filter(move |b| agree(a, b)).map(move |b| [*a, *b]))
+            .collect();
         // Of several, the one before which it is most silent: what bounces or rings right after an impact may
         // be louder than a second impact, and never stands as free of the first.
-        let ringing = |(a, b): &(&Second, &Second)| a.valley.max(b.valley);
-        let best = pairs.min_by(|one, other| ringing(one).total_cmp(&ringing(other)))?;
-        Some([best.0.lag, best.1.lag])
+        let ringing = |[a, b]: &[Second; 2]| a.valley.max(b.valley);
+        let best = pairs.iter().min_by(|one, other| ringing(one).total_cmp(&ringing(other)))?;
+        let begins = pairs.iter().filter(|pair| begins(means, pair, best));
+        let first = begins.min_by_key(|[a, b]| a.at + b.at).unwrap_or(best);
+        Some(first.map(|second| second.lag))
     }
 
     /// Places of the strongest event of each passage, but of those too near to an end of the record.
@@ -81,7 +111,7 @@ impl Search {
             let ends = (0..).map(|passage| of(passage, -OWN)..of(passage, OWN));
             for within in ends.take_while(|within| within.end <= part.len()) {
                 let place = n * shared + highest(part, within);
-                if place >= self.lags.end && place + self.lags.end < power.len() {
+                if place >= self.reach() && place + self.reach() < power.len() {
                     places.push(place);
                 }
             }
@@ -103,53 +133,82 @@ impl Search {
     }
 
     /// Second events of a band.
-    fn seconds(&self, power: &[f64], strongest: &[usize]) -> Vec<Second> {
-        let reach = self.lags.end;
-        let of = |from: usize, step: usize| self.mean_about(power, strongest.iter().skip(from).step_by(step));
-        let (all, halves) = (of(0, 1), [of(0, 2), of(1, 2)]);
-        let valley = |n: usize| {
-            let between = if n < reach { &all[n..reach] } else { &all[reach..n] };
-            between.iter().fold(f64::INFINITY, |least, power| least.min(*power)) / all[n]
-        };
+    fn seconds(&self, mean: &Mean) -> Vec<Second> {
+        let Mean { all, halves, reach } = mean;
+        let reach = *reach;
         let stands = |n: usize| {
-            let apart = n.abs_diff(reach);
-            let alone = ((ALONE * apart as f64) as usize).max(1);
-            let near = &all[n.saturating_sub(alone)..(n + alone + 1).min(all.len())];
-            self.lags.contains(&apart)
-                && all[n] >= ABOVE
+            all[n] >= ABOVE
                 && halves.iter().all(|half| half[n] >= ABOVE_IN_HALF)
-                && near.iter().all(|power| *power <= all[n])
-                && valley(n) <= VALLEY
+                && self.is_alone(all, n, reach)
+                && between(all, n, reach) <= VALLEY * all[n]
         };
         // A band may be later than both together.
         let sharp = smoothing(self.sample_rate_hz).min(reach - 1);
-        let first = top(&all, highest(&all, reach - sharp..reach + sharp + 1));
-        let second = |n: usize| Second { lag: (top(&all, n) - first).abs(), valley: valley(n) };
+        let first = top(all, highest(all, reach - sharp..reach + sharp + 1));
+        let second =
+            |n: usize| Second { at: n, lag: (top(all, n) - first).abs(), valley: between(all, n, reach) / all[n] };
         // Such a band moves the distance, too, out of those that are looked at.
         let within = |second: &Second| self.lags.contains(&(second.lag.round() as usize));
         (1..all.len() - 1).filter(|n| stands(*n)).map(second).filter(within).collect()
     }
 
-    /// Mean power about the strongest events, from the greatest distance before them to as much after, over
-    /// its median beyond the least distance.
+    /// Whether a place is among the distances that are looked at, and nothing near it is higher.
+    fn is_alone(&self, values: &[f64], n: usize, reach: usize) -> bool {
+        let apart = n.abs_diff(reach);
+        let alone = ((ALONE * apart as f64) as usize).max(1);
+        let near = &values[n.saturating_sub(alone)..(n + alone + 1).min(values.len())];
+        self.lags.contains(&apart) && near.iter().all(|power| *power <= values[n])
+    }
+
+    /// Longest distance of a mean, on either side [samples].
+    fn reach(&self) -> usize {
+        (BEYOND * self.lags.end as f64) as usize
+    }
+
+    fn mean(&self, power: &[f64], strongest: &[usize]) -> Mean {
+        let of = |from: usize, step: usize| self.mean_about(power, strongest.iter().skip(from).step_by(step));
+        Mean { all: of(0, 1), halves: [of(0, 2), of(1, 2)], reach: self.reach() }
+    }
+
+    /// Mean power about the strongest events, over its median among the distances that are looked at.
     fn mean_about<'a>(&self, power: &[f64], strongest: impl Iterator<Item = &'a usize>) -> Vec<f64> {
-        let reach = self.lags.end;
+        let reach = self.reach();
         let mut mean = vec![0.0; 2 * reach + 1];
         for place in strongest {
             mean.iter_mut().zip(&power[place - reach..]).for_each(|(sum, power)| *sum += power);
         }
-        let mut between: Vec<f64> = mean
-            .iter()
-            .enumerate()
-            .filter(|(n, _)| self.lags.contains(&n.abs_diff(reach)))
-            .map(|x| *x.1)
-            .collect();
-        let middle = between.len() / 2;
-        let (_, median, _) = between.select_nth_unstable_by(middle, f64::total_cmp);
-        let median = median.max(f64::MIN_POSITIVE);
+        let median = median(self.among(&mean, reach)).max(f64::MIN_POSITIVE);
         mean.iter_mut().for_each(|power| *power /= median);
         mean
     }
+
+    /// The values among the distances that are looked at, on either side.
+    fn among(&self, values: &[f64], reach: usize) -> Vec<f64> {
+        let within = |(n, _): &(usize, &f64)| self.lags.contains(&n.abs_diff(reach));
+        values.iter().enumerate().filter(within).map(|x| *x.1).collect()
+    }
+}
+
+/// Whether an event that one pair of peaks shows begins with another: earlier on the same side of the
+/// strongest event, half as high, and without silence between.
+fn begins(means: &[Mean; 2], earlier: &[Second; 2], taken: &[Second; 2]) -> bool {
+    means.iter().zip(earlier).zip(taken).all(|((mean, a), b)| {
+        let same_side = (a.at < mean.reach) == (b.at < mean.reach);
+        let goes_on = || mean.all[a.at..b.at].iter().all(|power| *power > 1.0);
+        same_side && a.at < b.at && mean.all[a.at] >= BEGINS * mean.all[b.at] && goes_on()
+    })
+}
+
+/// The least value between a place and the strongest event.
+fn between(values: &[f64], n: usize, reach: usize) -> f64 {
+    let between = if n < reach { &values[n..reach] } else { &values[reach..n] };
+    between.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The middle one of values, of which there is one.
+fn median(mut values: Vec<f64>) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 /// The place of the highest value of a range that holds one.
@@ -185,7 +244,7 @@ mod tests {
                     power[at + 1] = 0.7 * height;
                 }
             }
-            search.seconds(&power, &strongest).len()
+            search.seconds(&search.mean(&power, &strongest)).len()
         };
         assert_eq!((found(380), found(398), found(402)), (1, 1, 0));
     }

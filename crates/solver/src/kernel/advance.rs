@@ -69,6 +69,23 @@ impl<S: Simd> Step<S> {
         }
     }
 
+    /// A step in which nothing moves.
+    #[inline(always)]
+    pub(crate) fn still(simd: S, fetch: bool) -> Self {
+        let zero = Vector::all(simd, 0.0);
+        Self {
+            dt: zero,
+            fall: [zero; 2],
+            keep: zero,
+            drift_x: [0.0; LANES],
+            drift_y: [0.0; LANES],
+            turn: [0.0; LANES],
+            frames: LaneMotion::default(),
+            loss: 0.0,
+            fetch,
+        }
+    }
+
     /// Heat of damping [J] from what [`advance`] counts.
     #[inline(always)]
     pub(crate) fn heat(&self, counted: Vector<S>) -> f64 {

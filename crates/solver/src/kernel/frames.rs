@@ -18,7 +18,7 @@ pub(crate) struct LaneFrames {
 
 /// How the frames of a tile's bodies move in one step: velocity at the origin [m/s] and angular velocity
 /// [rad/s].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct LaneMotion {
     pub(crate) origin_x: [f64; LANES],
     pub(crate) origin_y: [f64; LANES],

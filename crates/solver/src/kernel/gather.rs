@@ -1,7 +1,7 @@
 //! The kernels for elements outside strips: a few at a time wherever their nodes lie, or the same element of
 //! congruent bodies at a time.
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use crate::{
     element::{Stiffness, any_triangle_forces, triangle_forces},
@@ -12,9 +12,34 @@ use crate::{
 };
 use stribeck_simd::lanes::{LANES, Vector};
 
+/// Adds the forces [N] of a tile's elements outside strips. A call of its own: it is compiled once for an
+/// instruction set, and not again for each kind of damping.
+pub(crate) struct Gathered<'a> {
+    pub(crate) tile: &'a Tile,
+    pub(crate) x: &'a [f64],
+    pub(crate) y: &'a [f64],
+    pub(crate) fx: &'a mut [f64],
+    pub(crate) fy: &'a mut [f64],
+}
+
+impl WithSimd for Gathered<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { tile, x, y, fx, fy } = self;
+        let k = &tile.stiffness.of(Vector::all(simd, 0.0));
+        if tile.congruent {
+            congruent_elements(simd, tile, k, x, y, fx, fy);
+        } else {
+            single_elements(simd, tile, k, x, y, fx, fy);
+        }
+    }
+}
+
 /// The gather path: quadrilaterals in groups, triangles one by one.
 #[inline(always)]
-pub(crate) fn single_elements<S: Simd>(
+fn single_elements<S: Simd>(
     simd: S,
     tile: &Tile,
     k: &Stiffness<Vector<S>>,
@@ -60,7 +85,7 @@ fn add<S: Simd>(simd: S, v: &mut [f64], at: usize, f: Vector<S>) {
 
 /// Forces of a tile of congruent bodies, the same element of some bodies at a time.
 #[inline(always)]
-pub(crate) fn congruent_elements<S: Simd>(
+fn congruent_elements<S: Simd>(
     simd: S,
     tile: &Tile,
     k: &Stiffness<Vector<S>>,

@@ -3,19 +3,14 @@
 
 use pulp::{Simd, WithSimd};
 
-use crate::element::Stiffness;
 use crate::kernel::{
-    advance::{Nodes, Step, StepParameters},
+    advance::{Nodes, StepParameters},
     fields::TileFields,
-    frames::LaneFrames,
-    gather::{congruent_elements, single_elements},
-    strip::strip_forces,
+    gather::Gathered,
+    strip::StripForces,
     tile::Tile,
 };
-use stribeck_simd::{
-    field::Field,
-    lanes::{Number, Vector},
-};
+use stribeck_simd::{field::Field, lanes::Number};
 
 /// Where the elements of the tile at hand see its nodes, and what that changes about their forces.
 #[derive(Debug, Clone, Default)]
@@ -66,8 +61,6 @@ impl WithSimd for Extrapolate<'_> {
         if !parameters.count_heat {
             return 0.0;
         }
-        let k = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let step = &Step::new(simd, &parameters, 0.0, &LaneFrames::REST);
         extrapolated.fx[..n].fill(0.0);
         extrapolated.fy[..n].fill(0.0);
         // Forces where elements see the nodes less those where the nodes are: −f of the latter, plus f of the
@@ -79,7 +72,7 @@ impl WithSimd for Extrapolate<'_> {
                 (&mut *x, &mut *y)
             };
             let (fx, fy) = (&mut extrapolated.fx[..n], &mut extrapolated.fy[..n]);
-            tile_forces(simd, tile, k, [x, y, vx, vy], [fx, fy], step);
+            tile_forces(simd, tile, [x, y, vx, vy], [fx, fy], parameters.fetch);
             if !extrapolate {
                 let (fx, fy) = (&mut extrapolated.fx[..n], &mut extrapolated.fy[..n]);
                 [fx, fy].into_iter().flatten().for_each(|f| *f = -*f);
@@ -94,21 +87,15 @@ impl WithSimd for Extrapolate<'_> {
 pub(crate) fn tile_forces<S: Simd>(
     simd: S,
     tile: &Tile,
-    k: &Stiffness<Vector<S>>,
     [x, y, vx, vy]: [&mut [f64]; 4],
     [fx, fy]: [&mut [f64]; 2],
-    step: &Step<S>,
+    fetch: bool,
 ) {
-    if tile.congruent {
-        congruent_elements(simd, tile, k, x, y, fx, fy);
-    } else {
-        single_elements(simd, tile, k, x, y, fx, fy);
-    }
+    simd.vectorize(Gathered { tile, x, y, fx, fy });
     let (own_x, own_y, none) = (&mut [][..], &mut [][..], &[][..]);
     let (held_x, held_y, mass, step_over_mass) = (none, none, none, &tile.step_over_mass);
-    let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, held_x, held_y, step_over_mass, mass };
-    // A loop: within a closure the compiler would not use the instruction set of this function.
-    for s in &tile.strips {
-        strip_forces(simd, s, &tile.varying, k, &mut nodes, step);
+    let nodes = &mut Nodes { x, y, own_x, own_y, vx, vy, fx, fy, held_x, held_y, step_over_mass, mass };
+    for strip in &tile.strips {
+        simd.vectorize(StripForces { strip, tile, nodes, fetch });
     }
 }

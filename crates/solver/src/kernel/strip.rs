@@ -3,22 +3,22 @@
 
 use std::ops::Range;
 
-use pulp::Simd;
+use pulp::{Simd, WithSimd};
 
 use crate::{
     element::{CornerForces, Stiffness},
     kernel::{
         advance::{Damping, Nodes, Step, Undamped, advance},
         quad_forms::QuadMetric,
-        tile::Strip,
+        tile::{Strip, Tile},
         varying_references::VaryingReferences,
     },
 };
 use stribeck_simd::lanes::Vector;
 
-/// Adds the forces of one strip, and moves its lower row if the strip completes it.
+/// Adds the forces of one strip that completes its lower row, and moves that row.
 #[inline(always)]
-pub(crate) fn strip<S: Simd, D: Damping>(
+pub(crate) fn moving_strip<S: Simd, D: Damping>(
     simd: S,
     strip: &Strip,
     varying: &VaryingReferences,
@@ -27,25 +27,30 @@ pub(crate) fn strip<S: Simd, D: Damping>(
     step: &Step<S>,
     heat: &mut Vector<S>,
 ) {
-    if strip.completes {
-        run::<S, D, true>(simd, strip, varying, stiffness, nodes, step, heat);
-    } else {
-        run::<S, D, false>(simd, strip, varying, stiffness, nodes, step, heat);
-    }
+    run::<S, D, true>(simd, strip, varying, stiffness, nodes, step, heat);
 }
 
-/// Adds the forces of one strip and moves nothing.
-#[inline(always)]
-pub(crate) fn strip_forces<S: Simd>(
-    simd: S,
-    strip: &Strip,
-    varying: &VaryingReferences,
-    stiffness: &Stiffness<Vector<S>>,
-    nodes: &mut Nodes<'_>,
-    step: &Step<S>,
-) {
-    let heat = &mut Vector::all(simd, 0.0);
-    run::<S, Undamped, false>(simd, strip, varying, stiffness, nodes, step, heat);
+/// Adds the forces of one strip [N] and moves nothing. A call of its own: it is compiled once for an
+/// instruction set, and not again for each kind of damping.
+pub(crate) struct StripForces<'a, 'b> {
+    pub(crate) strip: &'a Strip,
+    pub(crate) tile: &'a Tile,
+    pub(crate) nodes: &'a mut Nodes<'b>,
+    /// Whether the data read next is prefetched.
+    pub(crate) fetch: bool,
+}
+
+impl WithSimd for StripForces<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { strip, tile, nodes, fetch } = self;
+        let k = &tile.stiffness.of(Vector::all(simd, 0.0));
+        let heat = &mut Vector::all(simd, 0.0);
+        let step = &Step::still(simd, fetch);
+        run::<S, Undamped, false>(simd, strip, &tile.varying, k, nodes, step, heat);
+    }
 }
 
 /// Forces of a group of elements on their right corners: (x, y) of the lower row and minus that of the upper

@@ -5,9 +5,8 @@ use pulp::{Simd, WithSimd};
 
 use crate::{
     kernel::{
-        advance::{Step, StepParameters},
+        advance::StepParameters,
         fields::{BranchFields, TileFields},
-        frames::LaneFrames,
         stiffness_damping::{Extrapolated, tile_forces},
         tile::{Tile, TileStructural},
     },
@@ -112,9 +111,7 @@ impl WithSimd for Evaluate<'_> {
         let (fx, fy) = (&mut fx[..n], &mut fy[..n]);
         fx.fill(0.0);
         fy.fill(0.0);
-        let k = &tile.stiffness.of(Vector::all(simd, 0.0));
-        let step = &Step::new(simd, &parameters, 0.0, &LaneFrames::REST);
-        tile_forces(simd, tile, k, [seen_x, seen_y, vx, vy], [&mut *fx, &mut *fy], step);
+        tile_forces(simd, tile, [seen_x, seen_y, vx, vy], [&mut *fx, &mut *fy], parameters.fetch);
         for (held, force) in [(&mut *held_x, fx), (&mut *held_y, fy)] {
             for (held, force) in held.iter_mut().zip(force) {
                 *held = -evaluation.share * *force;

@@ -11,9 +11,9 @@ use crate::{
         },
         fields::TileFields,
         frames::LaneFrames,
-        gather::{congruent_elements, single_elements},
+        gather::Gathered,
         stiffness_damping::{Extrapolate, Extrapolated},
-        strip::strip,
+        strip::{StripForces, moving_strip},
         structural_damping::{Evaluate, Evaluation, HeldWork},
         tile::Tile,
     },
@@ -152,11 +152,7 @@ impl Sweep<'_> {
         } else {
             (x, y, &mut [][..], &mut [][..])
         };
-        if tile.congruent {
-            congruent_elements(simd, tile, stiffness, x, y, fx, fy);
-        } else {
-            single_elements(simd, tile, stiffness, x, y, fx, fy);
-        }
+        simd.vectorize(Gathered { tile, x, y, fx, fy });
         let mass = tile.damping.as_ref().map_or(&[][..], |d| &d.mass);
         let step_over_mass = &tile.step_over_mass;
         let mut nodes = Nodes { x, y, own_x, own_y, vx, vy, fx, fy, held_x, held_y, step_over_mass, mass };
@@ -177,8 +173,15 @@ impl Sweep<'_> {
                 };
                 advance_row::<S, D>(simd, &mut nodes, f.nodes.clone(), tile.congruent, free, step, &mut heat);
             }
-            if let Some(s) = tile.strips.get(done) {
-                strip::<S, D>(simd, s, &tile.varying, stiffness, &mut nodes, step, &mut heat);
+            match tile.strips.get(done) {
+                Some(s) if s.completes => {
+                    moving_strip::<S, D>(simd, s, &tile.varying, stiffness, &mut nodes, step, &mut heat);
+                }
+                Some(strip) => {
+                    let (nodes, fetch) = (&mut nodes, step.fetch);
+                    simd.vectorize(StripForces { strip, tile, nodes, fetch });
+                }
+                None => {}
             }
         }
         fx[tile.own..].fill(0.0);

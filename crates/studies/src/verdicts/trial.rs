@@ -1,6 +1,6 @@
 //! Changes to a record before it is judged, and the outcome.
 
-use stribeck_analysis::measured::{Analysis, Defect, Interval, Machine};
+use stribeck_analysis::measured::{Analysis, Defect, Family, Interval, Machine};
 use stribeck_dsp::resample_poly;
 use stribeck_formats::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
@@ -67,7 +67,7 @@ pub(super) struct Outcome {
     pub(super) claimed: Vec<Defect>,
     /// Families that a claim names as possible beside the first one.
     pub(super) or: Vec<Defect>,
-    /// Score of each family [dB].
+    /// Score of each family [dB] ([`score`]).
     pub(super) scores: [f64; 4],
     /// The part that is named where one must be ([`choice`]).
     pub(super) choice: Defect,
@@ -128,10 +128,10 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
     };
     let analysis = Analysis::of(&Channel::held(record.name.clone(), samples), rate_hz, &machine).ok()?;
     let families = &analysis.findings.families;
-    let of = |value: fn(&stribeck_analysis::measured::Family) -> f64, none: f64| {
+    let of = |value: fn(&Family) -> f64, none: f64| {
         Defect::ALL.map(|name| families.iter().find(|f| f.name == name).map_or(none, value))
     };
-    let scores = of(|f| f.score_db(), f64::NEG_INFINITY);
+    let scores = of(score, f64::NEG_INFINITY);
     let claims = families.iter().filter(|f| f.claimed);
     Some(Outcome {
         claimed: claims.clone().map(|f| f.name).collect(),
@@ -144,6 +144,19 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         is_bounded: analysis.findings.spall_below_mm.is_some(),
         verdict: analysis.findings.verdict,
     })
+}
+
+/// Score of a family where one must be named [dB]. The cage modulates whatever knocks, so a family that knocks
+/// comes first, the highest of several, and the cage is not among them; of those that do not, the one that
+/// stands farthest above unrelated combs, because elements of sound bearings pass under the load, too.
+fn score(family: &Family) -> f64 {
+    /// More than any comb stands above its background [dB].
+    const KNOCKS_DB: f64 = 100.0;
+    if family.knocks() && family.name != Defect::Ftf {
+        KNOCKS_DB + family.score_db()
+    } else {
+        family.above_unrelated_db().unwrap_or(f64::NEG_INFINITY)
+    }
 }
 
 /// The part whose family has the highest score. One rolling element that is damaged comes under the load once

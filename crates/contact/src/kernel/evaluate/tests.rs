@@ -184,7 +184,8 @@ impl Plain {
             self.history[number] = [0.0; 2];
             return;
         }
-        let pressure = (-k * gap - c * opening).max(0.0);
+        let kept = c / (c + k * at.dt);
+        let pressure = (kept * damping - (1.0 - kept) * c * opening - k * gap).max(0.0);
         let limit = FRICTION * -gap * STIFFNESS / (0.8 * STIFFNESS);
         let new = (slip + along * at.dt).clamp(-limit, limit);
         let dashpot = pressure + k * gap;
