@@ -347,7 +347,8 @@ mod tests {
     /// Half of a period is looked at, where an event is as far from the passage before as from the next.
     #[test]
     fn example_a_second_event_halfway_between_passages_shows() {
-        let found = passage_spacing(&unequal(8.2e-3, 0.2e-3, 0.4), RATE_HZ, 60.0, 0.5e-3, 0.5 / 60.0).unwrap();
+        let found =
+            passage_spacing(&unequal(8.2e-3, 0.2e-3, 0.4), RATE_HZ, 60.0, 0.5e-3, 0.5 / 60.0).unwrap();
         let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
         assert!((found.lag_s - 8.2e-3).abs() < 0.1e-3, "{found:?}");
     }

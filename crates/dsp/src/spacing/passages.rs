@@ -145,8 +145,11 @@ impl Search {
         // A band may be later than both together.
         let sharp = smoothing(self.sample_rate_hz).min(reach - 1);
         let first = top(all, highest(all, reach - sharp..reach + sharp + 1));
-        let second =
-            |n: usize| Second { at: n, lag: (top(all, n) - first).abs(), valley: between(all, n, reach) / all[n] };
+        let second = |n: usize| Second {
+            at: n,
+            lag: (top(all, n) - first).abs(),
+            valley: between(all, n, reach) / all[n],
+        };
         // Such a band moves the distance, too, out of those that are looked at.
         let within = |second: &Second| self.lags.contains(&(second.lag.round() as usize));
         (1..all.len() - 1).filter(|n| stands(*n)).map(second).filter(within).collect()

@@ -538,8 +538,8 @@ pub(super) fn bounds(sheet: &mut Sheet) {
         "- **Rolling elements.** A pit on a ball meets the raceways only while the ball spins about the \
          right axis: most of these records have no comb at twice BSF that stands above unrelated ones. What a \
          forced choice finds is mostly the cage, under which the spot comes once a turn; the baselines choose \
-         it more often, in records of other parts, too, so that their area is below one half. Where the ball \
-         knocks once a turn of the cage, the claim is the cage *or* one rolling element. In two records of UESTC with a damaged ball the comb of the outer raceway \
+         it more often, in records of other parts, too, so that their area is below one half on the quoted \
+         part. Where the ball knocks once a turn of the cage, the claim is the cage *or* one rolling element. In two records of UESTC with a damaged ball the comb of the outer raceway \
          stands highest, too shallow for a knock.\n\
          - **Fan end of CWRU.** Three, four and five turns of the shaft lie within 2 % of BPFO, 2×BSF and \
          BPFI of a 6203, and stand higher than the families where the pit is outside the load zone (3 and 12 \
