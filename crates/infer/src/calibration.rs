@@ -1,6 +1,8 @@
 //! Simulation-based calibration: do intervals hold the truths that they should (Talts and others, *Validating
 //! Bayesian inference algorithms with simulation-based calibration*, arXiv 1804.06788)?
 
+use std::cell::OnceCell;
+
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
@@ -13,11 +15,12 @@ use crate::{
     posterior::{self, Posterior, PosteriorOptions},
     prior::{Prior, snapped},
     random::{Random, normal_quantile},
-    runs::Target,
+    runs::{Output, Scale, Target},
 };
 
-/// Points of the prior that all truths share; a posterior with too few of them is sampled on its own.
-const POOL: usize = 8192;
+/// Points of the prior that all truths share: few, and more for a posterior with too few of them. One with
+/// too few of these is sampled on its own.
+const POOLS: [usize; 2] = [8192, 32_768];
 
 /// Least effective number of points from the pool.
 const ENOUGH: f64 = 200.0;
@@ -70,6 +73,8 @@ pub struct Calibration {
     pub truths: usize,
     /// In the order of the coordinates.
     pub fields: Vec<FieldCalibration>,
+    /// Share of the draws below each truth (`[field][truth]`).
+    pub ranks: Vec<Vec<f64>>,
 }
 
 /// Result of one truth: rank of each coordinate, and its posterior standard deviation.
@@ -79,7 +84,8 @@ struct Answer {
 }
 
 impl Calibration {
-    /// Infers every truth from its own outputs. `columns` are those that count, each with its tolerance.
+    /// Infers every truth from its own outputs. `columns` are those that count, each with its tolerance, and
+    /// every output gets a random error of that size: what the posterior takes for granted.
     ///
     /// # Errors
     /// When there are no truths, their shapes do not fit, or a target is invalid.
@@ -97,83 +103,105 @@ impl Calibration {
         }
         let points: Vec<Vec<f64>> = truths.iter().map(|truth| truth.point.clone()).collect();
         emulator.check(&points)?;
-        let pool: Vec<Vec<f64>> = design::points(options.seed ^ 0xca11, priors.len(), 0..POOL)
-            .iter()
-            .map(|point| snapped(priors, point))
-            .collect();
-        let pool = Pool::new(emulator, columns, pool);
+        let pools = POOLS.map(|size| Pool { size, known: OnceCell::new() });
+        let asked: Vec<usize> = columns.iter().map(|column| column.0).collect();
         let mut random = Random::stream(options.seed, 2);
+        let mut errors = Random::stream(options.seed, 5);
+        let outputs: Vec<Output> = emulator.outputs().cloned().collect();
         let mut answers = Vec::with_capacity(truths.len());
         for (number, truth) in truths.iter().enumerate() {
-            let targets = targets(truth, columns, number)?;
-            let options = PosteriorOptions { seed: options.seed.wrapping_add(number as u64), ..options };
-            answers.push(pool.answer(emulator, priors, truth, &targets, options, &mut random)?);
+            let targets = targets(&outputs, &truth.outputs, columns, number, &mut errors)?;
+            let likelihood = Likelihood::new(emulator, &targets)?;
+            let seed = options.seed;
+            let known = pools.iter().find_map(|pool| pool.weighted(&likelihood, priors, &asked, seed));
+            answers.push(if let Some((points, weights)) = known {
+                Answer::of(truth, points, &weights, &mut random)
+            } else {
+                let options = PosteriorOptions { seed: seed.wrapping_add(number as u64), ..options };
+                let draws = Posterior::of(emulator, priors, &targets, options)?.draws;
+                let even = vec![1.0 / draws.len() as f64; draws.len()];
+                Answer::of(truth, &draws, &even, &mut random)
+            });
         }
-        let prior: Vec<f64> = (0..priors.len())
-            .map(|field| {
-                let column: Vec<f64> = pool.points.iter().map(|point| point[field]).collect();
-                weighted_moments(&column, &vec![1.0 / POOL as f64; POOL])[1]
-            })
+        let prior = |field: usize| {
+            let points = design::points(options.seed ^ 0xca11, priors.len(), 0..POOLS[0]);
+            let column: Vec<f64> = points.iter().map(|point| snapped(priors, point)[field]).collect();
+            weighted_moments(&column, &vec![1.0 / column.len() as f64; column.len()])[1]
+        };
+        let ranks: Vec<Vec<f64>> = (0..priors.len())
+            .map(|field| answers.iter().map(|answer| answer.ranks[field]).collect())
             .collect();
         let field = |field: usize| {
-            let ranks: Vec<f64> = answers.iter().map(|answer| answer.ranks[field]).collect();
             let width = answers.iter().map(|answer| answer.deviations[field]).sum::<f64>();
-            FieldCalibration::of(&ranks, width / (truths.len() as f64 * prior[field].max(1e-12)))
+            FieldCalibration::of(&ranks[field], width / (truths.len() as f64 * prior(field).max(1e-12)))
         };
-        Ok(Self { truths: truths.len(), fields: (0..priors.len()).map(field).collect() })
+        let fields = (0..priors.len()).map(field).collect();
+        Ok(Self { truths: truths.len(), fields, ranks })
     }
 }
 
-fn targets(truth: &Truth, columns: &[(usize, f64)], number: usize) -> Result<Vec<Target>, Error> {
-    let target = |&(output, tolerance): &(usize, f64)| match truth.outputs.get(output) {
-        Some(&value) => Ok(Target { output, value, tolerance }),
+/// The outputs of a truth, each with an error of its tolerance, on the scale of the output.
+pub(crate) fn targets(
+    outputs: &[Output],
+    values: &[Option<f64>],
+    columns: &[(usize, f64)],
+    number: usize,
+    errors: &mut Random,
+) -> Result<Vec<Target>, Error> {
+    let target = |&(output, tolerance): &(usize, f64)| match values.get(output) {
+        Some(&value) => {
+            let scale = outputs.get(output).map_or(Scale::Linear, |column| column.scale);
+            let with_error = |value: f64| {
+                scale.back(scale.forward(value) + errors.normal() * tolerance / scale.slope(value))
+            };
+            let value = if tolerance > 0.0 { value.map(with_error) } else { value };
+            Ok(Target { output, value, tolerance })
+        }
         None => {
-            let found = truth.outputs.len();
+            let found = values.len();
             Err(Error::Shape { what: "outputs of truth", number, found, expected: output + 1 })
         }
     };
     columns.iter().map(target).collect()
 }
 
-/// Points of the prior whose predictions are computed once for all truths.
+/// Points of the prior whose predictions are computed once for all truths, when the first of them asks.
 struct Pool {
-    points: Vec<Vec<f64>>,
-    predictions: Predictions,
+    size: usize,
+    known: OnceCell<(Vec<Vec<f64>>, Predictions)>,
 }
 
 impl Pool {
-    fn new(emulator: &Emulator, columns: &[(usize, f64)], points: Vec<Vec<f64>>) -> Self {
-        let outputs: Vec<usize> = columns.iter().map(|column| column.0).collect();
-        Self { predictions: Predictions::of(emulator, &outputs, &points), points }
-    }
-
-    fn answer(
+    /// Points with the weights of a posterior; none where too few of them count.
+    fn weighted(
         &self,
-        emulator: &Emulator,
+        likelihood: &Likelihood<'_>,
         priors: &[Prior],
-        truth: &Truth,
-        targets: &[Target],
-        options: PosteriorOptions,
-        random: &mut Random,
-    ) -> Result<Answer, Error> {
-        let likelihood = Likelihood::new(emulator, targets)?;
-        let logs = likelihood.at_predicted(&self.predictions);
-        let (weights, _) = posterior::weights(&logs, 1.0);
-        let enough = posterior::effective(&weights) >= ENOUGH;
-        let (points, weights) = if enough {
-            (self.points.clone(), weights)
-        } else {
-            let found = Posterior::of(emulator, priors, targets, options)?;
-            let even = vec![1.0 / found.draws.len() as f64; found.draws.len()];
-            (found.draws, even)
-        };
-        let mut answer = Answer { ranks: Vec::new(), deviations: Vec::new() };
-        for field in 0..priors.len() {
+        outputs: &[usize],
+        seed: u64,
+    ) -> Option<(&[Vec<f64>], Vec<f64>)> {
+        let (points, predictions) = self.known.get_or_init(|| {
+            let points: Vec<Vec<f64>> = design::points(seed ^ 0xca11, priors.len(), 0..self.size)
+                .iter()
+                .map(|point| snapped(priors, point))
+                .collect();
+            let predictions = likelihood.predictions(outputs, &points);
+            (points, predictions)
+        });
+        let (weights, _) = posterior::weights(&likelihood.at_predicted(predictions), 1.0);
+        (posterior::effective(&weights) >= ENOUGH).then_some((points, weights))
+    }
+}
+
+impl Answer {
+    fn of(truth: &Truth, points: &[Vec<f64>], weights: &[f64], random: &mut Random) -> Self {
+        let mut answer = Self { ranks: Vec::new(), deviations: Vec::new() };
+        for (field, value) in truth.point.iter().enumerate() {
             let column: Vec<f64> = points.iter().map(|point| point[field]).collect();
-            answer.ranks.push(rank(truth.point[field], &column, &weights, random.share()));
-            answer.deviations.push(weighted_moments(&column, &weights)[1]);
+            answer.ranks.push(rank(*value, &column, weights, random.share()));
+            answer.deviations.push(weighted_moments(&column, weights)[1]);
         }
-        Ok(answer)
+        answer
     }
 }
 

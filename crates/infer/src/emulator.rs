@@ -18,6 +18,7 @@ use self::{
     regression::Regression,
     scatter::{Scatter, Spread},
 };
+pub(crate) use hyper::members;
 pub(crate) use tails::Tails;
 
 use crate::{
@@ -114,6 +115,8 @@ impl Scaled {
 struct Grouped<'a> {
     runs: &'a Runs,
     groups: Vec<Vec<usize>>,
+    /// Number of the block of each group: readings of the same simulations.
+    blocks: Vec<usize>,
 }
 
 impl Emulator {
@@ -125,7 +128,8 @@ impl Emulator {
     /// points than dimensions + 2.
     pub fn fit(runs: &Runs, outputs: &[Output], _seed: u64) -> Result<Self, Error> {
         runs.check(outputs)?;
-        let grouped = Grouped { runs, groups: runs.groups() };
+        let groups = runs.groups();
+        let grouped = Grouped { runs, blocks: runs.blocks(&groups), groups };
         let (points, dimensions) = (grouped.groups.len(), runs.dimensions());
         let least = dimensions + 2;
         if points < least || dimensions == 0 {
@@ -134,7 +138,9 @@ impl Emulator {
         let fitted = in_parallel(outputs.len(), |number| Column::fit(&grouped, &outputs[number], number));
         let fitted: Vec<(Column, Vec<Option<f64>>)> = fitted.into_iter().collect::<Result<_, _>>()?;
         let (columns, residuals): (Vec<_>, Vec<_>) = fitted.into_iter().unzip();
-        Ok(Self { dimensions, columns, correlations: correlation::correlations(&residuals) })
+        let simulations: Vec<usize> = (0..runs.points.len()).map(|row| runs.simulation(row)).collect();
+        let correlations = correlation::correlations(&residuals, &simulations);
+        Ok(Self { dimensions, columns, correlations })
     }
 
     /// Dimensions of a point.
@@ -285,7 +291,7 @@ impl Column {
         let runs: Vec<f64> = grouped.groups.iter().map(|group| group.len() as f64).collect();
         let count = |group: &Vec<usize>| group.iter().filter(|&&row| all(row).is_some()).count() as f64;
         let have: Vec<f64> = grouped.groups.iter().map(count).collect();
-        let existence = Existence::fit(&points, &have, &runs)?;
+        let existence = Existence::fit(&points, &have, &runs, &grouped.blocks)?;
 
         let total = grouped.runs.points.len();
         let with: usize = (0..total).filter(|&row| all(row).is_some()).count();
@@ -336,8 +342,8 @@ impl Value {
         }
         let mut points = Vec::new();
         let mut members: Vec<Vec<usize>> = Vec::new();
-        let (mut values, mut spreads) = (Vec::new(), Vec::new());
-        for group in &grouped.groups {
+        let (mut values, mut spreads, mut blocks) = (Vec::new(), Vec::new(), Vec::new());
+        for (group, &block) in grouped.groups.iter().zip(&grouped.blocks) {
             let those: Vec<usize> = group.iter().copied().filter(|&row| of_row[row].is_some()).collect();
             let numbers: Vec<f64> = those.iter().filter_map(|&row| of_row[row]).collect();
             if numbers.is_empty() {
@@ -349,20 +355,25 @@ impl Value {
             values.push(mean);
             points.push(grouped.runs.points[group[0]].clone());
             members.push(those);
+            blocks.push(block);
         }
-        let fit = Fit::of(&points, &values, &spreads)?;
+        let fit = Fit::of(&points, &values, &spreads, &blocks)?;
         let mut standardised = Vec::new();
+        let mut weights = Vec::new();
         let mut unexplained = 0.0;
+        let mut size = std::collections::BTreeMap::<usize, f64>::new();
+        blocks.iter().for_each(|block| *size.entry(*block).or_default() += 1.0);
         for (i, those) in members.iter().enumerate() {
             let scale = (fit.left_out[i].variance + fit.noise * fit.scatter.left_out[i]).sqrt();
             for &row in those {
                 let residual = of_row[row].unwrap_or_default() - fit.left_out[i].mean;
                 unexplained += residual * residual;
                 standardised.push((row, residual / scale));
+                weights.push(1.0 / (1.0 + (size[&blocks[i]] - 1.0) * fit.shared));
             }
         }
         let numbers: Vec<f64> = standardised.iter().map(|pair| pair.1).collect();
-        let tails = Tails::fit(&numbers);
+        let tails = Tails::fit(&numbers, &weights);
         for (row, z) in &standardised {
             residuals[*row] = Some(tails.normal(z / tails.scale));
         }
@@ -383,26 +394,28 @@ struct Fit {
     regression: Regression,
     left_out: Vec<regression::LeftOut>,
     noise: f64,
+    /// Share of the noise that readings of one simulation have in common.
+    shared: f64,
     scatter: Scatter,
 }
 
 impl Fit {
     /// The scatter follows from residuals, and the regression from the scatter: two rounds.
-    fn of(points: &[Vec<f64>], values: &[f64], spreads: &[Spread]) -> Result<Self, Error> {
+    fn of(points: &[Vec<f64>], values: &[f64], spreads: &[Spread], blocks: &[usize]) -> Result<Self, Error> {
         let linear = points.len() >= points[0].len() + 3;
         let mut scatter = Scatter::even(points.len());
         let mut hyper: Option<Hyper> = None;
         for round in 0.. {
             let factors: Vec<f64> = scatter.factors.iter().zip(spreads).map(|(f, s)| f / s.runs).collect();
-            let sample = Sample { points, values, factors: &factors, linear };
+            let sample = Sample { points, values, factors: &factors, blocks, linear };
             let found = match hyper {
                 Some(found) if round == 2 => found,
                 start => Hyper::fit(&sample, start.as_ref()),
             };
-            let noise = found.noise;
+            let (noise, shared) = (found.noise, found.shared);
             let (regression, left_out) = Regression::fit(&sample, &found)?;
             if round == 2 {
-                return Ok(Self { regression, left_out, noise, scatter });
+                return Ok(Self { regression, left_out, noise, shared, scatter });
             }
             scatter = Scatter::fit(&sample, spreads, noise, &scatter.factors, &left_out)?;
             hyper = Some(found);

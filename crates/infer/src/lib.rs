@@ -20,6 +20,7 @@
 //! | Do runs at these points make the targets? | [`Predictive::of`] |
 //! | What can no point make? | [`Conflict::of`] |
 //! | Can the intervals be trusted? | [`Calibration::of`] |
+//! | How wide must they be where they cannot? | [`Levels::of`] |
 //! | A whole curve is the target | [`Curves`] |
 
 mod error;
@@ -39,6 +40,7 @@ mod pulls;
 
 mod calibration;
 mod interval;
+mod levels;
 
 mod curve;
 
@@ -51,6 +53,7 @@ pub use design::{MOST_DIMENSIONS, MOST_POINTS, sobol};
 pub use emulator::{Emulator, Prediction, Quality};
 pub use error::Error;
 pub use interval::{interval, moments, quantile, rank};
+pub use levels::{FieldLevels, Levels};
 pub use next::{Gain, NextOptions, expected_gain, next};
 pub use posterior::{Posterior, PosteriorOptions};
 pub use predictive::Predictive;

@@ -104,6 +104,11 @@ impl<'a> Likelihood<'a> {
         rows
     }
 
+    /// The emulator's predictions of outputs at points.
+    pub(crate) fn predictions(&self, outputs: &[usize], points: &[Vec<f64>]) -> Predictions {
+        Predictions::of(self.emulator, outputs, points)
+    }
+
     /// Logarithm of the joint density against predictions, whose columns are the targets.
     pub(crate) fn at_predicted(&self, predictions: &Predictions) -> Vec<f64> {
         self.compare(predictions).iter().map(|seen| self.density(seen, |_| true)).collect()

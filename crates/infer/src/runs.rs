@@ -13,6 +13,10 @@ pub struct Runs {
     /// Outputs (`[run][output]`, each in its own unit); none where a run does not yield the quantity, such as
     /// a tone that is not found.
     pub outputs: Vec<Vec<Option<f64>>>,
+    /// Number of the simulation that each row is a reading of; empty where every row has its own. Readings
+    /// of one simulation have the chance of its start in common, so together they count for less than as
+    /// many simulations.
+    pub simulations: Vec<usize>,
 }
 
 /// A column of outputs.
@@ -88,6 +92,9 @@ impl Runs {
         if self.outputs.len() != self.points.len() {
             return shape("table", 0, self.outputs.len(), self.points.len());
         }
+        if !self.simulations.is_empty() && self.simulations.len() != self.points.len() {
+            return shape("list of simulations", 0, self.simulations.len(), self.points.len());
+        }
         for (row, (point, values)) in self.points.iter().zip(&self.outputs).enumerate() {
             if point.len() != self.dimensions() {
                 return shape("point", row, point.len(), self.dimensions());
@@ -109,6 +116,26 @@ impl Runs {
             }
         }
         Ok(())
+    }
+
+    /// Number of the simulation of a row.
+    pub(crate) fn simulation(&self, row: usize) -> usize {
+        self.simulations.get(row).copied().unwrap_or(row)
+    }
+
+    /// Which of these groups of rows belong together: a number each, equal where they have a simulation in
+    /// common.
+    pub(crate) fn blocks(&self, groups: &[Vec<usize>]) -> Vec<usize> {
+        let mut of_simulation = std::collections::BTreeMap::new();
+        let one = |(number, group): (usize, &Vec<usize>)| {
+            let known = group.iter().find_map(|&row| of_simulation.get(&self.simulation(row)).copied());
+            let block = known.unwrap_or(number);
+            for &row in group {
+                of_simulation.entry(self.simulation(row)).or_insert(block);
+            }
+            block
+        };
+        groups.iter().enumerate().map(one).collect()
     }
 
     /// Rows with equal points, in the order of first occurrence.

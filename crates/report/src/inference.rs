@@ -56,6 +56,9 @@ pub struct Answer {
     pub pulls: Vec<Pulled>,
     /// How well outputs are emulated.
     pub quality: Vec<Quality>,
+    /// Scenes of the first round that were inferred each from its own numbers by an emulator of the others; 0
+    /// where they are too few.
+    pub own_runs: usize,
     /// How often intervals hold truths that were drawn from the prior, by unknown.
     pub calibration: Option<Vec<FieldCalibrated>>,
 }
@@ -73,9 +76,9 @@ pub struct FieldFound {
     pub logarithmic: bool,
     /// Median, in the field's unit; `None` for choices.
     pub median: Option<f64>,
-    /// Central 50 % interval.
+    /// 50 % interval.
     pub interval_50: Option<[f64; 2]>,
-    /// Central 90 % interval.
+    /// 90 % interval.
     pub interval_90: Option<[f64; 2]>,
     /// Width of the 90 % interval over that of the prior; of choices the entropy over that of the prior. 1
     /// where nothing was learnt.
@@ -84,6 +87,11 @@ pub struct FieldFound {
     pub bars: Vec<f64>,
     /// Choices with their probabilities; empty for numbers.
     pub choices: Vec<Choice>,
+    /// Share of the draws that the 90 % interval takes in: 0.9, or the larger one that holds 90 % of the scenes
+    /// of the first round.
+    pub level_90: f64,
+    /// Share of these scenes in the central 90 % of their draws; `None` where they are too few.
+    pub own_runs_in_90: Option<f64>,
     /// Standard deviation that is expected after one more round, over that of now.
     pub expected_narrowing: f64,
     /// The same after any number of further runs: scatter and tolerances remain.
@@ -182,10 +190,12 @@ pub struct FieldCalibrated {
     pub name: String,
     /// Truths.
     pub truths: usize,
-    /// Share of truths in the central 50 % interval, with its 95 % Wilson interval.
+    /// Share of truths in the 50 % interval, with its 95 % Wilson interval.
     pub held_50: [f64; 3],
     /// The same of the 90 % interval.
     pub held_90: [f64; 3],
+    /// The same of the central 90 % of the draws.
+    pub held_90_of_draws: [f64; 3],
     /// Truths by ten equal ranks in their posterior: even where it is calibrated.
     pub ranks: Vec<usize>,
     /// Probability of ranks as uneven by chance.

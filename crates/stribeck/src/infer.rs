@@ -14,7 +14,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_infer::{Emulator, NextOptions, Posterior, PosteriorOptions, next, snapped, sobol};
+use stribeck_infer::{Emulator, Levels, NextOptions, Posterior, PosteriorOptions, next, snapped, sobol};
 use stribeck_report::inference::write_inference;
 use stribeck_scene::inference::Inference;
 use stribeck_scene::run_dir::{Keep, check_folder, write_atomic};
@@ -183,7 +183,7 @@ impl Study<'_> {
         let budget = inference.budget;
         let scenes = budget.runs / inference.starts;
         let (mut points, mut rows) = (Vec::<Point>::new(), Vec::<Row>::new());
-        let mut number = 1;
+        let (mut number, mut drawn) = (1, 0);
         while points.len() < scenes {
             let round = Round::Number(number);
             let planned = match rounds.read(round)? {
@@ -210,9 +210,15 @@ impl Study<'_> {
             }
             rows.extend(outputs::rows(inference, rounds, &planned)?);
             points.extend(planned);
+            if number == 1 {
+                drawn = rows.len();
+            }
             number += 1;
         }
         let table = Table::of(inference, &rows)?;
+        let columns = table.columns();
+        let levels =
+            Levels::of(&table.runs, &table.outputs, rounds.priors(), &columns, drawn, inference.seed)?;
         let emulator = Emulator::fit(&table.runs, &table.outputs, inference.seed)?;
         let posterior = self.posterior(&emulator, &table, DRAWS)?;
         let Some(check) = self.check(&posterior)? else { return Ok(None) };
@@ -231,6 +237,7 @@ impl Study<'_> {
             rounds: number - 1,
             table,
             emulator,
+            levels,
             posterior,
             check,
             truths,

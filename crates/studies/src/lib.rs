@@ -25,6 +25,7 @@ mod reduced;
 mod rig;
 mod run_time;
 mod runner;
+mod spall_size;
 mod spalls;
 mod stability;
 mod table;
@@ -66,6 +67,9 @@ pub enum Study {
     Loop(closed_loop::Options),
     /// Simulated spalls of known length through `stribeck analyse`: whether it finds their lengths
     Spalls(spalls::Options),
+    /// Whether the force at the exit of a spall grows with its depth and its width
+    #[command(name = "spall_size")]
+    SpallSize(spall_size::Options),
     /// How far the reduced bearing is from the full one, scene by scene
     Reduced(reduced::Options),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
@@ -95,6 +99,7 @@ impl Study {
             Self::Atlas(options) => atlas::run(options, host),
             Self::Loop(options) => closed_loop::run(options, host),
             Self::Spalls(options) => spalls::run(options, host),
+            Self::SpallSize(options) => spall_size::run(options, host),
             Self::Reduced(options) => reduced::run(options, host),
             Self::Impulse(options) => impulse::run(options, host),
             Self::Own(options) => own_bearings::run(options, host),

@@ -27,7 +27,8 @@ const STRAINED: f64 = 0.01;
 pub struct Limits {
     /// Reference of the imbalance of energy.
     pub energy_scale: Scale,
-    /// Imbalance of energy above which there is a warning [%].
+    /// Imbalance of energy above which there is a warning [%]; where the heat is more than its reference, over
+    /// the heat.
     pub energy_warning_percent: f64,
     /// … and above which to stop [%].
     pub energy_stop_percent: f64,
@@ -201,7 +202,8 @@ impl System {
             );
         }
         // A load that comes suddenly is soon larger than the energy of the first looks.
-        if error > warning && !seen.energy_warned && seen.looks.is_multiple_of(elements_every.max(1)) {
+        // Relative to the larger of both: over a long run the heat grows beyond any constant limit.
+        if error.min(self.of_heat()) > warning && !seen.energy_warned && seen.looks.is_multiple_of(elements_every.max(1)) {
             seen.energy_warned = true;
             return found(
                 false,
@@ -218,16 +220,26 @@ impl System {
         None
     }
 
-    /// The imbalance as a share of the heat, where that is more than was ever stored as strain: fast bodies
-    /// that slide or shear oil turn much more energy into heat than they store, and the error of the time
-    /// step grows with it.
-    fn share_of_heat(&self) -> String {
+    /// Heat so far [J].
+    fn heat(&self) -> f64 {
         let ledger = self.last_ledger();
-        let heat = ledger.friction + ledger.damping + ledger.contact_damping + ledger.film;
-        if heat <= self.balance().peak_strain {
+        ledger.friction + ledger.damping + ledger.contact_damping + ledger.film
+    }
+
+    /// The imbalance over the heat [-]; infinite where there is none.
+    fn of_heat(&self) -> f64 {
+        if self.heat() > 0.0 { self.last_ledger().imbalance.abs() / self.heat() } else { f64::INFINITY }
+    }
+
+    /// The imbalance as a share of the heat, in words, where that is more than was ever stored as strain: fast
+    /// bodies that slide or shear oil turn much more energy into heat than they store, and the error of the
+    /// time step grows with it.
+    fn share_of_heat(&self) -> String {
+        let times = self.heat() / self.balance().peak_strain;
+        if times <= 1.0 {
             return String::new();
         }
-        let [share, times] = [100.0 * ledger.imbalance.abs() / heat, heat / self.balance().peak_strain];
+        let share = 100.0 * self.of_heat();
         format!(", {share:.3} % of the heat, which has grown to {times:.1} times what is stored,")
     }
 

@@ -5,14 +5,15 @@ use faer::{Mat, Side};
 /// Correlations of columns of normal deviates, none where a run has no output, shrunk towards none by as much
 /// as their own uncertainty asks for (Schäfer and Strimmer, *A shrinkage approach to large-scale covariance
 /// matrix estimation*, Statistical Applications in Genetics and Molecular Biology 4, 2005, target D), and
-/// further until positive definite.
-pub(super) fn correlations(columns: &[Vec<Option<f64>>]) -> Mat<f64> {
+/// further until positive definite. `simulations` has the number of the simulation of each row; their
+/// uncertainty is that of so many simulations.
+pub(super) fn correlations(columns: &[Vec<Option<f64>>], simulations: &[usize]) -> Mat<f64> {
     let n = columns.len();
     let mut matrix = Mat::<f64>::identity(n, n);
     let [mut squares, mut errors] = [0.0, 0.0];
     for i in 0..n {
         for j in 0..i {
-            let (value, error) = one(&columns[i], &columns[j]);
+            let (value, error) = one(&columns[i], &columns[j], simulations);
             matrix[(i, j)] = value;
             matrix[(j, i)] = value;
             squares += value * value;
@@ -31,7 +32,7 @@ pub(super) fn correlations(columns: &[Vec<Option<f64>>]) -> Mat<f64> {
 }
 
 /// Correlation of two columns over the rows that have both, and its variance.
-fn one(a: &[Option<f64>], b: &[Option<f64>]) -> (f64, f64) {
+fn one(a: &[Option<f64>], b: &[Option<f64>], simulations: &[usize]) -> (f64, f64) {
     let pairs: Vec<[f64; 2]> = a.iter().zip(b).filter_map(|(p, q)| Some([(*p)?, (*q)?])).collect();
     if pairs.len() < 4 {
         return (0.0, 0.0);
@@ -45,5 +46,7 @@ fn one(a: &[Option<f64>], b: &[Option<f64>]) -> (f64, f64) {
         return (0.0, 0.0);
     }
     let value = (product(0, 1) / norm).clamp(-1.0, 1.0);
-    (value, (1.0 - value * value).powi(2) / (n - 1.0))
+    let both = (0..a.len()).filter(|&row| a[row].is_some() && b[row].is_some());
+    let simulations: std::collections::BTreeSet<usize> = both.map(|row| simulations[row]).collect();
+    (value, (1.0 - value * value).powi(2) / (simulations.len() as f64 - 1.0).max(1.0))
 }

@@ -3,7 +3,7 @@
 //! §6.5; Platt 1999).
 
 use super::{
-    hyper::{Hyper, Sample},
+    hyper::{Hyper, Sample, members},
     regression::Regression,
 };
 use crate::error::Error;
@@ -29,20 +29,32 @@ pub(super) struct Existence {
 }
 
 impl Existence {
-    /// From how many of the runs at each point have it.
-    pub(super) fn fit(points: &[Vec<f64>], have: &[f64], runs: &[f64]) -> Result<Self, Error> {
+    /// From how many of the runs at each point have it. Readings of one simulation are in one block, which
+    /// counts once.
+    pub(super) fn fit(
+        points: &[Vec<f64>],
+        have: &[f64],
+        runs: &[f64],
+        blocks: &[usize],
+    ) -> Result<Self, Error> {
+        let mut weights = vec![1.0; points.len()];
+        for block in members(blocks) {
+            block.iter().for_each(|&i| weights[i] = 1.0 / block.len() as f64);
+        }
+        let weighted = |of: &[f64]| -> Vec<f64> { of.iter().zip(&weights).map(|(x, w)| x * w).collect() };
+        let factors: Vec<f64> = runs.iter().map(|n| 1.0 / n).collect();
+        let [have, runs] = [&weighted(have), &weighted(runs)];
         let (some, all): (f64, f64) = (have.iter().sum(), runs.iter().sum());
         let least = 0.5 / (all + 1.0);
         let share = (some + 0.5) / (all + 1.0);
-        if some == 0.0 || some == all {
+        if have.iter().all(|h| *h == 0.0) || have == runs {
             let none = Self { function: None, share, deviation: 0.0, offset: 0.0, slope: 1.0, least };
             return Ok(none);
         }
         let deviation = (share * (1.0 - share)).sqrt();
         let values: Vec<f64> = have.iter().zip(runs).map(|(h, n)| (h / n - share) / deviation).collect();
-        let factors: Vec<f64> = runs.iter().map(|n| 1.0 / n).collect();
         let linear = points.len() > points[0].len() + 2;
-        let sample = Sample { points, values: &values, factors: &factors, linear };
+        let sample = Sample { points, values: &values, factors: &factors, blocks, linear };
         let (function, left_out) = Regression::fit(&sample, &Hyper::fit(&sample, None))?;
         let means: Vec<f64> = left_out.iter().map(|point| logit(share + deviation * point.mean)).collect();
         let [offset, slope] = logistic(&means, have, runs);

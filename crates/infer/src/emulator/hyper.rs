@@ -13,8 +13,13 @@ const STEPS: usize = 40;
 /// Smallest variance of the noise, in units of the output's variance.
 pub(super) const LEAST_NOISE: f64 = 1e-8;
 
-/// Bounds of the logarithms: length scales, variance of the function, variance of the noise.
-const BOUNDS: [[f64; 2]; 3] = [[-3.5, 5.0], [-9.0, 5.0], [-18.4, 2.0]];
+/// Bounds of the logarithms: length scales, variance of the function, variance of the noise, odds of its
+/// common part.
+const BOUNDS: [[f64; 2]; 4] = [[-3.5, 5.0], [-9.0, 5.0], [-18.4, 2.0], [-7.0, 9.0]];
+
+/// Means and standard deviations of their prior, the first of the length scales but for ½ ln of their number.
+const PRIOR: [[f64; 2]; 4] =
+    [[std::f64::consts::SQRT_2, 1.732_050_807_568_877_2], [0.0, 3.0], [-4.0, 4.0], [0.0, 3.0]];
 
 /// Hyperparameters of an output, in units of its standard deviation.
 #[derive(Debug, Clone)]
@@ -22,6 +27,8 @@ pub(super) struct Hyper {
     pub(super) kernel: Kernel,
     /// Variance of a single run about the function, times the factor of its point.
     pub(super) noise: f64,
+    /// Share of it that values of one block have in common, 0 … 1; 0 where each has its own.
+    pub(super) shared: f64,
 }
 
 /// Points with a mean of runs each, standardised.
@@ -30,6 +37,8 @@ pub(super) struct Sample<'a> {
     pub(super) values: &'a [f64],
     /// Variance of each value in units of the noise: the point's factor over its number of runs.
     pub(super) factors: &'a [f64],
+    /// Number of the block of each value: readings of the same simulations.
+    pub(super) blocks: &'a [usize],
     pub(super) linear: bool,
 }
 
@@ -40,6 +49,8 @@ struct Search {
     trend: Mat<f64>,
     values: Vec<f64>,
     factors: Vec<f64>,
+    /// Pairs `i > j` of one block, with the root of the product of their factors.
+    together: Vec<(usize, usize, f64)>,
     dimensions: usize,
 }
 
@@ -50,36 +61,81 @@ impl Hyper {
         let d = search.dimensions;
         let level = (d as f64).sqrt().ln();
         let starts = match start {
-            Some(hyper) => vec![hyper.logarithms()],
+            Some(hyper) => vec![hyper.logarithms(search.is_shared())],
             None => [(level, -2.0), (level - 1.2, -4.0)]
-                .map(|(length, noise)| [vec![length; d], vec![0.0, noise]].concat())
+                .map(|(length, noise)| {
+                    let shared = vec![0.0; usize::from(search.is_shared())];
+                    [vec![length; d], vec![0.0, noise], shared].concat()
+                })
                 .to_vec(),
         };
         let best = starts.into_iter().map(|start| search.climb(start)).max_by(|a, b| a.1.total_cmp(&b.1));
-        Self::of(&best.expect("one start at least").0)
+        Self::of(&best.expect("one start at least").0, d)
     }
 
-    fn logarithms(&self) -> Vec<f64> {
+    fn logarithms(&self, is_shared: bool) -> Vec<f64> {
         let lengths = self.kernel.rates.iter().map(|rate| -rate.ln());
-        lengths.chain([self.kernel.variance.ln(), self.noise.ln()]).collect()
+        let odds = is_shared.then(|| (self.shared / (1.0 - self.shared)).ln());
+        lengths.chain([self.kernel.variance.ln(), self.noise.ln()]).chain(odds).collect()
     }
 
-    fn of(logarithms: &[f64]) -> Self {
-        let d = logarithms.len() - 2;
+    fn of(logarithms: &[f64], d: usize) -> Self {
         let rates = logarithms[..d].iter().map(|length| (-length).exp()).collect();
         let noise = logarithms[d + 1].exp().max(LEAST_NOISE);
-        Self { kernel: Kernel { variance: logarithms[d].exp(), rates }, noise }
+        let shared = logarithms.get(d + 2).map_or(0.0, |odds| share_of(*odds));
+        Self { kernel: Kernel { variance: logarithms[d].exp(), rates }, noise, shared }
     }
+}
+
+/// The share with these odds, given by their logarithm.
+fn share_of(odds: f64) -> f64 {
+    1.0 / (1.0 + (-odds).exp())
+}
+
+/// Rows from which hyperparameters are found: all, or so many evenly from each part of the list. Of blocks
+/// with several rows two are kept, in turn, so that what they have in common can be seen.
+fn subset(blocks: &[usize]) -> Vec<usize> {
+    let n = blocks.len();
+    let members = members(blocks);
+    if n <= SUBSET || members.len() == n {
+        return (0..n).step_by(n.div_ceil(SUBSET).max(1)).collect();
+    }
+    let two = |(number, of): (usize, &Vec<usize>)| -> Vec<usize> {
+        let m = of.len();
+        if m == 1 { of.clone() } else { vec![of[number % m], of[(number + m / 2) % m]] }
+    };
+    let pairs: Vec<Vec<usize>> = members.iter().enumerate().map(two).collect();
+    let every = pairs.iter().map(Vec::len).sum::<usize>().div_ceil(SUBSET).max(1);
+    let mut rows: Vec<usize> = pairs.into_iter().step_by(every).flatten().collect();
+    rows.sort_unstable();
+    rows
+}
+
+/// Rows of each block, in the order of first occurrence.
+pub(crate) fn members(blocks: &[usize]) -> Vec<Vec<usize>> {
+    let mut place = std::collections::BTreeMap::new();
+    let mut members: Vec<Vec<usize>> = Vec::new();
+    for (row, block) in blocks.iter().enumerate() {
+        let at = *place.entry(block).or_insert(members.len());
+        if at == members.len() {
+            members.push(Vec::new());
+        }
+        members[at].push(row);
+    }
+    members
 }
 
 impl Search {
     fn new(sample: &Sample) -> Self {
-        let every = sample.points.len().div_ceil(SUBSET).max(1);
-        let rows: Vec<usize> = (0..sample.points.len()).step_by(every).collect();
+        let rows = subset(sample.blocks);
         let dimensions = sample.points[0].len();
         let mut squares = Vec::with_capacity(rows.len() * rows.len() / 2 * dimensions);
+        let mut together = Vec::new();
         for (i, &a) in rows.iter().enumerate() {
-            for &b in &rows[..i] {
+            for (j, &b) in rows[..i].iter().enumerate() {
+                if sample.blocks[a] == sample.blocks[b] {
+                    together.push((i, j, (sample.factors[a] * sample.factors[b]).sqrt()));
+                }
                 squares
                     .extend(sample.points[a].iter().zip(&sample.points[b]).map(|(p, q)| (p - q) * (p - q)));
             }
@@ -87,7 +143,13 @@ impl Search {
         let terms: Vec<Vec<f64>> = rows.iter().map(|&i| trend(&sample.points[i], sample.linear)).collect();
         let trend = Mat::from_fn(rows.len(), terms[0].len(), |i, j| terms[i][j]);
         let pick = |of: &[f64]| rows.iter().map(|&i| of[i]).collect();
-        Self { squares, trend, values: pick(sample.values), factors: pick(sample.factors), dimensions }
+        let (values, factors) = (pick(sample.values), pick(sample.factors));
+        Self { squares, trend, values, factors, together, dimensions }
+    }
+
+    /// Whether some values may have a part of their noise in common.
+    fn is_shared(&self) -> bool {
+        !self.together.is_empty()
     }
 
     /// Logarithm of the posterior density, and its gradient; none where the covariance is not positive
@@ -115,8 +177,17 @@ impl Search {
         for i in 0..n {
             covariance[(i, i)] += noise * self.factors[i] + 1e-10 * variance;
         }
+        let shared = at.get(d + 2).map_or(0.0, |odds| share_of(*odds));
+        for &(i, j, factor) in &self.together {
+            covariance[(i, j)] += noise * shared * factor;
+            covariance[(j, i)] += noise * shared * factor;
+        }
         let (value, outer) = self.likelihood(&covariance)?;
-        let mut gradient = vec![0.0; d + 2];
+        let mut gradient = vec![0.0; at.len()];
+        for &(i, j, factor) in &self.together {
+            gradient[d + 1] += outer[(i, j)] * noise * shared * factor;
+            gradient[d + 2] += outer[(i, j)] * noise * shared * (1.0 - shared) * factor;
+        }
         pair = 0;
         for i in 0..n {
             gradient[d] += 0.5 * outer[(i, i)] * variance;
@@ -153,13 +224,13 @@ impl Search {
     /// 2024, §5).
     fn with_prior(&self, at: &[f64], mut value: f64, mut gradient: Vec<f64>) -> (f64, Vec<f64>) {
         let d = self.dimensions;
-        let means = [2_f64.sqrt() + 0.5 * (d as f64).ln(), 0.0, -4.0];
-        let deviations = [3_f64.sqrt(), 3.0, 4.0];
         for (i, x) in at.iter().enumerate() {
             let kind = (i + 1).saturating_sub(d);
-            let z = (x - means[kind]) / deviations[kind];
+            let [mean, deviation] = PRIOR[kind];
+            let mean = if kind == 0 { mean + 0.5 * (d as f64).ln() } else { mean };
+            let z = (x - mean) / deviation;
             value -= 0.5 * z * z;
-            gradient[i] -= z / deviations[kind];
+            gradient[i] -= z / deviation;
         }
         (value, gradient)
     }

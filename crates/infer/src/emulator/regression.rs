@@ -12,7 +12,7 @@ use faer::{
 };
 
 use super::{
-    hyper::{Hyper, Sample},
+    hyper::{Hyper, Sample, members},
     kernel::{Kernel, TREND_VARIANCE, trend},
 };
 use crate::error::Error;
@@ -72,8 +72,8 @@ impl Regression {
         };
         let (features, rest) = fitted.features(sample.points);
         let (size, n) = (features.nrows(), sample.points.len());
-        let noise: Vec<f64> = sample.factors.iter().map(|factor| hyper.noise * factor).collect();
-        let weighted = Mat::from_fn(size, n, |i, j| features[(i, j)] / noise[j]);
+        let noise = Noise::of(sample, hyper);
+        let weighted = noise.weighted(&features);
         let mut precision = &weighted * features.transpose();
         for i in 0..size {
             precision[(i, i)] += if i < terms { 1.0 / TREND_VARIANCE } else { 1.0 };
@@ -88,17 +88,32 @@ impl Regression {
         Ok((fitted, left_out))
     }
 
-    /// Without the value at each point (Rasmussen and Williams, eq. 5.12, in the weights' form).
-    fn left_out(&self, values: &[f64], noise: &[f64], mut features: Mat<f64>, rest: &[f64]) -> Vec<LeftOut> {
+    /// Without the value at each point, and without the others of its block (Rasmussen and Williams, eq.
+    /// 5.12, in the weights' form).
+    fn left_out(&self, values: &[f64], noise: &Noise, mut features: Mat<f64>, rest: &[f64]) -> Vec<LeftOut> {
         let means = features.transpose() * &self.weights;
         solve_lower_triangular_in_place(self.precision_factor.as_ref(), features.as_mut(), Par::Seq);
         let one = |j: usize| {
             let variance = squared_column(&features, j);
-            let lever = (variance / noise[j]).min(1.0 - 1e-9);
+            let lever = (variance / noise.variances[j]).min(1.0 - 1e-9);
             let mean = values[j] - (values[j] - means[(j, 0)]) / (1.0 - lever);
             LeftOut { mean, variance: variance / (1.0 - lever) + rest[j] }
         };
-        (0..values.len()).map(one).collect()
+        let mut left_out: Vec<LeftOut> = (0..values.len()).map(one).collect();
+        for block in noise.blocks.iter().filter(|block| block.len() > 1) {
+            let residuals: Vec<f64> = block.iter().map(|&j| values[j] - means[(j, 0)]).collect();
+            let known = Mat::from_fn(block.len(), block.len(), |a, b| {
+                let [a, b] = [block[a], block[b]].map(|j| features.col(j));
+                a.transpose() * b
+            });
+            let Some((changes, variances)) = without(&noise.within(block), &known, &residuals) else {
+                continue;
+            };
+            for (a, &j) in block.iter().enumerate() {
+                left_out[j] = LeftOut { mean: values[j] - changes[a], variance: variances[a] + rest[j] };
+            }
+        }
+        left_out
     }
 
     /// Features of points, a column each, and the variance that they leave out.
@@ -167,6 +182,56 @@ impl Regression {
     }
 }
 
+/// Covariance of the noise of a sample: blocks, within which a share of the noise is common.
+struct Noise {
+    variances: Vec<f64>,
+    blocks: Vec<Vec<usize>>,
+    shared: f64,
+}
+
+impl Noise {
+    fn of(sample: &Sample, hyper: &Hyper) -> Self {
+        let variances = sample.factors.iter().map(|factor| hyper.noise * factor).collect();
+        Self { variances, blocks: members(sample.blocks), shared: hyper.shared }
+    }
+
+    /// Columns times the inverse of the covariance (Sherman and Morrison's formula in each block).
+    fn weighted(&self, columns: &Mat<f64>) -> Mat<f64> {
+        let own = 1.0 - self.shared;
+        let mut weighted =
+            Mat::from_fn(columns.nrows(), columns.ncols(), |i, j| columns[(i, j)] / self.variances[j]);
+        for block in self.blocks.iter().filter(|block| block.len() > 1) {
+            let common = self.shared / (own + self.shared * block.len() as f64);
+            for i in 0..columns.nrows() {
+                let sum: f64 = block.iter().map(|&j| columns[(i, j)] / self.variances[j].sqrt()).sum();
+                for &j in block {
+                    weighted[(i, j)] = (weighted[(i, j)] - common * sum / self.variances[j].sqrt()) / own;
+                }
+            }
+        }
+        weighted
+    }
+
+    /// Covariance within a block.
+    fn within(&self, block: &[usize]) -> Mat<f64> {
+        Mat::from_fn(block.len(), block.len(), |a, b| {
+            let variance = (self.variances[block[a]] * self.variances[block[b]]).sqrt();
+            if a == b { variance } else { self.shared * variance }
+        })
+    }
+}
+
+/// Residuals of a block's values by a fit without them, and the variances of that fit, from the covariance
+/// of their noise, that of the fit with them, and its residuals. None where they alone tie down the fit.
+fn without(noise: &Mat<f64>, known: &Mat<f64>, residuals: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let left = noise - known;
+    let factor = left.llt(Side::Lower).ok()?;
+    let changes = noise * factor.solve(Mat::from_fn(residuals.len(), 1, |i, _| residuals[i]));
+    let added = known * factor.solve(known);
+    let variances = (0..residuals.len()).map(|i| known[(i, i)] + added[(i, i)]).collect();
+    Some(((0..residuals.len()).map(|i| changes[(i, 0)]).collect(), variances))
+}
+
 fn squared_column(matrix: &Mat<f64>, column: usize) -> f64 {
     matrix.col(column).squared_norm_l2()
 }
@@ -215,9 +280,20 @@ mod tests {
     }
 
     fn fitted(points: &[f64], values: &[f64], factors: &[f64]) -> (Regression, Vec<LeftOut>) {
+        in_blocks(points, values, factors, &[0, 1, 2][..points.len()], 0.0)
+    }
+
+    fn in_blocks(
+        points: &[f64],
+        values: &[f64],
+        factors: &[f64],
+        blocks: &[usize],
+        shared: f64,
+    ) -> (Regression, Vec<LeftOut>) {
         let points: Vec<Vec<f64>> = points.iter().map(|&x| vec![x]).collect();
-        let hyper = Hyper { kernel: Kernel { variance: 1.0, rates: vec![1.0 / LENGTH] }, noise: NOISE };
-        let sample = Sample { points: &points, values, factors, linear: false };
+        let kernel = Kernel { variance: 1.0, rates: vec![1.0 / LENGTH] };
+        let hyper = Hyper { kernel, noise: NOISE, shared };
+        let sample = Sample { points: &points, values, factors, blocks, linear: false };
         Regression::fit(&sample, &hyper).unwrap()
     }
 
@@ -257,6 +333,43 @@ mod tests {
         let [mean, variance] = without.predict(&[vec![POINTS[0]]])[0];
         assert!((left_out[0].mean - mean).abs() < CLOSE * TREND_VARIANCE, "{:?} {mean}", left_out[0]);
         assert!((left_out[0].variance - variance).abs() < CLOSE * TREND_VARIANCE);
+    }
+
+    /// Two values with a common part of their noise, by the inverse of their covariance of two by two
+    /// (Rasmussen and Williams, eq. 2.23 and 2.24).
+    #[test]
+    fn analytic_mean_and_variance_of_two_values_of_one_block() {
+        const SHARED: f64 = 0.7;
+        let factors = [1.0, 2.0];
+        let own = |i: usize| covariance(POINTS[i], POINTS[i]) + NOISE * factors[i];
+        let across = covariance(POINTS[0], POINTS[1]) + SHARED * NOISE * (factors[0] * factors[1]).sqrt();
+        let determinant = own(0) * own(1) - across * across;
+        let solved = |of: [f64; 2]| {
+            [(own(1) * of[0] - across * of[1]) / determinant, (own(0) * of[1] - across * of[0]) / determinant]
+        };
+        let (regression, _) = in_blocks(&POINTS[..2], &VALUES[..2], &factors, &[5, 5], SHARED);
+        for x in [0.0, 0.3, 0.97] {
+            let to = [0, 1].map(|i| covariance(POINTS[i], x));
+            let [mean, variance] = regression.predict(&[vec![x]])[0];
+            let weights = solved([VALUES[0], VALUES[1]]);
+            let expected = to[0] * weights[0] + to[1] * weights[1];
+            assert!((mean - expected).abs() < CLOSE * TREND_VARIANCE, "{x}: {mean}, expected {expected}");
+            let weights = solved(to);
+            let expected = covariance(x, x) - to[0] * weights[0] - to[1] * weights[1];
+            assert!((variance - expected).abs() < CLOSE * TREND_VARIANCE, "{x}: {variance}, not {expected}");
+        }
+    }
+
+    /// A value of a block is left out together with the others of its block.
+    #[test]
+    fn invariant_left_out_is_a_fit_without_the_block() {
+        let (_, left_out) = in_blocks(&POINTS, &VALUES, &[1.0; 3], &[0, 0, 1], 0.7);
+        let (without, _) = fitted(&POINTS[2..], &VALUES[2..], &[1.0; 1]);
+        for i in 0..2 {
+            let [mean, variance] = without.predict(&[vec![POINTS[i]]])[0];
+            assert!((left_out[i].mean - mean).abs() < CLOSE * TREND_VARIANCE, "{:?} {mean}", left_out[i]);
+            assert!((left_out[i].variance - variance).abs() < CLOSE * TREND_VARIANCE, "{variance}");
+        }
     }
 
     /// The uncertainty that is announced for a further value is the one that it leaves.

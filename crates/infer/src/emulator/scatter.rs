@@ -65,7 +65,7 @@ impl Scatter {
             })
             .collect();
         let weights: Vec<f64> = (0..n).map(|i| LOG_CHI[1] / residual(i, factors[i])[1].max(0.05)).collect();
-        let first = Sample { points: sample.points, values: &start, factors: &weights, linear: false };
+        let first = Sample { values: &start, factors: &weights, linear: false, ..*sample };
         let hyper = Hyper::fit(&first, None);
         let hyper = Hyper { noise: 1.0, ..hyper };
         let mut function = None;
@@ -74,7 +74,7 @@ impl Scatter {
             let pairs: Vec<[f64; 2]> = (0..n).map(|i| residual(i, logarithms[i].exp())).collect();
             let values: Vec<f64> = (0..n).map(|i| logarithms[i] + pairs[i][0].min(LARGEST) - 1.0).collect();
             let weights: Vec<f64> = pairs.iter().map(|pair| 2.0 / pair[1].max(0.05)).collect();
-            let working = Sample { points: sample.points, values: &values, factors: &weights, linear: false };
+            let working = Sample { values: &values, factors: &weights, linear: false, ..*sample };
             let (regression, left_out) = Regression::fit(&working, &hyper)?;
             logarithms = regression.means(sample.points).iter().map(|mean| mean.clamp(-12.0, 12.0)).collect();
             others = left_out;

@@ -24,13 +24,14 @@ pub(crate) struct Tails {
 impl Tails {
     /// Of residuals in units of their predicted standard deviations: most likely, with the prior that the
     /// prediction is right within a factor of about 1.3 and that tails are normal unless a likelihood ratio
-    /// of e² says otherwise.
-    pub(super) fn fit(residuals: &[f64]) -> Self {
+    /// of e² says otherwise. Each counts by its weight.
+    pub(super) fn fit(residuals: &[f64], weights: &[f64]) -> Self {
         let mut best = (f64::NEG_INFINITY, Self::of(1.0, f64::INFINITY));
         for freedom in FREEDOMS {
             let shape = Self::of(1.0, freedom);
             let score = |scale: f64| {
-                let sum: f64 = residuals.iter().map(|z| shape.log_density(z / scale) - scale.ln()).sum();
+                let one = |(z, w): (&f64, &f64)| w * (shape.log_density(z / scale) - scale.ln());
+                let sum: f64 = residuals.iter().zip(weights).map(one).sum();
                 sum - 0.5 * (scale.ln() / 0.25).powi(2) - if freedom.is_finite() { 2.0 } else { 0.0 }
             };
             let logarithm = maximum(|x| score(x.exp()), -3.0, 3.0);

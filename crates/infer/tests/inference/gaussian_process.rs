@@ -13,7 +13,7 @@ fn example_a_linear_function_is_met_exactly() {
     let f = |x: &[f64]| 3.0 + 2.0 * x[0] - 0.7 * x[1];
     let points = sobol(1, 3, 0, 24).unwrap();
     let outputs = points.iter().map(|x| vec![Some(f(x))]).collect();
-    let emulator = Emulator::fit(&Runs { points, outputs }, &linear(&["y"]), 0).unwrap();
+    let emulator = Emulator::fit(&Runs { points, outputs, ..Runs::default() }, &linear(&["y"]), 0).unwrap();
     for x in sobol(2, 3, 0, 50).unwrap() {
         let at = emulator.predict(&x).unwrap()[0];
         // The output's standard deviation is 0.6; a noise of 1e-8 of its variance is the least that is
@@ -28,7 +28,7 @@ fn example_a_linear_function_is_met_exactly() {
 fn example_a_constant_output_stays_constant() {
     let points = sobol(1, 2, 0, 16).unwrap();
     let outputs = points.iter().map(|_| vec![Some(7.5)]).collect();
-    let emulator = Emulator::fit(&Runs { points, outputs }, &linear(&["y"]), 0).unwrap();
+    let emulator = Emulator::fit(&Runs { points, outputs, ..Runs::default() }, &linear(&["y"]), 0).unwrap();
     let at = emulator.predict(&[0.3, 0.9]).unwrap()[0];
     assert!((at.mean - 7.5).abs() < 1e-9 && at.sd_of_mean < 1e-9 && at.scatter < 1e-9, "{at:?}");
 }

@@ -4,6 +4,7 @@ mod calibrated;
 mod curves;
 mod design;
 mod gaussian_process;
+mod levels;
 mod modes;
 mod posterior_linear;
 mod priors;

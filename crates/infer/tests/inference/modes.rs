@@ -16,7 +16,7 @@ fn example_both_regions_are_found_with_their_weights() {
     let points = sobol(1, DIMENSIONS, 0, 128).unwrap();
     let outputs = points.iter().map(|x| functions(x).map(Some).to_vec()).collect();
     let columns = ["y0", "y1", "y2"].map(|name| Output { name: name.to_owned(), scale: Scale::Linear });
-    let emulator = Emulator::fit(&Runs { points, outputs }, &columns, 0).unwrap();
+    let emulator = Emulator::fit(&Runs { points, outputs, ..Runs::default() }, &columns, 0).unwrap();
     let asked = [(0.36, 0.03), (0.3, 0.4), (1.2, 0.02)];
     let targets: Vec<Target> = asked
         .iter()

@@ -22,7 +22,7 @@ fn emulator() -> Emulator {
     let points = sobol(1, 3, 0, 32).unwrap();
     let outputs = points.iter().map(|x| vec![Some(x[0] + x[1]), Some(x[0] - 2.0 * x[1])]).collect();
     let columns = ["y0", "y1"].map(|name| Output { name: name.to_owned(), scale: Scale::Linear });
-    Emulator::fit(&Runs { points, outputs }, &columns, 0).unwrap()
+    Emulator::fit(&Runs { points, outputs, ..Runs::default() }, &columns, 0).unwrap()
 }
 
 fn targets() -> [Target; 2] {

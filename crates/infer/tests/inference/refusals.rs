@@ -14,7 +14,7 @@ fn columns() -> Vec<Output> {
 fn runs() -> Runs {
     let points = sobol(1, 2, 0, 12).unwrap();
     let outputs = points.iter().map(|x| vec![Some(x[0]), Some(1.0 + x[1])]).collect();
-    Runs { points, outputs }
+    Runs { points, outputs, ..Runs::default() }
 }
 
 #[track_caller]
@@ -52,6 +52,7 @@ fn refuses_runs_that_do_not_fit_together() {
     says(fit(|runs| runs.outputs[5][0] = Some(f64::INFINITY)), &["output `a`", "row 5 = inf", "finite"]);
     says(fit(|runs| runs.outputs[5] = vec![None]), &["row of outputs 5 has 1 numbers, expected 2"]);
     says(fit(|runs| runs.outputs.truncate(4)), &["table 0 has 4 numbers, expected 12"]);
+    says(fit(|runs| runs.simulations = vec![0; 5]), &["list of simulations 0 has 5 numbers, expected 12"]);
     let few = |runs: &mut Runs| {
         runs.points = vec![vec![0.5, 0.5]; 12];
     };

@@ -62,6 +62,24 @@ pub(crate) fn runs(seed: u64, points: usize, starts: usize) -> Runs {
     runs
 }
 
+/// Runs of one start on a Sobol design, each read several times: all readings of a run have the same outputs,
+/// at points that differ in the field without influence.
+pub(crate) fn readings(seed: u64, points: usize, each: usize) -> Runs {
+    let mut noise = Noise::new(seed);
+    let mut runs = Runs::default();
+    for (simulation, point) in sobol(seed, FIELDS, 0, points).unwrap().into_iter().enumerate() {
+        let outputs = run(&point, 1.0, &mut noise);
+        for reading in 0..each {
+            let mut point = point.clone();
+            point[IDLE] = (point[IDLE] + reading as f64 / each as f64).fract();
+            runs.points.push(point);
+            runs.outputs.push(outputs.clone());
+            runs.simulations.push(simulation);
+        }
+    }
+    runs
+}
+
 /// Points drawn from the prior with one start each, with `times` the scatter.
 pub(crate) fn truths(seed: u64, count: usize, times: f64) -> Vec<Truth> {
     let mut noise = Noise::new(seed);

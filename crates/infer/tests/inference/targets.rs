@@ -18,7 +18,7 @@ fn emulator(runs: usize) -> Emulator {
     };
     let outputs = points.iter().map(one).collect();
     let columns = ["y0", "y1", "y2"].map(|name| Output { name: name.to_owned(), scale: Scale::Linear });
-    Emulator::fit(&Runs { points, outputs }, &columns, 0).unwrap()
+    Emulator::fit(&Runs { points, outputs, ..Runs::default() }, &columns, 0).unwrap()
 }
 
 fn target(output: usize, value: impl Into<Option<f64>>, tolerance: f64) -> Target {

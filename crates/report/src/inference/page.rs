@@ -168,8 +168,9 @@ fn trust(answer: &Answer) -> Markup {
     let percent =
         |share: Option<f64>| share.map_or_else(|| "–".to_owned(), |share| format!("{:.0} %", 100.0 * share));
     html! {
+        @if answer.own_runs > 0 { (own_runs(answer)) }
         p { (format!("The draws of the posterior count for {:.0} independent ones. Outputs are emulated by \
-            Gaussian processes; each point is predicted from the others:", answer.effective_draws)) }
+            Gaussian processes; each run, with all of its readings, is predicted from the others:", answer.effective_draws)) }
         div class="scroll" {
             table {
                 tr { th { "Output" } th { "Runs that have it" } th { "Variance that is predicted" } th { "Runs in their 90 % interval" } th { "Scatter of starts" } }
@@ -187,6 +188,31 @@ fn trust(answer: &Answer) -> Markup {
     }
 }
 
+/// What the runs themselves say of the intervals.
+fn own_runs(answer: &Answer) -> Markup {
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    html! {
+        p { (format!(
+            "Each of the {} scenes of the first round was inferred from its own numbers by an emulator of \
+             the others. Where the central 90 % of an unknown's draws hold fewer than 90 % of them, the \
+             intervals of this page take in as large a share of the draws as does.",
+            answer.own_runs
+        )) }
+        div class="scroll" {
+            table {
+                tr { th { "Unknown" } th { "Scenes in the central 90 % of draws" } th { "Share of draws in the 90 % interval" } }
+                @for field in &answer.fields {
+                    tr {
+                        td { (field.name) }
+                        td { (field.own_runs_in_90.map_or_else(|| "–".to_owned(), percent)) }
+                        td { (format!("{:.1} %", 100.0 * field.level_90)) }
+                    }
+                }
+            }
+        }
+    }
+}
+
 fn calibrated(fields: &[FieldCalibrated]) -> Result<Markup, Error> {
     let share = |[share, low, high]: [f64; 3]| {
         format!("{:.0} % ({:.0} … {:.0})", 100.0 * share, 100.0 * low, 100.0 * high)
@@ -195,16 +221,17 @@ fn calibrated(fields: &[FieldCalibrated]) -> Result<Markup, Error> {
     Ok(html! {
         h2 #calibration { "Calibration" }
         p { (format!(
-            "{} scenes were drawn from the prior, run, and inferred from their own numbers. A 90 % \
-             interval is one if it holds the truth in 90 % of them.",
+            "{} scenes were drawn from the prior, run, and inferred from their own numbers, each with a \
+             random error of its target's tolerance. A 90 % interval is one if it holds the truth in 90 % \
+             of them.",
             fields.first().map_or(0, |field| field.truths)
         )) }
         div class="scroll" {
             table {
-                tr { th { "Unknown" } th { "In the 50 % interval" } th { "In the 90 % interval" } th { "Ranks even, p" } th { "Width, of the prior" } }
+                tr { th { "Unknown" } th { "In the 50 % interval" } th { "In the 90 % interval" } th { "In the central 90 % of draws" } th { "Ranks even, p" } th { "Width, of the prior" } }
                 @for field in fields {
                     tr {
-                        td { (field.name) } td { (share(field.held_50)) } td { (share(field.held_90)) }
+                        td { (field.name) } td { (share(field.held_50)) } td { (share(field.held_90)) } td { (share(field.held_90_of_draws)) }
                         td { (format!("{:.3}", field.p_value)) } td { (format!("{:.0} %", 100.0 * field.width_of_prior)) }
                     }
                 }

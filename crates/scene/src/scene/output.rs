@@ -48,8 +48,8 @@ pub struct SensorScene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct GuardsScene {
-    /// Imbalance of energy over the peak strain energy above which the run carries a warning [%]; of a
-    /// reduced run, over the larger of the most that rings and contacts have stored and of its heat.
+    /// Imbalance of energy above which the run carries a warning [%], over the larger of the peak strain
+    /// energy (of a reduced run, of the most that rings and contacts have stored) and of the heat.
     pub energy_warning_percent: f64,
     /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat,
     /// too.

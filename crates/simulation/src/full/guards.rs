@@ -2,7 +2,7 @@
 //!
 //! | watched | warning | stop |
 //! |---|---|---|
-//! | imbalance of energy over the peak strain energy; no number at all | `energy_warning_percent` | `energy_stop_percent` |
+//! | imbalance of energy over the peak strain energy, of a warning over the heat where that is more; no number at all | `energy_warning_percent` | `energy_stop_percent` |
 //! | hourglass over strain energy | `hourglass_warning_percent` | |
 //! | penetration over element size | `penetration_warning_percent` | `penetration_stop_percent` |
 //! | area of an element over its area at rest | | `area_stop_percent` |

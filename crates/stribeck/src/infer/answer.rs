@@ -5,8 +5,8 @@ use std::path::Path;
 use anyhow::Result;
 use stribeck_formats::parquet::{Column, Values as Cells, write_table};
 use stribeck_infer::{
-    Calibration, Conflict, Emulator, NextOptions, Posterior, PosteriorOptions, Predictive, Prior, Truth,
-    expected_gain, interval, next, pulls, quantile,
+    Calibration, Conflict, Emulator, FieldLevels, Levels, NextOptions, Posterior, PosteriorOptions,
+    Predictive, Prior, Share, Truth, expected_gain, interval, next, pulls, quantile,
 };
 use stribeck_report::inference::{
     Answer, Choice, Excluded, FieldCalibrated, FieldFound, Pulled, Quality, TargetFound,
@@ -25,6 +25,7 @@ pub(super) struct Known<'a> {
     pub(super) rounds: usize,
     pub(super) table: Table,
     pub(super) emulator: Emulator,
+    pub(super) levels: Option<Levels>,
     pub(super) posterior: Posterior,
     /// Runs at draws of the posterior.
     pub(super) check: Vec<Row>,
@@ -107,6 +108,7 @@ pub(super) fn of(known: &Known<'_>) -> Result<Answer> {
                 scatter: Some(quality.scatter).filter(|x| x.is_finite()),
             })
             .collect(),
+        own_runs: known.levels.as_ref().map_or(0, |levels| levels.truths),
         calibration: known.truths.as_deref().map(|truths| calibration(known, truths)).transpose()?,
     })
 }
@@ -125,22 +127,31 @@ fn field_found(known: &Known<'_>, field: usize) -> FieldFound {
         (0..count).map(|n| Choice { value: unknown.written(n as f64), probability: bars[n] }).collect()
     });
     let number = unknown.choices().is_none();
-    let [low, high] = interval(&shares, 0.9);
+    let levels = level_of(known, field);
+    let [low, high] = interval(&shares, levels.level_90);
     FieldFound {
         name: unknown.name.clone(),
         prior: prior_in_words(unknown, prior),
         ends: number.then(|| [prior.quantile(0.0), prior.quantile(1.0)]),
         logarithmic: matches!(prior, Prior::LogUniform { .. }),
         median: number.then(|| quantile(&values, 0.5)),
-        interval_50: number.then(|| interval(&values, 0.5)),
-        interval_90: number.then(|| interval(&values, 0.9)),
+        interval_50: number.then(|| interval(&values, levels.level_50)),
+        interval_90: number.then(|| interval(&values, levels.level_90)),
         // Evenly over the prior 90 % would take 0.9 of it.
         width_of_prior: if number { (high - low) / 0.9 } else { entropy(&bars) / (count as f64).ln() },
         bars,
         choices,
+        level_90: levels.level_90,
+        own_runs_in_90: known.levels.as_ref().map(|_| levels.held_90),
         expected_narrowing: 1.0,
         least_narrowing: 1.0,
     }
+}
+
+/// Shares of the draws that intervals of an unknown take in.
+fn level_of(known: &Known<'_>, field: usize) -> FieldLevels {
+    let plain = FieldLevels { held_90: f64::NAN, level_50: 0.5, level_90: 0.9 };
+    known.levels.as_ref().map_or(plain, |levels| levels.fields[field])
 }
 
 fn entropy(shares: &[f64]) -> f64 {
@@ -224,16 +235,23 @@ fn calibration(known: &Known<'_>, truths: &[Row]) -> Result<Vec<FieldCalibrated>
     let rows = Table::rows_like(known.inference, &known.table, truths);
     let truths: Vec<Truth> =
         truths.iter().zip(rows).map(|(row, outputs)| Truth { point: row.point.clone(), outputs }).collect();
-    let columns: Vec<(usize, f64)> = known.table.targets.iter().map(|t| (t.output, t.tolerance)).collect();
+    let columns = known.table.columns();
     let options = PosteriorOptions { draws: DRAWS_OF_ROUND, seed: known.inference.seed };
     let calibration = Calibration::of(&known.emulator, &known.priors, &truths, &columns, options)?;
-    let named = known.inference.unknowns.iter().zip(calibration.fields);
+    let named = known.inference.unknowns.iter().zip(calibration.fields).enumerate();
+    let of = |share: Share| [share.share, share.low, share.high];
+    let within = |field: usize, level: f64| {
+        let ranks = &calibration.ranks[field];
+        let held = ranks.iter().filter(|rank| (2.0 * **rank - 1.0).abs() <= level).count();
+        of(Share::of(held, ranks.len()))
+    };
     Ok(named
-        .map(|(unknown, field)| FieldCalibrated {
+        .map(|(number, (unknown, field))| FieldCalibrated {
             name: unknown.name.clone(),
             truths: calibration.truths,
-            held_50: [field.coverage_50.share, field.coverage_50.low, field.coverage_50.high],
-            held_90: [field.coverage_90.share, field.coverage_90.low, field.coverage_90.high],
+            held_50: within(number, level_of(known, number).level_50),
+            held_90: within(number, level_of(known, number).level_90),
+            held_90_of_draws: of(field.coverage_90),
             ranks: field.ranks.to_vec(),
             p_value: field.p_value,
             width_of_prior: field.width,

@@ -35,6 +35,8 @@ pub(super) struct Table {
 /// One run: its point, and the number or the curve of each target.
 pub(super) struct Row {
     pub(super) point: Vec<f64>,
+    /// Number of the reading of its run, from 0.
+    pub(super) reading: usize,
     pub(super) seen: Vec<Found>,
 }
 
@@ -61,7 +63,7 @@ pub(super) fn rows_of_readings(
     let mut rows = Vec::new();
     for point in points {
         let Ok(scenes) = &point.scenes else {
-            rows.push(Row { point: point.shares.clone(), seen: nothing(inference) });
+            rows.push(Row { point: point.shares.clone(), reading: 0, seen: nothing(inference) });
             continue;
         };
         for (number, scene) in scenes.iter().enumerate() {
@@ -70,12 +72,13 @@ pub(super) fn rows_of_readings(
                 Stage::Done => Some(summary_of(&rounds.runs().run(scene))?),
                 _ => None,
             };
-            for (shares, quantities) in readings(inference, &point.shares, count) {
+            let readings = readings(inference, &point.shares, count).into_iter().enumerate();
+            for (reading, (point, quantities)) in readings {
                 let seen = match &summary {
                     Some(summary) => found(inference, &quantities, summary),
                     None => nothing(inference),
                 };
-                rows.push(Row { point: shares, seen });
+                rows.push(Row { point, reading, seen });
             }
         }
     }
@@ -163,8 +166,13 @@ impl Table {
     /// Outputs of all rows: numbers as they are, curves by their principal components.
     pub(super) fn of(inference: &Inference, rows: &[Row]) -> Result<Self> {
         let points = rows.iter().map(|row| row.point.clone()).collect();
+        let simulation = |number: &mut usize, row: &Row| {
+            *number += usize::from(row.reading == 0);
+            Some(*number)
+        };
+        let simulations = rows.iter().scan(0, simulation).collect();
         let mut table = Self {
-            runs: Runs { points, outputs: Vec::new() },
+            runs: Runs { points, outputs: Vec::new(), simulations },
             outputs: Vec::new(),
             targets: Vec::new(),
             of: Vec::new(),
@@ -185,6 +193,11 @@ impl Table {
         }
         table.runs.outputs = Self::rows_like(inference, &table, rows);
         Ok(table)
+    }
+
+    /// Output and tolerance of every target.
+    pub(super) fn columns(&self) -> Vec<(usize, f64)> {
+        self.targets.iter().map(|target| (target.output, target.tolerance)).collect()
     }
 
     fn push(&mut self, inference: &Inference, of: usize, component: Option<usize>, value: Option<f64>) {
