@@ -203,7 +203,10 @@ impl System {
         }
         // A load that comes suddenly is soon larger than the energy of the first looks.
         // Relative to the larger of both: over a long run the heat grows beyond any constant limit.
-        if error.min(self.of_heat()) > warning && !seen.energy_warned && seen.looks.is_multiple_of(elements_every.max(1)) {
+        if error.min(self.of_heat()) > warning
+            && !seen.energy_warned
+            && seen.looks.is_multiple_of(elements_every.max(1))
+        {
             seen.energy_warned = true;
             return found(
                 false,
