@@ -20,7 +20,7 @@ use stribeck_report::{TrendEntry, write_measured, write_trend};
 use stribeck_scene::run_dir::{check_folder, write_atomic};
 
 use crate::causes;
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Interrupted};
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
 pub(crate) use reading::{Reading, Speed, examine};
@@ -141,6 +141,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         let done = analyse(file, &out.join(&folder), options, simulation.as_ref(), place);
         let (findings, error) = match done {
             Ok(analysis) => (Some(analysis.findings), None),
+            Err(why) if why.is::<Interrupted>() => return Err(why),
             Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
         };
         let file = file.display().to_string();

@@ -10,6 +10,18 @@ use stribeck_scene::run_dir::Reservation;
 /// Exit code of a program ended by Ctrl-C.
 pub const EXIT_CODE: u8 = 130;
 
+/// A command was ended by Ctrl-C and would go on from where it was.
+#[derive(Debug, Clone, Copy)]
+pub struct Interrupted;
+
+impl std::fmt::Display for Interrupted {
+    fn fmt(&self, to: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        to.write_str("interrupted; the same command goes on from here")
+    }
+}
+
+impl std::error::Error for Interrupted {}
+
 /// Whether Ctrl-C was pressed. The first asks for an end in good order, the second ends the program.
 #[derive(Debug, Clone)]
 pub struct Interrupt(Arc<Shared>);

@@ -177,7 +177,8 @@ pub fn conclude(done: Result<ExitCode>) -> ExitCode {
     });
     done.unwrap_or_else(|error| {
         out::error(&error, &causes(&error));
-        ExitCode::FAILURE
+        let interrupted = error.is::<interrupt::Interrupted>();
+        if interrupted { ExitCode::from(interrupt::EXIT_CODE) } else { ExitCode::FAILURE }
     })
 }
 

@@ -150,6 +150,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     readings(&mut sheet);
     table(&mut sheet, "Lengths on which nothing was chosen", &quoted);
     counts(&mut sheet, "quoted: ", &quoted);
+    sheet.say("Other lengths, and for the 6205 other speeds, run after the rules of `analyse` were set.");
     bounds(&mut sheet);
     failed.iter().for_each(|why| sheet.say(why));
     Ok(Answer::on(sheet.write()?))

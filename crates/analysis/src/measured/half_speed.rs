@@ -62,8 +62,8 @@ pub(super) fn judge(
 /// What the verdict says on it.
 pub(super) fn sentence(half: Sharp, given_rpm: f64) -> String {
     format!(
-        "The shaft turns at half of the {given_rpm:.1} rpm that were given: {} stand at {:.1} ± {:.1} rpm, and \
-         the comb of this raceway at half of its place.",
+        "The shaft turns at half of the {given_rpm:.1} rpm that were given: {} stand at {:.1} ± {:.1} rpm, \
+         and the comb of this raceway at half of its place.",
         half.by,
         60.0 * half.hz,
         60.0 * half.uncertainty_hz

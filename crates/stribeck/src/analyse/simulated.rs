@@ -13,7 +13,7 @@ use stribeck_scene::run_dir::{Keep, Run};
 use stribeck_scene::scene::{ModelScene, Scene};
 
 use super::reading::{Reading, examine};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Interrupted};
 use crate::many_runs::{ManyRuns, Share, Wanted};
 use crate::out::tell;
 use crate::place::{Place, shown};
@@ -124,7 +124,7 @@ fn simulate(scenes: &[Scene], out: &Path, interrupt: &Interrupt) -> Result<Press
     runs.make(Keep::All, &due, share, interrupt, &|jobs| {
         tell!("{} spalls are simulated, {}: {}", scenes.len(), jobs.shown(), shown(&runs.0));
     });
-    ensure!(!interrupt.is_pressed(), "interrupted; the same command goes on from here");
+    ensure!(!interrupt.is_pressed(), Interrupted);
     let mut pressed = Vec::new();
     for scene in scenes {
         let folder = runs.run(scene);

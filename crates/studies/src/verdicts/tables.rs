@@ -494,20 +494,20 @@ pub(super) fn numbers(sheet: &mut Sheet) {
             "power of a second event over the median between passages, and the least fall before it; of \
              several the one with the deepest fall counts",
             "the first a convention; the second from all records of HIT-SM, one of which (OR8_1200) it \
-             leaves to the search for a faint one, and from ringing in five simulated spalls, two of which set the choice \
-             among several, too",
+             leaves to the search for a faint one, and from ringing in five simulated spalls, two of which \
+             set the choice among several, too",
         ],
         [
             "`SCATTERS` = 4; `ABOVE` = 2 in one band, `ABOVE_IN_HALF` = 1.5 in the other",
-            "least height of a faint second event over the scatter of the mean between passages, and over its \
-             median",
+            "least height of a faint second event over the scatter of the mean between passages, and over \
+             its median",
             "the first a convention, the second the numbers of a clear one; that both are asked of bands \
              together, on four simulated spalls under a heavy load and one record of HIT-SM without a second \
              event (IR2_600, 3.4 times the scatter)",
         ],
         [
             "`BEGINS` = 0.5",
-            "an event of several peaks begins with the first of this height over the one with the deepest fall",
+            "an event of several peaks begins with the first of this height over that of the deepest fall",
             "a convention, after one simulated spall (6205, 14 mm, 1200 rpm)",
         ],
         [
@@ -536,11 +536,12 @@ pub(super) fn bounds(sheet: &mut Sheet) {
     sheet.heading("What bounds it");
     sheet.say(
         "- **Rolling elements.** A pit on a ball meets the raceways only while the ball spins about the \
-         right axis: most of these records have no comb at twice BSF that stands above unrelated ones. What a \
-         forced choice finds is mostly the cage, under which the spot comes once a turn; the baselines choose \
-         it more often, in records of other parts, too, so that their area is below one half. Where the ball \
-         knocks once a turn of the cage, the claim is the cage *or* one rolling element. In two records of UESTC with a damaged ball the comb of the outer raceway \
-         stands highest, too shallow for a knock.\n\
+         right axis: most of these records have no comb at twice BSF that stands above unrelated ones. What \
+         a forced choice finds is mostly the cage, under which the spot comes once a turn; the baselines \
+         choose it more often, in records of other parts, too, so that their area is below one half on the \
+         quoted part. Where the ball knocks once a turn of the cage, the claim is the cage *or* one rolling \
+         element. In two records of UESTC with a damaged ball the comb of the outer raceway stands highest, \
+         too shallow for a knock.\n\
          - **Fan end of CWRU.** Three, four and five turns of the shaft lie within 2 % of BPFO, 2×BSF and \
          BPFI of a 6203, and stand higher than the families where the pit is outside the load zone (3 and 12 \
          o\u{2019}clock). A forced choice takes BPFI or nothing there, as the plain envelope does.\n\

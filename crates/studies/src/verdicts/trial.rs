@@ -146,9 +146,9 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
     })
 }
 
-/// Score of a family where one must be named [dB]. The cage modulates whatever knocks, so a family that knocks
-/// comes first, the highest of several, and the cage is not among them; of those that do not, the one that
-/// stands farthest above unrelated combs, because elements of sound bearings pass under the load, too.
+/// Score of a family where one must be named [dB]. The cage modulates whatever knocks, so a family that
+/// knocks comes first, the highest of several, and the cage is not among them; of those that do not, the one
+/// that stands farthest above unrelated combs, because elements of sound bearings pass under the load, too.
 fn score(family: &Family) -> f64 {
     /// More than any comb stands above its background [dB].
     const KNOCKS_DB: f64 = 100.0;
