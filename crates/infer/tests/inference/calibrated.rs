@@ -28,8 +28,8 @@ fn example_intervals_hold_the_truths_that_they_should() {
     assert!((0..FIELDS).all(|field| field == IDLE || width(field) < 0.7));
 }
 
-/// Readings of one run err together: told so, the emulator finds the scatter of starts, and its intervals hold
-/// fresh runs; taken for runs of their own, they predict one another, and it is too sure.
+/// Readings of one run err together: told so, the emulator finds the scatter of starts, and its intervals
+/// hold fresh runs; taken for runs of their own, they predict one another, and it is too sure.
 #[test]
 fn issue_readings_of_one_run_counted_as_runs() {
     const KEPT: [usize; 2] = [1, 5];
