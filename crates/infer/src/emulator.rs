@@ -364,8 +364,7 @@ impl Value {
                 .iter()
                 .map(|(_, block)| block.iter().flat_map(|&i| members[i].clone()).collect())
                 .collect();
-            let one = |of: &[f64]| -> Vec<f64> { kept.iter().map(|(i, _)| of[*i]).collect() };
-            values = one(&values);
+            values = kept.iter().map(|(i, _)| values[*i]).collect();
             points = kept.iter().map(|(i, _)| points[*i].clone()).collect();
             spreads = kept
                 .iter()
