@@ -368,7 +368,15 @@ fn answers(sheet: &mut Sheet, sizes: &[Size]) {
     };
     let told = [count("depth", "width", WIDTH, DEPTH), count("width", "depth", DEPTH, WIDTH)].join(", ");
     sheet.table(&["with", "at", "the indicator"], &rows);
-    sheet.say(&format!("So {told}."));
+    let touched = sizes.iter().filter(|size| size.passages.floor > 0);
+    let deepest = touched.map(|size| size.depth_mm).fold(0.0, f64::max);
+    let most = sizes.iter().map(|size| size.ratio.mean).fold(0.0, f64::max);
+    sheet.say(&format!(
+        "So {told}, as the paper has it, by {} % at most at this load and speed. No ball touches a floor deeper \
+         than {deepest} mm, whatever the sagitta: it is caught by the trailing edge before it gets there, and \
+         a floor that is not reached cannot be felt.",
+        number(100.0 * (most - 1.0), 1),
+    ));
 }
 
 #[cfg(test)]
