@@ -357,6 +357,22 @@ impl Value {
             members.push(those);
             blocks.push(block);
         }
+        let mut repeats = vec![1.0; points.len()];
+        if let Some(kept) = hyper::representatives(&blocks, &values) {
+            repeats = kept.iter().map(|(_, block)| block.len() as f64).collect();
+            members = kept
+                .iter()
+                .map(|(_, block)| block.iter().flat_map(|&i| members[i].clone()).collect())
+                .collect();
+            let one = |of: &[f64]| -> Vec<f64> { kept.iter().map(|(i, _)| of[*i]).collect() };
+            values = one(&values);
+            points = kept.iter().map(|(i, _)| points[*i].clone()).collect();
+            spreads = kept
+                .iter()
+                .map(|(i, _)| Spread { squares: spreads[*i].squares, runs: spreads[*i].runs })
+                .collect();
+            blocks = kept.iter().map(|(i, _)| blocks[*i]).collect();
+        }
         let fit = Fit::of(&points, &values, &spreads, &blocks)?;
         let mut standardised = Vec::new();
         let mut weights = Vec::new();
@@ -369,7 +385,7 @@ impl Value {
                 let residual = of_row[row].unwrap_or_default() - fit.left_out[i].mean;
                 unexplained += residual * residual;
                 standardised.push((row, residual / scale));
-                weights.push(1.0 / (1.0 + (size[&blocks[i]] - 1.0) * fit.shared));
+                weights.push(1.0 / (repeats[i] * (1.0 + (size[&blocks[i]] - 1.0) * fit.shared)));
             }
         }
         let numbers: Vec<f64> = standardised.iter().map(|pair| pair.1).collect();

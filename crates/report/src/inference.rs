@@ -87,8 +87,8 @@ pub struct FieldFound {
     pub bars: Vec<f64>,
     /// Choices with their probabilities; empty for numbers.
     pub choices: Vec<Choice>,
-    /// Share of the draws that the 90 % interval takes in: 0.9, or the larger one that holds 90 % of the scenes
-    /// of the first round.
+    /// Share of the draws that the 90 % interval takes in: 0.9, or the larger one that holds 90 % of the
+    /// scenes of the first round.
     pub level_90: f64,
     /// Share of these scenes in the central 90 % of their draws; `None` where they are too few.
     pub own_runs_in_90: Option<f64>,

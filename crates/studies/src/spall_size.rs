@@ -182,8 +182,8 @@ fn forces(past_mm: &[f64], force: &[f64], half_mm: f64) -> Vec<[f64; 2]> {
     all
 }
 
-/// Depth [mm] from which on a ball that does not give rests on both edges of a spall this wide and cannot reach
-/// its floor: the sagitta of the ball's circle less that of the raceway's.
+/// Depth [mm] from which on a ball that does not give rests on both edges of a spall this wide and cannot
+/// reach its floor: the sagitta of the ball's circle less that of the raceway's.
 fn sagitta_mm(scene: &Scene, length_mm: f64) -> f64 {
     let sagitta = |diameter_mm: f64| 0.5 * (diameter_mm - (diameter_mm.powi(2) - length_mm.powi(2)).sqrt());
     sagitta(scene.bearing.roller_diameter_mm) - sagitta(scene.bearing.outer_race_diameter_mm)
@@ -192,8 +192,8 @@ fn sagitta_mm(scene: &Scene, length_mm: f64) -> f64 {
 fn introduce(sheet: &mut Sheet, scene: &Scene, healthy: &Passages, sizes: &[Size]) {
     let operation = &scene.operation;
     sheet.say(&format!(
-        "Li, Yan and others (J. Vibroengineering 2022, doi 10.21595/jve.2022.22773) have an explicit model in \
-         the plane of shaft, bearing and pedestal, with a defect on the outer raceway. By its abstract, an \
+        "Li, Yan and others (J. Vibroengineering 2022, doi 10.21595/jve.2022.22773) have an explicit model \
+         in the plane of shaft, bearing and pedestal, with a defect on the outer raceway. By its abstract, an \
          indicator, the contact force with the defect over that without, grows with the depth of the defect \
          and with its width. Their numbers were not at hand, so the *trend* alone is compared, with a bearing \
          of ours and nothing fitted: a 6205 in a pedestal by the reduced model, {} N, {} rpm, rectangular \
@@ -206,8 +206,8 @@ fn introduce(sheet: &mut Sheet, scene: &Scene, healthy: &Passages, sizes: &[Size
     let all: Vec<f64> = sizes.iter().map(|size| before(&size.passages.forces_n)).collect();
     let ends = [f64::min, f64::max].map(|end| all.iter().copied().reduce(end).unwrap_or(f64::NAN));
     sheet.say(&format!(
-        "The indicator here: the largest force between ball and outer raceway from the trailing edge to {far} \
-         mm behind it, over its mean from {far} to {near} mm before the leading edge in the same passage, where \
+        "The indicator here: the largest force between ball and outer raceway from the trailing edge to \
+         {far} mm behind it, over its mean from {far} to {near} mm before the leading edge in the same passage, where \
          the place is symmetric to the other. *Free* are the passages in which the ball loses its load, \
          *floor* those in which it touches the floor; *sagitta* is the depth from which on a ball that does \
          not give rests on both edges and cannot reach the floor.",
@@ -372,8 +372,8 @@ fn answers(sheet: &mut Sheet, sizes: &[Size]) {
     let deepest = touched.map(|size| size.depth_mm).fold(0.0, f64::max);
     let most = sizes.iter().map(|size| size.ratio.mean).fold(0.0, f64::max);
     sheet.say(&format!(
-        "So {told}, as the paper has it, by {} % at most at this load and speed. No ball touches a floor deeper \
-         than {deepest} mm, whatever the sagitta: it is caught by the trailing edge before it gets there, and \
+        "So {told}, as the paper has it, by {} % at most at this load and speed. No ball touches a floor \
+         deeper than {deepest} mm, whatever the sagitta: it is caught by the trailing edge before it gets there, and \
          a floor that is not reached cannot be felt.",
         number(100.0 * (most - 1.0), 1),
     ));

@@ -3,7 +3,7 @@
 //! §6.5; Platt 1999).
 
 use super::{
-    hyper::{Hyper, Sample, members},
+    hyper::{Hyper, Sample, members, representatives},
     regression::Regression,
 };
 use crate::error::Error;
@@ -37,6 +37,13 @@ impl Existence {
         runs: &[f64],
         blocks: &[usize],
     ) -> Result<Self, Error> {
+        let shares: Vec<f64> = have.iter().zip(runs).map(|(h, n)| h / n).collect();
+        if let Some(kept) = representatives(blocks, &shares) {
+            let rows: Vec<usize> = kept.iter().map(|(row, _)| *row).collect();
+            let points: Vec<Vec<f64>> = rows.iter().map(|&row| points[row].clone()).collect();
+            let [have, runs] = [have, runs].map(|of| rows.iter().map(|&row| of[row]).collect::<Vec<f64>>());
+            return Self::fit(&points, &have, &runs, &rows);
+        }
         let mut weights = vec![1.0; points.len()];
         for block in members(blocks) {
             block.iter().for_each(|&i| weights[i] = 1.0 / block.len() as f64);

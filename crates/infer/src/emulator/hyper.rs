@@ -111,6 +111,16 @@ fn subset(blocks: &[usize]) -> Vec<usize> {
     rows
 }
 
+/// Where the rows of every block have equal values, one row of each, in turn, with all rows of the block:
+/// values that repeat say nothing, and a likelihood that took them for independent would have no noise. None
+/// where they differ, or where every row is its own block.
+pub(super) fn representatives(blocks: &[usize], values: &[f64]) -> Option<Vec<(usize, Vec<usize>)>> {
+    let members = members(blocks);
+    let equal = |block: &Vec<usize>| block.iter().all(|&row| values[row] == values[block[0]]);
+    (members.len() < blocks.len() && members.iter().all(equal))
+        .then(|| members.into_iter().enumerate().map(|(n, block)| (block[n % block.len()], block)).collect())
+}
+
 /// Rows of each block, in the order of first occurrence.
 pub(crate) fn members(blocks: &[usize]) -> Vec<Vec<usize>> {
     let mut place = std::collections::BTreeMap::new();

@@ -80,6 +80,12 @@ pub(crate) fn readings(seed: u64, points: usize, each: usize) -> Runs {
     runs
 }
 
+/// The same runs with some of their outputs.
+pub(crate) fn only(runs: Runs, kept: &[usize]) -> Runs {
+    let outputs = runs.outputs.iter().map(|row| kept.iter().map(|&output| row[output]).collect()).collect();
+    Runs { outputs, ..runs }
+}
+
 /// Points drawn from the prior with one start each, with `times` the scatter.
 pub(crate) fn truths(seed: u64, count: usize, times: f64) -> Vec<Truth> {
     let mut noise = Noise::new(seed);
