@@ -9,7 +9,7 @@ use stribeck_scene::scene::{DefectRing, Scene};
 use crate::Error;
 use crate::measured::SHORTEST_S;
 
-/// Longest distance of two events over the time between passages: the correlation within a passage ends there.
+/// Longest distance of two events over the time between passages, at which the correlation within one ends.
 const LONGEST: f64 = 0.45;
 
 /// One record: the signature of its passages, and the noise that was added.

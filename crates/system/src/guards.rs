@@ -27,8 +27,8 @@ const STRAINED: f64 = 0.01;
 pub struct Limits {
     /// Reference of the imbalance of energy.
     pub energy_scale: Scale,
-    /// Imbalance of energy above which there is a warning [%]; where the heat is more than its reference, over
-    /// the heat.
+    /// Imbalance of energy above which there is a warning [%], over the heat where that is more than its
+    /// reference.
     pub energy_warning_percent: f64,
     /// … and above which to stop [%].
     pub energy_stop_percent: f64,
@@ -234,9 +234,10 @@ impl System {
         if self.heat() > 0.0 { self.last_ledger().imbalance.abs() / self.heat() } else { f64::INFINITY }
     }
 
-    /// The imbalance as a share of the heat, in words, where that is more than was ever stored as strain: fast
-    /// bodies that slide or shear oil turn much more energy into heat than they store, and the error of the
-    /// time step grows with it.
+    /// The imbalance as a share of the heat, in words, where that is more than was ever stored as strain.
+    ///
+    /// Fast bodies that slide or shear oil turn much more energy into heat than they store, and the error of
+    /// the time step grows with it.
     fn share_of_heat(&self) -> String {
         let times = self.heat() / self.balance().peak_strain;
         if times <= 1.0 {

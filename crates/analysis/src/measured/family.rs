@@ -128,8 +128,8 @@ impl Family {
         self.height_db
     }
 
-    /// Height of the family's comb over that of the unrelated ones of its band, of which a tenth stand as high
-    /// [dB]; `None` where it was not looked for, or nothing unrelated was.
+    /// Height of the family's comb over that of the unrelated ones of its band, of which a tenth stand as
+    /// high [dB]; `None` where it was not looked for, or nothing unrelated was.
     pub fn above_unrelated_db(&self) -> Option<f64> {
         let mut heights: Vec<f64> = self.controls.iter().map(|(_, height_db)| *height_db).collect();
         let last = heights.len().checked_sub(1)?;

@@ -245,8 +245,8 @@ mod tests {
     type Acted = [f64; 7];
 
     /// The law as a textbook has it, branch by branch: a penalty with a parabola about the corner, a dashpot
-    /// behind a spring, both of which never pull, and Coulomb friction by return mapping (Wriggers, Computational Contact Mechanics,
-    /// 2nd ed., §§5.2, 6.5).
+    /// behind a spring, both of which never pull, and Coulomb friction by return mapping (Wriggers,
+    /// Computational Contact Mechanics, 2nd ed., §§5.2, 6.5).
     fn textbook(law: &Law, [gap, weight, opening, along, slip, damping]: State) -> Acted {
         let (k, c, e) = (law.stiffness * weight * THICKNESS, law.damping * weight * THICKNESS, law.onset);
         if gap >= e {
