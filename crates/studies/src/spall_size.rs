@@ -218,9 +218,9 @@ fn introduce(sheet: &mut Sheet, scene: &Scene, healthy: &Passages, sizes: &[Size
     sheet.say(&format!(
         "The force behind the spall over that of the bearing without one was tried first. It is {} to {} and \
          grows with neither, because balls before any spall, the shallowest and shortest too, have {} to {} N \
-         at this place where those of the bearing without have {} N: more than the blow makes. Whether that \
-         comes from the mesh, which has a groove in one and not in the other, was not looked at. The present \
-         indicator was chosen after that was seen.",
+         at this place where those of the bearing without have {} N: more than the blow makes. That is an \
+         error of the reduced model, not of the groove (docs/notes/reduced.md, static loads in a pedestal). \
+         The present indicator was chosen after that was seen.",
         number(span[0], 3),
         number(span[1], 3),
         number(ends[0], 0),
