@@ -326,6 +326,22 @@ impl Contacts {
         if self.parallel { micropool::num_threads() + 1 } else { 1 }
     }
 
+    /// Visits the springs of contact of one pair at positions `x`, `y` [m], those last given to `accumulate`,
+    /// with their gaps [m]: those of points that touch, and of those nearer than `within` [m], as if they did.
+    pub fn springs_within(
+        &self,
+        pair: usize,
+        [x, y]: [&[f64]; 2],
+        within: f64,
+        visit: &mut dyn FnMut(RankOne<'_>, f64),
+    ) {
+        let pair = &self.pairs[pair];
+        let law = self.weights(&pair.spec);
+        for pass in &pair.passes {
+            pass.tangent(&self.surfaces, [x, y], &law, Some(within), visit);
+        }
+    }
+
     fn weights(&self, spec: &PairSpec) -> PassLaw {
         weights(spec, self.thickness, self.search.fastest, self.preload, self.together)
     }
@@ -475,7 +491,8 @@ impl Force for Contacts {
     fn tangent(&self, x: &[f64], y: &[f64], visit: &mut dyn FnMut(RankOne<'_>)) {
         for pair in &self.pairs {
             for pass in &pair.passes {
-                pass.tangent(&self.surfaces, x, y, &self.weights(&pair.spec), visit);
+                let law = self.weights(&pair.spec);
+                pass.tangent(&self.surfaces, [x, y], &law, None, &mut |piece, _| visit(piece));
             }
         }
     }

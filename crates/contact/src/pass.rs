@@ -250,32 +250,34 @@ impl Pass {
         .dispatch()
     }
 
-    /// Visits the tangent of the points that penetrate at positions `x`, `y`: that of the gap's gradient; the
-    /// derivative of the gradient is neglected.
+    /// Visits the tangent of the points whose gap is below the law's reach, or `within` [m] where that is given,
+    /// at positions `x`, `y`: that of the gap's gradient, with the gap [m]; the derivative of the gradient is
+    /// neglected. Points that do not touch have the stiffness with which they would.
     pub(crate) fn tangent(
         &self,
         surfaces: &[Surface],
-        x: &[f64],
-        y: &[f64],
+        [x, y]: [&[f64]; 2],
         w: &PassLaw,
-        visit: &mut dyn FnMut(RankOne<'_>),
+        within: Option<f64>,
+        visit: &mut dyn FnMut(RankOne<'_>, f64),
     ) {
         match [self.secondary, self.primary].map(|s| surfaces[s].spline().is_some()) {
-            [false, false] => self.tangent_as::<ChordFacet, ChordFacet>(surfaces, x, y, w, visit),
-            [false, true] => self.tangent_as::<ChordFacet, SplineFacet>(surfaces, x, y, w, visit),
-            [true, false] => self.tangent_as::<SplineFacet, ChordFacet>(surfaces, x, y, w, visit),
-            [true, true] => self.tangent_as::<SplineFacet, SplineFacet>(surfaces, x, y, w, visit),
+            [false, false] => self.tangent_as::<ChordFacet, ChordFacet>(surfaces, [x, y], w, within, visit),
+            [false, true] => self.tangent_as::<ChordFacet, SplineFacet>(surfaces, [x, y], w, within, visit),
+            [true, false] => self.tangent_as::<SplineFacet, ChordFacet>(surfaces, [x, y], w, within, visit),
+            [true, true] => self.tangent_as::<SplineFacet, SplineFacet>(surfaces, [x, y], w, within, visit),
         }
     }
 
     fn tangent_as<S: Facet, P: Facet>(
         &self,
         surfaces: &[Surface],
-        x: &[f64],
-        y: &[f64],
+        [x, y]: [&[f64]; 2],
         w: &PassLaw,
-        visit: &mut dyn FnMut(RankOne<'_>),
+        within: Option<f64>,
+        visit: &mut dyn FnMut(RankOne<'_>, f64),
     ) {
+        let reach = within.unwrap_or(w.reach());
         let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
         let at = Moment { step: 0, time: 0.0, dt: 0.0, x, y, vx: x, vy: y };
         let (mut gradient, mut nodes, mut direction) = (Vec::new(), Vec::new(), Vec::new());
@@ -287,10 +289,10 @@ impl Pass {
                 let point = own_facet.point(self.points.place[i], self.points.height[i]);
                 let mut facet = P::new(primary, x, y, self.memory.nearest[of_point] as usize);
                 let found = find_foot(&mut facet, primary, x, y, point.at);
-                let Some(foot) = found.filter(|f| f.gap < w.reach() && f.gap > -self.deepest) else {
+                let Some(foot) = found.filter(|f| f.gap < reach && f.gap > -self.deepest) else {
                     continue;
                 };
-                let [_, slope] = w.rounded(foot.gap);
+                let slope = if foot.gap < w.reach() { w.rounded(foot.gap)[1] } else { 1.0 };
                 // The gap's gradient is the force that a unit pressure makes.
                 gradient.clear();
                 let (mut own, mut other) =
@@ -303,11 +305,8 @@ impl Pass {
                 nodes.extend(gradient.iter().map(|(slot, _)| *slot));
                 direction.clear();
                 direction.extend(gradient.iter().flat_map(|(_, g)| *g));
-                visit(RankOne {
-                    nodes: &nodes,
-                    direction: &direction,
-                    stiffness: slope * w.law.stiffness * self.points.weight[i] * w.thickness,
-                });
+                let stiffness = slope * w.law.stiffness * self.points.weight[i] * w.thickness;
+                visit(RankOne { nodes: &nodes, direction: &direction, stiffness }, foot.gap);
             }
         }
     }

@@ -12,6 +12,8 @@ pub struct Seat {
     pub padded: usize,
     /// Normal force on each panel at the preload [N].
     pub pressed: Vec<f64>,
+    /// How far a panel that nothing presses at the preload is from touching [m]; zero for the others.
+    pub gaps: Vec<f64>,
     /// Normal stiffness of each panel [N/m].
     pub across: Vec<f64>,
     /// Tension of each spring by a unit of every mode when nothing opens or slips [N/(√kg m)], mode by mode.

@@ -54,6 +54,8 @@ pub(crate) struct Springs {
     flexibility: Vec<f64>,
     /// Force that presses each panel at the preload [N].
     pressed: Vec<Row>,
+    /// Least opening of each panel: it touches where it has closed by its gap at the preload [m].
+    closed: Vec<Row>,
     /// Largest displacement of any vertex of the raceway by a unit that each opens or slips [1].
     farthest: Vec<Row>,
     friction: f64,
@@ -97,6 +99,7 @@ impl Springs {
             own: rows(&own),
             stiffness,
             pressed: rows(&seat.pressed),
+            closed: rows(&seat.gaps.iter().map(|gap| 0.0 - gap).collect::<Vec<_>>()),
             farthest: largest_of::<1>(&seat.by_rollers, n),
             friction,
             with_oil,
@@ -243,6 +246,7 @@ mod tests {
             panels: 1,
             padded,
             pressed,
+            gaps: vec![0.0; padded],
             across: vec![1e6; padded],
             tension,
             by_rollers: vec![0.0; n],

@@ -1,7 +1,5 @@
 //! A preloaded bearing taken apart: sets of nodes, their positions, and the forces on them.
 
-use std::collections::BTreeSet;
-
 use stribeck_bearing::assembly::BearingSystem;
 use stribeck_mesh::Mesh;
 use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
@@ -51,7 +49,8 @@ pub(crate) struct Extraction {
     pub(crate) contact_forces: Vec<[f64; 2]>,
     /// Displacements of the nodes of rings and housing at the preload [m].
     pub(crate) moved: Vec<[f64; 2]>,
-    /// Force of the housing on the outer ring [N].
+    /// Pair of contact between the outer ring and its housing, and the force of the housing on the ring [N].
+    pub(crate) seat_pair: Option<usize>,
     pub(crate) seat: Option<[f64; 2]>,
     pub(crate) roller: Inertia,
     pub(crate) cage: Option<Inertia>,
@@ -72,8 +71,10 @@ pub(crate) struct Preload {
     /// The load, and load with weight.
     pub(crate) load: NodeForces,
     pub(crate) outside: NodeForces,
-    /// Springs of contact within the structure, one for each contact point that carries.
+    /// Springs of contact within the structure, one for each contact point that carries or may come to.
     pub(crate) seat: Vec<Spring>,
+    /// How far the points of these springs are from touching [m].
+    pub(crate) gaps: Vec<f64>,
     /// Springs of the housing.
     pub(crate) suspension: Vec<Spring>,
     /// Strain energy of all bodies and of the springs of the housing [J].
@@ -106,6 +107,7 @@ impl Extraction {
         };
         let mut extraction = Self {
             moved: of_rings.map(|n| [places[n][0] - mesh.x[n], places[n][1] - mesh.y[n]]).collect(),
+            seat_pair: bearing.pairs.seat(),
             seat: bearing.pairs.seat().map(|seat| resultants[seat]),
             roller: inertia(bearing.rollers[0].body),
             cage: bearing.cage.map(inertia),
@@ -139,8 +141,9 @@ impl Extraction {
 }
 
 impl Preload {
-    /// Forces and springs of a bearing taken apart, at its preload.
-    pub(crate) fn of(extraction: &Extraction, parts: &mut Parts, mesh: &Mesh) -> Self {
+    /// Forces and springs of a bearing taken apart, at its preload; those of contact points nearer than `within`
+    /// [m] among them.
+    pub(crate) fn of(extraction: &Extraction, parts: &mut Parts, mesh: &Mesh, within: f64) -> Self {
         let elastic = parts.dynamics.elastic_energy();
         let elastic = elastic.strain + elastic.hourglass;
         let count = parts.dynamics.state.x.len();
@@ -165,29 +168,34 @@ impl Preload {
         let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
         parts.others.tangent(x, y, &mut |piece| suspension.push(Spring::from(piece)));
         let mut all = NodeForces::zeros(count);
-        let seat = Self::contact(extraction, parts, &mut all);
+        let (seat, gaps) = Self::contact(extraction, parts, within, &mut all);
         let d: &Dynamics = &parts.dynamics;
         d.elastic_forces(&d.state.x, &d.state.y, &mut all.fx, &mut all.fy);
         for n in 0..count {
             all.fx[n] += outside.fx[n] + (pushed.fx[n] - load.fx[n]);
             all.fy[n] += outside.fy[n] + (pushed.fy[n] - load.fy[n]);
         }
-        Self { all, load, outside, seat, suspension, strain }
+        Self { all, load, outside, seat, gaps, suspension, strain }
     }
 
-    /// Adds the forces of contact to `all`, and returns the springs of contact within the structure.
-    fn contact(extraction: &Extraction, parts: &mut Parts, all: &mut NodeForces) -> Vec<Spring> {
-        let mut springs = Vec::new();
-        let Some(contacts) = &mut parts.contacts else { return springs };
+    /// Adds the forces of contact to `all`, and returns the springs of contact within the structure, with their
+    /// gaps.
+    fn contact(
+        extraction: &Extraction,
+        parts: &mut Parts,
+        within: f64,
+        all: &mut NodeForces,
+    ) -> (Vec<Spring>, Vec<f64>) {
+        let (mut springs, mut gaps) = (Vec::new(), Vec::new());
+        let Some(contacts) = &mut parts.contacts else { return (springs, gaps) };
         contacts.accumulate(parts.dynamics.moment(), all);
-        let of_structure: BTreeSet<u32> = extraction.slots(&extraction.nodes.structure).into_iter().collect();
-        let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);
-        contacts.tangent(x, y, &mut |piece| {
-            if piece.nodes.iter().all(|slot| of_structure.contains(slot)) {
-                springs.push(Spring::from(piece));
-            }
+        let Some(pair) = extraction.seat_pair else { return (springs, gaps) };
+        let places = [&parts.dynamics.state.x[..], &parts.dynamics.state.y[..]];
+        contacts.springs_within(pair, places, within, &mut |piece, gap| {
+            springs.push(Spring::from(piece));
+            gaps.push(gap.max(0.0));
         });
-        springs
+        (springs, gaps)
     }
 }
 

@@ -9,7 +9,7 @@ use stribeck_bearing::{
 };
 use stribeck_mesh::Mesh;
 use stribeck_modal::{GROUP, Reduction, Seat};
-use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene, static_load};
 use stribeck_system::Parts;
 
 use crate::{
@@ -66,7 +66,7 @@ fn reduce(
     parts: &mut Parts,
 ) -> Result<(Reduction, f64), Error> {
     let count = parts.dynamics.state.x.len();
-    let preload = Preload::of(from, parts, mesh);
+    let preload = Preload::of(from, parts, mesh, may_close(scene));
     let mut structure = Structure::of(scene, from, &preload, &parts.dynamics)?;
     let nodes = raceway::nodes(from);
     let springs = panels(scene, from, &preload, parts, &nodes, &mut structure)?;
@@ -109,6 +109,20 @@ fn reduce(
     Ok((reduction, between_rollers))
 }
 
+/// Part of the approach of the most loaded roller below which a gap in the seat may close as rollers pass.
+const MAY_CLOSE: f64 = 0.1;
+
+/// Gap at the preload below which a contact point of the seat may come to carry [m]. A pedestal is all around the
+/// ring, and what it presses reaches as far as the rollers that are loaded; an adapter ends before them.
+fn may_close(scene: &ResolvedScene) -> f64 {
+    match scene.written.housing {
+        HousingScene::Pedestal(_) => {
+            static_load::at_start(scene).map_or(0.0, |load| MAY_CLOSE * load.max_approach_m())
+        }
+        _ => 0.0,
+    }
+}
+
 /// Divides the seat into panels; the modes become those of a seat that holds.
 fn panels(
     scene: &ResolvedScene,
@@ -124,6 +138,7 @@ fn panels(
     let seat = seat::Parts {
         raceway,
         springs: &preload.seat,
+        gaps: &preload.gaps,
         friction: scene.written.contact.seat_friction > 0.0,
         x: &parts.dynamics.state.x,
         y: &parts.dynamics.state.y,

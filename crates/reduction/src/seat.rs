@@ -20,8 +20,9 @@ const WIDTH: f64 = 0.7;
 
 /// The seat in the mesh.
 pub(crate) struct Parts<'a> {
-    /// Normal springs, one for each contact point that carries.
+    /// Normal springs, one for each contact point that carries or may come to, and how far each is from that [m].
     pub(crate) springs: &'a [Spring],
+    pub(crate) gaps: &'a [f64],
     /// Whether there is friction.
     pub(crate) friction: bool,
     /// Places by slot [m].
@@ -61,6 +62,8 @@ struct Panels {
     members: Vec<Vec<Spring>>,
     stiffness: Vec<f64>,
     pressed: Vec<f64>,
+    /// How far the panels that nothing presses are from touching [m].
+    gaps: Vec<f64>,
 }
 
 /// What tangential springs hold: A τ = stretch − slip, with A their own flexibility and that of the bodies
@@ -98,6 +101,7 @@ pub(crate) fn of(structure: &mut Structure, parts: &Parts<'_>) -> Result<Option<
         panels: panels.count,
         padded: panels.padded,
         pressed: panels.pressed,
+        gaps: panels.gaps,
         across: panels.stiffness[..panels.padded].to_vec(),
         tension: listed(&tension),
         by_rollers: listed(&by_rollers),
@@ -310,7 +314,14 @@ impl Panels {
             pressed[panel_of(*angle)] += force;
         }
         pressed.iter_mut().for_each(|force| *force = force.max(0.0));
-        Some(Self { count, padded, members, stiffness, pressed })
+        let mut gaps = vec![0.0; padded];
+        for ((spring, angle), gap) in springs.iter().zip(parts.gaps) {
+            let panel = panel_of(*angle);
+            if pressed[panel] == 0.0 {
+                gaps[panel] += gap * spring.stiffness / stiffness[panel];
+            }
+        }
+        Some(Self { count, padded, members, stiffness, pressed, gaps })
     }
 
     /// Slots that a spring reaches, with the forces of a unit stretch's share of the panel.
@@ -357,11 +368,15 @@ fn pressing(parts: &Parts<'_>) -> Vec<f64> {
         parts.filter(|(_, stiffness)| *stiffness > 0.0).collect()
     };
     let mut held = vec![0.0; parts.x.len()];
-    for (slot, stiffness) in parts.springs.iter().flat_map(reach) {
+    let touching = |(spring, gap): (&'_ Spring, &f64)| (*gap == 0.0).then(|| reach(spring));
+    for (slot, stiffness) in parts.springs.iter().zip(parts.gaps).filter_map(touching).flatten() {
         held[slot] += stiffness;
     }
-    let of = |spring: &Spring| reach(spring).iter().map(|(slot, k)| inwards[*slot] * k / held[*slot]).sum();
-    parts.springs.iter().map(of).collect()
+    let of = |(spring, gap): (&Spring, &f64)| match *gap {
+        0.0 => reach(spring).iter().map(|(slot, k)| inwards[*slot] * k / held[*slot]).sum(),
+        _ => 0.0,
+    };
+    parts.springs.iter().zip(parts.gaps).map(of).collect()
 }
 
 /// The spring across a normal one: the same nodes, directions turned by a right angle.
@@ -405,6 +420,7 @@ mod tests {
         for thickness in [0.004, 0.0071, 0.01, 0.0137] {
             let parts = Parts {
                 springs: &springs,
+                gaps: &vec![0.0; springs.len()],
                 friction: true,
                 x: &x,
                 y: &y,

@@ -27,8 +27,8 @@ impl Springs {
             let (now, before) =
                 (Vector::load(simd, &panels.open, at), Vector::load(simd, &panels.before, at));
             let mut next = now + (now - before);
-            if at < self.padded {
-                next = next.max(zero);
+            if let Some(closed) = self.closed.get(at / LANES) {
+                next = next.max(Vector::load(simd, closed, at % LANES));
             }
             let by = next - now;
             now.store(&mut panels.before, at);
@@ -137,7 +137,8 @@ impl Springs {
                 let these = Vector::load(simd, these, at);
                 let pulls = of(tension, across) - of(&self.pressed, across);
                 let had = gap(&panels.open, across);
-                let opens = pulls.times_plus(of(&self.per_own, across), had).max(zero) - had;
+                let opens =
+                    pulls.times_plus(of(&self.per_own, across), had).max(of(&self.closed, across)) - had;
                 let loses = opens * of(&self.own, across);
                 // Slip from the position before the step, by the excess over the limit of friction: otherwise
                 // panels that slip first would slip too far.

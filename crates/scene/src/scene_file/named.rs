@@ -227,22 +227,15 @@ fn house(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
     }
 }
 
-/// Outside diameter, over that of the paper's bearing, below which the critical step of contacts asks for less
-/// than the reduced model's own step.
-const SMALL: f64 = 0.3;
-
-/// Modes and step of rings smaller or larger than the paper's, where the user gave none. 30 kHz are as good for
-/// the paper's as 60 for an NU 205 in its adapter, with forces of rollers like the full model's to 0.6 %
-/// (docs/results/reduced.md); a 6205 in a pedestal needs 90 (docs/notes/reduced.md).
+/// Modes of rings smaller or larger than the paper's, where the user gave none: small bearings with 60 kHz have
+/// the forces of the full model to 1 % (docs/notes/reduced.md), and 30 kHz are as good for the paper's.
 fn modes(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
     let across = across(scene);
-    let ModelScene::Reduced(reduced) = &mut scene.model else { return };
-    let of_paper = ReducedScene::default();
-    if !given("model.modes_khz") {
-        reduced.modes_khz = to_digits(2, (of_paper.modes_khz / across.powf(0.75)).clamp(2.0, 300.0));
-    }
-    if !given("model.step_us") {
-        reduced.step_us = to_digits(2, of_paper.step_us * (across / SMALL).min(1.0));
+    if let ModelScene::Reduced(reduced) = &mut scene.model
+        && !given("model.modes_khz")
+    {
+        let khz = ReducedScene::default().modes_khz / across.sqrt();
+        reduced.modes_khz = to_digits(2, khz.clamp(2.0, 300.0));
     }
 }
 
