@@ -327,7 +327,8 @@ impl Contacts {
     }
 
     /// Visits the springs of contact of one pair at positions `x`, `y` [m], those last given to `accumulate`,
-    /// with their gaps [m]: those of points that touch, and of those nearer than `within` [m], as if they did.
+    /// with their gaps [m]: those of points that touch, and of those nearer than `within` [m], as if they
+    /// did.
     pub fn springs_within(
         &self,
         pair: usize,

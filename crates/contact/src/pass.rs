@@ -250,9 +250,9 @@ impl Pass {
         .dispatch()
     }
 
-    /// Visits the tangent of the points whose gap is below the law's reach, or `within` [m] where that is given,
-    /// at positions `x`, `y`: that of the gap's gradient, with the gap [m]; the derivative of the gradient is
-    /// neglected. Points that do not touch have the stiffness with which they would.
+    /// Visits the tangent of the points whose gap is below the law's reach, or `within` [m] where that is
+    /// given, at positions `x`, `y`: that of the gap's gradient, with the gap [m]; the derivative of the
+    /// gradient is neglected. Points that do not touch have the stiffness with which they would.
     pub(crate) fn tangent(
         &self,
         surfaces: &[Surface],

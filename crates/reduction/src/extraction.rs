@@ -141,8 +141,8 @@ impl Extraction {
 }
 
 impl Preload {
-    /// Forces and springs of a bearing taken apart, at its preload; those of contact points nearer than `within`
-    /// [m] among them.
+    /// Forces and springs of a bearing taken apart, at its preload, with the springs of contact points nearer
+    /// than `within` [m].
     pub(crate) fn of(extraction: &Extraction, parts: &mut Parts, mesh: &Mesh, within: f64) -> Self {
         let elastic = parts.dynamics.elastic_energy();
         let elastic = elastic.strain + elastic.hourglass;
@@ -178,8 +178,8 @@ impl Preload {
         Self { all, load, outside, seat, gaps, suspension, strain }
     }
 
-    /// Adds the forces of contact to `all`, and returns the springs of contact within the structure, with their
-    /// gaps.
+    /// Adds the forces of contact to `all`, and returns the springs of contact within the structure, with
+    /// their gaps.
     fn contact(
         extraction: &Extraction,
         parts: &mut Parts,

@@ -51,8 +51,9 @@ pub(crate) fn dents(
     structure.residuals(&[rollers], &on_raceway).remove(0)
 }
 
-/// Largest radial dent [m] away from all rollers, by two fifths of their distance at least: what bends between
-/// them in none of the modes, so that no roller feels it of another. Zero where the rollers leave no such room.
+/// Largest radial dent [m] away from all rollers, by two fifths of their distance at least: what bends
+/// between them in none of the modes, so that no roller feels it of another. Zero where the rollers leave no
+/// such room.
 pub(crate) fn between_rollers(raceway: &[RacewayNode], dents: &[[f64; 2]], rollers: usize) -> f64 {
     let n = raceway.len();
     let apart = 2 * n / (5 * rollers.max(1));

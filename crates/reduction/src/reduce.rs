@@ -32,8 +32,8 @@ pub struct ReducedMesh {
     pub parts: MeshedParts,
     /// Displacements of the nodes of rings and housing at the preload [m].
     pub moved: Vec<[f64; 2]>,
-    /// What bends between the rollers at the preload in none of the modes [m], largest radial displacement of the
-    /// raceway: no roller feels it of another.
+    /// What bends between the rollers at the preload in none of the modes [m], largest radial displacement of
+    /// the raceway: no roller feels it of another.
     pub between_rollers: f64,
     /// Warning of a preload that did not quite come to rest.
     pub warning: Option<String>,
@@ -57,8 +57,8 @@ impl ReducedMesh {
     }
 }
 
-/// Reduces a bearing that has been taken apart at its preload; with what bends between rollers beyond the modes
-/// [m].
+/// Reduces a bearing that has been taken apart at its preload. Returns what bends between rollers beyond the
+/// modes, too [m].
 fn reduce(
     scene: &ResolvedScene,
     mesh: &Mesh,
@@ -112,8 +112,8 @@ fn reduce(
 /// Part of the approach of the most loaded roller below which a gap in the seat may close as rollers pass.
 const MAY_CLOSE: f64 = 0.1;
 
-/// Gap at the preload below which a contact point of the seat may come to carry [m]. A pedestal is all around the
-/// ring, and what it presses reaches as far as the rollers that are loaded; an adapter ends before them.
+/// Gap at the preload below which a contact point of the seat may come to carry [m]. A pedestal is all around
+/// the ring, and what it presses reaches as far as the rollers that are loaded; an adapter ends before them.
 fn may_close(scene: &ResolvedScene) -> f64 {
     match scene.written.housing {
         HousingScene::Pedestal(_) => {

@@ -20,7 +20,8 @@ const WIDTH: f64 = 0.7;
 
 /// The seat in the mesh.
 pub(crate) struct Parts<'a> {
-    /// Normal springs, one for each contact point that carries or may come to, and how far each is from that [m].
+    /// Normal springs, one for each contact point that carries or may come to, and how far each is from that
+    /// [m].
     pub(crate) springs: &'a [Spring],
     pub(crate) gaps: &'a [f64],
     /// Whether there is friction.

@@ -137,19 +137,20 @@ fn wanted(scene: &ResolvedScene) -> ReducedScene {
     }
 }
 
-/// Share of the approach of the most loaded roller that may bend between rollers in none of the modes; beyond it
-/// forces of rollers are off by three per cent and more (docs/notes/reduced.md).
+/// Share of the approach of the most loaded roller that may bend between rollers in none of the modes; beyond
+/// it forces of rollers are off by three per cent and more (docs/notes/reduced.md).
 const LEFT_OUT: f64 = 0.15;
 
-/// A warning where the raceway bends between rollers in more than the modes, by some length [m] at the preload.
+/// A warning where the raceway bends between rollers in more than the modes, by some length [m] at the
+/// preload.
 fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: f64) -> Option<String> {
     let approach = static_load::at_start(scene).ok()?.max_approach_m();
     let share = between_rollers / approach;
     (share > LEFT_OUT).then(|| {
         format!(
-            "the modes below {} kHz leave out {:.2} µm by which the outer ring bends between the rollers, {:.0} % of \
-             the approach under the most loaded one: forces of rollers may be off by some per cent. Take `model.modes_khz` \
-             of {:.0}, or as much more as it takes",
+            "the modes below {} kHz leave out {:.2} µm by which the outer ring bends between the rollers, \
+             {:.0} % of the approach under the most loaded one: forces of rollers may be off by some per \
+             cent. Take `model.modes_khz` of {:.0}, or as much more as it takes",
             wanted.modes_khz,
             1e6 * between_rollers,
             1e2 * share,

@@ -218,8 +218,8 @@ fn issue_a_cage_that_leaves_the_bearing_ends_the_run() {
     );
 }
 
-/// Balls in a pedestal start with the loads of the full model: its seat is pressed where a ball has come to since
-/// the preload of the reduction. Source: the full model at its preload.
+/// Balls in a pedestal start with the loads of the full model: its seat is pressed where a ball has come to
+/// since the preload of the reduction. Source: THEORY §9.6, by the full model at its preload.
 #[test]
 fn peer_loads_in_a_pedestal_are_those_of_the_full_model() {
     // Of the largest load; 0.14 where gaps of the seat at the preload stayed open.
@@ -253,8 +253,8 @@ fn peer_loads_in_a_pedestal_are_those_of_the_full_model() {
     assert!(info.energy.max_relative_error < ENERGY, "{}", info.energy.max_relative_error);
 }
 
-/// Modes below 30 kHz leave out how the ring of a small bearing bends between its balls, which a run says; those
-/// that a scene takes by itself do not.
+/// Modes below 30 kHz leave out how the ring of a small bearing bends between its balls, which a run says;
+/// those that a scene takes by itself do not.
 #[test]
 fn example_a_run_says_that_its_modes_are_too_few() {
     let folder = Scratch::create("reduced-few");

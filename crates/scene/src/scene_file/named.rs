@@ -200,8 +200,8 @@ fn across(scene: &Scene) -> f64 {
     outside(&scene.bearing) / outside(&BearingScene::default())
 }
 
-/// What follows from the bearing in a field that an argument has replaced as a whole: `--set housing=pedestal()`
-/// is a pedestal of that bearing's size.
+/// What follows from the bearing in a field that an argument has replaced as a whole:
+/// `--set housing=pedestal()` is a pedestal of that bearing's size.
 pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, given: &[String]) {
     let given = |path: &str| given.iter().any(|written| written == path);
     match replaced {
@@ -227,8 +227,8 @@ fn house(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
     }
 }
 
-/// Modes of rings smaller or larger than the paper's, where the user gave none: small bearings with 60 kHz have
-/// the forces of the full model to 1 % (docs/notes/reduced.md), and 30 kHz are as good for the paper's.
+/// Modes of rings smaller or larger than the paper's, where the user gave none: small bearings with 60 kHz
+/// have the forces of the full model to 1 % (docs/notes/reduced.md), and 30 kHz are as good for the paper's.
 fn modes(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
     let across = across(scene);
     if let ModelScene::Reduced(reduced) = &mut scene.model

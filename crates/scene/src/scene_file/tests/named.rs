@@ -42,8 +42,8 @@ fn example_a_bearing_by_its_name() {
     assert_eq!((other.operation.load_n, other.bearing.rollers), (1000.0, 13));
 }
 
-/// A pedestal that an argument puts in the place of the file's housing has been as large as the paper's, about a
-/// ring of 52 mm, and modes of a reduced model as few.
+/// A pedestal that an argument puts in the place of the file's housing has been as large as the paper's,
+/// about a ring of 52 mm, and modes of a reduced model as few.
 #[test]
 fn issue_what_arguments_replace_has_the_size_of_the_bearing() {
     let in_file = Scene::parse("(bearing: \"6205\", housing: pedestal(), model: reduced())", "mine").unwrap();
