@@ -245,7 +245,9 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     (scene.contact.penalty_scale, scene.contact.points_per_facet) = (1.0, 4);
     let without = Scene { cage: None, ..scene.clone() };
     let [caged, free] = std::thread::scope(|scope| {
-        [&scene, &without].map(|scene| scope.spawn(move || run(scene, 1).1)).map(|run| run.join().expect("a run"))
+        [&scene, &without]
+            .map(|scene| scope.spawn(move || run(scene, 1).1))
+            .map(|run| run.join().expect("a run"))
     });
     let angle = last_angle_deg(&caged, 1);
     assert!(
