@@ -19,7 +19,7 @@ use crate::{error::Error, reduce::ReducedMesh, structure::modes_khz};
 const FOLDER: &str = ".reduced";
 
 /// First bytes of the file, with the version of its content.
-const MAGIC: &[u8; 20] = b"stribeck reduced vD\n";
+const MAGIC: &[u8; 20] = b"stribeck reduced vE\n";
 
 /// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have
 /// their defaults. Rollers are half a spacing from their places, so that none is in the first groove.

@@ -41,19 +41,36 @@ pub(crate) fn taken_back(seat: Option<&Seat>, modes: usize, vertex: usize) -> im
     seat.map_or(&[][..], |seat| &seat.taken_back).iter().skip(vertex * modes).take(modes)
 }
 
-/// Vertices of the raceway without the dents of the rollers, which the local compliance adds again [m].
-pub(crate) fn without_dents(
+/// Displacements of the raceway's vertices by the rollers at the preload beyond the modes [m].
+pub(crate) fn dents(
     extraction: &Extraction,
     structure: &mut Structure,
     rollers: NodeForces,
 ) -> Vec<[f64; 2]> {
     let on_raceway = extraction.slots(&extraction.nodes.outer);
-    let dents = structure.residuals(&[rollers], &on_raceway).remove(0);
+    structure.residuals(&[rollers], &on_raceway).remove(0)
+}
+
+/// Largest radial dent [m] away from all rollers, by two fifths of their distance at least: what bends between
+/// them in none of the modes, so that no roller feels it of another. Zero where the rollers leave no such room.
+pub(crate) fn between_rollers(raceway: &[RacewayNode], dents: &[[f64; 2]], rollers: usize) -> f64 {
+    let n = raceway.len();
+    let apart = 2 * n / (5 * rollers.max(1));
+    let free = |at: usize| (0..=2 * apart).all(|i| raceway[(at + n - apart + i) % n].force == 0.0);
+    let radial = |at: usize| {
+        let ([nx, ny], [dx, dy]) = (raceway[at].normal, dents[at]);
+        (nx * dx + ny * dy).abs()
+    };
+    (0..n).filter(|at| free(*at)).map(radial).fold(0.0, f64::max)
+}
+
+/// Vertices of the raceway without the dents of the rollers, which the local compliance adds again [m].
+pub(crate) fn without_dents(extraction: &Extraction, dents: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let without_dent = |(n, [dx, dy]): (&u32, &[f64; 2])| {
         let [x, y] = extraction.place(*n);
         [x - dx, y - dy]
     };
-    extraction.nodes.outer.iter().zip(&dents).map(without_dent).collect()
+    extraction.nodes.outer.iter().zip(dents).map(without_dent).collect()
 }
 
 /// Shapes at the vertices of the raceway [1/√kg], less the part cancelled by the tangential springs of the

@@ -32,6 +32,9 @@ pub struct ReducedMesh {
     pub parts: MeshedParts,
     /// Displacements of the nodes of rings and housing at the preload [m].
     pub moved: Vec<[f64; 2]>,
+    /// What bends between the rollers at the preload in none of the modes [m], largest radial displacement of the
+    /// raceway: no roller feels it of another.
+    pub between_rollers: f64,
     /// Warning of a preload that did not quite come to rest.
     pub warning: Option<String>,
 }
@@ -49,18 +52,19 @@ impl ReducedMesh {
         let mesh = &assembly.model.mesh;
         let (mut extraction, mut parts) = Extraction::of(scene, bearing, mesh)?;
         let moved = std::mem::take(&mut extraction.moved);
-        let reduction = reduce(scene, mesh, &extraction, &mut parts)?;
-        Ok(Self { reduction, parts: meshed, moved, warning })
+        let (reduction, between_rollers) = reduce(scene, mesh, &extraction, &mut parts)?;
+        Ok(Self { reduction, parts: meshed, moved, between_rollers, warning })
     }
 }
 
-/// Reduces a bearing that has been taken apart at its preload.
+/// Reduces a bearing that has been taken apart at its preload; with what bends between rollers beyond the modes
+/// [m].
 fn reduce(
     scene: &ResolvedScene,
     mesh: &Mesh,
     from: &Extraction,
     parts: &mut Parts,
-) -> Result<Reduction, Error> {
+) -> Result<(Reduction, f64), Error> {
     let count = parts.dynamics.state.x.len();
     let preload = Preload::of(from, parts, mesh);
     let mut structure = Structure::of(scene, from, &preload, &parts.dynamics)?;
@@ -70,12 +74,14 @@ fn reduce(
     let padded = modes.next_multiple_of(GROUP);
     let rollers = raceway::roller_forces(from, count);
     let loads = Loads::of(&structure, &preload, &nodes, springs.as_ref(), &rollers, (scene.load, padded));
-    let outer = raceway::without_dents(from, &mut structure, rollers);
+    let dents = raceway::dents(from, &mut structure, rollers);
+    let between_rollers = raceway::between_rollers(&nodes, &dents, scene.rollers);
+    let outer = raceway::without_dents(from, &dents);
     let sensors = sensors(from, &mut structure, &outer, count, padded);
     let compliances = Compliances::of(scene, from, &parts.dynamics, &mut structure, &outer)?;
     let mut squares = vec![0.0; padded];
     squares[..modes].copy_from_slice(structure.squares());
-    Ok(Reduction {
+    let reduction = Reduction {
         modes,
         padded,
         squares,
@@ -99,7 +105,8 @@ fn reduce(
         structure_mass: from.structure_mass,
         seat: from.seat,
         springs,
-    })
+    };
+    Ok((reduction, between_rollers))
 }
 
 /// Divides the seat into panels; the modes become those of a seat that holds.

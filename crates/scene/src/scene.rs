@@ -87,7 +87,8 @@ pub enum ModelScene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct ReducedScene {
-    /// Natural frequency up to which modes of outer ring and adapter are kept [kHz].
+    /// Natural frequency up to which modes of outer ring and adapter are kept [kHz]. Of rings of another size
+    /// than the paper's 30 (220 mm/outside diameter)^¾.
     pub modes_khz: f64,
     /// Longest time step [µs]; shortened so that a whole number of steps fits into a sampling interval.
     pub step_us: f64,

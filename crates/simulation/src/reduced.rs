@@ -17,6 +17,7 @@ use stribeck_scene::{
     resolved::ResolvedScene,
     run_info::{ReducedInfo, RunInfo},
     scene::{ContactSurface, ModelScene, ReducedScene},
+    static_load,
 };
 
 use crate::{
@@ -51,7 +52,7 @@ impl Model for Reduced {
         watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<(Self, Setup), Error> {
         let started = (with.host.wall_s)();
-        let (ReducedMesh { reduction, parts, moved, warning }, from_cache) =
+        let (ReducedMesh { reduction, parts, moved, between_rollers, warning }, from_cache) =
             cache::reduced_mesh(&with.scene.written, with.runs())?;
         with.enter("preload", watch);
         let scene = with.scene;
@@ -67,6 +68,7 @@ impl Model for Reduced {
         let state = bearing.at_start(&dense::solve)?;
         let (time_step, critical_time_step) = (bearing.time_step, bearing.critical_time_step());
         let mut warnings = Vec::from_iter(warning);
+        warnings.extend(too_few_modes(scene, &wanted, between_rollers));
         warnings.extend(shorter_steps(&wanted, time_step, critical_time_step));
         let setup = Setup {
             time_step,
@@ -133,6 +135,27 @@ fn wanted(scene: &ResolvedScene) -> ReducedScene {
         ModelScene::Reduced(reduced) => reduced.clone(),
         ModelScene::Full => ReducedScene::default(),
     }
+}
+
+/// Share of the approach of the most loaded roller that may bend between rollers in none of the modes: about
+/// the largest error of the forces of rollers (THEORY §9.6).
+const LEFT_OUT: f64 = 0.05;
+
+/// A warning where the raceway bends between rollers in more than the modes, by some length [m] at the preload.
+fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: f64) -> Option<String> {
+    let approach = static_load::at_start(scene).ok()?.max_approach_m();
+    let share = between_rollers / approach;
+    (share > LEFT_OUT).then(|| {
+        format!(
+            "the modes below {} kHz leave out {:.2} µm by which the outer ring bends between the rollers, {:.0} % of \
+             the approach under the most loaded one: forces of rollers may be off by as much. Take `model.modes_khz` \
+             of {:.0}, or as much more as it takes",
+            wanted.modes_khz,
+            1e6 * between_rollers,
+            1e2 * share,
+            (2.0 * wanted.modes_khz).min(300.0)
+        )
+    })
 }
 
 /// A warning where the critical time step makes steps shorter than the scene's, with the cause.

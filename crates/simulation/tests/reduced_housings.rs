@@ -217,3 +217,41 @@ fn issue_a_cage_that_leaves_the_bearing_ends_the_run() {
         info.status
     );
 }
+
+/// Balls in a pedestal start with the loads of the full model where the scene takes its modes by itself. With
+/// modes below 30 kHz alone the ring hardly bends between the balls, and a warning says so. Source: the full
+/// model at its preload.
+#[test]
+fn peer_loads_in_a_pedestal_are_those_of_the_full_model() {
+    // Of the largest load.
+    const TOLERANCE: f64 = 0.03;
+    const FEW_MODES: f64 = 0.06;
+    let text = "(bearing: \"6205\", model: reduced(), housing: pedestal(), film: None, defect: None,
+        mesh: (size_mm: 0.5, roller_facets: 64), contact: (surface: arc, penalty_scale: 1),
+        operation: (load_n: 1000, speed_rpm: 900), output: (frames: None),
+        solver: (duration_ms: 0.05, mass_damping_per_s: 5000, structural_damping: None))";
+    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let folder = Scratch::create("reduced-pedestal");
+    let loads = |name: &str, model: ModelScene| {
+        let info = run(&Scene { model, ..scene.clone() }, &folder, name, 2);
+        assert_eq!(info.status, Status::Complete, "{name}: {:?}", info.stop_reason);
+        let trace = trace(&folder, name);
+        let first = |channel: String| trace.get(&channel).unwrap_or_else(|| panic!("no `{channel}`"))[1];
+        let of = |n: usize| {
+            let [x, y] = ["x", "y"].map(|axis| first(format!("roller.{n}.outer_f{axis}_n")));
+            x.hypot(y)
+        };
+        let warned = info.warnings.iter().any(|warning| warning.contains("bends between the rollers"));
+        ((1..=scene.bearing.rollers).map(of).collect::<Vec<f64>>(), warned)
+    };
+    let (full, _) = loads("full", ModelScene::Full);
+    let largest = full.iter().copied().fold(0.0, f64::max);
+    let off =
+        |loads: &[f64]| loads.iter().zip(&full).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest;
+    let (own, warned) = loads("own", scene.model.clone());
+    println!("{own:.0?} N, full {full:.0?} N");
+    assert!(off(&own) < TOLERANCE && !warned, "off by {}, warned: {warned}", off(&own));
+    let few = ModelScene::Reduced(ReducedScene { modes_khz: 30.0, step_us: 1.0 });
+    let (few, warned) = loads("few", few);
+    assert!(off(&few) > FEW_MODES && warned, "off by {}, warned: {warned}", off(&few));
+}

@@ -152,12 +152,6 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, given: &[String]) {
     }
     follow("adapter.width_mm", &mut scene.adapter.width_mm, across * paper.adapter.width_mm);
     follow("adapter.height_mm", &mut scene.adapter.height_mm, across * paper.adapter.height_mm);
-    if let HousingScene::Pedestal(pedestal) = &mut scene.housing {
-        let of_paper = PedestalScene::default();
-        follow("housing.width_mm", &mut pedestal.width_mm, across * of_paper.width_mm);
-        follow("housing.base_mm", &mut pedestal.base_mm, across * of_paper.base_mm);
-        follow("housing.top_mm", &mut pedestal.top_mm, across * of_paper.top_mm);
-    }
     if let Some(defect) = &mut scene.defect {
         let of_paper = DefectScene::default();
         follow("defect.length_mm", &mut defect.length_mm, size * of_paper.length_mm);
@@ -196,18 +190,59 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, given: &[String]) {
         follow("output.frames.every_us", &mut frames.every_us, every);
     }
     scene.bearing = bearing;
+    house(scene, &given);
+    modes(scene, &given);
 }
 
-/// Modes of rings smaller or larger than the paper's, where the user gave none: a NU 205 with 60 kHz has the
-/// forces of the full model to 0.6 % (docs/results/reduced.md), and 30 kHz are as good for the paper's.
-pub(super) fn modes(scene: &mut Scene, given: &[String]) {
+/// Outside diameter of a scene's bearing over that of the paper's.
+fn across(scene: &Scene) -> f64 {
     let outside = |b: &BearingScene| b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
-    let across = outside(&scene.bearing) / outside(&BearingScene::default());
-    if let ModelScene::Reduced(reduced) = &mut scene.model
-        && !given.iter().any(|path| path == "model.modes_khz")
-    {
-        let khz = ReducedScene::default().modes_khz / across.sqrt();
-        reduced.modes_khz = to_digits(2, khz.clamp(2.0, 300.0));
+    outside(&scene.bearing) / outside(&BearingScene::default())
+}
+
+/// What follows from the bearing in a field that an argument has replaced as a whole: `--set housing=pedestal()`
+/// is a pedestal of that bearing's size.
+pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, given: &[String]) {
+    let given = |path: &str| given.iter().any(|written| written == path);
+    match replaced {
+        "housing" => house(scene, &given),
+        "model" => modes(scene, &given),
+        _ => {}
+    }
+}
+
+/// Dimensions of a pedestal, in proportion to the bearing, where the user gave none.
+fn house(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
+    let across = across(scene);
+    let HousingScene::Pedestal(pedestal) = &mut scene.housing else { return };
+    let of_paper = PedestalScene::default();
+    for (path, field, value) in [
+        ("housing.width_mm", &mut pedestal.width_mm, of_paper.width_mm),
+        ("housing.base_mm", &mut pedestal.base_mm, of_paper.base_mm),
+        ("housing.top_mm", &mut pedestal.top_mm, of_paper.top_mm),
+    ] {
+        if !given(path) {
+            *field = to_digits(3, across * value);
+        }
+    }
+}
+
+/// Outside diameter, over that of the paper's bearing, below which the critical step of contacts asks for less
+/// than the reduced model's own step.
+const SMALL: f64 = 0.3;
+
+/// Modes and step of rings smaller or larger than the paper's, where the user gave none. 30 kHz are as good for
+/// the paper's as 60 for an NU 205 in its adapter, with forces of rollers like the full model's to 0.6 %
+/// (docs/results/reduced.md); a 6205 in a pedestal needs 90 (docs/notes/reduced.md).
+fn modes(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
+    let across = across(scene);
+    let ModelScene::Reduced(reduced) = &mut scene.model else { return };
+    let of_paper = ReducedScene::default();
+    if !given("model.modes_khz") {
+        reduced.modes_khz = to_digits(2, (of_paper.modes_khz / across.powf(0.75)).clamp(2.0, 300.0));
+    }
+    if !given("model.step_us") {
+        reduced.step_us = to_digits(2, of_paper.step_us * (across / SMALL).min(1.0));
     }
 }
 

@@ -95,7 +95,10 @@ fn apply_one(
     }
     let text = write(&text, &outline, path, &value);
     match deserialize(&text) {
-        Ok(scene) => Ok((scene, by)),
+        Ok(mut scene) => {
+            named::follow_bearing(&mut scene, path, given);
+            Ok((scene, by))
+        }
         Err(fault) => Err(Box::new(fault.problem(by.place_of_value()))),
     }
 }

@@ -141,7 +141,6 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
                 };
             }
             named::surround(scene, Surrounded { bearing, pitch_mm }, given);
-            named::modes(scene, given);
             named::stiffness(scene, given);
             Own::Complete
         }

@@ -12,10 +12,10 @@ use proptest::prelude::*;
 use stribeck_testing::Scratch;
 
 use super::{Place, Problem, SceneError};
-use crate::housing::{HousingScene, RigidHousingScene};
+use crate::housing::{HousingScene, PedestalScene, RigidHousingScene};
 use crate::scene::{
-    BearingScene, ContactMethod, DampingFrame, HarmonicScene, PocketWalls, ProfileScene, RampScene,
-    RollerCopies, Scene, Start,
+    BearingScene, ContactMethod, DampingFrame, HarmonicScene, ModelScene, PocketWalls, ProfileScene,
+    RampScene, ReducedScene, RollerCopies, Scene, Start,
 };
 
 /// The only problem of `result`.

@@ -42,6 +42,29 @@ fn example_a_bearing_by_its_name() {
     assert_eq!((other.operation.load_n, other.bearing.rollers), (1000.0, 13));
 }
 
+/// A pedestal that an argument puts in the place of the file's housing has been as large as the paper's, about a
+/// ring of 52 mm, and modes of a reduced model as few.
+#[test]
+fn issue_what_arguments_replace_has_the_size_of_the_bearing() {
+    let in_file = Scene::parse("(bearing: \"6205\", housing: pedestal(), model: reduced())", "mine").unwrap();
+    let HousingScene::Pedestal(pedestal) = &in_file.housing else { panic!("{:?}", in_file.housing) };
+    assert!(pedestal.base_mm < 0.5 * PedestalScene::default().base_mm, "{pedestal:?}");
+    let ModelScene::Reduced(reduced) = &in_file.model else { panic!("{:?}", in_file.model) };
+    assert!(reduced.modes_khz > 80.0 && reduced.step_us < 2.0, "{reduced:?}");
+    let small = Scene::parse("(bearing: \"6205\")", "mine").unwrap();
+    let set = small.with_overrides(&["housing=pedestal()", "model=reduced()"]).unwrap();
+    assert_eq!((&set.housing, &set.model), (&in_file.housing, &in_file.model));
+    let own = ["housing=pedestal(width_mm: 300)", "model=reduced(modes_khz: 30)"];
+    let own = small.with_overrides(&own).unwrap();
+    let HousingScene::Pedestal(wide) = &own.housing else { panic!("{:?}", own.housing) };
+    assert_eq!((wide.width_mm, wide.base_mm), (300.0, pedestal.base_mm));
+    let expected = ReducedScene { modes_khz: 30.0, ..reduced.clone() };
+    assert_eq!(own.model, ModelScene::Reduced(expected));
+    let papers = Scene::default().with_overrides(&["housing=pedestal()", "model=reduced()"]).unwrap();
+    assert_eq!(papers.model, ModelScene::Reduced(ReducedScene::default()));
+    assert_eq!(papers.housing, HousingScene::Pedestal(PedestalScene::default()));
+}
+
 #[test]
 fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
     let mut refused = Vec::new();
