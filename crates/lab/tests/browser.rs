@@ -8,6 +8,7 @@
 mod devtools;
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use devtools::Tab;
 use serde_json::Value;
@@ -39,7 +40,7 @@ const TOOLS: &str = r#"
   AudioBufferSourceNode.prototype.start = function (...with_) { played.push(this.buffer); return start.apply(this, with_); };
   const press = async (id) => { const before = saved.length; document.getElementById(id).click(); await until(() => saved.length > before); return saved[before]; };
   const text = (id) => document.getElementById(id).textContent;
-  await until(() => (lab && lab.ready) || !document.getElementById("trouble").hidden);
+  await until(() => (lab && lab.ready && lab.picture) || !document.getElementById("trouble").hidden);
 "#;
 
 /// The paper's bearing, coarse, with a cage that its rollers hold.
@@ -75,6 +76,12 @@ fn tools() -> Option<(PathBuf, Vec<u8>)> {
     browser.zip(module)
 }
 
+/// The page of the coarse bearing, made once for all tests.
+fn coarse_page(module: &[u8]) -> &'static str {
+    static MADE: OnceLock<String> = OnceLock::new();
+    MADE.get_or_init(|| page_of(&coarse(), module))
+}
+
 /// The page of a scene.
 fn page_of(scene: &Scene, module: &[u8]) -> String {
     page::page(std::slice::from_ref(scene), module, None, "stribeck lab").expect("a sound scene").html
@@ -104,7 +111,7 @@ fn number(answer: &Value, name: &str) -> f64 {
 fn example_the_page_runs_and_its_numbers_are_right() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-browser");
-    let file = written(&folder, "lab.html", &page_of(&coarse(), &module));
+    let file = written(&folder, "lab.html", coarse_page(&module));
     let script = r#"
       await until(() => lab.picture.time > 0.05);
       const memory = lab.memory;
@@ -152,7 +159,7 @@ fn example_the_page_runs_and_its_numbers_are_right() {
 fn example_presets_are_links_and_arcs_take_the_tone_away() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-presets");
-    let file = written(&folder, "lab.html", &page_of(&coarse(), &module));
+    let file = written(&folder, "lab.html", coarse_page(&module));
     let script = r#"
       await until(() => lab.picture.time > 0.1 && lab.spectra.tone);
       const facets = lab.spectra.corners.level, words = text("words"), alone = !lab.engine.worker;
@@ -177,7 +184,7 @@ fn example_presets_are_links_and_arcs_take_the_tone_away() {
 fn example_a_phone_has_room_and_controls_have_names() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-phone");
-    let file = written(&folder, "lab.html", &page_of(&coarse(), &module));
+    let file = written(&folder, "lab.html", coarse_page(&module));
     let mut tab = Tab::open(&browser, &folder.join("profile"));
     let phone = serde_json::json!({ "width": 390, "height": 844, "deviceScaleFactor": 2, "mobile": true });
     tab.call("Emulation.setDeviceMetricsOverride", phone);
@@ -230,7 +237,7 @@ fn is_control(node: &Value) -> bool {
 fn refuses_a_file_cut_in_half() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-cut");
-    let html = page_of(&coarse(), &module);
+    let html = coarse_page(&module);
     let file = written(&folder, "half.html", &html[..html.len() / 2]);
     let mut tab = Tab::open(&browser, &folder.join("profile"));
     tab.go_to(&format!("file://{}", file.display()));
@@ -243,8 +250,7 @@ fn refuses_a_file_cut_in_half() {
 fn refuses_a_browser_without_web_assembly() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-without");
-    let html =
-        page_of(&coarse(), &module).replacen("<head>", "<head><script>delete window.WebAssembly</script>", 1);
+    let html = coarse_page(&module).replacen("<head>", "<head><script>delete window.WebAssembly</script>", 1);
     let file = written(&folder, "lab.html", &html);
     let address = format!("file://{}", file.display());
     let said = asked(&browser, &folder, &address, "return text('trouble');");
@@ -257,7 +263,7 @@ fn refuses_a_browser_without_vectors() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-scalar");
     let off = "<head><script>WebAssembly.validate = () => false</script>";
-    let file = written(&folder, "lab.html", &page_of(&coarse(), &module).replacen("<head>", off, 1));
+    let file = written(&folder, "lab.html", &coarse_page(&module).replacen("<head>", off, 1));
     let address = format!("file://{}", file.display());
     let said = asked(&browser, &folder, &address, "return text('trouble');");
     assert!(said.as_str().is_some_and(|words| words.contains("no vectors in WebAssembly (SIMD)")), "{said}");
@@ -347,7 +353,7 @@ fn roundtrip_what_is_saved_and_what_is_heard() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-saved");
     let scene = coarse();
-    let file = written(&folder, "lab.html", &page_of(&scene, &module));
+    let file = written(&folder, "lab.html", coarse_page(&module));
     let script = r#"
       const handles = { load: 41000, speed: 612.5, friction: 0.011, contactDamping: 0.25, massDamping: 120, clearance: 12,
         viscosity: 0, arcs: 1, facets: 96, spallRing: 2, spallAngle: 77, spallLength: 8.5, spallDepth: 0.15, spallSlope: 60, step: 1.25 };

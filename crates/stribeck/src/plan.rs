@@ -68,7 +68,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     if !options.no_trial {
         let trial = trial::begin(&scene, &plan, place)?;
-        cost(&scene, &plan, &trial);
+        cost(&plan, &trial);
         plan.advice.extend(long(&scene, &trial));
     }
     for advice in &plan.advice {
@@ -100,21 +100,16 @@ fn loads(plan: &Plan) {
     );
 }
 
-/// Steps of the whole run.
-fn steps(scene: &ResolvedScene, trial: &Trial) -> f64 {
-    (trial.info.steps_planned as f64 * scene.duration / trial.info.simulated_s.max(f64::MIN_POSITIVE)).round()
-}
-
 /// Ratio of wall-clock to processor time above which a computer counts as busy.
 const BUSY: f64 = 1.2;
 
 /// Time and memory of the run.
-fn cost(scene: &ResolvedScene, plan: &Plan, trial: &Trial) {
+fn cost(plan: &Plan, trial: &Trial) {
     let what = match &trial.info.reduced {
         Some(reduced) => format!("{} modes of {} elements", reduced.modes, plan.elements),
         None => format!("{} elements", plan.elements),
     };
-    say!("  {what}, {:.0} steps of {:.3} µs", steps(scene, trial), 1e6 * trial.info.time_step_s);
+    say!("  {what}, {:.0} steps of {:.3} µs", trial.steps_planned, 1e6 * trial.info.time_step_s);
     let modes = match trial.modes {
         Some(cost) if trial.kept => format!("; its modes took {}, and are kept for it", clock(cost.busy_s)),
         Some(cost) => {

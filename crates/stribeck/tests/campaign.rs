@@ -5,6 +5,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
+use std::sync::OnceLock;
 use std::time::Duration;
 
 use stribeck_formats::Recording;
@@ -44,9 +45,31 @@ fn run(desk: &Scratch, words: &[&str]) -> Output {
     campaign(desk, words).output().expect("it starts")
 }
 
+/// What a campaign makes of its runs.
+const TABLES: [&str; 4] = ["runs.parquet", "events.parquet", "signals.parquet", "DATASHEET.md"];
+
 fn tables(folder: &Path) -> [Vec<u8>; 4] {
-    ["runs.parquet", "events.parquet", "signals.parquet", "DATASHEET.md"]
-        .map(|name| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")))
+    TABLES.map(|name| fs::read(folder.join(name)).unwrap_or_else(|e| panic!("{name}: {e}")))
+}
+
+/// Tables of [`CAMPAIGN`] in one piece, made once for all tests.
+fn unbroken() -> &'static [Vec<u8>; 4] {
+    static MADE: OnceLock<[Vec<u8>; 4]> = OnceLock::new();
+    MADE.get_or_init(|| {
+        let desk = desk("campaign-unbroken", CAMPAIGN);
+        let whole = run(&desk, &["--out=A"]);
+        assert!(whole.status.success(), "{}", said(&whole));
+        says(&whole, &["8 of 8 runs are complete"]);
+        tables(&desk.join("A"))
+    })
+}
+
+/// Puts the tables of the unbroken campaign into a folder.
+fn put_unbroken(folder: &Path) {
+    fs::create_dir(folder).expect("a new folder");
+    for (name, bytes) in TABLES.iter().zip(unbroken()) {
+        fs::write(folder.join(name), bytes).expect("writable");
+    }
 }
 
 #[test]
@@ -55,6 +78,7 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     let whole = run(&desk, &["--out=A", "--jobs=2", "--threads=2"]);
     assert!(whole.status.success(), "{}", said(&whole));
     says(&whole, &["8 of 8 runs are complete"]);
+    assert_eq!(&tables(&desk.join("A")), unbroken(), "with two threads each");
     let mut noise = Noise::new(3);
     for _ in 0..10 {
         let mut child = campaign(&desk, &["--out=B", "--jobs=2"])
@@ -134,9 +158,8 @@ fn numbers(table: PathBuf) -> Vec<(String, Vec<u64>)> {
 
 #[test]
 fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
-    let desk = desk("campaign-kept", CAMPAIGN);
-    assert!(run(&desk, &["--out=all"]).status.success());
-    fs::write(desk.join("campaign.ron"), keeping("signals")).expect("a campaign");
+    let desk = desk("campaign-kept", &keeping("signals"));
+    put_unbroken(&desk.join("all"));
     assert!(run(&desk, &["--out=signals", "--jobs=2"]).status.success());
     for table in ["runs.parquet", "signals.parquet"] {
         assert!(
@@ -417,7 +440,7 @@ fn peer_tables_open_in_pandas_polars_and_duckdb() {
     // them.
     let Some(python) = python_with(&["pandas", "pyarrow", "polars", "duckdb"]) else { return };
     let desk = desk("campaign-peers", CAMPAIGN);
-    assert!(run(&desk, &["--out=A"]).status.success());
+    put_unbroken(&desk.join("A"));
     let script = "
 import pandas, polars, duckdb
 a = pandas.read_parquet('A/runs.parquet')
@@ -442,7 +465,6 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
     // has it.
     let Some(python) = python_with(&["hyperqueue"]) else { return };
     let desk = desk("campaign-hyperqueue", CAMPAIGN);
-    assert!(run(&desk, &["--out=A"]).status.success());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/hyperqueue_campaign.py");
     let words = [script, env!("CARGO_BIN_EXE_stribeck"), "campaign.ron", "B", "4"];
     let output = Command::new(&python).current_dir(desk.path()).args(words).output().expect("it starts");
@@ -451,7 +473,7 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
     let last = run(&desk, &["--out=B"]);
     assert!(last.status.success(), "{}", said(&last));
     says(&last, &["8 of 8 runs are complete"]);
-    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
+    assert_eq!(unbroken(), &tables(&desk.join("B")));
 }
 
 /// The variable that says that Slurm must be there.
@@ -468,7 +490,6 @@ fn peer_slurm_runs_the_parts_to_the_same_bytes() {
         return absent(NEED_SLURM, "Slurm is not installed, or this is not root").unwrap_or_default();
     }
     let desk = desk("campaign-slurm", CAMPAIGN);
-    assert!(run(&desk, &["--out=A"]).status.success());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/slurm_campaign.sh");
     let words = [script, env!("CARGO_BIN_EXE_stribeck"), "campaign.ron", "B", "4"];
     let output = Command::new("sh").current_dir(desk.path()).args(words).output().expect("it starts");
@@ -477,7 +498,7 @@ fn peer_slurm_runs_the_parts_to_the_same_bytes() {
         return absent(NEED_SLURM, &why).unwrap_or_default();
     }
     says(&output, &["done"]);
-    assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
+    assert_eq!(unbroken(), &tables(&desk.join("B")));
 }
 
 #[test]
@@ -496,9 +517,8 @@ fn peer_dask_and_snakemake_run_the_parts_to_the_same_bytes() {
     for (module, words) in [("distributed", dask), ("snakemake", snakemake)] {
         let Some(python) = python_with(&[module]) else { continue };
         let desk = desk(&format!("campaign-{module}"), CAMPAIGN);
-        assert!(run(&desk, &["--out=A"]).status.success());
         let output = Command::new(&python).current_dir(desk.path()).args(&words).output().expect("it starts");
         assert!(output.status.success(), "{module}: {}", said(&output));
-        assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")), "{module}");
+        assert_eq!(unbroken(), &tables(&desk.join("B")), "{module}");
     }
 }

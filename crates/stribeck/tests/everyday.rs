@@ -22,6 +22,9 @@ const COARSE: [&str; 6] = [
 /// Its length, when it is to come to its end [ms].
 const SHORT: &str = "--set=solver.duration_ms=0.2";
 
+/// A length of which a plan tries every step: of a longer one it would take a second.
+const BEGINNING: &str = "--set=solver.duration_ms=0.05";
+
 /// Whatever takes longer has hung.
 const PATIENCE: Duration = Duration::from_secs(120);
 
@@ -241,7 +244,7 @@ fn invariant_the_program_says_what_it_is_and_needs_no_files() {
     says(&desk.run(&["--version"]), &["stribeck 0."]);
     says(&desk.run(&["--help"]), &["rolling element bearings", "simulate", "report", "plan"]);
     // Without a scene the bearing of the paper, here on a coarse mesh.
-    let plan = desk.run(&["plan", "--set", "mesh.size_mm=2.0"]);
+    let plan = desk.run(&["plan", "--set=mesh.size_mm=2.0", BEGINNING]);
     assert!(plan.status.success(), "{}", said(&plan));
     says(&plan, &["singh2014", "roller_vertices"]);
     let diverging = desk.run(&["plan", "quick.ron", "--set", "solver.time_step_factor=1.2"]);
@@ -321,6 +324,8 @@ fn example_a_reduced_run_from_its_plan_to_a_deck() {
         "--set=solver.duration_ms=1e5",
     ]);
     says(&long, &["takes hours", "`housing.damping_n_s_m`"]);
+    // Its steps are 200 times shorter than those of the scene: it is not tried for a minute, and does not stop.
+    assert!(!said(&long).contains("stops at once"), "{}", said(&long));
 
     let other = desk.run(&[
         "plan",
@@ -372,7 +377,7 @@ fn issue_hints_are_those_of_their_command() {
     assert!(known.status.success(), "{}", said(&known));
     says(&known, &["NU 312", "`\"NU 312, elements=…\"`"]);
     assert!(![&unknown, &known].iter().any(|output| said(output).contains("--bearing")));
-    let still = desk.run(&["plan", "quick.ron", "--set=operation.speed_rpm=0"]);
+    let still = desk.run(&["plan", "quick.ron", "--set=operation.speed_rpm=0", BEGINNING]);
     assert!(still.status.success() && !said(&still).contains("inf"), "{}", said(&still));
     says(&still, &["nothing turns"]);
 }
@@ -386,7 +391,7 @@ fn survives_an_output_that_is_closed_or_full() {
         drop(reader);
         writer
     };
-    for words in [&["bearings"][..], &["bearings", "NU205"], &["plan", "--set=mesh.size_mm=2"]] {
+    for words in [&["bearings"][..], &["bearings", "NU205"], &["plan", "--set=mesh.size_mm=2", BEGINNING]] {
         let output = desk.stribeck(words).stdout(closed()).output().expect("it starts");
         assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {}", said(&output));
     }

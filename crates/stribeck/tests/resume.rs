@@ -7,6 +7,7 @@ use std::{
     fs,
     path::Path,
     process::{Command, Output, Stdio},
+    sync::OnceLock,
     time::{Duration, Instant},
 };
 
@@ -63,18 +64,31 @@ fn wait_until_under_way(run: &Path) {
     }
 }
 
-fn assert_same_files(whole: &Path, pieces: &Path) {
-    for name in ["trace.npy", "energy.npy"] {
-        let [a, b] = [whole, pieces].map(|run| fs::read(run.join(name)).expect("readable"));
-        assert!(a == b, "another {name}");
+/// What runs are compared by.
+const FILES: [&str; 2] = ["trace.npy", "energy.npy"];
+
+fn files(run: &Path) -> [Vec<u8>; 2] {
+    FILES.map(|name| fs::read(run.join(name)).expect("readable"))
+}
+
+/// Holds a run in pieces against one in one piece, which is made once for all tests.
+fn assert_same_files(pieces: &Path) {
+    static WHOLE: OnceLock<[Vec<u8>; 2]> = OnceLock::new();
+    let whole = WHOLE.get_or_init(|| {
+        let folder = Scratch::create("whole");
+        let whole = folder.join("run");
+        assert!(simulate(&whole, "1").status().expect("it starts").success());
+        files(&whole)
+    });
+    for ((name, a), b) in FILES.iter().zip(whole).zip(files(pieces)) {
+        assert!(*a == b, "another {name}");
     }
 }
 
 #[test]
 fn survives_kills_and_full_disks_without_loss() {
     let folder = Scratch::create("nothing");
-    let [whole, killed] = ["whole", "killed"].map(|name| folder.join(name));
-    assert!(simulate(&whole, "1").status().expect("it starts").success());
+    let killed = folder.join("killed");
     start_and_kill(&killed);
 
     // A limit on the length of files stands for a full disk: the checkpoint does not fit at once, the trace
@@ -96,7 +110,7 @@ fn survives_kills_and_full_disks_without_loss() {
 
     let finished = resume(&killed, "2");
     assert!(finished.status.success(), "{}", words(&finished));
-    assert_same_files(&whole, &killed);
+    assert_same_files(&killed);
 
     let again = resume(&killed, "1");
     assert!(!again.status.success() && words(&again).contains("it is complete"), "{}", words(&again));
@@ -117,8 +131,7 @@ fn refuses_a_folder_that_cannot_be_written_at_once() {
 #[test]
 fn survives_an_interruption_and_goes_on() {
     let folder = Scratch::create("term");
-    let [whole, ended] = ["whole", "ended"].map(|name| folder.join(name));
-    assert!(simulate(&whole, "1").status().expect("it starts").success());
+    let ended = folder.join("ended");
     let child = simulate(&ended, "1").spawn().expect("it starts");
     wait_until_under_way(&ended);
     // What Ctrl-C sends.
@@ -130,7 +143,7 @@ fn survives_an_interruption_and_goes_on() {
     assert!(info.contains("\"status\": \"interrupted\"") && ended.join("checkpoint").exists(), "{info}");
     let finished = resume(&ended, "2");
     assert!(finished.status.success(), "{}", words(&finished));
-    assert_same_files(&whole, &ended);
+    assert_same_files(&ended);
 }
 
 #[test]

@@ -1,23 +1,27 @@
 //! Simulation-based calibration of the whole chain on a simulator whose truths are known: runs, emulator,
 //! posterior.
 
+use std::sync::OnceLock;
+
 use crate::simulator::{FIELDS, IDLE, OUTPUTS, PRIORS, columns, only, readings, runs, truths};
 use stribeck_infer::{Calibration, Emulator, Output, PosteriorOptions, Runs, Truth};
 
 const TRUTHS: usize = 200;
-const OPTIONS: PosteriorOptions = PosteriorOptions { draws: 300, seed: 9 };
 
-fn calibration(times: f64) -> Calibration {
-    let emulator = Emulator::fit(&runs(8, 192, 2), &columns(), 0).unwrap();
+/// What the truths of a scatter of `times` that of the runs say of one emulator, by so many draws for each.
+fn calibration(times: f64, draws: usize) -> Calibration {
+    static FITTED: OnceLock<Emulator> = OnceLock::new();
+    let emulator = FITTED.get_or_init(|| Emulator::fit(&runs(8, 192, 2), &columns(), 0).unwrap());
     let all: Vec<(usize, f64)> = (0..OUTPUTS).map(|output| (output, 0.0)).collect();
-    Calibration::of(&emulator, &PRIORS, &truths(80, TRUTHS, times), &all, OPTIONS).unwrap()
+    Calibration::of(emulator, &PRIORS, &truths(80, TRUTHS, times), &all, PosteriorOptions { draws, seed: 9 })
+        .unwrap()
 }
 
 /// 90 % intervals hold 85 to 95 % of the truths of every field, ranks are even, and the field without
 /// influence keeps its prior while the others are learned.
 #[test]
 fn example_intervals_hold_the_truths_that_they_should() {
-    let calibration = calibration(1.0);
+    let calibration = calibration(1.0, 300);
     for (number, field) in calibration.fields.iter().enumerate() {
         assert!((0.85..=0.95).contains(&field.coverage_90.share), "field {number}: {field:?}");
         assert!((0.40..=0.60).contains(&field.coverage_50.share), "field {number}: {field:?}");
@@ -58,7 +62,7 @@ fn issue_readings_of_one_run_counted_as_runs() {
 /// The same check finds an emulator whose scatter is half of the truths'.
 #[test]
 fn example_half_the_scatter_is_found_out() {
-    let calibration = calibration(2.0);
+    let calibration = calibration(2.0, 150);
     let worst = calibration.fields.iter().map(|field| field.coverage_90.share).fold(1.0, f64::min);
     assert!(worst < 0.8, "{worst}");
     let failing = calibration.fields.iter().filter(|field| field.p_value < 0.001).count();

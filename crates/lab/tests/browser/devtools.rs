@@ -64,9 +64,16 @@ impl Tab {
         tab
     }
 
+    /// Opens a page and waits until all of it is there.
     pub(crate) fn go_to(&mut self, address: &str) {
         self.call("Page.navigate", json!({ "url": address }));
-        sleep(Duration::from_millis(1500));
+        let there =
+            json!({ "expression": "location.href !== 'about:blank' && document.readyState === 'complete'" });
+        let started = Instant::now();
+        while self.call("Runtime.evaluate", there.clone())["result"]["value"] != true {
+            assert!(started.elapsed() < PATIENCE, "{address} does not load");
+            sleep(Duration::from_millis(20));
+        }
     }
 
     /// Value of a promise in the page.

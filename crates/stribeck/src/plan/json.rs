@@ -59,19 +59,19 @@ pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> V
                 * (scene.duration / scene.interval).round(),
         },
         "elements": plan.elements,
-        "cost": trial.map(|trial| cost(scene, trial)),
+        "cost": trial.map(cost),
         "warnings": warnings,
         "advice": plan.advice,
     })
 }
 
-fn cost(scene: &ResolvedScene, trial: &Trial) -> Value {
+fn cost(trial: &Trial) -> Value {
     let times = |cost: Cost| json!({ "quiet_s": cost.quiet_s, "busy_s": cost.busy_s });
     json!({
         "threads": trial.threads,
         "modes": trial.info.reduced.as_ref().map(|reduced| reduced.modes),
         "step_us": 1e6 * trial.info.time_step_s,
-        "steps": super::steps(scene, trial),
+        "steps": trial.steps_planned,
         "before_first_step": times(trial.before()),
         "steps_take": times(trial.steps),
         "run": times(trial.run()),

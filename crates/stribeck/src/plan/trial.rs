@@ -13,7 +13,7 @@ use stribeck_analysis::plan::Plan;
 use stribeck_run::host::{Host, Progress};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::RunInfo;
+use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_simulation as simulation;
 
@@ -26,6 +26,8 @@ const LOOP_S: f64 = 1.0;
 /// many samples that is.
 const ELEMENT_STEPS: f64 = 3e8;
 const ROLLER_STEPS: f64 = 2e6;
+/// Where a scene is slower than guessed, it is tried for so long at most [s of processor time of a thread].
+const MOST_S: f64 = 2.0 * LOOP_S;
 /// Samples at least.
 const SAMPLES: f64 = 5.0;
 /// This part of the tried steps is left out: they include the first checkpoint, the first contact search, and
@@ -69,6 +71,8 @@ pub(super) struct Trial {
     pub(super) setup: Cost,
     /// All steps, from those that were tried.
     pub(super) steps: Cost,
+    /// Their number.
+    pub(super) steps_planned: f64,
     /// The account of the beginning.
     pub(super) info: RunInfo,
     /// Threads.
@@ -122,11 +126,13 @@ pub(super) fn begin(scene: &ResolvedScene, plan: &Plan, place: &Place) -> Result
     beginning.solver.duration_ms = (samples * interval_ms).min(written.solver.duration_ms);
     let (info, rate) = run_in(&beginning, &run.0, threads)?;
     let share = written.solver.duration_ms / beginning.solver.duration_ms;
+    let steps_planned = info.steps_planned as f64 * share;
     Ok(Trial {
         modes,
         kept: runs.is_some(),
         setup: Cost::of(info.setup_s, info.cpu_s - info.loop_cpu_s, 1),
-        steps: rate.times(info.steps_planned as f64 * share),
+        steps: rate.times(steps_planned),
+        steps_planned: steps_planned.round(),
         info,
         threads,
     })
@@ -159,21 +165,34 @@ impl Mark {
     }
 }
 
-/// Runs a scene; returns its `run.json` and the time of a step.
+/// Runs a scene to its end, or for [`MOST_S`]; returns its `run.json` and the time of a step.
 fn run_in(scene: &Scene, folder: &Path, threads: usize) -> Result<(RunInfo, Cost)> {
     let dir = RunDir::create(folder)?;
     host::with(threads, |host| {
         let (mut first, mut last) = (None, None);
+        let (mut samples, mut began_s) = (0.0, 0.0);
         let mut watch = |at: &Progress| {
-            let tried = at.step as f64 / at.steps.max(1) as f64;
-            if at.step > 0 && first.is_none() && tried >= FIRST {
-                first = Some(Mark::now(at.step, host));
-            } else if at.step > 0 && at.step >= at.steps {
-                last = Some(Mark::now(at.step, host));
+            if at.step == 0 {
+                return ControlFlow::Continue(());
             }
-            ControlFlow::Continue(())
+            let now = Mark::now(at.step, host);
+            if samples == 0.0 {
+                began_s = now.cpu_s;
+            }
+            samples += 1.0;
+            let spent = (now.cpu_s - began_s) / threads as f64 / MOST_S;
+            let tried = at.step as f64 / at.steps.max(1) as f64;
+            let long_enough = spent >= 1.0 && samples >= SAMPLES;
+            if first.is_none() && tried.max(spent) >= FIRST {
+                first = Some(now);
+            } else if at.step >= at.steps || long_enough {
+                last = Some(now);
+            }
+            if long_enough && last.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        let info = simulation::simulate(scene, &dir, host, &mut watch)?;
+        let mut info = simulation::simulate(scene, &dir, host, &mut watch)?;
+        // It was ended here.
+        info.stop_reason.take_if(|_| info.status == Status::Interrupted);
         let rate = match (first, last) {
             (Some(a), Some(b)) if b.step > a.step => {
                 let steps = (b.step - a.step) as f64;
