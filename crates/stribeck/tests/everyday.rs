@@ -324,7 +324,7 @@ fn example_a_reduced_run_from_its_plan_to_a_deck() {
         "--set=solver.duration_ms=1e5",
     ]);
     says(&long, &["takes hours", "`housing.damping_n_s_m`"]);
-    // Its steps are 200 times shorter than those of the scene: it is not tried for a minute, and does not stop.
+    // Its steps are 200 times shorter than the scene says: it is tried for two seconds, and does not stop.
     assert!(!said(&long).contains("stops at once"), "{}", said(&long));
 
     let other = desk.run(&[
