@@ -67,7 +67,8 @@ fn panel(sheet: &mut Sheet, field: &FieldFound, [x, y]: [f64; 2], [width, height
             }
         }
         _ => {
-            for (n, choice) in field.choices.iter().enumerate().filter(|_| count <= 8) {
+            let labels = labels(&field.choices.iter().map(|choice| &choice.value[..]).collect::<Vec<_>>());
+            for (n, label) in labels.iter().enumerate().filter(|_| count <= 8) {
                 let middle = x + (n as f64 + 0.5) * bar;
                 let most = ((bar / 6.0) as usize).max(3);
                 sheet.text(
@@ -75,7 +76,7 @@ fn panel(sheet: &mut Sheet, field: &FieldFound, [x, y]: [f64; 2], [width, height
                     10.0,
                     Anchor::Middle,
                     TEXT,
-                    &cut(&choice.value, most * 2),
+                    &cut(label, most * 2),
                 );
             }
             if let (true, [first, .., last]) = (count > 8, &field.choices[..]) {
@@ -88,6 +89,34 @@ fn panel(sheet: &mut Sheet, field: &FieldFound, [x, y]: [f64; 2], [width, height
 
 fn share_of(field: &FieldFound, value: f64, from: f64, to: f64) -> f64 {
     if field.logarithmic { (value / from).ln() / (to / from).ln() } else { (value - from) / (to - from) }
+}
+
+/// What tells choices apart: the values of those of their fields that are not alike in all that have several.
+/// Where that leaves two of them alike, the choices as they are written.
+fn labels(choices: &[&str]) -> Vec<String> {
+    let parts = |choice: &str| -> Vec<String> {
+        let inner = choice.trim_matches(|c| matches!(c, '(' | ')'));
+        let fields = inner.split([',', ' ']).filter(|part| !part.is_empty());
+        // "field: value" is one part, as "field=value" is.
+        fields.fold(Vec::new(), |mut parts: Vec<String>, word| {
+            match parts.last_mut().filter(|last| last.ends_with(':')) {
+                Some(name) => name.push_str(word),
+                None => parts.push(word.to_owned()),
+            }
+            parts
+        })
+    };
+    let all: Vec<Vec<String>> = choices.iter().map(|choice| parts(choice)).collect();
+    let several: Vec<_> = all.iter().filter(|parts| parts.len() > 1).collect();
+    let alike = |part: &String| several.len() > 1 && several.iter().all(|other| other.contains(part));
+    let value = |part: &String| part.rsplit([':', '=']).next().unwrap_or(part).to_owned();
+    let told = |parts: &Vec<String>| {
+        parts.iter().filter(|part| !alike(part)).map(value).collect::<Vec<_>>().join(" ")
+    };
+    let labels: Vec<String> = all.iter().map(told).collect();
+    let distinct =
+        labels.iter().enumerate().all(|(n, label)| !label.is_empty() && !labels[..n].contains(label));
+    if distinct { labels } else { choices.iter().map(|choice| (*choice).to_owned()).collect() }
 }
 
 /// The beginning of a text.
@@ -333,4 +362,23 @@ pub(super) fn ranks(fields: &[FieldCalibrated]) -> Picture {
         both ends: intervals are too narrow; in the middle: too wide."
         .to_owned();
     picture
+}
+
+#[cfg(test)]
+mod tests {
+    use super::labels;
+
+    #[test]
+    fn example_choices_are_told_apart_by_what_differs() {
+        let films = [
+            "None",
+            "(viscosity_pa_s: 0.002, roughness_um: 0.3)",
+            "(viscosity_pa_s: 0.05, roughness_um: 0.3)",
+        ];
+        assert_eq!(labels(&films), ["None", "0.002", "0.05"]);
+        let damping = ["a.rate=0", "a.rate=9 b=None", "a.rate=50 b=None", "a.rate=50 b=None c=absolute"];
+        assert_eq!(labels(&damping), ["0", "9", "50", "50 absolute"]);
+        assert_eq!(labels(&["straight", "corners"]), ["straight", "corners"]);
+        assert_eq!(labels(&["(a: 1, b: 2)", "(a: 1, b: 2)"]), ["(a: 1, b: 2)", "(a: 1, b: 2)"]);
+    }
 }
