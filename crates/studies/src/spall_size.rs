@@ -395,16 +395,16 @@ fn answers(sheet: &mut Sheet, sizes: &[Size]) {
     for (indicator, [with_depth, with_width]) in grown.into_iter().enumerate() {
         let [least, most] = ends(indicator);
         sheet.say(&format!(
-            "Over {} the largest force behind a spall is {least} to {most} at this load and speed; with depth it \
-             grows at {with_depth} of {} widths, with width at {with_width} of {} depths.",
+            "Over {} the largest force behind a spall is {least} to {most} at this load and speed; with \
+             depth it grows at {with_depth} of {} widths, with width at {with_width} of {} depths.",
             OVER[indicator], counts[0], counts[1],
         ));
     }
     let touched = sizes.iter().filter(|size| size.passages.floor > 0);
     let deepest = touched.map(|size| size.depth_mm).fold(0.0, f64::max);
     sheet.say(&format!(
-        "No ball touches a floor deeper than {deepest} mm, whatever the sagitta: it is caught by the trailing \
-         edge before it gets there, and a floor that is not reached cannot be felt."
+        "No ball touches a floor deeper than {deepest} mm, whatever the sagitta: it is caught by the \
+         trailing edge before it gets there, and a floor that is not reached cannot be felt."
     ));
 }
 
