@@ -369,8 +369,7 @@ fn answers(sheet: &mut Sheet, sizes: &[Size]) {
          start are taken as independent.",
     );
     let mut rows = Vec::new();
-    let lines: [(&str, &str, fn(&Size) -> f64, fn(&Size) -> f64); 2] =
-        [("depth", "width", WIDTH, DEPTH), ("width", "depth", DEPTH, WIDTH)];
+    let lines = [("depth", "width", WIDTH, DEPTH), ("width", "depth", DEPTH, WIDTH)];
     let mut grown = [[0; 2]; 2];
     for (l, (what, of, fixed, along)) in lines.into_iter().enumerate() {
         for value in values(sizes, fixed) {
