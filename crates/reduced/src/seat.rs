@@ -233,20 +233,20 @@ mod tests {
     use super::*;
 
     /// A seat of one panel and two modes, the first of which opens it and the second shifts it: 1 N/µm each,
-    /// pressed by 100 N.
-    fn one_panel(friction: f64) -> (Springs, SeatState) {
+    /// pressed by a force [N] or so far from touching [m].
+    fn one_panel(friction: f64, pressed_by: f64, gap: f64) -> (Springs, SeatState) {
         let padded = LANES;
         let n = 2 * padded;
         let (mut tension, mut stiffness) = (vec![0.0; n * LANES], vec![0.0; n * n]);
         (tension[0], tension[n + padded]) = (1e6, 1e6);
         (stiffness[0], stiffness[padded * n + padded]) = (1e6, 1e6);
-        let mut pressed = vec![0.0; padded];
-        pressed[0] = 100.0;
+        let (mut pressed, mut gaps) = (vec![0.0; padded], vec![0.0; padded]);
+        (pressed[0], gaps[0]) = (pressed_by, gap);
         let seat = Seat {
             panels: 1,
             padded,
             pressed,
-            gaps: vec![0.0; padded],
+            gaps,
             across: vec![1e6; padded],
             tension,
             by_rollers: vec![0.0; n],
@@ -284,7 +284,7 @@ mod tests {
     /// Source: own, the area of the loop; a Jenkins element.
     #[test]
     fn analytic_a_panel_that_slips_back_and_forth_turns_the_area_of_its_loop_into_heat() {
-        let (springs, mut panels) = one_panel(0.2);
+        let (springs, mut panels) = one_panel(0.2, 100.0, 0.0);
         let (amplitude, limit, stiffness) = (100e-6, 20.0, 1e6);
         let mut heat = 0.0;
         let cycle = |panels: &mut SeatState, heat: &mut f64| {
@@ -306,7 +306,7 @@ mod tests {
     /// A panel that opens loses all tension and its energy; both return when it closes.
     #[test]
     fn analytic_a_panel_opens_where_it_would_pull() {
-        let (springs, mut panels) = one_panel(0.2);
+        let (springs, mut panels) = one_panel(0.2, 100.0, 0.0);
         // 100 N over 1 N/µm: it opens 100 µm off.
         let [heat, stored, across, _] = at(&springs, &mut panels, [150e-6, 0.0]);
         assert!(across.abs() < 1e-9 && heat == 0.0, "{across} N, {heat} J");
@@ -316,5 +316,25 @@ mod tests {
         let [_, stored, across, _] = at(&springs, &mut panels, [50e-6, 0.0]);
         assert!(stored == 0.0 && panels.open[0] == 0.0, "{stored} J");
         assert!((across + 50.0).abs() < 1e-9, "{across} N");
+    }
+
+    /// A panel with a gap is free until the gap is closed, carries from there on, and takes no energy with it
+    /// as it opens again.
+    #[test]
+    fn analytic_a_panel_that_nothing_presses_carries_once_its_gap_is_closed() {
+        let (springs, mut panels) = one_panel(0.2, 0.0, 10e-6);
+        for free in [5e-6, -9e-6] {
+            let [heat, _, across, _] = at(&springs, &mut panels, [free, 0.0]);
+            assert!(across.abs() < 1e-9 && heat == 0.0, "{across} N, {heat} J");
+            assert!((panels.open[0] - free).abs() < 1e-15, "{} m", panels.open[0]);
+        }
+        // 30 µm beyond touching, at 1 N/µm.
+        let [_, pressed_j, across, _] = at(&springs, &mut panels, [-40e-6, 0.0]);
+        assert!((across + 30.0).abs() < 1e-9 && (panels.open[0] + 10e-6).abs() < 1e-15, "{across} N");
+        // Beside ½k (40 µm)² of the modes, which hold its spring: ½k (30 µm)² are in it.
+        let expected = 0.5 * 1e6 * (30e-6_f64.powi(2) - 40e-6_f64.powi(2));
+        assert!((pressed_j - expected).abs() < 1e-12, "{pressed_j} J, {expected} J");
+        let [_, free_j, across, _] = at(&springs, &mut panels, [0.0, 0.0]);
+        assert!(across.abs() < 1e-9 && free_j.abs() < 1e-15, "{across} N, {free_j} J");
     }
 }

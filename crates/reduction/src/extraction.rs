@@ -49,8 +49,9 @@ pub(crate) struct Extraction {
     pub(crate) contact_forces: Vec<[f64; 2]>,
     /// Displacements of the nodes of rings and housing at the preload [m].
     pub(crate) moved: Vec<[f64; 2]>,
-    /// Pair of contact between the outer ring and its housing, and the force of the housing on the ring [N].
+    /// Number of the pair of contact between the outer ring and its housing.
     pub(crate) seat_pair: Option<usize>,
+    /// Force of the housing on the outer ring [N].
     pub(crate) seat: Option<[f64; 2]>,
     pub(crate) roller: Inertia,
     pub(crate) cage: Option<Inertia>,
