@@ -28,6 +28,8 @@ const ELEMENT_STEPS: f64 = 3e8;
 const ROLLER_STEPS: f64 = 2e6;
 /// Where a scene is slower than guessed, it is tried for so long at most [s of processor time of a thread].
 const MOST_S: f64 = 2.0 * LOOP_S;
+/// The processor's clock is read as often at most [s]: it takes as long as a sample of a reduced bearing.
+const LOOK_S: f64 = 0.02;
 /// Samples at least.
 const SAMPLES: f64 = 5.0;
 /// This part of the tried steps is left out: they include the first checkpoint, the first contact search, and
@@ -170,18 +172,21 @@ fn run_in(scene: &Scene, folder: &Path, threads: usize) -> Result<(RunInfo, Cost
     let dir = RunDir::create(folder)?;
     host::with(threads, |host| {
         let (mut first, mut last) = (None, None);
-        let (mut samples, mut began_s) = (0.0, 0.0);
+        let (mut samples, mut began_s, mut looked_s) = (0.0, None, f64::NEG_INFINITY);
         let mut watch = |at: &Progress| {
             if at.step == 0 {
                 return ControlFlow::Continue(());
             }
-            let now = Mark::now(at.step, host);
-            if samples == 0.0 {
-                began_s = now.cpu_s;
-            }
             samples += 1.0;
-            let spent = (now.cpu_s - began_s) / threads as f64 / MOST_S;
             let tried = at.step as f64 / at.steps.max(1) as f64;
+            let at_a_mark = at.step >= at.steps || (first.is_none() && tried >= FIRST);
+            let wall_s = (host.wall_s)();
+            if !at_a_mark && wall_s - looked_s < LOOK_S {
+                return ControlFlow::Continue(());
+            }
+            looked_s = wall_s;
+            let now = Mark::now(at.step, host);
+            let spent = (now.cpu_s - *began_s.get_or_insert(now.cpu_s)) / threads as f64 / MOST_S;
             let long_enough = spent >= 1.0 && samples >= SAMPLES;
             if first.is_none() && tried.max(spent) >= FIRST {
                 first = Some(now);
