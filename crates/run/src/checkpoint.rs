@@ -22,7 +22,7 @@ const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
 /// Version of the file. Other versions are refused, because a state that is read in part does not continue to
 /// the same bits.
-const VERSION: u32 = 18;
+const VERSION: u32 = 19;
 
 /// Length of a scene's hash.
 const HASH: usize = 16;

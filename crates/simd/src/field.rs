@@ -8,26 +8,26 @@ use serde::{Deserialize, Serialize};
 /// Bytes of a line of cache, and of eight numbers.
 const LINE: usize = 64;
 
-/// An array of f64 whose first number begins a line of cache, and so does every eighth one after it: a vector
-/// loaded at a multiple of its length never spans two lines. It reads and writes as a slice.
+/// An array of numbers whose first one begins a line of cache: a vector loaded at a multiple of its length
+/// never spans two lines. It reads and writes as a slice.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub struct Field(AVec<f64, ConstAlign<LINE>>);
+pub struct Field<T = f64>(AVec<T, ConstAlign<LINE>>);
 
-impl Field {
+impl<T: Copy + Default> Field<T> {
     /// `n` zeros.
     pub fn zeros(n: usize) -> Self {
-        std::iter::repeat_n(0.0, n).collect()
+        std::iter::repeat_n(T::default(), n).collect()
     }
 
     /// Adds a value at the end.
-    pub fn push(&mut self, value: f64) {
+    pub fn push(&mut self, value: T) {
         self.0.push(value);
     }
 
     /// Changes the length to `n`; new values are zero.
     pub fn resize(&mut self, n: usize) {
-        self.0.resize(n, 0.0);
+        self.0.resize(n, T::default());
     }
 
     /// Removes all values and keeps the memory.
@@ -36,43 +36,43 @@ impl Field {
     }
 }
 
-impl Default for Field {
+impl<T> Default for Field<T> {
     fn default() -> Self {
         Self(AVec::new(LINE))
     }
 }
 
-impl FromIterator<f64> for Field {
-    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+impl<T> FromIterator<T> for Field<T> {
+    fn from_iter<I: IntoIterator<Item = T>>(values: I) -> Self {
         Self(AVec::from_iter(LINE, values))
     }
 }
 
-impl Deref for Field {
-    type Target = [f64];
+impl<T> Deref for Field<T> {
+    type Target = [T];
 
-    fn deref(&self) -> &[f64] {
+    fn deref(&self) -> &[T] {
         &self.0
     }
 }
 
-impl DerefMut for Field {
-    fn deref_mut(&mut self) -> &mut [f64] {
+impl<T> DerefMut for Field<T> {
+    fn deref_mut(&mut self) -> &mut [T] {
         &mut self.0
     }
 }
 
-impl<'a> IntoIterator for &'a Field {
-    type Item = &'a f64;
-    type IntoIter = std::slice::Iter<'a, f64>;
+impl<'a, T> IntoIterator for &'a Field<T> {
+    type Item = &'a T;
+    type IntoIter = std::slice::Iter<'a, T>;
 
     fn into_iter(self) -> Self::IntoIter {
         self.iter()
     }
 }
 
-impl From<Vec<f64>> for Field {
-    fn from(values: Vec<f64>) -> Self {
+impl<T> From<Vec<T>> for Field<T> {
+    fn from(values: Vec<T>) -> Self {
         values.into_iter().collect()
     }
 }

@@ -157,21 +157,13 @@ impl Dynamics {
     /// Gathers the whole state on every rank.
     pub fn gather(&mut self) {
         let Some(mut division) = self.division.take() else { return };
-        let rank = division.ranks.rank();
         let State { x, y, vx, vy, springs, .. } = &mut self.state;
-        let damped = !springs.paths.is_empty();
-        let springs = springs.fields().filter(|_| damped);
-        for field in [x, y, vx, vy].into_iter().chain(springs) {
-            let tiles = || self.tiles.iter().zip(&division.rank_of);
-            for (tile, _) in tiles().filter(|(_, of)| **of == rank) {
-                division.shared.tell(field[tile.slots.clone()].iter().copied());
-            }
-            division.shared.gather(&*division.ranks, tiles().map(|(tile, &of)| (of, tile.slots.len())));
-            for (tile, &of) in tiles() {
-                let values = division.shared.hear(of, tile.slots.len());
-                if of != rank {
-                    field[tile.slots.clone()].copy_from_slice(values);
-                }
+        for field in [x, y, vx, vy].into_iter().chain(springs.paths.iter_mut().flatten()) {
+            gather_field(&mut division, &self.tiles, field, |value| value);
+        }
+        if !springs.paths.is_empty() {
+            for held in &mut springs.held {
+                gather_field(&mut division, &self.tiles, held, |value| value as f32);
             }
         }
         self.division = Some(division);
@@ -311,6 +303,28 @@ impl Dynamics {
                 self.rigid[b] = RigidState { centre: [x, y], angle, velocity: [u, v], spin };
                 body.place(&self.rigid[b], &mut self.state, dt);
             }
+        }
+    }
+}
+
+/// Gathers a field of nodes on every rank; `back` makes its numbers of those that are sent.
+fn gather_field<T: Copy + Into<f64>>(
+    division: &mut Division,
+    tiles: &[Tile],
+    field: &mut [T],
+    back: impl Fn(f64) -> T,
+) {
+    let Division { ranks, rank_of, shared, .. } = division;
+    let rank = ranks.rank();
+    let tiles = || tiles.iter().zip(&*rank_of);
+    for (tile, _) in tiles().filter(|(_, of)| **of == rank) {
+        shared.tell(field[tile.slots.clone()].iter().map(|&value| value.into()));
+    }
+    shared.gather(&**ranks, tiles().map(|(tile, &of)| (of, tile.slots.len())));
+    for (tile, &of) in tiles() {
+        let values = shared.hear(of, tile.slots.len());
+        if of != rank {
+            field[tile.slots.clone()].iter_mut().zip(values).for_each(|(to, &value)| *to = back(value));
         }
     }
 }

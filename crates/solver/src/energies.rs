@@ -4,12 +4,12 @@
 //! Sums have as many columns as [`LANES`] whatever the instruction set, and parts are added in one order, so
 //! that threads and vectors change no bit.
 
-use std::ops::Range;
+use std::ops::{AddAssign, Range};
 
 use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
-    dynamics::{Dynamics, ElasticBody, Elements},
+    dynamics::{Dynamics, ElasticBody},
     element::{QuadReference, Stiffness, any_quad_energy, triangle_energy},
     kernel::{
         batch::{BATCH, QuadBatch, Quads},
@@ -31,6 +31,13 @@ pub struct ElasticEnergy {
     pub hourglass: f64,
 }
 
+impl AddAssign for ElasticEnergy {
+    fn add_assign(&mut self, other: Self) {
+        self.strain += other.strain;
+        self.hourglass += other.hourglass;
+    }
+}
+
 /// Velocities at one time.
 #[derive(Debug, Clone, Default)]
 pub struct Velocities {
@@ -43,21 +50,22 @@ impl Dynamics {
     /// Strain and hourglass energy of the present positions [J]. As [`Dynamics::step`], to be called from
     /// within the pool.
     pub fn elastic_energy(&self) -> ElasticEnergy {
-        self.elastic_energy_of(|_| true)
+        self.elastic_energies(|_| false)[0]
     }
 
-    /// The same of some bodies, chosen by their numbers in the mesh [J].
-    pub(crate) fn elastic_energy_of(&self, chosen: impl Fn(usize) -> bool) -> ElasticEnergy {
-        let Elements { bodies, .. } = self.elements();
-        let mut parts: Vec<Part> = bodies.iter().filter(|b| chosen(b.body)).flat_map(Part::of).collect();
+    /// The same, and that of some bodies, chosen by their numbers in the mesh [J].
+    pub(crate) fn elastic_energies(&self, chosen: impl Fn(usize) -> bool) -> [ElasticEnergy; 2] {
+        let mut parts: Vec<Part> = self.elements().bodies.iter().flat_map(Part::of).collect();
         let len = |part: &Part| part.quads.len() + part.triangles.len();
         self.share_out(&mut parts, &len, &|part| part.energy = self.energy_of(part));
-        let mut all = ElasticEnergy::default();
-        for Part { energy, .. } in parts {
-            all.strain += energy.strain;
-            all.hourglass += energy.hourglass;
+        let [mut all, mut of_chosen] = [ElasticEnergy::default(); 2];
+        for Part { body, energy, .. } in parts {
+            all += energy;
+            if chosen(body) {
+                of_chosen += energy;
+            }
         }
-        all
+        [all, of_chosen]
     }
 
     fn energy_of(&self, part: &Part) -> ElasticEnergy {
@@ -142,6 +150,7 @@ const PART: usize = 4096;
 
 /// Some elements of one body, and their energy.
 struct Part {
+    body: usize,
     quads: Range<usize>,
     triangles: Range<usize>,
     stiffness: Stiffness,
@@ -151,11 +160,12 @@ struct Part {
 impl Part {
     /// All of a body: its quadrilaterals in parts, its triangles with the first.
     fn of(body: &ElasticBody) -> impl Iterator<Item = Self> {
-        let ElasticBody { quads, triangles, stiffness, .. } = body;
+        let ElasticBody { body, quads, triangles, stiffness } = body;
         let parts = quads.len().div_ceil(PART).max(1);
         (0..parts).map(move |i| {
             let first = (quads.start + i * PART).min(quads.end);
             Self {
+                body: *body,
                 quads: first..(first + PART).min(quads.end),
                 triangles: if i == 0 { triangles.clone() } else { 0..0 },
                 stiffness: *stiffness,

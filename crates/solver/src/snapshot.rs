@@ -63,8 +63,8 @@ impl Dynamics {
         check_count("branches of the snapshot", branches, own, "those of the structural damping")?;
         let held = if own == 0 { 0 } else { slots };
         let SpringState { paths, held: forces, .. } = &s.springs;
-        for field in paths.iter().flatten().chain(forces) {
-            check_count("slots of the snapshot", field.len(), held, "those of the model")?;
+        for len in paths.iter().flatten().map(|path| path.len()).chain(forces.each_ref().map(|f| f.len())) {
+            check_count("slots of the snapshot", len, held, "those of the model")?;
         }
         let bodies = if spins == 0 { 0 } else { springs.map_or(0, |springs| springs.bodies.len()) };
         check_count("spins of the snapshot", spins, bodies, "one for each body with structural damping")?;

@@ -3,6 +3,7 @@
 
 use crate::{
     dynamics::{DampedBody, Dynamics, Springs},
+    energies::ElasticEnergy,
     error::{Error, check},
     kernel::{
         mass_sums::{LaneSums, MassSums, lane_sums},
@@ -62,13 +63,13 @@ impl Dynamics {
         }
         let branches = damping.map_or(0, |d| d.branches().len());
         let slots = if damping.is_some() { self.layout().len() } else { 0 };
-        let zeros = || [Field::zeros(slots), Field::zeros(slots)];
-        let paths = (0..branches).map(|_| zeros()).collect();
+        let paths = (0..branches).map(|_| [Field::zeros(slots), Field::zeros(slots)]).collect();
+        let held = [Field::zeros(slots), Field::zeros(slots)];
         self.springs = damping.map(|damping| Springs {
             damping: damping.clone(),
             bodies: chosen().map(|&body| DampedBody { places: self.layout().places(body) }).collect(),
         });
-        self.state.springs = SpringState { paths, held: zeros(), ..SpringState::default() };
+        self.state.springs = SpringState { paths, held, ..SpringState::default() };
         self.make_room_to_see_ahead();
         Ok(())
     }
@@ -89,34 +90,35 @@ impl Dynamics {
         factor
     }
 
-    /// Adds up the energy of the springs and the heat of the dashpots until the present positions. As
-    /// [`Dynamics::step`], to be called from within the pool.
+    /// Elastic energy of the elements at the present positions [J]; adds up the energy of the springs and the
+    /// heat of the dashpots until then. As [`Dynamics::step`], to be called from within the pool.
     ///
     /// All that branches take is the work of their forces: elements are stiffer by Σ g, which is the change
     /// of an energy, and the rest is the work of the forces that are held.
-    pub fn measure_springs(&mut self) {
+    pub fn measure_elastic_energy(&mut self) -> ElasticEnergy {
         let Some(share) = self.structural_damping().map(|d| d.stiffening(f64::INFINITY) - 1.0) else {
-            return;
+            return self.elastic_energy();
         };
-        let energy = self.damped_energy();
+        let [all, damped] = self.energies_with_damped();
+        let energy = damped.strain + damped.hourglass;
         let (held, State { x, y, .. }) = (&self.state.springs.held, &self.state);
-        let along = |n: usize| held[0][n] * x[n] + held[1][n] * y[n];
+        let along = |n: usize| f64::from(held[0][n]) * x[n] + f64::from(held[1][n]) * y[n];
         let own = self.tiles.iter().filter(|tile| tile.structural.is_some());
         let now: f64 = own.map(|tile| (0..tile.own).map(|n| along(tile.slots.start + n)).sum::<f64>()).sum();
         let springs = &mut self.state.springs;
         let at_start = *springs.at_start.get_or_insert(energy);
         springs.loss = share * (energy - at_start) - springs.work - (now - springs.taken_up);
+        all
     }
 
-    /// Elastic energy of the damped bodies [J].
-    fn damped_energy(&self) -> f64 {
+    /// Elastic energy of all bodies and of the damped ones [J].
+    fn energies_with_damped(&self) -> [ElasticEnergy; 2] {
         let damped = self.structural_damping().map_or(&[][..], StructuralDamping::bodies);
-        let energy = self.elastic_energy_of(|body| damped.contains(&body));
-        energy.strain + energy.hourglass
+        self.elastic_energies(|body| damped.contains(&body))
     }
 
     /// Heat of the dashpots since the start and energy of the springs [J], at the positions of the last
-    /// [`Dynamics::measure_springs`].
+    /// [`Dynamics::measure_elastic_energy`].
     pub fn structural_loss(&self) -> f64 {
         self.state.springs.loss
     }
@@ -168,7 +170,8 @@ impl Dynamics {
         let since = self.state.springs.evaluated.map(|last| step - last);
         let evaluation = Evaluation::new(damping.branches(), dt, since, until);
         if self.state.springs.at_start.is_none() {
-            self.state.springs.at_start = Some(self.damped_energy());
+            let [_, damped] = self.energies_with_damped();
+            self.state.springs.at_start = Some(damped.strain + damped.hourglass);
         }
         (self.state.springs.evaluated, self.state.springs.next) = (Some(step), step + until);
         Some(evaluation)

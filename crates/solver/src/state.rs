@@ -30,8 +30,9 @@ pub struct State {
 pub struct SpringState {
     /// Positions through the low-pass of each branch (x, y) [m], one value a slot, at the last evaluation.
     pub(crate) paths: Vec<[Field; 2]>,
-    /// Forces that nodes are pushed with until the next evaluation (x, y) [N].
-    pub(crate) held: [Field; 2],
+    /// Forces that nodes are pushed with until the next evaluation (x, y) [N], rounded to single precision:
+    /// every step reads them.
+    pub(crate) held: [Field<f32>; 2],
     /// Angular velocity of each damped body when it was last measured [rad/s]; empty before.
     pub(crate) spins: Vec<f64>,
     /// Step of the last evaluation; none before the first.
@@ -52,11 +53,6 @@ impl SpringState {
     /// Paths, and the bodies whose spins are known.
     pub(crate) fn counts(&self) -> (usize, usize) {
         (self.paths.len(), self.spins.len())
-    }
-
-    /// All fields of nodes.
-    pub(crate) fn fields(&mut self) -> impl Iterator<Item = &mut Field> {
-        self.paths.iter_mut().flatten().chain(&mut self.held)
     }
 }
 

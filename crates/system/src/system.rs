@@ -233,8 +233,7 @@ impl System {
         self.gather()?;
         let d = &mut self.dynamics;
         d.velocities_into(&mut self.before);
-        d.measure_springs();
-        let (elastic, gravity) = (d.elastic_energy(), d.gravity_work());
+        let (elastic, gravity) = (d.measure_elastic_energy(), d.gravity_work());
         self.advance()?;
         self.gather()?;
         self.check_announced()?;

@@ -112,8 +112,8 @@ pub(crate) struct Nodes<'a> {
     pub(crate) fx: &'a mut [f64],
     pub(crate) fy: &'a mut [f64],
     /// Forces [N] that structural damping holds; empty where there is none.
-    pub(crate) held_x: &'a [f64],
-    pub(crate) held_y: &'a [f64],
+    pub(crate) held_x: &'a [f32],
+    pub(crate) held_y: &'a [f32],
     /// Time step times [`gain`] over mass [s/kg].
     pub(crate) step_over_mass: &'a [f64],
     /// Mass [kg]; only read where heat is counted.
@@ -235,8 +235,8 @@ pub(crate) fn advance<S: Simd, D: Damping, const LAST: bool>(
     heat: &mut Vector<S>,
 ) {
     if D::HOLDS {
-        fx = fx + Vector::load(simd, nodes.held_x, at);
-        fy = fy + Vector::load(simd, nodes.held_y, at);
+        fx = fx + Vector::load_single(simd, nodes.held_x, at);
+        fy = fy + Vector::load_single(simd, nodes.held_y, at);
     }
     let [own_x, own_y] =
         if D::STIFFNESS { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
@@ -333,7 +333,8 @@ pub(crate) fn rotate<D: Damping>(
         let (dx, dy) = (c1 * rx - s * ry, s * rx + c1 * ry);
         let (vx, vy) = (dx / dt, dy / dt);
         let m = gain * dt / nodes.step_over_mass[i];
-        let [held_x, held_y] = if D::HOLDS { [nodes.held_x[i], nodes.held_y[i]] } else { [0.0, 0.0] };
+        let held = if D::HOLDS { [nodes.held_x[i], nodes.held_y[i]] } else { [0.0, 0.0] };
+        let [held_x, held_y] = held.map(f64::from);
         let reaction_x = m * ((vx - nodes.vx[i]) / dt - gravity[0]) - nodes.fx[i] - held_x;
         let reaction_y = m * ((vy - nodes.vy[i]) / dt - gravity[1]) - nodes.fy[i] - held_y;
         work += 0.5 * dt * (reaction_x * (vx + nodes.vx[i]) + reaction_y * (vy + nodes.vy[i]));

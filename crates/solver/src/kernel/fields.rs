@@ -21,7 +21,7 @@ pub(crate) struct BranchFields<'a> {
     /// Positions through the low-pass of each branch [m].
     pub(crate) paths: [[&'a mut [f64]; 2]; MAX_BRANCHES],
     /// Forces that nodes are pushed with until the next evaluation [N].
-    pub(crate) held: [&'a mut [f64]; 2],
+    pub(crate) held: [&'a mut [f32]; 2],
 }
 
 impl TileFields<'_> {
@@ -47,26 +47,21 @@ impl TileFields<'_> {
 
 impl BranchFields<'_> {
     fn again(&mut self) -> BranchFields<'_> {
-        fn both<'b>(of: &'b mut [&mut [f64]; 2]) -> [&'b mut [f64]; 2] {
+        fn both<'b, T>(of: &'b mut [&mut [T]; 2]) -> [&'b mut [T]; 2] {
             of.each_mut().map(|v| &mut **v)
         }
         BranchFields { paths: self.paths.each_mut().map(both), held: both(&mut self.held) }
     }
 
     fn split_at(mut self, at: usize) -> (Self, Self) {
-        let mut rest = Self::default();
-        let (own, others) = (self.all(), rest.all());
-        for (v, other) in own.zip(others) {
-            let whole = std::mem::take(v);
-            (*v, *other) = whole.split_at_mut(at.min(whole.len()));
+        fn split<'b, T>(whole: &mut &'b mut [T], rest: &mut &'b mut [T], at: usize) {
+            let all = std::mem::take(whole);
+            (*whole, *rest) = all.split_at_mut(at.min(all.len()));
         }
+        let mut rest = Self::default();
+        let paths = self.paths.iter_mut().flatten().zip(rest.paths.iter_mut().flatten());
+        paths.for_each(|(path, rest)| split(path, rest, at));
+        self.held.iter_mut().zip(&mut rest.held).for_each(|(held, rest)| split(held, rest, at));
         (self, rest)
-    }
-}
-
-impl<'a> BranchFields<'a> {
-    fn all(&mut self) -> impl Iterator<Item = &mut &'a mut [f64]> {
-        let Self { paths, held } = self;
-        paths.iter_mut().flatten().chain(held)
     }
 }

@@ -92,8 +92,8 @@ pub(crate) fn tile_forces<S: Simd>(
     fetch: bool,
 ) {
     simd.vectorize(Gathered { tile, x, y, fx, fy });
-    let (own_x, own_y, none) = (&mut [][..], &mut [][..], &[][..]);
-    let (held_x, held_y, mass, step_over_mass) = (none, none, none, &tile.step_over_mass);
+    let (own_x, own_y, held_x, held_y) = (&mut [][..], &mut [][..], &[][..], &[][..]);
+    let (mass, step_over_mass) = (&[][..], &tile.step_over_mass);
     let nodes = &mut Nodes { x, y, own_x, own_y, vx, vy, fx, fy, held_x, held_y, step_over_mass, mass };
     for strip in &tile.strips {
         simd.vectorize(StripForces { strip, tile, nodes, fetch });

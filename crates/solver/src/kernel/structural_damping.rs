@@ -114,7 +114,7 @@ impl WithSimd for Evaluate<'_> {
         tile_forces(simd, tile, [seen_x, seen_y, vx, vy], [&mut *fx, &mut *fy], parameters.fetch);
         for (held, force) in [(&mut *held_x, fx), (&mut *held_y, fy)] {
             for (held, force) in held.iter_mut().zip(force) {
-                *held = -evaluation.share * *force;
+                *held = (-evaluation.share * *force) as f32;
             }
         }
         let (ways_x, ways_y) = ([&*x, &*vx], [&*y, &*vy]);
@@ -125,17 +125,17 @@ impl WithSimd for Evaluate<'_> {
 
 /// Sum of forces on the first `own` nodes times where these were a time `half` [s] ago [J].
 #[inline(always)]
-fn virial(force: &[f64], [at, v]: [&[f64]; 2], half: f64, own: usize) -> f64 {
+fn virial(force: &[f32], [at, v]: [&[f64]; 2], half: f64, own: usize) -> f64 {
     let mut columns = [0.0; LANES];
     let whole = own - own % LANES;
     for first in (0..whole).step_by(LANES) {
         let group = first..first + LANES;
         let (force, at, v) = (&force[group.clone()], &at[group.clone()], &v[group]);
         for l in 0..LANES {
-            columns[l] += force[l] * (at[l] - half * v[l]);
+            columns[l] += f64::from(force[l]) * (at[l] - half * v[l]);
         }
     }
-    let rest: f64 = (whole..own).map(|n| force[n] * (at[n] - half * v[n])).sum();
+    let rest: f64 = (whole..own).map(|n| f64::from(force[n]) * (at[n] - half * v[n])).sum();
     columns.iter().sum::<f64>() + rest
 }
 

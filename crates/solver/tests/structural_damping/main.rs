@@ -31,7 +31,7 @@ fn damp(d: &mut Dynamics, branches: &[Branch], bodies: Vec<usize>, factor: f64) 
 
 /// Mechanical energy and heat of damping [J] at the positions before a step, which it takes.
 fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
-    d.measure_springs();
+    d.measure_elastic_energy();
     let now = step_and_balance(d, &mut []);
     [now.mechanical() - now.drive, d.structural_loss()]
 }
