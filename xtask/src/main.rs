@@ -61,7 +61,7 @@ fn main() -> ExitCode {
     stribeck::conclude(match cli.command {
         Command::Program(command) => lab::with_module(command)
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
-        Command::Study(options) => study::run(&options),
+        Command::Study(options) => study::run(&options, cli.loudness),
         Command::Peers(options) => compare::run(&options),
         Command::LabModule(options) => lab::build_module(&options),
         Command::Wheel(options) => wheel::build(&options),
@@ -75,12 +75,26 @@ fn main() -> ExitCode {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use clap::{CommandFactory, Parser};
 
-    use super::Cli;
+    use super::{Cli, Command};
 
     #[test]
     fn example_the_command_line_is_consistent() {
         Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn example_what_follows_study_is_left_to_its_program() {
+        for line in ["--help", "-h", "kills --help", "kills --kills 5 --no-page", "help kills", ""] {
+            let words = line.split_whitespace();
+            let cli = Cli::try_parse_from(["xtask", "-q", "study"].into_iter().chain(words)).expect(line);
+            let Command::Study(options) = cli.command else { panic!("{line}") };
+            assert_eq!(
+                format!("{:?}", options.words),
+                format!("{:?}", line.split_whitespace().collect::<Vec<_>>())
+            );
+            assert_eq!(cli.loudness.flag(), Some("--quiet"));
+        }
     }
 }

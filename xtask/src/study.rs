@@ -1,93 +1,45 @@
-//! `cargo xtask study`: one question, many runs, one table.
+//! `cargo xtask study`: the program of `crates/studies`, built when a study is asked for.
 
-use std::path::{Path, PathBuf};
+use std::ffi::OsString;
 use std::process::{Command, ExitCode};
-use std::time::Instant;
 
 use anyhow::{Context, Result};
-use stribeck::host;
-use stribeck::interrupt::Interrupt;
-use stribeck::place::shown;
-use stribeck::progress::Meter;
-use stribeck_run::host::Progress;
-use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::RunInfo;
-use stribeck_simulation as simulation;
-use stribeck_studies::{Host, Job, Study};
+use stribeck::Loudness;
 
 use crate::workspace;
 
-/// Flags of `study`.
+/// Words of `study`: its program parses them, `--help` among them.
 #[derive(Debug, clap::Args)]
+#[command(disable_help_flag = true)]
 pub(crate) struct Options {
-    #[command(subcommand)]
-    study: Study,
+    /// Name of a study and its flags; `cargo xtask study --help` lists the studies
+    #[arg(value_name = "NAME", trailing_var_arg = true, allow_hyphen_values = true)]
+    pub(crate) words: Vec<OsString>,
 }
 
-pub(crate) fn run(options: &Options) -> Result<ExitCode> {
-    let terminal =
-        Terminal { root: workspace::root(), began: Instant::now(), interrupt: Interrupt::listen()? };
-    let answer = options.study.run(&terminal)?;
-    if let Some(said) = answer.said {
-        println!("{said}");
-    }
-    if let Some(page) = answer.page {
-        println!("{}", shown(&page));
-    }
-    Ok(match answer.failure {
-        Some(failure) => {
-            eprintln!("{failure}");
-            ExitCode::FAILURE
-        }
-        None => ExitCode::SUCCESS,
-    })
+pub(crate) fn run(options: &Options, loudness: Loudness) -> Result<ExitCode> {
+    // From the working folder, which a relative CARGO_TARGET_DIR and files among the words are meant from.
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(["run", "--quiet", "--release", "--package", "stribeck-studies", "--manifest-path"]);
+    cargo.arg(workspace::root().join("Cargo.toml")).arg("--").args(loudness.flag()).args(&options.words);
+    become_it(cargo).context(
+        "cannot start cargo, which builds the studies: put it in PATH, or name it in the variable CARGO",
+    )
 }
 
-/// A study started by hand.
-struct Terminal {
-    root: PathBuf,
-    began: Instant,
-    interrupt: Interrupt,
+/// Takes the place of this process, as that of cargo is taken by the program: Ctrl-C and other signals reach
+/// it, and its exit code is the command's.
+#[cfg(unix)]
+fn become_it(mut command: Command) -> Result<ExitCode> {
+    use std::os::unix::process::CommandExt;
+
+    Err(command.exec().into())
 }
 
-impl Host for Terminal {
-    fn root(&self) -> &Path {
-        &self.root
-    }
-
-    fn run(&self, job: &Job<'_>) -> Result<RunInfo> {
-        let mut meter = Meter::new(job.scene.solver.duration_ms);
-        let mut watch = |progress: &Progress| {
-            if job.alone {
-                meter.show(progress);
-            }
-            self.interrupt.flow()
-        };
-        let info = host::with(job.threads.unwrap_or_else(host::cores), |host| {
-            if job.begun {
-                simulation::resume(&RunDir::reopen(job.folder)?, host, &mut watch)
-            } else {
-                simulation::simulate(job.scene, &RunDir::create(job.folder)?, host, &mut watch)
-            }
-        });
-        meter.finish();
-        Ok(info?)
-    }
-
-    fn stribeck(&self) -> Result<Command> {
-        // This program has the commands of `stribeck`.
-        Ok(Command::new(std::env::current_exe().context("where is this program?")?))
-    }
-
-    fn seconds(&self) -> f64 {
-        self.began.elapsed().as_secs_f64()
-    }
-
-    fn is_interrupted(&self) -> bool {
-        self.interrupt.is_pressed()
-    }
-
-    fn say(&self, line: &str) {
-        eprintln!("{line}");
-    }
+/// Waits for it. The terminal sends Ctrl-C to both processes; it ends the other one, and so the wait.
+#[cfg(not(unix))]
+fn become_it(mut command: Command) -> Result<ExitCode> {
+    ctrlc::set_handler(|| {}).context("cannot listen for Ctrl-C")?;
+    let code = command.status()?.code();
+    Ok(code.and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
 }

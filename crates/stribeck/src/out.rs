@@ -27,6 +27,15 @@ static LOUDNESS: AtomicU8 = AtomicU8::new(USUAL);
 static BEGAN: OnceLock<Instant> = OnceLock::new();
 
 impl Loudness {
+    /// The flag that asks another program for the same.
+    pub fn flag(self) -> Option<&'static str> {
+        match (self.quiet, self.verbose) {
+            (true, _) => Some("--quiet"),
+            (_, true) => Some("--verbose"),
+            _ => None,
+        }
+    }
+
     /// Holds from now on.
     pub fn apply(self) {
         BEGAN.get_or_init(Instant::now);

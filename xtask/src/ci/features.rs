@@ -1,22 +1,25 @@
-//! The program and `xtask` are made of the same libraries: what one has compiled the other need not compile
-//! again.
+//! The program, `xtask` and the studies are made of the same libraries: what one has compiled the others need
+//! not compile again.
 
 use std::{collections::BTreeSet, path::Path, process::Command};
 
 use anyhow::{Context, Result, ensure};
 
-/// Packages that the program asks for with other features than `xtask` does: each is compiled twice, and so
-/// is all that depends on it.
+/// Packages that one of the programs asks for with other features than `xtask` or the studies do, which are
+/// built after it: each is compiled twice, and so is all that depends on it.
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
-    let [program, tasks] = [libraries(root, "stribeck")?, libraries(root, "xtask")?];
-    let twice = program.difference(&tasks);
-    let complaint = |library: &String| {
-        format!(
-            "`{library}` is asked for by `stribeck`, and by `xtask` with other features or not at all: name \
-             them in both `Cargo.toml`"
-        )
-    };
-    Ok(twice.map(complaint).collect())
+    let program = libraries(root, "stribeck")?;
+    let mut complaints = Vec::new();
+    for other in ["xtask", "stribeck-studies"] {
+        let theirs = libraries(root, other)?;
+        complaints.extend(program.difference(&theirs).map(|library| {
+            format!(
+                "`{library}` is asked for by `stribeck`, and by `{other}` with other features or not at all: \
+                 name them in both `Cargo.toml`"
+            )
+        }));
+    }
+    Ok(complaints)
 }
 
 /// All packages that one of the workspace is compiled with, by name, version and features.

@@ -6,8 +6,10 @@ use anyhow::{Context, Result};
 
 /// What tests share: every crate may have it as a dev-dependency, and none otherwise.
 const TESTING: &str = "testing";
+/// The one crate whose package has the name of its folder alone.
+const PROGRAM: &str = "stribeck";
 
-/// Every crate beside the program, and those of ours that it depends on. A new arrow is the one change that
+/// Every crate beside `xtask`, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
 const LAYERS: [(&str, &[&str]); 27] = [
     (TESTING, &[]),
@@ -34,7 +36,6 @@ const LAYERS: [(&str, &[&str]); 27] = [
     ("formats", &[]),
     ("analysis", &["dsp", "formats", "scene"]),
     ("report", &["analysis", "dsp", "formats", "scene"]),
-    ("studies", &["analysis", "contact", "dsp", "formats", "mesh", "report", "scene", "solver", "system"]),
     (
         "stribeck",
         &[
@@ -52,7 +53,24 @@ const LAYERS: [(&str, &[&str]); 27] = [
             "simulation",
         ],
     ),
-    ("python", &["analysis", "dsp", "formats", "report", "run", "scene", "simulation"]),
+    (
+        "studies",
+        &[
+            "analysis",
+            "contact",
+            "dsp",
+            "formats",
+            "mesh",
+            "report",
+            "run",
+            "scene",
+            "simulation",
+            "solver",
+            "stribeck",
+            "system",
+        ],
+    ),
+    ("python", &["analysis", "dsp", "formats", "report", "run", "scene", "simulation", "stribeck"]),
 ];
 
 /// Names of the folders in `crates/`, sorted.
@@ -91,9 +109,9 @@ fn compare(name: &str, manifest: &str, allowed: &[&str]) -> Vec<String> {
         if line.starts_with('[') {
             section = line;
         }
-        let ours = line.strip_prefix("stribeck-").filter(|_| section.ends_with("dependencies]"));
-        let Some(rest) = ours else { continue };
-        let to = rest.split(['.', ' ', '=']).next().unwrap_or_default();
+        let package = line.split(['.', ' ', '=']).next().unwrap_or_default();
+        let ours = package.strip_prefix("stribeck-").or((package == PROGRAM).then_some(PROGRAM));
+        let Some(to) = ours.filter(|_| section.ends_with("dependencies]")) else { continue };
         if to == TESTING && section == "[dev-dependencies]" {
             continue;
         }
@@ -127,6 +145,7 @@ mod tests {
         assert!(complaints[0].contains("`contact`") && complaints[1].contains("`dsp`"));
         assert_eq!(compare("solver", "[dependencies]\nfaer.workspace = true\n", &["mesh"]).len(), 1);
         assert!(compare("solver", "[dependencies]\nstribeck-mesh.workspace = true\n", &["mesh"]).is_empty());
+        assert_eq!(compare("solver", "[dependencies]\nstribeck.workspace = true\n", &[]).len(), 1);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Studies as commands.
+//! A study as a program.
 
 #![cfg(unix)]
 
@@ -7,8 +7,8 @@ use std::process::Command;
 #[test]
 fn survives_random_kills_with_the_same_bytes() {
     // Five here; `cargo xtask study kills` does a hundred.
-    let output = Command::new(env!("CARGO_BIN_EXE_xtask"))
-        .args(["study", "kills", "--kills", "5", "--duration-ms", "0.6", "--no-page"])
+    let output = Command::new(env!("CARGO_BIN_EXE_stribeck-studies"))
+        .args(["kills", "--kills", "5", "--duration-ms", "0.6", "--no-page"])
         .output()
         .expect("it starts");
     let said = String::from_utf8_lossy(&output.stdout);
