@@ -5,7 +5,7 @@ mod divided;
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
-use stribeck_simd::threads::{Met, share_out, share_out_with_first};
+use stribeck_simd::threads::{Met, share_out, share_out_beside};
 use stribeck_solver::{
     Force,
     force::RankOne,
@@ -430,8 +430,14 @@ fn hand_over(push: &mut Vec<Push>, to: &mut NodeForces) {
     }
 }
 
-impl Force for Contacts {
-    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
+impl Contacts {
+    /// [`Force::accumulate`], and `beside` meanwhile: on the second of two threads, before it takes pairs.
+    pub fn accumulate_beside(
+        &mut self,
+        at: Moment<'_>,
+        force: &mut NodeForces,
+        beside: impl FnOnce() + Send,
+    ) {
         if at.step >= self.search.next || self.preload.is_some() {
             self.search(&at);
         }
@@ -449,11 +455,17 @@ impl Force for Contacts {
             pair.evaluate(surfaces, &at, &weights, &mut push);
             pair.result.push = push;
         };
-        share_out_with_first(pairs, threads, LEAST_WORK, &Pair::work, met, &mut at_once, &later);
+        share_out_beside(pairs, threads, LEAST_WORK, &Pair::work, met, beside, &mut at_once, &later);
         self.pairs.iter_mut().for_each(|pair| hand_over(&mut pair.result.push, force));
         if !self.divided {
             self.count_energies();
         }
+    }
+}
+
+impl Force for Contacts {
+    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
+        self.accumulate_beside(at, force, || {});
     }
 
     fn energy(&self) -> Energy {

@@ -88,8 +88,9 @@ struct Film {
     memory: Memory,
     /// Nodes that it depends on, which follow from its places.
     nodes: [u32; 4],
-    /// Results of the last step.
+    /// Results of the last step, and whether they were a force on nodes.
     pushed: Pushed,
+    pushes: bool,
     /// Whether this rank computes it.
     here: bool,
 }
@@ -172,6 +173,7 @@ impl Films {
                     memory: Memory::new(speed),
                     nodes: [0; 4],
                     pushed: Pushed::default(),
+                    pushes: false,
                     here: true,
                 });
             }
@@ -318,6 +320,28 @@ impl Film {
         begins
     }
 
+    /// Takes the film to this moment.
+    fn evaluate(&mut self, surfaces: &[Surface], at: &Moment<'_>, preload: bool) {
+        self.pushed.heat = 0.0;
+        self.pushes = false;
+        let mut settle = preload;
+        if preload || at.step >= self.memory.next_look {
+            settle |= self.look(surfaces, at);
+        } else if self.memory.fixed {
+            return;
+        }
+        let gap = self.gap(at);
+        let Self { law, memory, pushed, .. } = self;
+        let Some(layer) = &mut memory.layer else { return };
+        if settle {
+            (*layer, *pushed) = law.settled(gap, memory.speed, memory.share);
+        } else {
+            *pushed = law.flow(layer, gap, memory.speed, memory.share, at.dt);
+            memory.fixed = pushed.fixed;
+        }
+        self.pushes = pushed.force != 0.0;
+    }
+
     /// The gap between the two points [m].
     #[inline]
     fn gap(&self, at: &Moment<'_>) -> f64 {
@@ -329,36 +353,34 @@ impl Film {
     }
 }
 
-impl Force for Films {
-    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
+impl Films {
+    /// Takes all films to this moment, without their forces on nodes: these follow with [`Films::hand_over`].
+    /// Nothing is read that other forces change, so that it may be done beside them.
+    pub fn evaluate(&mut self, at: Moment<'_>) {
         let Self { surfaces, films, preload, .. } = self;
         for film in films.iter_mut().filter(|film| film.here) {
-            film.pushed.heat = 0.0;
-            let mut settle = *preload;
-            if *preload || at.step >= film.memory.next_look {
-                settle |= film.look(surfaces, &at);
-            } else if film.memory.fixed {
-                continue;
-            }
-            let gap = film.gap(&at);
-            let Film { law, memory, pushed, .. } = film;
-            let Some(layer) = &mut memory.layer else { continue };
-            if settle {
-                (*layer, *pushed) = law.settled(gap, memory.speed, memory.share);
-            } else {
-                *pushed = law.flow(layer, gap, memory.speed, memory.share, at.dt);
-                memory.fixed = pushed.fixed;
-            }
-            if pushed.force != 0.0 {
-                for (&n, [x, y]) in film.nodes.iter().zip(&memory.shares) {
-                    force.fx[n as usize] += pushed.force * x;
-                    force.fy[n as usize] += pushed.force * y;
-                }
-            }
+            film.evaluate(surfaces, &at, *preload);
         }
         if !self.divided {
             self.count_heat();
         }
+    }
+
+    /// Adds the forces [N] of the last [`Films::evaluate`] at nodes.
+    pub fn hand_over(&self, force: &mut NodeForces) {
+        for film in self.films.iter().filter(|film| film.here && film.pushes) {
+            for (&n, [x, y]) in film.nodes.iter().zip(&film.memory.shares) {
+                force.fx[n as usize] += film.pushed.force * x;
+                force.fy[n as usize] += film.pushed.force * y;
+            }
+        }
+    }
+}
+
+impl Force for Films {
+    fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
+        self.evaluate(at);
+        self.hand_over(force);
     }
 
     fn energy(&self) -> Energy {

@@ -21,34 +21,39 @@ pub fn share_out<T: Send>(
     work: &(impl Fn(&T) -> usize + Sync),
     each: &(impl Fn(&mut T) + Sync),
 ) {
-    share_out_with_first(items, threads, least, work, &mut Met::default(), &mut |item| each(item), each);
+    share_out_beside(items, threads, least, work, &mut Met::default(), || {}, &mut |item| each(item), each);
 }
 
 /// The same, but one thread calls `first` for the first items, in order, and all others call `other` for the
-/// rest. How many items either gets may differ from call to call; `met` remembers it for the next one.
-pub fn share_out_with_first<T: Send>(
+/// rest, one of them after `beside`. How many items either gets may differ from call to call; `met` remembers
+/// it for the next one.
+#[allow(clippy::too_many_arguments)] // items, and three things to do
+pub fn share_out_beside<T: Send>(
     items: &mut [T],
     threads: usize,
     least: usize,
     work: &(impl Fn(&T) -> usize + Sync),
     met: &mut Met,
+    beside: impl FnOnce() + Send,
     first: &mut (impl FnMut(&mut T) + Send),
     other: &(impl Fn(&mut T) + Sync),
 ) {
     let all: usize = items.iter().map(work).sum();
     if threads < 2 || items.len() < 2 || all < 2 * least {
+        beside();
         items.iter_mut().for_each(first);
     } else if threads == 2 {
         let open = met.open(MARGIN, items.len());
         let (left, right) = items.split_at_mut(open.end);
         let (left, between) = left.split_at_mut(open.start);
-        *met = from_both_ends([left, between, right].map(|part| part.iter_mut()), first, other);
+        let parts = [left, between, right].map(|part| part.iter_mut());
+        *met = from_both_ends(parts, beside, first, other);
     } else {
         let half = threads / 2;
         let cut = cut(items.iter().map(work), all, half, threads);
         let (here, there) = items.split_at_mut(cut);
         micropool::join(
-            || share_out_with_first(here, half, least, work, met, first, other),
+            || share_out_beside(here, half, least, work, met, beside, first, other),
             || share_out(there, threads - half, least, work, other),
         );
     }
@@ -93,10 +98,11 @@ impl<I: DoubleEndedIterator> Shared<I> {
 }
 
 /// Two threads take items until none is left. One calls `here`, for those of the `left` part from its first
-/// one on; the other calls `there`, for those of the `right` part from its last one on. Both then go on with
-/// the part `between`, and a thread that finds it empty with the part of the other.
+/// one on; the other calls `beside`, and then `there`, for those of the `right` part from its last one on. Both
+/// then go on with the part `between`, and a thread that finds it empty with the part of the other.
 pub fn from_both_ends<I: Send>(
     [left, between, right]: [impl DoubleEndedIterator<Item = I> + Send; 3],
+    beside: impl FnOnce() + Send,
     mut here: impl FnMut(I) + Send,
     mut there: impl FnMut(I) + Send,
 ) -> Met {
@@ -110,6 +116,7 @@ pub fn from_both_ends<I: Send>(
             }
         },
         || {
+            beside();
             while let Some(item) = parts.iter().rev().find_map(|part| part.lock().next_back()) {
                 there(item);
             }
@@ -131,22 +138,25 @@ mod tests {
                 // Who did it, and how often.
                 let mut items: Vec<(usize, [u32; 2])> = (0..count).map(|i| (i, [0, 0])).collect();
                 let mut taken = Vec::new();
+                let mut beside = 0;
                 let mut first = |item: &mut (usize, [u32; 2])| {
                     taken.push(item.0);
                     item.1[0] += 1;
                 };
                 let other = |item: &mut (usize, [u32; 2])| item.1[1] += 1;
                 pool.install(|| {
-                    share_out_with_first(
+                    share_out_beside(
                         &mut items,
                         threads,
                         2,
                         &|item| 1 + item.0 % 3,
                         &mut met,
+                        || beside += 1,
                         &mut first,
                         &other,
                     );
                 });
+                assert_eq!(beside, 1, "{threads} threads");
                 assert!(taken.iter().copied().eq(0..taken.len()), "{threads} threads: {taken:?}");
                 let done =
                     |(i, done): &(usize, [u32; 2])| *done == if *i < taken.len() { [1, 0] } else { [0, 1] };

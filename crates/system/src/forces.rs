@@ -62,8 +62,16 @@ impl Forces {
 impl Force for Forces {
     fn accumulate(&mut self, at: Moment<'_>, force: &mut NodeForces) {
         self.loads.iter_mut().for_each(|load| load.accumulate(at, force));
-        self.contacts.iter_mut().for_each(|contacts| contacts.accumulate(at, force));
-        self.films.iter_mut().for_each(|films| films.accumulate(at, force));
+        match (&mut self.contacts, &mut self.films) {
+            (Some(contacts), Some(films)) => {
+                contacts.accumulate_beside(at, force, || films.evaluate(at));
+                films.hand_over(force);
+            }
+            (contacts, films) => {
+                contacts.iter_mut().for_each(|contacts| contacts.accumulate(at, force));
+                films.iter_mut().for_each(|films| films.accumulate(at, force));
+            }
+        }
         self.further.iter_mut().for_each(|(_, law)| law.accumulate(at, force));
     }
 

@@ -109,6 +109,7 @@ pub(crate) fn sweep_all(runs: TileRuns<'_>, scratch: &mut [Scratch], parameters:
             let parts = [left.turned(parameters.back), between.turned(false), right.turned(parameters.back)];
             one.met = from_both_ends(
                 parts,
+                || {},
                 |run| run.sweep_one(one, parameters),
                 |run| run.sweep_one(other, parameters),
             );
