@@ -16,7 +16,7 @@ use crate::{
 use stribeck_simd::{field::Field, lanes::LANES};
 
 /// Steps from one measurement of spins to the next: bodies turn at a steady pace.
-const MEASURE_EVERY: u64 = 32;
+const MEASURE_EVERY: u64 = 128;
 
 impl Dynamics {
     /// Sets the structural damping of elastic bodies, or none; replaces an earlier one. Its springs are
@@ -104,7 +104,9 @@ impl Dynamics {
         let (held, State { x, y, .. }) = (&self.state.springs.held, &self.state);
         let along = |n: usize| f64::from(held[0][n]) * x[n] + f64::from(held[1][n]) * y[n];
         let own = self.tiles.iter().filter(|tile| tile.structural.is_some());
-        let now: f64 = own.map(|tile| (0..tile.own).map(|n| along(tile.slots.start + n)).sum::<f64>()).sum();
+        let mut parts: Vec<_> = own.map(|t| (t.slots.start..t.slots.start + t.own, 0.0)).collect();
+        self.share_out(&mut parts, &|(own, _)| own.len(), &|(own, sum)| *sum = own.clone().map(along).sum());
+        let now: f64 = parts.iter().map(|(_, sum)| sum).sum();
         let springs = &mut self.state.springs;
         let at_start = *springs.at_start.get_or_insert(energy);
         springs.loss = share * (energy - at_start) - springs.work - (now - springs.taken_up);

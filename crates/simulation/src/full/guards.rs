@@ -174,7 +174,10 @@ pub(super) fn arm(scene: &ResolvedScene, system: &mut System) {
 
 /// Mean place of a body's nodes [m].
 fn centre(system: &System, body: usize) -> [f64; 2] {
-    [0, 1].map(|c: usize| mean(system.nodes_of(body).map(|n| system.position(n)[c])))
+    let nodes = system.nodes_of(body);
+    let count = nodes.len() as f64;
+    let places = nodes.map(|n| system.position(n));
+    places.fold([0.0; 2], |sum, [x, y]| [sum[0] + x, sum[1] + y]).map(|sum| sum / count)
 }
 
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
