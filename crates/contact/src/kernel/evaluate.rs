@@ -1,7 +1,7 @@
 //! One evaluation of a pass: the active facets, their points first in vectors, then the remaining ones one by
 //! one.
 
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Simd, WithSimd};
 use stribeck_simd::lanes::{LANES, Number, Vector};
 use stribeck_solver::state::Moment;
 
@@ -138,10 +138,9 @@ impl Evaluation<'_> {
     /// Evaluates in the widest vectors that this processor has.
     pub(crate) fn dispatch(self) -> Sum {
         #[cfg(test)]
-        if let Some(lanes) = tests::LANES_ASKED.get() {
-            return tests::in_lanes(self, lanes);
-        }
-        Arch::new().dispatch(self)
+        return tests::dispatch(self);
+        #[cfg(not(test))]
+        pulp::Arch::new().dispatch(self)
     }
 
     #[inline(always)]

@@ -9,15 +9,17 @@ use super::*;
 use crate::{Contacts, Law, Method, PairSpec, Sides, Surface};
 
 thread_local! {
-    /// Lanes that evaluations on this thread use; `None` for the widest.
-    pub(super) static LANES_ASKED: Cell<Option<usize>> = const { Cell::new(None) };
+    /// Most lanes that evaluations on this thread use.
+    static LANES_ASKED: Cell<usize> = const { Cell::new(LANES) };
 }
 
-pub(super) fn in_lanes(evaluation: Evaluation<'_>, lanes: usize) -> Sum {
+/// In as many lanes as are asked for and the processor has. Kernels are compiled once for each instruction set
+/// so, and not for [`pulp::Arch`] as well.
+pub(super) fn dispatch(evaluation: Evaluation<'_>) -> Sum {
     #[cfg(target_arch = "x86_64")]
-    match (lanes, pulp::x86::V3::try_new(), pulp::x86::V4::try_new()) {
-        (4, Some(avx2), _) => return Simd::vectorize(avx2, evaluation),
-        (8, _, Some(avx512)) => return Simd::vectorize(avx512, evaluation),
+    match (LANES_ASKED.get(), pulp::x86::V3::try_new(), pulp::x86::V4::try_new()) {
+        (8.., _, Some(avx512)) => return Simd::vectorize(avx512, evaluation),
+        (4.., Some(avx2), _) => return Simd::vectorize(avx2, evaluation),
         _ => {}
     }
     evaluation.with_simd(Scalar)
@@ -211,9 +213,9 @@ fn invariant_points_act_as_in_the_plainest_contact_in_lanes_and_one_by_one() {
             let mut plain = Plain::default();
             let mut singly = scene.contacts(points);
             singly.set_together(false);
-            let mut found_by = vec![("one by one", None, singly)];
+            let mut found_by = vec![("one by one", LANES, singly)];
             for (name, lanes) in [("one lane", 1), ("4 lanes", 4), ("8 lanes", 8)] {
-                found_by.push((name, Some(lanes), scene.contacts(points)));
+                found_by.push((name, lanes, scene.contacts(points)));
             }
             let (mut largest, mut touching) = (0.0_f64, 0);
             for step in 1..=steps {
@@ -236,7 +238,7 @@ fn invariant_points_act_as_in_the_plainest_contact_in_lanes_and_one_by_one() {
                 for (name, lanes, contacts) in &mut found_by {
                     LANES_ASKED.set(*lanes);
                     let found = forces(contacts);
-                    LANES_ASKED.set(None);
+                    LANES_ASKED.set(LANES);
                     // Sums over hundreds of points, of gaps that are a thousandth of positions.
                     let off = found.iter().zip(&expected).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
                     assert!(
