@@ -98,8 +98,8 @@ impl<I: DoubleEndedIterator> Shared<I> {
 }
 
 /// Two threads take items until none is left. One calls `here`, for those of the `left` part from its first
-/// one on; the other calls `beside`, and then `there`, for those of the `right` part from its last one on. Both
-/// then go on with the part `between`, and a thread that finds it empty with the part of the other.
+/// one on; the other calls `beside`, and then `there`, for those of the `right` part from its last one on.
+/// Both then go on with the part `between`, and a thread that finds it empty with the part of the other.
 pub fn from_both_ends<I: Send>(
     [left, between, right]: [impl DoubleEndedIterator<Item = I> + Send; 3],
     beside: impl FnOnce() + Send,

@@ -13,8 +13,8 @@ thread_local! {
     static LANES_ASKED: Cell<usize> = const { Cell::new(LANES) };
 }
 
-/// In as many lanes as are asked for and the processor has. Kernels are compiled once for each instruction set
-/// so, and not for [`pulp::Arch`] as well.
+/// In as many lanes as are asked for and the processor has. Kernels are compiled once for each instruction
+/// set so, and not for [`pulp::Arch`] as well.
 pub(super) fn dispatch(evaluation: Evaluation<'_>) -> Sum {
     #[cfg(target_arch = "x86_64")]
     match (LANES_ASKED.get(), pulp::x86::V3::try_new(), pulp::x86::V4::try_new()) {
