@@ -88,9 +88,8 @@ struct Film {
     memory: Memory,
     /// Nodes that it depends on, which follow from its places.
     nodes: [u32; 4],
-    /// Results of the last step, and whether they were a force on nodes.
+    /// Results of the last step.
     pushed: Pushed,
-    pushes: bool,
     /// Whether this rank computes it.
     here: bool,
 }
@@ -173,7 +172,6 @@ impl Films {
                     memory: Memory::new(speed),
                     nodes: [0; 4],
                     pushed: Pushed::default(),
-                    pushes: false,
                     here: true,
                 });
             }
@@ -323,7 +321,6 @@ impl Film {
     /// Takes the film to this moment.
     fn evaluate(&mut self, surfaces: &[Surface], at: &Moment<'_>, preload: bool) {
         self.pushed.heat = 0.0;
-        self.pushes = false;
         let mut settle = preload;
         if preload || at.step >= self.memory.next_look {
             settle |= self.look(surfaces, at);
@@ -337,9 +334,8 @@ impl Film {
             (*layer, *pushed) = law.settled(gap, memory.speed, memory.share);
         } else {
             *pushed = law.flow(layer, gap, memory.speed, memory.share, at.dt);
-            memory.fixed = pushed.fixed;
         }
-        self.pushes = pushed.force != 0.0;
+        memory.fixed = pushed.fixed;
     }
 
     /// The gap between the two points [m].
@@ -368,7 +364,7 @@ impl Films {
 
     /// Adds the forces [N] of the last [`Films::evaluate`] at nodes.
     pub fn hand_over(&self, force: &mut NodeForces) {
-        for film in self.films.iter().filter(|film| film.here && film.pushes) {
+        for film in self.films.iter().filter(|film| film.here && film.pushed.force != 0.0) {
             for (&n, [x, y]) in film.nodes.iter().zip(&film.memory.shares) {
                 force.fx[n as usize] += film.pushed.force * x;
                 force.fy[n as usize] += film.pushed.force * y;

@@ -25,8 +25,8 @@ pub fn share_out<T: Send>(
 }
 
 /// The same, but one thread calls `first` for the first items, in order, and all others call `other` for the
-/// rest, one of them after `beside`. How many items either gets may differ from call to call; `met` remembers
-/// it for the next one.
+/// rest. How many items either gets may differ from call to call; `met` remembers it for the next one. Of two
+/// threads the other one calls `beside` before it takes items; else the first one does.
 #[allow(clippy::too_many_arguments)] // items, and three things to do
 pub fn share_out_beside<T: Send>(
     items: &mut [T],
