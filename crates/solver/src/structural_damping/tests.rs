@@ -93,6 +93,27 @@ fn analytic_no_vibration_grows_that_is_sampled_at_uneven_times() {
     }
 }
 
+/// The largest ratio, lower and higher bands, and a step that is seven times shorter.
+#[test]
+fn invariant_no_vibration_grows_in_any_band_or_step() {
+    for (dt, ratio, band) in [
+        (70e-9, 0.02, [200.0, 4e3]),
+        (70e-9, 0.1, [200.0, 4e3]),
+        (70e-9, 0.1, [2e3, 4e4]),
+        (70e-9, 0.1, [5e3, 1e5]),
+        (10e-9, 0.1, [2e3, 4e4]),
+    ] {
+        for branches in 1..=MAX_BRANCHES {
+            let damping = StructuralDamping::over_band(ratio, band, branches, vec![0]).expect("a band");
+            let highest = 2.0 / (dt * damping.stiffening(f64::INFINITY).sqrt());
+            for n in (12..=400).step_by(4) {
+                let rate = growth(&damping, 0.0025 * 0.98 * f64::from(n) * highest, dt, 4000);
+                assert!(rate < 0.0, "{branches} branches of {ratio} over {band:?}, mode {n}: {rate:e}");
+            }
+        }
+    }
+}
+
 #[test]
 fn refuses_impossible_branches_and_bands() {
     let branch = |stiffness, relaxation_time| vec![Branch { stiffness, relaxation_time }];
