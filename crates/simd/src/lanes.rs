@@ -269,11 +269,21 @@ impl<S: Simd> Vector<S> {
     pub fn shifted_in(self, before: Self) -> Self {
         let simd = self.simd;
         #[cfg(target_arch = "x86_64")]
-        if let Some(v4) = (&simd as &dyn Any).downcast_ref::<V4>() {
-            const NEXT: [u64; LANES] = [7, 8, 9, 10, 11, 12, 13, 14];
-            let (now, before) = (bytemuck::cast(self.lanes), bytemuck::cast(before.lanes));
-            let joined = v4.avx512f._mm512_permutex2var_pd(before, bytemuck::cast(NEXT), now);
-            return Self { lanes: bytemuck::cast(joined), ..self };
+        {
+            let any = &simd as &dyn Any;
+            if let Some(v4) = any.downcast_ref::<V4>() {
+                const NEXT: [u64; LANES] = [7, 8, 9, 10, 11, 12, 13, 14];
+                let (now, before) = (bytemuck::cast(self.lanes), bytemuck::cast(before.lanes));
+                let joined = v4.avx512f._mm512_permutex2var_pd(before, bytemuck::cast(NEXT), now);
+                return Self { lanes: bytemuck::cast(joined), ..self };
+            }
+            if let Some(v3) = any.downcast_ref::<V3>() {
+                let (now, before) = (bytemuck::cast(self.lanes), bytemuck::cast(before.lanes));
+                // The last two of `before` and the first two of `self`, then every other one of each.
+                let middle = v3.avx._mm256_permute2f128_pd::<0x21>(before, now);
+                let joined = v3.avx._mm256_shuffle_pd::<0b0101>(middle, now);
+                return Self { lanes: bytemuck::cast(joined), ..self };
+            }
         }
         let all_but_last = S::as_simd_u64s(&KEEP[LANES - Self::LEN + 1..LANES + 1]).0[0];
         let last = S::as_simd_u64s(&KEEP_LAST[LANES - Self::LEN..LANES]).0[0];

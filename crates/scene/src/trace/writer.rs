@@ -147,6 +147,7 @@ impl TraceWriter {
     ///
     /// [`Error::Trace`] when the number of values is not that of the channels; [`Error::Io`] when the disk
     /// refuses, with the number of rows that are safe.
+    #[inline] // compiled where it is called: this package is not optimised in `release`
     pub fn push(&mut self, row: &[f64]) -> Result<(), Error> {
         if row.len() != self.names.len() {
             let message =

@@ -14,7 +14,7 @@ use crate::{
         varying_references::VaryingReferences,
     },
 };
-use stribeck_simd::lanes::Vector;
+use stribeck_simd::lanes::{LANES, Vector};
 
 /// Adds the forces of one strip that completes its lower row, and moves that row.
 #[inline(always)]
@@ -114,14 +114,19 @@ fn groups<S: Simd, D: Damping, R: References<S>, const COMPLETES: bool>(
     heat: &mut Vector<S>,
 ) -> Right<S> {
     let len = Vector::<S>::LEN;
-    for e in elements.step_by(len) {
-        if step.fetch {
+    // `elements.step_by(len)` would hide the end from the compiler, which then looks for overflows in
+    // every group.
+    let mut e = elements.start;
+    while e < elements.end {
+        // Once for a line of cache.
+        if step.fetch && e & (LANES - len) == 0 {
             nodes.fetch(low + e, high + e, COMPLETES);
             references.fetch(e);
         }
         let forces = references.at(simd, nodes, [low, high], e, stiffness);
         right =
             group::<S, D, COMPLETES, false>(simd, forces, nodes, [low + e, high + e], len, right, step, heat);
+        e += len;
     }
     right
 }
