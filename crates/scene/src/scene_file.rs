@@ -32,7 +32,7 @@ pub(crate) mod wording;
 use std::path::Path;
 
 use crate::scene::Scene;
-use check::check;
+use check::{check, numbers_are_in_range};
 use load::load;
 use origin::Origin;
 use outline::Outline;
@@ -186,7 +186,11 @@ impl Understood {
         match (check(&scene, &origin), refusal) {
             (checked, None) => checked.map(|()| scene),
             (Ok(()), Some(refusal)) => Err(refusal.problem(&origin).into()),
-            (Err(error), Some(refusal)) => Err(error.about_bearing(&refusal.hint())),
+            (Err(error), Some(refusal)) => {
+                // With numbers that are out of range there is no telling which bearing is meant.
+                let problem = numbers_are_in_range(&scene).then(|| refusal.problem(&origin));
+                Err(error.about_bearing(&refusal.hint(), problem))
+            }
         }
     }
 }

@@ -20,6 +20,11 @@ pub(crate) fn check(scene: &Scene, origin: &Origin<'_>) -> Result<(), SceneError
     Err(SceneError::new(found.iter().map(problem).collect()))
 }
 
+/// Whether every number lies in the range of its field.
+pub(crate) fn numbers_are_in_range(scene: &Scene) -> bool {
+    limits::findings(scene).is_empty()
+}
+
 /// Geometry only of numbers that are in range.
 fn findings(scene: &Scene) -> Vec<Finding> {
     let found = limits::findings(scene);

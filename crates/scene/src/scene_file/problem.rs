@@ -68,10 +68,15 @@ impl SceneError {
         Self { problems }
     }
 
-    /// The same with `hint` after messages on fields of the bearing.
-    pub(crate) fn about_bearing(mut self, hint: &str) -> Self {
-        let of_bearing = |problem: &&mut Problem| problem.field.starts_with("bearing.");
-        self.problems.iter_mut().filter(of_bearing).for_each(|problem| problem.message.push_str(hint));
+    /// The same with `hint` after messages on fields of the bearing; where there are none, with `refusal`.
+    pub(crate) fn about_bearing(mut self, hint: &str, refusal: Option<Problem>) -> Self {
+        let of_bearing = |problem: &Problem| problem.field.starts_with("bearing.");
+        if self.problems.iter().any(of_bearing) {
+            let problems = self.problems.iter_mut().filter(|problem| of_bearing(problem));
+            problems.for_each(|problem| problem.message.push_str(hint));
+        } else {
+            self.problems.extend(refusal);
+        }
         self
     }
 

@@ -108,6 +108,14 @@ fn example_another_field_is_proposed_where_the_blamed_one_cannot_help() {
 }
 
 #[test]
+fn issue_a_bearing_that_lacks_a_number_is_named_beside_other_problems() {
+    let set = ["bearing.outer_race_diameter_mm=201.25", "cage.outer_diameter_mm=1"];
+    let found = problems(Scene::default().with_overrides(&set));
+    let fields: Vec<&str> = found.iter().map(|problem| &*problem.field).collect();
+    assert_eq!(fields, ["cage.outer_diameter_mm", "bearing.outer_race_diameter_mm"], "{found:?}");
+}
+
+#[test]
 fn example_a_second_sensor_of_one_name_gets_a_free_one() {
     let sensor = |name: &str| format!("(name: \"{name}\", angle_deg: 0)");
     let text = format!("(output: (sensors: [{}, {}, {}]))", sensor("a"), sensor("a_2"), sensor("a"));
