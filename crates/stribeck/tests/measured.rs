@@ -502,8 +502,8 @@ fn edges(rate_hz: f64) -> Vec<f64> {
     signal
 }
 
-/// The bearing in its housing says how far it presses an element together: in a rigid one as much as theory
-/// does (THEORY §7.9), with less of the interval.
+/// The bearing in its housing says how far it presses an element together: in a rigid one between half of
+/// what the formula says and one and a half times as much (THEORY §7.9), with less of an interval.
 #[test]
 fn example_a_length_by_a_simulated_scene_of_the_bearing() {
     let desk = Scratch::create("simulated-length");
@@ -521,9 +521,9 @@ fn example_a_length_by_a_simulated_scene_of_the_bearing() {
         ["value", "low", "high"].map(|key| findings["spall_mm"][key].as_f64().expect("a length"))
     };
     let (computed, simulated) = (spall(&[], "computed"), spall(&["--simulate=rigid.ron"], "simulated"));
-    // What is added to the path is 0.4 mm.
-    assert!((simulated[0] - computed[0]).abs() < 0.15, "{simulated:?} {computed:?}");
+    assert!(computed[1] < simulated[0] && simulated[0] < computed[2], "{simulated:?} {computed:?}");
     assert!(simulated[1] < simulated[0] && simulated[0] < simulated[2], "{simulated:?}");
+    assert!(simulated[2] - simulated[1] < computed[2] - computed[1], "{simulated:?} {computed:?}");
     let refused = stribeck(desk.path(), &[&words[..], &["--simulate=none.ron"]].concat());
     assert!(!refused.status.success() && said(&refused).contains("none.ron"), "{}", said(&refused));
 }
