@@ -22,7 +22,7 @@ use crate::place::{Place, shown};
 const PASSAGES: f64 = 30.0;
 /// Turns of the shaft at least: a spall of the inner raceway comes under the load once a turn.
 const TURNS: f64 = 12.0;
-/// Passages in which an element comes free that tell something.
+/// Passages in which an element comes free that tell something, of one scene or of all together.
 const LEAST: usize = 3;
 /// Shortest spall that is simulated [mm].
 const SHORTEST_MM: f64 = 0.5;
@@ -125,27 +125,36 @@ fn simulate(scenes: &[Scene], out: &Path, interrupt: &Interrupt) -> Result<Press
         tell!("{} spalls are simulated, {}: {}", scenes.len(), jobs.shown(), shown(&runs.0));
     });
     ensure!(!interrupt.is_pressed(), Interrupted);
-    let mut pressed = Vec::new();
+    let mut passages = Vec::new();
     for scene in scenes {
         let folder = runs.run(scene);
         let run = Run::read(&folder).with_context(|| format!("no run of it in `{}`", shown(&folder)))?;
         let summary = Findings::of(&Record::whole(&run)?)?.summary;
         let length_mm = scene.defect.as_ref().map_or(0.0, |defect| defect.length_mm);
-        let mut each: Vec<f64> = summary.events.iter().filter_map(|event| of(event, length_mm)).collect();
-        if each.len() >= LEAST {
-            each.sort_by(f64::total_cmp);
-            pressed.push(each[each.len() / 2]);
-        }
+        passages.push(summary.events.iter().filter_map(|event| of(event, length_mm)).collect());
     }
-    ensure!(
-        !pressed.is_empty(),
+    pressed(passages).context(
         "no element comes free over a spall of this length in the simulated scene: its rings press it \
          together all the way, and the record’s two events are not its edges, or its load is smaller \
-         (`--load-n`)"
-    );
+         (`--load-n`)",
+    )
+}
+
+/// From the passages of each scene: the medians of scenes with enough of them; where no scene has, the
+/// passages of all.
+fn pressed(mut passages: Vec<Vec<f64>>) -> Option<Pressed> {
+    passages.iter_mut().for_each(|each| each.sort_by(f64::total_cmp));
+    let enough = passages.iter().filter(|each| each.len() >= LEAST);
+    let mut pressed: Vec<f64> = enough.map(|each| each[each.len() / 2]).collect();
+    if pressed.is_empty() {
+        pressed = passages.concat();
+        if pressed.len() < LEAST {
+            return None;
+        }
+    }
     pressed.sort_by(f64::total_cmp);
-    let [least, most] = [pressed[0], pressed[pressed.len() - 1]];
-    Ok(Pressed { expected_mm: pressed[pressed.len() / 2], least_mm: least, most_mm: most })
+    let [least_mm, most_mm] = [pressed[0], pressed[pressed.len() - 1]];
+    Some(Pressed { expected_mm: pressed[pressed.len() / 2], least_mm, most_mm })
 }
 
 /// How much shorter than the spall the path is over which an element is free [mm].
@@ -158,6 +167,18 @@ fn of(event: &Event, length_mm: f64) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn issue_few_passages_of_each_scene_tell_together() {
+        let of = |passages: &[&[f64]]| {
+            let pressed = pressed(passages.iter().map(|each| each.to_vec()).collect());
+            pressed.map(|p| [p.least_mm, p.expected_mm, p.most_mm])
+        };
+        assert_eq!(of(&[&[0.4, 0.2, 0.3], &[0.9], &[0.1, 0.2, 0.2, 0.25]]), Some([0.2, 0.3, 0.3]));
+        assert_eq!(of(&[&[0.29, 0.26], &[0.21], &[0.28]]), Some([0.21, 0.28, 0.29]));
+        assert_eq!(of(&[&[0.3], &[], &[0.2]]), None);
+        assert_eq!(of(&[]), None);
+    }
 
     #[test]
     fn refuses_a_scene_of_another_bearing_or_of_the_full_model() {
