@@ -279,7 +279,7 @@ impl<S: Simd> Vector<S> {
             }
             if let Some(v3) = any.downcast_ref::<V3>() {
                 let (now, before) = (bytemuck::cast(self.lanes), bytemuck::cast(before.lanes));
-                // The last two of `before` and the first two of `self`, then every other one of each.
+                // Numbers b of `before` and n of `self`: b₂ b₃ n₀ n₁, then b₃ n₀ n₁ n₂.
                 let middle = v3.avx._mm256_permute2f128_pd::<0x21>(before, now);
                 let joined = v3.avx._mm256_shuffle_pd::<0b0101>(middle, now);
                 return Self { lanes: bytemuck::cast(joined), ..self };
