@@ -333,18 +333,26 @@ impl<S: Simd> Vector<S> {
     #[inline(always)]
     fn store_joined<const HOW: u8>(simd: S, from: [&[f64]; LANES], to: &mut [f64; LANES]) {
         #[cfg(target_arch = "x86_64")]
-        if let Some(v4) = (&simd as &dyn Any).downcast_ref::<V4>() {
-            // Neighbours of two vectors, then their sources in four and in eight. Written out: loops
-            // would keep all in memory.
+        {
+            let any = &simd as &dyn Any;
+            // Written out: loops would keep all in memory.
             let [a, b, c, d, e, f, g, h] = from;
-            let ab = Self::joined::<HOW>(Self::load(simd, a, 0).neighbours(*v4, Self::load(simd, b, 0)));
-            let cd = Self::joined::<HOW>(Self::load(simd, c, 0).neighbours(*v4, Self::load(simd, d, 0)));
-            let ef = Self::joined::<HOW>(Self::load(simd, e, 0).neighbours(*v4, Self::load(simd, f, 0)));
-            let gh = Self::joined::<HOW>(Self::load(simd, g, 0).neighbours(*v4, Self::load(simd, h, 0)));
-            let first = Self::joined::<HOW>(ab.pairs(*v4, cd));
-            let last = Self::joined::<HOW>(ef.pairs(*v4, gh));
-            Self::joined::<HOW>(first.pairs(*v4, last)).store(to, 0);
-            return;
+            if let Some(v4) = any.downcast_ref::<V4>() {
+                // Neighbours of two vectors, then their sources in four and in eight.
+                let ab = Self::joined::<HOW>(Self::load(simd, a, 0).neighbours(*v4, Self::load(simd, b, 0)));
+                let cd = Self::joined::<HOW>(Self::load(simd, c, 0).neighbours(*v4, Self::load(simd, d, 0)));
+                let ef = Self::joined::<HOW>(Self::load(simd, e, 0).neighbours(*v4, Self::load(simd, f, 0)));
+                let gh = Self::joined::<HOW>(Self::load(simd, g, 0).neighbours(*v4, Self::load(simd, h, 0)));
+                let first = Self::joined::<HOW>(ab.pairs(*v4, cd));
+                let last = Self::joined::<HOW>(ef.pairs(*v4, gh));
+                Self::joined::<HOW>(first.pairs(*v4, last)).store(to, 0);
+                return;
+            }
+            if let Some(v3) = any.downcast_ref::<V3>() {
+                Self::joined_four::<HOW>(simd, *v3, [a, b, c, d]).store(to, 0);
+                Self::joined_four::<HOW>(simd, *v3, [e, f, g, h]).store(to, 4);
+                return;
+            }
         }
         for (to, from) in to.iter_mut().zip(from) {
             let of = Self::load(simd, from, 0);
@@ -355,6 +363,28 @@ impl<S: Simd> Vector<S> {
     #[inline(always)]
     fn joined<const HOW: u8>([a, b]: [Self; 2]) -> Self {
         if HOW == SUM { a + b } else { a.max(b) }
+    }
+
+    /// Four vectors of four, joined lane by lane in the order in which `sum` adds them.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn joined_four<const HOW: u8>(simd: S, v3: V3, [a, b, c, d]: [&[f64]; 4]) -> Self {
+        let ac = Self::joined::<HOW>(Self::load(simd, a, 0).halves(v3, Self::load(simd, c, 0)));
+        let bd = Self::joined::<HOW>(Self::load(simd, b, 0).halves(v3, Self::load(simd, d, 0)));
+        let (ac, bd) = (bytemuck::cast(ac.lanes), bytemuck::cast(bd.lanes));
+        let (even, odd) = (v3.avx._mm256_unpacklo_pd(ac, bd), v3.avx._mm256_unpackhi_pd(ac, bd));
+        let (even, odd) = (bytemuck::cast(even), bytemuck::cast(odd));
+        Self::joined::<HOW>([Self { simd, lanes: even }, Self { simd, lanes: odd }])
+    }
+
+    /// Lower halves of two vectors, and upper ones.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    fn halves(self, v3: V3, other: Self) -> [Self; 2] {
+        let (a, b) = (bytemuck::cast(self.lanes), bytemuck::cast(other.lanes));
+        let lower = v3.avx._mm256_permute2f128_pd::<0x20>(a, b);
+        let upper = v3.avx._mm256_permute2f128_pd::<0x31>(a, b);
+        [Self { lanes: bytemuck::cast(lower), ..self }, Self { lanes: bytemuck::cast(upper), ..self }]
     }
 
     /// Even numbers of two vectors in turn, and odd ones.
@@ -481,6 +511,10 @@ impl<S: Simd> Number for Vector<S> {
         // A mask register holds these very bits.
         if let &[bits] = pulp::bytemuck::bytes_of(&below) {
             return u64::from(bits);
+        }
+        #[cfg(target_arch = "x86_64")]
+        if let Some(v3) = (&self.simd as &dyn Any).downcast_ref::<V3>() {
+            return u64::from(v3.avx._mm256_movemask_pd(bytemuck::cast(below)) as u32);
         }
         let weights = Self::load(self.simd, &WEIGHTS, 0);
         self.choose_below(limit, weights, self.constant(0.0)).sum() as u64
