@@ -8,9 +8,8 @@ mod ci;
 mod compare;
 mod fields;
 mod fmu;
-mod fuzz;
+mod handed_on;
 mod lab;
-mod study;
 mod wheel;
 mod workspace;
 
@@ -31,12 +30,12 @@ struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
-#[expect(clippy::large_enum_variant, reason = "one command is parsed a run")]
+#[allow(clippy::large_enum_variant, reason = "one command is parsed a run")]
 enum Command {
     #[command(flatten)]
     Program(stribeck::Command),
     /// Answers a question by many runs: tables and pictures in docs/results
-    Study(study::Options),
+    Study(handed_on::Words),
     /// Solves the same problems with other programs, checks that they agree, and times them
     Peers(compare::Options),
     /// Builds the module of `cargo xtask lab`, which steps a bearing in a page, and says where it is
@@ -50,7 +49,7 @@ enum Command {
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
-    Fuzz(fuzz::Options),
+    Fuzz(handed_on::Words),
     /// Checks format, lints, tests and documents
     Ci(ci::Options),
 }
@@ -59,16 +58,17 @@ fn main() -> ExitCode {
     let cli = stribeck::command_line::parse::<Cli>();
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
+        Command::Program(command) if command.needs_full() => handed_on::program(),
         Command::Program(command) => lab::with_module(command)
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
-        Command::Study(options) => study::run(&options, cli.loudness),
+        Command::Study(words) => handed_on::study(None, &words, cli.loudness),
         Command::Peers(options) => compare::run(&options),
         Command::LabModule(options) => lab::build_module(&options),
         Command::Wheel(options) => wheel::build(&options),
         Command::Book => book::run(),
         Command::Fmu(options) => fmu::build(&options),
         Command::Fields(options) => fields::run(&options),
-        Command::Fuzz(options) => fuzz::run(&options),
+        Command::Fuzz(words) => handed_on::study(Some("fuzz"), &words, cli.loudness),
         Command::Ci(options) => ci::run(&options),
     })
 }
@@ -89,9 +89,9 @@ mod tests {
         for line in ["--help", "-h", "kills --help", "kills --kills 5 --no-page", "help kills", ""] {
             let words = line.split_whitespace();
             let cli = Cli::try_parse_from(["xtask", "-q", "study"].into_iter().chain(words)).expect(line);
-            let Command::Study(options) = cli.command else { panic!("{line}") };
+            let Command::Study(study) = cli.command else { panic!("{line}") };
             assert_eq!(
-                format!("{:?}", options.words),
+                format!("{:?}", study.words),
                 format!("{:?}", line.split_whitespace().collect::<Vec<_>>())
             );
             assert_eq!(cli.loudness.flag(), Some("--quiet"));

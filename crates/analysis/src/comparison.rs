@@ -258,7 +258,7 @@ fn notes(sides: &[Side], one_unit: bool) -> Vec<String> {
 mod tests {
     use std::f64::consts::TAU;
 
-    use stribeck_formats::Channel;
+    use stribeck_channel::Channel;
     use stribeck_scene::catalogue::CatalogueBearing;
     use stribeck_testing::Noise;
 

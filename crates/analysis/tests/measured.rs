@@ -3,7 +3,8 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use stribeck_formats::{Channel, Recording};
+use stribeck_channel::Channel;
+use stribeck_formats::Recording;
 use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 use stribeck_testing::Noise;
 

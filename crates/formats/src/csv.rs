@@ -19,6 +19,7 @@ use std::path::{Path, PathBuf};
 use dialect::{Dialect, Field};
 pub(crate) use lines::is_wide;
 use lines::{Coding, Lines};
+use stribeck_channel::Samples;
 
 use crate::recording::{equal_lengths, left_out};
 use crate::units;
@@ -125,7 +126,9 @@ pub fn open(path: &Path) -> Result<Recording> {
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
         let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
         let unit = unit.filter(|unit| !unit.is_empty()).or_else(|| units::in_brackets(&name));
-        channels.push(Channel::text(name, rows, column).at_rate(rate_hz).in_unit(unit));
+        let mut channel = Channel::new(name, rows, column).at_rate(rate_hz).in_unit(unit);
+        channel.column = Some(at + 1);
+        channels.push(channel);
     }
     Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
 }
@@ -360,13 +363,8 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     file.flush().map_err(io)
 }
 
-impl Column {
-    /// Its place in the table, from 1.
-    pub(crate) fn number(&self) -> usize {
-        self.at + 1
-    }
-
-    pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+impl Samples for Column {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let mut lines = Lines::open(&self.path, self.coding)?;
         let mut block = Vec::with_capacity(BLOCK);
         let mut left = len;

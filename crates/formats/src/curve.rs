@@ -1,5 +1,11 @@
 //! From stored to physical values: straight lines, polynomials, quotients and tables, one after the other.
 
+use std::sync::Arc;
+
+use stribeck_channel::Samples;
+
+use crate::{Channel, Result};
+
 /// A law from stored to physical values. LabVIEW and MDF files bring theirs along.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Curve {
@@ -56,6 +62,32 @@ impl Curve {
             }
             Self::Chain(all) => all.iter().fold(x, |x, curve| curve.at(x)),
         }
+    }
+}
+
+/// Samples along a law.
+#[derive(Debug)]
+struct Along {
+    stored: Arc<dyn Samples>,
+    curve: Curve,
+}
+
+impl Samples for Along {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let mut values = Vec::new();
+        self.stored.for_each_block(len, &mut |block| {
+            values.clear();
+            values.extend(block.iter().map(|x| self.curve.at(*x)));
+            take(&values)
+        })
+    }
+}
+
+/// `channel` with the law of its stored numbers.
+pub(crate) fn along(channel: Channel, curve: Option<Curve>) -> Channel {
+    match curve {
+        Some(curve) => channel.through(|stored| Along { stored, curve }),
+        None => channel,
     }
 }
 

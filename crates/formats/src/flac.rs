@@ -6,6 +6,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use claxon::FlacReader;
+use stribeck_channel::Samples;
 
 use crate::{Channel, Error, Recording, Result};
 
@@ -44,7 +45,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     };
     let channel = |n: u32| {
         let stream = Stream { path: path.to_owned(), channel: n, factor };
-        Channel::flac((n + 1).to_string(), len, stream).at_rate(Some(f64::from(info.sample_rate)))
+        Channel::new((n + 1).to_string(), len, stream).at_rate(Some(f64::from(info.sample_rate)))
     };
     Ok(Recording {
         path: path.to_owned(),
@@ -54,8 +55,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     })
 }
 
-impl Stream {
-    pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+impl Samples for Stream {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let (mut left, mut going) = (len, true);
         let mut samples = Vec::new();
         blocks(&self.path, |block| {

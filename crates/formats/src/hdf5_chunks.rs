@@ -12,6 +12,7 @@ use std::sync::Arc;
 
 use flate2::read::ZlibDecoder;
 use hdf5_pure::Dataset;
+use stribeck_channel::Samples;
 
 use crate::number::Number;
 use crate::{Error, Result};
@@ -124,9 +125,8 @@ pub(crate) fn columns(
     Ok(Some((0..across.map_or(1, |a| shape[a])).map(column).collect()))
 }
 
-impl Column {
-    /// The first `len` samples, chunk by chunk.
-    pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+impl Samples for Column {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let set = &*self.set;
         let mut file = File::open(&set.path).map_err(|e| Error::read(&set.path, e))?;
         let mut block = Vec::new();

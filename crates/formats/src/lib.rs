@@ -24,7 +24,6 @@
 //! does not state it. Nothing is printed. A damaged file gives an [`Error`] with the file and what to try.
 
 mod curve;
-mod error;
 mod hdf5_chunks;
 mod hdf5_links;
 mod literal;
@@ -33,6 +32,7 @@ mod number;
 mod open;
 mod recording;
 mod shape;
+mod strided;
 mod time;
 mod units;
 
@@ -49,9 +49,9 @@ pub mod tdms;
 pub mod uff58;
 pub mod wav;
 
-pub use error::{Error, Result};
 pub use number::{Kind, Number};
-pub use recording::{Channel, Recording};
+pub use recording::Recording;
+pub use stribeck_channel::{Channel, Error, Result};
 pub use time::says_time;
 
 #[cfg(doctest)]

@@ -10,7 +10,8 @@ use std::path::Path;
 use flate2::read::ZlibDecoder;
 
 use crate::number::{Kind, Number};
-use crate::recording::{Strided, left_out};
+use crate::recording::left_out;
+use crate::strided::{Strided, held_from};
 use crate::{Channel, Error, Recording, Result, shape};
 
 const FORMAT: &str = "MATLAB 5";
@@ -366,7 +367,8 @@ impl Found {
                     }
                 };
                 let plain = Plain { name, rows, columns, number, start: 0 };
-                self.channels.extend(plain.channels(Path::new(""), 0).iter().map(|c| c.held_from(data.data)));
+                self.channels
+                    .extend(plain.channels(Path::new(""), 0).iter().map(|c| held_from(c, data.data)));
                 Ok(())
             }
             SPARSE | DOUBLE..=UINT64 => {
@@ -400,11 +402,8 @@ impl Plain {
                     if tall { (k * len * bytes, bytes) } else { (k * bytes, count * bytes) };
                 let start = variable + self.start + first;
                 let stride = stride as usize;
-                Channel::strided(
-                    name,
-                    len,
-                    Strided { path: path.to_owned(), start, stride, number: self.number, factor: 1.0 },
-                )
+                let path = path.to_owned();
+                Strided { path, start, stride, number: self.number, factor: 1.0 }.channel(name, len)
             })
             .collect()
     }

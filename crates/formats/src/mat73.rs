@@ -12,9 +12,10 @@ use hdf5_pure::{
     Group, Layout,
 };
 
-use crate::curve::Curve;
+use crate::curve::{Curve, along};
 use crate::number::{Kind, Number};
-use crate::recording::{Strided, left_out};
+use crate::recording::left_out;
+use crate::strided::Strided;
 use crate::{Channel, Error, Recording, Result, hdf5_chunks, hdf5_links, shape, units};
 
 const FORMAT: &str = "MATLAB 7.3 (HDF5)";
@@ -223,7 +224,7 @@ impl Found {
                 (_, true, _) => format!("{name}({},:)", k + 1),
             };
             channel.group = name.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
-            channel.at_rate(rate_hz).in_unit(unit.clone()).along(scale.clone())
+            along(channel.at_rate(rate_hz).in_unit(unit.clone()), scale.clone())
         }));
         Ok(())
     }
@@ -253,14 +254,14 @@ impl Found {
                         number,
                         factor: 1.0,
                     };
-                    Channel::strided("", len, strided)
+                    strided.channel("", len)
                 };
                 Ok(Some((0..axes.across.map_or(1, |across| shape[across])).map(channel).collect()))
             }
             Layout::Chunked { .. } if !shape.is_empty() => {
                 let columns =
                     hdf5_chunks::columns(&self.path, FORMAT, dataset, number, axes.along, axes.across)?;
-                Ok(columns.map(|all| all.into_iter().map(|of| Channel::chunks("", len, of)).collect()))
+                Ok(columns.map(|all| all.into_iter().map(|of| Channel::new("", len, of)).collect()))
             }
             _ => Ok(None),
         }

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flate2::read::ZlibDecoder;
+use stribeck_channel::Samples;
 
 use crate::number::Number;
 use crate::{Error, Result};
@@ -50,38 +51,6 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    /// The first `len` samples, block by block.
-    pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
-        let io = |e| Error::read(&self.path, e);
-        let mut file = BufReader::new(File::open(&self.path).map_err(io)?);
-        let sample = |record: &[u8]| match self.invalid {
-            Some((byte, bit)) if record[byte] >> bit & 1 == 1 => f64::NAN,
-            _ => self.number.decode(&record[self.place..]),
-        };
-        // The beginning of a record whose end stands in the next stretch.
-        let (mut bytes, mut block): (Vec<u8>, Vec<f64>) = (Vec::new(), Vec::new());
-        let mut left = len;
-        for stretch in self.stretches.iter() {
-            file.seek(SeekFrom::Start(stretch.at)).map_err(io)?;
-            let mut unread = stretch.full;
-            while unread > 0 {
-                let count = if stretch.packing == Packing::Plain { unread.min(PIECE) } else { unread };
-                self.append(&mut file, stretch, count, &mut bytes)?;
-                unread -= count;
-                block.clear();
-                let whole = (bytes.len() / self.width).min(usize::try_from(left).unwrap_or(usize::MAX));
-                let records = bytes.chunks_exact(self.width).take(whole);
-                block.extend(records.map(sample));
-                bytes.drain(..whole * self.width);
-                left -= whole as u64;
-                if !block.is_empty() && !take(&block) || left == 0 {
-                    return Ok(());
-                }
-            }
-        }
-        Ok(())
-    }
-
     /// Puts `count` bytes of records behind `bytes`: the next ones of a plain stretch, all of a packed one.
     fn append(
         &self,
@@ -112,6 +81,39 @@ impl Field {
 
     fn damaged(&self, stretch: &Stretch, what: &str) -> Error {
         Error::damaged(&self.path, self.format, format!("the samples at {} {what}", stretch.at))
+    }
+}
+
+impl Samples for Field {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let io = |e| Error::read(&self.path, e);
+        let mut file = BufReader::new(File::open(&self.path).map_err(io)?);
+        let sample = |record: &[u8]| match self.invalid {
+            Some((byte, bit)) if record[byte] >> bit & 1 == 1 => f64::NAN,
+            _ => self.number.decode(&record[self.place..]),
+        };
+        // The beginning of a record whose end stands in the next stretch.
+        let (mut bytes, mut block): (Vec<u8>, Vec<f64>) = (Vec::new(), Vec::new());
+        let mut left = len;
+        for stretch in self.stretches.iter() {
+            file.seek(SeekFrom::Start(stretch.at)).map_err(io)?;
+            let mut unread = stretch.full;
+            while unread > 0 {
+                let count = if stretch.packing == Packing::Plain { unread.min(PIECE) } else { unread };
+                self.append(&mut file, stretch, count, &mut bytes)?;
+                unread -= count;
+                block.clear();
+                let whole = (bytes.len() / self.width).min(usize::try_from(left).unwrap_or(usize::MAX));
+                let records = bytes.chunks_exact(self.width).take(whole);
+                block.extend(records.map(sample));
+                bytes.drain(..whole * self.width);
+                left -= whole as u64;
+                if !block.is_empty() && !take(&block) || left == 0 {
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
     }
 }
 

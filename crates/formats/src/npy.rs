@@ -6,7 +6,8 @@ use std::path::Path;
 
 use crate::literal::{self, Literal};
 use crate::number::{Kind, Number};
-use crate::recording::{Strided, left_out};
+use crate::recording::left_out;
+use crate::strided::Strided;
 use crate::{Channel, Error, Recording, Result, shape};
 
 /// First bytes of every file.
@@ -208,7 +209,7 @@ impl Layout {
                     (false, _) => format!("{field}[{k}]"),
                     (true, _) => format!("{name}[{k}]"),
                 };
-                channels.push(Channel::strided(called, len, strided).in_unit(unit.clone()));
+                channels.push(strided.channel(called, len).in_unit(unit.clone()));
             }
         }
         Ok(channels)

@@ -8,6 +8,7 @@ use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
 use crate::recording::left_out;
+use crate::strided::held_from;
 use crate::{Channel, Error, Recording, Result, npy};
 
 const FORMAT: &str = "NumPy .npz";
@@ -55,7 +56,7 @@ pub fn open(path: &Path) -> Result<Recording> {
         if stored.is_some() {
             channels.extend(found);
         } else {
-            channels.extend(found.iter().map(|c| c.held_from(&bytes)));
+            channels.extend(found.iter().map(|c| held_from(c, &bytes)));
         }
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })

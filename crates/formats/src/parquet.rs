@@ -15,6 +15,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnDescriptor, Type};
+use stribeck_channel::Samples;
 
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
@@ -210,7 +211,7 @@ pub fn open(path: &Path) -> Result<Recording> {
             Ok((meaning, unit)) => {
                 let stored =
                     Stored { path: path.to_owned(), number, defined: column.max_def_level(), meaning };
-                channels.push(Channel::stored(name, rows, stored).at_rate(rate_hz).in_unit(unit));
+                channels.push(Channel::new(name, rows, stored).at_rate(rate_hz).in_unit(unit));
             }
             Err(why) => notes.push(left_out(&name, why)),
         }
@@ -312,9 +313,8 @@ pub(crate) struct Stored {
     meaning: Meaning,
 }
 
-impl Stored {
-    /// The first `len` values, some rows at a time.
-    pub(crate) fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+impl Samples for Stored {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let file = File::open(&self.path).map_err(|e| Error::read(&self.path, e))?;
         let damaged = |e: ParquetError| Error::damaged(&self.path, FORMAT, e.to_string());
         let reader = guarded(|| SerializedFileReader::new(file)).map_err(damaged)?;

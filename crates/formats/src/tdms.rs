@@ -10,9 +10,11 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
+use crate::curve::along;
 use crate::number::{Kind, Number};
-use crate::recording::{Strided, left_out};
-use crate::{Channel, Error, Recording, Result, units};
+use crate::recording::left_out;
+use crate::strided::{Pieces, Strided};
+use crate::{Error, Recording, Result, units};
 
 const FORMAT: &str = "TDMS";
 /// Bytes of a segment's lead-in.
@@ -148,8 +150,8 @@ pub fn open(path: &Path) -> Result<Recording> {
         };
         let step = object.increment_s.filter(|s| *s > 0.0).map(|s| 1.0 / s).map(rounded);
         let rate_hz = step.or(object.rate_hz).or_else(|| said.get(group).or(said.get("/")).copied());
-        let channel = Channel::pieces(name, object.pieces).at_rate(rate_hz).in_unit(object.unit);
-        channels.push(channel.along(curve).of_group(group));
+        let channel = Pieces(object.pieces).channel(name).at_rate(rate_hz).in_unit(object.unit);
+        channels.push(along(channel, curve).of_group(group));
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }

@@ -5,14 +5,16 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use crate::curve::Curve;
+use stribeck_channel::wav::{FLOAT, Format, PCM};
+pub use stribeck_channel::wav::{Whole, pcm};
+
+use crate::curve::{Curve, along};
 use crate::number::{Kind, Number};
-use crate::recording::{Strided, equal_lengths};
+use crate::recording::equal_lengths;
+use crate::strided::Strided;
 use crate::{Channel, Error, Recording, Result};
 
 const FORMAT: &str = "WAV";
-const PCM: u16 = 1;
-const FLOAT: u16 = 3;
 const EXTENSIBLE: u16 = 0xfffe;
 
 /// Opens a file; channels are called `1`, `2`, … and their samples stay in the file.
@@ -70,102 +72,6 @@ pub fn open(path: &Path) -> Result<Recording> {
     Err(damaged("it ends before its samples"))
 }
 
-/// Content of the chunk `fmt`.
-#[derive(Debug, Clone, Copy)]
-struct Format {
-    sort: u16,
-    channels: u16,
-    rate: u32,
-    bits: u16,
-}
-
-impl Format {
-    /// Everything before `rows` samples of each channel, with `notes` as the comment; `None` for more than 4
-    /// GiB.
-    fn head(self, rows: u64, notes: &[String]) -> Option<Vec<u8>> {
-        let Self { sort, channels, rate, bits } = self;
-        let frame = u32::from(bits / 8) * u32::from(channels);
-        let data = rows.checked_mul(u64::from(frame)).and_then(|n| u32::try_from(n).ok())?;
-        let data = Some(data).filter(|n| *n < u32::MAX - (1 << 20))?;
-        let mut comment = notes.join("\n").into_bytes();
-        comment.push(0);
-        comment.resize(comment.len().next_multiple_of(2), 0);
-        let word = |n: usize| (n as u32).to_le_bytes();
-        let mut head = b"RIFF".to_vec();
-        // Pieces end at even bytes.
-        head.extend(word(4 + 8 + 16 + 8 + 4 + 8 + comment.len() + 8 + (data as usize).next_multiple_of(2)));
-        head.extend(b"WAVEfmt ");
-        head.extend(word(16));
-        head.extend(sort.to_le_bytes());
-        head.extend(channels.to_le_bytes());
-        head.extend(rate.to_le_bytes());
-        head.extend(rate.wrapping_mul(frame).to_le_bytes());
-        head.extend((frame as u16).to_le_bytes());
-        head.extend(bits.to_le_bytes());
-        head.extend(b"LIST");
-        head.extend(word(4 + 8 + comment.len()));
-        head.extend(b"INFOICMT");
-        head.extend(word(comment.len()));
-        head.extend(&comment);
-        head.extend(b"data");
-        head.extend(data.to_le_bytes());
-        Some(head)
-    }
-}
-
-/// Whole numbers of a converter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Whole {
-    /// 16 bits.
-    Of16,
-    /// 24 bits.
-    Of24,
-    /// 32 bits.
-    Of32,
-}
-
-impl Whole {
-    /// The smallest that holds this number of bits; `None` for more than 32.
-    pub fn holding(bits: u32) -> Option<Self> {
-        match bits {
-            0..=16 => Some(Self::Of16),
-            17..=24 => Some(Self::Of24),
-            25..=32 => Some(Self::Of32),
-            _ => None,
-        }
-    }
-
-    fn bits(self) -> u16 {
-        match self {
-            Self::Of16 => 16,
-            Self::Of24 => 24,
-            Self::Of32 => 32,
-        }
-    }
-}
-
-/// The bytes of a file of whole numbers: `channels` of one length, each from −1 to 1 of full scale, clipped
-/// beyond; `notes` goes into the comment. `None` for channels of different lengths, none or too many, or more
-/// than 4 GiB.
-pub fn pcm(rate_hz: u32, whole: Whole, channels: &[Vec<f64>], notes: &[String]) -> Option<Vec<u8>> {
-    let rows = channels.first()?.len();
-    channels.iter().all(|channel| channel.len() == rows).then_some(())?;
-    let bits = whole.bits();
-    let format = Format { sort: PCM, channels: u16::try_from(channels.len()).ok()?, rate: rate_hz, bits };
-    let mut bytes = format.head(rows as u64, notes)?;
-    let (scale, kept) = (2_f64.powi(i32::from(bits) - 1), usize::from(bits / 8));
-    for row in 0..rows {
-        for channel in channels {
-            let value = (channel[row] * scale).round().clamp(-scale, scale - 1.0) as i32;
-            bytes.extend(&value.to_le_bytes()[..kept]);
-        }
-    }
-    if bytes.len() % 2 == 1 {
-        bytes.push(0);
-    }
-    Some(bytes)
-}
-
 /// Where the piece `data` begins, how many bytes are there, and how many its header and that of a long file
 /// promise.
 #[derive(Debug, Clone, Copy)]
@@ -202,9 +108,8 @@ fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
     let all = (0..usize::from(channels)).map(|n| {
         let start = data.at + (n * kind.bytes()) as u64;
         let strided = Strided { path: path.to_owned(), start, stride, number: Number::little(kind), factor };
-        Channel::strided((n + 1).to_string(), held / stride as u64, strided)
-            .at_rate(Some(f64::from(rate)))
-            .along(curve.clone())
+        let channel = strided.channel((n + 1).to_string(), held / stride as u64);
+        along(channel.at_rate(Some(f64::from(rate))), curve.clone())
     });
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels: all.collect(), notes })
 }

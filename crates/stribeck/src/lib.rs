@@ -8,18 +8,29 @@ pub mod interrupt;
 pub mod place;
 pub mod progress;
 
+#[cfg(feature = "full")]
 mod analyse;
 mod bearings;
 mod board;
+#[cfg(feature = "full")]
 mod campaign;
+#[cfg(feature = "full")]
 mod compare;
+#[cfg(not(feature = "full"))]
+mod elsewhere;
+#[cfg(feature = "full")]
 mod emit;
+#[cfg(feature = "full")]
 mod export;
+#[cfg(feature = "full")]
 mod grow;
+#[cfg(feature = "full")]
 mod infer;
 pub mod lab;
 mod list;
+#[cfg(feature = "full")]
 mod many_runs;
+#[cfg(feature = "full")]
 mod memory;
 mod new;
 mod open;
@@ -34,13 +45,21 @@ mod shell;
 mod side_by_side;
 mod simulate;
 mod stiffness;
+#[cfg(feature = "full")]
 mod sweep;
+#[cfg(feature = "full")]
 mod transfer;
 mod validate;
 
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+#[cfg(not(feature = "full"))]
+use elsewhere::{
+    self as analyse, self as campaign, self as compare, self as export, self as grow, self as infer,
+    self as sweep,
+};
 pub use out::Loudness;
 pub use place::Place;
 
@@ -55,16 +74,22 @@ pub struct Cli {
     command: Command,
     #[command(flatten)]
     loudness: Loudness,
+    /// Finds scenes and runs below this folder, as `cargo xtask` does, which hands commands on
+    #[arg(long, value_name = "FOLDER", hide = true)]
+    repository: Option<PathBuf>,
 }
 
 impl Cli {
-    /// Executes the command line, in `place`.
+    /// Executes the command line.
     ///
     /// # Errors
     /// The message for the user.
-    pub fn run(&self, place: &Place) -> Result<ExitCode> {
+    pub fn run(&self) -> Result<ExitCode> {
         self.loudness.apply();
-        self.command.run(place)
+        self.command.run(&match &self.repository {
+            Some(root) => Place::repository("cargo xtask", root.clone()),
+            None => Place::here(),
+        })
     }
 }
 
@@ -139,6 +164,22 @@ pub enum Command {
 }
 
 impl Command {
+    /// Whether it reads records or makes tables of many runs, for which the program needs the feature `full`.
+    pub fn needs_full(&self) -> bool {
+        matches!(
+            self,
+            Self::Campaign(_)
+                | Self::Grow(_)
+                | Self::Sweep(_)
+                | Self::Infer(_)
+                | Self::Analyse(_)
+                | Self::Compare(_)
+                | Self::Export(_)
+                | Self::Completions(_)
+                | Self::Man(_)
+        )
+    }
+
     /// Executes the command, with paths and words of `place`.
     ///
     /// # Errors

@@ -2,10 +2,10 @@
 
 use std::process::ExitCode;
 
-use stribeck::{Cli, Place, command_line, conclude};
+use stribeck::{Cli, command_line, conclude};
 
 fn main() -> ExitCode {
-    conclude(command_line::parse::<Cli>().run(&Place::here()))
+    conclude(command_line::parse::<Cli>().run())
 }
 
 #[cfg(test)]

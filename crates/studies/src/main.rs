@@ -3,6 +3,7 @@
 //! A program of its own, so that simulating and reporting from a fresh clone need not wait until all studies
 //! are compiled.
 
+mod fuzz;
 mod terminal;
 
 use std::process::ExitCode;
@@ -30,6 +31,9 @@ struct Cli {
 enum Command {
     #[command(flatten)]
     Study(Study),
+    /// Feeds the program generated bad input: `cargo xtask fuzz`
+    #[command(hide = true)]
+    Fuzz(fuzz::Options),
     /// A command of `stribeck`, for studies of whole processes
     #[command(subcommand, hide = true)]
     Stribeck(stribeck::Command),
@@ -40,6 +44,7 @@ fn main() -> ExitCode {
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
         Command::Study(study) => answer(&study),
+        Command::Fuzz(options) => fuzz::run(&options),
         Command::Stribeck(command) => command.run(&Place::repository("cargo xtask", terminal::root())),
     })
 }

@@ -11,7 +11,7 @@ const PROGRAM: &str = "stribeck";
 
 /// Every crate beside `xtask`, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 27] = [
+const LAYERS: [(&str, &[&str]); 28] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -33,9 +33,10 @@ const LAYERS: [(&str, &[&str]); 27] = [
     ("lab", &["duty", "modal", "reduced", "reduction", "run", "scene", "simulation"]),
     ("fmu", &["reduced"]),
     ("dsp", &[]),
-    ("formats", &[]),
-    ("analysis", &["dsp", "formats", "scene"]),
-    ("report", &["analysis", "dsp", "formats", "scene"]),
+    ("channel", &[]),
+    ("formats", &["channel"]),
+    ("analysis", &["channel", "dsp", "scene"]),
+    ("report", &["analysis", "channel", "dsp", "scene"]),
     (
         "stribeck",
         &[
@@ -57,6 +58,7 @@ const LAYERS: [(&str, &[&str]); 27] = [
         "studies",
         &[
             "analysis",
+            "bearing",
             "contact",
             "dsp",
             "formats",
@@ -72,6 +74,9 @@ const LAYERS: [(&str, &[&str]); 27] = [
     ),
     ("python", &["analysis", "dsp", "formats", "report", "run", "scene", "simulation", "stribeck"]),
 ];
+
+/// Arrows of tests alone, beside the layers: verdicts are tried on files of measured records.
+const TESTS_ALONE: [(&str, &str); 1] = [("analysis", "formats")];
 
 /// Names of the folders in `crates/`, sorted.
 pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
@@ -112,7 +117,8 @@ fn compare(name: &str, manifest: &str, allowed: &[&str]) -> Vec<String> {
         let package = line.split(['.', ' ', '=']).next().unwrap_or_default();
         let ours = package.strip_prefix("stribeck-").or((package == PROGRAM).then_some(PROGRAM));
         let Some(to) = ours.filter(|_| section.ends_with("dependencies]")) else { continue };
-        if to == TESTING && section == "[dev-dependencies]" {
+        let of_tests_alone = to == TESTING || TESTS_ALONE.contains(&(name, to));
+        if of_tests_alone && section == "[dev-dependencies]" {
             continue;
         }
         if !allowed.contains(&to) {

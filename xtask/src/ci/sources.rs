@@ -7,8 +7,10 @@ use anyhow::{Context, Result};
 use super::layers;
 
 /// Crates that must be of use outside bearings.
-const GENERAL: [&str; 11] =
-    ["mesh", "simd", "solver", "mpi", "surface", "film", "contact", "system", "dsp", "formats", "infer"];
+const GENERAL: [&str; 12] = [
+    "mesh", "simd", "solver", "mpi", "surface", "film", "contact", "system", "dsp", "channel", "formats",
+    "infer",
+];
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
 

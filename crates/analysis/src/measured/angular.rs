@@ -1,7 +1,7 @@
 //! A record of a shaft whose speed varies, at equal angles: lines that were smeared stand still.
 
+use stribeck_channel::Channel;
 use stribeck_dsp::order_track;
-use stribeck_formats::Channel;
 
 use crate::Error;
 

@@ -1,8 +1,8 @@
 //! One pass over the samples of a channel, segment by segment: a record of hours takes no more memory than
 //! one of seconds.
 
+use stribeck_channel::Channel;
 use stribeck_dsp::{BandEnvelopes, Welch, WelchOptions};
-use stribeck_formats::Channel;
 
 use super::course::Tracing;
 use super::screening::Screening;

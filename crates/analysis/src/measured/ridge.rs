@@ -1,7 +1,7 @@
 //! The speed of a shaft without a tachometer: the line that stands out in a range of speeds.
 
+use stribeck_channel::Channel;
 use stribeck_dsp::{BandEnvelopes, Ridge, Spectrogram, Spectrograph, WelchOptions, ridge};
-use stribeck_formats::Channel;
 
 use crate::Error;
 

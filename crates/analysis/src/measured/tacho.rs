@@ -8,7 +8,7 @@ mod course;
 mod edges;
 mod mended;
 
-use stribeck_formats::Channel;
+use stribeck_channel::Channel;
 
 use self::edges::{Levels, edges, steps};
 use self::mended::{Mended, mended};

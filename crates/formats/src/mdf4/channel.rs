@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::curve::Curve;
+use crate::curve::{Curve, along};
 use crate::mdf4::{Block, FORMAT, Source};
 use crate::mdf4_records::{Field, Packing, Stretch};
 use crate::number::{Kind, Number};
-use crate::recording::Strided;
+use crate::strided::{Count, Pieces, Strided};
 use crate::{Channel, Result};
 
 /// Metadata of one channel.
@@ -142,7 +142,7 @@ impl Described {
                 let path = path.to_owned();
                 (Strided { path, start, stride: width, number, factor: 1.0 }, records)
             });
-            Channel::pieces(&self.name, pieces.collect())
+            Pieces(pieces.collect()).channel(&self.name)
         } else if let Some(number) = self.number {
             let field = Field {
                 path: path.to_owned(),
@@ -153,10 +153,10 @@ impl Described {
                 number,
                 invalid: self.invalid,
             };
-            Channel::records(&self.name, len, field)
+            Channel::new(&self.name, len, field)
         } else {
-            Channel::counted(&self.name, len)
+            Channel::new(&self.name, len, Count)
         };
-        channel.in_unit(self.unit.clone()).along(self.curve.clone())
+        along(channel.in_unit(self.unit.clone()), self.curve.clone())
     }
 }

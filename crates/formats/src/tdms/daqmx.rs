@@ -9,7 +9,7 @@ use std::path::Path;
 
 use super::{Metadata, Object};
 use crate::number::{Kind, Number};
-use crate::recording::Strided;
+use crate::strided::Strided;
 
 /// Indices of raw data that are such scalers: of numbers, and of digital lines.
 pub(super) const NUMBERS: u32 = 0x1269;

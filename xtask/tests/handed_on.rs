@@ -1,4 +1,4 @@
-//! What follows `cargo xtask study` reaches the program of the studies.
+//! What is handed on reaches its program, which cargo builds.
 #![cfg(unix)]
 
 use std::process::{Command, Output};
@@ -17,6 +17,22 @@ fn example_a_study_is_built_and_run_by_cargo_with_all_its_words() {
     assert!(output.status.success(), "{output:?}");
     assert!(said.starts_with("run --quiet --release --package stribeck-studies --manifest-path"), "{said}");
     assert!(said.trim_end().ends_with("Cargo.toml -- --quiet kills --kills 3 --help"), "{said}");
+}
+
+#[test]
+fn example_a_command_that_reads_records_is_handed_on_to_the_program() {
+    let output = xtask("echo", &["-q", "analyse", "a record.csv", "--bearing", "6205"]);
+    let said = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{output:?}");
+    assert!(said.starts_with("run --quiet --release --package stribeck --manifest-path"), "{said}");
+    assert!(said.trim_end().ends_with(" -q analyse a record.csv --bearing 6205"), "{said}");
+    assert!(said.contains("Cargo.toml -- --repository "), "{said}");
+    let fuzz = xtask("echo", &["fuzz", "--cases", "3"]);
+    let said = String::from_utf8_lossy(&fuzz.stdout);
+    assert!(
+        said.contains("--package stribeck-studies") && said.trim_end().ends_with(" -- fuzz --cases 3"),
+        "{said}"
+    );
 }
 
 #[test]

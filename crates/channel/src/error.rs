@@ -94,15 +94,18 @@ pub enum Error {
 }
 
 impl Error {
-    pub(crate) fn read(path: &Path, source: std::io::Error) -> Self {
+    /// The system refuses to read a file.
+    pub fn read(path: &Path, source: std::io::Error) -> Self {
         Self::Io { action: "read", path: path.to_owned(), source }
     }
 
-    pub(crate) fn write(path: &Path, source: std::io::Error) -> Self {
+    /// The system refuses to write a file.
+    pub fn write(path: &Path, source: std::io::Error) -> Self {
         Self::Io { action: "written", path: path.to_owned(), source }
     }
 
-    pub(crate) fn damaged(path: &Path, format: &'static str, what: impl Into<String>) -> Self {
+    /// A file contradicts its format.
+    pub fn damaged(path: &Path, format: &'static str, what: impl Into<String>) -> Self {
         Self::Damaged { path: path.to_owned(), format, what: what.into() }
     }
 }

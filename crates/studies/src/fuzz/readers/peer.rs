@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::judge::{Verdict, judge};
 use super::page::{Seen, Tables};
 use super::{Held, Made, Reading, Shelf, code, ours, place};
-use crate::workspace;
+use crate::terminal;
 use stribeck_scene::dice::Dice;
 
 /// Files that are written, read by both and removed again.
@@ -28,7 +28,7 @@ struct Peer {
 
 impl Peer {
     fn start(python: &str) -> Result<Self> {
-        let script = workspace::root().join("fixtures/peers/read_damaged.py");
+        let script = terminal::root().join("fixtures/peers/read_damaged.py");
         let mut child = Command::new(python)
             .arg(&script)
             .stdin(Stdio::piped())
@@ -139,7 +139,7 @@ pub(crate) fn against(wanted: &Wanted<'_>, folder: &Path) -> Result<ExitCode> {
     peer.child.wait()?;
     let page = tables.page(from - wanted.first, wanted.first, &peer.versions);
     println!("{page}");
-    let file = workspace::root().join("docs/results/readers.md");
+    let file = terminal::root().join("docs/results/readers.md");
     std::fs::write(&file, &page).with_context(|| format!("cannot write `{}`", file.display()))?;
     Ok(code(tables.unexplained() + tables.panics.len() as u64))
 }

@@ -1,0 +1,61 @@
+//! Commands of other programs, which are built when they are asked for: what a fresh clone simulates and
+//! reports with is compiled without them.
+
+use std::ffi::OsString;
+use std::process::{Command, ExitCode};
+
+use anyhow::{Context, Result};
+use stribeck::Loudness;
+
+use crate::workspace;
+
+/// Words of a command: its program parses them, `--help` among them.
+#[derive(Debug, clap::Args)]
+#[command(disable_help_flag = true)]
+pub(crate) struct Words {
+    /// Its own words and flags; `--help` lists them
+    #[arg(value_name = "WORDS", trailing_var_arg = true, allow_hyphen_values = true)]
+    pub(crate) words: Vec<OsString>,
+}
+
+/// A study, or the fuzzer, which is the study called `fuzz`.
+pub(crate) fn study(name: Option<&str>, words: &Words, loudness: Loudness) -> Result<ExitCode> {
+    let mut cargo = cargo_run("stribeck-studies");
+    cargo.args(loudness.flag()).args(name).args(&words.words);
+    become_it(cargo)
+}
+
+/// The command of `stribeck` that this process was called with.
+pub(crate) fn program() -> Result<ExitCode> {
+    let mut cargo = cargo_run("stribeck");
+    cargo.arg("--repository").arg(workspace::root()).args(std::env::args_os().skip(1));
+    become_it(cargo)
+}
+
+/// From the working folder, which a relative `CARGO_TARGET_DIR` and files among the words are meant from.
+fn cargo_run(package: &str) -> Command {
+    let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    cargo.args(["run", "--quiet", "--release", "--package", package, "--manifest-path"]);
+    cargo.arg(workspace::root().join("Cargo.toml")).arg("--");
+    cargo
+}
+
+/// Takes the place of this process, as that of cargo is taken by the program: Ctrl-C and other signals reach
+/// it, and its exit code is the command's.
+#[cfg(unix)]
+fn become_it(mut command: Command) -> Result<ExitCode> {
+    use std::os::unix::process::CommandExt;
+
+    Err(command.exec()).context(NO_CARGO)
+}
+
+/// Waits for it. The terminal sends Ctrl-C to both processes; it ends the other one, and so the wait.
+#[cfg(not(unix))]
+fn become_it(mut command: Command) -> Result<ExitCode> {
+    ctrlc::set_handler(|| {}).context("cannot listen for Ctrl-C")?;
+    let code = command.status().context(NO_CARGO)?.code();
+    Ok(code.and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))
+}
+
+const NO_CARGO: &str =
+    "cannot start cargo, which builds this command: put it in PATH, or name it in the variable CARGO";
