@@ -35,9 +35,22 @@ pub(crate) fn program() -> Result<ExitCode> {
 /// From the working folder, which a relative `CARGO_TARGET_DIR` and files among the words are meant from.
 fn cargo_run(package: &str) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.args(["run", "--quiet", "--release", "--package", package, "--manifest-path"]);
-    cargo.arg(workspace::root().join("Cargo.toml")).arg("--");
+    cargo.args(["run", "--release", "--package", package, "--manifest-path"]);
+    cargo.arg(workspace::root().join("Cargo.toml"));
+    // Whoever waits for the compiler sees it at work; later cargo has nothing to say.
+    if is_built(package) {
+        cargo.arg("--quiet");
+    } else {
+        eprintln!("note: `{package}` has this command; cargo builds it first, once");
+    }
+    cargo.arg("--");
     cargo
+}
+
+/// Whether a program lies beside this one, where cargo puts it.
+fn is_built(package: &str) -> bool {
+    let program = format!("{package}{}", std::env::consts::EXE_SUFFIX);
+    std::env::current_exe().is_ok_and(|this| this.with_file_name(program).exists())
 }
 
 /// Takes the place of this process, as that of cargo is taken by the program: Ctrl-C and other signals reach

@@ -15,8 +15,8 @@ fn example_a_study_is_built_and_run_by_cargo_with_all_its_words() {
     let output = xtask("echo", &["--quiet", "study", "kills", "--kills", "3", "--help"]);
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
-    assert!(said.starts_with("run --quiet --release --package stribeck-studies --manifest-path"), "{said}");
-    assert!(said.trim_end().ends_with("Cargo.toml -- --quiet kills --kills 3 --help"), "{said}");
+    assert!(said.starts_with("run --release --package stribeck-studies --manifest-path"), "{said}");
+    assert!(said.trim_end().ends_with(" -- --quiet kills --kills 3 --help"), "{said}");
 }
 
 #[test]
@@ -24,9 +24,9 @@ fn example_a_command_that_reads_records_is_handed_on_to_the_program() {
     let output = xtask("echo", &["-q", "analyse", "a record.csv", "--bearing", "6205"]);
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
-    assert!(said.starts_with("run --quiet --release --package stribeck --manifest-path"), "{said}");
+    assert!(said.starts_with("run --release --package stribeck --manifest-path"), "{said}");
     assert!(said.trim_end().ends_with(" -q analyse a record.csv --bearing 6205"), "{said}");
-    assert!(said.contains("Cargo.toml -- --repository "), "{said}");
+    assert!(said.contains(" -- --repository "), "{said}");
     let fuzz = xtask("echo", &["fuzz", "--cases", "3"]);
     let said = String::from_utf8_lossy(&fuzz.stdout);
     assert!(

@@ -57,13 +57,17 @@ impl Canvas {
     }
 }
 
+/// Whether all sides of a convex polygon, of either orientation, have the point on one hand.
 fn inside(corners: &[[f64; 2]], at: [f64; 2]) -> bool {
-    let side = |n: usize| {
-        let (a, b) = (corners[n], corners[(n + 1) % corners.len()]);
-        (b[0] - a[0]) * (at[1] - a[1]) - (b[1] - a[1]) * (at[0] - a[0])
-    };
-    let first = side(0);
-    (1..corners.len()).all(|n| side(n) * first >= 0.0)
+    let Some(mut from) = corners.last() else { return false };
+    let (mut left, mut right) = (true, true);
+    for to in corners {
+        let side = (to[0] - from[0]) * (at[1] - from[1]) - (to[1] - from[1]) * (at[0] - from[0]);
+        left &= side >= 0.0;
+        right &= side <= 0.0;
+        from = to;
+    }
+    left || right
 }
 
 /// The pictures as an endless GIF, each shown for `hundredths` of a second.
