@@ -6,6 +6,7 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result};
 use stribeck::Loudness;
+use stribeck::place::REPOSITORY;
 
 use crate::workspace;
 
@@ -18,30 +19,30 @@ pub(crate) struct Words {
     pub(crate) words: Vec<OsString>,
 }
 
-/// A study, or the fuzzer, which is the study called `fuzz`.
+/// A study, or the hidden command `fuzz` of their program.
 pub(crate) fn study(name: Option<&str>, words: &Words, loudness: Loudness) -> Result<ExitCode> {
-    let mut cargo = cargo_run("stribeck-studies");
+    let mut cargo = cargo_run("stribeck-studies", loudness);
     cargo.args(loudness.flag()).args(name).args(&words.words);
-    become_it(cargo)
+    replace_process(cargo)
 }
 
-/// The command of `stribeck` that this process was called with.
-pub(crate) fn program() -> Result<ExitCode> {
-    let mut cargo = cargo_run("stribeck");
-    cargo.arg("--repository").arg(workspace::root()).args(std::env::args_os().skip(1));
-    become_it(cargo)
+/// A command of `stribeck`, with all words that this process was called with.
+pub(crate) fn program(words: &[OsString], loudness: Loudness) -> Result<ExitCode> {
+    let mut cargo = cargo_run("stribeck", loudness);
+    cargo.env(REPOSITORY, workspace::root()).args(words);
+    replace_process(cargo)
 }
 
-/// From the working folder, which a relative `CARGO_TARGET_DIR` and files among the words are meant from.
-fn cargo_run(package: &str) -> Command {
+/// Runs in the working folder, to which a relative `CARGO_TARGET_DIR` and files among the words refer.
+fn cargo_run(package: &str, loudness: Loudness) -> Command {
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo.args(["run", "--release", "--package", package, "--manifest-path"]);
     cargo.arg(workspace::root().join("Cargo.toml"));
     // Whoever waits for the compiler sees it at work; later cargo has nothing to say.
-    if is_built(package) {
+    if is_built(package) || loudness.flag() == Some("--quiet") {
         cargo.arg("--quiet");
     } else {
-        eprintln!("note: `{package}` has this command; cargo builds it first, once");
+        eprintln!("note: building `{package}`, which has this command, once");
     }
     cargo.arg("--");
     cargo
@@ -56,7 +57,7 @@ fn is_built(package: &str) -> bool {
 /// Takes the place of this process, as that of cargo is taken by the program: Ctrl-C and other signals reach
 /// it, and its exit code is the command's.
 #[cfg(unix)]
-fn become_it(mut command: Command) -> Result<ExitCode> {
+fn replace_process(mut command: Command) -> Result<ExitCode> {
     use std::os::unix::process::CommandExt;
 
     Err(command.exec()).context(NO_CARGO)
@@ -64,7 +65,7 @@ fn become_it(mut command: Command) -> Result<ExitCode> {
 
 /// Waits for it. The terminal sends Ctrl-C to both processes; it ends the other one, and so the wait.
 #[cfg(not(unix))]
-fn become_it(mut command: Command) -> Result<ExitCode> {
+fn replace_process(mut command: Command) -> Result<ExitCode> {
     ctrlc::set_handler(|| {}).context("cannot listen for Ctrl-C")?;
     let code = command.status().context(NO_CARGO)?.code();
     Ok(code.and_then(|code| u8::try_from(code).ok()).map_or(ExitCode::FAILURE, ExitCode::from))

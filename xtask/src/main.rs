@@ -13,10 +13,11 @@ mod lab;
 mod wheel;
 mod workspace;
 
+use std::ffi::{OsStr, OsString};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use stribeck::Place;
+use stribeck::{Loudness, Place};
 
 /// Stribeck: explicit dynamics of rolling element bearings. The commands of `stribeck`, and those that
 /// develop it.
@@ -26,7 +27,7 @@ struct Cli {
     #[command(subcommand)]
     command: Command,
     #[command(flatten)]
-    loudness: stribeck::Loudness,
+    loudness: Loudness,
 }
 
 #[derive(Debug, Subcommand)]
@@ -55,10 +56,20 @@ enum Command {
 }
 
 fn main() -> ExitCode {
+    let words: Vec<OsString> = std::env::args_os().skip(1).collect();
+    if let [help, command] = &words[..]
+        && help == "help"
+        && is_handed_on(command)
+    {
+        return stribeck::conclude(handed_on::program(
+            &[command.clone(), "--help".into()],
+            Loudness::default(),
+        ));
+    }
     let cli = stribeck::command_line::parse::<Cli>();
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
-        Command::Program(command) if command.needs_full() => handed_on::program(),
+        Command::Program(command) if command.needs_full() => handed_on::program(&words, cli.loudness),
         Command::Program(command) => lab::with_module(command)
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
         Command::Study(words) => handed_on::study(None, &words, cli.loudness),
@@ -71,6 +82,12 @@ fn main() -> ExitCode {
         Command::Fuzz(words) => handed_on::study(Some("fuzz"), &words, cli.loudness),
         Command::Ci(options) => ci::run(&options),
     })
+}
+
+/// Whether a command is one that this program knows by its name alone.
+fn is_handed_on(name: &OsStr) -> bool {
+    let parsed = Cli::try_parse_from([OsStr::new("cargo xtask"), name]);
+    matches!(parsed, Ok(Cli { command: Command::Program(command), .. }) if command.needs_full())
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Errors of files of signals.
+//! Errors of files of signals, whatever their format.
 
 use std::path::{Path, PathBuf};
 
@@ -42,7 +42,7 @@ pub enum Error {
         /// Problem, with its place.
         what: String,
     },
-    /// The file holds something that its format allows and this crate does not read.
+    /// The file holds something that its format allows and that is not read.
     #[error("`{}` holds {what}, which is not read from {format}: {advice}", .path.display())]
     Unsupported {
         /// The file.

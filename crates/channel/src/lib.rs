@@ -9,6 +9,7 @@ pub mod wav;
 
 use std::any::Any;
 use std::fmt::Debug;
+use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::Arc;
 
 pub use error::{Error, Result};
@@ -21,7 +22,7 @@ struct Readme;
 const BLOCK: usize = 1 << 15;
 
 /// Where the samples of a channel lie.
-pub trait Samples: Any + Debug + Send + Sync {
+pub trait Samples: Any + Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
     /// Passes the first `len` samples to `take`, a block at a time, in order, until `take` returns false.
     ///
     /// # Errors
@@ -45,11 +46,11 @@ impl Samples for Vec<f64> {
 /// One sampled quantity.
 #[derive(Debug, Clone)]
 pub struct Channel {
-    /// Its name in the file.
+    /// Its name.
     pub name: String,
-    /// Its unit, where the file states it.
+    /// Its unit, where it is known.
     pub unit: Option<String>,
-    /// Sample rate [Hz], where the file states it.
+    /// Sample rate [Hz], where it is known.
     pub rate_hz: Option<f64>,
     /// Number of samples.
     pub len: u64,
@@ -113,8 +114,8 @@ impl Channel {
         Self { samples: Arc::new(make(self.samples)), ..self }
     }
 
-    /// The samples, where they lie in an `S`.
-    pub fn lies_in<S: Samples>(&self) -> Option<&S> {
+    /// The samples, where they are an `S`.
+    pub fn samples_as<S: Samples>(&self) -> Option<&S> {
         (&*self.samples as &dyn Any).downcast_ref()
     }
 
@@ -182,7 +183,7 @@ mod tests {
     fn example_factors_multiply_and_leave_the_samples_where_they_are() {
         let counted = Channel::new("n", 4, Count).scaled(2.0).scaled(0.25);
         assert_eq!(counted.read().unwrap(), [0.0, 0.5, 1.0, 1.5]);
-        assert!(counted.lies_in::<Count>().is_some() && counted.lies_in::<Vec<f64>>().is_none());
+        assert!(counted.samples_as::<Count>().is_some() && counted.samples_as::<Vec<f64>>().is_none());
         let held = counted.through(|_| vec![8.0; 4]);
         assert_eq!(held.read().unwrap(), [4.0; 4]);
     }

@@ -50,7 +50,7 @@ impl Pieces {
 
 /// `channel` with its samples taken from `bytes`, the content of the file, where they lie at equal distances.
 pub(crate) fn held_from(channel: &Channel, bytes: &[u8]) -> Channel {
-    let Some(s) = channel.lies_in::<Strided>() else { return channel.clone() };
+    let Some(s) = channel.samples_as::<Strided>() else { return channel.clone() };
     let first = usize::try_from(s.start).unwrap_or(usize::MAX).min(bytes.len());
     let samples = bytes[first..].chunks(s.stride.max(1)).take(channel.len as usize);
     let samples: Vec<f64> = samples.map(|at| s.factor * s.number.decode(at)).collect();
@@ -87,11 +87,13 @@ impl Samples for Strided {
 }
 
 impl Samples for Pieces {
-    fn for_each_block(&self, _: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
-        let mut going = true;
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let (mut left, mut going) = (len, true);
         for (strided, len) in &self.0 {
-            if going {
-                strided.for_each_block(*len, &mut |block| {
+            let len = left.min(*len);
+            left -= len;
+            if going && len > 0 {
+                strided.for_each_block(len, &mut |block| {
                     going = take(block);
                     going
                 })?;

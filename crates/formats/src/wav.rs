@@ -46,9 +46,9 @@ pub fn open(path: &Path) -> Result<Recording> {
                 if &tag[..4] == b"ds64" {
                     long_data = bytes.get(8..16).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes);
                 } else {
-                    let sort = if half(0) == EXTENSIBLE { half(24) } else { half(0) };
-                    let rate = u32::from(half(4)) | u32::from(half(6)) << 16;
-                    format = Some(Format { sort, channels: half(2), rate, bits: half(14) });
+                    let code = if half(0) == EXTENSIBLE { half(24) } else { half(0) };
+                    let rate_hz = u32::from(half(4)) | u32::from(half(6)) << 16;
+                    format = Some(Format { code, channels: half(2), rate_hz, bits: half(14) });
                 }
             }
             b"data" => {
@@ -84,8 +84,8 @@ struct Data {
 
 /// The channels of the piece `data`.
 fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
-    let Format { sort, channels, rate, bits } = format;
-    let (kind, factor) = match (sort, bits) {
+    let Format { code, channels, rate_hz, bits } = format;
+    let (kind, factor) = match (code, bits) {
         (PCM, 8) => (Kind::U8, 1.0 / 128.0),
         (PCM, 16) => (Kind::I16, 1.0 / 32_768.0),
         (PCM, 24) => (Kind::I24, 1.0 / 8_388_608.0),
@@ -93,12 +93,12 @@ fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
         (FLOAT, 32) => (Kind::F32, 1.0),
         (FLOAT, 64) => (Kind::F64, 1.0),
         _ => {
-            let what = format!("sound of format {sort} with {bits} bits");
+            let what = format!("sound of format {code} with {bits} bits");
             let advice = "save it as PCM or floating point";
             return Err(Error::Unsupported { path: path.to_owned(), format: FORMAT, what, advice });
         }
     };
-    if channels == 0 || rate == 0 {
+    if channels == 0 || rate_hz == 0 {
         return Err(Error::damaged(path, FORMAT, "it has no channels or no sample rate"));
     }
     let (held, notes) = data.held();
@@ -109,7 +109,7 @@ fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
         let start = data.at + (n * kind.bytes()) as u64;
         let strided = Strided { path: path.to_owned(), start, stride, number: Number::little(kind), factor };
         let channel = strided.channel((n + 1).to_string(), held / stride as u64);
-        along(channel.at_rate(Some(f64::from(rate))), curve.clone())
+        along(channel.at_rate(Some(f64::from(rate_hz))), curve.clone())
     });
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels: all.collect(), notes })
 }
@@ -154,9 +154,10 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
         return Err(misfit(format!("a sample rate of {rate} Hz; WAV holds whole numbers of hertz")));
     }
     let count = u16::try_from(channels.len()).map_err(|_| misfit(format!("{} channels", channels.len())))?;
-    let format = Format { sort: FLOAT, channels: count, rate: rate as u32, bits: 64 };
-    let head =
-        format.head(rows, notes).ok_or_else(|| misfit("more than 4 GiB of samples; use npz".to_owned()))?;
+    let format = Format { code: FLOAT, channels: count, rate_hz: rate as u32, bits: 64 };
+    let head = format
+        .head(rows, notes)
+        .ok_or_else(|| misfit("more than a file of 4 GiB holds; use npz".to_owned()))?;
     let io = |e| Error::write(path, e);
     let mut file = BufWriter::new(File::create(path).map_err(io)?);
     file.write_all(&head).map_err(io)?;

@@ -3,9 +3,17 @@
 use clap::error::{ContextKind, Error, ErrorKind};
 use clap::{Command, Parser};
 
+use crate::place::REPOSITORY;
+
 /// The parsed command line. Help, the version and mistakes end the program.
 pub fn parse<C: Parser>() -> C {
-    C::try_parse().unwrap_or_else(|error| {
+    let mut command = C::command();
+    if std::env::var_os(REPOSITORY).is_some() {
+        // Usage is that of the program which handed the command on.
+        command = command.bin_name("cargo xtask");
+    }
+    let parsed = command.try_get_matches().and_then(|matches| C::from_arg_matches(&matches));
+    parsed.unwrap_or_else(|error| {
         let words: Vec<String> = std::env::args().skip(1).collect();
         let example = example(&C::command(), &words);
         let mistake = error.use_stderr();

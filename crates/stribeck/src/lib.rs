@@ -51,7 +51,6 @@ mod sweep;
 mod transfer;
 mod validate;
 
-use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
@@ -74,9 +73,6 @@ pub struct Cli {
     command: Command,
     #[command(flatten)]
     loudness: Loudness,
-    /// Finds scenes and runs below this folder, as `cargo xtask` does, which hands commands on
-    #[arg(long, value_name = "FOLDER", hide = true)]
-    repository: Option<PathBuf>,
 }
 
 impl Cli {
@@ -86,8 +82,8 @@ impl Cli {
     /// The message for the user.
     pub fn run(&self) -> Result<ExitCode> {
         self.loudness.apply();
-        self.command.run(&match &self.repository {
-            Some(root) => Place::repository("cargo xtask", root.clone()),
+        self.command.run(&match std::env::var_os(place::REPOSITORY) {
+            Some(root) => Place::repository("cargo xtask", root.into()),
             None => Place::here(),
         })
     }
@@ -164,7 +160,8 @@ pub enum Command {
 }
 
 impl Command {
-    /// Whether it reads records or makes tables of many runs, for which the program needs the feature `full`.
+    /// Whether the program needs the feature `full` for it: it reads records, makes tables of many runs, or
+    /// lists the flags of all commands.
     pub fn needs_full(&self) -> bool {
         matches!(
             self,

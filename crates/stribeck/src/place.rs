@@ -11,6 +11,9 @@ use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
 
 use crate::out::{caution, detail};
 
+/// The variable by which `cargo xtask` says, when it hands a command on, which repository it is in.
+pub const REPOSITORY: &str = "STRIBECK_REPOSITORY";
+
 /// The surroundings of a command.
 #[derive(Debug, Clone)]
 pub struct Place {

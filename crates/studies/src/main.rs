@@ -1,4 +1,4 @@
-//! The program of `cargo xtask study`: one question, many runs, one table.
+//! The program of `cargo xtask study`, one question, many runs, one table, and of `cargo xtask fuzz`.
 //!
 //! A program of its own, so that simulating and reporting from a fresh clone need not wait until all studies
 //! are compiled.
@@ -32,7 +32,7 @@ enum Command {
     #[command(flatten)]
     Study(Study),
     /// Feeds the program generated bad input: `cargo xtask fuzz`
-    #[command(hide = true)]
+    #[command(hide = true, override_usage = "cargo xtask fuzz [OPTIONS]")]
     Fuzz(fuzz::Options),
     /// A command of `stribeck`, for studies of whole processes
     #[command(subcommand, hide = true)]
