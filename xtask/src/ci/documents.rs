@@ -188,7 +188,7 @@ fn wrong_command(root: &Path, command: &str) -> Option<String> {
     if let Some(missing) = missing {
         return Some(format!("there is no `{missing}`"));
     }
-    // Of commands that are handed on only the names are known, except in `.ci/run`, which builds `xtask` with all
+    // Of commands that are handed on only the names are known, except in `.ci/run`, whose `xtask` has all
     // features.
     let parsed = Cli::try_parse_from(std::iter::once("cargo xtask").chain(words.iter().copied()));
     let wrong = parsed.err().filter(clap::Error::use_stderr)?;
