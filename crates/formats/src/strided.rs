@@ -118,3 +118,29 @@ impl Samples for Count {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use stribeck_testing::Scratch;
+
+    use super::*;
+    use crate::number::Kind;
+
+    #[test]
+    fn issue_a_channel_of_pieces_that_is_cut_short_ends_where_it_says() {
+        let folder = Scratch::create("pieces");
+        let path = folder.join("numbers");
+        let bytes: Vec<u8> = (0..6).flat_map(|n| f64::from(n).to_le_bytes()).collect();
+        std::fs::write(&path, bytes).unwrap();
+        let from = |n: u64| {
+            let (path, number) = (path.clone(), Number::little(Kind::F64));
+            Strided { path, start: 8 * n, stride: 8, number, factor: 1.0 }
+        };
+        let mut channel = Pieces(vec![(from(4), 2), (from(0), 3)]).channel("a");
+        assert_eq!(channel.read().unwrap(), [4.0, 5.0, 0.0, 1.0, 2.0]);
+        channel.len = 3;
+        assert_eq!(channel.read().unwrap(), [4.0, 5.0, 0.0]);
+        channel.len = 2;
+        assert_eq!(channel.read().unwrap(), [4.0, 5.0]);
+    }
+}

@@ -123,8 +123,7 @@ fn analytic_multiples_of_bpfo_stand_in_the_mean_of_some_run_ups() {
     const STARTS: usize = 4;
     const STANDS: f64 = 3.56;
     let folder = Scratch::create("ramps");
-    // Twice the step of the scene: its ledger is off by 0.3 %, which no line feels.
-    let scene = scene("ramp.ron", &["model.step_us=0.5"]);
+    let scene = scene("ramp.ron", &[]);
     let order = Kinematics::new(&scene.bearing, 60.0).bpfo_hz;
     let one = |start: usize| {
         let mut scene = scene.clone();

@@ -161,5 +161,11 @@ mod tests {
         };
         assert!(of("dev-dependencies").is_empty());
         assert_eq!(of("dependencies").len(), 1);
+        let formats = |name: &str, section: &str| {
+            compare(name, &format!("[{section}]\nstribeck-formats.workspace = true\n"), &[])
+        };
+        assert!(formats("analysis", "dev-dependencies").is_empty());
+        assert_eq!(formats("analysis", "dependencies").len(), 1);
+        assert_eq!(formats("report", "dev-dependencies").len(), 1);
     }
 }
