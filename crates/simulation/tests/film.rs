@@ -33,7 +33,7 @@ fn example_rollers_float_and_loaded_contacts_are_dry() {
     /// Of the peak strain energy.
     const LEDGER: f64 = 1e-4;
     let folder = Scratch::new("film");
-    let (info, run) = run(&oiled(0.5), &folder, 2);
+    let (info, run) = run(&oiled(0.5), &folder, 1);
     assert_eq!(info.status, Status::Complete, "{info:?}");
     assert!(info.energy.max_relative_error < LEDGER, "{:?}", info.energy);
     let channel =

@@ -2,11 +2,11 @@
 
 mod common;
 
-use std::{num::NonZero, path::PathBuf, sync::atomic::AtomicUsize, sync::atomic::Ordering};
+use std::path::PathBuf;
 
 use common::run;
 use stribeck_scene::{run_info::Status, scene::Scene};
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, side_by_side};
 
 /// Elements as a test can afford them, in proportion to the rollers, with contact as stiff as they are.
 const COARSE: [&str; 4] = [
@@ -25,21 +25,6 @@ fn files() -> Vec<PathBuf> {
     files
 }
 
-/// Calls `of` for each of the files, on as many threads as there are cores.
-fn side_by_side(of: impl Fn(&PathBuf) + Sync) {
-    let (files, next) = (files(), AtomicUsize::new(0));
-    let work = || {
-        while let Some(file) = files.get(next.fetch_add(1, Ordering::Relaxed)) {
-            of(file);
-        }
-    };
-    let threads = std::thread::available_parallelism().map_or(1, NonZero::get);
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        workers.into_iter().for_each(|worker| worker.join().expect("no bearing fails"));
-    });
-}
-
 fn scene(file: &PathBuf, set: &[&str]) -> Scene {
     let set: Vec<&str> = COARSE.iter().chain(set).copied().collect();
     Scene::read_with(file, &set).unwrap_or_else(|why| panic!("{why}"))
@@ -48,7 +33,7 @@ fn scene(file: &PathBuf, set: &[&str]) -> Scene {
 /// The cage of an NU 2210 by fields had strayed by a millimetre after 21 ms, and its run diverged.
 #[test]
 fn issue_ten_own_bearings_run_in_their_modes() {
-    side_by_side(|file| {
+    side_by_side(&files(), |file| {
         let scene = scene(file, &["model=reduced()", "solver.duration_ms=30", "output.interval_us=50"]);
         let folder = Scratch::create("own-reduced");
         let info = run(&scene, &folder, "run", 1);
@@ -64,7 +49,7 @@ fn issue_ten_own_bearings_run_in_their_modes() {
 
 #[test]
 fn issue_ten_own_bearings_run_in_finite_elements() {
-    side_by_side(|file| {
+    side_by_side(&files(), |file| {
         let scene = scene(file, &["solver.duration_ms=0.05"]);
         let folder = Scratch::create("own-full");
         let info = run(&scene, &folder, "run", 1);

@@ -12,7 +12,7 @@ use stribeck_scene::{
     scene::{ModelScene, PocketWalls, ReducedScene, Scene},
     trace::Trace,
 };
-use stribeck_testing::{Scratch, ledger::compare};
+use stribeck_testing::{Scratch, ledger::compare, side_by_side};
 
 /// A small bearing on a coarse mesh, dry and quiet by mass damping.
 fn small(more: &str) -> Scene {
@@ -69,7 +69,7 @@ fn peer_contact_damping_of_rolling_is_that_of_the_full_model() {
     let folder = Scratch::create("reduced-damping");
     let heat = |name: &str, model: ModelScene| {
         let scene = Scene { model, ..scene.clone() };
-        assert_eq!(run(&scene, &folder, name, 2).status, Status::Complete);
+        assert_eq!(run(&scene, &folder, name, 1).status, Status::Complete);
         let energy = Trace::read(folder.join(name).join("energy.npy")).expect("a ledger");
         let lost = energy.get("contact_damping_j").expect("counted");
         // The ringing of a start at rest is over.
@@ -99,7 +99,7 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
     const SHAFT: &str = "operation: (load_n: 3000, load_angle_deg: 200, speed_rpm: 1500";
     let spall = "defects: [(on: outer, angle_deg: 20, form: spall(length_mm: 3, depth_mm: 0.05))]";
     let steep = "form: spall(length_mm: 3, depth_mm: 0.05, edge: rectangular)";
-    for (name, more) in [
+    let cases = [
         (
             "springs",
             format!(
@@ -129,15 +129,16 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
             ),
         ),
         ("pitted roller", format!("defects: [(on: roller(3), angle_deg: 95, {steep})]")),
-    ] {
-        let scene = small(&more);
+    ];
+    side_by_side(&cases, |(name, more)| {
+        let scene = small(more);
         let folder = Scratch::create("reduced-arrangement");
         let reduced = run(&scene, &folder, "reduced", 1);
         assert_eq!(reduced.status, Status::Complete, "{name}: {:?}", reduced.stop_reason);
         let off = reduced.energy.max_relative_error;
         assert!(off < 0.01, "{name}: energy off by {off}");
         let full = Scene { model: ModelScene::Full, ..scene.clone() };
-        assert_eq!(run(&full, &folder, "full", 2).status, Status::Complete, "{name}");
+        assert_eq!(run(&full, &folder, "full", 1).status, Status::Complete, "{name}");
         let means = |of: &str| -> Vec<f64> {
             let trace = trace(&folder, of);
             let channel =
@@ -157,7 +158,7 @@ fn example_arrangements_are_felt_as_by_the_full_model() {
             100.0 * off
         );
         assert!(apart < FORCES, "{name}: {apart}");
-    }
+    });
 }
 
 /// The outer ring turns about its own centre, which the load has moved: drive and friction see the same
@@ -234,7 +235,7 @@ fn peer_loads_in_a_pedestal_are_those_of_the_full_model() {
     let loads = |name: &str, model: ModelScene, duration_ms: f64| {
         let mut scene = Scene { model, ..balls.clone() };
         scene.solver.duration_ms = duration_ms;
-        let info = run(&scene, &folder, name, 2);
+        let info = run(&scene, &folder, name, 1);
         assert_eq!(info.status, Status::Complete, "{name}: {:?}", info.stop_reason);
         let trace = trace(&folder, name);
         let first = |channel: String| trace.get(&channel).unwrap_or_else(|| panic!("no `{channel}`"))[1];

@@ -30,7 +30,7 @@ fn coarse(duration_ms: f64) -> Scene {
 }
 
 fn complete(scene: &Scene, folder: &Scratch, name: &str) -> RunInfo {
-    let info = run(scene, folder, name, 2);
+    let info = run(scene, folder, name, 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     info
 }

@@ -4,7 +4,7 @@ mod common;
 
 use std::ops::ControlFlow;
 
-use common::{coarse, host};
+use common::{coarse, fine_where_it_rolls, host};
 use stribeck_bearing::assembly::{Assembly, BearingSystem, Roller};
 use stribeck_run::host::Progress;
 use stribeck_scene::{
@@ -17,7 +17,7 @@ use stribeck_scene::{
     trace::Trace,
 };
 use stribeck_simulation::simulate;
-use stribeck_testing::{Scratch, ledger};
+use stribeck_testing::{Scratch, ledger, side_by_side};
 
 fn run_watched(
     scene: &Scene,
@@ -74,9 +74,7 @@ fn analytic_bearing_rolls_and_carries_its_load() {
     // Cage, load and ledger within 1 % each: the project's limits for the full scene too. On a 2 mm mesh the
     // cage runs 1.1 % ahead after 4 ms.
     const TOLERANCE: f64 = 0.01;
-    let mut scene = coarse(6.0);
-    scene.mesh.size_mm = 1.0;
-    scene.mesh.roller_facets = 112;
+    let scene = fine_where_it_rolls(6.0);
     let (info, run) = run(&scene, 1);
     assert_eq!(info.status, Status::Complete);
     assert!(info.energy.max_relative_error < TOLERANCE, "energy: {}", info.energy.max_relative_error);
@@ -233,10 +231,8 @@ fn example_straight_pockets_push_along_the_track() {
 #[test]
 fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     const TRAILING_EDGE_DEG: f64 = 90.0 - 2.8648;
-    let mut scene = coarse(6.5);
-    // A 1 mm mesh: on 2 mm the polygon rolls over the first time.
-    scene.mesh.size_mm = 1.0;
-    scene.mesh.roller_facets = 112;
+    // On facets of 2 mm the polygon rolls over the first time.
+    let mut scene = fine_where_it_rolls(6.5);
     // As it was seen: damping across the track takes the rebound from the roller, which then climbs out by
     // itself.
     scene.solver.damping_frame = DampingFrame::RigidMotion;
@@ -244,17 +240,14 @@ fn issue_roller_is_trapped_in_the_spall_without_a_cage() {
     // And on a stiff contact: on a soft one a roller sinks far enough into the edge to climb out.
     (scene.contact.penalty_scale, scene.contact.points_per_facet) = (1.0, 4);
     let without = Scene { cage: None, ..scene.clone() };
-    let [caged, free] = std::thread::scope(|scope| {
-        [&scene, &without]
-            .map(|scene| scope.spawn(move || run(scene, 1).1))
-            .map(|run| run.join().expect("a run"))
-    });
-    let angle = last_angle_deg(&caged, 1);
+    let runs = side_by_side(&[scene, without], |scene| run(scene, 1).1);
+    let (caged, free) = (&runs[0], &runs[1]);
+    let angle = last_angle_deg(caged, 1);
     assert!(
         angle < TRAILING_EDGE_DEG,
         "with its cage roller 1 should be out of the spall, it is at {angle}°"
     );
-    let angle = last_angle_deg(&free, 1);
+    let angle = last_angle_deg(free, 1);
     assert!(angle > TRAILING_EDGE_DEG, "without a cage roller 1 should stay in the spall, it is at {angle}°");
     assert!(
         free.trace.names().iter().all(|name| name != "cage.angle_rad"),

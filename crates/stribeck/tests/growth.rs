@@ -13,12 +13,12 @@ fn stribeck(desk: &Scratch, words: &[&str]) -> Output {
     command.current_dir(desk.path()).args(words).stdin(Stdio::null()).output().expect("it starts")
 }
 
-/// Three units in few, short records.
+/// Three units in few, short records on a coarse mesh.
 fn growth(from: &str, to: &str) -> String {
     let text = fs::read_to_string(format!("{ROOT}/fixtures/growth/quick.ron")).expect("the fixture");
     let text = text
         .replace("../scenes/first_look.ron", &format!("{ROOT}/fixtures/scenes/first_look.ron"))
-        .replace("duration_ms=300", "duration_ms=60")
+        .replace("duration_ms=300\"", "duration_ms=60\", \"mesh.size_mm=1.0\", \"mesh.roller_facets=40\"")
         .replace("units: 5", "units: 3")
         .replace("every_revolutions: 2e6", "every_revolutions: 3e6");
     assert!(text.contains(from), "{from}");

@@ -17,7 +17,7 @@ use stribeck_testing::Scratch;
 const SCENE: [&str; 5] = [
     "simulate",
     concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron"),
-    "--set=solver.duration_ms=3.5",
+    "--set=solver.duration_ms=2.7",
     "--set=solver.start=sudden",
     "--no-report",
 ];

@@ -32,7 +32,7 @@ fn run(desk: &Scratch, words: &[&str]) -> Output {
 fn example_both_models_from_the_same_starts() {
     let desk = Scratch::create("validate");
     fs::write(desk.join("scene.ron"), SCENE).unwrap();
-    let words = ["validate", "scene.ron", "--starts=2", "--jobs=1", "--threads=2"];
+    let words = ["validate", "scene.ron", "--starts=2", "--jobs=2", "--threads=1"];
     let first = run(&desk, &words);
     assert!(first.status.success(), "{}", said(&first));
     says(&first, &["4 runs to make", "forces on the rollers", "mean load on the rollers", "processor time"]);
@@ -75,7 +75,7 @@ fn example_both_models_from_the_same_starts() {
     fs::remove_dir_all(desk.join("runs/lighter")).unwrap();
 
     // The page of a reduced run beside it states its measured error.
-    let near = ["simulate", "scene.ron", "--set", "operation.load_n=45000", "--out=runs/near", "--threads=2"];
+    let near = ["simulate", "scene.ron", "--set", "operation.load_n=45000", "--out=runs/near", "--threads=1"];
     let near = run(&desk, &near);
     assert!(near.status.success(), "{}", said(&near));
     let page = fs::read_to_string(desk.join("runs/near/report.html")).unwrap();
@@ -85,7 +85,7 @@ fn example_both_models_from_the_same_starts() {
     let report = report.current_dir(desk.join("runs")).args(["report", "near"]).output().expect("it starts");
     assert!(report.status.success(), "{}", said(&report));
     assert_eq!(fs::read_to_string(desk.join("runs/near/report.html")).unwrap(), page);
-    let alone = run(&desk, &["simulate", "scene.ron", "--out=alone/run", "--threads=2"]);
+    let alone = run(&desk, &["simulate", "scene.ron", "--out=alone/run", "--threads=1"]);
     assert!(alone.status.success(), "{}", said(&alone));
     let page = fs::read_to_string(desk.join("alone/run/report.html")).unwrap();
     assert!(page.contains("no validation of a scene like it"));
@@ -192,7 +192,7 @@ fn refuses_scenes_that_the_reduced_model_cannot_have() {
 fn issue_a_record_that_holds_no_third_octaves_says_so() {
     let desk = Scratch::create("validate-short");
     fs::write(desk.join("scene.ron"), SCENE).unwrap();
-    let words = ["validate", "scene.ron", "--set=solver.duration_ms=2.0", "--starts=1", "--threads=2"];
+    let words = ["validate", "scene.ron", "--set=solver.duration_ms=2.0", "--starts=1", "--threads=1"];
     let short = run(&desk, &words);
     assert!(short.status.success(), "{}", said(&short));
     says(&short, &["third octaves are compared on records of 2.3 ms at least, all of them of 27 ms"]);

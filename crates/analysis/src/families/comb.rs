@@ -1,8 +1,8 @@
 //! The comb of one family at baseband: its columns, and the frequency of its carrier.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
-use super::kernels::{Complex, Shift, dot, orthogonalise, turned, unit};
+use super::kernels::{Complex, LowPass, Signal, dot, orthogonalise, turned, unit};
 use super::{RecordedMotion, SIDEBANDS, Source};
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
@@ -30,17 +30,17 @@ pub(super) struct BasebandComb {
     /// The baseband itself.
     pub(super) baseband: Baseband,
     /// Sums over all rollers, one a column: the terms of accelerations.
-    sums: Vec<Vec<Complex>>,
+    sums: Vec<Signal>,
     /// Contribution of each observed roller, one a column and roller: the terms of the force on it.
-    own: Vec<Vec<Vec<Complex>>>,
+    own: Vec<Vec<Signal>>,
 }
 
 /// Columns of one or more combs in a band: for accelerations, and for the forces on all rollers, one behind
 /// the other.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Columns {
-    pub(super) sums: Vec<Vec<Complex>>,
-    pub(super) own: Vec<Vec<Complex>>,
+    pub(super) sums: Vec<Signal>,
+    pub(super) own: Vec<Signal>,
 }
 
 impl BasebandComb {
@@ -66,8 +66,8 @@ impl BasebandComb {
             return None;
         }
         let length = baseband.length(samples);
-        let mut sums = vec![vec![(0.0, 0.0); length]; COLUMNS];
-        let mut own = vec![vec![Vec::new(); observed.len()]; COLUMNS];
+        let mut sums = vec![Signal::constant((0.0, 0.0), length); COLUMNS];
+        let mut own = vec![vec![Signal::default(); observed.len()]; COLUMNS];
         for (number, ((roller, phase), load)) in motion.rollers.iter().zip(&phases).zip(&loads).enumerate() {
             let sound = |n: usize| {
                 let weight = load[n] / largest;
@@ -76,7 +76,7 @@ impl BasebandComb {
             };
             let sound = baseband.of_samples(sound, samples);
             for column in 0..COLUMNS {
-                let part: Vec<Complex> = sound
+                let part: Signal = sound
                     .iter()
                     .enumerate()
                     .map(|(n, value)| {
@@ -84,7 +84,7 @@ impl BasebandComb {
                         (by * value.0, by * value.1)
                     })
                     .collect();
-                add(&mut sums[column], &part);
+                sums[column].add(&part);
                 if let Some(at) = observed.iter().position(|&heard| heard == number) {
                     own[column][at] = part;
                 }
@@ -95,33 +95,35 @@ impl BasebandComb {
         Some(comb)
     }
 
-    /// Its columns in the band about `centre_hz`, when it is detuned by `offset_hz`.
-    pub(super) fn columns(&self, offset_hz: f64, centre_hz: f64) -> Columns {
-        let length = self.sums.first().map_or(0, Vec::len);
-        let mut shift = self.baseband.shift(self.rate_hz + offset_hz - centre_hz, length);
-        let mut band = |values: &Vec<Complex>| shift.apply(values);
-        Columns {
-            sums: self.sums.iter().map(&mut band).collect(),
-            own: self.own.iter().map(|rollers| rollers.iter().flat_map(&mut band).collect()).collect(),
-        }
+    /// Its columns in the band about `centre_hz`, when it is detuned by each of `offsets_hz`.
+    pub(super) fn columns(&self, offsets_hz: &[f64], centre_hz: f64) -> Vec<Columns> {
+        let signals: Vec<&Signal> = self.sums.iter().chain(self.own.iter().flatten()).collect();
+        let hz: Vec<f64> = offsets_hz.iter().map(|offset_hz| self.rate_hz + offset_hz - centre_hz).collect();
+        let rollers = self.own.first().map_or(0, Vec::len);
+        let columns = |averages: Vec<Signal>| {
+            let mut averages = averages.into_iter();
+            let sums = averages.by_ref().take(COLUMNS).collect();
+            let own = (0..COLUMNS).map(|_| Signal::joined(averages.by_ref().take(rollers))).collect();
+            Columns { sums, own }
+        };
+        self.baseband.bands(&signals, &hz).into_iter().map(columns).collect()
     }
 
     /// Where lines BPFO apart explain the sums best, within half a BPFO of the mean rate [Hz from it].
     fn nearest_line_hz(&self, motion: &RecordedMotion) -> f64 {
-        let columns = self.columns(0.0, self.rate_hz).sums;
+        let sums: Vec<&Signal> = self.sums.iter().collect();
+        let columns = self.baseband.bands(&sums, &[0.0]).remove(0);
         let step_hz = motion.resolution_hz() / CARRIER_STEPS;
         let reach = (0.5 * motion.bpfo_hz / step_hz).floor() as i32;
-        let steady = vec![(1.0, 0.0); self.baseband.length(motion.samples())];
-        let lines: Vec<Vec<Complex>> = (-SIDEBANDS..=SIDEBANDS)
-            .map(|m| self.baseband.shift(f64::from(m) * motion.bpfo_hz, steady.len()).apply(&steady))
-            .collect();
+        let steady = Signal::constant((1.0, 0.0), self.baseband.length(motion.samples()));
+        let places: Vec<f64> = (-SIDEBANDS..=SIDEBANDS).map(|m| f64::from(m) * motion.bpfo_hz).collect();
+        let lines = self.baseband.bands(&[&steady], &places).into_iter().flatten().collect();
         // Lines that are shifted together keep their angles: one basis serves all places, and columns are
         // shifted back.
-        let mut basis = Vec::new();
-        extend_basis(&mut basis, &lines);
-        let interval_s = self.baseband.filter.step as f64 * self.baseband.interval_s;
+        let basis = extension(&[], lines);
+        let interval_s = self.baseband.filter.step() as f64 * self.baseband.interval_s;
         let explained = |hz: f64| -> f64 {
-            columns.iter().map(|column| power(&basis, &turned(column, -hz, interval_s))).sum()
+            columns.iter().map(|column| power(&basis, &turned(column.clone(), -hz, interval_s))).sum()
         };
         let all = (-reach..=reach).map(|n| f64::from(n) * step_hz).map(|hz| (hz, explained(hz)));
         all.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0.0, |(hz, _)| hz)
@@ -157,7 +159,8 @@ impl Baseband {
         let half_hz = HALF_BAND * motion.bpfo_hz;
         let thin = ((1.0 / (half_hz * motion.interval_s)) as usize / FINE).max(1);
         let interval_s = thin as f64 * motion.interval_s;
-        let filter = LowPass::new(half_hz, interval_s, motion.samples() / thin);
+        let samples = (1.0 / (half_hz * interval_s)).round() as usize;
+        let filter = LowPass::new(samples.clamp(1, (motion.samples() / thin).max(1)), OVERLAP);
         Self { centre_hz, half_hz, thin, interval_s, filter }
     }
 
@@ -166,8 +169,8 @@ impl Baseband {
     pub(super) fn fits(&self, motion: &RecordedMotion, centre_hz: f64) -> bool {
         centre_hz > self.half_hz
             && centre_hz + self.half_hz < 0.5 / motion.interval_s
-            && self.filter.taps.len() >= OVERLAP
-            && self.length(motion.samples()) > self.filter.taps.len() * (1 + COLUMNS)
+            && self.filter.length() >= OVERLAP
+            && self.length(motion.samples()) > self.filter.length() * (1 + COLUMNS)
     }
 
     fn length(&self, samples: usize) -> usize {
@@ -180,32 +183,26 @@ impl Baseband {
     }
 
     /// The mean of `at` over every few samples, turned back.
-    fn of_samples(&self, at: impl Fn(usize) -> Complex, samples: usize) -> Vec<Complex> {
+    fn of_samples(&self, at: impl Fn(usize) -> Complex, samples: usize) -> Signal {
         let step_s = self.interval_s / self.thin as f64;
-        let values: Vec<Complex> = (0..samples).map(at).collect();
-        let turned = turned(&values, -self.centre_hz, step_s);
-        let mean = |part: &[Complex]| {
-            let sum = part.iter().fold((0.0, 0.0), |sum, v| (sum.0 + v.0, sum.1 + v.1));
+        let turned = turned((0..samples).map(at).collect(), -self.centre_hz, step_s);
+        let mut turned = turned.iter();
+        let mean = |_| {
+            let part = turned.by_ref().take(self.thin);
+            let sum = part.fold((0.0, 0.0), |sum, v| (sum.0 + v.0, sum.1 + v.1));
             (sum.0 / self.thin as f64, sum.1 / self.thin as f64)
         };
-        turned.chunks_exact(self.thin).map(mean).collect()
+        (0..self.length(samples)).map(mean).collect()
     }
 
     /// A recorded signal.
-    pub(super) fn of_signal(&self, values: &[f64]) -> Vec<Complex> {
+    pub(super) fn of_signal(&self, values: &[f64]) -> Signal {
         self.of_samples(|n| (values[n], 0.0), values.len())
     }
 
-    /// Band-pass filter for signals of `values` samples, after a shift up by `hz`.
-    pub(super) fn shift(&self, hz: f64, values: usize) -> Shift<'_> {
-        Shift::new(hz, self.interval_s, values, &self.filter.taps, self.filter.step)
-    }
-}
-
-/// Adds `part` to `sum`.
-fn add(sum: &mut [Complex], part: &[Complex]) {
-    for (sum, part) in sum.iter_mut().zip(part) {
-        *sum = (sum.0 + part.0, sum.1 + part.1);
+    /// Signals of the baseband in the band about its centre, after a shift up by each of `hz`.
+    pub(super) fn bands(&self, signals: &[&Signal], hz: &[f64]) -> Vec<Vec<Signal>> {
+        self.filter.shifted(signals, hz, self.interval_s)
     }
 }
 
@@ -237,37 +234,21 @@ pub(super) fn smoothed(load: &[f64], width: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A Hann-shaped average, taken [`OVERLAP`] times in its length.
-struct LowPass {
-    taps: Vec<f64>,
-    step: usize,
-}
-
-impl LowPass {
-    fn new(half_band_hz: f64, interval_s: f64, samples: usize) -> Self {
-        let length = ((1.0 / (half_band_hz * interval_s)).round() as usize).clamp(1, samples.max(1));
-        let taps: Vec<f64> =
-            (1..=length).map(|n| (PI * n as f64 / (length + 1) as f64).sin().powi(2)).collect();
-        let sum: f64 = taps.iter().sum();
-        Self { taps: taps.iter().map(|t| t / sum).collect(), step: (length / OVERLAP).max(1) }
-    }
-}
-
 /// Power of a signal in the span of orthonormal columns.
-pub(super) fn power(basis: &[Vec<Complex>], signal: &[Complex]) -> f64 {
+pub(super) fn power(basis: &[Signal], signal: &Signal) -> f64 {
     basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
 }
 
-/// Extends `basis` by the part of `columns` that is orthogonal to it, normalised.
-pub(super) fn extend_basis(basis: &mut Vec<Vec<Complex>>, columns: &[Vec<Complex>]) {
+/// The part of `columns` that is orthogonal to `basis`, orthonormal.
+pub(super) fn extension(basis: &[Signal], columns: Vec<Signal>) -> Vec<Signal> {
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
-    for column in columns {
-        let mut rest = column.clone();
-        orthogonalise(&mut rest, basis);
+    let mut more = Vec::new();
+    for mut rest in columns {
+        orthogonalise(&mut rest, [basis, &more]);
         let length = dot(&rest, &rest).0;
         if length > INDEPENDENT * INDEPENDENT * longest {
-            let scale = 1.0 / length.sqrt();
-            basis.push(rest.iter().map(|r| (r.0 * scale, r.1 * scale)).collect());
+            more.push(rest.scaled(1.0 / length.sqrt()));
         }
     }
+    more
 }

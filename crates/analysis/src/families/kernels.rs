@@ -1,7 +1,8 @@
 //! The kernels of the fit of combs, compiled for the vectors of each processor. Nothing is fused and sums
 //! have a fixed order, so that all of them give the same bits.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
 
@@ -14,17 +15,77 @@ const BLOCK: usize = 16;
 /// Averages that are taken together, of values that lie near the processor.
 const TOGETHER: usize = 32;
 
+/// Complex values, real and imaginary parts apart: vectors take either as they lie in memory.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Signal {
+    re: Vec<f64>,
+    im: Vec<f64>,
+}
+
+impl Signal {
+    /// The same value `length` times.
+    pub(super) fn constant(value: Complex, length: usize) -> Self {
+        Self { re: vec![value.0; length], im: vec![value.1; length] }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.re.len()
+    }
+
+    pub(super) fn iter(&self) -> impl Iterator<Item = Complex> {
+        self.re.iter().copied().zip(self.im.iter().copied())
+    }
+
+    fn part(&self, part: Range<usize>) -> [&[f64]; 2] {
+        [&self.re[part.clone()], &self.im[part]]
+    }
+
+    /// Times a real number.
+    pub(super) fn scaled(&self, by: f64) -> Self {
+        let scaled = |values: &[f64]| values.iter().map(|value| value * by).collect();
+        Self { re: scaled(&self.re), im: scaled(&self.im) }
+    }
+
+    /// Adds `more` value by value.
+    pub(super) fn add(&mut self, more: &Self) {
+        for (sum, more) in [(&mut self.re, &more.re), (&mut self.im, &more.im)] {
+            sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += more);
+        }
+    }
+
+    /// Signals one behind the other.
+    pub(super) fn joined(signals: impl Iterator<Item = Self>) -> Self {
+        let mut joined = Self::default();
+        for signal in signals {
+            joined.re.extend(signal.re);
+            joined.im.extend(signal.im);
+        }
+        joined
+    }
+}
+
+impl FromIterator<Complex> for Signal {
+    fn from_iter<I: IntoIterator<Item = Complex>>(values: I) -> Self {
+        let (re, im) = values.into_iter().unzip();
+        Self { re, im }
+    }
+}
+
 /// Values times exp 2πi f t, t from zero on.
-pub(super) fn turned(values: &[Complex], hz: f64, interval_s: f64) -> Vec<Complex> {
+pub(super) fn turned(mut values: Signal, hz: f64, interval_s: f64) -> Signal {
     let turns = |samples: usize| unit(TAU * hz * interval_s * samples as f64);
-    let mut turned = values.to_vec();
-    Arch::new().dispatch(Turn { values: &mut turned, table: std::array::from_fn(turns), step: turns(BLOCK) });
-    turned
+    let mut table = [[0.0; BLOCK]; 2];
+    for n in 0..BLOCK {
+        (table[0][n], table[1][n]) = turns(n);
+    }
+    Arch::new().dispatch(Turn { values: &mut values, table, step: turns(BLOCK) });
+    values
 }
 
 struct Turn<'a> {
-    values: &'a mut [Complex],
-    table: [Complex; BLOCK],
+    values: &'a mut Signal,
+    /// Real and imaginary parts.
+    table: [[f64; BLOCK]; 2],
     step: Complex,
 }
 
@@ -34,49 +95,64 @@ impl WithSimd for Turn<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let mut start = (1.0, 0.0);
-        for block in self.values.chunks_mut(BLOCK) {
-            for (value, turn) in block.iter_mut().zip(&self.table) {
-                *value = times(times(start, *turn), *value);
+        for (re, im) in self.values.re.chunks_mut(BLOCK).zip(self.values.im.chunks_mut(BLOCK)) {
+            let [table_re, table_im] = &self.table;
+            for (((re, im), turn_re), turn_im) in re.iter_mut().zip(im).zip(table_re).zip(table_im) {
+                (*re, *im) = times(times(start, (*turn_re, *turn_im)), (*re, *im));
             }
             start = times(start, self.step);
         }
     }
 }
 
-/// A shift in frequency, and decimated by weighted averages.
-pub(super) struct Shift<'a> {
-    /// Factor of each value.
-    turns: Vec<Complex>,
-    taps: &'a [f64],
+/// A Hann-shaped average, taken every few samples.
+pub(super) struct LowPass {
+    /// Weights, four by four; what the last four lack is zero.
+    taps: Vec<[f64; 4]>,
+    length: usize,
     step: usize,
-    /// Of the values, those for a few averages.
-    shifted: Vec<Complex>,
 }
 
-impl<'a> Shift<'a> {
-    /// Shifts `values` samples, `interval_s` apart, by `hz`, and averages them with the weights `taps`, one
-    /// average every `step` samples.
-    pub(super) fn new(hz: f64, interval_s: f64, values: usize, taps: &'a [f64], step: usize) -> Self {
-        let turns = turned(&vec![(1.0, 0.0); values], hz, interval_s);
-        Self { turns, taps, step, shifted: vec![(0.0, 0.0); TOGETHER * step + taps.len()] }
+impl LowPass {
+    /// Over `length` samples, taken `overlap` times in its length.
+    pub(super) fn new(length: usize, overlap: usize) -> Self {
+        let mut taps: Vec<f64> =
+            (1..=length).map(|n| (PI * n as f64 / (length + 1) as f64).sin().powi(2)).collect();
+        let sum: f64 = taps.iter().sum();
+        taps.iter_mut().for_each(|tap| *tap /= sum);
+        taps.resize(length.next_multiple_of(4), 0.0);
+        Self { taps: taps.as_chunks().0.to_vec(), length, step: (length / overlap).max(1) }
     }
 
-    /// The averages of one signal.
-    pub(super) fn apply(&mut self, values: &[Complex]) -> Vec<Complex> {
-        let Self { turns, taps, step, shifted } = self;
-        let mut averages = vec![(0.0, 0.0); (values.len() + *step).saturating_sub(taps.len()) / *step];
-        Arch::new().dispatch(Average { values, turns, taps, step: *step, shifted, averages: &mut averages });
+    /// Samples that an average is taken over.
+    pub(super) fn length(&self) -> usize {
+        self.length
+    }
+
+    /// Samples from one average to the next.
+    pub(super) fn step(&self) -> usize {
+        self.step
+    }
+
+    /// Averages of each signal after a shift up by each of `hz`, all of equal length and with samples
+    /// `interval_s` apart. Signals are read once for all shifts.
+    pub(super) fn shifted(&self, signals: &[&Signal], hz: &[f64], interval_s: f64) -> Vec<Vec<Signal>> {
+        let samples = signals.first().map_or(0, |signal| signal.len());
+        let turns = |hz: &f64| turned(Signal::constant((1.0, 0.0), samples), *hz, interval_s);
+        let turns: Vec<Signal> = hz.iter().map(turns).collect();
+        let count = (samples + self.step).saturating_sub(self.length) / self.step;
+        let mut averages = vec![vec![Signal::constant((0.0, 0.0), count); signals.len()]; hz.len()];
+        Arch::new().dispatch(Average { filter: self, signals, turns: &turns, averages: &mut averages });
         averages
     }
 }
 
 struct Average<'a> {
-    values: &'a [Complex],
-    turns: &'a [Complex],
-    taps: &'a [f64],
-    step: usize,
-    shifted: &'a mut [Complex],
-    averages: &'a mut [Complex],
+    filter: &'a LowPass,
+    signals: &'a [&'a Signal],
+    /// Factors of the values, for each shift.
+    turns: &'a [Signal],
+    averages: &'a mut [Vec<Signal>],
 }
 
 impl WithSimd for Average<'_> {
@@ -84,31 +160,76 @@ impl WithSimd for Average<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        for (at, averages) in self.averages.chunks_mut(TOGETHER).enumerate() {
-            let from = at * TOGETHER * self.step;
-            let shifted = &mut self.shifted[..(averages.len() - 1) * self.step + self.taps.len()];
-            for ((shifted, turn), value) in
-                shifted.iter_mut().zip(&self.turns[from..]).zip(&self.values[from..])
-            {
-                *shifted = times(*turn, *value);
-            }
-            for (n, average) in averages.iter_mut().enumerate() {
-                let part = &shifted[n * self.step..][..self.taps.len()];
-                *average = sum(self.taps, part, |tap, value| (tap * value.0, tap * value.1));
+        let Self { filter: LowPass { taps, step, .. }, signals, turns, averages } = self;
+        let length = TOGETHER * step + 4 * taps.len();
+        let mut shifted = Signal::constant((0.0, 0.0), length);
+        let samples = signals.first().map_or(0, |signal| signal.len());
+        let count = averages.iter().flatten().map(Signal::len).max().unwrap_or(0);
+        // Factors of one block, side by side: in their own arrays they lie a whole number of pages apart, and
+        // a cache keeps few lines of such places.
+        let mut factors = Vec::with_capacity(2 * length * turns.len());
+        for first in (0..count).step_by(TOGETHER) {
+            let end = count.min(first + TOGETHER);
+            let part = first * step..samples.min(first * step + length);
+            factors.clear();
+            turns
+                .iter()
+                .flat_map(|turns| turns.part(part.clone()))
+                .for_each(|part| factors.extend_from_slice(part));
+            for (number, signal) in signals.iter().enumerate() {
+                let factors = factors.chunks_exact(2 * part.len());
+                for (factors, averages) in factors.zip(&mut *averages) {
+                    turn(factors.split_at(part.len()), signal.part(part.clone()), &mut shifted);
+                    let Signal { re, im } = &mut averages[number];
+                    average(taps, *step, &shifted.re, &mut re[first..end]);
+                    average(taps, *step, &shifted.im, &mut im[first..end]);
+                }
             }
         }
     }
 }
 
-/// Subtracts from a column its projection on the orthonormal columns of `basis`: Gram–Schmidt, twice for
-/// rounding.
-pub(super) fn orthogonalise(column: &mut [Complex], basis: &[Vec<Complex>]) {
+/// Puts turn times value into the first numbers of `shifted`.
+#[inline(always)]
+fn turn(turns: (&[f64], &[f64]), values: [&[f64]; 2], shifted: &mut Signal) {
+    let shifted = shifted.re.iter_mut().zip(&mut shifted.im);
+    let turns = turns.0.iter().zip(turns.1);
+    let values = values[0].iter().zip(values[1]);
+    for (((re, im), turn), value) in shifted.zip(turns).zip(values) {
+        (*re, *im) = times((*turn.0, *turn.1), (*value.0, *value.1));
+    }
+}
+
+/// Weighted sums over the values, one every `step`, each in four partial sums. Those are added up when all
+/// are there, so that vectors take four of one average and not one of four.
+#[inline(always)]
+fn average(taps: &[[f64; 4]], step: usize, values: &[f64], averages: &mut [f64]) {
+    let mut parts = [[0.0; 4]; TOGETHER];
+    for (parts, window) in
+        parts[..averages.len()].iter_mut().zip(values.windows(4 * taps.len()).step_by(step))
+    {
+        let mut sums = [0.0; 4];
+        for (taps, values) in taps.iter().zip(window.as_chunks::<4>().0) {
+            for lane in 0..4 {
+                sums[lane] += taps[lane] * values[lane];
+            }
+        }
+        *parts = sums;
+    }
+    for (average, [a, b, c, d]) in averages.iter_mut().zip(parts) {
+        *average = (a + b) + (c + d);
+    }
+}
+
+/// Subtracts from a column its projection on the orthonormal columns of `basis`, which comes in two parts:
+/// Gram–Schmidt, twice for rounding.
+pub(super) fn orthogonalise(column: &mut Signal, basis: [&[Signal]; 2]) {
     Arch::new().dispatch(Orthogonalise { column, basis });
 }
 
 struct Orthogonalise<'a> {
-    column: &'a mut [Complex],
-    basis: &'a [Vec<Complex>],
+    column: &'a mut Signal,
+    basis: [&'a [Signal]; 2],
 }
 
 impl WithSimd for Orthogonalise<'_> {
@@ -117,11 +238,12 @@ impl WithSimd for Orthogonalise<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         for _ in 0..2 {
-            for q in self.basis {
+            for q in self.basis.into_iter().flatten() {
                 let share = product(q, self.column);
-                for (r, q) in self.column.iter_mut().zip(q) {
-                    let part = times(share, *q);
-                    *r = (r.0 - part.0, r.1 - part.1);
+                let column = self.column.re.iter_mut().zip(&mut self.column.im);
+                for ((re, im), q) in column.zip(q.re.iter().zip(&q.im)) {
+                    let part = times(share, (*q.0, *q.1));
+                    (*re, *im) = (*re - part.0, *im - part.1);
                 }
             }
         }
@@ -129,13 +251,13 @@ impl WithSimd for Orthogonalise<'_> {
 }
 
 /// Σ ā b.
-pub(super) fn dot(a: &[Complex], b: &[Complex]) -> Complex {
+pub(super) fn dot(a: &Signal, b: &Signal) -> Complex {
     Arch::new().dispatch(Dot { a, b })
 }
 
 struct Dot<'a> {
-    a: &'a [Complex],
-    b: &'a [Complex],
+    a: &'a Signal,
+    b: &'a Signal,
 }
 
 impl WithSimd for Dot<'_> {
@@ -154,30 +276,27 @@ pub(super) fn unit(phase: f64) -> Complex {
 }
 
 #[inline(always)]
-fn product(a: &[Complex], b: &[Complex]) -> Complex {
-    sum(a, b, |a, b| (a.0 * b.0 + a.1 * b.1, a.0 * b.1 - a.1 * b.0))
-}
-
-#[inline(always)]
 fn times(a: Complex, b: Complex) -> Complex {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
-/// Sum over pairs in four partial sums, which do not wait for each other.
+/// Σ ā b in four partial sums.
 #[inline(always)]
-fn sum<A: Copy, B: Copy>(a: &[A], b: &[B], of: impl Fn(A, B) -> Complex) -> Complex {
-    let (a, b) = (a.as_chunks::<4>(), b.as_chunks::<4>());
-    let mut parts = [(0.0, 0.0); 4];
-    for (a, b) in a.0.iter().zip(b.0) {
-        for n in 0..4 {
-            let more = of(a[n], b[n]);
-            parts[n] = (parts[n].0 + more.0, parts[n].1 + more.1);
+fn product(a: &Signal, b: &Signal) -> Complex {
+    let numbers = [&a.re, &a.im, &b.re, &b.im].map(|numbers| numbers.as_chunks::<4>());
+    let [(a_re, a_re_rest), (a_im, a_im_rest), (b_re, b_re_rest), (b_im, b_im_rest)] = numbers;
+    let mut parts = [[0.0; 4]; 2];
+    for (((a_re, a_im), b_re), b_im) in a_re.iter().zip(a_im).zip(b_re).zip(b_im) {
+        for lane in 0..4 {
+            parts[0][lane] += a_re[lane] * b_re[lane] + a_im[lane] * b_im[lane];
+            parts[1][lane] += a_re[lane] * b_im[lane] - a_im[lane] * b_re[lane];
         }
     }
-    for ((a, b), part) in a.1.iter().zip(b.1).zip(&mut parts) {
-        let more = of(*a, *b);
-        *part = (part.0 + more.0, part.1 + more.1);
+    let rest = a_re_rest.iter().zip(a_im_rest).zip(b_re_rest).zip(b_im_rest);
+    for (lane, (((a_re, a_im), b_re), b_im)) in rest.enumerate() {
+        parts[0][lane] += a_re * b_re + a_im * b_im;
+        parts[1][lane] += a_re * b_im - a_im * b_re;
     }
-    let [a, b, c, d] = parts;
-    ((a.0 + b.0) + (c.0 + d.0), (a.1 + b.1) + (c.1 + d.1))
+    let [re, im] = parts.map(|[a, b, c, d]| (a + b) + (c + d));
+    (re, im)
 }

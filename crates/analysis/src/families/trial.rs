@@ -1,7 +1,7 @@
 //! How well a comb explains the channels of a record, at its predicted frequency and elsewhere.
 
-use super::comb::{BasebandComb, Columns, extend_basis, power, smoothed};
-use super::kernels::{Complex, dot};
+use super::comb::{BasebandComb, Columns, extension, power, smoothed};
+use super::kernels::{Signal, dot};
 use super::{Channel, LEAST_LEAD, RecordedMotion};
 
 /// Floor of the residual's share: a fit of 99 % is no better than one of 98 %, because the rest is the
@@ -24,6 +24,8 @@ const BESIDE: f64 = 5.0;
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
 /// Two of them in a BPFO.
 const DETUNED_STEP: f64 = 0.5;
+/// Offsets for which signals are read together: their tables lie near the processor.
+const AT_ONCE: usize = 8;
 /// Forces are fitted on rollers that carry at least this part of the largest mean load, the most loaded of
 /// them.
 const LOADED: f64 = 0.25;
@@ -41,8 +43,8 @@ pub(super) struct Channels {
 
 /// The channels in a band: one signal an acceleration, and the forces one behind the other.
 struct Signals {
-    accelerations: Vec<Vec<Complex>>,
-    forces: Vec<Complex>,
+    accelerations: Vec<Signal>,
+    forces: Signal,
 }
 
 /// A comb tried on the channels.
@@ -128,14 +130,17 @@ impl Channels {
         let fit = |centre_hz: f64| {
             let mut fit = Columns::default();
             for (comb, offset_hz) in in_fit {
-                extend(&mut fit, &comb.columns(*offset_hz, centre_hz));
+                let more = fit.extension(comb.columns(&[*offset_hz], centre_hz).remove(0));
+                fit.append(more);
             }
             fit
         };
-        let (signals, home) = (base.in_band(comb, 0.0), fit(comb.rate_hz));
+        let home = fit(comb.rate_hz);
+        let signals = base.in_band(comb, &[0.0]).remove(0);
         let scan: Vec<(f64, Vec<f64>)> = offsets(motion, !in_fit.is_empty())
-            .into_iter()
-            .map(|offset_hz| (offset_hz, signals.shares(&home, &comb.columns(offset_hz, comb.rate_hz))))
+            .chunks(AT_ONCE)
+            .flat_map(|offsets_hz| offsets_hz.iter().zip(comb.columns(offsets_hz, comb.rate_hz)))
+            .map(|(offset_hz, columns)| (*offset_hz, signals.shares(&home, &home.extension(columns))))
             .collect();
         let within =
             |hz: f64| move |n: &usize, scan: &[(f64, Vec<f64>)]| scan[*n].0.abs() <= hz * (1.0 + 1e-9);
@@ -149,14 +154,23 @@ impl Channels {
         let beside = (0..scan.len())
             .filter(|n| !in_fit.is_empty() && !within(CLOSE * resolution_hz)(n, &scan))
             .map(whole);
-        let detuned = DETUNED
+        // About its own centre a detuned comb has the columns that it has at home.
+        let own = comb.columns(&[0.0], comb.rate_hz).remove(0);
+        let alone = Columns::default().extension(own.clone());
+        let detuned: Vec<f64> = DETUNED
             .flat_map(|n| [-n, n])
             .map(|n| f64::from(n) * DETUNED_STEP * motion.bpfo_hz)
             .filter(|offset_hz| comb.baseband.fits(motion, comb.rate_hz + offset_hz))
-            .map(|offset_hz| {
-                let centre_hz = comb.rate_hz + offset_hz;
-                let columns = comb.columns(offset_hz, centre_hz);
-                score(&base.in_band(comb, offset_hz).shares(&fit(centre_hz), &columns))
+            .collect();
+        let detuned = detuned
+            .chunks(AT_ONCE)
+            .flat_map(|offsets_hz| offsets_hz.iter().zip(base.in_band(comb, offsets_hz)))
+            .map(|(offset_hz, signals)| {
+                if in_fit.is_empty() {
+                    return score(&signals.shares(&home, &alone));
+                }
+                let fit = fit(comb.rate_hz + offset_hz);
+                score(&signals.shares(&fit, &fit.extension(own.clone())))
             });
         let rival = beside.chain(detuned).fold(0.0, f64::max);
         let channels = scan[best].1.len();
@@ -189,41 +203,47 @@ impl Channels {
 
 /// The channels at the baseband of a comb.
 struct Base {
-    accelerations: Vec<Vec<Complex>>,
-    forces: Vec<Vec<Complex>>,
+    accelerations: Vec<Signal>,
+    forces: Vec<Signal>,
 }
 
 impl Base {
-    /// In the band `offset_hz` off the comb's own.
-    fn in_band(&self, comb: &BasebandComb, offset_hz: f64) -> Signals {
-        let length = self.accelerations.iter().chain(&self.forces).map(Vec::len).max().unwrap_or(0);
-        let mut shift = comb.baseband.shift(-offset_hz, length);
-        let mut band = |values: &Vec<Complex>| shift.apply(values);
-        Signals {
-            accelerations: self.accelerations.iter().map(&mut band).collect(),
-            forces: self.forces.iter().flat_map(&mut band).collect(),
-        }
+    /// In the bands each of `offsets_hz` off the comb's own.
+    fn in_band(&self, comb: &BasebandComb, offsets_hz: &[f64]) -> Vec<Signals> {
+        let all: Vec<&Signal> = self.accelerations.iter().chain(&self.forces).collect();
+        let hz: Vec<f64> = offsets_hz.iter().map(|offset_hz| -offset_hz).collect();
+        let signals = |averages: Vec<Signal>| {
+            let mut averages = averages.into_iter();
+            let accelerations = averages.by_ref().take(self.accelerations.len()).collect();
+            Signals { accelerations, forces: Signal::joined(averages) }
+        };
+        comb.baseband.bands(&all, &hz).into_iter().map(signals).collect()
     }
 }
 
 impl Signals {
-    /// Share of each acceleration, and of the forces as the last, that `columns` explain of the residual of
-    /// `fit`, 0 to 1.
-    fn shares(&self, fit: &Columns, columns: &Columns) -> Vec<f64> {
-        let mut basis = fit.clone();
-        extend(&mut basis, columns);
-        let share = |signal: &[Complex], fit: &[Vec<Complex>], basis: &[Vec<Complex>]| {
+    /// Share of each acceleration, and of the forces as the last, that the orthonormal columns of `more`
+    /// explain of the residual of those of `fit`, 0 to 1.
+    fn shares(&self, fit: &Columns, more: &Columns) -> Vec<f64> {
+        let share = |signal: &Signal, fit: &[Signal], more: &[Signal]| {
             let left = dot(signal, signal).0 - power(fit, signal);
-            if left > 0.0 { (power(&basis[fit.len()..], signal) / left).clamp(0.0, 1.0) } else { 0.0 }
+            if left > 0.0 { (power(more, signal) / left).clamp(0.0, 1.0) } else { 0.0 }
         };
-        let accelerations = self.accelerations.iter().map(|signal| share(signal, &fit.sums, &basis.sums));
-        accelerations.chain([share(&self.forces, &fit.own, &basis.own)]).collect()
+        let accelerations = self.accelerations.iter().map(|signal| share(signal, &fit.sums, &more.sums));
+        accelerations.chain([share(&self.forces, &fit.own, &more.own)]).collect()
     }
 }
 
-fn extend(basis: &mut Columns, columns: &Columns) {
-    extend_basis(&mut basis.sums, &columns.sums);
-    extend_basis(&mut basis.own, &columns.own);
+impl Columns {
+    /// The part of `columns` that is orthogonal to these, orthonormal.
+    fn extension(&self, columns: Self) -> Self {
+        Self { sums: extension(&self.sums, columns.sums), own: extension(&self.own, columns.own) }
+    }
+
+    fn append(&mut self, more: Self) {
+        self.sums.extend(more.sums);
+        self.own.extend(more.own);
+    }
 }
 
 /// Mean of −ln(1 − R² + [`LEAST_REST`]) over the accelerations plus that of the forces, which are the last.

@@ -6,7 +6,12 @@ pub(crate) mod ranks;
 use std::ops::ControlFlow;
 
 use stribeck_run::host::Host;
-use stribeck_scene::{run_dir::RunDir, run_info::RunInfo, scene::Scene, trace::Trace};
+use stribeck_scene::{
+    run_dir::RunDir,
+    run_info::RunInfo,
+    scene::{GradingScene, Scene},
+    trace::Trace,
+};
 use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 
@@ -20,6 +25,14 @@ pub(crate) fn coarse(duration_ms: f64) -> Scene {
     scene.contact.penalty_scale = 1.0;
     scene.contact.points_per_facet = 4;
     scene.solver.duration_ms = duration_ms;
+    scene
+}
+
+/// The same on facets of 1 mm where bodies roll on each other, and elements of up to 3 mm elsewhere.
+pub(crate) fn fine_where_it_rolls(duration_ms: f64) -> Scene {
+    let mut scene = coarse(duration_ms);
+    (scene.mesh.size_mm, scene.mesh.roller_facets) = (1.0, 112);
+    scene.mesh.grading = Some(GradingScene { coarse_mm: 3.0, fine_layers: 2 });
     scene
 }
 

@@ -10,7 +10,7 @@ mod motion;
 
 use std::{f64::consts::TAU, fs, ops::ControlFlow};
 
-use common::{host, run, trace};
+use common::{fine_where_it_rolls, host, run, trace};
 use stribeck_bearing::assembly::Assembly;
 use stribeck_reduced::{
     bearing::Bearing,
