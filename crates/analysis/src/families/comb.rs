@@ -95,10 +95,11 @@ impl BasebandComb {
         Some(comb)
     }
 
-    /// Its columns in the band about `centre_hz`, when it is detuned by each of `offsets_hz`.
-    pub(super) fn columns(&self, offsets_hz: &[f64], centre_hz: f64) -> Vec<Columns> {
+    /// Its columns for each pair of `detuned`: how far it is detuned, and the centre of the band [Hz].
+    pub(super) fn columns(&self, detuned: impl Iterator<Item = (f64, f64)>) -> Vec<Columns> {
         let signals: Vec<&Signal> = self.sums.iter().chain(self.own.iter().flatten()).collect();
-        let hz: Vec<f64> = offsets_hz.iter().map(|offset_hz| self.rate_hz + offset_hz - centre_hz).collect();
+        let shift = |(offset_hz, centre_hz): (f64, f64)| self.rate_hz + offset_hz - centre_hz;
+        let hz: Vec<f64> = detuned.map(shift).collect();
         let rollers = self.own.first().map_or(0, Vec::len);
         let columns = |averages: Vec<Signal>| {
             let mut averages = averages.into_iter();

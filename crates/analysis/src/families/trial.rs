@@ -127,19 +127,14 @@ impl Channels {
     ) -> Trial {
         let resolution_hz = motion.resolution_hz();
         let base = self.at_baseband(comb);
-        let fit = |centre_hz: f64| {
-            let mut fit = Columns::default();
-            for (comb, offset_hz) in in_fit {
-                let more = fit.extension(comb.columns(&[*offset_hz], centre_hz).remove(0));
-                fit.append(more);
-            }
-            fit
-        };
-        let home = fit(comb.rate_hz);
+        let home = fit(in_fit, &[comb.rate_hz]).remove(0);
         let signals = base.in_band(comb, &[0.0]).remove(0);
         let scan: Vec<(f64, Vec<f64>)> = offsets(motion, !in_fit.is_empty())
             .chunks(AT_ONCE)
-            .flat_map(|offsets_hz| offsets_hz.iter().zip(comb.columns(offsets_hz, comb.rate_hz)))
+            .flat_map(|offsets_hz| {
+                let columns = comb.columns(offsets_hz.iter().map(|offset_hz| (*offset_hz, comb.rate_hz)));
+                offsets_hz.iter().zip(columns)
+            })
             .map(|(offset_hz, columns)| (*offset_hz, signals.shares(&home, &home.extension(columns))))
             .collect();
         let within =
@@ -155,23 +150,21 @@ impl Channels {
             .filter(|n| !in_fit.is_empty() && !within(CLOSE * resolution_hz)(n, &scan))
             .map(whole);
         // About its own centre a detuned comb has the columns that it has at home.
-        let own = comb.columns(&[0.0], comb.rate_hz).remove(0);
+        let own = comb.columns([(0.0, comb.rate_hz)].into_iter()).remove(0);
         let alone = Columns::default().extension(own.clone());
         let detuned: Vec<f64> = DETUNED
             .flat_map(|n| [-n, n])
             .map(|n| f64::from(n) * DETUNED_STEP * motion.bpfo_hz)
             .filter(|offset_hz| comb.baseband.fits(motion, comb.rate_hz + offset_hz))
             .collect();
-        let detuned = detuned
-            .chunks(AT_ONCE)
-            .flat_map(|offsets_hz| offsets_hz.iter().zip(base.in_band(comb, offsets_hz)))
-            .map(|(offset_hz, signals)| {
-                if in_fit.is_empty() {
-                    return score(&signals.shares(&home, &alone));
-                }
-                let fit = fit(comb.rate_hz + offset_hz);
-                score(&signals.shares(&fit, &fit.extension(own.clone())))
-            });
+        let detuned = detuned.chunks(AT_ONCE).flat_map(|offsets_hz| {
+            let centres_hz: Vec<f64> = offsets_hz.iter().map(|offset_hz| comb.rate_hz + offset_hz).collect();
+            base.in_band(comb, offsets_hz).into_iter().zip(fit(in_fit, &centres_hz))
+        });
+        let detuned = detuned.map(|(signals, fit)| {
+            let more = if in_fit.is_empty() { &alone } else { &fit.extension(own.clone()) };
+            score(&signals.shares(&fit, more))
+        });
         let rival = beside.chain(detuned).fold(0.0, f64::max);
         let channels = scan[best].1.len();
         let squares = (0..channels).map(|channel| {
@@ -199,6 +192,19 @@ impl Channels {
             forces: self.forces.iter().map(of).collect(),
         }
     }
+}
+
+/// Orthonormal columns of combs with their offsets [Hz], in the bands about each of `centres_hz`.
+fn fit(combs: &[(&BasebandComb, f64)], centres_hz: &[f64]) -> Vec<Columns> {
+    let mut fits = vec![Columns::default(); centres_hz.len()];
+    for (comb, offset_hz) in combs {
+        let columns = comb.columns(centres_hz.iter().map(|centre_hz| (*offset_hz, *centre_hz)));
+        for (fit, columns) in fits.iter_mut().zip(columns) {
+            let more = fit.extension(columns);
+            fit.append(more);
+        }
+    }
+    fits
 }
 
 /// The channels at the baseband of a comb.
