@@ -300,3 +300,43 @@ fn product(a: &Signal, b: &Signal) -> Complex {
     let [re, im] = parts.map(|[a, b, c, d]| (a + b) + (c + d));
     (re, im)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Several shifts of several signals are what the definition of one is, whatever the filter's length
+    /// leaves over of four and the signals' of whole blocks.
+    #[test]
+    fn invariant_averages_taken_together_are_those_taken_alone() {
+        const INTERVAL_S: f64 = 1e-3;
+        for (length, samples) in [(32, 700), (33, 555), (35, 35), (6, 101), (4, 3)] {
+            let filter = LowPass::new(length, 4);
+            let value = |n: usize, k: usize| ((0.3 * n as f64 + k as f64).sin(), (0.07 * n as f64).cos());
+            let signals: Vec<Signal> = (0..3).map(|k| (0..samples).map(|n| value(n, k)).collect()).collect();
+            let hz = [0.0, 31.0, -7.5];
+            let together = filter.shifted(&signals.iter().collect::<Vec<_>>(), &hz, INTERVAL_S);
+            let taps: Vec<f64> = filter.taps.as_flattened()[..length].to_vec();
+            assert!((taps.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+            for (hz, together) in hz.iter().zip(&together) {
+                for (k, averages) in together.iter().enumerate() {
+                    let starts = (0..).map(|n| n * filter.step).take_while(|start| start + length <= samples);
+                    let plain = starts.map(|start| {
+                        let terms = taps.iter().enumerate().map(|(n, tap)| {
+                            let turn = unit(TAU * hz * INTERVAL_S * (start + n) as f64);
+                            let turned = times(turn, value(start + n, k));
+                            (tap * turned.0, tap * turned.1)
+                        });
+                        terms.fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1))
+                    });
+                    let plain: Vec<Complex> = plain.collect();
+                    assert_eq!(averages.len(), plain.len(), "{length} of {samples}");
+                    for (a, b) in averages.iter().zip(plain) {
+                        // Rounding of some hundred turns and sums.
+                        assert!((a.0 - b.0).hypot(a.1 - b.1) < 1e-12, "{length} of {samples}: {a:?} {b:?}");
+                    }
+                }
+            }
+        }
+    }
+}
