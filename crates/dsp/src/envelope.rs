@@ -228,31 +228,3 @@ impl fmt::Display for PeriodCount {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn invariant_processing_moves_no_buffer() {
-        let mut plan = EnvelopeSpectrum::new(1000.0, 997, Some((100.0, 400.0))).unwrap();
-        let mut out = plan.blank();
-        let addresses = |plan: &EnvelopeSpectrum, out: &Spectrum| {
-            let Envelope { record, data, scratch: [forward, inverse], .. } = &plan.envelope;
-            [
-                (record.as_ptr() as usize, record.capacity()),
-                (data.as_ptr() as usize, data.capacity()),
-                (forward.as_ptr() as usize, forward.capacity()),
-                (inverse.as_ptr() as usize, inverse.capacity()),
-                (plan.squared.as_ptr() as usize, plan.squared.capacity()),
-                (out.values.as_ptr() as usize, out.values.capacity()),
-            ]
-        };
-        let before = addresses(&plan, &out);
-        let signal: Vec<f64> = (0..997).map(|n| ((n * 7) % 31) as f64).collect();
-        for _ in 0..3 {
-            plan.process(&signal, &mut out).unwrap();
-            assert_eq!(addresses(&plan, &out), before);
-        }
-    }
-}

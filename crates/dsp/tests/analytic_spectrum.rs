@@ -246,3 +246,16 @@ fn invariant_estimates_do_not_depend_on_what_was_estimated_before() {
         assert_eq!(out.values(), fresh.values());
     }
 }
+
+#[test]
+fn analytic_the_velocity_of_a_sine() {
+    // a sin ωt moves with a/ω (THEORY §7.10).
+    let signal: Vec<f64> = (0..20_000).map(|n| 5.0 * (TAU * 80.0 * f64::from(n) / 1e4).sin()).collect();
+    let spectrum = Welch::for_grid(1e4, signal.len(), 1.0).unwrap().estimate(&signal).unwrap();
+    let found = spectrum.velocity_rms(10.0, 1000.0).unwrap();
+    let expected = 5.0 / (TAU * 80.0) / 2.0_f64.sqrt();
+    // The line's width of 1 Hz at 80 Hz, squared.
+    assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+    assert!(spectrum.velocity_rms(0.0, 1000.0).is_err());
+    assert!(spectrum.velocity_rms(10.0, 9000.0).is_err());
+}

@@ -1,0 +1,20 @@
+//! Methods of this crate, a module each: signals that are known, and what is found in them.
+
+mod angle;
+mod averages;
+mod band_envelopes;
+mod comb;
+mod cyclic;
+mod deconvolution;
+mod envelope;
+mod infogram;
+mod path;
+mod prewhitened;
+mod resample;
+mod ridge;
+mod sensor;
+mod separation;
+mod signature;
+mod sound;
+mod spacing;
+mod welch;
