@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-use stribeck_formats::{Channel, Recording, csv, mat5, npz, parquet, uff58, wav};
+use stribeck_formats::parquet::{Column, Values, Writer};
+use stribeck_formats::{Channel, Error, Recording, csv, mat5, npz, parquet, uff58, wav};
 use stribeck_testing::{Noise, Scratch, peer::python_with};
 
 const RATE_HZ: f64 = 12_800.0;
@@ -54,6 +55,37 @@ fn roundtrip_every_format_keeps_samples_names_and_rate() {
             let near = ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= tolerance * b.abs());
             assert!(near, "{extension} {name}");
         }
+    }
+}
+
+#[test]
+fn roundtrip_numbers_and_gaps() {
+    let desk = Scratch::create("formats-roundtrip-parquet");
+    let path = desk.join("a.parquet");
+    let columns = [
+        Column { name: "run".into(), values: Values::Text(vec![Some("a".into()), None, Some("b".into())]) },
+        Column { name: "load_n".into(), values: Values::Number(vec![Some(1.5), None, Some(-0.0)]) },
+        Column { name: "count".into(), values: Values::Count(vec![Some(3), Some(4), None]) },
+        Column { name: "done".into(), values: Values::Flag(vec![Some(true), Some(false), None]) },
+    ];
+    let mut writer = Writer::create(&path, &columns, &[("rate_hz".into(), "100".into())]).unwrap();
+    writer.add(&columns).unwrap();
+    writer.add(&columns).unwrap();
+    writer.finish().unwrap();
+    let mut broken = Writer::create(&desk.join("b.parquet"), &columns, &[]).unwrap();
+    assert!(matches!(broken.add(&columns[..1]), Err(Error::DoesNotFit { .. })));
+    let back = Recording::open(&path).unwrap();
+    assert_eq!(back.notes.len(), 1, "{:?}", back.notes);
+    let load = back.channel("load_n").unwrap();
+    let values = load.read().unwrap();
+    assert_eq!((values.len(), load.rate_hz), (6, Some(100.0)));
+    assert!(values[0] == 1.5 && values[1].is_nan() && values[5].to_bits() == (-0.0_f64).to_bits());
+    assert_eq!(back.channel("count").unwrap().read().unwrap()[..2], [3.0, 4.0]);
+    // Damaged ones get an answer.
+    let bytes = std::fs::read(&path).unwrap();
+    for cut in [4, bytes.len() / 2, bytes.len() - 3] {
+        std::fs::write(&path, &bytes[..cut]).unwrap();
+        assert!(matches!(Recording::open(&path), Err(Error::Damaged { .. })), "{cut}");
     }
 }
 

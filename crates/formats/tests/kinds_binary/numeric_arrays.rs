@@ -1,9 +1,31 @@
-//! Arrays of MATLAB 4 and 5 and of NumPy: their shapes, and both byte orders.
+//! Numbers of every kind in both byte orders; arrays of MATLAB 4 and 5 and of NumPy: their shapes, and both
+//! byte orders.
 
-use stribeck_formats::Recording;
+use stribeck_formats::{Kind, Number, Recording};
 use stribeck_testing::Scratch;
 
 use crate::{COUNT, RATE_HZ, holds, notes, opened, signal};
+
+#[test]
+fn roundtrip_every_kind_in_both_byte_orders() {
+    let cases: [(Kind, Vec<u8>, f64); 10] = [
+        (Kind::F16, vec![0x00, 0xc1], -2.5),
+        (Kind::F16, vec![0x01, 0x00], 5.960_464_477_539_063e-8),
+        (Kind::I8, (-5_i8).to_le_bytes().to_vec(), -5.0),
+        (Kind::U16, 65_000_u16.to_le_bytes().to_vec(), 65_000.0),
+        (Kind::I16, (-300_i16).to_le_bytes().to_vec(), -300.0),
+        (Kind::I24, vec![0xfe, 0xff, 0xff], -2.0),
+        (Kind::I32, (-70_000_i32).to_le_bytes().to_vec(), -70_000.0),
+        (Kind::U32, u32::MAX.to_le_bytes().to_vec(), 4_294_967_295.0),
+        (Kind::F32, 1.5_f32.to_le_bytes().to_vec(), 1.5),
+        (Kind::F64, (-0.1_f64).to_le_bytes().to_vec(), -0.1),
+    ];
+    for (kind, bytes, value) in cases {
+        assert_eq!(Number::little(kind).decode(&bytes), value, "{kind:?}");
+        let turned: Vec<u8> = bytes.iter().rev().copied().collect();
+        assert_eq!(Number { kind, big_endian: true }.decode(&turned), value, "{kind:?}");
+    }
+}
 
 /// An element of a MATLAB 5 file.
 fn mat5_element(kind: u32, data: &[u8]) -> Vec<u8> {
