@@ -266,9 +266,9 @@ pub(crate) fn unreadable_values<S: AsRef<str>>(
 
 /// The error on a field name that no scene has; `None` for one that some scene has.
 pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
-    let schema = schema::Schema::new();
+    let schema = schema::Schema::get();
     let known = schema.default_of(path).is_some();
-    let answer = || overrides::known(path, path, &schema, "", &Outline::default()).err();
+    let answer = || overrides::known(path, path, schema, "", &Outline::default()).err();
     if known { None } else { answer().map(|problem| *problem) }
 }
 

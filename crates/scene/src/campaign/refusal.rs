@@ -68,7 +68,7 @@ impl File<'_> {
     /// A value of a range that its field cannot have: one that it can have is no range.
     fn range(&self, problem: Problem, axis: &str) -> Problem {
         let counts =
-            matches!(Schema::new().kind(&problem.field), FieldKind::Count | FieldKind::OptionalCount);
+            matches!(Schema::get().kind(&problem.field), FieldKind::Count | FieldKind::OptionalCount);
         let from = self.outline.get(&format!("{axis}.from")).filter(|_| counts);
         let first = from.and_then(|from| self.text[from.value.clone()].parse::<f64>().ok()).map(f64::ceil);
         let mut problem = problem.of_value_at(self.place(axis));

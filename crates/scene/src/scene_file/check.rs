@@ -15,8 +15,8 @@ pub(crate) fn check(scene: &Scene, origin: &Origin<'_>) -> Result<(), SceneError
     if found.is_empty() {
         return Ok(());
     }
-    let schema = Schema::new();
-    let problem = |finding: &Finding| origin.problem(tried(finding, &found, scene, &schema));
+    let schema = Schema::get();
+    let problem = |finding: &Finding| origin.problem(tried(finding, &found, scene, schema));
     Err(SceneError::new(found.iter().map(problem).collect()))
 }
 

@@ -19,11 +19,11 @@ pub(crate) fn apply<S: AsRef<str>>(
     mut scene: Scene,
     arguments: &[S],
 ) -> Result<(Scene, Vec<Override>), SceneError> {
-    let schema = Schema::new();
+    let schema = Schema::get();
     let mut set = Vec::with_capacity(arguments.len());
     let given = named::written_by(arguments);
     for argument in arguments {
-        let (next, by) = apply_one(&scene, argument.as_ref(), &schema, &given)?;
+        let (next, by) = apply_one(&scene, argument.as_ref(), schema, &given)?;
         scene = next;
         set.push(by);
     }
@@ -34,13 +34,13 @@ pub(crate) fn apply<S: AsRef<str>>(
 /// another type, names of no bearing. The others are applied as far as they go, so each value meets the scene
 /// that it is written for. Ranges and relations to other fields are not checked.
 pub(crate) fn unreadable_values<S: AsRef<str>>(mut scene: Scene, arguments: &[S]) -> Vec<(usize, Problem)> {
-    let schema = Schema::new();
+    let schema = Schema::get();
     let given = named::written_by(arguments);
     let mut unreadable = Vec::new();
     for (index, argument) in arguments.iter().map(AsRef::as_ref).enumerate() {
-        match apply_one(&scene, argument, &schema, &given) {
+        match apply_one(&scene, argument, schema, &given) {
             Ok((next, _)) => scene = next,
-            Err(problem) if is_of_value(&scene, argument, &schema) => unreadable.push((index, *problem)),
+            Err(problem) if is_of_value(&scene, argument, schema) => unreadable.push((index, *problem)),
             Err(_) => {}
         }
     }

@@ -5,7 +5,7 @@ use super::schema::Schema;
 
 /// Defaults and ranges of all fields.
 pub struct FieldReference {
-    schema: Schema,
+    schema: &'static Schema,
 }
 
 /// Default and range of a field.
@@ -32,7 +32,7 @@ impl Default for FieldReference {
 impl FieldReference {
     /// From the default scene.
     pub fn new() -> Self {
-        Self { schema: Schema::new() }
+        Self { schema: Schema::get() }
     }
 
     /// The field at a dotted path, `mesh.size_mm`; of lists the first item stands for all.

@@ -1,5 +1,7 @@
 //! Every field of a scene, with its default and the kind of its value.
 
+use std::sync::LazyLock;
+
 use super::limits::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::outline::Outline;
 use crate::deviation::DeviationScene;
@@ -50,7 +52,13 @@ impl Complete {
 }
 
 impl Schema {
-    pub(crate) fn new() -> Self {
+    /// The same for all scenes: put together once, when it is asked for first.
+    pub(crate) fn get() -> &'static Self {
+        static SCHEMA: LazyLock<Schema> = LazyLock::new(Schema::new);
+        &SCHEMA
+    }
+
+    fn new() -> Self {
         // A word by default, but the fields of the other variants must be known.
         let mut scene = Scene { model: ModelScene::Reduced(ReducedScene::default()), ..Scene::default() };
         // Absent by default, but its fields must be known.

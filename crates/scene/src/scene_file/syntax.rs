@@ -68,7 +68,7 @@ const HELD: &str = "text";
 /// Words for one error of RON.
 fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
     use ron::Error as E;
-    let schema = Schema::new();
+    let schema = Schema::get();
     let outline = Outline::of(text);
     let start = offset(text, error.span.start.line, error.span.start.col);
     let end = offset(text, error.span.end.line, error.span.end.col).max(start);
@@ -136,12 +136,12 @@ fn fault(text: &str, path: &str, error: &SpannedError) -> Fault {
             fault.suggestion = "is the file cut off? Every `(` needs its `)`".to_owned();
         }
         E::ExpectedNamedStructLike(_) | E::ExpectedStructLike => {
-            value_fault(text, path, &outline, &schema, &mut fault);
+            value_fault(text, path, &outline, schema, &mut fault);
             if fault.allowed.is_empty() {
                 fault.message = "a group `( … )` is expected here".to_owned();
             }
         }
-        _ => value_fault(text, path, &outline, &schema, &mut fault),
+        _ => value_fault(text, path, &outline, schema, &mut fault),
     }
     fault
 }

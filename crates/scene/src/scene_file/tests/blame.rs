@@ -131,7 +131,7 @@ fn issue_no_number_in_a_message_is_longer_than_a_word() {
     let longest =
         |text: &str| text.split([' ', '`', ',']).map(|word| word.chars().count()).max().unwrap_or(0);
     for value in ["1e308", "-1e308", "5e-324", "1e-310", "123456789.123456789", "NaN", "inf", "-inf", "0"] {
-        for path in super::super::schema::Schema::new().paths() {
+        for path in super::super::schema::Schema::get().paths() {
             let Err(error) = Scene::default().with_overrides(&[format!("{path}={value}")]) else { continue };
             for problem in error.problems() {
                 for text in [&problem.message, &problem.allowed, &problem.suggestion] {
@@ -159,7 +159,7 @@ proptest! {
     fn invariant_what_is_proposed_removes_the_problem_and_makes_no_new_one(
         first in 0_usize..60, x in number(), second in 0_usize..60, y in number(), as_is in any::<bool>(),
     ) {
-        let schema = super::super::schema::Schema::new();
+        let schema = super::super::schema::Schema::get();
         let fields: Vec<&str> = schema
             .paths()
             .into_iter()
