@@ -432,6 +432,3 @@ impl FamilyFinding {
         names.join(" or ")
     }
 }
-
-#[cfg(test)]
-mod tests;

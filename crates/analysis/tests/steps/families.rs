@@ -1,8 +1,12 @@
+//! Combs of facet lines in made records of the paper's bearing.
+
 use std::f64::consts::TAU;
 
+use stribeck_analysis::families::{
+    Candidate, Channel, FamilyFinding, LEAST_LEAD, MOST_PERIODS, RecordedMotion, RollerTrack, Source,
+    identify,
+};
 use stribeck_testing::Noise;
-
-use super::*;
 
 /// The paper's bearing with 24 rollers, cage and spin relative to it [Hz].
 const ROLLERS: usize = 24;
@@ -32,6 +36,18 @@ struct Sound {
 impl Sound {
     fn of(source: Source) -> Self {
         Self { source, detuned_hz: 0.0, gain_g: 10.0 }
+    }
+}
+
+/// Phase of a roller's facets at its contacts at sample `n` [rad]; the outer ring stands still. THEORY §7.7,
+/// equation (7.8).
+fn phase(source: Source, motion: &RecordedMotion, roller: &RollerTrack, n: usize) -> f64 {
+    let (orbit, spin) = (roller.orbit[n], roller.spin[n]);
+    match source {
+        Source::RotatedVertices(count) => count * (spin - (orbit - roller.place)),
+        Source::TranslatedVertices(count) => count * (spin - orbit),
+        Source::OuterNodes(count) => -count * orbit,
+        Source::InnerNodes(count) => count * (orbit - motion.shaft_rad_s * n as f64 * motion.interval_s),
     }
 }
 
@@ -67,12 +83,12 @@ fn sounding(
     noise_g: f64,
     seed: u64,
 ) -> (RecordedMotion, Vec<Channel>) {
-    let samples = motion.samples();
+    let samples = motion.rollers[0].orbit.len();
     let mut noise = Noise::new(seed);
     let heard = |roller: &RollerTrack, n: usize, of_place: &dyn Fn(f64) -> (f64, f64)| -> f64 {
         let (gain, lag) = of_place(roller.orbit[n].rem_euclid(TAU));
         let one = |s: &Sound| {
-            let phase = s.source.phase(&motion, roller, n) + TAU * s.detuned_hz * n as f64 * INTERVAL_S;
+            let phase = phase(s.source, &motion, roller, n) + TAU * s.detuned_hz * n as f64 * INTERVAL_S;
             s.gain_g * gain * roller.load_n[n] / 12e3 * (phase + lag).cos()
         };
         sounds.iter().map(one).sum()
@@ -105,6 +121,17 @@ fn sounding(
     (motion, accelerations)
 }
 
+/// The motion from sample `from` on.
+fn late(motion: &RecordedMotion, from: usize) -> RecordedMotion {
+    let track = |roller: &RollerTrack| RollerTrack {
+        place: roller.place,
+        orbit: roller.orbit[from..].to_vec(),
+        spin: roller.spin[from..].to_vec(),
+        load_n: roller.load_n[from..].to_vec(),
+    };
+    RecordedMotion { rollers: motion.rollers.iter().map(track).collect(), ..motion.clone() }
+}
+
 fn judged(
     candidates: &[(&str, Source)],
     (motion, accelerations): &(RecordedMotion, Vec<Channel>),
@@ -126,12 +153,14 @@ fn example_of_a_long_record_the_last_part_is_judged() {
     let families = judged(&CANDIDATES, &record);
     assert_eq!(found(&families), [CANDIDATES[0].0], "{families:#?}");
     // Copies that are turned with the pattern have a line at the rate itself, whatever the place of each
-    // roller was when the part began.
-    let from = record.0.too_early().unwrap();
+    // roller was when the part began. That part by itself has the same line, and another one once it is a
+    // sample shorter.
+    let from = samples - (MOST_PERIODS / periods(1)) as usize;
     assert!((periods(samples - from) - MOST_PERIODS).abs() < 0.1);
-    let late = (record.0.from(from), record.1.clone());
-    assert_eq!(late.0.samples(), samples - from);
-    assert_eq!(late.0.too_early(), None);
+    let line_hz = |motion: RecordedMotion| judged(&CANDIDATES[..1], &(motion, Vec::new()))[0].predicted_hz;
+    let whole = line_hz(record.0.clone());
+    assert!(whole.is_some() && line_hz(late(&record.0, from)) == whole, "{whole:?}");
+    assert_ne!(line_hz(late(&record.0, from + 1)), whole);
 }
 
 #[test]
@@ -188,8 +217,9 @@ fn example_the_carrier_is_a_line_of_the_comb() {
     // facet out of step.
     let motion = silent(SAMPLES, 0.0);
     let bpfo_hz = motion.bpfo_hz;
-    let line_hz = |source: Source| BasebandComb::of(&motion, source, &[]).unwrap().line_hz;
-    let resolution_hz = motion.resolution_hz();
+    let motion = (motion, Vec::new());
+    let line_hz = |source: Source| judged(&[("", source)], &motion)[0].predicted_hz.unwrap();
+    let resolution_hz = 1.0 / (SAMPLES as f64 * INTERVAL_S);
     for (source, expected_hz) in [
         (Source::RotatedVertices(112.0), 112.0 * SPIN_HZ),
         (Source::TranslatedVertices(112.0), 112.0 * SPIN_HZ + bpfo_hz / 3.0),

@@ -1,0 +1,20 @@
+//! Steps of an analysis, a module each: signals and scenes that are known, and what is found in them.
+
+mod alarm;
+mod comparison;
+mod duty;
+mod ensemble;
+mod enveloping;
+mod events;
+mod families;
+mod filtering;
+mod levels;
+mod loudest;
+mod noise;
+mod paper_figures;
+mod prediction;
+mod ridge;
+mod rolling;
+mod scenes_apart;
+mod tones;
+mod varying;
