@@ -1,6 +1,7 @@
 //! A run of closed forms through the whole report: every number must come back, and every figure must be
-//! there.
+//! there, and be drawn.
 
+mod drawings;
 mod numbers;
 mod page;
 mod paper;
