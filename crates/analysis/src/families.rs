@@ -28,6 +28,8 @@
 mod comb;
 mod kernels;
 mod lines;
+mod scan;
+mod shares;
 mod trial;
 
 use serde::{Deserialize, Serialize};

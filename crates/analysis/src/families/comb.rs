@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::kernels::{Complex, LowPass, Signal, dot, orthogonalise, turned, unit};
+use super::kernels::{Complex, LowPass, Signal, dot, orthogonalise, products, turned, unit};
 use super::{RecordedMotion, SIDEBANDS, Source};
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
@@ -16,7 +16,11 @@ const OVERLAP: usize = 4;
 const FINE: usize = 8 * OVERLAP;
 /// Least norm of a column, over that of the longest, after orthogonalisation: shorter ones are dropped as
 /// dependent.
-const INDEPENDENT: f64 = 1e-6;
+pub(super) const INDEPENDENT: f64 = 1e-6;
+/// Shifts for which signals are read together: their tables lie near the processor.
+const AT_ONCE: usize = 8;
+/// Averages of which inner products are added up: they change with the offset as little as one average does.
+const BLOCK: usize = 8;
 /// Steps in a resolution in which the carrier is sought.
 const CARRIER_STEPS: f64 = 20.0;
 
@@ -108,6 +112,11 @@ impl BasebandComb {
             Columns { sums, own }
         };
         self.baseband.bands(&signals, &hz).into_iter().map(columns).collect()
+    }
+
+    /// Blocks of its columns.
+    pub(super) fn blocks(&self) -> Blocks {
+        self.baseband.blocks(self.sums[0].len())
     }
 
     /// Where lines BPFO apart explain the sums best, within half a BPFO of the mean rate [Hz from it].
@@ -203,7 +212,46 @@ impl Baseband {
 
     /// Signals of the baseband in the band about its centre, after a shift up by each of `hz`.
     pub(super) fn bands(&self, signals: &[&Signal], hz: &[f64]) -> Vec<Vec<Signal>> {
-        self.filter.shifted(signals, hz, self.interval_s)
+        hz.chunks(AT_ONCE).flat_map(|hz| self.filter.shifted(signals, hz, self.interval_s)).collect()
+    }
+
+    /// Blocks of the averages over `samples` of the baseband.
+    fn blocks(&self, samples: usize) -> Blocks {
+        let filter_s = (self.filter.length() - 1) as f64 * self.interval_s;
+        let block_s = (BLOCK - 1) as f64 * self.filter.step() as f64 * self.interval_s;
+        Blocks {
+            averages: self.filter.count(samples),
+            interval_s: (BLOCK * self.filter.step()) as f64 * self.interval_s,
+            middle_s: 0.5 * (filter_s + block_s),
+            reach_s: 0.5 * filter_s + 0.5 * block_s.max(filter_s),
+        }
+    }
+}
+
+/// Blocks of [`BLOCK`] averages of a band.
+pub(super) struct Blocks {
+    averages: usize,
+    /// From one to the next [s].
+    interval_s: f64,
+    /// Middle of the first, from the beginning [s].
+    middle_s: f64,
+    /// How far a sample in an average lies from the middle of the block, or of another average there [s].
+    pub(super) reach_s: f64,
+}
+
+impl Blocks {
+    pub(super) fn count(&self) -> usize {
+        self.averages.div_ceil(BLOCK)
+    }
+
+    /// Σ ā b over each block; over signals that lie one behind the other, too.
+    pub(super) fn sums(&self, a: &Signal, b: &Signal) -> Signal {
+        products(a, b, self.averages, BLOCK)
+    }
+
+    /// One value a block, times exp 2πi f t.
+    pub(super) fn turned(&self, values: Signal, hz: f64) -> Signal {
+        turned(values, hz, self.interval_s).times(unit(TAU * hz * self.middle_s))
     }
 }
 

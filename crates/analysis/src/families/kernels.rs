@@ -46,6 +46,11 @@ impl Signal {
         Self { re: scaled(&self.re), im: scaled(&self.im) }
     }
 
+    /// Times a complex number.
+    pub(super) fn times(&self, by: Complex) -> Self {
+        self.iter().map(|value| times(by, value)).collect()
+    }
+
     /// Adds `more` value by value.
     pub(super) fn add(&mut self, more: &Self) {
         for (sum, more) in [(&mut self.re, &more.re), (&mut self.im, &more.im)] {
@@ -134,13 +139,18 @@ impl LowPass {
         self.step
     }
 
+    /// Averages of so many samples.
+    pub(super) fn count(&self, samples: usize) -> usize {
+        (samples + self.step).saturating_sub(self.length) / self.step
+    }
+
     /// Averages of each signal after a shift up by each of `hz`, all of equal length and with samples
     /// `interval_s` apart. Signals are read once for all shifts.
     pub(super) fn shifted(&self, signals: &[&Signal], hz: &[f64], interval_s: f64) -> Vec<Vec<Signal>> {
         let samples = signals.first().map_or(0, |signal| signal.len());
         let turns = |hz: &f64| turned(Signal::constant((1.0, 0.0), samples), *hz, interval_s);
         let turns: Vec<Signal> = hz.iter().map(turns).collect();
-        let count = (samples + self.step).saturating_sub(self.length) / self.step;
+        let count = self.count(samples);
         let mut averages = vec![vec![Signal::constant((0.0, 0.0), count); signals.len()]; hz.len()];
         Arch::new().dispatch(Average { filter: self, signals, turns: &turns, averages: &mut averages });
         averages
@@ -269,6 +279,105 @@ impl WithSimd for Dot<'_> {
     }
 }
 
+/// Σ ā b over blocks of `block` values, and over signals of `length` values one behind the other.
+pub(super) fn products(a: &Signal, b: &Signal, length: usize, block: usize) -> Signal {
+    Arch::new().dispatch(Products { a, b, length, block })
+}
+
+struct Products<'a> {
+    a: &'a Signal,
+    b: &'a Signal,
+    length: usize,
+    block: usize,
+}
+
+impl WithSimd for Products<'_> {
+    type Output = Signal;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Signal {
+        let Self { a, b, length, block } = self;
+        let mut sums = Signal::constant((0.0, 0.0), length.div_ceil(block));
+        for first in (0..a.len()).step_by(length.max(1)) {
+            let ([a_re, a_im], [b_re, b_im]) = (a.part(first..first + length), b.part(first..first + length));
+            let blocks = a_re.chunks(block).zip(a_im.chunks(block));
+            let blocks = blocks.zip(b_re.chunks(block).zip(b_im.chunks(block)));
+            for (n, ((a_re, a_im), (b_re, b_im))) in blocks.enumerate() {
+                let (re, im) = sum_of_products([a_re, a_im, b_re, b_im]);
+                (sums.re[n], sums.im[n]) = (sums.re[n] + re, sums.im[n] + im);
+            }
+        }
+        sums
+    }
+}
+
+/// Signals at some nodes, laid out for weighted sums of them: blocks of values, of each node in turn, real
+/// and imaginary parts.
+pub(super) struct Interpolated {
+    blocks: Vec<[[f64; BLOCK]; 2]>,
+    nodes: usize,
+}
+
+impl Interpolated {
+    /// Of signals of one length, one a node.
+    pub(super) fn of(signals: &[Signal]) -> Self {
+        let length = signals.first().map_or(0, Signal::len);
+        let block = |values: &[f64], from: usize| {
+            let mut block = [0.0; BLOCK];
+            let values = &values[from..length.min(from + BLOCK)];
+            block[..values.len()].copy_from_slice(values);
+            block
+        };
+        let blocks = (0..length).step_by(BLOCK);
+        let blocks =
+            blocks.flat_map(|from| signals.iter().map(move |s| [block(&s.re, from), block(&s.im, from)]));
+        Self { blocks: blocks.collect(), nodes: signals.len() }
+    }
+
+    /// Σ turn · (signals, interpolated by their weights), for each of `turns` and its weights.
+    pub(super) fn sums(&self, turns: &[Signal], weights: &[Vec<f64>]) -> Vec<Complex> {
+        Arch::new().dispatch(InterpolatedSums { products: self, turns, weights })
+    }
+}
+
+struct InterpolatedSums<'a> {
+    products: &'a Interpolated,
+    turns: &'a [Signal],
+    weights: &'a [Vec<f64>],
+}
+
+impl WithSimd for InterpolatedSums<'_> {
+    type Output = Vec<Complex>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Vec<Complex> {
+        let Self { products: Interpolated { blocks, nodes }, turns, weights } = self;
+        let mut all = Vec::with_capacity(turns.len());
+        for (turns, weights) in turns.iter().zip(weights) {
+            let mut sums = [[0.0; BLOCK]; 2];
+            let turns = turns.re.chunks(BLOCK).zip(turns.im.chunks(BLOCK));
+            for (block, (turn_re, turn_im)) in blocks.chunks_exact(*nodes).zip(turns) {
+                let mut values = [[0.0; BLOCK]; 2];
+                for (node, weight) in block.iter().zip(weights) {
+                    for part in 0..2 {
+                        for lane in 0..BLOCK {
+                            values[part][lane] += weight * node[part][lane];
+                        }
+                    }
+                }
+                for (lane, turn) in turn_re.iter().zip(turn_im).enumerate() {
+                    let product = times((*turn.0, *turn.1), (values[0][lane], values[1][lane]));
+                    sums[0][lane] += product.0;
+                    sums[1][lane] += product.1;
+                }
+            }
+            let [re, im] = sums.map(|sums| sums.iter().sum());
+            all.push((re, im));
+        }
+        all
+    }
+}
+
 /// e^{iφ}.
 pub(super) fn unit(phase: f64) -> Complex {
     let (sin, cos) = phase.sin_cos();
@@ -276,14 +385,19 @@ pub(super) fn unit(phase: f64) -> Complex {
 }
 
 #[inline(always)]
-fn times(a: Complex, b: Complex) -> Complex {
+pub(super) fn times(a: Complex, b: Complex) -> Complex {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
 /// Σ ā b in four partial sums.
 #[inline(always)]
 fn product(a: &Signal, b: &Signal) -> Complex {
-    let numbers = [&a.re, &a.im, &b.re, &b.im].map(|numbers| numbers.as_chunks::<4>());
+    sum_of_products([&a.re, &a.im, &b.re, &b.im])
+}
+
+#[inline(always)]
+fn sum_of_products(parts: [&[f64]; 4]) -> Complex {
+    let numbers = parts.map(|numbers| numbers.as_chunks::<4>());
     let [(a_re, a_re_rest), (a_im, a_im_rest), (b_re, b_re_rest), (b_im, b_im_rest)] = numbers;
     let mut parts = [[0.0; 4]; 2];
     for (((a_re, a_im), b_re), b_im) in a_re.iter().zip(a_im).zip(b_re).zip(b_im) {

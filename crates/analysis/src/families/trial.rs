@@ -1,7 +1,8 @@
 //! How well a comb explains the channels of a record, at its predicted frequency and elsewhere.
 
-use super::comb::{BasebandComb, Columns, extension, power, smoothed};
-use super::kernels::{Signal, dot};
+use super::comb::{BasebandComb, Columns, smoothed};
+use super::kernels::Signal;
+use super::shares::Signals;
 use super::{Channel, LEAST_LEAD, RecordedMotion};
 
 /// Floor of the residual's share: a fit of 99 % is no better than one of 98 %, because the rest is the
@@ -24,7 +25,7 @@ const BESIDE: f64 = 5.0;
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
 /// Two of them in a BPFO.
 const DETUNED_STEP: f64 = 0.5;
-/// Offsets for which signals are read together: their tables lie near the processor.
+/// Detuned combs that are tried together: what is fitted in their bands is in memory at once.
 const AT_ONCE: usize = 8;
 /// Forces are fitted on rollers that carry at least this part of the largest mean load, the most loaded of
 /// them.
@@ -39,12 +40,6 @@ pub(super) struct Channels {
     /// Forces on rollers, which are one channel: the effect of facets at a place does not depend on the
     /// roller.
     forces: Vec<Vec<f64>>,
-}
-
-/// The channels in a band: one signal an acceleration, and the forces one behind the other.
-struct Signals {
-    accelerations: Vec<Signal>,
-    forces: Signal,
 }
 
 /// A comb tried on the channels.
@@ -129,14 +124,9 @@ impl Channels {
         let base = self.at_baseband(comb);
         let home = fit(in_fit, &[comb.rate_hz]).remove(0);
         let signals = base.in_band(comb, &[0.0]).remove(0);
-        let scan: Vec<(f64, Vec<f64>)> = offsets(motion, !in_fit.is_empty())
-            .chunks(AT_ONCE)
-            .flat_map(|offsets_hz| {
-                let columns = comb.columns(offsets_hz.iter().map(|offset_hz| (*offset_hz, comb.rate_hz)));
-                offsets_hz.iter().zip(columns)
-            })
-            .map(|(offset_hz, columns)| (*offset_hz, signals.shares(&home, &home.extension(columns))))
-            .collect();
+        let offsets_hz = offsets(motion, !in_fit.is_empty());
+        let shares = signals.scanned(comb, &home, &offsets_hz);
+        let scan: Vec<(f64, Vec<f64>)> = offsets_hz.into_iter().zip(shares).collect();
         let within =
             |hz: f64| move |n: &usize, scan: &[(f64, Vec<f64>)]| scan[*n].0.abs() <= hz * (1.0 + 1e-9);
         let best_of = |reach_hz: f64, score: &dyn Fn(usize) -> f64| {
@@ -224,31 +214,6 @@ impl Base {
             Signals { accelerations, forces: Signal::joined(averages) }
         };
         comb.baseband.bands(&all, &hz).into_iter().map(signals).collect()
-    }
-}
-
-impl Signals {
-    /// Share of each acceleration, and of the forces as the last, that the orthonormal columns of `more`
-    /// explain of the residual of those of `fit`, 0 to 1.
-    fn shares(&self, fit: &Columns, more: &Columns) -> Vec<f64> {
-        let share = |signal: &Signal, fit: &[Signal], more: &[Signal]| {
-            let left = dot(signal, signal).0 - power(fit, signal);
-            if left > 0.0 { (power(more, signal) / left).clamp(0.0, 1.0) } else { 0.0 }
-        };
-        let accelerations = self.accelerations.iter().map(|signal| share(signal, &fit.sums, &more.sums));
-        accelerations.chain([share(&self.forces, &fit.own, &more.own)]).collect()
-    }
-}
-
-impl Columns {
-    /// The part of `columns` that is orthogonal to these, orthonormal.
-    fn extension(&self, columns: Self) -> Self {
-        Self { sums: extension(&self.sums, columns.sums), own: extension(&self.own, columns.own) }
-    }
-
-    fn append(&mut self, more: Self) {
-        self.sums.extend(more.sums);
-        self.own.extend(more.own);
     }
 }
 
