@@ -28,6 +28,7 @@
 mod comb;
 mod kernels;
 mod lines;
+mod products;
 mod scan;
 mod shares;
 mod trial;
@@ -45,7 +46,7 @@ pub const LEAST_LEAD: f64 = 0.3;
 /// Periods of BPFO that a record must hold: with fewer, a comb cannot be distinguished from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;
 /// Periods of BPFO in which families are sought, at the end of a longer record: the fit takes a time that
-/// grows with the square of them.
+/// grows faster than them.
 pub const MOST_PERIODS: f64 = 32.0;
 /// Sidebands that are listed on either side of the carrier.
 pub const SIDEBANDS: i32 = 3;

@@ -119,8 +119,8 @@ fn analytic_bpfo_and_its_multiples_follow_the_tacho_of_a_ramp() {
 /// BPFO stand within one resolution of what the cage does. One start shows the first alone: others are 3 to
 /// 15 dB high from starts 0.01° apart. Source: THEORY §5.1; the limit that of noise: a mean of four has a χ²
 /// distribution of eight degrees of freedom, which exceeds 3.56 times its median once in a thousand, as often
-/// as a single power exceeds ten times its own. Further starts take steps of twice the length, whose ledger is
-/// off by 0.3 %.
+/// as a single power exceeds ten times its own. Further starts take steps of twice the length, in half
+/// the time: the comment in `ramp.ron` has what that costs.
 fn multiples_stand_in_the_mean_of_some_starts(folder: &Path) {
     const STARTS: usize = 4;
     const STANDS: f64 = 3.56;

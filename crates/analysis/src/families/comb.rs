@@ -2,7 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::kernels::{Complex, LowPass, Signal, dot, orthogonalise, products, turned, unit};
+use super::kernels::{Complex, LowPass, Signal, dot, orthogonalise, square, times, turned, unit};
+use super::products::products;
 use super::{RecordedMotion, SIDEBANDS, Source};
 
 /// Highest multiple of twice the place angle: the load zone is a few rollers wide.
@@ -17,10 +18,11 @@ const FINE: usize = 8 * OVERLAP;
 /// Least norm of a column, over that of the longest, after orthogonalisation: shorter ones are dropped as
 /// dependent.
 pub(super) const INDEPENDENT: f64 = 1e-6;
-/// Shifts for which signals are read together: their tables lie near the processor.
-const AT_ONCE: usize = 8;
+/// Shifts for which signals are read together: their tables lie near the processor, and what comes of them is
+/// in memory at once.
+pub(super) const AT_ONCE: usize = 8;
 /// Averages of which inner products are added up: they change with the offset as little as one average does.
-const BLOCK: usize = 8;
+const AVERAGES_A_BLOCK: usize = 8;
 /// Steps in a resolution in which the carrier is sought.
 const CARRIER_STEPS: f64 = 20.0;
 
@@ -45,6 +47,18 @@ pub(super) struct BasebandComb {
 pub(super) struct Columns {
     pub(super) sums: Vec<Signal>,
     pub(super) own: Vec<Signal>,
+}
+
+impl Columns {
+    /// The part of `columns` that is orthogonal to these, orthonormal.
+    pub(super) fn extension(&self, columns: Self) -> Self {
+        Self { sums: extension(&self.sums, columns.sums), own: extension(&self.own, columns.own) }
+    }
+
+    pub(super) fn append(&mut self, more: Self) {
+        self.sums.extend(more.sums);
+        self.own.extend(more.own);
+    }
 }
 
 impl BasebandComb {
@@ -218,40 +232,41 @@ impl Baseband {
     /// Blocks of the averages over `samples` of the baseband.
     fn blocks(&self, samples: usize) -> Blocks {
         let filter_s = (self.filter.length() - 1) as f64 * self.interval_s;
-        let block_s = (BLOCK - 1) as f64 * self.filter.step() as f64 * self.interval_s;
+        let block_s = (AVERAGES_A_BLOCK - 1) as f64 * self.filter.step() as f64 * self.interval_s;
         Blocks {
             averages: self.filter.count(samples),
-            interval_s: (BLOCK * self.filter.step()) as f64 * self.interval_s,
+            interval_s: (AVERAGES_A_BLOCK * self.filter.step()) as f64 * self.interval_s,
             middle_s: 0.5 * (filter_s + block_s),
             reach_s: 0.5 * filter_s + 0.5 * block_s.max(filter_s),
         }
     }
 }
 
-/// Blocks of [`BLOCK`] averages of a band.
+/// Blocks of [`AVERAGES_A_BLOCK`] averages of a band.
 pub(super) struct Blocks {
     averages: usize,
     /// From one to the next [s].
     interval_s: f64,
     /// Middle of the first, from the beginning [s].
     middle_s: f64,
-    /// How far a sample in an average lies from the middle of the block, or of another average there [s].
+    /// Longest time from a sample to the middle of its block, or to another sample of the same average [s].
     pub(super) reach_s: f64,
 }
 
 impl Blocks {
     pub(super) fn count(&self) -> usize {
-        self.averages.div_ceil(BLOCK)
+        self.averages.div_ceil(AVERAGES_A_BLOCK)
     }
 
     /// Σ ā b over each block; over signals that lie one behind the other, too.
     pub(super) fn sums(&self, a: &Signal, b: &Signal) -> Signal {
-        products(a, b, self.averages, BLOCK)
+        products(a, b, self.averages, AVERAGES_A_BLOCK)
     }
 
     /// One value a block, times exp 2πi f t.
     pub(super) fn turned(&self, values: Signal, hz: f64) -> Signal {
-        turned(values, hz, self.interval_s).times(unit(TAU * hz * self.middle_s))
+        let first = unit(TAU * hz * self.middle_s);
+        turned(values, hz, self.interval_s).iter().map(|value| times(first, value)).collect()
     }
 }
 
@@ -285,11 +300,11 @@ pub(super) fn smoothed(load: &[f64], width: usize) -> Vec<f64> {
 
 /// Power of a signal in the span of orthonormal columns.
 pub(super) fn power(basis: &[Signal], signal: &Signal) -> f64 {
-    basis.iter().map(|q| dot(q, signal)).map(|c| c.0 * c.0 + c.1 * c.1).sum()
+    basis.iter().map(|q| square(dot(q, signal))).sum()
 }
 
 /// The part of `columns` that is orthogonal to `basis`, orthonormal.
-pub(super) fn extension(basis: &[Signal], columns: Vec<Signal>) -> Vec<Signal> {
+fn extension(basis: &[Signal], columns: Vec<Signal>) -> Vec<Signal> {
     let longest = columns.iter().map(|c| dot(c, c).0).fold(0.0, f64::max);
     let mut more = Vec::new();
     for mut rest in columns {

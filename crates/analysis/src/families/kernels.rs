@@ -36,7 +36,7 @@ impl Signal {
         self.re.iter().copied().zip(self.im.iter().copied())
     }
 
-    fn part(&self, part: Range<usize>) -> [&[f64]; 2] {
+    pub(super) fn part(&self, part: Range<usize>) -> [&[f64]; 2] {
         [&self.re[part.clone()], &self.im[part]]
     }
 
@@ -44,11 +44,6 @@ impl Signal {
     pub(super) fn scaled(&self, by: f64) -> Self {
         let scaled = |values: &[f64]| values.iter().map(|value| value * by).collect();
         Self { re: scaled(&self.re), im: scaled(&self.im) }
-    }
-
-    /// Times a complex number.
-    pub(super) fn times(&self, by: Complex) -> Self {
-        self.iter().map(|value| times(by, value)).collect()
     }
 
     /// Adds `more` value by value.
@@ -279,109 +274,15 @@ impl WithSimd for Dot<'_> {
     }
 }
 
-/// Σ ā b over blocks of `block` values, and over signals of `length` values one behind the other.
-pub(super) fn products(a: &Signal, b: &Signal, length: usize, block: usize) -> Signal {
-    Arch::new().dispatch(Products { a, b, length, block })
-}
-
-struct Products<'a> {
-    a: &'a Signal,
-    b: &'a Signal,
-    length: usize,
-    block: usize,
-}
-
-impl WithSimd for Products<'_> {
-    type Output = Signal;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Signal {
-        let Self { a, b, length, block } = self;
-        let mut sums = Signal::constant((0.0, 0.0), length.div_ceil(block));
-        for first in (0..a.len()).step_by(length.max(1)) {
-            let ([a_re, a_im], [b_re, b_im]) = (a.part(first..first + length), b.part(first..first + length));
-            let blocks = a_re.chunks(block).zip(a_im.chunks(block));
-            let blocks = blocks.zip(b_re.chunks(block).zip(b_im.chunks(block)));
-            for (n, ((a_re, a_im), (b_re, b_im))) in blocks.enumerate() {
-                let (re, im) = sum_of_products([a_re, a_im, b_re, b_im]);
-                (sums.re[n], sums.im[n]) = (sums.re[n] + re, sums.im[n] + im);
-            }
-        }
-        sums
-    }
-}
-
-/// Signals at some nodes, laid out for weighted sums of them: blocks of values, of each node in turn, real
-/// and imaginary parts.
-pub(super) struct Interpolated {
-    blocks: Vec<[[f64; BLOCK]; 2]>,
-    nodes: usize,
-}
-
-impl Interpolated {
-    /// Of signals of one length, one a node.
-    pub(super) fn of(signals: &[Signal]) -> Self {
-        let length = signals.first().map_or(0, Signal::len);
-        let block = |values: &[f64], from: usize| {
-            let mut block = [0.0; BLOCK];
-            let values = &values[from..length.min(from + BLOCK)];
-            block[..values.len()].copy_from_slice(values);
-            block
-        };
-        let blocks = (0..length).step_by(BLOCK);
-        let blocks =
-            blocks.flat_map(|from| signals.iter().map(move |s| [block(&s.re, from), block(&s.im, from)]));
-        Self { blocks: blocks.collect(), nodes: signals.len() }
-    }
-
-    /// Σ turn · (signals, interpolated by their weights), for each of `turns` and its weights.
-    pub(super) fn sums(&self, turns: &[Signal], weights: &[Vec<f64>]) -> Vec<Complex> {
-        Arch::new().dispatch(InterpolatedSums { products: self, turns, weights })
-    }
-}
-
-struct InterpolatedSums<'a> {
-    products: &'a Interpolated,
-    turns: &'a [Signal],
-    weights: &'a [Vec<f64>],
-}
-
-impl WithSimd for InterpolatedSums<'_> {
-    type Output = Vec<Complex>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Vec<Complex> {
-        let Self { products: Interpolated { blocks, nodes }, turns, weights } = self;
-        let mut all = Vec::with_capacity(turns.len());
-        for (turns, weights) in turns.iter().zip(weights) {
-            let mut sums = [[0.0; BLOCK]; 2];
-            let turns = turns.re.chunks(BLOCK).zip(turns.im.chunks(BLOCK));
-            for (block, (turn_re, turn_im)) in blocks.chunks_exact(*nodes).zip(turns) {
-                let mut values = [[0.0; BLOCK]; 2];
-                for (node, weight) in block.iter().zip(weights) {
-                    for part in 0..2 {
-                        for lane in 0..BLOCK {
-                            values[part][lane] += weight * node[part][lane];
-                        }
-                    }
-                }
-                for (lane, turn) in turn_re.iter().zip(turn_im).enumerate() {
-                    let product = times((*turn.0, *turn.1), (values[0][lane], values[1][lane]));
-                    sums[0][lane] += product.0;
-                    sums[1][lane] += product.1;
-                }
-            }
-            let [re, im] = sums.map(|sums| sums.iter().sum());
-            all.push((re, im));
-        }
-        all
-    }
-}
-
 /// e^{iφ}.
 pub(super) fn unit(phase: f64) -> Complex {
     let (sin, cos) = phase.sin_cos();
     (cos, sin)
+}
+
+/// |z|²
+pub(super) fn square(z: Complex) -> f64 {
+    z.0 * z.0 + z.1 * z.1
 }
 
 #[inline(always)]
@@ -389,14 +290,14 @@ pub(super) fn times(a: Complex, b: Complex) -> Complex {
     (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
-/// Σ ā b in four partial sums.
 #[inline(always)]
 fn product(a: &Signal, b: &Signal) -> Complex {
     sum_of_products([&a.re, &a.im, &b.re, &b.im])
 }
 
+/// Σ ā b in four partial sums, of real and imaginary parts of a and of b.
 #[inline(always)]
-fn sum_of_products(parts: [&[f64]; 4]) -> Complex {
+pub(super) fn sum_of_products(parts: [&[f64]; 4]) -> Complex {
     let numbers = parts.map(|numbers| numbers.as_chunks::<4>());
     let [(a_re, a_re_rest), (a_im, a_im_rest), (b_re, b_re_rest), (b_im, b_im_rest)] = numbers;
     let mut parts = [[0.0; 4]; 2];

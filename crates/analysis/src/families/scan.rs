@@ -1,22 +1,22 @@
-//! What a comb explains at the many offsets of a scan, from a few of them.
+//! Shares explained at the many offsets of a scan, interpolated between a few of them.
 //!
 //! A column that is shifted by δ and averaged over a filter's length is exp 2πiδt, with t the middle of each
 //! average, times a factor that hardly changes with δ, because an average is short. So inner products of two
 //! columns are smooth functions of δ; those of a column and a channel are sums of exp(−2πiδt) times smooth
 //! functions, with t the middles of blocks of a few averages. Both are interpolated, to rounding, between the
-//! few offsets of Chebyshev nodes, and what a comb explains follows from them by Cholesky's factorisation.
-//! Where columns nearly depend on each other that would lose digits, and there is no answer.
+//! few offsets of Chebyshev nodes, and shares follow from them by Cholesky's factorisation (THEORY §7.7).
+//! Where columns nearly depend on each other that would lose digits, and the result is `None`.
 
 use std::f64::consts::{PI, TAU};
 
 use super::comb::{Blocks, INDEPENDENT};
-use super::kernels::{Complex, Interpolated, Signal, dot, times};
+use super::kernels::{Complex, Signal, dot, square, times};
+use super::products::Interpolated;
 
 /// Error of the interpolation that rounding exceeds.
 const ROUNDING: f64 = 1e-15;
-/// Least square of a column's part that is orthogonal to others, over that of the longest column, at which
-/// half of all digits are left.
-const WELL_APART: f64 = 1e-8;
+/// Least pivot, over the largest squared norm of a column, at which half of all digits are left.
+pub(super) const WELL_APART: f64 = 1e-8;
 
 /// Offsets between which functions of the offset are interpolated.
 pub(super) struct Nodes {
@@ -60,10 +60,26 @@ impl Nodes {
     }
 }
 
+/// Offsets of a scan.
+pub(super) struct Offsets {
+    /// Of each node, for each offset.
+    weights: Vec<Vec<f64>>,
+    /// Factors of the blocks, for each offset.
+    turns: Vec<Signal>,
+}
+
+impl Offsets {
+    pub(super) fn new(hz: &[f64], nodes: &Nodes, blocks: &Blocks) -> Self {
+        let turn = |hz: &f64| blocks.turned(Signal::constant((1.0, 0.0), blocks.count()), -hz);
+        Self {
+            weights: hz.iter().map(|hz| nodes.weights(*hz)).collect(),
+            turns: hz.iter().map(turn).collect(),
+        }
+    }
+}
+
 /// Columns of one kind, and the channels that they are fitted to.
-pub(super) struct Scan<'a> {
-    blocks: &'a Blocks,
-    nodes: &'a Nodes,
+pub(super) struct Scan {
     /// Inner products of columns, for each node: of each with those up to itself.
     columns: Vec<Vec<Complex>>,
     /// Inner products of each column with each channel, then with each orthonormal column of the fit, block
@@ -73,11 +89,11 @@ pub(super) struct Scan<'a> {
     channels: Vec<(f64, Vec<Complex>)>,
 }
 
-impl<'a> Scan<'a> {
+impl Scan {
     /// Of `columns` at each node.
     pub(super) fn new(
-        blocks: &'a Blocks,
-        nodes: &'a Nodes,
+        nodes: &Nodes,
+        blocks: &Blocks,
         columns: &[Vec<Signal>],
         channels: &[&Signal],
         fit: &[Signal],
@@ -95,11 +111,9 @@ impl<'a> Scan<'a> {
         let of_other = |other: &Signal| (0..columns[0].len()).map(|k| product(other, k)).collect();
         let known = |channel: &&Signal| {
             let along: Vec<Complex> = fit.iter().map(|q| dot(q, channel)).collect();
-            (dot(channel, channel).0 - along.iter().map(square).sum::<f64>(), along)
+            (dot(channel, channel).0 - along.iter().copied().map(square).sum::<f64>(), along)
         };
         Self {
-            blocks,
-            nodes,
             columns: columns.iter().map(inner).collect(),
             products: channels.iter().copied().chain(fit).map(of_other).collect(),
             channels: channels.iter().map(known).collect(),
@@ -107,15 +121,12 @@ impl<'a> Scan<'a> {
     }
 
     /// Share of each channel at each offset; `None` where columns are too nearly dependent for this way.
-    pub(super) fn shares(&self, offsets_hz: &[f64]) -> Vec<Option<Vec<f64>>> {
-        let weights: Vec<Vec<f64>> = offsets_hz.iter().map(|hz| self.nodes.weights(*hz)).collect();
-        let turn = |hz: &f64| self.blocks.turned(Signal::constant((1.0, 0.0), self.blocks.count()), -hz);
-        let turns: Vec<Signal> = offsets_hz.iter().map(turn).collect();
+    pub(super) fn shares(&self, Offsets { weights, turns }: &Offsets) -> Vec<Option<Vec<f64>>> {
         // Of each channel or column of the fit, of each column, of each offset.
         let along: Vec<Vec<Vec<Complex>>> = self
             .products
             .iter()
-            .map(|columns| columns.iter().map(|products| products.sums(&turns, &weights)).collect())
+            .map(|columns| columns.iter().map(|products| products.sums(turns, weights)).collect())
             .collect();
         let at = |(n, weights): (usize, &Vec<f64>)| {
             let along: Vec<Vec<Complex>> =
@@ -145,7 +156,7 @@ impl<'a> Scan<'a> {
                     row.iter().zip(earlier).fold(beside(*l), |rest, (a, b)| minus(rest, times(*a, conj(*b))));
                 row.push((rest.0 / diagonal, rest.1 / diagonal));
             }
-            let left = beside(k).0 - row.iter().map(square).sum::<f64>();
+            let left = beside(k).0 - row.iter().copied().map(square).sum::<f64>();
             if left > WELL_APART * longest {
                 factor.push((k, row, left.sqrt()));
             } else if inner(k, k).0 > INDEPENDENT * INDEPENDENT * longest {
@@ -160,14 +171,10 @@ impl<'a> Scan<'a> {
                 let rest = row.iter().zip(&solved).fold(beside, |rest, (a, b)| minus(rest, times(*a, *b)));
                 solved.push((rest.0 / diagonal, rest.1 / diagonal));
             }
-            share(solved.iter().map(square).sum(), *left)
+            share(solved.into_iter().map(square).sum(), *left)
         };
         Some(channels.iter().zip(&self.channels).map(of_channel).collect())
     }
-}
-
-fn square(value: &Complex) -> f64 {
-    value.0 * value.0 + value.1 * value.1
 }
 
 fn conj(value: Complex) -> Complex {

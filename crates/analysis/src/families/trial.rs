@@ -1,6 +1,6 @@
 //! How well a comb explains the channels of a record, at its predicted frequency and elsewhere.
 
-use super::comb::{BasebandComb, Columns, smoothed};
+use super::comb::{AT_ONCE, BasebandComb, Columns, smoothed};
 use super::kernels::Signal;
 use super::shares::Signals;
 use super::{Channel, LEAST_LEAD, RecordedMotion};
@@ -25,8 +25,6 @@ const BESIDE: f64 = 5.0;
 const DETUNED: std::ops::RangeInclusive<i32> = 10..=40;
 /// Two of them in a BPFO.
 const DETUNED_STEP: f64 = 0.5;
-/// Detuned combs that are tried together: what is fitted in their bands is in memory at once.
-const AT_ONCE: usize = 8;
 /// Forces are fitted on rollers that carry at least this part of the largest mean load, the most loaded of
 /// them.
 const LOADED: f64 = 0.25;

@@ -2,6 +2,7 @@
 
 mod alarm;
 mod comparison;
+mod differences;
 mod duty;
 mod ensemble;
 mod enveloping;
@@ -15,6 +16,5 @@ mod paper_figures;
 mod prediction;
 mod ridge;
 mod rolling;
-mod scenes_apart;
 mod tones;
 mod varying;
