@@ -95,7 +95,7 @@ impl Scene {
     ///
     /// [`SceneError`] with every number outside its range, or every geometric impossibility.
     pub fn validate(&self) -> Result<(), SceneError> {
-        check(self, &Origin::in_memory(Vec::new()))
+        check(self, &Origin::in_memory(Vec::new()), None)
     }
 }
 
@@ -172,24 +172,30 @@ struct Understood {
     set: Vec<origin::Override>,
     /// Why the fields of its bearing do not define one.
     refusal: Option<Box<own::Refusal>>,
+    /// Where the bearing was to be completed.
+    written: Option<own::Written>,
 }
 
 impl Understood {
     /// The scene with its tables in `folder`, if it can be. `text` is that of `file`.
     fn check(self, file: &str, text: &str, folder: &Path) -> Result<Scene, SceneError> {
-        let Self { mut scene, set, refusal } = self;
+        let Self { mut scene, set, refusal, written } = self;
         let origin = Origin::in_file(file, text, set);
         table::read(&mut scene, folder, &origin)?;
         if let Some(refusal) = refusal.as_ref().filter(|refusal| refusal.is_of_another()) {
             return Err(refusal.problem(&origin).into());
         }
-        match (check(&scene, &origin), refusal) {
+        match (check(&scene, &origin, written.as_ref()), refusal) {
             (checked, None) => checked.map(|()| scene),
             (Ok(()), Some(refusal)) => Err(refusal.problem(&origin).into()),
             (Err(error), Some(refusal)) => {
-                // With numbers that are out of range there is no telling which bearing is meant.
-                let problem = numbers_are_in_range(&scene).then(|| refusal.problem(&origin));
-                Err(error.about_bearing(&refusal.hint(), problem))
+                let problem = refusal.problem(&origin);
+                if numbers_are_in_range(&scene) {
+                    Err(error.about_bearing(&refusal.hint(), problem))
+                } else {
+                    // Main dimensions are in range, or there would be no refusal.
+                    Err(error.and(problem))
+                }
             }
         }
     }
@@ -198,12 +204,16 @@ impl Understood {
 /// The scene with a bearing of its own completed. `given` has the paths of the fields written by the user;
 /// `None` where its bearing is another one already.
 fn complete(mut scene: Scene, set: Vec<origin::Override>, given: Option<Vec<String>>) -> Understood {
-    let own = given.map(|given| own::complete(&mut scene, &given));
+    let mut written = given.map(|given| own::Written { scene: scene.clone(), given, refused: false });
+    let own = written.as_ref().map(|written| own::complete(&mut scene, &written.given));
     let refusal = match own {
         Some(own::Own::Refused(refusal)) => Some(refusal),
         _ => None,
     };
-    Understood { scene, set, refusal }
+    if let Some(written) = &mut written {
+        written.refused = refusal.is_some();
+    }
+    Understood { scene, set, refusal, written }
 }
 
 /// Whether one of `overrides` is the name of a bearing.

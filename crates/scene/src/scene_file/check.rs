@@ -6,17 +6,22 @@ use super::origin::Origin;
 use super::overrides;
 use super::problem::SceneError;
 use super::schema::Schema;
-use super::{deviations, exclusions, extent, geometry, limits, operation, ring_meshes};
+use super::{deviations, exclusions, extent, geometry, limits, operation, own, ring_meshes};
 use crate::scene::Scene;
 
-/// Refuses a scene with a number outside its range, or with bodies or demands that are impossible.
-pub(crate) fn check(scene: &Scene, origin: &Origin<'_>) -> Result<(), SceneError> {
+/// Refuses a scene with a number outside its range, or with bodies or demands that are impossible. `written`
+/// is the scene before its bearing was completed.
+pub(crate) fn check(
+    scene: &Scene,
+    origin: &Origin<'_>,
+    written: Option<&own::Written>,
+) -> Result<(), SceneError> {
     let found = findings(scene);
     if found.is_empty() {
         return Ok(());
     }
     let schema = Schema::get();
-    let problem = |finding: &Finding| origin.problem(tried(finding, &found, scene, schema));
+    let problem = |finding: &Finding| origin.problem(tried(finding, &found, scene, schema, written));
     Err(SceneError::new(found.iter().map(problem).collect()))
 }
 
@@ -42,14 +47,23 @@ fn findings(scene: &Scene) -> Vec<Finding> {
 
 /// The finding with at most one value in each remedy: the one that leaves fewest of those `found`, this one
 /// not.
-fn tried(finding: &Finding, found: &[Finding], scene: &Scene, schema: &Schema) -> Finding {
+fn tried(
+    finding: &Finding,
+    found: &[Finding],
+    scene: &Scene,
+    schema: &Schema,
+    written: Option<&own::Written>,
+) -> Finding {
     let mut finding = finding.clone();
     let this = finding.clone();
     for remedy in &mut finding.remedies {
         let default = schema.plain_default(&remedy.field).map(|value| Proposal::new(value, "the default"));
         let values = remedy.values.drain(..).chain(default);
-        let left =
-            |value: &Proposal| left_by(&format!("{}={}", remedy.field, value.value), &this, found, scene);
+        let left = |value: &Proposal| {
+            let argument = format!("{}={}", remedy.field, value.value);
+            let no_bearing = written.is_some_and(|written| written.becomes_none_by(&remedy.field, &argument));
+            if no_bearing { None } else { left_by(&argument, &this, found, scene) }
+        };
         let passing = values.filter_map(|value| Some((left(&value)?, value)));
         remedy.values = passing.min_by_key(|(left, _)| *left).map(|(_, value)| value).into_iter().collect();
     }

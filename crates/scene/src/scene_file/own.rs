@@ -7,6 +7,7 @@
 
 use super::named::{self, Surrounded, tidy};
 use super::origin::Origin;
+use super::overrides;
 use super::problem::Problem;
 use super::wording::number;
 use crate::catalogue;
@@ -69,6 +70,25 @@ impl Refusal {
     /// Addition to a message on the paper's bearing with a field that it cannot have.
     pub(super) fn hint(&self) -> String {
         format!("; the other numbers are the paper's, because nobody gave them: {}", self.suggestion)
+    }
+}
+
+/// A scene as it was written, before its bearing was completed.
+#[derive(Debug)]
+pub(crate) struct Written {
+    pub(super) scene: Scene,
+    /// Paths of the written fields.
+    pub(super) given: Vec<String>,
+    /// Whether its fields define no bearing.
+    pub(super) refused: bool,
+}
+
+impl Written {
+    /// Whether fields that define a bearing define none with the override `argument` of `field`.
+    pub(super) fn becomes_none_by(&self, field: &str, argument: &str) -> bool {
+        let Ok((mut scene, _)) = overrides::apply(self.scene.clone(), &[argument]) else { return true };
+        let given: Vec<String> = self.given.iter().cloned().chain([field.to_owned()]).collect();
+        !self.refused && matches!(complete(&mut scene, &given), Own::Refused(_))
     }
 }
 

@@ -69,14 +69,20 @@ impl SceneError {
     }
 
     /// The same with `hint` after messages on fields of the bearing; where there are none, with `refusal`.
-    pub(crate) fn about_bearing(mut self, hint: &str, refusal: Option<Problem>) -> Self {
+    pub(crate) fn about_bearing(mut self, hint: &str, refusal: Problem) -> Self {
         let of_bearing = |problem: &Problem| problem.field.starts_with("bearing.");
         if self.problems.iter().any(of_bearing) {
             let problems = self.problems.iter_mut().filter(|problem| of_bearing(problem));
             problems.for_each(|problem| problem.message.push_str(hint));
         } else {
-            self.problems.extend(refusal);
+            self.problems.push(refusal);
         }
+        self
+    }
+
+    /// The same with one more.
+    pub(crate) fn and(mut self, problem: Problem) -> Self {
+        self.problems.push(problem);
         self
     }
 
