@@ -172,7 +172,7 @@ struct Understood {
     set: Vec<origin::Override>,
     /// Why the fields of its bearing do not define one.
     refusal: Option<Box<own::Refusal>>,
-    /// Where the bearing was to be completed.
+    /// Where its fields were to be completed and define a bearing.
     written: Option<own::Written>,
 }
 
@@ -204,15 +204,13 @@ impl Understood {
 /// The scene with a bearing of its own completed. `given` has the paths of the fields written by the user;
 /// `None` where its bearing is another one already.
 fn complete(mut scene: Scene, set: Vec<origin::Override>, given: Option<Vec<String>>) -> Understood {
-    let mut written = given.map(|given| own::Written { scene: scene.clone(), given, refused: false });
+    let written = given.map(|given| own::Written { scene: scene.clone(), given });
     let own = written.as_ref().map(|written| own::complete(&mut scene, &written.given));
     let refusal = match own {
         Some(own::Own::Refused(refusal)) => Some(refusal),
         _ => None,
     };
-    if let Some(written) = &mut written {
-        written.refused = refusal.is_some();
-    }
+    let written = written.filter(|_| refusal.is_none());
     Understood { scene, set, refusal, written }
 }
 

@@ -61,8 +61,8 @@ fn tried(
         let values = remedy.values.drain(..).chain(default);
         let left = |value: &Proposal| {
             let argument = format!("{}={}", remedy.field, value.value);
-            let no_bearing = written.is_some_and(|written| written.becomes_none_by(&remedy.field, &argument));
-            if no_bearing { None } else { left_by(&argument, &this, found, scene) }
+            let refused = written.is_some_and(|written| written.is_refused_with(&remedy.field, &argument));
+            if refused { None } else { left_by(&argument, &this, found, scene) }
         };
         let passing = values.filter_map(|value| Some((left(&value)?, value)));
         remedy.values = passing.min_by_key(|(left, _)| *left).map(|(_, value)| value).into_iter().collect();

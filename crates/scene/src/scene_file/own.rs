@@ -73,22 +73,20 @@ impl Refusal {
     }
 }
 
-/// A scene as it was written, before its bearing was completed.
+/// A scene as it was written, before its bearing was completed, which its fields define.
 #[derive(Debug)]
 pub(crate) struct Written {
     pub(super) scene: Scene,
     /// Paths of the written fields.
     pub(super) given: Vec<String>,
-    /// Whether its fields define no bearing.
-    pub(super) refused: bool,
 }
 
 impl Written {
-    /// Whether fields that define a bearing define none with the override `argument` of `field`.
-    pub(super) fn becomes_none_by(&self, field: &str, argument: &str) -> bool {
+    /// Whether its fields define no bearing any more with the override `argument` of `field`.
+    pub(super) fn is_refused_with(&self, field: &str, argument: &str) -> bool {
         let Ok((mut scene, _)) = overrides::apply(self.scene.clone(), &[argument]) else { return true };
         let given: Vec<String> = self.given.iter().cloned().chain([field.to_owned()]).collect();
-        !self.refused && matches!(complete(&mut scene, &given), Own::Refused(_))
+        matches!(complete(&mut scene, &given), Own::Refused(_))
     }
 }
 
