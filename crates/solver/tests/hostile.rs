@@ -55,7 +55,7 @@ fn mesh() -> impl Strategy<Value = Mesh> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(4000))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(4000) })]
 
     #[test]
     fn survives_any_mesh_with_an_answer(mesh in mesh(), loaded in 0_usize..14) {

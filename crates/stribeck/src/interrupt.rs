@@ -46,7 +46,7 @@ impl Interrupt {
                 exit();
             }
             seen.end_before_the_first_step();
-            eprintln!("\ninterrupted: finishing the step; press Ctrl-C again to stop at once");
+            eprintln!("\ninterrupted: ending in good order; press Ctrl-C again to stop at once");
         })
         .context("cannot listen for Ctrl-C")?;
         Ok(Self(shared))

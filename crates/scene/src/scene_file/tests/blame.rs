@@ -187,7 +187,7 @@ fn number() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(600))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(600) })]
     #[test]
     fn invariant_what_is_proposed_removes_the_problem_and_makes_no_new_one(
         first in 0_usize..60, x in number(), second in 0_usize..60, y in number(), as_is in any::<bool>(),
