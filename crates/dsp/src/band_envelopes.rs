@@ -206,7 +206,10 @@ impl BandEnvelopes {
     /// signal is left out.
     pub fn bands(&self) -> Vec<BandEnvelope> {
         let grid_hz = self.sample_rate_hz / self.segment as f64;
-        self.bands.iter().filter_map(|band| band.finish(grid_hz, self.segments)).collect()
+        self.bands
+            .iter()
+            .filter_map(|band| band.finish(grid_hz, self.sample_rate_hz, self.segments))
+            .collect()
     }
 }
 
@@ -247,7 +250,7 @@ impl Band {
         self.power.iter_mut().zip(&*output).for_each(|(p, x)| *p += scale * x.norm_sqr());
     }
 
-    fn finish(&self, grid_hz: f64, segments: usize) -> Option<BandEnvelope> {
+    fn finish(&self, grid_hz: f64, sample_rate_hz: f64, segments: usize) -> Option<BandEnvelope> {
         let mean = self.sums[0] / segments as f64;
         if mean.is_nan() || mean <= 0.0 {
             return None;
@@ -255,7 +258,8 @@ impl Band {
         let scale = 1.0 / (segments as f64 * mean * mean);
         Some(BandEnvelope {
             low_hz: self.lines.0 as f64 * grid_hz,
-            high_hz: self.lines.1 as f64 * grid_hz,
+            // The last line may end half a line, or a rounding, beyond what the samples hold.
+            high_hz: (self.lines.1 as f64 * grid_hz).min(0.5 * sample_rate_hz),
             rms: (0.5 * mean).sqrt(),
             kurtosis: self.sums[1] / segments as f64 / (mean * mean) - 2.0,
             grid_hz,

@@ -27,7 +27,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let mut file = BufReader::new(File::open(path).map_err(io)?);
     let size = file.get_ref().metadata().map_err(io)?.len();
     let mut at = 12;
-    let (mut format, mut long_data) = (None, None);
+    let (mut format, mut frame, mut long_data) = (None, 0, None);
     while at + 8 <= size {
         file.seek(SeekFrom::Start(at)).map_err(io)?;
         let mut tag = [0; 8];
@@ -49,11 +49,13 @@ pub fn open(path: &Path) -> Result<Recording> {
                     let code = if half(0) == EXTENSIBLE { half(24) } else { half(0) };
                     let rate_hz = u32::from(half(4)) | u32::from(half(6)) << 16;
                     format = Some(Format { code, channels: half(2), rate_hz, bits: half(14) });
+                    frame = usize::from(half(12));
                 }
             }
             b"data" => {
                 let format = format.ok_or_else(|| damaged("the samples come before their format"))?;
-                return samples(path, format, Data { at: at + 8, there: size - at - 8, length, long_data });
+                let data = Data { at: at + 8, there: size - at - 8, length, long_data };
+                return samples(path, format, frame, data);
             }
             _ => {}
         }
@@ -82,8 +84,8 @@ struct Data {
     long_data: Option<u64>,
 }
 
-/// The channels of the piece `data`.
-fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
+/// The channels of the piece `data`, whose header gives `frame` bytes to a sample of all channels, or none.
+fn samples(path: &Path, format: Format, frame: usize, data: Data) -> Result<Recording> {
     let Format { code, channels, rate_hz, bits } = format;
     let (kind, factor) = match (code, bits) {
         (PCM, 8) => (Kind::U8, 1.0 / 128.0),
@@ -101,10 +103,16 @@ fn samples(path: &Path, format: Format, data: Data) -> Result<Recording> {
     if channels == 0 || rate_hz == 0 {
         return Err(Error::damaged(path, FORMAT, "it has no channels or no sample rate"));
     }
+    let stride = usize::from(channels) * kind.bytes();
+    if frame != 0 && frame != stride {
+        // On which side of its bytes a number of 24 bits would lie is not said.
+        let what = format!("{channels} numbers of {bits} bits in {frame} bytes");
+        let advice = "save it as PCM whose samples fill their bytes, or as floating point";
+        return Err(Error::Unsupported { path: path.to_owned(), format: FORMAT, what, advice });
+    }
     let (held, notes) = data.held();
     // Eight bits have no sign: 128 is zero.
     let curve = (kind == Kind::U8).then(|| Curve::linear(-1.0, 1.0));
-    let stride = usize::from(channels) * kind.bytes();
     let all = (0..usize::from(channels)).map(|n| {
         let start = data.at + (n * kind.bytes()) as u64;
         let strided = Strided { path: path.to_owned(), start, stride, number: Number::little(kind), factor };

@@ -148,6 +148,52 @@ fn issue_wav_without_its_size_is_read_to_its_end() {
     }
 }
 
+/// Numbers of 24 bits in four bytes each were read three bytes at a time.
+#[test]
+fn issue_wav_whose_numbers_do_not_fill_their_bytes_is_refused() {
+    let desk = Scratch::create("formats-kinds-frames");
+    let written = |frame: u8| {
+        let mut bytes = b"RIFF\0\0\0\0WAVEfmt \x10\0\0\0\x01\0\x01\0".to_vec();
+        bytes.extend([12_800_u32, 51_200].map(u32::to_le_bytes).concat());
+        bytes.extend([frame, 0, 24, 0]);
+        bytes.extend(b"data");
+        bytes.extend(1200_u32.to_le_bytes());
+        bytes.extend((0..300_i32).flat_map(i32::to_le_bytes));
+        let path = desk.join("a.wav");
+        std::fs::write(&path, bytes).unwrap();
+        Recording::open(&path)
+    };
+    let why = written(4).map(|_| ()).expect_err("four bytes").to_string();
+    assert!(why.contains("1 numbers of 24 bits in 4 bytes") && why.contains("fill their bytes"), "{why}");
+    // Three bytes are the rule; some writers leave the number out.
+    for frame in [3, 0] {
+        assert_eq!(written(frame).expect("three bytes").channels[0].len, 400);
+    }
+}
+
+/// `12,800 Hz` was read as 12.8 Hz, and the 8 s of a whole record as the time between two samples.
+#[test]
+fn issue_a_rate_with_its_thousands_in_groups() {
+    let desk = Scratch::create("formats-kinds-thousands");
+    let rows = lines(|n| format!("{:.4}", signal(n)));
+    let comma = lines(|n| format!("{:.4}", signal(n) + 1.5).replace('.', ","));
+    for (head, rows, rate_hz) in [
+        ("Sample rate: 12,800 Hz", &rows, Some(12_800.0)),
+        ("Sample rate: 12.800 kHz", &rows, Some(12_800.0)),
+        ("Sample rate: 1,024,000 Hz", &rows, Some(1_024_000.0)),
+        ("Sampling time: 8 s", &rows, None),
+        ("Sampling time: 0.1 ms", &rows, Some(10_000.0)),
+        ("Sampling interval: 8 s", &rows, Some(0.1)),
+        // Either is thousands or a fraction there.
+        ("Sample rate: 12,800 Hz", &comma, None),
+        ("Sample rate: 12.800 Hz", &comma, None),
+        ("Sample rate: 12,8 kHz", &comma, Some(12_800.0)),
+    ] {
+        let (found, _) = samples(&desk, &format!("{head}\nacc\n{rows}"));
+        assert_eq!(found, rate_hz, "{head}");
+    }
+}
+
 /// Samples of the only channel that is no time.
 fn samples(desk: &Scratch, text: &str) -> (Option<f64>, Vec<f64>) {
     let found = opened(desk, "a.csv", text.as_bytes());

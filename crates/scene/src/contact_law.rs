@@ -116,7 +116,8 @@ impl ContactLaw {
             }
             let step = -left / slope;
             force += step;
-            if step.abs() <= 1e-13 * force {
+            // A small force beside a large one outwards is known no better than the approach is.
+            if step.abs() <= 1e-13 * force || left.abs() <= 4.0 * f64::EPSILON * approach {
                 return Some((force, 1.0 / both(force).1));
             }
         }

@@ -7,6 +7,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::dice::Dice;
 
+/// Facets that a hollow needs at least.
+pub const HOLLOW_FACETS: f64 = 4.0;
+
 /// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]

@@ -101,8 +101,12 @@ impl TurningRings {
         let reach = self.clearance_m.abs() + alone + self.law.approach(1, load_n).0;
         let mut shift = [0.0, self.clearance_m.max(0.0) + 0.5 * alone];
         let mut now = self.carried(shift, load_n, &directions);
-        // Forces of interference are larger than the load, and so is their rounding error.
-        let enough = |at: &Carried| at.unbalanced() <= TOLERANCE * load_n.max(at.largest_n);
+        // Forces of interference and centrifugal ones may be larger than the load, and so is their rounding
+        // error; that of a light load comes from the shift.
+        let enough = |at: &Carried| {
+            let rounding = 4.0 * f64::EPSILON * reach * (at.stiffness[0] + at.stiffness[2]);
+            at.unbalanced() <= TOLERANCE * load_n.max(at.largest_n).max(self.outwards_n) + rounding
+        };
         for _ in 0..MAX_ITERATIONS {
             if enough(&now) {
                 return Ok(self.state(shift, &now));
@@ -112,7 +116,8 @@ impl TurningRings {
             (shift, now) = loop {
                 let next = [shift[0] + scale * step[0], shift[1] + scale * step[1]];
                 let tried = self.carried(next, load_n, &directions);
-                if tried.unbalanced() < now.unbalanced() || scale < 1e-9 {
+                // The potential is convex: it has fallen all the way to a point where force still pushes on.
+                if tried.unbalanced() < now.unbalanced() || tried.pushes(step) || scale < 1e-9 {
                     break (next, tried);
                 }
                 scale *= 0.5;
@@ -170,6 +175,11 @@ struct Carried {
 impl Carried {
     fn unbalanced(&self) -> f64 {
         self.left[0].hypot(self.left[1])
+    }
+
+    /// Whether the force that is left pushes on along a step; not where the law of contact ends.
+    fn pushes(&self, step: [f64; 2]) -> bool {
+        self.left[0].is_finite() && self.left[0] * step[0] + self.left[1] * step[1] > 0.0
     }
 
     /// Shift that balances the linearised forces [m], no longer than `reach` [m].

@@ -4,10 +4,10 @@ mod deck;
 mod sound;
 mod vtkhdf;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::stress::{Lame, von_mises};
 use stribeck_dsp::Sensor;
 use stribeck_formats::{Channel, Recording, csv, mat5, npz, parquet, uff58, wav};
@@ -23,6 +23,9 @@ use crate::out::{caution, say};
 use crate::place::{Place, shown};
 use crate::shelf::existing;
 use crate::transfer::Transfer;
+
+/// Channel of the times of samples.
+const TIME: &str = "time_s";
 
 /// Flags of `export`.
 #[derive(Debug, clap::Args)]
@@ -88,6 +91,23 @@ enum Format {
 }
 
 impl Format {
+    /// Ending of its files; a folder has none.
+    fn ending(self) -> &'static str {
+        match self {
+            Self::Csv => "csv",
+            Self::Npz => "npz",
+            Self::Mat => "mat",
+            Self::Uff => "uff",
+            Self::Parquet => "parquet",
+            Self::Wav | Self::Wav64 => "wav",
+            Self::Vtkhdf => "vtkhdf",
+            Self::K => "k",
+            Self::Inp => "inp",
+            Self::Msh => "msh",
+            Self::Pvd => "",
+        }
+    }
+
     /// Whether signals are written, in their own unit; `recorded` says that a sensor recorded them.
     fn holds_signals(self, recorded: bool) -> bool {
         match self {
@@ -122,6 +142,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
              and `--sensor`"
         );
     }
+    if let Some(out) = &options.out {
+        may_be_written(out, options.to)?;
+    }
     let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));
     let written = match options.to {
         Format::Pvd => series(&dir, &run, out("paraview"))?,
@@ -138,6 +161,31 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     };
     say!("{}", shown(&written));
     Ok(ExitCode::SUCCESS)
+}
+
+/// Refuses to write over what no export has made, and makes the folder of a new file.
+fn may_be_written(out: &Path, to: Format) -> Result<()> {
+    let ending = to.ending();
+    if ending.is_empty() {
+        ensure!(
+            !out.join("scene.ron").exists(),
+            "`{}` is the folder of a run: choose another `--out`",
+            shown(out)
+        );
+        return Ok(());
+    }
+    let as_made = out.is_file() && out.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
+    ensure!(
+        !out.exists() || as_made,
+        "`{}` is there and is no `.{ending}` file: choose another `--out`, or remove it",
+        shown(out)
+    );
+    match out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+        Some(folder) => {
+            std::fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", shown(folder)))
+        }
+        None => Ok(()),
+    }
 }
 
 /// Metadata, where the format can hold them.
@@ -164,13 +212,18 @@ fn provenance(run: &Run) -> Vec<String> {
 fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<PathBuf> {
     let mut recording = Recording::open(dir.trace())?;
     if let Some(path) = &options.path {
-        let time = recording.channels.iter().filter(|c| c.name == "time_s").cloned();
+        let time = recording.channels.iter().filter(|c| c.name == TIME).cloned();
         let made = Transfer::read(path, place)?.at_sensor(&recording)?;
         recording.channels = time.chain(made).collect();
     }
-    let wanted = |c: &&Channel| {
+    // Whatever is chosen keeps its times: a run's first sample is not at zero.
+    let chosen = |c: &Channel| {
         options.channels.is_empty() || options.channels.iter().any(|part| c.name.contains(part))
     };
+    if !recording.channels.iter().any(chosen) {
+        bail!("no channel contains `{}`; the run has {}", options.channels.join("` or `"), recording.names());
+    }
+    let wanted = |c: &&Channel| c.name == TIME || chosen(c);
     let channels: Vec<Channel> = recording
         .channels
         .iter()
@@ -181,22 +234,11 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         Some(text) => recorded(&channels, text)?,
         None => channels,
     };
-    if channels.is_empty() {
-        bail!("no channel contains `{}`; the run has {}", options.channels.join("` or `"), recording.names());
-    }
-    let extension = match options.to {
-        Format::Csv => "csv",
-        Format::Npz => "npz",
-        Format::Mat => "mat",
-        Format::Uff => "uff",
-        Format::Parquet => "parquet",
-        Format::Wav | Format::Wav64 => "wav",
-        Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh => "",
-    };
-    let path = options.out.clone().unwrap_or_else(|| dir.path().join(format!("trace.{extension}")));
+    let path =
+        options.out.clone().unwrap_or_else(|| dir.path().join(format!("trace.{}", options.to.ending())));
     let notes = provenance(run);
     // A wave has no place for the time.
-    let no_time: Vec<Channel> = channels.iter().filter(|c| c.name != "time_s").cloned().collect();
+    let no_time: Vec<Channel> = channels.iter().filter(|c| c.name != TIME).cloned().collect();
     match options.to {
         Format::Csv => csv::write(&path, &channels, &notes)?,
         Format::Npz => npz::write(&path, &channels, &notes)?,
@@ -210,19 +252,24 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
     Ok(path)
 }
 
-/// The accelerations among the channels as a sensor records them.
+/// The accelerations among the channels as a sensor records them, after their times.
 fn recorded(channels: &[Channel], text: &str) -> Result<Vec<Channel>> {
-    let accelerations = channels.iter().filter(|c| c.name.ends_with("_m_s2"));
-    accelerations
-        .map(|channel| {
-            let rate_hz = channel.rate_hz.context("the run has no sample rate")?;
-            let sensor = sensor(text, rate_hz)?;
-            let samples = sensor.record(&channel.read()?, rate_hz)?;
-            Ok(Channel::held(&channel.name, samples)
-                .at_rate(Some(sensor.rate_hz))
-                .in_unit(channel.unit.clone()))
-        })
-        .collect()
+    let mut made = Vec::new();
+    for channel in channels.iter().filter(|c| c.name.ends_with("_m_s2")) {
+        let rate_hz = channel.rate_hz.context("the run has no sample rate")?;
+        let sensor = sensor(text, rate_hz)?;
+        let samples = sensor.record(&channel.read()?, rate_hz)?;
+        if let (true, Some(time)) = (made.is_empty(), channels.iter().find(|c| c.name == TIME)) {
+            let first = time.read()?.first().copied().unwrap_or_default();
+            let times = (0..samples.len()).map(|n| first + n as f64 / sensor.rate_hz).collect();
+            made.push(Channel::held(TIME, times).at_rate(Some(sensor.rate_hz)).in_unit(time.unit.clone()));
+        }
+        made.push(
+            Channel::held(&channel.name, samples).at_rate(Some(sensor.rate_hz)).in_unit(channel.unit.clone()),
+        );
+    }
+    ensure!(!made.is_empty(), "`--sensor` records accelerations, and none of the channels is one");
+    Ok(made)
 }
 
 /// A sensor by its flags; a missing one has no effect.

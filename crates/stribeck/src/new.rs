@@ -7,6 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::deviation::HOLLOW_FACETS;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::load_rating;
 use stribeck_scene::run_dir::write_atomic;
@@ -312,6 +313,17 @@ fn name(answers: &Answers) -> String {
 /// A scene with comments, and marks where the answers go.
 const SCENE: &str = include_str!("new/scene.ron");
 
+/// Length of a spall on a rolling element [mm]: 2, or as many facets as make a hollow in a large one.
+fn spall_of_an_element_mm(answers: &Answers) -> f64 {
+    let sound = Answers { bearing: answers.bearing.clone(), defect: Where::None, ..*answers };
+    let least = Scene::parse(&text("sound", &sound), "sound.ron").map_or(0.0, |scene| {
+        let facet_mm =
+            std::f64::consts::PI * scene.bearing.roller_diameter_mm / scene.mesh.roller_facets as f64;
+        HOLLOW_FACETS * facet_mm
+    });
+    f64::max(2.0, (10.0 * least).ceil() / 10.0)
+}
+
 /// The scene with its comments.
 fn text(name: &str, answers: &Answers) -> String {
     let Answers { bearing, load_n, speed_rpm, defect, duration_s } = answers;
@@ -324,8 +336,10 @@ fn text(name: &str, answers: &Answers) -> String {
         Where::Roller => (
             "with a spall on a rolling element",
             "How long the spall is along the surface, and how deep.",
-            "defect: None,\n    defects: [(on: roller(1), form: spall(length_mm: 2, depth_mm: 0.05))],"
-                .to_owned(),
+            format!(
+                "defect: None,\n    defects: [(on: roller(1), form: spall(length_mm: {}, depth_mm: 0.05))],",
+                spall_of_an_element_mm(answers)
+            ),
         ),
         Where::Outer | Where::Inner => (
             if *defect == Where::Outer {
@@ -357,7 +371,7 @@ mod tests {
 
     #[test]
     fn example_every_answer_makes_a_scene_that_can_be() {
-        for bearing in ["6205", "NU 205", "NU 205, elements=12", "6305"] {
+        for bearing in ["6205", "NU 205", "NU 205, elements=12", "6305", "6320", "NU 2320"] {
             for defect in [Where::Outer, Where::Inner, Where::Roller, Where::None] {
                 let of = answers(bearing, defect);
                 let scene = Scene::parse(&text(&name(&of), &of), "new.ron").expect(bearing);

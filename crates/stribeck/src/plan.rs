@@ -205,9 +205,10 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
             inner.lambda
         );
     }
-    let k = &Kinematics::of(&scene.written);
+    let k = &Kinematics::at_mean_speed(&scene.written);
+    let speed = if scene.written.operation.speed_varies() { " at the mean speed" } else { "" };
     say!(
-        "  families, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as often), FTF \
+        "  families{speed}, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as often), FTF \
          {:.2}, shaft {:.2}",
         k.bpfo_hz,
         k.bpfi_hz,

@@ -33,7 +33,8 @@ pub struct Options {
     /// Files kept of each run once its summary exists
     #[arg(long, value_enum, default_value_t = Kept::All)]
     keep: Kept,
-    /// Folder [default: runs/NAME-by-FIELD]; the same command continues, and other values are added
+    /// Folder [default: runs/NAME-by-FIELD]; the same command continues; with other values its tables are
+    /// theirs, and runs that are there are used where they occur again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -44,7 +45,7 @@ pub struct Options {
 }
 
 /// Files kept of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
 enum Kept {
     /// Everything
     All,
@@ -52,6 +53,17 @@ enum Kept {
     Signals,
     /// No samples
     Numbers,
+}
+
+impl Kept {
+    /// As a campaign's file has it.
+    fn whole(self) -> Keep {
+        match self {
+            Self::All => Keep::All,
+            Self::Signals => Keep::Signals,
+            Self::Numbers => Keep::Numbers,
+        }
+    }
 }
 
 /// The first words of a file that this command wrote, which it may replace.
@@ -113,7 +125,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         swept[1..].iter().map(|a| format!(" × {} of {}", a.values.len(), a.field)).collect::<String>(),
         campaign.runs.len()
     );
-    make_way(&out)?;
+    make_way(&out, options.keep)?;
     carry_out(&campaign, out, options.share, None)
 }
 
@@ -197,14 +209,7 @@ fn text(
         text += &format!("    set: [{}],\n", common.join(", "));
     }
     text += &format!("    seed: {},\n    starts: {},\n", options.seed, options.starts);
-    text += &format!(
-        "    keep: {},\n    variants: grid([\n",
-        match options.keep {
-            Kept::All => word(Keep::All),
-            Kept::Signals => word(Keep::Signals),
-            Kept::Numbers => word(Keep::Numbers),
-        }
-    );
+    text += &format!("    keep: {},\n    variants: grid([\n", word(options.keep.whole()));
     for a in swept {
         let values: Vec<String> = a.values.iter().map(|value| as_ron(&a.field, value)).collect();
         text += &format!("        (field: {:?}, values: [{}]),\n", a.field, values.join(", "));
@@ -255,9 +260,23 @@ pub(crate) fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
 
 /// Removes the tables of an earlier sweep in this folder; its runs stay and are used where their scenes occur
 /// again.
-fn make_way(out: &Path) -> Result<()> {
+///
+/// # Errors
+/// When they kept less than `keep` asks for.
+fn make_way(out: &Path, keep: Kept) -> Result<()> {
     let text = std::fs::read_to_string(out.join(CAMPAIGN)).unwrap_or_default();
     if text.starts_with(WRITTEN_BY) {
+        let kept = [Kept::All, Kept::Signals, Kept::Numbers];
+        let before = kept.into_iter().find(|kept| text.contains(&format!("keep: {},", word(kept.whole()))));
+        if let Some(before) = before.filter(|before| *before > keep) {
+            bail!(
+                "runs in `{}` were made with `--keep {}`, and what `--keep {}` asks for is gone: give the same \
+                 `--keep`, or another `--out`",
+                shown(out),
+                word(before.whole()),
+                word(keep.whole())
+            );
+        }
         for file in [CAMPAIGN, SCENES] {
             match std::fs::remove_file(out.join(file)) {
                 Err(why) if why.kind() != std::io::ErrorKind::NotFound => {

@@ -380,6 +380,11 @@ fn issue_hints_are_those_of_their_command() {
     let still = desk.run(&["plan", "quick.ron", "--set=operation.speed_rpm=0", BEGINNING]);
     assert!(still.status.success() && !said(&still).contains("inf"), "{}", said(&still));
     says(&still, &["nothing turns"]);
+    // From 300 to 1200 rpm; families were those of 300 beside lines of facets at the mean.
+    let ramp = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/ramp.ron");
+    fs::copy(ramp, desk.0.join("ramp.ron")).expect("a scene");
+    let ramp = desk.run(&["plan", "ramp.ron", "--no-trial"]);
+    says(&ramp, &["families at the mean speed, without slip: BPFO 135.", "shaft 12.50"]);
 }
 
 /// A closed pipe, as after `| head`, ends a command quietly; a full disk is an error.

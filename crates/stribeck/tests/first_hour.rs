@@ -216,6 +216,20 @@ fn example_a_sweep_has_a_page_and_takes_further_values() {
     assert_eq!(runs(), 2);
     says(&sweep("20000,30000,40000"), &["3 runs, 1 of them to be run here", "3 of 3 runs are complete"]);
     assert_eq!(runs(), 3);
+    // Other values: the tables are theirs, and the runs stay for whoever asks for them again.
+    says(&sweep("20000,50000"), &["2 runs, 1 of them to be run here"]);
+    says(&sweep("20000,30000,40000"), &["3 runs, 0 of them to be run here"]);
+    assert_eq!(runs(), 4);
+    let fewer = [
+        &["sweep", "quick.ron", "--keep=numbers", "--set=operation.load_n=60000,70000", "--out=few"][..],
+        &COARSE,
+    ]
+    .concat();
+    desk.succeeds(&fewer);
+    let more =
+        [&["sweep", "quick.ron", "--set=operation.load_n=60000,70000", "--out=few"][..], &COARSE].concat();
+    desk.refuses(&more, &["made with `--keep numbers`", "give the same `--keep`"]);
+    says(&desk.succeeds(&fewer), &["2 runs, 0 of them to be run here"]);
     // Names that a person can read lead to the runs, and commands take them.
     let named = |name: &str| desk.0.join(folder).join("by_name").join(name);
     assert!(

@@ -21,6 +21,24 @@ fn knocks(rate_hz: f64) -> Vec<f64> {
         .collect()
 }
 
+/// The first number whose name has `rpm` in it was the speed, `max_rpm` beside `rpm`, too, and 0 was one.
+#[test]
+fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
+    let desk = Scratch::create("measured-rpm");
+    for (numbers, says) in [
+        (&[("max_rpm", 6000.0), ("rpm", 1200.0)][..], "the speed of 1200 rpm is that of `rpm`"),
+        (&[("rpm_a", 1200.0), ("rpm_b", 0.0)], "the speed of 1200 rpm is that of `rpm_a`"),
+        (&[("rpm_a", 1200.0), ("rpm_b", 900.0)], "`rpm_a` is 1200 and `rpm_b` is 900: which is the speed"),
+    ] {
+        let mut channels = vec![Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0))];
+        channels.extend(numbers.iter().map(|(name, rpm)| Channel::held(*name, vec![*rpm])));
+        mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
+        let words = ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing"];
+        let text = said(&stribeck(desk.path(), &words));
+        assert!(text.contains(says), "{text}");
+    }
+}
+
 #[test]
 fn example_a_record_gives_a_verdict_findings_and_a_page() {
     let desk = Scratch::create("measured");
@@ -119,6 +137,27 @@ fn example_a_run_is_exported_and_read_back() {
         // A universal file has thirteen digits.
         assert!(ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= 5e-13 * b.abs()), "{format}");
     }
+    // The first sample is not at zero, whatever is chosen, and in a sensor's record neither.
+    let first = trace.channel("time_s").unwrap().read().unwrap()[0];
+    for more in
+        [&["--channel=roller.1"][..], &["--sensor=", "--channel=ay"], &["--sensor=rate_hz=20000"], &[]]
+    {
+        let words = [&["export", "quick", "--to=csv", "--out=tables/some.csv"], more].concat();
+        let output = stribeck(desk.path(), &words);
+        assert!(output.status.success(), "{more:?}: {}", said(&output));
+        let table = Recording::open(desk.join("tables/some.csv")).unwrap();
+        assert_eq!(table.channel("time_s").unwrap().read().unwrap()[0], first, "{more:?}");
+    }
+    // What no export has made is not written over.
+    for out in ["runs/quick/scene.ron", "runs/quick/trace.npy", "runs", "quick.ron"] {
+        let before = std::fs::read(desk.join(out)).ok();
+        let output = stribeck(desk.path(), &["export", "quick", "--to=csv", "--out", out]);
+        assert!(!output.status.success(), "{out}");
+        says(&output, &["is there and is no `.csv` file"]);
+        assert_eq!(std::fs::read(desk.join(out)).ok(), before, "{out}");
+    }
+    let output = stribeck(desk.path(), &["export", "quick", "--to=pvd", "--out=runs/quick"]);
+    says(&output, &["is the folder of a run"]);
     for word in ["pvd", "vtu"] {
         let output = stribeck(desk.path(), &["export", "quick", "--to", word]);
         assert!(output.status.success(), "{}", said(&output));

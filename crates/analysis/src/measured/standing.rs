@@ -38,9 +38,9 @@ pub(super) fn look(
     let mut family = Family::expected(name, expected_hz);
     if segment_s * comb_hz < PERIODS {
         family.reason = Reason::Decided(format!(
-            "the record of {record_s:.2} s holds {:.1} periods; {:.1} s would hold the ten that are needed",
-            record_s * comb_hz,
-            PERIODS / comb_hz
+            "the record of {record_s:.2} s holds {:.2} periods; {:.2} s would hold the ten that are needed",
+            (100.0 * record_s * comb_hz).floor() / 100.0,
+            (100.0 * PERIODS / comb_hz).ceil() / 100.0
         ));
         return (family, None);
     }

@@ -65,3 +65,18 @@ fn example_segments_are_smooth_and_fit() {
     assert_eq!(BandEnvelopes::segment_of(92_160_000, 1 << 19), 1 << 19);
     assert_eq!(BandEnvelopes::segment_of(1, 1 << 19), 1);
 }
+
+/// A band up to half the sample rate was said to end half a line above it, or by a rounding, which whoever
+/// filters by it refuses.
+#[test]
+fn issue_no_band_ends_above_half_the_sample_rate() {
+    for (rate_hz, segment) in [(10_000.0, 1_001), (10_000.0, 999), (12_800.0, 44_757), (11_520.1, 9_999)] {
+        for segment in segment..segment + 20 {
+            let half = 0.5 * rate_hz;
+            let mut plan = BandEnvelopes::new(rate_hz, segment, &[(0.5 * half, half)], 500.0).unwrap();
+            plan.add(&modulated(0.6, segment)).unwrap();
+            let high_hz = plan.bands()[0].high_hz;
+            assert!(high_hz <= half && high_hz > 0.99 * half, "{segment} samples: {high_hz} of {half} Hz");
+        }
+    }
+}

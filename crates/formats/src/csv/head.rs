@@ -69,12 +69,25 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
         let number = number.trim_end_matches([',', '.']);
         // The head may have another decimal sign than the table.
         let plain = |text: &str| text.parse().ok();
+        let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || word.ends_with("Hz"));
+        // `12,800 Hz` are thousands; where the table has decimal commas it may be either, and so may `12.800`.
+        let groups = |sign: char| {
+            let (whole, rest) = number.split_once(sign)?;
+            let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());
+            let fits = (1..=3).contains(&whole.len()) && !whole.starts_with('0') && rest.len() == 3;
+            (fits && digits(whole) && digits(rest)).then(|| format!("{whole}{rest}"))
+        };
+        let in_hz = unit.is_some_and(|unit| unit.trim_end_matches(['.', ',', ';']) == "Hz");
+        if in_hz && dialect.decimal_comma && (groups(',').is_some() || groups('.').is_some()) {
+            return None;
+        }
+        let thousands = groups(',').filter(|_| in_hz);
+        let number = thousands.as_deref().unwrap_or(number);
         let value = plain(number).or_else(|| dialect.number(number));
         let value = value.or_else(|| plain(&number.replacen(',', ".", 1)));
         // Fields of the table may stand behind it.
         let field = || number.split_once(dialect.separator).filter(|_| dialect.separator == ',');
         let value = value.or_else(|| plain(field()?.0))?;
-        let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || word.ends_with("Hz"));
         // A word that is no unit may be one that is not known; a sentence goes on behind a comma or a point.
         let alone = behind.trim().is_empty() || unit.is_some() || behind.starts_with(['\t', ';', ',']);
         alone.then(|| units::rate_hz(key, unit, value)).flatten()

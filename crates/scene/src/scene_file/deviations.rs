@@ -7,7 +7,9 @@ use super::finding::{Finding, Remedy};
 use super::geometry::MAX_DEFECT_DEPTH_RATIO;
 use super::ring_meshes;
 use super::wording::{number, round_down, round_up};
-use crate::deviation::{DeviationScene, Edge, FormScene, PointScene, RollingSurface, SpallScene};
+use crate::deviation::{
+    DeviationScene, Edge, FormScene, HOLLOW_FACETS, PointScene, RollingSurface, SpallScene,
+};
 use crate::faults::rolling_circle;
 use crate::scene::Scene;
 
@@ -17,8 +19,7 @@ const STEEPEST: f64 = 0.4;
 /// Steepest slope under an oil film; by steeper ones runs with oil end in a wrong balance of energy.
 const GENTLE: f64 = 0.08;
 
-/// Facets that a hollow needs at least, and a wave.
-const HOLLOW_FACETS: f64 = 4.0;
+/// Facets that a wave needs at least.
 const WAVE_FACETS: f64 = 6.0;
 
 /// Longest part of a surface that one of them takes: half a raceway, a quarter of a roller.

@@ -95,12 +95,18 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         // none.
         let thickness_mm = tidy(thickness_of_balls(scene));
         if thickness_mm < THINNEST_MM {
+            let rating_n = load_rating::static_rating_n(scene);
+            if scene.operation.load_n < rating_n {
+                return Err(format!(
+                    "a cylinder that gives way under `operation.load_n` = {:e} N as the balls of `{}` do would \
+                     be thinner than {THINNEST_MM} mm. Take more load",
+                    scene.operation.load_n, known.name
+                ));
+            }
             return Err(format!(
                 "the balls of `{}` are pressed flat under `operation.load_n` = {:e} N: its static rating is \
                  {:.0} N by ISO 76, and no cylinder gives way as they would. Take less load",
-                known.name,
-                scene.operation.load_n,
-                load_rating::static_rating_n(scene)
+                known.name, scene.operation.load_n, rating_n
             ));
         }
         scene.bearing.thickness_mm = thickness_mm;

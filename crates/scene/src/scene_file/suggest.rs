@@ -81,7 +81,7 @@ pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> Option<Stri
     if let Some(name) = siblings.iter().find(|name| split_unit(name).0 == stem) {
         return Some(match (unit, split_unit(name).1) {
             (None, Some(_)) => format!("did you mean `{name}`? The unit is part of the name"),
-            (Some(ours), Some(theirs)) if ours.1 == theirs.1 => {
+            (Some(ours), Some(theirs)) if ours.1 == theirs.1 && ours.2 != theirs.2 => {
                 let factor = number(ours.2 / theirs.2);
                 format!("did you mean `{name}`? 1 in `{found}` is {factor} in `{name}`")
             }
