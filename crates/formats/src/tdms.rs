@@ -14,6 +14,7 @@ use crate::curve::along;
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
 use crate::strided::{Pieces, Strided};
+use crate::units::seconds;
 use crate::{Error, Recording, Result, units};
 
 const FORMAT: &str = "TDMS";
@@ -44,7 +45,9 @@ struct Object {
     /// Values in a chunk, and the bytes that they take.
     count: u64,
     bytes: u64,
-    increment_s: Option<f64>,
+    /// Time from sample to sample, in seconds or in the unit beside it.
+    increment: Option<f64>,
+    increment_unit: Option<String>,
     /// Sample rate by a property such as `SamplingRate` [Hz].
     rate_hz: Option<f64>,
     unit: Option<String>,
@@ -148,7 +151,8 @@ pub fn open(path: &Path) -> Result<Recording> {
                 continue;
             }
         };
-        let step = object.increment_s.filter(|s| *s > 0.0).map(|s| 1.0 / s).map(rounded);
+        let second = object.increment_unit.as_deref().and_then(seconds).map_or(1.0, |(_, second)| second);
+        let step = object.increment.filter(|step| *step > 0.0).map(|step| rounded(1.0 / (step * second)));
         let rate_hz = step.or(object.rate_hz).or_else(|| said.get(group).or(said.get("/")).copied());
         let channel = Pieces(object.pieces).channel(name).at_rate(rate_hz).in_unit(object.unit);
         channels.push(along(channel, curve).of_group(group));
@@ -287,6 +291,8 @@ impl Metadata<'_> {
                     let value = self.text()?;
                     if property == "unit_string" && !value.is_empty() {
                         object.unit = Some(value);
+                    } else if property == "wf_xunit_string" {
+                        object.increment_unit = Some(value);
                     } else if property.starts_with("NI_") {
                         object.scales.insert(property, Property::Text(value));
                     }
@@ -295,7 +301,7 @@ impl Metadata<'_> {
                     let bytes = self.take(width(kind)?)?;
                     let value = number.map(|n| n.decode(bytes));
                     if property == "wf_increment" {
-                        object.increment_s = value;
+                        object.increment = value;
                     } else if let Some(hz) = value.and_then(|x| units::rate_hz(&property, None, x)) {
                         object.rate_hz = Some(hz);
                     } else if let (Some(number), true) = (number, property.starts_with("NI_")) {

@@ -9,6 +9,7 @@ use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::number::{Kind, Number};
+use crate::units::seconds;
 use crate::{Channel, Error, Recording, Result};
 pub use frf::{Frf, Per, responses};
 
@@ -228,6 +229,9 @@ impl Dataset {
             }
             (values.chunks(2).take(count).map(|pair| pair[1]).collect(), 1.0 / step)
         };
+        // Some writers count in milliseconds, and say so.
+        let second = self.unit(7).and_then(|unit| seconds(&unit)).map_or(1.0, |(_, second)| second);
+        let rate_hz = rate_hz / second;
         // The increment has six digits: a rate is a round number more often than not.
         let round = (rate_hz * 10.0).round() / 10.0;
         let rate_hz = if (rate_hz / round - 1.0).abs() < 5e-6 { round } else { rate_hz };

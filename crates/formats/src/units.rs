@@ -170,16 +170,39 @@ impl Unit {
         let Some((_, last)) = end.rsplit_once(['[', '(', '_', '/', ' ', ',', ';', '.']) else {
             return Self::Unsaid;
         };
+        // A number in brackets counts columns.
+        if last.parse::<u32>().is_ok() {
+            return Self::Unsaid;
+        }
         let other = name.contains(['[', '(', ',', '/']) || TURNS.contains(&last.to_lowercase().as_str());
         time(last).unwrap_or(if other { Self::Other } else { Self::Unsaid })
     }
 }
 
+/// Units of frequency, in small letters [Hz].
+const FREQUENCIES: [(&str, f64); 12] = [
+    ("khz", 1e3),
+    ("mhz", 1e6),
+    ("ksps", 1e3),
+    ("hz", 1.0),
+    ("s/s", 1.0),
+    ("sa/s", 1.0),
+    ("samples/s", 1.0),
+    ("samples/sec", 1.0),
+    ("scans/s", 1.0),
+    ("scans/sec", 1.0),
+    ("ks/s", 1e3),
+    ("ksa/s", 1e3),
+];
+
+/// Whether a word is a unit of frequency.
+pub(crate) fn is_frequency(word: &str) -> bool {
+    FREQUENCIES.iter().any(|(unit, _)| *unit == bare(word))
+}
+
 /// The sample rate [Hz] of a number under a name, where the name is that of a rate or of a time step; its
 /// unit may stand in the name or beside it.
 pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64> {
-    /// Units of frequency [Hz].
-    const FREQUENCIES: [(&str, f64); 4] = [("khz", 1e3), ("mhz", 1e6), ("ksps", 1e3), ("hz", 1.0)];
     let key: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
     let beside = unit.map(bare).unwrap_or_default();
     let plain = |key: &str| RATES.contains(&key) && key != "rate";

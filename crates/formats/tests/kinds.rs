@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use stribeck_formats::Recording;
+use stribeck_formats::{Channel, Recording, uff58};
 use stribeck_testing::Scratch;
 
 const RATE_HZ: f64 = 12_800.0;
@@ -104,6 +104,20 @@ fn issue_one_column_stamps_and_headers_of_counts() {
     );
 }
 
+/// `n[0]`, as columns without names are called, was taken for a name with the unit `0`.
+#[test]
+fn issue_times_in_a_column_of_an_array_are_found() {
+    let desk = Scratch::create("formats-kinds-columns");
+    let mut header = "{'descr': '<f8', 'fortran_order': False, 'shape': (300, 2), }".to_owned();
+    header += &" ".repeat((64 - (10 + header.len() + 1) % 64) % 64);
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16 + 1).to_le_bytes());
+    bytes.extend((header + "\n").bytes());
+    bytes.extend((0..300).flat_map(|n| [n as f64 / RATE_HZ, signal(n)]).flat_map(f64::to_le_bytes));
+    let found = opened(&desk, "n.npy", &bytes);
+    assert_eq!(found.channels[1].rate_hz, Some(RATE_HZ), "{:?}: {:?}", found.names(), found.notes);
+}
+
 #[test]
 fn issue_records_of_numpy_have_any_names_and_padding() {
     let desk = Scratch::create("formats-kinds-npy");
@@ -171,6 +185,22 @@ fn issue_wav_whose_numbers_do_not_fill_their_bytes_is_refused() {
     }
 }
 
+/// Its step was taken for seconds, whatever its axis said.
+#[test]
+fn issue_steps_of_universal_files_have_the_unit_of_their_axis() {
+    let desk = Scratch::create("formats-kinds-axis");
+    let path = desk.join("a.uff");
+    let samples = (0..300).map(signal).collect();
+    uff58::write(&path, &[Channel::held("acc", samples).at_rate(Some(12.8))], &[]).unwrap();
+    let text = std::fs::read_to_string(&path).unwrap();
+    let axis = format!("{:<20} {:<20}", "Time", "s");
+    assert_eq!(text.matches(&axis).count(), 1, "{text}");
+    for (unit, rate_hz) in [("s", 12.8), ("ms", 12_800.0), ("NONE", 12.8)] {
+        let other = text.replace(&axis, &format!("{:<20} {unit:<20}", "Time"));
+        assert_eq!(opened(&desk, "b.uff", other.as_bytes()).channels[0].rate_hz, Some(rate_hz), "{unit}");
+    }
+}
+
 /// `12,800 Hz` was read as 12.8 Hz, and the 8 s of a whole record as the time between two samples.
 #[test]
 fn issue_a_rate_with_its_thousands_in_groups() {
@@ -181,9 +211,12 @@ fn issue_a_rate_with_its_thousands_in_groups() {
         ("Sample rate: 12,800 Hz", &rows, Some(12_800.0)),
         ("Sample rate: 12.800 kHz", &rows, Some(12_800.0)),
         ("Sample rate: 1,024,000 Hz", &rows, Some(1_024_000.0)),
+        ("Sample rate: 12800 Sa/s", &rows, Some(12_800.0)),
+        ("Sample rate: 12.8 kS/s", &rows, Some(12_800.0)),
+        ("Sample rate: 12800 samples/s", &rows, Some(12_800.0)),
         ("Sampling time: 8 s", &rows, None),
         ("Sampling time: 0.1 ms", &rows, Some(10_000.0)),
-        ("Sampling interval: 8 s", &rows, Some(0.1)),
+        ("Sampling interval: 8 s", &rows, Some(0.125)),
         // Either is thousands or a fraction there.
         ("Sample rate: 12,800 Hz", &comma, None),
         ("Sample rate: 12.800 Hz", &comma, None),

@@ -117,13 +117,17 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
         let mut largest: Vec<(f64, &&Row)> = known
             .iter()
             .filter_map(|row| Some((row.against_first.iter().flatten().find_map(|c| c.percent)?.abs(), row)))
+            .filter(|(percent, _)| *percent > 0.0)
             .collect();
         largest.sort_by(|a, b| b.0.total_cmp(&a.0));
         let named = largest.iter().take(NAMED).map(|(_, row)| row_in_words(row));
-        format!(
-            "Largest differences: {}. Each is a single signal, so change and scatter are not distinguished.",
-            named.collect::<Vec<_>>().join("; ")
-        )
+        match named.collect::<Vec<_>>().join("; ") {
+            none if none.is_empty() => "No number differs.".to_owned(),
+            named => format!(
+                "Largest differences: {named}. Each is a single signal, so change and scatter are not \
+                 distinguished."
+            ),
+        }
     } else if differ.is_empty() {
         format!("None of {} differs by more than the starts scatter.", count(known.len(), "number"))
     } else {

@@ -208,8 +208,8 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
     let k = &Kinematics::at_mean_speed(&scene.written);
     let speed = if scene.written.operation.speed_varies() { " at the mean speed" } else { "" };
     say!(
-        "  families{speed}, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as often), FTF \
-         {:.2}, shaft {:.2}",
+        "  families{speed}, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as \
+         often), FTF {:.2}, shaft {:.2}",
         k.bpfo_hz,
         k.bpfi_hz,
         k.bsf_hz,
@@ -223,7 +223,8 @@ fn record(scene: &ResolvedScene, plan: &Plan) {
     let samples = 1e3 * scene.written.solver.duration_ms / scene.written.output.interval_us;
     say!("  the trace takes {:.3} GB", 8e-9 * samples * channels::names(scene).len() as f64);
     say!("  {:.1} elements in a Rayleigh wave at half the sampling rate", plan.elements_per_wavelength);
-    say!("  the record resolves {:.1} Hz", plan.resolution_hz);
+    let digits = if plan.resolution_hz < 0.1 { 5 } else { 1 };
+    say!("  the record resolves {:.digits$} Hz", plan.resolution_hz);
     if let Some(needed) = plan.separating_s {
         say!("  {:.0} ms separate the closest two lines", 1e3 * needed);
     }

@@ -112,6 +112,11 @@ fn example_runs_and_an_ensemble_beside_each_other() {
     }
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
 
+    says(
+        &desk.succeeds(&["compare", "a", "a", "--out=same"]),
+        &["The scenes are the same", "No number differs"],
+    );
+
     // The run is one of the ensemble's scene, and has its forces within their scatter or not, which is said.
     desk.succeeds(&["compare", "c", "a", "b", "--out=all"]);
     let found = desk.json("all/compare.json");

@@ -69,7 +69,7 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
         let number = number.trim_end_matches([',', '.']);
         // The head may have another decimal sign than the table.
         let plain = |text: &str| text.parse().ok();
-        let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || word.ends_with("Hz"));
+        let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || units::is_frequency(word));
         // `12,800 Hz` are thousands; where the table has decimal commas it may be either, and so may `12.800`.
         let groups = |sign: char| {
             let (whole, rest) = number.split_once(sign)?;

@@ -65,6 +65,18 @@ pub(crate) const F64: u32 = 10;
 const I16: u32 = 2;
 
 #[test]
+fn issue_steps_of_tdms_in_milliseconds_are_no_seconds() {
+    let desk = Scratch::create("formats-tdms-milliseconds");
+    let data: Vec<u8> = (0..COUNT).flat_map(|n| signal(n).to_le_bytes()).collect();
+    for (unit, second) in [("s", 1.0), ("ms", 1e3), ("us", 1e6), ("", 1.0)] {
+        let step = [("wf_increment", Is::Number(second / RATE_HZ)), ("wf_xunit_string", Is::Text(unit))];
+        let object = tdms_object("/'g'/'acc'", &Index::Of(F64, COUNT as u64), &step);
+        let found = opened(&desk, "a.tdms", &tdms_segment(&[object], true, &data));
+        assert_eq!(found.channel("g/acc").unwrap().rate_hz, Some(RATE_HZ), "{unit}");
+    }
+}
+
+#[test]
 fn issue_scales_of_tdms_are_applied_or_named() {
     let desk = Scratch::create("formats-tdms-scales");
     let counts: Vec<u8> = (0..COUNT).flat_map(|n| ((1000.0 * signal(n)) as i16).to_le_bytes()).collect();

@@ -20,7 +20,7 @@ pub(super) fn without(channel: &Channel, notes: &mut Vec<String>) -> Result<Whol
     let (mut missing, mut first, mut n) = (0_u64, 0_u64, 0_u64);
     channel.for_each_block(|block| {
         for x in block {
-            if x.is_nan() {
+            if !x.is_finite() {
                 first = if missing == 0 { n } else { first };
                 missing += 1;
             }
@@ -65,7 +65,7 @@ fn stretch(samples: &mut [f64]) -> (usize, usize) {
     let mut gaps: Vec<(usize, usize)> = Vec::new();
     for (n, x) in samples.iter().enumerate() {
         match gaps.last_mut() {
-            _ if !x.is_nan() => {}
+            _ if x.is_finite() => {}
             Some((_, until)) if *until == n => *until += 1,
             _ => gaps.push((n, n + 1)),
         }
@@ -99,7 +99,7 @@ mod tests {
         assert_eq!(samples[500..502], [500.0, 501.0]);
         samples[100..200].fill(f64::NAN);
         assert_eq!(stretch(&mut samples), (200, 1000));
-        samples[999] = f64::NAN;
+        samples[999] = f64::INFINITY;
         assert_eq!(stretch(&mut samples), (200, 999));
     }
 }
