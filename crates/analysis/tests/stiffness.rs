@@ -183,8 +183,8 @@ fn invariant_series_and_mirror() {
     assert!(k.least <= k.mean && k.mean <= k.most && k.variation() > 0.0);
 }
 
-/// Light loads beside the clearance and beside centrifugal forces, which press with up to hundreds of newtons:
-/// the search found no equilibrium below 200 N at 1500/min. What more load shifts, the stiffness holds.
+/// Light loads beside the clearance and beside centrifugal forces of up to hundreds of newtons: the search
+/// found no equilibrium below 200 N at 1500/min. What more load shifts, the stiffness holds.
 #[test]
 fn issue_light_loads_have_a_stiffness_at_any_speed() {
     for (bearing, law) in [

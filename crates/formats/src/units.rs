@@ -217,7 +217,7 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     let step = || {
         if STEPS.contains(&key.as_str()) {
             let second = if beside.is_empty() { 1.0 } else { seconds(&beside)?.1 };
-            // A step in another unit than seconds is not used; a sampling time may be that of the whole record.
+            // A step in another unit than seconds is not used. A sampling time may be the whole record's.
             let may_be_long = !beside.is_empty() && !matches!(key.as_str(), "sampletime" | "samplingtime");
             return (may_be_long || value * second <= SLOWEST_S).then_some(value * second);
         }

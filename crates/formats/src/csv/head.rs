@@ -70,7 +70,7 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
         // The head may have another decimal sign than the table.
         let plain = |text: &str| text.parse().ok();
         let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || units::is_frequency(word));
-        // `12,800 Hz` are thousands; where the table has decimal commas it may be either, and so may `12.800`.
+        // `12,800 Hz` are thousands. Where the table has decimal commas it may be either, as may `12.800`.
         let groups = |sign: char| {
             let (whole, rest) = number.split_once(sign)?;
             let digits = |text: &str| text.bytes().all(|b| b.is_ascii_digit());

@@ -98,8 +98,8 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
             let rating_n = load_rating::static_rating_n(scene);
             if scene.operation.load_n < rating_n {
                 return Err(format!(
-                    "a cylinder that gives way under `operation.load_n` = {:e} N as the balls of `{}` do would \
-                     be thinner than {THINNEST_MM} mm. Take more load",
+                    "a cylinder that gives way under `operation.load_n` = {:e} N as the balls of `{}` do \
+                     would be thinner than {THINNEST_MM} mm. Take more load",
                     scene.operation.load_n, known.name
                 ));
             }
