@@ -47,6 +47,9 @@ struct Extreme {
     /// Samples in a row at the value, now and at most.
     row: u64,
     longest: u64,
+    /// Samples at the value, and the largest value below it.
+    total: u64,
+    next: Option<f64>,
     /// The largest values with their places, ascending.
     largest: Vec<(f64, u64)>,
 }
@@ -115,8 +118,35 @@ impl Screening {
                 ));
             }
         }
-        notes.extend(self.spurious(rate_hz));
+        match self.spurious(rate_hz) {
+            Some(note) => notes.push(note),
+            None => notes.extend(self.marks()),
+        }
         notes
+    }
+
+    /// Notes on a value that several samples have exactly and that lies farther from all others than these
+    /// from each other, by [`FAR`]: what a recorder writes where it has no sample.
+    fn marks(&self) -> Vec<String> {
+        let origin = self.origin.unwrap_or(0.0);
+        let sides = [(&self.highest, &self.lowest, 1.0), (&self.lowest, &self.highest, -1.0)];
+        let is_mark = |this: &Extreme, other: &Extreme| {
+            this.total > 1 && this.next.is_some_and(|next| this.value - next > FAR * (next + other.value))
+        };
+        let found = sides.into_iter().filter(|(this, other, _)| is_mark(this, other));
+        found
+            .map(|(this, _, sign)| {
+                // Without the rounding of the difference.
+                let value = origin + sign * this.value;
+                let mark = format!("{value:.9e}").parse().unwrap_or(value);
+                format!(
+                    "{} samples are exactly {mark:?}, ten times as far from all others as these are from each \
+                     other: probably the mark of a missing sample, which looks like a knock. Leave the \
+                     field empty in their place",
+                    this.total
+                )
+            })
+            .collect()
     }
 
     /// A note on samples far beyond all others that do not ring.
@@ -207,12 +237,15 @@ impl Extreme {
             }
         }
         if value > self.value || self.longest == 0 {
-            (self.value, self.row, self.longest) = (value, 1, 1);
+            self.next = (self.longest > 0).then_some(self.value);
+            (self.value, self.row, self.longest, self.total) = (value, 1, 1, 1);
         } else if value == self.value {
             self.row += 1;
+            self.total += 1;
             self.longest = self.longest.max(self.row);
         } else {
             self.row = 0;
+            self.next = Some(self.next.map_or(value, |next| next.max(value)));
         }
     }
 }
@@ -242,6 +275,25 @@ mod tests {
                 noise.uniform() + height * ring
             })
             .collect()
+    }
+
+    /// Fifteen samples of −9999 made a verdict of knocks, without a word.
+    #[test]
+    fn issue_marks_of_missing_samples_are_named() {
+        let clean = knocks(700, 8.0, 0.2, 20.0);
+        for mark in [-9999.0, 1e30] {
+            let mut samples = clean.clone();
+            samples.iter_mut().skip(300).step_by(3500).for_each(|x| *x = mark);
+            let count = samples.iter().filter(|x| **x == mark).count();
+            let said = notes(&samples);
+            assert!(
+                said.contains(&format!("{count} samples are exactly")) && !said.contains("ring"),
+                "{said}"
+            );
+        }
+        // What a converter rounds has equal peaks, and knocks stand far out.
+        let rounded: Vec<f64> = clean.iter().map(|x| x.round()).collect();
+        assert!(!notes(&rounded).contains("exactly"), "{}", notes(&rounded));
     }
 
     /// A spike of one sample, or of a few places, on any side; in the first one, too.
