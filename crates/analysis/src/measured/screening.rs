@@ -140,8 +140,8 @@ impl Screening {
                 let value = origin + sign * this.value;
                 let mark = format!("{value:.9e}").parse().unwrap_or(value);
                 format!(
-                    "{} samples are exactly {mark:?}, ten times as far from all others as these are from each \
-                     other: probably the mark of a missing sample, which looks like a knock. Leave the \
+                    "{} samples are exactly {mark:?}, ten times as far from all others as these are from \
+                     each other: probably the mark of a missing sample, which looks like a knock. Leave the \
                      field empty in their place",
                     this.total
                 )
