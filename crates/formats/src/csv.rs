@@ -92,7 +92,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     if first == 0 && lie_across(&rows, columns) {
         return across(path, &rows, dialect);
     }
-    let rate_hz = head::rate_hz(&start[..first], dialect);
+    let commas = dialect.decimal_comma && start[first..].iter().any(|line| line.contains(','));
+    let rate_hz = head::rate_hz(&start[..first], dialect, commas);
     let numbers = columns_of_numbers(rows.first().map_or("", |row| row.as_str()), dialect);
     while first > 0
         && (is_damaged_row(&start[first - 1], dialect, columns)

@@ -170,8 +170,8 @@ impl Unit {
         let Some((_, last)) = end.rsplit_once(['[', '(', '_', '/', ' ', ',', ';', '.']) else {
             return Self::Unsaid;
         };
-        // A number in brackets counts columns.
-        if last.parse::<u32>().is_ok() {
+        // `n[0]` counts columns.
+        if name.ends_with(']') && last.parse::<u32>().is_ok() {
             return Self::Unsaid;
         }
         let other = name.contains(['[', '(', ',', '/']) || TURNS.contains(&last.to_lowercase().as_str());
@@ -195,9 +195,10 @@ const FREQUENCIES: [(&str, f64); 12] = [
     ("ksa/s", 1e3),
 ];
 
-/// Whether a word is a unit of frequency.
-pub(crate) fn is_frequency(word: &str) -> bool {
-    FREQUENCIES.iter().any(|(unit, _)| *unit == bare(word))
+/// The hertz of a unit of frequency.
+pub(crate) fn hertz(word: &str) -> Option<f64> {
+    let word = bare(word);
+    FREQUENCIES.iter().find(|(unit, _)| *unit == word).map(|(_, hz)| *hz)
 }
 
 /// The sample rate [Hz] of a number under a name, where the name is that of a rate or of a time step; its
@@ -207,23 +208,25 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     let beside = unit.map(bare).unwrap_or_default();
     let plain = |key: &str| RATES.contains(&key) && key != "rate";
     let rate = if plain(&key) {
-        let of_unit = FREQUENCIES.iter().find(|(unit, _)| *unit == beside).map(|(_, hz)| *hz);
         // In an unknown unit it is ignored.
-        Some(value * if beside.is_empty() { 1.0 } else { of_unit? })
+        Some(value * if beside.is_empty() { 1.0 } else { hertz(&beside)? })
     } else {
         let of_name = FREQUENCIES.iter().find_map(|(unit, hz)| Some((key.strip_suffix(unit)?, *hz)));
         of_name.filter(|(key, _)| RATES.contains(key)).map(|(_, hz)| value * hz)
     };
+    // A sampling time in seconds may be that of the whole record.
+    let is_step = |key: &str, second: f64| second < 1.0 || !matches!(key, "sampletime" | "samplingtime");
     let step = || {
         if STEPS.contains(&key.as_str()) {
             let second = if beside.is_empty() { 1.0 } else { seconds(&beside)?.1 };
-            // A step in another unit than seconds is not used. A sampling time may be the whole record's.
-            let may_be_long = !beside.is_empty() && !matches!(key.as_str(), "sampletime" | "samplingtime");
-            return (may_be_long || value * second <= SLOWEST_S).then_some(value * second);
+            // A step in another unit than seconds is not used.
+            return (!beside.is_empty() && is_step(&key, second) || value * second <= SLOWEST_S)
+                .then_some(value * second);
         }
         let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
         ends.filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
             .find(|(key, _)| STEPS.contains(key))
+            .filter(|(key, s)| is_step(key, *s) || value * s <= SLOWEST_S)
             .map(|(_, s)| value * s)
     };
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)

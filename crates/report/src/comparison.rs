@@ -116,17 +116,21 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
     } else if !scatter {
         let mut largest: Vec<(f64, &&Row)> = known
             .iter()
-            .filter_map(|row| Some((row.against_first.iter().flatten().find_map(|c| c.percent)?.abs(), row)))
-            .filter(|(percent, _)| *percent > 0.0)
+            .filter_map(|row| {
+                let percent = row.against_first.iter().flatten().filter_map(|c| c.percent);
+                Some((percent.map(f64::abs).max_by(f64::total_cmp)?, row))
+            })
             .collect();
         largest.sort_by(|a, b| b.0.total_cmp(&a.0));
         let named = largest.iter().take(NAMED).map(|(_, row)| row_in_words(row));
-        match named.collect::<Vec<_>>().join("; ") {
-            none if none.is_empty() => "No number differs.".to_owned(),
-            named => format!(
-                "Largest differences: {named}. Each is a single signal, so change and scatter are not \
-                 distinguished."
-            ),
+        if known.iter().all(|row| row.against_first.iter().flatten().all(|c| c.difference == 0.0)) {
+            "No number differs.".to_owned()
+        } else {
+            format!(
+                "Largest differences: {}. Each is a single signal, so change and scatter are not \
+                 distinguished.",
+                named.collect::<Vec<_>>().join("; ")
+            )
         }
     } else if differ.is_empty() {
         format!("None of {} differs by more than the starts scatter.", count(known.len(), "number"))

@@ -105,7 +105,8 @@ impl TurningRings {
         // error; that of a light load comes from the shift.
         let enough = |at: &Carried| {
             let rounding = 4.0 * f64::EPSILON * reach * (at.stiffness[0] + at.stiffness[2]);
-            at.unbalanced() <= TOLERANCE * load_n.max(at.largest_n).max(self.outwards_n) + rounding
+            let least = TOLERANCE * load_n.max(at.largest_n).max(self.outwards_n);
+            at.loaded > 0 && at.unbalanced() <= least + rounding
         };
         for _ in 0..MAX_ITERATIONS {
             if enough(&now) {

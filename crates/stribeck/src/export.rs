@@ -91,20 +91,20 @@ enum Format {
 }
 
 impl Format {
-    /// Ending of its files; a folder has none.
-    fn ending(self) -> &'static str {
+    /// Endings of its files, the usual one first; a folder has none.
+    fn endings(self) -> &'static [&'static str] {
         match self {
-            Self::Csv => "csv",
-            Self::Npz => "npz",
-            Self::Mat => "mat",
-            Self::Uff => "uff",
-            Self::Parquet => "parquet",
-            Self::Wav | Self::Wav64 => "wav",
-            Self::Vtkhdf => "vtkhdf",
-            Self::K => "k",
-            Self::Inp => "inp",
-            Self::Msh => "msh",
-            Self::Pvd => "",
+            Self::Csv => &["csv", "txt"],
+            Self::Npz => &["npz"],
+            Self::Mat => &["mat"],
+            Self::Uff => &["uff", "unv"],
+            Self::Parquet => &["parquet"],
+            Self::Wav | Self::Wav64 => &["wav"],
+            Self::Vtkhdf => &["vtkhdf", "hdf"],
+            Self::K => &["k", "key", "dyn"],
+            Self::Inp => &["inp"],
+            Self::Msh => &["msh"],
+            Self::Pvd => &[],
         }
     }
 
@@ -163,21 +163,19 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Refuses to write over what no export has made, and makes the folder of a new file.
+/// Refuses to write over a file of another kind, or into a run, and makes the folder of a new file.
 fn may_be_written(out: &Path, to: Format) -> Result<()> {
-    let ending = to.ending();
-    if ending.is_empty() {
-        ensure!(
-            !out.join("scene.ron").exists(),
-            "`{}` is the folder of a run: choose another `--out`",
-            shown(out)
-        );
+    let Some(usual) = to.endings().first() else {
+        let is_run = out.join("run.json").exists();
+        ensure!(!is_run, "`{}` is the folder of a run: choose another `--out`", shown(out));
         return Ok(());
-    }
-    let as_made = out.is_file() && out.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
+    };
+    // What is neither file nor folder is a device or a pipe.
+    let end = out.extension().map(|end| end.to_string_lossy().to_lowercase());
+    let fits = !out.is_file() || end.is_some_and(|end| to.endings().contains(&end.as_str()));
     ensure!(
-        !out.exists() || as_made,
-        "`{}` is there and is no `.{ending}` file: choose another `--out`, or remove it",
+        fits && !out.is_dir(),
+        "`{}` is there and is no `.{usual}` file: choose another `--out`, or remove it",
         shown(out)
     );
     match out.parent().filter(|folder| !folder.as_os_str().is_empty()) {
@@ -234,8 +232,10 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         Some(text) => recorded(&channels, text)?,
         None => channels,
     };
-    let path =
-        options.out.clone().unwrap_or_else(|| dir.path().join(format!("trace.{}", options.to.ending())));
+    let path = options
+        .out
+        .clone()
+        .unwrap_or_else(|| dir.path().join(format!("trace.{}", options.to.endings().first().unwrap_or(&""))));
     let notes = provenance(run);
     // A wave has no place for the time.
     let no_time: Vec<Channel> = channels.iter().filter(|c| c.name != TIME).cloned().collect();
@@ -268,7 +268,11 @@ fn recorded(channels: &[Channel], text: &str) -> Result<Vec<Channel>> {
             Channel::held(&channel.name, samples).at_rate(Some(sensor.rate_hz)).in_unit(channel.unit.clone()),
         );
     }
-    ensure!(!made.is_empty(), "`--sensor` records accelerations, and none of the channels is one");
+    ensure!(
+        !made.is_empty(),
+        "`--sensor` records accelerations, and none of the channels is one: leave `--channel` out, or \
+         choose some whose names end in `_m_s2`"
+    );
     Ok(made)
 }
 

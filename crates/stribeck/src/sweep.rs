@@ -270,8 +270,8 @@ fn make_way(out: &Path, keep: Kept) -> Result<()> {
         let before = kept.into_iter().find(|kept| text.contains(&format!("keep: {},", word(kept.whole()))));
         if let Some(before) = before.filter(|before| *before > keep) {
             bail!(
-                "runs in `{}` were made with `--keep {}`, and what `--keep {}` asks for is gone: give the \
-                 same `--keep`, or another `--out`",
+                "runs in `{}` were made with `--keep {}`, and what `--keep {}` asks for besides was \
+                 not kept: give the same `--keep`, or another `--out`",
                 shown(out),
                 word(before.whole()),
                 word(keep.whole())

@@ -28,7 +28,10 @@ fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
     for (numbers, says) in [
         (&[("max_rpm", 6000.0), ("rpm", 1200.0)][..], "the speed of 1200 rpm is that of `rpm`"),
         (&[("rpm_a", 1200.0), ("rpm_b", 0.0)], "the speed of 1200 rpm is that of `rpm_a`"),
-        (&[("rpm_a", 1200.0), ("rpm_b", 900.0)], "`rpm_a` is 1200 and `rpm_b` is 900: which is the speed"),
+        (
+            &[("rpm_a", 1200.0), ("rpm_b", 900.0)],
+            "`rpm_a` is 1200 and `rpm_b` is 900: neither is taken for the speed; give `--speed-rpm`",
+        ),
     ] {
         let mut channels = vec![Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0))];
         channels.extend(numbers.iter().map(|(name, rpm)| Channel::held(*name, vec![*rpm])));
@@ -148,7 +151,7 @@ fn example_a_run_is_exported_and_read_back() {
         let table = Recording::open(desk.join("tables/some.csv")).unwrap();
         assert_eq!(table.channel("time_s").unwrap().read().unwrap()[0], first, "{more:?}");
     }
-    // What no export has made is not written over.
+    // A file of another kind is not written over, and a run neither.
     for out in ["runs/quick/scene.ron", "runs/quick/trace.npy", "runs", "quick.ron"] {
         let before = std::fs::read(desk.join(out)).ok();
         let output = stribeck(desk.path(), &["export", "quick", "--to=csv", "--out", out]);

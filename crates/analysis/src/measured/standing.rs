@@ -36,6 +36,14 @@ pub(super) fn look(
     let times = name.shocks_per_period();
     let comb_hz = times * expected_hz;
     let mut family = Family::expected(name, expected_hz);
+    if segment_s * comb_hz < PERIODS && record_s * comb_hz >= PERIODS {
+        family.reason = Reason::Decided(format!(
+            "segments of {segment_s:.2} s, by which the record is judged, hold {:.2} periods, and \
+             ten are needed",
+            (100.0 * segment_s * comb_hz).floor() / 100.0
+        ));
+        return (family, None);
+    }
     if segment_s * comb_hz < PERIODS {
         family.reason = Reason::Decided(format!(
             "the record of {record_s:.2} s holds {:.2} periods; {:.2} s would hold the ten that are needed",

@@ -58,8 +58,9 @@ fn is_row_of_units(row: &[String]) -> bool {
 }
 
 /// The sample rate [Hz] that a line above the table says: `fs = 12800`, `Sample rate: 12.8 kHz`, `Delta_X`
-/// and the step behind a separator. Lines that contradict each other say nothing.
-pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
+/// and the step behind a separator. Lines that contradict each other say nothing. `commas` says that the
+/// table has decimal commas.
+pub(crate) fn rate_hz(head: &[String], dialect: Dialect, commas: bool) -> Option<f64> {
     let mut said = head.iter().filter_map(|line| {
         let line = line.trim_start_matches(|c: char| c.is_whitespace() || "#%\"".contains(c));
         let (key, rest) = line.split_once([':', '=', '\t', ';', ','])?;
@@ -69,7 +70,8 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
         let number = number.trim_end_matches([',', '.']);
         // The head may have another decimal sign than the table.
         let plain = |text: &str| text.parse().ok();
-        let unit = behind.split_whitespace().next().filter(|word| is_unit(word) || units::is_frequency(word));
+        let unit =
+            behind.split_whitespace().next().filter(|word| is_unit(word) || units::hertz(word).is_some());
         // `12,800 Hz` are thousands. Where the table has decimal commas it may be either, as may `12.800`.
         let groups = |sign: char| {
             let (whole, rest) = number.split_once(sign)?;
@@ -77,8 +79,11 @@ pub(crate) fn rate_hz(head: &[String], dialect: Dialect) -> Option<f64> {
             let fits = (1..=3).contains(&whole.len()) && !whole.starts_with('0') && rest.len() == 3;
             (fits && digits(whole) && digits(rest)).then(|| format!("{whole}{rest}"))
         };
-        let in_hz = unit.is_some_and(|unit| unit.trim_end_matches(['.', ',', ';']) == "Hz");
-        if in_hz && dialect.decimal_comma && (groups(',').is_some() || groups('.').is_some()) {
+        // Behind a comma several fields may follow.
+        let of_key =
+            || key.rsplit([' ', '[', '(', '_']).next().filter(|_| !line[key.len()..].starts_with(','));
+        let in_hz = unit.or_else(of_key).and_then(units::hertz) == Some(1.0);
+        if in_hz && commas && (groups(',').is_some() || groups('.').is_some()) {
             return None;
         }
         let thousands = groups(',').filter(|_| in_hz);

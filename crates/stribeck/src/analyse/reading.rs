@@ -350,27 +350,22 @@ pub(super) fn moves(channel: &Channel) -> bool {
 /// Speeds that vary by more than this part smear the fifth harmonic of a family over several lines.
 const STEADY: f64 = 0.01;
 
-/// The speed that the file says [1/min], and its name there: that of `rpm`, or the only one. Several that are
-/// equally good are noted, and none is taken.
-fn speed_in_file(recording: &Recording, notes: &mut Vec<String>) -> Result<Option<(f64, String)>> {
-    let mut said = Vec::new();
+/// The speeds that the file says [1/min], each with its name there: that of `rpm`, or all that differ.
+fn speed_in_file(recording: &Recording) -> Result<Vec<(f64, String)>> {
+    let mut said: Vec<(f64, String)> = Vec::new();
     for channel in recording.channels.iter().filter(|c| c.len == 1 && c.name.to_lowercase().contains("rpm")) {
         let rpm = channel.read()?.first().copied().unwrap_or(f64::NAN);
-        if rpm.is_finite() && rpm > 0.0 {
+        if !(rpm.is_finite() && rpm > 0.0) {
+            continue;
+        }
+        if channel.name.eq_ignore_ascii_case("rpm") {
+            return Ok(vec![(rpm, channel.name.clone())]);
+        }
+        if said.iter().all(|(other, _)| *other != rpm) {
             said.push((rpm, channel.name.clone()));
         }
     }
-    if let Some(own) = said.iter().find(|(_, name)| name.eq_ignore_ascii_case("rpm")) {
-        return Ok(Some(own.clone()));
-    }
-    if let Some(other) = said.iter().find(|(rpm, _)| *rpm != said[0].0) {
-        notes.push(format!(
-            "`{}` is {} and `{}` is {}: which is the speed is not said, and neither is taken",
-            said[0].1, said[0].0, other.1, other.0
-        ));
-        return Ok(None);
-    }
-    Ok(said.into_iter().next())
+    Ok(said)
 }
 
 /// The machine by the flags, and the times of whole turns, in samples, where the speed varies.
@@ -387,7 +382,7 @@ fn machine(
         (None, Some(scene)) => Some(CatalogueBearing::of_scene(scene)),
         (None, None) => None,
     };
-    let said = speed_in_file(recording, notes)?;
+    let said = speed_in_file(recording)?;
     let mut pulses = None;
     let samples = channel.len;
     let speed_rpm = if let Some(Speed::Of(rpm)) = options.speed_rpm {
@@ -441,16 +436,27 @@ fn machine(
         Some(turns.rpm)
     } else if let Some(scene) = scene {
         Some((scene.operation.speed_rpm - scene.operation.outer_speed_rpm).abs())
-    } else if let Some((rpm, name)) = &said {
-        notes.push(format!("the speed of {rpm} rpm is that of `{name}` in the file"));
-        Some(*rpm)
     } else {
-        None
+        match &said[..] {
+            [] => None,
+            [(rpm, name)] => {
+                notes.push(format!("the speed of {rpm} rpm is that of `{name}` in the file"));
+                Some(*rpm)
+            }
+            [(rpm, name), others @ ..] => {
+                let other = &others[0];
+                notes.push(format!(
+                    "`{name}` is {rpm} and `{}` is {}: neither is taken for the speed; give `--speed-rpm`",
+                    other.1, other.0
+                ));
+                None
+            }
+        }
     };
     let outer_speed_rpm = scene.map_or(0.0, Machine::outer_speed_rpm);
     // A measured speed, or that of a run, needs no correction.
     let nominal =
-        matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.is_some());
+        matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.len() == 1);
     let speed_is_exact = scene.is_some() || options.tacho.is_some() || !nominal;
     let machine = Machine {
         speed_rpm,
