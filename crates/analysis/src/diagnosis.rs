@@ -2,7 +2,7 @@
 //! on the record, beside the defects that the scene has.
 
 use serde::{Deserialize, Serialize};
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::deviation::RollingSurface;

@@ -12,7 +12,7 @@ pub enum Error {
     Signal(#[source] stribeck_dsp::Error),
     /// A file of signals cannot be read.
     #[error(transparent)]
-    File(#[from] stribeck_channel::Error),
+    File(#[from] stribeck_dsp::channel::Error),
     /// There is nothing to analyse.
     #[error("nothing to analyse: {0}")]
     NoSignal(String),

@@ -5,7 +5,7 @@
 //!
 //! ```
 //! use stribeck_analysis::measured::{Analysis, Defect, Machine};
-//! use stribeck_channel::Channel;
+//! use stribeck_dsp::channel::Channel;
 //! use stribeck_scene::catalogue::CatalogueBearing;
 //!
 //! // Knocks at 3.585 times 20 Hz that ring at 3 kHz, in noise.
@@ -67,7 +67,7 @@ mod verdict;
 pub mod zone;
 
 use serde::Serialize;
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelope, BandEnvelopes};
 use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 

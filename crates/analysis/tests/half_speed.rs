@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use stribeck_analysis::measured::{Analysis, Machine, MeasuredFindings};
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_testing::Noise;
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_formats::Recording;
 use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
 use stribeck_testing::Noise;

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use stribeck_analysis::measured::Machine;
 use stribeck_analysis::measured::sources::{Component, Sources, analyse, claimed};
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_testing::Noise;
 
 const RATE_HZ: f64 = 20_000.0;

@@ -1,7 +1,7 @@
 //! Tachometers as they are: pulses of any shape and height, wheels, angles, and speeds over time.
 
 use stribeck_analysis::measured::tacho::{Turns, of, of_angle, pulses, turns};
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 
 #[test]
 fn example_pulses_give_the_speed_between_samples() {

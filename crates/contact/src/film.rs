@@ -8,12 +8,12 @@ mod divided;
 
 use serde::{Deserialize, Serialize};
 
-use stribeck_film::{Bed, FilmLaw, Land, Layer, Oil, Place, Pushed, Spring, WIDEST};
 use stribeck_solver::{
     Force,
     force::RankOne,
     state::{Energy, Moment, NodeForces},
 };
+use stribeck_surface::film::{Bed, FilmLaw, Land, Layer, Oil, Place, Pushed, Spring, WIDEST};
 
 use stribeck_surface::{Error, Smoothing, Surface};
 

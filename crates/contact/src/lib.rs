@@ -94,7 +94,7 @@
 //! | How does a facet move, and gather forces? | `moving_facet.rs` |
 //! | What does a pass do, and what is its state from step to step? | `pass.rs`, `memory.rs` |
 //! | How do all pairs become one force? | `contacts.rs` |
-//! | And oil between surfaces? | `film.rs`, by the law of the crate [`stribeck_film`] |
+//! | And oil between surfaces? | `film.rs`, by the law of [`stribeck_surface::film`] |
 //!
 //! The hot loop is in `kernel/`:
 //!
@@ -129,7 +129,7 @@ pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use film::{FilmResultant, FilmSpec, FilmState, Films};
 pub use interactions::Interactions;
 pub use points::Method;
-pub use stribeck_film::{Bed, FilmLaw, Land, Layer, Oil, Place, Point, Pushed, Spring, WIDEST};
+pub use stribeck_surface::film::{Bed, FilmLaw, Land, Layer, Oil, Place, Point, Pushed, Spring, WIDEST};
 pub use stribeck_surface::{Error, Law, Projection, Smoothing, Surface, project};
 
 #[cfg(doctest)]

@@ -1,7 +1,9 @@
 //! Spectra, notch filters, envelopes and statistics of evenly sampled real signals, in double precision.
 //!
 //! The origin of a signal does not matter: a simulated acceleration and a measured voltage enter through the
-//! same `&[f64]`. Nothing is printed; every refusal is an [`Error`] with a remedy.
+//! same `&[f64]`, or, where a record is longer than memory, through a [`channel::Channel`], whose samples
+//! come in blocks from wherever they lie. Nothing is printed; every refusal is an [`Error`] with a remedy. It
+//! is a crate because nothing here depends on a bearing, a file or a simulation.
 //!
 //! # Conventions
 //!
@@ -49,6 +51,7 @@
 //! | a computed signal as a sensor and its recorder would have recorded it | [`Sensor`] |
 //! | how a signal sounds | [`Sound`] |
 //! | root mean square, crest factor, kurtosis | [`statistics`] |
+//! | a signal by name, unit and rate, wherever its samples lie | [`channel`] |
 //!
 //! `examples/knocks.rs` does all of it to one signal.
 //!
@@ -85,6 +88,8 @@
 //! # Ok(())
 //! # }
 //! ```
+
+pub mod channel;
 
 mod averages;
 mod error;

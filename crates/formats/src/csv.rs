@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 use dialect::{Dialect, Field};
 pub(crate) use lines::is_wide;
 use lines::{Coding, Lines};
-use stribeck_channel::Samples;
+use stribeck_dsp::channel::Samples;
 
 use crate::recording::{equal_lengths, left_out};
 use crate::units;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use stribeck_channel::Samples;
+use stribeck_dsp::channel::Samples;
 
 use crate::{Channel, Result};
 

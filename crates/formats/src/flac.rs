@@ -6,7 +6,7 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use claxon::FlacReader;
-use stribeck_channel::Samples;
+use stribeck_dsp::channel::Samples;
 
 use crate::{Channel, Error, Recording, Result};
 

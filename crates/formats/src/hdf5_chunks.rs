@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 use flate2::read::ZlibDecoder;
 use hdf5_pure::Dataset;
-use stribeck_channel::Samples;
+use stribeck_dsp::channel::Samples;
 
 use crate::number::Number;
 use crate::{Error, Result};

@@ -51,7 +51,7 @@ pub mod wav;
 
 pub use number::{Kind, Number};
 pub use recording::Recording;
-pub use stribeck_channel::{Channel, Error, Result};
+pub use stribeck_dsp::channel::{Channel, Error, Result};
 pub use time::says_time;
 
 #[cfg(doctest)]

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flate2::read::ZlibDecoder;
-use stribeck_channel::Samples;
+use stribeck_dsp::channel::Samples;
 
 use crate::number::Number;
 use crate::{Error, Result};

@@ -15,7 +15,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnDescriptor, Type};
-use stribeck_channel::Samples;
+use stribeck_dsp::channel::Samples;
 
 use crate::number::{Kind, Number};
 use crate::recording::left_out;

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::PathBuf;
 
-use stribeck_channel::Samples;
+use stribeck_dsp::channel::Samples;
 
 use crate::number::Number;
 use crate::{Channel, Error, Result};

@@ -5,8 +5,8 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
-use stribeck_channel::wav::{FLOAT, Format, PCM};
-pub use stribeck_channel::wav::{Whole, pcm};
+use stribeck_dsp::channel::wav::{FLOAT, Format, PCM};
+pub use stribeck_dsp::channel::wav::{Whole, pcm};
 
 use crate::curve::{Curve, along};
 use crate::number::{Kind, Number};

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use serde_json::{Value, json};
-use stribeck_modal::{
+use stribeck_reduced::modal::{
     Parameters,
     parameters::{Oil, Speeds},
 };
@@ -143,7 +143,7 @@ fn spall(scene: &ResolvedScene) -> Result<Option<Spall>, Error> {
     }))
 }
 
-fn rates(scene: &Scene, modal: &stribeck_modal::ModalBearing) -> Result<Rates, Error> {
+fn rates(scene: &Scene, modal: &stribeck_reduced::modal::ModalBearing) -> Result<Rates, Error> {
     let of = |inner: f64, outer: f64| {
         let k = Kinematics::between(&scene.bearing, inner, outer);
         Speeds { shaft: k.shaft_rad_s, outer: k.outer_rad_s, cage: k.cage_rad_s, roller: k.roller_rad_s }
@@ -246,7 +246,7 @@ fn handles(
 fn facts(
     scene: &Scene,
     resolved: &ResolvedScene,
-    reduction: &stribeck_modal::Reduction,
+    reduction: &stribeck_reduced::modal::Reduction,
     handles: &Handles,
     time_step: f64,
 ) -> Value {

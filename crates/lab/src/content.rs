@@ -2,7 +2,7 @@
 //! reckoned from.
 
 use serde::{Deserialize, Serialize};
-use stribeck_modal::{
+use stribeck_reduced::modal::{
     ModalBearing,
     parameters::{Oil, Speeds},
 };

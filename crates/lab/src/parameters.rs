@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use stribeck_duty::{Course, Duty};
-use stribeck_modal::{
+use stribeck_reduced::modal::{
     ModalBearing, Reduction,
     parameters::{Oil, Speeds},
 };

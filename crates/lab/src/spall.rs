@@ -6,7 +6,7 @@
 use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
-use stribeck_modal::{Reduction, outline::per_angle};
+use stribeck_reduced::modal::{Reduction, outline::per_angle};
 
 use crate::error::Error;
 

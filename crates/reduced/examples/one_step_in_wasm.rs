@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-9;
 
 #[cfg(target_arch = "wasm32")]
 fn main() -> ExitCode {
-    use stribeck_modal::ModalBearing;
+    use stribeck_reduced::modal::ModalBearing;
     use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion, motion::Saved};
 
     let file = include_bytes!(env!("STRIBECK_STEP"));

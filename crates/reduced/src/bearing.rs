@@ -1,7 +1,7 @@
 //! The reduced bearing: the constant data of a run, and the forces that follow from a state (THEORY
 //! §9.2–9.4).
 
-use stribeck_modal::{
+use crate::modal::{
     ModalBearing, OVERLOAD, Parameters, Reduction, STICKING, compliance::contact_length, outline::per_angle,
 };
 

@@ -5,7 +5,7 @@ pub(crate) mod pocket;
 mod corner;
 mod flat;
 
-use stribeck_modal::{
+use crate::modal::{
     compliance::{Compliance, Curve},
     parameters::Pockets,
 };

@@ -1,8 +1,8 @@
 //! First stage of a step: speeds of the rings, and the load.
 
+use crate::modal::{Parameters, parameters::Speeds, reduction::Load};
 use pulp::Simd;
 use stribeck_duty::Duty;
-use stribeck_modal::{Parameters, parameters::Speeds, reduction::Load};
 use stribeck_simd::lanes::Vector;
 
 use crate::plane::{Rotation, Vec2};

@@ -1,8 +1,8 @@
 //! Forces of oil films on rollers, modes and rings, in a step and at the start (THEORY §9.4, §9.5).
 
 use pulp::Simd;
-use stribeck_film::side_by_side::PushedRows;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
+use stribeck_surface::film::side_by_side::PushedRows;
 
 use crate::{
     drive::RingRotation,

@@ -1,6 +1,6 @@
 //! The housing that stands still: the two translations among the modes, which the shaft prescribes.
 
-use stribeck_modal::Reduction;
+use crate::modal::Reduction;
 
 use crate::{error::Error, modes::Modes, state::State, tally::Tally};
 

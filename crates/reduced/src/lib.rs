@@ -1,19 +1,21 @@
 //! Rolling element bearings in a few modes: a simulated second in a few seconds.
 //!
 //! Outer ring and housing move in their natural modes, made from the mesh and elements of the full model by
-//! `stribeck-reduction` and handed over as plain data ([`stribeck_modal`]). Rollers and cage are rigid, with
+//! `stribeck-simulation` and handed over as plain data ([`modal`]). Rollers and cage are rigid, with
 //! the facets that they are meshed with. Contact is integrated exactly over these facets
 //! ([`contact::penetration`]), in series with curves for the local compliance of the bodies. A program drives
 //! a [`BearingInMotion`](motion::BearingInMotion) from one sampling interval to the next, and reads it in
 //! between.
 //!
-//! The crate uses no files, threads or clock, and compiles for `wasm32-unknown-unknown`.
+//! It is a crate because it links neither mesher nor solver, and uses no files, threads or clock: so it runs
+//! in a browser (`wasm32-unknown-unknown`) and in other programs.
 //!
 //! # Where to look
 //!
 //! | Question | File |
 //! |---|---|
 //! | What does a time loop drive, and what is read of it? | `motion.rs`, `motion/readings.rs` |
+//! | Which numbers does a bearing consist of? | `modal.rs`, `modal/` |
 //! | What is a bearing, and how does it start? | `bearing.rs`, in parts; `start.rs` |
 //! | What changes in time? | `state.rs` |
 //! | How is the shaft moved, and which force has it? | `shaft.rs`, `shaft/`; `housing.rs`, `frame.rs` |
@@ -22,6 +24,8 @@
 //! | How do rollers press on raceways? | `contact/`, the geometry; `law/`, the forces |
 //! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` with `film_forces.rs` |
 //! | How are eight rollers taken at once? | `rollers/`, in rows of `row.rs` |
+
+pub mod modal;
 
 pub mod bearing;
 pub mod start;

@@ -1,11 +1,11 @@
 //! Modes of outer ring and adapter in a step, in vectors over modes: motion of the raceway under a roller,
 //! modal forces of rollers, and motion of the modes (THEORY §9.3, §9.4).
 
-use pulp::Simd;
-use stribeck_modal::{
+use crate::modal::{
     Reduction,
     parameters::{Branch, Damping},
 };
+use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{

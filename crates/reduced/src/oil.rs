@@ -8,10 +8,10 @@ mod bodies;
 mod eight;
 mod nearest;
 
+use crate::modal::parameters as modal;
 use serde::{Deserialize, Serialize};
-use stribeck_film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
-use stribeck_modal::parameters as modal;
 use stribeck_surface::Error as SurfaceError;
+use stribeck_surface::film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
 
 use crate::{
     contact::{outline::Outline, raceway::Raceway},

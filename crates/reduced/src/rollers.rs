@@ -5,7 +5,7 @@ pub(crate) mod block;
 mod motion;
 pub(crate) mod polygon;
 
-use stribeck_modal::{
+use crate::modal::{
     Parameters,
     parameters::{DampingFrame, RollerStart},
 };

@@ -5,8 +5,8 @@ mod responses;
 mod state;
 mod sums;
 
+use crate::modal::Seat;
 use pulp::{Scalar, Simd};
-use stribeck_modal::Seat;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{

@@ -1,8 +1,8 @@
 //! Motion of the sensors: with the modes, and quasi-statically beyond them under rollers and seat (THEORY
 //! §9.1).
 
+use crate::modal::Reduction;
 use pulp::Simd;
-use stribeck_modal::Reduction;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{roller_force::RollerForce, row::Row, seat::SeatState, state::State};

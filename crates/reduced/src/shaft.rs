@@ -7,8 +7,8 @@
 
 pub mod variables;
 
+use crate::modal::ModalBearing;
 use serde::{Deserialize, Serialize};
-use stribeck_modal::ModalBearing;
 
 pub use crate::frame::ShaftPoint;
 use crate::{

@@ -3,7 +3,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_modal::{OVERLOAD, compliance::Compliance};
+use stribeck_reduced::modal::{OVERLOAD, compliance::Compliance};
 use stribeck_scene::{
     resolved::{DefectGeometry, ResolvedScene},
     static_load,

@@ -1,6 +1,6 @@
 //! Forces on the modes: of the preload, of load and weight, and of dampers beside the springs of a housing.
 
-use stribeck_modal::{
+use stribeck_reduced::modal::{
     Seat,
     reduction::{Frame, Load},
 };

@@ -2,7 +2,7 @@
 
 use stribeck_bearing::assembly::CAGE_ELEMENT_MM;
 use stribeck_mesh::{Circle, FormDeviation};
-use stribeck_modal::{
+use stribeck_reduced::modal::{
     ModalBearing, Parameters, Reduction,
     outline::per_angle,
     parameters::{

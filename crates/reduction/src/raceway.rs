@@ -1,6 +1,6 @@
 //! The outer raceway of a reduction: normals, forces and modal shapes of its nodes.
 
-use stribeck_modal::Seat;
+use stribeck_reduced::modal::Seat;
 use stribeck_solver::state::NodeForces;
 
 use crate::{extraction::Extraction, structure::Structure};

@@ -8,7 +8,7 @@ use stribeck_bearing::{
     start::preload,
 };
 use stribeck_mesh::Mesh;
-use stribeck_modal::{GROUP, Reduction, Seat};
+use stribeck_reduced::modal::{GROUP, Reduction, Seat};
 use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene, static_load};
 use stribeck_system::Parts;
 

@@ -4,7 +4,7 @@
 //! all springs follow from the modes and from how far panels have opened and slipped.
 
 use faer::{Mat, Side, linalg::solvers::Solve};
-use stribeck_modal::{GROUP, STICKING, Seat};
+use stribeck_reduced::modal::{GROUP, STICKING, Seat};
 use stribeck_solver::{state::NodeForces, statics::Spring};
 
 use crate::{

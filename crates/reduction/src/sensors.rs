@@ -1,6 +1,6 @@
 //! Responses of sensors: to the modes, and quasi-statically to forces on the raceway.
 
-use stribeck_modal::reduction::Sensor;
+use stribeck_reduced::modal::reduction::Sensor;
 use stribeck_solver::state::NodeForces;
 
 use crate::{direction, extraction::Extraction, structure::Structure};

@@ -3,8 +3,8 @@
 use maud::{Markup, PreEscaped, html};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::words::significant;
-use stribeck_channel::wav::{Whole, pcm};
 use stribeck_dsp::Sound;
+use stribeck_dsp::channel::wav::{Whole, pcm};
 
 use crate::plot::base64_bytes;
 

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use stribeck_analysis::measured::{Analysis, Machine};
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_report as report;
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::run_info::Status;

@@ -8,7 +8,7 @@ mod guards;
 use std::{f64::consts::TAU, ops::ControlFlow, path::Path};
 
 use stribeck_bearing::{assembly::Assembly, own_mesh};
-use stribeck_modal::ModalBearing;
+use stribeck_reduced::modal::ModalBearing;
 use stribeck_reduced::{bearing::Bearing, state::State};
 use stribeck_reduction::{ReducedMesh, cache, dense, modal_bearing};
 use stribeck_run::{host::Progress, setup::Setup};

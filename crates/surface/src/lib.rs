@@ -1,10 +1,14 @@
 //! Oriented polylines in the plane, the smooth curves that they stand for, and the closest points on them.
 //!
+//! It is a crate because contact between finite elements and the reduced bearing share it, and the latter
+//! links neither mesher nor solver.
+//!
 //! 1. A [`Surface`] is a polyline of nodes. It may stand for a smooth curve ([`Surface::smoothed`]), which
 //!    follows its nodes facet by facet or as a spline ([`Surface::splined`]).
 //! 2. [`project`] gives the foot of a point on a surface in present positions: the signed gap, its gradient,
 //!    and where.
 //! 3. A [`Law`] holds the numbers of contact between two surfaces: penalty, damping, Coulomb friction.
+//! 4. [`film`] has the oil between two of them.
 //!
 //! Positions are arrays by slot, which the caller owns and moves. The crate has neither elements nor a time
 //! loop; contact evaluates surfaces in its kernels through the modules below, whose mathematics stands once,
@@ -50,6 +54,7 @@
 //! | What is a facet? | `facet.rs`, and two kinds: `chord.rs`; `spline_facet.rs` with `patch.rs` |
 //! | How do points move with facets, what do forces on them do to facets? | `foot.rs`, `plane.rs`, `polynomial.rs` |
 //! | Which numbers has the law of contact? | `law.rs` |
+//! | And oil between two surfaces? | `film.rs`, `film/` |
 
 // Units stand in brackets, as in "gap [m]", and are no links.
 #![allow(rustdoc::broken_intra_doc_links)]
@@ -57,6 +62,7 @@
 pub mod chord;
 mod error;
 pub mod facet;
+pub mod film;
 pub mod foot;
 pub mod law;
 pub mod narrow_phase;

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde::Serialize;
 use serde_json::Value;
-use stribeck_channel::Channel;
 use stribeck_dsp::BandEnvelope;
+use stribeck_dsp::channel::Channel;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::{Run, RunDir};

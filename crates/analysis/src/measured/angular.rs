@@ -1,6 +1,6 @@
 //! A record of a shaft whose speed varies, at equal angles: lines that were smeared stand still.
 
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_dsp::order_track;
 
 use crate::Error;

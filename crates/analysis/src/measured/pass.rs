@@ -1,7 +1,7 @@
 //! One pass over the samples of a channel, segment by segment: a record of hours takes no more memory than
 //! one of seconds.
 
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelopes, Welch, WelchOptions};
 
 use super::course::Tracing;

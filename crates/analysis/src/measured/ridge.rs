@@ -1,6 +1,6 @@
 //! The speed of a shaft without a tachometer: the line that stands out in a range of speeds.
 
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelopes, Ridge, Spectrogram, Spectrograph, WelchOptions, ridge};
 
 use crate::Error;

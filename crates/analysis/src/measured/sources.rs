@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 
 use super::unrelated::SLIP;

@@ -8,7 +8,7 @@ mod course;
 mod edges;
 mod mended;
 
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 
 use self::edges::{Levels, edges, steps};
 use self::mended::{Mended, mended};

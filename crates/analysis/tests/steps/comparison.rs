@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use stribeck_analysis::comparison::{Comparison, Side, Verdict};
 use stribeck_analysis::levels::STANDARD_GRAVITY;
 use stribeck_analysis::measured::{Analysis, Machine};
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_testing::Noise;
 

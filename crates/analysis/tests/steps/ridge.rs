@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use stribeck_analysis::measured::ridge::speed;
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 use stribeck_testing::Noise;
 
 const RATE_HZ: f64 = 5_000.0;

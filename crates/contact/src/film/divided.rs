@@ -2,7 +2,7 @@
 
 use stribeck_solver::{ranks::Shared, state::Moment};
 
-use stribeck_film::{Layer, Pushed};
+use stribeck_surface::film::{Layer, Pushed};
 
 use super::{Film, Films, Memory};
 use crate::interactions::{Interactions, within_reach};

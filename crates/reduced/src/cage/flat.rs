@@ -1,7 +1,7 @@
 //! A roller on a straight wall of its pocket: the part of it beyond the wall, in series with its local
 //! compliance (THEORY §9.4).
 
-use stribeck_modal::compliance::Curve;
+use crate::modal::compliance::Curve;
 
 use crate::rollers::polygon::{Cut, Polygon};
 
@@ -81,7 +81,7 @@ pub(crate) fn press(shape: Shape<'_>, distance: f64, penalty: f64, curve: &Curve
 #[cfg(test)]
 mod tests {
     use super::*;
-    use stribeck_modal::compliance::Compliance;
+    use crate::modal::compliance::Compliance;
 
     const RADIUS: f64 = 9e-3;
     const PENALTY: f64 = 2e12;

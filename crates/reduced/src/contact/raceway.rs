@@ -1,6 +1,6 @@
 //! Constant data of a raceway.
 
-use stribeck_modal::compliance::{Compliance, Curve};
+use crate::modal::compliance::{Compliance, Curve};
 use stribeck_simd::lanes::Number;
 
 use super::{outline::Outline, penetration::Sides};

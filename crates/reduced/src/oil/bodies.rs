@@ -1,10 +1,10 @@
 //! Deflection of roller and raceway under a film: penalty on a round contact in series with the local
 //! compliance (THEORY §9.3).
 
+use crate::modal::compliance::{Compliance, Curve};
 use pulp::Simd;
-use stribeck_film::{Spring, SpringInLanes};
-use stribeck_modal::compliance::{Compliance, Curve};
 use stribeck_simd::lanes::{LANES, Number, Vector};
+use stribeck_surface::film::{Spring, SpringInLanes};
 
 use crate::row::lanes;
 

@@ -2,11 +2,11 @@
 //! forces of the oil.
 
 use pulp::Simd;
-use stribeck_film::{
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
+use stribeck_surface::film::{
     Land, Place, WIDEST,
     side_by_side::{Gaps, Layers, PushedRows, Wanted},
 };
-use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 use stribeck_surface::smooth::{bend, height, slope};
 
 use super::{FIXED, Film, FilmStep, Films, OiledRaceway, Rim, RollerView, nearest::Curved};
@@ -39,7 +39,7 @@ pub(crate) struct EightFilms {
     /// Facets that they lie on, and shares of their second nodes.
     facet: [u32; LANES],
     along: Row,
-    /// Curves of the facets: as [`stribeck_film::FacetCurve`] says.
+    /// Curves of the facets: as [`stribeck_surface::film::FacetCurve`] says.
     origin: Rows,
     tangent: Rows,
     length: Row,

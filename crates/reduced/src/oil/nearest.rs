@@ -1,7 +1,7 @@
 //! The nearest places of roller and raceway, on the smooth curves that their outlines represent, and the
 //! entrainment speed there.
 
-use stribeck_film::{FacetCurve, Land, Place, Point};
+use stribeck_surface::film::{FacetCurve, Land, Place, Point};
 use stribeck_surface::{Error as SurfaceError, Smoothing, Surface};
 
 use crate::{contact::outline::Outline, error::Error, plane::Rotation};

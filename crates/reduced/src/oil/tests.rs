@@ -1,7 +1,7 @@
 use std::f64::consts::{PI, SQRT_2, TAU};
 
+use crate::modal::compliance::Compliance;
 use pulp::{Arch, Simd, WithSimd};
-use stribeck_modal::compliance::Compliance;
 use stribeck_simd::lanes::LANES;
 
 use super::{eight::EightFilms, *};
@@ -156,7 +156,7 @@ fn patch_springs_hold_the_work_that_presses_them_in() {
     let mut work = 0.0;
     for i in 0..200 {
         let [a, b] = [i, i + 1].map(|n| most * f64::from(n) / 200.0);
-        let f = [a, 0.5 * (a + b), b].map(|depth| stribeck_film::Spring::force(&law.spring, depth));
+        let f = [a, 0.5 * (a + b), b].map(|depth| stribeck_surface::film::Spring::force(&law.spring, depth));
         work += (b - a) / 6.0 * (f[0] + 4.0 * f[1] + f[2]);
     }
     let pushed = Pushed { pressed: [most, 0.0], ..Pushed::default() };

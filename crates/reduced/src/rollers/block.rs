@@ -101,7 +101,7 @@ pub(crate) struct RacewayContacts {
     pub(crate) shift: Row,
     pub(crate) flexibility: Row,
     pub(crate) reach: Row,
-    /// The piece of the compliance there, as of [`stribeck_modal::compliance::Curve::piece_at`].
+    /// The piece of the compliance there, as of [`crate::modal::compliance::Curve::piece_at`].
     pub(crate) knot: Row,
     pub(crate) first: Row,
     pub(crate) slope: Row,

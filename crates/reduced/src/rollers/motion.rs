@@ -1,7 +1,7 @@
 //! Rollers move under the forces on them (THEORY §9.4).
 
+use crate::modal::parameters::DampingFrame;
 use pulp::Simd;
-use stribeck_modal::parameters::DampingFrame;
 use stribeck_simd::lanes::{Number, Vector, vector_starts};
 
 use crate::{

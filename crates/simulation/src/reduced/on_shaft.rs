@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use stribeck_bearing::assembly::Assembly;
-use stribeck_modal::Reduction;
+use stribeck_reduced::modal::Reduction;
 use stribeck_reduced::shaft::OnShaft;
 use stribeck_reduction::{cache, modal_bearing};
 use stribeck_scene::resolved::ResolvedScene;

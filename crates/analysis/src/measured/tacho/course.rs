@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_channel::Channel;
+use stribeck_dsp::channel::Channel;
 
 use super::{Turns, mean_and_variation};
 use crate::Error;

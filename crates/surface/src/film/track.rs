@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use stribeck_surface::{
+use crate::{
     Surface,
     plane::{cross, dot, minus, unit_normal},
     polyline::Vertices,
@@ -190,7 +190,7 @@ pub struct FacetCurve {
     pub length: f64,
     /// See `length`.
     pub tangent: [f64; 2],
-    /// Heights, as of [`stribeck_surface::smooth::height`].
+    /// Heights, as of [`crate::smooth::height`].
     pub rise: Rise,
     /// Facets of the land before it, and those from it on.
     pub before: f64,

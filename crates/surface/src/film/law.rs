@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{
+use crate::film::{
     reynolds::{EMPTY, FilmForce, left_of_land},
     spring::Spring,
 };
@@ -223,7 +223,7 @@ fn end_of(lift: f64, opened: f64, room: f64, from: f64, spring: &impl Spring) ->
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Bed;
+    use crate::film::Bed;
 
     const LENGTH: f64 = 30e-3;
     const SPEED: f64 = 2.4;

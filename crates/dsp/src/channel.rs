@@ -2,6 +2,19 @@
 //!
 //! Analyses take a [`Channel`]; files of many formats become channels in `stribeck-formats`, and what was
 //! simulated is one that is held in memory. [`wav`] has the bytes of a sound.
+//!
+//! ```
+//! use stribeck_dsp::channel::Channel;
+//!
+//! let sine = Channel::held("sine", (0..1000).map(|n| (0.1 * f64::from(n)).sin()).collect());
+//! let mut largest = 0.0_f64;
+//! sine.at_rate(Some(1000.0)).scaled(2.0).for_each_block(|block| {
+//!     largest = block.iter().fold(largest, |largest, x| largest.max(x.abs()));
+//!     true
+//! })?;
+//! assert!((largest - 2.0).abs() < 1e-3);
+//! # Ok::<(), stribeck_dsp::channel::Error>(())
+//! ```
 
 mod error;
 
@@ -13,10 +26,6 @@ use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::Arc;
 
 pub use error::{Error, Result};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
 
 /// Samples of a block that come from memory.
 const BLOCK: usize = 1 << 15;

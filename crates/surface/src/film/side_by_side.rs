@@ -7,7 +7,7 @@
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
-use crate::{
+use crate::film::{
     law::{FAR, FIXED, FilmLaw, Layer, SLOWEST, STEADY},
     reynolds::{EMPTY, FilmForce, left_at_end, left_on_land},
     spring::SpringInLanes,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Seat {
     /// Panels.
     pub panels: usize,
-    /// Panels with the zeros that fill up the last group of [`GROUP`](crate::GROUP).
+    /// Panels with the zeros that fill up the last group of [`GROUP`](crate::modal::GROUP).
     pub padded: usize,
     /// Normal force on each panel at the preload [N].
     pub pressed: Vec<f64>,

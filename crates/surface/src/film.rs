@@ -5,7 +5,7 @@
 //! the undeformed surfaces is the film's thickness less the deflection of the surfaces under its pressure. So
 //! the force depends on positions, is never tensile and is no stiffer than the spring.
 //!
-//! The crate has neither nodes in motion nor a time loop. A time loop uses
+//! The module has neither nodes in motion nor a time loop. A time loop uses
 //!
 //! 1. a [`Land`], the part of a surface between two corners, for the [`Point`] nearest to a body, and how far
 //!    off the land ends;
@@ -22,7 +22,7 @@
 //! H. M. Martin (Engineering 102 (1916) 119): a film of steady rolling carries W = 4.895 ηuRL/h.
 //!
 //! ```
-//! use stribeck_film::{Bed, FilmLaw, Oil};
+//! use stribeck_surface::film::{Bed, FilmLaw, Oil};
 //!
 //! // A cylinder of 9 mm radius, 30 mm long, on a plane, in an oil of 50 mPa s at an entrainment speed of 2.4 m/s.
 //! let (radius, length, viscosity, speed) = (9e-3, 30e-3, 0.05, 2.4);
@@ -43,9 +43,6 @@
 //! | Which forces and speeds of opening does Reynolds' equation give? | `reynolds.rs` |
 //! | What is the deflection of the surfaces under it? | `spring.rs` |
 
-// Units stand in brackets, as in "gap [m]", and are no links.
-#![allow(rustdoc::broken_intra_doc_links)]
-
 mod law;
 mod reynolds;
 pub mod side_by_side;
@@ -55,7 +52,3 @@ mod track;
 pub use law::{FilmLaw, Layer, Oil, Pushed, WIDEST};
 pub use spring::{Bed, Spring, SpringInLanes};
 pub use track::{FacetCurve, Land, Place, Point};
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;

@@ -2,14 +2,14 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{compliance::Compliance, seat::Seat};
+use crate::modal::{compliance::Compliance, seat::Seat};
 
 /// Rings, housing, rollers and cage of one mesh under one load, reduced.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reduction {
     /// Modes of outer ring and housing that are kept.
     pub modes: usize,
-    /// Modes with the zeros that fill up the last group of [`GROUP`](crate::GROUP).
+    /// Modes with the zeros that fill up the last group of [`GROUP`](crate::modal::GROUP).
     pub padded: usize,
     /// ω² of each mode [rad²/s²].
     pub squares: Vec<f64>,

@@ -1,11 +1,8 @@
-//! The numbers of a rolling element bearing in a few modes: plain data in SI, between the crate that makes
-//! them from finite elements (`stribeck-reduction`) and the crate that steps them in time
-//! (`stribeck-reduced`).
+//! The numbers of a rolling element bearing in a few modes: plain data in SI, which `stribeck-simulation`
+//! makes from finite elements and this crate steps in time.
 //!
-//! Nothing here reads a file or a clock, meshes or factorises, so that data and step run wherever Rust
-//! does, in a browser too. All lengths are in metres, forces in newtons, angles in radians, counter-clockwise
-//! positive; modes are normalised to unit modal mass, so that their coordinates have the unit √kg m and their
-//! shapes 1/√kg.
+//! All lengths are in metres, forces in newtons, angles in radians, counter-clockwise positive; modes are
+//! normalised to unit modal mass, so that their coordinates have the unit √kg m and their shapes 1/√kg.
 //!
 //! # Where to look
 //!
@@ -46,7 +43,3 @@ pub const STICKING: f64 = 0.8;
 
 /// Local contact problems are solved up to this multiple of the largest roller load between rigid rings.
 pub const OVERLOAD: f64 = 4.0;
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
