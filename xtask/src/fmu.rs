@@ -9,9 +9,9 @@ use std::process::{Command, ExitCode};
 use anyhow::{Context, Result, ensure};
 use stribeck::Place;
 use stribeck_reduced::shaft::{BearingOnShaft, OnShaft, ShaftPoint, variables::RESOURCE};
-use stribeck_reduction::dense;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_simulation::reduced::on_shaft;
+use stribeck_simulation::reduction::dense;
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
 use crate::workspace;

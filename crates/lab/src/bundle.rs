@@ -9,8 +9,6 @@ use stribeck_reduced::modal::{
     parameters::{Oil, Speeds},
 };
 use stribeck_reduced::motion::{BearingInMotion, Saved};
-use stribeck_reduction::modal_bearing;
-use stribeck_run::guards::OUT_OF_PLACE;
 use stribeck_scene::{
     advice,
     housing::HousingScene,
@@ -23,6 +21,8 @@ use stribeck_scene::{
     },
 };
 use stribeck_simulation::reduced::{Prepared, prepared};
+use stribeck_simulation::reduction::modal_bearing;
+use stribeck_simulation::run::guards::OUT_OF_PLACE;
 
 use crate::{
     content::{Content, Rates},

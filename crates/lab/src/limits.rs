@@ -1,6 +1,6 @@
 //! Where a run stops: the limits of the scene, with the words of the program.
 //!
-//! The program's own stand in `stribeck-simulation` and `stribeck-run`, which read scenes and files and so
+//! The program's own stand in `stribeck-simulation`, which read scenes and files and so
 //! are not in a page; `issue_a_run_that_stops_says_what_the_program_says` holds both beside each other.
 
 use serde::{Deserialize, Serialize};

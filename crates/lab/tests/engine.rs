@@ -10,11 +10,11 @@ use stribeck_lab::{
     readings::PER_SAMPLE,
 };
 use stribeck_reduced::motion::{BearingInMotion, Saved};
-use stribeck_run::host::Host;
 use stribeck_scene::{
     run_dir::RunDir,
     scene::{ModelScene, ReducedScene, Scene},
 };
+use stribeck_simulation::run::host::Host;
 use stribeck_simulation::{
     reduced::{Prepared, prepared},
     simulate,

@@ -8,8 +8,8 @@ use std::time::Duration;
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use stribeck_reduced::bearing::Bearing;
 use stribeck_reduced::motion::{BearingInMotion, Saved};
-use stribeck_reduction::{cache, dense, modal_bearing};
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::reduction::{cache, dense, modal_bearing};
 
 /// Steps between two samples.
 const STEPS: usize = 5;

@@ -7,8 +7,8 @@ use stribeck_reduced::{
     bearing::Bearing,
     motion::{BearingInMotion, Saved},
 };
-use stribeck_reduction::{ReducedMesh, dense, modal_bearing};
 use stribeck_scene::Scene;
+use stribeck_simulation::reduction::{ReducedMesh, dense, modal_bearing};
 
 /// A small bearing with a seat that slips, a cage and oil.
 const SCENE: &str =

@@ -10,11 +10,11 @@ pub enum Error {
 
     /// The bearing cannot be assembled or preloaded.
     #[error(transparent)]
-    Bearing(stribeck_bearing::error::Error),
+    Bearing(crate::bearing::error::Error),
 
     /// The bearing cannot be reduced.
     #[error(transparent)]
-    Reduction(stribeck_reduction::error::Error),
+    Reduction(crate::reduction::error::Error),
 
     /// The reduced bearing has no equilibrium.
     #[error(transparent)]
@@ -22,7 +22,7 @@ pub enum Error {
 
     /// The run cannot start, continue or be written.
     #[error(transparent)]
-    Run(stribeck_run::error::Error),
+    Run(crate::run::error::Error),
 }
 
 impl From<stribeck_scene::Error> for Error {
@@ -37,28 +37,28 @@ impl From<stribeck_scene::scene_file::SceneError> for Error {
     }
 }
 
-impl From<stribeck_bearing::error::Error> for Error {
-    fn from(error: stribeck_bearing::error::Error) -> Self {
+impl From<crate::bearing::error::Error> for Error {
+    fn from(error: crate::bearing::error::Error) -> Self {
         match error {
-            stribeck_bearing::error::Error::Scene(error) => Self::Scene(error),
+            crate::bearing::error::Error::Scene(error) => Self::Scene(error),
             other => Self::Bearing(other),
         }
     }
 }
 
-impl From<stribeck_reduction::error::Error> for Error {
-    fn from(error: stribeck_reduction::error::Error) -> Self {
+impl From<crate::reduction::error::Error> for Error {
+    fn from(error: crate::reduction::error::Error) -> Self {
         match error {
-            stribeck_reduction::error::Error::Bearing(error) => error.into(),
+            crate::reduction::error::Error::Bearing(error) => error.into(),
             other => Self::Reduction(other),
         }
     }
 }
 
-impl From<stribeck_run::error::Error> for Error {
-    fn from(error: stribeck_run::error::Error) -> Self {
+impl From<crate::run::error::Error> for Error {
+    fn from(error: crate::run::error::Error) -> Self {
         match error {
-            stribeck_run::error::Error::Scene(error) => Self::Scene(error),
+            crate::run::error::Error::Scene(error) => Self::Scene(error),
             other => Self::Run(other),
         }
     }

@@ -6,15 +6,15 @@ mod recorder;
 
 use std::{ops::ControlFlow, sync::Arc};
 
-use serde::{Deserialize, Serialize};
-use stribeck_bearing::{
+use crate::bearing::{
     assembly::{Assembly, BearingSystem, load},
     own_mesh,
     start::{damp, launch, preload},
 };
-use stribeck_run::{
+use crate::run::{
     channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
 };
+use serde::{Deserialize, Serialize};
 use stribeck_scene::{duty::Duty, resolved::ResolvedScene, run_info::RunInfo, scene::Start};
 use stribeck_system::{Ledger, Snapshot};
 

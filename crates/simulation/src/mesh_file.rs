@@ -1,7 +1,7 @@
 //! `mesh.vtu`: the mesh at the start of a run, deformed by its preload, with the places of its nodes free of
 //! stress.
 
-use stribeck_bearing::{assembly::Assembly, error::Error};
+use crate::bearing::{assembly::Assembly, error::Error};
 use stribeck_mesh::vtu;
 use stribeck_scene::mesh_file::REFERENCE;
 

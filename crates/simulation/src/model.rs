@@ -2,12 +2,12 @@
 
 use std::{ops::ControlFlow, path::Path};
 
-use serde::{Serialize, de::DeserializeOwned};
-use stribeck_run::{
+use crate::run::{
     host::{Host, Progress},
     setup::Setup,
     time_loop::Motion,
 };
+use serde::{Serialize, de::DeserializeOwned};
 use stribeck_scene::{resolved::ResolvedScene, run_dir::RunDir, run_info::RunInfo};
 
 use crate::error::Error;

@@ -7,11 +7,11 @@ mod guards;
 
 use std::{f64::consts::TAU, ops::ControlFlow, path::Path};
 
-use stribeck_bearing::{assembly::Assembly, own_mesh};
+use crate::bearing::{assembly::Assembly, own_mesh};
+use crate::reduction::{ReducedMesh, cache, dense, modal_bearing};
+use crate::run::{host::Progress, setup::Setup};
 use stribeck_reduced::modal::ModalBearing;
 use stribeck_reduced::{bearing::Bearing, state::State};
-use stribeck_reduction::{ReducedMesh, cache, dense, modal_bearing};
-use stribeck_run::{host::Progress, setup::Setup};
 use stribeck_scene::{
     kinematics::Kinematics,
     resolved::ResolvedScene,

@@ -3,7 +3,7 @@
 
 use std::ops::ControlFlow;
 
-use stribeck_run::{
+use crate::run::{
     checkpoint::Checkpoint,
     error::Error as RunError,
     host::{Host, Progress},

@@ -6,11 +6,11 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::{fine_where_it_rolls, host};
-use stribeck_bearing::assembly::Assembly;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::run_dir::{Run, RunDir};
 use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::simulate;
 use stribeck_testing::{Scratch, side_by_side};
 

@@ -5,13 +5,13 @@ mod common;
 use std::{f64::consts::TAU, fs, ops::ControlFlow};
 
 use common::{coarse, host};
-use stribeck_run::host::Progress;
 use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
     scene::{HarmonicScene, PocketWalls, ProfileScene, RampScene, Scene},
 };
+use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{resume, simulate};
 use stribeck_testing::Scratch;
 

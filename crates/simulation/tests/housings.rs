@@ -5,7 +5,6 @@ mod common;
 use std::{f64::consts::TAU, ops::ControlFlow};
 
 use common::host;
-use stribeck_bearing::assembly::Assembly;
 use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
@@ -13,6 +12,7 @@ use stribeck_scene::{
     scene::Scene,
     static_load,
 };
+use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::{extend, simulate};
 use stribeck_testing::Scratch;
 

@@ -5,13 +5,13 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::host;
-use stribeck_bearing::assembly::Assembly;
 use stribeck_mesh::Mesh;
 use stribeck_scene::{
     run_dir::{Run, RunDir},
     run_info::Status,
     scene::{GradingScene, Scene},
 };
+use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 

@@ -8,9 +8,9 @@ use stribeck_reduced::{
     motion::Energies,
     shaft::{BearingOnShaft, OnShaft, SavedOnShaft, ShaftPoint},
 };
-use stribeck_reduction::dense;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::reduced::{on_shaft, prepared};
+use stribeck_simulation::reduction::dense;
 use stribeck_testing::{Scratch, ledger::compare};
 
 const LOAD_N: f64 = 3000.0;

@@ -6,12 +6,12 @@ mod common;
 use std::{fs, ops::ControlFlow, path::Path};
 
 use common::{coarse, host, ranks::together};
-use stribeck_run::host::{Host, Progress};
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::Status,
     scene::{Scene, Start},
 };
+use stribeck_simulation::run::host::{Host, Progress};
 use stribeck_simulation::{follow, resume, simulate};
 use stribeck_testing::Scratch;
 

@@ -6,7 +6,6 @@ mod common;
 use std::{fs, ops::ControlFlow};
 
 use common::{host, run, trace};
-use stribeck_run::host::Progress;
 use stribeck_scene::{
     lubrication::loaded_films,
     run_dir::RunDir,
@@ -14,6 +13,7 @@ use stribeck_scene::{
     scene::{ModelScene, ReducedScene, Scene},
     trace::Trace,
 };
+use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{resume, simulate};
 use stribeck_testing::Scratch;
 

@@ -10,13 +10,13 @@ use std::{
 
 use common::{coarse, host};
 use proptest::prelude::*;
-use stribeck_run::host::{Host, Progress};
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::{RunInfo, Status},
     scene::{Scene, Start},
     trace::TraceFile,
 };
+use stribeck_simulation::run::host::{Host, Progress};
 use stribeck_simulation::{Error, extend, resume, saved_until, simulate};
 use stribeck_testing::Scratch;
 

@@ -5,13 +5,13 @@ mod common;
 use std::{fmt::Write, ops::ControlFlow};
 
 use common::host;
-use stribeck_bearing::{assembly::Assembly, start::preload};
 use stribeck_mesh::{Mesh, decks::Deck};
 use stribeck_scene::{
     run_dir::{Run, RunDir},
     run_info::Status,
     scene::Scene,
 };
+use stribeck_simulation::bearing::{assembly::Assembly, start::preload};
 use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 

@@ -5,8 +5,6 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::{coarse, fine_where_it_rolls, host};
-use stribeck_bearing::assembly::{Assembly, BearingSystem, Roller};
-use stribeck_run::host::Progress;
 use stribeck_scene::{
     kinematics::Kinematics,
     run_dir::{Run, RunDir},
@@ -16,6 +14,8 @@ use stribeck_scene::{
     },
     trace::Trace,
 };
+use stribeck_simulation::bearing::assembly::{Assembly, BearingSystem, Roller};
+use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::simulate;
 use stribeck_testing::{Scratch, ledger, side_by_side};
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use stribeck_run::{host::Host, ranks::Ranks};
+use stribeck_simulation::run::{host::Host, ranks::Ranks};
 
 /// Ticks per second in `/proc/self/stat`; Linux promises this number to programs on every architecture.
 const TICKS_PER_SECOND: f64 = 100.0;

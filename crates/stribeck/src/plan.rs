@@ -9,13 +9,13 @@ use std::process::ExitCode;
 use anyhow::{Result, ensure};
 use stribeck_analysis::paper;
 use stribeck_analysis::plan::{MeshFacts, Plan};
-use stribeck_bearing::assembly::Assembly;
-use stribeck_run::channels;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_info::clock;
 use stribeck_scene::scene::ModelScene;
+use stribeck_simulation::bearing::assembly::Assembly;
+use stribeck_simulation::run::channels;
 
 use crate::out::say;
 use crate::place::Place;

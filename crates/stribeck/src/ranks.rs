@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use stribeck_run::ranks::Ranks;
+use stribeck_simulation::run::ranks::Ranks;
 
 /// This process among those that were started with it.
 #[derive(Debug)]

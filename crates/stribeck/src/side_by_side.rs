@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use stribeck_run::host::Progress;
 use stribeck_scene::Error as SceneError;
 use stribeck_scene::run_dir::{RunDir, State};
 use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{self as simulation, Error};
 
 use crate::board::Board;

@@ -11,7 +11,6 @@ use stribeck_analysis::{
     tones,
 };
 use stribeck_report as report;
-use stribeck_run::host::Host;
 use stribeck_scene::{
     deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},
     kinematics::Kinematics,
@@ -19,6 +18,7 @@ use stribeck_scene::{
     run_info::Status,
     scene::{DefectRing, Scene},
 };
+use stribeck_simulation::run::host::Host;
 use stribeck_simulation::simulate;
 use stribeck_testing::{Scratch, said, side_by_side};
 

@@ -4,10 +4,10 @@
 use std::f64::consts::PI;
 
 use stribeck_analysis::stress::{Lame, von_mises};
-use stribeck_bearing::assembly::Assembly;
-use stribeck_bearing::start::preload;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::bearing::assembly::Assembly;
+use stribeck_simulation::bearing::start::preload;
 use stribeck_testing::ledger;
 
 /// Elements of a tenth of a millimetre average the stress, and contact sinks in by a thirtieth of the

@@ -5,13 +5,13 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 use stribeck_analysis::plan::{MeshFacts, Plan};
-use stribeck_bearing::assembly::Assembly;
 use stribeck_report as report;
-use stribeck_run::host::Host;
 use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
+use stribeck_simulation::bearing::assembly::Assembly;
+use stribeck_simulation::run::host::Host;
 use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 

@@ -11,7 +11,7 @@ const PROGRAM: &str = "stribeck";
 
 /// Every crate beside `xtask`, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 25] = [
+const LAYERS: [(&str, &[&str]); 22] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -23,12 +23,9 @@ const LAYERS: [(&str, &[&str]); 25] = [
     ("infer", &[]),
     ("scene", &["duty"]),
     ("system", &["contact", "mesh", "solver"]),
-    ("bearing", &["contact", "mesh", "scene", "solver", "system"]),
-    ("run", &["scene", "solver", "system"]),
     ("reduced", &["duty", "simd", "surface"]),
-    ("reduction", &["bearing", "mesh", "reduced", "scene", "solver", "surface", "system"]),
-    ("simulation", &["bearing", "mesh", "reduced", "reduction", "run", "scene", "solver", "system"]),
-    ("lab", &["duty", "reduced", "reduction", "run", "scene", "simulation"]),
+    ("simulation", &["contact", "mesh", "reduced", "scene", "solver", "surface", "system"]),
+    ("lab", &["duty", "reduced", "scene", "simulation"]),
     ("fmu", &["reduced"]),
     ("dsp", &[]),
     ("formats", &["dsp"]),
@@ -36,32 +33,17 @@ const LAYERS: [(&str, &[&str]); 25] = [
     ("report", &["analysis", "dsp", "scene"]),
     (
         "stribeck",
-        &[
-            "analysis",
-            "bearing",
-            "dsp",
-            "formats",
-            "infer",
-            "lab",
-            "mesh",
-            "mpi",
-            "report",
-            "run",
-            "scene",
-            "simulation",
-        ],
+        &["analysis", "dsp", "formats", "infer", "lab", "mesh", "mpi", "report", "scene", "simulation"],
     ),
     (
         "studies",
         &[
             "analysis",
-            "bearing",
             "contact",
             "dsp",
             "formats",
             "mesh",
             "report",
-            "run",
             "scene",
             "simulation",
             "solver",
@@ -69,7 +51,7 @@ const LAYERS: [(&str, &[&str]); 25] = [
             "system",
         ],
     ),
-    ("python", &["analysis", "dsp", "formats", "report", "run", "scene", "simulation", "stribeck"]),
+    ("python", &["analysis", "dsp", "formats", "report", "scene", "simulation", "stribeck"]),
 ];
 
 /// Arrows of tests alone, beside the layers: verdicts are tried on files of measured records.

@@ -6,8 +6,8 @@ use stribeck_scene::frames::{COLUMNS, Window};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::trace::TraceWriter;
 
-use stribeck_bearing::assembly::{Assembly, BearingSystem};
-use stribeck_run::error::Error;
+use crate::bearing::assembly::{Assembly, BearingSystem};
+use crate::run::error::Error;
 
 /// Samples that become frames, and the nodes in them.
 #[derive(Debug)]

@@ -1,4 +1,4 @@
-//! Guards of the full model besides [the guards of all models](stribeck_run::guards).
+//! Guards of the full model besides [the guards of all models](crate::run::guards).
 //!
 //! | watched | warning | stop |
 //! |---|---|---|
@@ -13,8 +13,8 @@
 //! [`System::look`] watches the limits that apply to any bodies in motion, with messages in the scene's words
 //! ([`arm`]).
 
-use stribeck_bearing::assembly::{Assembly, BearingSystem};
-use stribeck_run::guards::{self, OUT_OF_PLACE, Placed, When};
+use crate::bearing::assembly::{Assembly, BearingSystem};
+use crate::run::guards::{self, OUT_OF_PLACE, Placed, When};
 use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_solver::Elastic;
 use stribeck_system::{Limits, Scale, System, Words};

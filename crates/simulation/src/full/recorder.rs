@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
+use crate::bearing::assembly::BearingSystem;
+use crate::run::channels::{CageSample, RollerSample, Sample, SensorSample};
 use serde::{Deserialize, Serialize};
-use stribeck_bearing::assembly::BearingSystem;
-use stribeck_run::channels::{CageSample, RollerSample, Sample, SensorSample};
 use stribeck_scene::resolved::ResolvedScene;
 
 /// Sums between samples, and the sample made of them.

@@ -1,7 +1,7 @@
-//! Guards of a reduced run besides [the guards of all models](stribeck_run::guards): energy and penetration.
+//! Guards of a reduced run besides [the guards of all models](crate::run::guards): energy and penetration.
 
+use crate::run::guards::{self, Placed, When};
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
-use stribeck_run::guards::{self, Placed, When};
 use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
 use stribeck_system::Ledger;
 

@@ -1,13 +1,13 @@
 //! The reduced bearing as the time loop drives it: its readings become samples, its energies a ledger.
 
-use serde::{Deserialize, Serialize};
-use stribeck_reduced::{
-    bearing::Bearing, motion::BearingInMotion, motion::Energies, readings::RollerReading,
-};
-use stribeck_run::{
+use crate::run::{
     channels::{CageSample, RollerSample, Sample, SensorSample},
     error::Error,
     time_loop::Motion,
+};
+use serde::{Deserialize, Serialize};
+use stribeck_reduced::{
+    bearing::Bearing, motion::BearingInMotion, motion::Energies, readings::RollerReading,
 };
 use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo};
 use stribeck_system::{Balance, Ledger, Scale};

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use stribeck_bearing::assembly::Assembly;
+use crate::bearing::assembly::Assembly;
+use crate::reduction::{cache, modal_bearing};
 use stribeck_reduced::modal::Reduction;
 use stribeck_reduced::shaft::OnShaft;
-use stribeck_reduction::{cache, modal_bearing};
 use stribeck_scene::resolved::ResolvedScene;
 
 use super::{in_steps, wanted};

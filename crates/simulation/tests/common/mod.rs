@@ -5,13 +5,13 @@ pub(crate) mod ranks;
 
 use std::ops::ControlFlow;
 
-use stribeck_run::host::Host;
 use stribeck_scene::{
     run_dir::RunDir,
     run_info::RunInfo,
     scene::{GradingScene, Scene},
     trace::Trace,
 };
+use stribeck_simulation::run::host::Host;
 use stribeck_simulation::simulate;
 use stribeck_testing::Scratch;
 

@@ -5,7 +5,7 @@ use std::sync::{
     mpsc::{Receiver, Sender, channel},
 };
 
-use stribeck_run::ranks::Ranks;
+use stribeck_simulation::run::ranks::Ranks;
 
 /// One of them. What each sends to each goes through a channel of its own, in order.
 #[derive(Debug)]

@@ -11,13 +11,10 @@ mod motion;
 use std::{f64::consts::TAU, fs, ops::ControlFlow};
 
 use common::{fine_where_it_rolls, host, run, trace};
-use stribeck_bearing::assembly::Assembly;
 use stribeck_reduced::{
     bearing::Bearing,
     motion::{BearingInMotion, Saved},
 };
-use stribeck_reduction::{ReducedMesh, dense, modal_bearing};
-use stribeck_run::host::Progress;
 use stribeck_scene::{
     kinematics::Kinematics,
     mesh_file::RunMesh,
@@ -30,6 +27,9 @@ use stribeck_scene::{
     static_load,
     trace::Trace,
 };
+use stribeck_simulation::bearing::assembly::Assembly;
+use stribeck_simulation::reduction::{ReducedMesh, dense, modal_bearing};
+use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{
     reduced::{Prepared, prepared},
     resume, simulate,

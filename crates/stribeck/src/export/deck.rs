@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 
 use anyhow::{Result, bail};
-use stribeck_bearing::assembly::Assembly;
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Body, Mesh};
 use stribeck_scene::housing::HousingScene;
@@ -11,6 +10,7 @@ use stribeck_scene::mesh_file::{self, RunMesh};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 use stribeck_scene::scene::MaterialScene;
+use stribeck_simulation::bearing::assembly::Assembly;
 
 use super::provenance;
 

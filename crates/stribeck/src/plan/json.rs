@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value, json};
 use stribeck_analysis::plan::Plan;
-use stribeck_run::channels;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
+use stribeck_simulation::run::channels;
 
 use super::trial::{Cost, Trial};
 

@@ -1,0 +1,151 @@
+//! Bodies by themselves: the rings with their grooves, a rolling element, the pieces of the cage.
+
+use std::f64::consts::{PI, TAU};
+
+use serde::{Deserialize, Serialize};
+use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, FormDeviation, Grading, Groove, Part};
+use stribeck_scene::{
+    deviation::Relief,
+    resolved::{CageGeometry, DefectGeometry, ResolvedScene, pocket_half_width},
+    scene::DefectRing,
+};
+
+use crate::bearing::{error::Error, grading, own_mesh};
+
+/// Element size of the cage [mm]. It moves as one piece: its elements carry mass only and may be coarse.
+pub const CAGE_ELEMENT_MM: f64 = 2.0;
+
+/// Meshes of the rings and of one roller, kept because meshing takes time. They have grooves, but no
+/// deviations from round yet; the roller lies at the origin, not rotated.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MeshedParts {
+    pub(super) outer: Part,
+    pub(super) inner: Part,
+    pub(super) disc: Part,
+}
+
+impl MeshedParts {
+    /// Meshes them. They do not depend on the initial position of the rollers.
+    ///
+    /// # Errors
+    /// When a dimension or a count cannot be meshed.
+    pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
+        let b = &scene.written.bearing;
+        let made = |ring: &Annulus, grading: &Option<Grading>| match grading {
+            Some(grading) => ring.graded_part(grading),
+            None => ring.part(),
+        };
+
+        let outer_grading = grading::ring(&scene.written.mesh, b.outer_ring_thickness_mm, Circle::Inner);
+        let outer = Annulus {
+            inner_radius: scene.outer_race_radius,
+            outer_radius: scene.outer_race_radius + scene.outer_ring_thickness,
+            facets: facets_around(scene, DefectRing::Outer),
+            layers: grading::layers(&scene.written.mesh, b.outer_ring_thickness_mm),
+            start_angle: 0.0,
+            grooves: grooves_in(scene, DefectRing::Outer),
+        };
+        let outer = match &scene.written.outer_ring_mesh {
+            Some(own) => own_mesh::ring(own, DefectRing::Outer, scene)?,
+            None => made(&outer, &outer_grading)?,
+        };
+
+        let inner_grading = grading::ring(&scene.written.mesh, b.inner_ring_thickness_mm, Circle::Outer);
+        let inner = Annulus {
+            inner_radius: scene.inner_race_radius - scene.inner_ring_thickness,
+            outer_radius: scene.inner_race_radius,
+            facets: facets_around(scene, DefectRing::Inner),
+            layers: grading::layers(&scene.written.mesh, b.inner_ring_thickness_mm),
+            start_angle: 0.0,
+            grooves: grooves_in(scene, DefectRing::Inner),
+        };
+        let inner = match &scene.written.inner_ring_mesh {
+            Some(own) => own_mesh::ring(own, DefectRing::Inner, scene)?,
+            None => made(&inner, &inner_grading)?,
+        };
+
+        let facets = scene.written.mesh.roller_facets;
+        let facet_mm = PI * b.roller_diameter_mm / facets as f64;
+        let core = 1e-3 * grading::roller_core_mm(&scene.written.mesh, facet_mm);
+        let disc = Disc { radius: scene.roller_radius, facets, size: core, rotation: 0.0 };
+        let disc = match &scene.written.mesh.grading {
+            None => disc.part()?,
+            Some(scene) => disc.part_with_layers(grading::roller_layers(scene).min(disc.most_layers()))?,
+        };
+        Ok(Self { outer, inner, disc })
+    }
+}
+
+/// The part with the deviations from round of one of its surfaces.
+pub(super) fn formed(
+    part: Part,
+    surface: &str,
+    circle: Circle,
+    relief: Option<&Relief>,
+) -> Result<Part, Error> {
+    let Some(relief) = relief else { return Ok(part) };
+    let (depth, corners) = (|angle: f64| relief.depth(angle), relief.corners());
+    Ok(FormDeviation { depth: &depth, corners: &corners, circle }.of_part(&part, surface)?)
+}
+
+/// Facets around the raceway of `ring`, before grooves are cut into it.
+pub(super) fn facets_around(scene: &ResolvedScene, ring: DefectRing) -> usize {
+    let (chosen, radius) = match ring {
+        DefectRing::Outer => (scene.written.mesh.outer_facets, scene.outer_race_radius),
+        DefectRing::Inner => (scene.written.mesh.inner_facets, scene.inner_race_radius),
+    };
+    chosen.unwrap_or_else(|| ((TAU * radius / scene.element_size).round() as usize).max(8))
+}
+
+/// The grooves in the raceway of `ring`.
+fn grooves_in(scene: &ResolvedScene, ring: DefectRing) -> Vec<Groove> {
+    let circle = match ring {
+        DefectRing::Outer => Circle::Inner,
+        DefectRing::Inner => Circle::Outer,
+    };
+    let cut = |d: &DefectGeometry| Groove {
+        centre_angle: d.angle,
+        length: d.length,
+        depth: d.depth,
+        slope: d.edge_slope,
+        circle,
+    };
+    scene.grooves_of(ring).map(cut).collect()
+}
+
+/// All pieces of the cage as one body whose walls extend between two radii [m], for rollers on a circle of
+/// radius `path` [m]. Surfaces in the order of the rollers: piece i lies between roller i and the next one
+/// counter-clockwise.
+pub(super) fn cage_part(
+    scene: &ResolvedScene,
+    cage: &CageGeometry,
+    [inner, outer]: [f64; 2],
+    path: f64,
+) -> Result<Part, Error> {
+    let reach = scene.roller_radius + cage.pocket_clearance;
+    let half_width = pocket_half_width(inner, outer, path, reach);
+    let pieces = scene.rollers;
+    let gap = 2.0 * (half_width / outer).asin();
+    let arc = (TAU / pieces as f64 - gap) * outer;
+    let mut joined = Part::default();
+    for i in 0..pieces {
+        let piece = ArcBlock {
+            inner_radius: inner,
+            outer_radius: outer,
+            right_line_angle: scene.pocket_angle(i),
+            left_line_angle: scene.pocket_angle(i) + TAU / pieces as f64,
+            half_width,
+            rows: ((1e3 * (outer - inner) / CAGE_ELEMENT_MM).round() as usize).max(1),
+            columns: ((1e3 * arc / CAGE_ELEMENT_MM).round() as usize).max(1),
+        };
+        let piece = piece.part()?;
+        let first = joined.x.len() as u32;
+        joined.x.extend(&piece.x);
+        joined.y.extend(&piece.y);
+        joined.quads.extend(piece.quads.iter().map(|q| q.map(|n| n + first)));
+        let mut boundary = piece.surface("boundary").expect("an arc block names its boundary").clone();
+        boundary.nodes.iter_mut().for_each(|n| *n += first);
+        joined.surfaces.push((format!("piece {}", i + 1), boundary));
+    }
+    Ok(joined)
+}

@@ -1,0 +1,155 @@
+//! Reduced meshes of earlier runs, kept beside their folders: one serves every start, speed and duration of
+//! the same mesh under the same load.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use stribeck_scene::{
+    duty::LONGEST_RUN_S,
+    run_dir::write_atomic,
+    scene::{
+        CageScene, ContactFormula, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene,
+        ReducedScene, Scene, SolverScene,
+    },
+};
+
+use crate::reduction::{error::Error, reduce::ReducedMesh, structure::modes_khz};
+
+/// Folder of the reductions, in the parent of a run's folder.
+const FOLDER: &str = ".reduced";
+
+/// First bytes of the file, with the version of its content.
+const MAGIC: &[u8; 20] = b"stribeck reduced vF\n";
+
+/// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have
+/// their defaults. Rollers are half a spacing from their places, so that none is in the first groove.
+pub fn reference(scene: &Scene) -> Scene {
+    let ContactScene {
+        method,
+        surface,
+        interpolation,
+        points_per_facet,
+        passes,
+        formula,
+        penalty_scale,
+        onset_um,
+        ..
+    } = scene.contact.clone();
+    let mut solver = SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() };
+    if formula == ContactFormula::LsdynaSegment {
+        // Its penalty is that of the full model's step.
+        solver.time_step_factor = scene.solver.time_step_factor;
+    }
+    let middle = scene.grooves().first().map_or(scene.load_zone_deg(), |groove| groove.angle_deg);
+    let mut bearing = scene.bearing.clone();
+    bearing.first_roller_deg = middle + 180.0 / bearing.rollers as f64;
+    let mut mesh = scene.mesh.clone();
+    mesh.roller_phase_deg = 0.0;
+    Scene {
+        name: "reduction".to_owned(),
+        model: ModelScene::Reduced(ReducedScene { modes_khz: modes_khz(scene), ..ReducedScene::default() }),
+        bearing,
+        cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
+        adapter: scene.adapter.clone(),
+        housing: scene.housing.clone(),
+        outer_ring_mesh: scene.outer_ring_mesh.clone(),
+        inner_ring_mesh: scene.inner_ring_mesh.clone(),
+        defect: scene.defect.clone(),
+        // All others change places, hardly the rings' stiffness: outlines get them later.
+        defects: scene.defects.iter().filter(|deviation| deviation.groove().is_some()).cloned().collect(),
+        material: scene.material.clone(),
+        mesh,
+        operation: between(scene),
+        contact: ContactScene {
+            method,
+            surface,
+            interpolation,
+            points_per_facet,
+            passes,
+            formula,
+            penalty_scale,
+            onset_um,
+            seat_friction: if scene.contact.seat_friction > 0.0 { 1.0 } else { 0.0 },
+            ..ContactScene::default()
+        },
+        film: None,
+        solver,
+        output: OutputScene { sensors: scene.output.sensors.clone(), frames: None, ..OutputScene::default() },
+        guards: GuardsScene::default(),
+    }
+}
+
+/// At rest, half-way between the least and the largest load of a profile: linearised there, the reduction
+/// errs least over all of them. The speed adds a few newtons by which idle rollers press outwards; they are
+/// in the equilibrium that a run starts from, so that one reduction serves all speeds.
+fn between(scene: &Scene) -> OperationScene {
+    let fields = OperationScene {
+        speed_rpm: 0.0,
+        outer_speed_rpm: 0.0,
+        speed_profile: None,
+        outer_speed_profile: None,
+        load_profile: None,
+        rotating_load: None,
+        ..scene.operation.clone()
+    };
+    let Some(duty) = scene.varying_duty() else { return fields };
+    let [least, most] = duty.load_range_n(LONGEST_RUN_S);
+    OperationScene { load_n: 0.5 * (least + most), ..fields }
+}
+
+/// The reduced mesh of a scene, and whether it was cached. `runs` is the parent of the run's folder. Of
+/// several processes that ask for the same one at once, the first makes it and the others wait.
+///
+/// # Errors
+/// When it cannot be made. One that cannot be cached is made again next time.
+pub fn reduced_mesh(scene: &Scene, runs: Option<&Path>) -> Result<(ReducedMesh, bool), Error> {
+    let reference = reference(scene);
+    let make = || ReducedMesh::new(&reference.resolve());
+    let Some(file) = runs.map(|runs| file(runs, &reference.hash())) else {
+        return Ok((make()?, false));
+    };
+    if let Some(found) = read(&file) {
+        return Ok((found, true));
+    }
+    // Without a cache or a lock it takes longer; the result is the same.
+    let _ = fs::create_dir_all(file.parent().unwrap_or(&file));
+    let lock = file.with_extension("lock");
+    let locked = acquire(&lock);
+    if let Some(found) = locked.as_ref().and_then(|_| read(&file)) {
+        return Ok((found, true));
+    }
+    let made = make();
+    if let Some(bytes) = made.as_ref().ok().and_then(|made| postcard::to_extend(made, MAGIC.to_vec()).ok()) {
+        let checksum = crc32fast::hash(&bytes[MAGIC.len()..]);
+        let _ = write_atomic(&file, &[bytes, checksum.to_le_bytes().to_vec()].concat());
+    }
+    if locked.is_some() {
+        // Waiting processes still acquire the lock, and find the file.
+        let _ = fs::remove_file(lock);
+    }
+    Ok((made?, false))
+}
+
+/// Locks a file until the returned handle is dropped or the process ends.
+fn acquire(lock: &Path) -> Option<fs::File> {
+    let file = fs::File::create(lock).ok()?;
+    file.lock().ok()?;
+    Some(file)
+}
+
+fn file(runs: &Path, hash: &str) -> PathBuf {
+    runs.join(FOLDER).join(format!("{hash}.modes"))
+}
+
+/// Content of the file, if it is complete.
+fn read(file: &Path) -> Option<ReducedMesh> {
+    let bytes = fs::read(file).ok()?;
+    let (content, checksum) = bytes.strip_prefix(MAGIC)?.split_last_chunk()?;
+    if crc32fast::hash(content) != u32::from_le_bytes(*checksum) {
+        return None;
+    }
+    match postcard::take_from_bytes(content) {
+        Ok((reduction, [])) => Some(reduction),
+        _ => None,
+    }
+}

@@ -1,0 +1,209 @@
+//! The numbers that a scene adds to a reduction, and the tables of a step rounded for them.
+
+use crate::bearing::assembly::CAGE_ELEMENT_MM;
+use stribeck_mesh::{Circle, FormDeviation};
+use stribeck_reduced::modal::{
+    ModalBearing, Parameters, Reduction,
+    outline::per_angle,
+    parameters::{
+        Branch, Contact, Damping, DampingFrame, Film, Oil, Outlines, Pockets, Radii, RollerStart, Speeds,
+    },
+};
+use stribeck_scene::{
+    deviation::Relief,
+    kinematics::Kinematics,
+    lubrication::loaded_films,
+    resolved::{ResolvedScene, pocket_half_width},
+    scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies},
+};
+use stribeck_solver::structural_damping::StructuralDamping;
+use stribeck_surface::Law;
+
+use crate::reduction::{error::Error, seat};
+
+/// The bearing of a scene whose mesh has been reduced.
+///
+/// # Errors
+/// When contact's law has impossible numbers, the structural damping cannot be fitted, or films have no
+/// loaded contact to follow from.
+pub fn modal_bearing(scene: &ResolvedScene, reduction: Reduction) -> Result<ModalBearing, Error> {
+    let parameters = parameters(scene, &reduction)?;
+    let mut reduction = reduction;
+    prepare(&mut reduction, &parameters);
+    Ok(ModalBearing { reduction, parameters })
+}
+
+/// Rounds the tables that a step looks up to single precision, once for all that is computed from them, and
+/// equalises what cannot differ: on a roller that passes over a wall both ends have the same height. Mass
+/// damping does not act on a frame.
+fn prepare(reduction: &mut Reduction, parameters: &Parameters) {
+    let per_angle = per_angle(&parameters.outlines.outer);
+    level_walls(&mut reduction.shapes, &per_angle);
+    round(&mut reduction.shapes);
+    if let Some(seat) = &mut reduction.springs {
+        level_walls(&mut seat.by_rollers, &per_angle);
+        [&mut seat.tension, &mut seat.by_rollers, &mut seat.stiffness]
+            .into_iter()
+            .for_each(|table| round(table));
+        seat.flexibility = seat::flexibility(seat);
+    }
+    let Some(frame) = &reduction.frame else { return };
+    let damped = parameters.damping.mass_of_modes * frame.mass;
+    for shape in frame.shape.chunks_exact(reduction.padded) {
+        for (row, a) in reduction.dampers.chunks_exact_mut(reduction.padded).zip(shape) {
+            row.iter_mut().zip(shape).for_each(|(sum, b)| *sum -= damped * a * b);
+        }
+    }
+}
+
+/// Gives both ends of each wall the mean of their values, vertex by vertex.
+fn level_walls(of_vertices: &mut [f64], per_angle: &[f64]) {
+    let n = per_angle.len();
+    let width = of_vertices.len() / n;
+    for (a, _) in per_angle.iter().enumerate().filter(|(_, angle)| **angle == 0.0) {
+        let b = (a + 1) % n;
+        for k in 0..width {
+            let mean = 0.5 * (of_vertices[a * width + k] + of_vertices[b * width + k]);
+            (of_vertices[a * width + k], of_vertices[b * width + k]) = (mean, mean);
+        }
+    }
+}
+
+/// Rounds to single precision.
+fn round(table: &mut [f64]) {
+    table.iter_mut().for_each(|number| *number = f64::from(*number as f32));
+}
+
+fn parameters(scene: &ResolvedScene, reduction: &Reduction) -> Result<Parameters, Error> {
+    let law = Law::penalty(scene.penalty_stiffness)
+        .and_then(|law| law.with_damping(scene.written.contact.damping_ratio, scene.contact_layer_mass))?;
+    let numbers: Vec<usize> = scene.written.rollers_in_place().map(|number| number - 1).collect();
+    let rollers = rollers(scene, &numbers);
+    Ok(Parameters {
+        outlines: outlines(scene, reduction, &numbers, &rollers),
+        radii: Radii {
+            outer: scene.outer_race_radius,
+            inner: scene.inner_race_radius,
+            roller: scene.roller_radius,
+        },
+        thickness: scene.thickness,
+        rollers,
+        contact: Contact {
+            stiffness: law.stiffness,
+            damping: law.damping,
+            friction: scene.written.contact.friction,
+        },
+        damping: damping(scene)?,
+        gravity: scene.gravity,
+        speeds: speeds(&Kinematics::of(&scene.written)),
+        outer_turns: scene.written.operation.outer_turns(),
+        load_at_start: scene.duty.load_n(0.0),
+        duty: scene.varying_duty().cloned(),
+        seat_friction: scene.written.contact.seat_friction,
+        pockets: pockets(scene, &numbers),
+        oil: oil(scene)?,
+    })
+}
+
+/// Rollers of these pockets, from 0, at the start.
+fn rollers(scene: &ResolvedScene, numbers: &[usize]) -> Vec<RollerStart> {
+    let roller = |&number: &usize| {
+        let angle = scene.roller_angle(number);
+        let vertex_angle = match scene.written.mesh.roller_copies {
+            RollerCopies::Translated => scene.roller_phase,
+            RollerCopies::Rotated => angle + scene.roller_phase,
+        };
+        RollerStart { angle, vertex_angle }
+    };
+    numbers.iter().map(roller).collect()
+}
+
+fn outlines(
+    scene: &ResolvedScene,
+    reduction: &Reduction,
+    numbers: &[usize],
+    rollers: &[RollerStart],
+) -> Outlines {
+    let (mut rims, mut rim_of) = (vec![reduction.roller.clone()], vec![0; numbers.len()]);
+    for (of, relief) in &scene.roller_reliefs {
+        let Some(i) = numbers.iter().position(|number| number == of) else { continue };
+        rim_of[i] = rims.len() as u32;
+        // A rim is seen from its vertex 0.
+        let relief = relief.turned(-rollers[i].vertex_angle);
+        rims.push(formed(&reduction.roller, Some(&relief), Circle::Outer));
+    }
+    Outlines {
+        outer: formed(&reduction.outer, scene.outer_relief.as_ref(), Circle::Inner),
+        inner: formed(&reduction.inner, scene.inner_relief.as_ref(), Circle::Outer),
+        rims,
+        rim_of,
+        arcs: scene.written.contact.surface != ContactSurface::Facet,
+    }
+}
+
+/// An outline with its deviation from round.
+fn formed(outline: &[[f64; 2]], relief: Option<&Relief>, circle: Circle) -> Vec<[f64; 2]> {
+    let mut vertices = outline.to_vec();
+    if let Some(relief) = relief {
+        let (depth, corners) = (|angle: f64| relief.depth(angle), relief.corners());
+        FormDeviation { depth: &depth, corners: &corners, circle }.of_polygon(&mut vertices);
+    }
+    vertices
+}
+
+fn damping(scene: &ResolvedScene) -> Result<Damping, Error> {
+    let branches = match (&scene.written.solver.structural_damping, scene.structural_damping) {
+        (Some(chosen), Some(band)) => {
+            StructuralDamping::over_band(band.ratio, band.band, chosen.branches, Vec::new())?
+                .branches()
+                .iter()
+                .map(|branch| Branch { stiffness: branch.stiffness, relaxation_time: branch.relaxation_time })
+                .collect()
+        }
+        _ => Vec::new(),
+    };
+    let frame = match scene.written.solver.damping_frame {
+        SceneFrame::Rolling => DampingFrame::Rolling,
+        SceneFrame::RigidMotion => DampingFrame::RigidMotion,
+        SceneFrame::Absolute => DampingFrame::Absolute,
+    };
+    let mass = scene.written.solver.mass_damping_per_s;
+    // As in the full model, mass damping does not act on bodies that move as one piece.
+    let undamped = frame == DampingFrame::RigidMotion || scene.written.housing.is_rigid();
+    let mass_of_modes = if undamped { 0.0 } else { mass };
+    Ok(Damping { mass, mass_of_modes, frame, stiffness: scene.stiffness_damping, branches })
+}
+
+fn speeds(kinematics: &Kinematics) -> Speeds {
+    Speeds {
+        shaft: kinematics.shaft_rad_s,
+        outer: kinematics.outer_rad_s,
+        cage: kinematics.cage_rad_s,
+        roller: kinematics.roller_rad_s,
+    }
+}
+
+/// Pockets of the cage for rollers of these numbers, from 0.
+fn pockets(scene: &ResolvedScene, numbers: &[usize]) -> Option<Pockets> {
+    let cage = scene.cage.as_ref()?;
+    let path = scene.path_radius();
+    let [inner, outer] = cage.walls(path, scene.roller_radius);
+    let rows = (1e3 * (outer - inner) / CAGE_ELEMENT_MM).round().max(1.0);
+    Some(Pockets {
+        ends: [inner, outer],
+        path,
+        half_width: pocket_half_width(inner, outer, path, scene.roller_radius + cage.pocket_clearance),
+        angles: numbers.iter().map(|&number| scene.pocket_angle(number)).collect(),
+        facet: (outer - inner) / rows,
+        points_per_facet: match scene.written.contact.method {
+            ContactMethod::Integrated => Some(scene.written.contact.points_per_facet),
+            ContactMethod::Collocated => None,
+        },
+    })
+}
+
+fn oil(scene: &ResolvedScene) -> Result<Option<Oil>, Error> {
+    let (Some(oil), Some([outer, inner])) = (scene.film, loaded_films(scene)?) else { return Ok(None) };
+    let [outer, inner] = [outer, inner].map(|film| Film { least: film.least, speed: film.speed });
+    Ok(Some(Oil { viscosity: oil.viscosity, outer, inner }))
+}
