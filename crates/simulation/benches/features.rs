@@ -1,9 +1,9 @@
 //! What each feature of a scene costs a step: the scene, the scene without it, and features that are there
 //! but zero.
 //!
-//! Prints a table in Markdown. `cargo bench -p stribeck-simulation --bench features -- fixtures/scenes/lean.ron`
-//! measures another scene than the paper's. One thread; rounds of all variants alternate, and the median
-//! round counts.
+//! Prints a table in Markdown.
+//! `cargo bench -p stribeck-simulation --bench features -- fixtures/scenes/lean.ron` measures another scene
+//! than the paper's. One thread; rounds of all variants alternate, and the median round counts.
 
 mod motion;
 
@@ -161,8 +161,8 @@ fn main() {
     let whole = all[0].median();
     println!("# What each feature costs: {}\n", scene.name);
     println!(
-        "Written by `cargo bench -p stribeck-simulation --bench features`: one thread, processor time, medians \
-         of"
+        "Written by `cargo bench -p stribeck-simulation --bench features`: one thread, processor time, \
+         medians of"
     );
     println!("{ROUNDS} rounds in turn, quartiles in brackets.\n");
     println!("| step | elements | ns per element-step | of everything |\n|---|---|---|---|");

@@ -16,14 +16,12 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>> {
     let text = std::fs::read_to_string(root.join("docs/ARCHITECTURE.md"))
         .context("cannot read docs/ARCHITECTURE.md")?;
     let mut files = BTreeSet::new();
-    for folder in ["crates", "xtask", "fixtures"] {
+    let folders = layers::folders(root)?;
+    for folder in folders.iter().map(String::as_str).chain(["fixtures"]) {
         for file in sources::rust_files(&root.join(folder))? {
             files.insert(file.strip_prefix(root).unwrap_or(&file).display().to_string());
         }
     }
-    let mut folders: Vec<String> =
-        layers::crates(root)?.iter().map(|name| format!("crates/{name}")).collect();
-    folders.push("xtask".to_owned());
     let tests: BTreeSet<String> = test_names::all(root)?.into_iter().map(|test| test.name).collect();
     Ok(compare(&text, &files, &folders, &tests))
 }

@@ -43,7 +43,8 @@ pub(crate) fn check_citations(root: &Path) -> Result<Vec<String>> {
     let theory = read(root, "docs/THEORY.md")?;
     let sections: BTreeSet<&str> = theory.lines().filter_map(markdown::section_number).collect();
     let mut complaints = Vec::new();
-    for file in sources::rust_files(&root.join("crates"))? {
+    let folders = ["crates", "studies"].map(|folder| sources::rust_files(&root.join(folder)));
+    for file in folders.into_iter().collect::<Result<Vec<_>>>()?.concat() {
         let text =
             std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
         let name = file.strip_prefix(root).unwrap_or(&file).display().to_string();

@@ -9,9 +9,9 @@ const TESTING: &str = "testing";
 /// The one crate whose package has the name of its folder alone.
 const PROGRAM: &str = "stribeck";
 
-/// Every crate beside `xtask`, and those of ours that it depends on. A new arrow is the one change that
+/// Every crate in `crates/`, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 22] = [
+const LAYERS: [(&str, &[&str]); 21] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -35,22 +35,6 @@ const LAYERS: [(&str, &[&str]); 22] = [
         "stribeck",
         &["analysis", "dsp", "formats", "infer", "lab", "mesh", "mpi", "report", "scene", "simulation"],
     ),
-    (
-        "studies",
-        &[
-            "analysis",
-            "contact",
-            "dsp",
-            "formats",
-            "mesh",
-            "report",
-            "scene",
-            "simulation",
-            "solver",
-            "stribeck",
-            "system",
-        ],
-    ),
     ("python", &["analysis", "dsp", "formats", "report", "scene", "simulation", "stribeck"]),
 ];
 
@@ -68,6 +52,12 @@ pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
         .collect();
     names.sort();
     Ok(names)
+}
+
+/// Folders of all packages, from the root: those in `crates/`, and what only the development uses.
+pub(crate) fn folders(root: &Path) -> Result<Vec<String>> {
+    let development = ["studies", "xtask"].map(str::to_owned);
+    Ok(crates(root)?.iter().map(|name| format!("crates/{name}")).chain(development).collect())
 }
 
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::sources;
+use super::{layers, sources};
 
 /// As `max_width` in `rustfmt.toml`, which is for code.
 const COLUMNS: usize = 110;
@@ -14,7 +14,7 @@ const LONG_TEXT: usize = 80;
 
 pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
     let mut complaints = Vec::new();
-    for folder in ["crates", "xtask"] {
+    for folder in layers::folders(root)? {
         for file in sources::rust_files(&root.join(folder))? {
             let text =
                 std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;

@@ -12,9 +12,9 @@ const GENERAL: [&str; 10] =
 /// Words of bearings.
 const WORDS: [&str; 4] = ["roller", "raceway", "cage", "spall"];
 
-/// Crates that may print and read the clock: programs, a module that others are written with, and what only
-/// the project's development uses.
-const LOUD: [&str; 4] = ["python", "stribeck", "studies", "testing"];
+/// Crates that may print and read the clock: the program, a module that others are written with, and what
+/// tests share.
+const LOUD: [&str; 3] = ["python", "stribeck", "testing"];
 /// What prints or reads the clock.
 const NOISES: [&str; 6] =
     ["print!(", "println!(", "eprint!(", "eprintln!(", "Instant::now(", "SystemTime::now("];
@@ -47,7 +47,7 @@ pub(crate) fn check_words(root: &Path) -> Result<Vec<String>> {
             for (number, line) in text.lines().enumerate() {
                 if let Some(word) = word_of_bearings(line) {
                     let file = file.strip_prefix(root).unwrap_or(&file).display();
-                    complaints.push(format!("{file}:{}: `{word}` belongs to the crate bearing", number + 1));
+                    complaints.push(format!("{file}:{}: `{word}` is a word of bearings", number + 1));
                 }
             }
         }

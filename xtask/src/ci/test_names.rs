@@ -34,14 +34,11 @@ pub(super) struct Test {
     comments: String,
 }
 
-/// All tests in the crates and in `xtask`.
+/// All tests of the workspace.
 pub(super) fn all(root: &Path) -> Result<Vec<Test>> {
-    let mut folders: Vec<_> =
-        layers::crates(root)?.iter().map(|name| root.join("crates").join(name)).collect();
-    folders.push(root.join("xtask"));
     let mut found = Vec::new();
-    for folder in folders {
-        for file in sources::rust_files(&folder)? {
+    for folder in layers::folders(root)? {
+        for file in sources::rust_files(&root.join(folder))? {
             let text =
                 std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
             let name = file.strip_prefix(root).unwrap_or(&file).display().to_string();

@@ -20,7 +20,7 @@ pub(crate) fn root() -> PathBuf {
     // hand.
     let package = std::env::var_os("CARGO_MANIFEST_DIR").unwrap_or_else(|| env!("CARGO_MANIFEST_DIR").into());
     let package = PathBuf::from(package);
-    package.ancestors().nth(2).map_or_else(|| package.clone(), Path::to_owned)
+    package.parent().map_or_else(|| package.clone(), Path::to_owned)
 }
 
 /// Runs on the cores of this machine, Ctrl-C, and lines on standard error.

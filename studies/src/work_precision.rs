@@ -213,7 +213,7 @@ pub(crate) fn run(host: &dyn Host) -> Result<Answer> {
          precision under central \
          differences is what runs do. *Full integration, mixed precision, bulk viscosity, Tchamwa–Wielgosz \
          and Noh–Bathe exist for \
-         this study only* (`crates/studies/src/reference.rs`, `integrators.rs`): a plain path without \
+         this study only* (`studies/src/reference.rs`, `integrators.rs`): a plain path without \
          strips, so that their seconds \
          compare with each other and not with those of a run. On the Pareto front lies what nothing else \
          beats in both; \

@@ -172,7 +172,7 @@ mod tests {
     /// A field that is misspelt here would come to light after hours.
     #[test]
     fn example_every_case_is_a_scene_of_both_models() {
-        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         for case in CASES {
             for model in case.models {
                 let scene = case.scene(&root, model).expect("a scene");

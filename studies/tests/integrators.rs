@@ -1,7 +1,7 @@
 //! Integrators and elements for comparisons: their orders, limits and damping; and that the plain path is the
 //! kernel's.
 
-#[path = "../../solver/tests/common/mod.rs"]
+#[path = "../../crates/solver/tests/common/mod.rs"]
 mod common;
 
 use std::f64::consts::PI;
