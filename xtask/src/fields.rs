@@ -76,8 +76,8 @@ fn page(root: &Path) -> Result<String> {
     }
     let mut text = String::from(
         "# Every field of a scene\n\nWritten by `cargo xtask fields` from the types that scenes are read \
-         into. What a scene does not \
-         say has its default; a number outside its range is refused with its line.\n",
+         into. What a scene does not say has its default; a number outside its range is refused with its \
+         line.\n",
     );
     section(&types, &FieldReference::new(), "", "Scene", &mut text)?;
     Ok(text)

@@ -307,14 +307,12 @@ fn page() -> Result<String, String> {
     let [scipy_version, numpy_version] = versions[..] else { return Err("no versions".to_owned()) };
     let mut text = format!(
         "# Signal functions beside scipy\n\nWritten by `cargo bench -p stribeck-dsp --bench beside_scipy`: \
-         every function of `stribeck-dsp` \
-         that scipy {scipy_version} (numpy {numpy_version}) has, too, on 262 144 samples at 25.6 kHz unless \
-         something else is said. Ours and scipy's in \
-         turn, {ROUNDS} times each on one thread; processor time in ms and the ratio are medians, the ratio \
-         over pairs, above 1 where ours \
-         is faster. scipy keeps the tables of its transforms from call to call, and so do `Envelope` and \
-         `EnvelopeSpectrum`, which are plans; the others make theirs in every call. Sums of both results \
-         agree to {AGREED:e}.\n\n\
+         every function of `stribeck-dsp` that scipy {scipy_version} (numpy {numpy_version}) has, too, on \
+         262 144 samples at 25.6 kHz unless something else is said. Ours and scipy's in turn, {ROUNDS} times \
+         each on one thread; processor time in ms and the ratio are medians, the ratio over pairs, above 1 \
+         where ours is faster. scipy keeps the tables of its transforms from call to call, and so do \
+         `Envelope` and `EnvelopeSpectrum`, which are plans; the others make theirs in every call. Sums of \
+         both results agree to {AGREED:e}.\n\n\
          | ours | scipy | on | ours, ms | scipy, ms | scipy over ours |\n|---|---|---|---|---|---|\n"
     );
     for case in cases(&x) {

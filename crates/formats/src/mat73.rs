@@ -57,8 +57,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     if !found.too_long.is_empty() {
         notes.push(format!(
             "left out, as chunks that are packed otherwise than by gzip are read as a whole, of at most \
-             {MOST} numbers a file: {}. \
-             Pack them anew with `h5repack -f GZIP=1`",
+             {MOST} numbers a file: {}. Pack them anew with `h5repack -f GZIP=1`",
             found.too_long.join(", ")
         ));
     }

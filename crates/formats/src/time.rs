@@ -274,8 +274,7 @@ impl Course {
             let more = if more > 0 { format!(", and so at {more} more places") } else { String::new() };
             notes.push(format!(
                 "the times of `{name}` have a gap after {}: {what}{more}. Knocks before and after it do not \
-                 line up: cut the file there \
-                 and take the longer part",
+                 line up: cut the file there and take the longer part",
                 at(gap.after)
             ));
         }
@@ -312,8 +311,7 @@ impl Course {
             };
             notes.push(format!(
                 "`{name}` rises by {step:.6} from sample to sample, and does not say its unit: {means}. Call \
-                 it `t [ms]` or the like if \
-                 it is the time in another one"
+                 it `t [ms]` or the like if it is the time in another one"
             ));
             return (!slow).then_some(hz);
         }

@@ -280,8 +280,23 @@ fn roundtrip_a_step() {
 #[test]
 fn example_files_of_other_hands() {
     // Columns of fixed width, a triangle, comments, a card that is no mesh.
-    let k = "*KEYWORD\n$ \
-        comment\n*NODE\n       1             0.0             0.0             0.0\n       2             1.0             0.0             0.0\n       3             1.0             1.0             0.0\n       4             0.0            1.d0             0.0\n*ELEMENT_SHELL\n       1       7       1       2       3       4\n       2       7       1       3       2       2\n*PART\nhousing\n         7         1\n*MAT_ELASTIC\n1\n*END\n";
+    let k = "*KEYWORD
+$ comment
+*NODE
+       1             0.0             0.0             0.0
+       2             1.0             0.0             0.0
+       3             1.0             1.0             0.0
+       4             0.0            1.d0             0.0
+*ELEMENT_SHELL
+       1       7       1       2       3       4
+       2       7       1       3       2       2
+*PART
+housing
+         7         1
+*MAT_ELASTIC
+1
+*END
+";
     let read = Deck::LsDyna.read(k).expect("a mesh");
     assert_eq!(
         (read.mesh.quads.len(), read.mesh.triangles.len(), read.mesh.bodies[0].name.as_str()),

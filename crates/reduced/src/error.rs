@@ -11,8 +11,8 @@ pub enum Error {
     /// Start positions in equilibrium cannot be found.
     #[error(
         "the reduced bearing has no equilibrium to start from: {residual_n:.2e} N are left after \
-         {iterations} iterations. Look at \
-         `operation.load_n` and the clearance, take a larger `model.modes_khz`, or run `model: full`"
+         {iterations} iterations. Look at `operation.load_n` and the clearance, take a larger \
+         `model.modes_khz`, or run `model: full`"
     )]
     NoEquilibrium {
         /// Unbalanced force [N].

@@ -165,8 +165,7 @@ fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option
     (time_step < longest && critical < longest).then(|| {
         format!(
             "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} \
-             µs. A smaller `model.modes_khz` or \
-             `contact.penalty_scale` allows longer ones",
+             µs. A smaller `model.modes_khz` or `contact.penalty_scale` allows longer ones",
             wanted.step_us,
             1e6 * time_step,
             1e6 * critical
@@ -193,9 +192,8 @@ fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Op
     (steps < STEPS_A_FACET).then(|| {
         format!(
             "at this speed a facet passes its contact in {steps:.1} steps of {:.2} µs ({:.1} kHz), and the \
-             energy is off by an error that \
-             grows with the square of the step: take `model.step_us` below {:.2}, fewer \
-             `mesh.roller_facets`, or `contact.surface: arc`",
+             energy is off by an error that grows with the square of the step: take `model.step_us` below \
+             {:.2}, fewer `mesh.roller_facets`, or `contact.surface: arc`",
             1e6 * time_step,
             1e-3 * hz,
             1e6 / (hz * STEPS_A_FACET)

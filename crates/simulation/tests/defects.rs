@@ -33,11 +33,11 @@ const ALL: &str = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 5.3, dept
     (on: outer, form: waviness(order: 12, amplitude_um: 2.0)), \
     (on: inner, angle_deg: 40.0, form: dent(length_mm: 6.0, depth_mm: 0.05, rim_um: 8.0)), \
     (on: inner, form: roughness(rq_um: 0.5, longest_mm: 20.0, shortest_mm: 5.0)), \
-    (on: roller(1), angle_deg: 100.0, form: spall(length_mm: 4.0, depth_mm: 0.05, edge_mm: 1.0, edge: \
-    rounded)), \
+    (on: roller(1), angle_deg: 100.0, \
+    form: spall(length_mm: 4.0, depth_mm: 0.05, edge_mm: 1.0, edge: rounded)), \
     (on: roller(2), form: diameter(larger_um: -8.0)), \
-    (on: roller(3), angle_deg: -20.0, form: profile(points: [(at_mm: -2.0, depth_um: 0.0), (at_mm: 0.0, \
-    depth_um: 40.0), \
+    (on: roller(3), angle_deg: -20.0, \
+    form: profile(points: [(at_mm: -2.0, depth_um: 0.0), (at_mm: 0.0, depth_um: 40.0), \
     (at_mm: 1.0, depth_um: -10.0), (at_mm: 2.0, depth_um: 0.0)]))";
 
 /// Radii and angles of the nodes of a body's surface about its centre.
@@ -150,8 +150,8 @@ fn example_rectangular_spalls_are_cut_as_the_defect_is() {
     single.defect = listed.spalls().pop();
     assert_eq!(nodes(&listed), nodes(&single));
     // Three of them carry their load.
-    let others = "(on: outer, angle_deg: 78.0, form: spall(length_mm: 5.0, depth_mm: 0.1, edge: \
-        rectangular)), \
+    let others = "(on: outer, angle_deg: 78.0, \
+        form: spall(length_mm: 5.0, depth_mm: 0.1, edge: rectangular)), \
         (on: inner, angle_deg: 90.0, form: spall(length_mm: 6.0, depth_mm: 0.2, edge: rectangular))";
     let scene = running(&format!("{spall}, {others}"), 1.0);
     let folder = Scratch::new("defects-grooves");
@@ -202,8 +202,8 @@ fn conserves_energy_and_carries_the_load_over_every_form() {
 fn conserves_energy_in_oil() {
     let mut scene = fine_where_it_rolls(2.5);
     scene.defect = None;
-    let defects = "(on: outer, angle_deg: 93.0, form: spall(length_mm: 6.0, depth_mm: 0.1, edge_mm: 2.0, \
-        edge: rounded)), \
+    let defects = "(on: outer, angle_deg: 93.0, \
+        form: spall(length_mm: 6.0, depth_mm: 0.1, edge_mm: 2.0, edge: rounded)), \
         (on: inner, angle_deg: 88.0, form: dent(length_mm: 6.0, depth_mm: 0.05, rim_um: 8.0)), \
         (on: outer, form: roughness(rq_um: 0.5, longest_mm: 20.0, shortest_mm: 5.0)), \
         (on: roller(2), form: diameter(larger_um: -8.0))";

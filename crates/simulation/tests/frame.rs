@@ -59,10 +59,10 @@ fn analytic_mass_damping_brakes_no_frame() {
     const TOLERANCE: f64 = 0.01;
     let of = |housing: &str| {
         let text = format!(
-            "(bearing: \"NU 205\", model: reduced(modes_khz: 30), film: None, defect: None, operation: \
-             (load_n: 100), housing: {housing},
-              mesh: (size_mm: 0.7, roller_facets: 64), solver: (mass_damping_per_s: 2000, \
-              structural_damping: None))"
+            "(bearing: \"NU 205\", model: reduced(modes_khz: 30), film: None, defect: None, \
+             operation: (load_n: 100), housing: {housing},
+              mesh: (size_mm: 0.7, roller_facets: 64), \
+             solver: (mass_damping_per_s: 2000, structural_damping: None))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
         let mesh = ReducedMesh::new(&scene.resolve()).expect("modes");

@@ -198,12 +198,12 @@ fn example_films_between_turning_rings() {
     // the deflection of the bodies under it: 0.4 µm at most where it carries less than 20 N (THEORY §4.6).
     const LITTLE_N: f64 = 20.0;
     const GIVEN_M: f64 = 5e-7;
-    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.5), defect: None, housing: \
-        rigid(mass_kg: 1), \
-        defects: [(on: roller(4), form: missing), (on: outer, angle_deg: 20, form: dent(length_mm: 4, \
-        depth_mm: 0.02))], \
-        mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None), contact: (surface: arc, \
-        penalty_scale: 1, friction: 0.05), \
+    let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.5), defect: None, \
+        housing: rigid(mass_kg: 1), \
+        defects: [(on: roller(4), form: missing), \
+        (on: outer, angle_deg: 20, form: dent(length_mm: 4, depth_mm: 0.02))], \
+        mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None), \
+        contact: (surface: arc, penalty_scale: 1, friction: 0.05), \
         solver: (duration_ms: 2, structural_damping: None), \
         operation: (load_n: 3000, load_angle_deg: 200, speed_rpm: 1500, outer_speed_rpm: -1000))";
     let scene = Scene::parse(text, "here").expect("a sound scene");

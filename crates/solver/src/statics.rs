@@ -197,7 +197,6 @@ fn no_equilibrium(d: &Dynamics, statics: &Statics, iterations: usize, residual_n
         x_mm: 1e3 * d.state.x[slot],
         y_mm: 1e3 * d.state.y[slot],
         advice: "check that the load can reach a support through bodies that touch; try a smaller load, a \
-            softer \
-                 contact or a start without preload",
+            softer contact or a start without preload",
     }
 }

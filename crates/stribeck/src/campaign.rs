@@ -196,8 +196,7 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
             ensure!(
                 before == scenes,
                 "`{}` holds runs of other scenes, beginning with run {}: the table or the scene that this \
-                 campaign names was changed \
-                 since. Give a folder with `--out`, or put it back",
+                 campaign names was changed since. Give a folder with `--out`, or put it back",
                 shown(folder.path()),
                 same + 1
             );

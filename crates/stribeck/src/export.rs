@@ -295,8 +295,7 @@ fn sensor(text: &str, rate_hz: f64) -> Result<Sensor> {
             "seed" if number >= 0.0 => sensor.seed = number as u64,
             other => bail!(
                 "`{other}={number}` of the sensor: known are rate_hz, resonance_hz, quality, noise_density \
-                 (not negative), range, \
-                 bits (2 to 32) and seed"
+                 (not negative), range, bits (2 to 32) and seed"
             ),
         }
     }

@@ -81,8 +81,8 @@ fn write(scenes: &[Scene], module: &[u8], runs: &Path, command: &str, out: &Path
     std::fs::write(out, &page.html).with_context(|| format!("cannot write `{}`", shown(out)))?;
     if page.html.len() > LARGEST {
         eprintln!(
-            "warning: the page has {:.1} MB; --set mesh.size_mm=1 or a smaller \
-             `model.modes_khz` makes it smaller",
+            "warning: the page has {:.1} MB; --set mesh.size_mm=1 or a smaller `model.modes_khz` makes it \
+             smaller",
             1e-6 * page.html.len() as f64
         );
     }

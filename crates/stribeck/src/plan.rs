@@ -82,9 +82,8 @@ fn loads(plan: &Plan) {
     let loads = &plan.loads;
     let [outer, inner] = loads.pressure_pa.map(|pa| 1e-6 * pa);
     say!(
-        "  clearance {:.0} µm; {} rolling elements carry, the most loaded one {:.0} N (rigid rings, \
-         Stribeck and \
-         Sjövall)",
+        "  clearance {:.0} µm; {} rolling elements carry, the most loaded one {:.0} N (rigid rings, Stribeck \
+         and Sjövall)",
         1e6 * loads.clearance_m,
         loads.loaded,
         loads.largest_n

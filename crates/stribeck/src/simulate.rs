@@ -250,8 +250,7 @@ fn check_overrides(overrides: &[String]) -> Result<()> {
     if let Some(other) = other {
         bail!(
             "`--set {other}` cannot be used with --resume: the samples so far belong to the scene as it was. \
-             Only `{MAY_CHANGE}` may \
-             change; for anything else start a new run"
+             Only `{MAY_CHANGE}` may change; for anything else start a new run"
         );
     }
     Ok(())

@@ -57,8 +57,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if 1e-3 * scene.solver.duration_ms < LEAST_S {
         bail!(
             "`solver.duration_ms` is {}; at least {} to compare models, which is done from {} ms on. Take a \
-             longer run: \
-             --set solver.duration_ms=30",
+             longer run: --set solver.duration_ms=30",
             scene.solver.duration_ms,
             1e3 * LEAST_S,
             1e3 * FROM_S

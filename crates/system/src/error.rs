@@ -51,8 +51,7 @@ pub enum Error {
     /// A force was laid on a node that its law had not announced; the solver has not read it.
     #[error(
         "a force acts on a node of `{body}` at x = {x_mm:.3} mm, y = {y_mm:.3} mm that no force announced: \
-         name it in the \
-         nodes of `Plan::force`"
+         name it in the nodes of `Plan::force`"
     )]
     UnannouncedForce {
         /// Body of the node.

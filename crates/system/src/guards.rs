@@ -195,8 +195,7 @@ impl System {
                 true,
                 format!(
                     "{what} {when}; the fastest node is {}. Try a smaller {time_step_factor}, a smaller \
-                     {penalty}, or look for \
-                     bodies that overlap",
+                     {penalty}, or look for bodies that overlap",
                     self.fastest()
                 ),
             );
@@ -212,8 +211,7 @@ impl System {
                 false,
                 format!(
                     "energy is out of balance by {:.2} % of the {over} (limit {energy_warning_percent} %){} \
-                     {when}: take a smaller \
-                     {time_step_factor}, a smaller {penalty}, or start {}",
+                     {when}: take a smaller {time_step_factor}, a smaller {penalty}, or start {}",
                     100.0 * error,
                     self.share_of_heat(),
                     words.preloaded
@@ -259,8 +257,7 @@ impl System {
             stops: false,
             message: format!(
                 "hourglass energy is {:.1} % of the strain energy (limit {limit} %) {}: elements bend more \
-                 than they stretch. Take \
-                 a smaller {}, or another {}",
+                 than they stretch. Take a smaller {}, or another {}",
                 100.0 * share,
                 self.when(),
                 self.words.element_size,
@@ -285,8 +282,7 @@ impl System {
             stops,
             message: format!(
                 "{} penetrate each other by {:.1} µm, {:.0} % of the element size (limit {limit} %) {}: take \
-                 a larger {}, a larger \
-                 {} or less {}",
+                 a larger {}, a larger {} or less {}",
                 self.pairs[pair],
                 1e6 * depth,
                 100.0 * share,
@@ -307,8 +303,8 @@ impl System {
         if now.least_area < 0.01 * self.limits.area_stop_percent {
             let message = format!(
                 "an element at x = {:.3} mm, y = {:.3} mm has {:.1} % of its area left (limit {} %) {}: it \
-                 is about to turn inside \
-                 out, beyond what a linear material means. Take less {}, a larger {}, or start {}",
+                 is about to turn inside out, beyond what a linear material means. Take less {}, a larger \
+                 {}, or start {}",
                 1e3 * now.place[0],
                 1e3 * now.place[1],
                 100.0 * now.least_area,

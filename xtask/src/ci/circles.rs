@@ -74,9 +74,8 @@ fn compare(circles: &[Circle], architecture: &str) -> Vec<String> {
         }
         let all = modules.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         complaints.push(format!(
-            "{place}: {} modules use each other in a circle ({all}), for one {}: break it, or add a \
-             line \"Circle in \
-             `{place}`: {all}, because …\" to ARCHITECTURE",
+            "{place}: {} modules use each other in a circle ({all}), for one {}: break it, or add a line \
+             \"Circle in `{place}`: {all}, because …\" to ARCHITECTURE",
             modules.len(),
             way.join(" → ")
         ));

@@ -113,8 +113,7 @@ mod tests {
     fn example_arrows_against_the_layers_are_found() {
         let manifest = "[package]\nname = \"stribeck-solver\"\n[dependencies]\nstribeck-mesh.workspace = \
             true\n\
-                        stribeck-contact = { path = \"x\" }\n[dev-dependencies]\nstribeck-dsp.workspace = \
-                        true\n";
+            stribeck-contact = { path = \"x\" }\n[dev-dependencies]\nstribeck-dsp.workspace = true\n";
         let complaints = compare("solver", manifest, &["mesh"]);
         assert_eq!(complaints.len(), 2);
         assert!(complaints[0].contains("`contact`") && complaints[1].contains("`dsp`"));

@@ -67,7 +67,7 @@ mod tests {
         assert_eq!(missing_fields("[package]\n").map(|fields| fields.len()), Some(6));
         let full = "description = \"x\"\nkeywords = [\"x\"]\ncategories = [\"science\"]\nlicense.workspace = \
             true\n\
-                    repository.workspace = true\ninclude.workspace = true\n";
+            repository.workspace = true\ninclude.workspace = true\n";
         assert_eq!(missing_fields(full), Some(Vec::new()));
     }
 }

@@ -154,11 +154,9 @@ fn parse(line: &str) -> Option<Row> {
 fn render(rows: &[Row]) -> String {
     let mut text = String::from(
         "# Validation\n\nWhat the tests compare with closed forms and with other programs. Written by `cargo \
-         xtask ci` from the tests \
-         themselves (`crates/testing/src/ledger.rs`), which fail beyond the tolerance. Whole problems solved \
-         by other codes are in \
-         [compare](results/compare.md), error against work in [work_precision](results/work_precision.md), \
-         extreme cases in \
+         xtask ci` from the tests themselves (`crates/testing/src/ledger.rs`), which fail beyond the \
+         tolerance. Whole problems solved by other codes are in [compare](results/compare.md), error against \
+         work in [work_precision](results/work_precision.md), extreme cases in \
          [stability](results/stability.md).\n",
     );
     let mut package = "";

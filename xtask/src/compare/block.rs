@@ -155,8 +155,7 @@ pub(super) fn problem(block: &Block, folder: &Path) -> Result<Problem> {
     write_json(&file, block)?;
     let text = format!(
         "A free block of steel in plane strain, {} × {} squares of 0.5 mm, central differences of {:.0} ns, \
-         lumped \
-         mass, no contact, started by a smooth velocity field of {} m/s.",
+         lumped mass, no contact, started by a smooth velocity field of {} m/s.",
         block.columns,
         block.rows,
         1e9 * block.time_step,

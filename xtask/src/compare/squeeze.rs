@@ -135,10 +135,9 @@ pub(super) fn problem(folder: &Path) -> Result<Problem> {
     let elements = mesh.elements();
     let text = format!(
         "A disc of 18 mm between two blocks of 20 × 10 mm, elements of 0.5 mm ({} quads, {} triangles); the \
-         lower block \
-         is held, the upper one comes down with {SPEED} m/s. Frictionless penalty contact (E / 0.5 mm), \
-         nodes of either \
-         side against facets of the other; steps of {:.2} ns. Contact is part of the time per element.",
+         lower block is held, the upper one comes down with {SPEED} m/s. Frictionless penalty contact (E / \
+         0.5 mm), nodes of either side against facets of the other; steps of {:.2} ns. Contact is part of \
+         the time per element.",
         mesh.quads.len(),
         mesh.triangles.len(),
         1e9 * time_step

@@ -38,13 +38,11 @@ pub(super) fn page(setting: &Setting, measured: &[Measured], absent: &[Absent]) 
     let _ = writeln!(
         page,
         "# The same work in other programs\n\n\
-         Written by `cargo xtask peers`, raw runs in [compare.csv](compare.csv). Commit {}. {}. \
-         Load average {} before, {} after. Every program on one thread, double precision.\n\n\
+         Written by `cargo xtask peers`, raw runs in [compare.csv](compare.csv). Commit {}. {}. Load average \
+         {} before, {} after. Every program on one thread, double precision.\n\n\
          Timed is the step loop alone: forces, masses, motion; no output. Times are processor time in ns per \
-         element \
-         and step, least and median of {} runs. Ours was run again directly before each run of another \
-         program; the \
-         ratio is the median over these pairs. E 200 GPa, ν 0.3, ρ 7850 kg/m³.",
+         element and step, least and median of {} runs. Ours was run again directly before each run of \
+         another program; the ratio is the median over these pairs. E 200 GPa, ν 0.3, ρ 7850 kg/m³.",
         setting.commit,
         setting.machine,
         load(setting.loads[0]),

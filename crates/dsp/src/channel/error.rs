@@ -22,8 +22,7 @@ pub enum Error {
     /// The file has none of the known formats.
     #[error(
         "`{}` is no signal that can be read: {seen}. Known are CSV, .npy, .npz, .mat (versions 4, 5 and \
-         7.3), .uff/.unv (dataset 58), \
-         .tdms, .mf4, .parquet, .wav and .flac; export it as one of these", .path.display()
+         7.3), .uff/.unv (dataset 58), .tdms, .mf4, .parquet, .wav and .flac; export it as one of these", .path.display()
     )]
     Unknown {
         /// The file.
@@ -56,8 +55,8 @@ pub enum Error {
     },
     /// A text that should be a number.
     #[error(
-        "`{}`, row {row}, column {column} (`{channel}`): `{text}` is no number; \
-         mend the row, or cut the file before it", .path.display()
+        "`{}`, row {row}, column {column} (`{channel}`): `{text}` is no number; mend the row, or cut the \
+         file before it", .path.display()
     )]
     Number {
         /// The file.

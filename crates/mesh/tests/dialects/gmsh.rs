@@ -29,8 +29,8 @@ fn msh(version: &str, binary: bool) -> Vec<u8> {
     }
     text(
         &mut out,
-        "$EndMeshFormat\n$PhysicalNames\n4\n1 3 \"wetted\"\n1  4  \"raceway\"\n1 5 \"fit\"\n2 \
-         1 \"steel\"\n$EndPhysicalNames\n",
+        "$EndMeshFormat\n$PhysicalNames\n4\n1 3 \"wetted\"\n1  4  \"raceway\"\n1 5 \"fit\"\n2 1 \
+         \"steel\"\n$EndPhysicalNames\n",
     );
     let lines = [(1, 1, 2), (1, 2, 3), (2, 4, 5), (2, 5, 6)];
     let quads = [[1, 2, 5, 4], [2, 3, 6, 5]];

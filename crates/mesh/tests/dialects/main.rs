@@ -96,11 +96,11 @@ fn peer_meshio_writes_every_dialect() {
     let folder = Scratch::create("dialects");
     let script = "import meshio, numpy as np
 points = np.array([[0, 0, 0], [1, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0], [2, 1, 0]], float)
-cells = [('line', np.array([[0, 1], [1, 2]])), ('line', np.array([[3, 4], [4, 5]])), ('quad', np.array([[0, \
-1, 4, 3], [1, 2, 5, 4]]))]
+cells = [('line', np.array([[0, 1], [1, 2]])), ('line', np.array([[3, 4], [4, 5]])), \
+('quad', np.array([[0, 1, 4, 3], [1, 2, 5, 4]]))]
 none = np.array([], int)
-sets = dict(point_sets={'raceway': np.arange(3), 'fit': np.arange(3, 6)}, cell_sets={'steel': [none, none, \
-np.arange(2)], 'curve': [np.arange(2), none, none]})
+sets = dict(point_sets={'raceway': np.arange(3), 'fit': np.arange(3, 6)}, \
+cell_sets={'steel': [none, none, np.arange(2)], 'curve': [np.arange(2), none, none]})
 meshio.Mesh(points, cells, **sets).write('a.inp')
 groups = dict(field_data={'raceway': np.array([4, 1]), 'fit': np.array([5, 1]), 'steel': np.array([1, 2])},
               cell_data={'gmsh:physical': [np.array([4, 4]), np.array([5, 5]), np.array([1, 1])], \

@@ -68,8 +68,7 @@ impl Curved {
         let lands = Land::of(&surface, &x, &y);
         if lands.is_empty() {
             let reason = "has nothing but corners, which no film lies across: oil needs facets that meet at \
-                less than 20°, by `mesh.size_mm`, \
-                          `mesh.outer_facets` and `mesh.inner_facets`";
+                less than 20°, by `mesh.size_mm`, `mesh.outer_facets` and `mesh.inner_facets`";
             return Err(SurfaceError::BadSurface { name: name.to_owned(), reason }.into());
         }
         Ok(Self { x, y, surface, lands })

@@ -130,8 +130,7 @@ impl<'a> OwnMesh<'a> {
         loose.truncate(MOST_NAMED);
         self.refuse(format!(
             "{}{further} hang on nothing: all their elements, or some of them, share no nodes with the body \
-             of its {what}. Leave them out of the \
-             file, or join their nodes",
+             of its {what}. Leave them out of the file, or join their nodes",
             loose.join(", ")
         ))
     }
@@ -151,8 +150,7 @@ impl<'a> OwnMesh<'a> {
     fn misses<T>(&self, what: &str, fits: &str, [is, wanted]: [f64; 2]) -> Result<T, Error> {
         self.refuse(format!(
             "its {what} does not fit {fits}: a node lies {:.4} mm from the centre, and the radius there is \
-             {:.4} mm. Look at \
-             `{}.unit_mm`; the bearing's centre is the origin of the mesh",
+             {:.4} mm. Look at `{}.unit_mm`; the bearing's centre is the origin of the mesh",
             1e3 * is,
             1e3 * wanted,
             self.group

@@ -67,8 +67,7 @@ pub fn preload(
     Ok(settled.unbalanced.map(|force| {
         format!(
             "the preload left a force of {force:.2e} N unbalanced, {:.1e} of the load: the start rings a \
-             little. A softer \
-             `contact.penalty_scale` converges better",
+             little. A softer `contact.penalty_scale` converges better",
             force / scene.duty.load_n(0.0)
         )
     }))

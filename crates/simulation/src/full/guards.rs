@@ -55,8 +55,7 @@ impl Guards {
         if step > critical {
             warnings.push(format!(
                 "the time step of {:.2} ns is {:.3} times the critical one: the run may diverge. Take a \
-                 `solver.time_step_factor` \
-                 below 1",
+                 `solver.time_step_factor` below 1",
                 1e9 * step,
                 step / critical
             ));
@@ -70,11 +69,9 @@ impl Guards {
         if critical < SMALL_STEP * square {
             warnings.push(format!(
                 "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {:.2} mm: \
-                 some cell is very small, or the \
-                 contact very stiff, or stiffness damping strong. Look at `defect.depth_mm`, \
-                 `mesh.roller_facets`, `contact.penalty_scale` and \
-                 `solver.stiffness_damping_ns`, or expect a run {:.0} \
-                 times as long",
+                 some cell is very small, or the contact very stiff, or stiffness damping strong. Look at \
+                 `defect.depth_mm`, `mesh.roller_facets`, `contact.penalty_scale` and \
+                 `solver.stiffness_damping_ns`, or expect a run {:.0} times as long",
                 1e9 * critical,
                 100.0 * critical / square,
                 1e9 * square,
@@ -129,8 +126,7 @@ impl Guards {
         (off.abs() > self.seat).then(|| {
             format!(
                 "the housing has left the outer ring by {:.3} mm {}: take a larger `contact.penalty_scale`, \
-                 or less \
-                 `operation.load_n`",
+                 or less `operation.load_n`",
                 1e3 * off,
                 When::of(info)
             )

@@ -95,8 +95,8 @@ impl Guards {
         if bearing.has_seat() && modes < FEW_MODES {
             warnings.push(format!(
                 "only {modes} modes of ring and housing lie below `model.modes_khz`, and the ring may bend \
-                 in none of them: such runs find no \
-                 start or gain energy with steps of any length. Take a larger `model.modes_khz`"
+                 in none of them: such runs find no start or gain energy with steps of any length. Take a \
+                 larger `model.modes_khz`"
             ));
         }
         if scene.written.output.frames.is_some() {
@@ -168,8 +168,7 @@ impl Guards {
         if astray > ASTRAY * self.roller_radius {
             return format!(
                 "The cage has strayed by {:.2} mm, and a wall of a pocket that goes past the middle of its \
-                 roller lets go of it all at once. \
-                 Nothing holds it there: take {}",
+                 roller lets go of it all at once. Nothing holds it there: take {}",
                 1e3 * astray,
                 self.shared.holds_cage()
             );

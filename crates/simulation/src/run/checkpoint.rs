@@ -126,16 +126,14 @@ fn parse(header: &[u8], scene: &str) -> Result<(u64, u32), String> {
     if version != VERSION {
         return Err(format!(
             "its checkpoint has the version {version}, and this program reads {VERSION}. Continue the run \
-             with the program that began \
-             it, named in `run.json`"
+             with the program that began it, named in `run.json`"
         ));
     }
     let (hash, rest) = rest.split_at_checked(HASH).ok_or_else(cut)?;
     if hash != scene.as_bytes() {
         return Err(format!(
             "its checkpoint belongs to another scene than `scene.ron` ({} and {scene}, but for the \
-             duration). Put the run's own \
-             `scene.ron` back; a changed scene needs a new run",
+             duration). Put the run's own `scene.ron` back; a changed scene needs a new run",
             String::from_utf8_lossy(hash).escape_debug()
         ));
     }

@@ -135,8 +135,7 @@ impl Guards {
         if is_new {
             info.warnings.push(format!(
                 "no roller has carried anything for {:.2} ms {}: the load hangs in the air. Start \
-                 `preloaded`, or look at `bearing` for a \
-                 clearance that the load cannot close",
+                 `preloaded`, or look at `bearing` for a clearance that the load cannot close",
                 1e3 * time,
                 When::of(info)
             ));
@@ -153,8 +152,8 @@ impl Guards {
                 let through = if radius < inner { "inner" } else { "outer" };
                 return Some(format!(
                     "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from \
-                     that of the outer ring {when}. Take a \
-                     larger `contact.penalty_scale`, less `operation.load_n` or a smaller {}",
+                     that of the outer ring {when}. Take a larger `contact.penalty_scale`, less \
+                     `operation.load_n` or a smaller {}",
                     1e3 * radius,
                     self.step_field
                 ));
@@ -171,8 +170,7 @@ impl Guards {
         if off > room.stop {
             return Some(format!(
                 "the cage has cut through a ring: its centre is {:.2} mm from that of the outer ring {when}, \
-                 and between the raceways it has \
-                 {} mm of room. Nothing holds it there: take {}",
+                 and between the raceways it has {} mm of room. Nothing holds it there: take {}",
                 1e3 * off,
                 room.in_words(),
                 self.holds_cage
@@ -181,8 +179,7 @@ impl Guards {
         if off > room.warning && before <= room.warning {
             info.warnings.push(format!(
                 "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a \
-                 real one would rub on a ring, \
-                 which the model does not have. To hold it, take {}",
+                 real one would rub on a ring, which the model does not have. To hold it, take {}",
                 1e3 * off,
                 room.in_words(),
                 self.holds_cage

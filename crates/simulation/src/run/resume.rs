@@ -18,8 +18,7 @@ pub fn take_over(info: &mut RunInfo, scene: &ResolvedScene, host: &Host<'_>) {
     if (&info.version, &info.commit) != (&host.version, &host.commit) {
         info.warnings.push(format!(
             "version {} ({}) began this run and version {} ({}) continued it: its bits may differ from those \
-             of an \
-             unbroken run",
+             of an unbroken run",
             info.version, info.commit, host.version, host.commit
         ));
     }
@@ -61,16 +60,14 @@ fn check_counts(dir: &RunDir, scene: &ResolvedScene, info: &RunInfo) -> Result<u
     if !fits {
         return refused(
             "its checkpoint counts steps and samples that its scene does not have: it was damaged. Otherwise \
-             start it anew from its \
-             `scene.ron`; its samples stay readable until then"
+             start it anew from its `scene.ron`; its samples stay readable until then"
                 .to_owned(),
         );
     }
     if info.samples as f64 > samples {
         return refused(format!(
             "its checkpoint holds {} ms, and `solver.duration_ms` asks for {}: a run can be made longer, not \
-             shorter. \
-             Otherwise start it anew",
+             shorter. Otherwise start it anew",
             // To the nanosecond, so that it reads as it was written.
             (1e9 * interval * info.samples as f64).round() / 1e6,
             scene.written.solver.duration_ms

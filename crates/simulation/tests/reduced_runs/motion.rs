@@ -195,12 +195,12 @@ fn analytic_a_start_from_rest_takes_the_rollers_along() {
 fn example_light_loads() {
     for load_n in [300, 30, 3] {
         let text = format!(
-            "(bearing: \"NU 205\", model: reduced(step_us: 0.5), film: None, defect: None, operation: \
-             (load_n: {load_n}, speed_rpm: 1500),
-              cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), mesh: (roller_facets: \
-              56), output: (frames: None),
-              contact: (surface: arc, friction: 0.05), solver: (duration_ms: 2, mass_damping_per_s: 5000, \
-              structural_damping: None))"
+            "(bearing: \"NU 205\", model: reduced(step_us: 0.5), film: None, defect: None, \
+             operation: (load_n: {load_n}, speed_rpm: 1500),
+              cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), \
+             mesh: (roller_facets: 56), output: (frames: None),
+              contact: (surface: arc, friction: 0.05), \
+             solver: (duration_ms: 2, mass_damping_per_s: 5000, structural_damping: None))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
         let folder = Scratch::create("reduced-light");
@@ -221,12 +221,12 @@ fn example_light_loads() {
 fn analytic_rollers_in_a_rigid_housing() {
     for bearing in ["NU 205", "6305"] {
         let text = format!(
-            "(bearing: \"{bearing}\", model: reduced(step_us: 0.5), film: None, defect: None, housing: \
-             rigid(mass_kg: 1),
-              operation: (load_n: 3000, load_angle_deg: 215, speed_rpm: 100, gravity_m_s2: 0), output: \
-              (frames: None),
-              mesh: (size_mm: 0.2, roller_facets: 160, grading: (coarse_mm: 2)), contact: (surface: arc, \
-              penalty_scale: 10),
+            "(bearing: \"{bearing}\", model: reduced(step_us: 0.5), film: None, defect: None, \
+             housing: rigid(mass_kg: 1),
+              operation: (load_n: 3000, load_angle_deg: 215, speed_rpm: 100, gravity_m_s2: 0), \
+             output: (frames: None),
+              mesh: (size_mm: 0.2, roller_facets: 160, grading: (coarse_mm: 2)), \
+             contact: (surface: arc, penalty_scale: 10),
               solver: (duration_ms: 2))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");

@@ -48,8 +48,7 @@ pub(super) fn without(channel: &Channel, notes: &mut Vec<String>) -> Result<Whol
     } else {
         notes.push(format!(
             "{missing} samples of `{}` are no numbers, the first of them sample {first}: the longest stretch \
-             without them is taken, \
-             samples {from} to {} of {}",
+             without them is taken, samples {from} to {} of {}",
             channel.name,
             until - 1,
             samples.len()

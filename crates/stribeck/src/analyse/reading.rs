@@ -179,9 +179,8 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
     if claims && of_run {
         notes.push(
             "a run has no noise but its bearing's: what elements rattle as they come under the load can make \
-             a claim of its own, in a sound \
-             bearing, too. Its report says what is in the scene; `export` with `--sensor` and a \
-             `noise_density` gives it a machine's noise"
+             a claim of its own, in a sound bearing, too. Its report says what is in the scene; `export` \
+             with `--sensor` and a `noise_density` gives it a machine's noise"
                 .to_owned(),
         );
     }
@@ -211,8 +210,7 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
         ensure!(
             same || options.force_rate,
             "`{}` says that channel `{}` was sampled at {said} Hz, and `--rate-hz` says {given} Hz: leave \
-             the option out, or add \
-             `--force-rate` if the file is wrong",
+             the option out, or add `--force-rate` if the file is wrong",
             file.display(),
             channel.name
         );

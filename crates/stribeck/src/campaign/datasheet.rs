@@ -45,8 +45,7 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
     let mut page = format!(
         "# Data set `{}`\n\n\
          Simulated by Stribeck {}; nothing in it was measured. Each run is a folder below `runs/`, named by \
-         the hash of its scene, \
-         with its complete scene, provenance{}.\n\n| | |\n|---|---|\n",
+         the hash of its scene, with its complete scene, provenance{}.\n\n| | |\n|---|---|\n",
         campaign.name,
         programs(rows),
         match campaign.keep {
@@ -61,30 +60,23 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
     page += &format!(
         "\n## Tables\n\n\
          `{RUNS}` has a row for each run, also for those that failed: `status` and `reason` say why, and \
-         `warnings` what the guards of \
-         a run have warned of, a line each. `{EVENTS}` has a row for each \
+         `warnings` what the guards of a run have warned of, a line each. `{EVENTS}` has a row for each \
          passage of a roller over a spall of a raceway{}; `run` joins them. The split is drawn by the scene \
-         of a variant, so no scene \
-         and no start of it stands in two parts.\n\n\
+         of a variant, so no scene and no start of it stands in two parts.\n\n\
          Ground truth: `model`, `fault_*`, `deviation_type`, `shaft_speed_rpm` and `load_n`, which a profile \
-         may vary. A fault strikes \
-         once a passage; waves, roughness and other diameters are deviations. Size, depth and angle at the \
-         start are those of the first \
-         fault of the scene that has a length. `bpfo_hz`, `bpfi_hz`, `bsf_hz` and `ftf_hz` are kinematic, \
-         without slip. `scene.*` are \
-         the fields that vary, `summary.*` what the analysis of each run found (docs/THEORY.md, §7, says \
-         how). Of an event, \
-         `expected_*` is when the roller's centre is over an edge without slip, `path_*` when the recorded \
-         one is, and `entry_ms` and \
-         `exit_ms` are read from its force. What depends on machine or interruptions is only in the folders \
-         of the runs.\n\n## Limits\n\n",
+         may vary. A fault strikes once a passage; waves, roughness and other diameters are deviations. \
+         Size, depth and angle at the start are those of the first fault of the scene that has a length. \
+         `bpfo_hz`, `bpfi_hz`, `bsf_hz` and `ftf_hz` are kinematic, without slip. `scene.*` are the fields \
+         that vary, `summary.*` what the analysis of each run found (docs/THEORY.md, §7, says how). Of an \
+         event, `expected_*` is when the roller's centre is over an edge without slip, `path_*` when the \
+         recorded one is, and `entry_ms` and `exit_ms` are read from its force. What depends on machine or \
+         interruptions is only in the folders of the runs.\n\n## Limits\n\n",
         if written.signals.is_empty() {
             String::new()
         } else {
             format!(
                 ", `{SIGNALS}` one for each sample of the accelerations, a group of rows a run, of the runs \
-                 that are complete: one that \
-                 diverged has no signals there"
+                 that are complete: one that diverged has no signals there"
             )
         },
     );
@@ -163,16 +155,14 @@ fn limits(scenes: &[&Scene]) -> Vec<String> {
     if reduced.len() < scenes.len() {
         limits.push(
             "Full model: peaks above some kilohertz differ between starts of one scene by tens of per cent: \
-             learn from distributions, \
-             not from single records."
+             learn from distributions, not from single records."
                 .to_owned(),
         );
     }
     if !reduced.is_empty() {
         limits.push(format!(
             "Reduced model: outer ring and housing have their modes up to {}, rollers and cage are rigid \
-             bodies with local compliance; \
-             what lies above is not of the structure.",
+             bodies with local compliance; what lies above is not of the structure.",
             span(reduced.into_iter(), "kHz")
         ));
     }

@@ -91,8 +91,7 @@ fn step(scene: &ResolvedScene, mesh: &Mesh) -> Result<Step> {
     if (&own.x, &own.y) != (&mesh.x, &mesh.y) {
         bail!(
             "another version of the program has made this run, which meshes the scene otherwise: repeat the \
-             run, or `--to msh`, which \
-             has the mesh alone"
+             run, or `--to msh`, which has the mesh alone"
         );
     }
     let duty = &scene.duty;

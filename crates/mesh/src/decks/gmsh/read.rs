@@ -367,12 +367,10 @@ impl File<'_> {
             Some((2, nodes)) if kind == TRIANGLE || kind == QUADRILATERAL => Ok(nodes),
             Some((2, nodes)) => Err(self.source.fault(format!(
                 "elements of type {kind} are not read, as they have {nodes} nodes: mesh with elements of \
-                 first order; triangles (2) and \
-                 quadrilaterals (3) are read"
+                 first order; triangles (2) and quadrilaterals (3) are read"
             ))),
             _ => Err(self.source.fault(format!(
-                "elements of type {kind} are not read; triangles (2) and quadrilaterals (3) \
-                    are"
+                "elements of type {kind} are not read; triangles (2) and quadrilaterals (3) are"
             ))),
         }
     }

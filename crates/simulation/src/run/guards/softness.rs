@@ -45,9 +45,8 @@ impl Softness {
         };
         format!(
             "contact has sunk in by {} {when}: it is softer than the bearing, which has {} of radial \
-             clearance and by Hertz gives way by {} at a \
-             contact{depth}. Load zone, times and impulses are those of a softer bearing; a larger \
-             `contact.penalty_scale` is nearer to steel",
+             clearance and by Hertz gives way by {} at a contact{depth}. Load zone, times and impulses are \
+             those of a softer bearing; a larger `contact.penalty_scale` is nearer to steel",
             um(penetration),
             um(self.radial_clearance),
             um(self.hertz),
