@@ -46,7 +46,7 @@ pub(crate) fn build(options: &Options) -> Result<ExitCode> {
         println!("no ziglang: the wheel runs on systems as new as this one");
     }
     let done = maturin.status().context("cannot start maturin")?;
-    ensure!(done.success(), "maturin could not build the wheel; its words stand above");
+    ensure!(done.success(), "maturin could not build the wheel; see its output above");
     let Some(wheel) = newest(&out)? else { bail!("maturin left no wheel in `{}`", out.display()) };
     let bytes = std::fs::metadata(&wheel).map_or(0, |file| file.len());
     println!("{} ({:.2} MB)", wheel.display(), 1e-6 * bytes as f64);

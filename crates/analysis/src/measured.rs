@@ -25,8 +25,9 @@
 //!     ..Machine::default()
 //! };
 //! let analysis = Analysis::of(&Channel::held("housing", samples), rate_hz, &machine)?;
-//! let claimed: Vec<Defect> = analysis.findings.families.iter().filter(|f| f.claimed).map(|f|
-//! f.name).collect(); assert_eq!(claimed, [Defect::Bpfo]);
+//! let families = analysis.findings.families.iter();
+//! let claimed: Vec<Defect> = families.filter(|f| f.claimed).map(|f| f.name).collect();
+//! assert_eq!(claimed, [Defect::Bpfo]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

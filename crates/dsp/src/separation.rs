@@ -16,11 +16,11 @@ pub struct Separated {
 }
 
 /// Separates `signal` into a predictable part and the rest: an earlier stretch of the signal, through the
-/// filter of `filter` taps that foretells best, is its discrete part.
+/// filter of `filter` taps that predicts best, is its discrete part.
 ///
 /// The filter's response is `⟨X_d* X⟩/⟨|X_d|²⟩` over half-overlapping Hann segments of `filter` samples, X_d
 /// being those that end `delay` samples before the others begin: two segments that share samples would
-/// foretell noise, too. A line of power P in noise whose power within a line of the segment is N keeps P/(P +
+/// predict noise, too. A line of power P in noise whose power within a line of the segment is N keeps P/(P +
 /// N) of its amplitude, so a longer filter spares weaker lines; half-way between two lines of the filter's
 /// grid it keeps 0.85 to 1.27 of that. The delay must exceed the memory of the noise: the ringing of its
 /// resonances. The first `delay + 3/2 filter` samples and the last `filter/2` have only a part of the filter.
@@ -65,7 +65,7 @@ pub fn separate(signal: &[f64], filter: usize, delay: usize) -> Result<Separated
         }
     }
     if power.iter().all(|p| *p == 0.0) {
-        return Err(Error::Undefined { quantity: "the foretold part", why: "the signal is zero" });
+        return Err(Error::Undefined { quantity: "the predicted part", why: "the signal is zero" });
     }
     let mut response: Vec<Complex<f64>> = cross
         .iter()
@@ -82,13 +82,13 @@ pub fn separate(signal: &[f64], filter: usize, delay: usize) -> Result<Separated
         .plan_fft_inverse(filter)
         .process(&mut response, &mut taps)
         .expect("the ends of the response are real");
-    let discrete = foretold(signal, &taps, delay);
+    let discrete = predicted(signal, &taps, delay);
     let random = signal.iter().zip(&discrete).map(|(x, d)| x - d).collect();
     Ok(Separated { discrete, random })
 }
 
 /// `signal`, `delay` samples ago, through `taps` that wrap about: the second half stands before zero.
-fn foretold(signal: &[f64], taps: &[f64], delay: usize) -> Vec<f64> {
+fn predicted(signal: &[f64], taps: &[f64], delay: usize) -> Vec<f64> {
     let len = signal.len() + taps.len() + delay;
     let len = len.next_power_of_two();
     let mut planner = RealFftPlanner::<f64>::new();

@@ -19,7 +19,7 @@ thread_local! {
     static LAB: RefCell<Lab> = RefCell::default();
 }
 
-/// Does it with the lab; 1 where that fails, with the reason in the text.
+/// Runs `task`; returns `u32::MAX` on error and stores the message.
 fn with(task: impl FnOnce(&mut Lab) -> Result<u32, Error>) -> u32 {
     LAB.with_borrow_mut(|lab| match task(lab) {
         Ok(value) => value,

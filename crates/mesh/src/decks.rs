@@ -74,8 +74,7 @@ impl Deck {
     }
 
     /// The mesh with material, sections, the surfaces of all bodies, their contacts and a step, if there is
-    /// one; Gmsh's files have no place for more than the mesh. Not in contact are surfaces that no
-    /// [`ContactPair`] names.
+    /// one; Gmsh's files have no place for more than the mesh. Surfaces in no [`ContactPair`] get no contact.
     pub fn write_model(self, model: &Model<'_>, title: &str) -> String {
         let title = title.replace(['\n', '\r'], " ");
         match self {

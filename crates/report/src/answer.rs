@@ -116,7 +116,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
     if events.is_empty()
         && unsteady(summary).is_some_and(|duty| duty.relative_speed_rpm.0 * duty.relative_speed_rpm.1 < 0.0)
     {
-        return "The rings turn back on the way, and passages are foretold of one sense of rotation only."
+        return "The rings turn back on the way, and passages are predicted for one direction of rotation only."
             .into();
     }
     let it = if spalls.len() == 1 { "it" } else { "them" };

@@ -58,7 +58,7 @@ pub struct Dynamics {
     elements: Elements,
     pub(crate) forces: NodeForces,
     scratch: Vec<Scratch>,
-    /// StepEnergies of each tile in the last step.
+    /// Energies of each tile in the last step.
     pub(crate) counted: Vec<StepEnergies>,
     pub(crate) time_step: f64,
     pub(crate) gravity: [f64; 2],

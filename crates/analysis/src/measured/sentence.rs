@@ -20,20 +20,19 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
             let other = families.iter().find(|other| f.not_told_apart_from == Some(other.name));
             match other {
                 Some(_) if f.name == Defect::Ftf => format!(
-                    "a defect of the cage or of one rolling element, which it does not tell apart (something \
-                     knocks once a turn of the cage, {} at {hz:.2} Hz, {off:+.1} % from its place)",
+                    "a defect of the cage or of one rolling element, which the record cannot distinguish \
+                     (something knocks once a turn of the cage, {} at {hz:.2} Hz, {off:+.1} % from its \
+                     place)",
                     f.name
                 ),
                 None => format!(
-                    "a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its \
-                    place)",
+                    "a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its place)",
                     f.name.part(),
                     f.name
                 ),
                 Some(other) => format!(
-                    "a defect of {} or of {}, which it does not tell apart ({} at {hz:.2} Hz, {off:+.1} % \
-                     from its place, and {} times {} \
-                     stand within a resolution)",
+                    "a defect of {} or of {}, which the record cannot distinguish ({} at {hz:.2} Hz, \
+                     {off:+.1} % from its place, and {} times {} stand within a resolution)",
                     f.name.part(),
                     other.name.part(),
                     f.name,
@@ -57,8 +56,7 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     if let Some(highest) = highest {
         return format!(
             "The record has knocks, and does not show where: {} stands highest, but unrelated combs stand as \
-             high. A longer record, or one \
-             nearer to the bearing, may tell.",
+             high. A longer record, or one nearer to the bearing, may tell.",
             highest.name
         );
     }
@@ -66,8 +64,7 @@ pub(super) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name.name()).collect();
     if unheard.len() == families.len() {
         return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, \
-            for every family. The reasons \
-                say which length or rate would do."
+            for every family. The reasons say which length or rate would do."
             .to_owned();
     }
     let mut verdict = "The record shows no defect.".to_owned();

@@ -222,7 +222,8 @@ impl Noise {
 }
 
 /// Residuals of a block's values by a fit without them, and the variances of that fit, from the covariance
-/// of their noise, that of the fit with them, and its residuals. None where they alone tie down the fit.
+/// of their noise, that of the fit with them, and its residuals. `None` if the fit without the block is
+/// singular.
 fn without(noise: &Mat<f64>, known: &Mat<f64>, residuals: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let left = noise - known;
     let factor = left.llt(Side::Lower).ok()?;

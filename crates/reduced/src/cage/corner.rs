@@ -9,8 +9,8 @@ pub(crate) struct Corner {
     /// The same of each further point of the wall [m], and how many there are.
     share: f64,
     points: usize,
-    /// A point of the wall is less deep than the corner by its distance times this, which is the sine of how
-    /// the wall leans, and by the square of its distance times that [1/m], because the roller is round.
+    /// Depth decreases as `lean`·s + `bend`·s² with distance s from the corner: `lean` is the sine of the
+    /// wall's inclination, `bend` [1/m] comes from the roundness of the roller.
     lean: f64,
     bend: f64,
     /// The wedge that the corner cuts from the facet presses with half of a pass's penalty times this and

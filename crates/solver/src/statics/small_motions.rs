@@ -46,8 +46,8 @@ impl From<RankOne<'_>> for Spring {
 
 impl SmallMotions {
     /// Of the bodies whose slots are given, elastic or moving as one piece whose turn is prescribed, at the
-    /// present positions of `dynamics`. `shift` σ [rad²/s²] makes the
-    /// matrix definite where bodies can move as a whole.
+    /// present positions of `dynamics`. `shift` σ [rad²/s²] makes the matrix
+    /// definite where bodies can move as a whole.
     ///
     /// # Errors
     /// When K + σM cannot be factorised.

@@ -36,7 +36,7 @@ pub(super) struct Simulation {
 }
 
 impl Simulation {
-    /// The analysis again, with what the scene says; as it is where no length of a spall hangs on it.
+    /// The analysis again with the simulated free path; unchanged if no spall length depends on it.
     ///
     /// # Errors
     /// When the scene is another bearing, or not of the reduced model, or cannot be read or run; at Ctrl-C.
