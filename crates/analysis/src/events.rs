@@ -53,8 +53,7 @@ pub fn pick(time_s: &[f64], force_n: &[f64], passage: &Passage) -> Picked {
     if before.is_empty() || time_s[before.end - 1] - time_s[before.start] < passage.smoothing_s {
         picked.notes.push(format!(
             "the record holds less than the smoothing ({:.3} ms) before the expected entry at {:.3} ms, so \
-             there is \
-             no level to compare with",
+             there is no level to compare with",
             1e3 * passage.smoothing_s,
             1e3 * passage.entry_s
         ));

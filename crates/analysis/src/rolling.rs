@@ -59,9 +59,8 @@ pub fn flats(scene: &ResolvedScene, force_n: f64) -> Vec<String> {
         .map(|(roller, needed)| {
             format!(
                 "roller {roller} may stop on its spall: friction turns it over the edge under {:.1} kN from \
-                 about {needed:.3} on, \
-                 and `contact.friction` is {friction}. A roller that slides has no BSF; less load or a \
-                 softer spall helps, too",
+                 about {needed:.3} on, and `contact.friction` is {friction}. A roller that slides has no \
+                 BSF; less load or a softer spall helps, too",
                 1e-3 * force_n
             )
         })
@@ -79,8 +78,7 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
         };
         said.push(format!(
             "{:.2} kN do not keep the rollers rolling: one passage of the load zone does not spin a roller \
-             up ({enough}), so events \
-             come late and facet lines stand low",
+             up ({enough}), so events come late and facet lines stand low",
             1e-3 * support_n
         ));
     }
@@ -100,8 +98,8 @@ pub fn warnings(support_n: f64, least_n: Option<f64>, motion: &KinematicsFinding
         said.extend(stopped.map(|roller| {
             format!(
                 "roller {} has lost its spin: {:.1} Hz in the mean where loaded rollers have {others_hz:.1} \
-                 Hz. Friction does not turn it over \
-                 what is missing from its surface, or it is not loaded; a defect on it strikes at no BSF",
+                 Hz. Friction does not turn it over what is missing from its surface, or it is not loaded; a \
+                 defect on it strikes at no BSF",
                 roller.roller, roller.spin_hz
             )
         }));
@@ -137,8 +135,7 @@ fn why_it_strays(scene: &ResolvedScene) -> String {
     let corners = scene.cage.as_ref().filter(|cage| cage.pocket == PocketWalls::Corners);
     let Some(cage) = corners else {
         return "straight walls do not hold it across, and rollers bunch. `cage.pocket: corners`, on a cage \
-            outside of the pitch circle, \
-                holds it"
+            outside of the pitch circle, holds it"
             .to_owned();
     };
     let [inner, outer] = cage.radii();
@@ -148,18 +145,15 @@ fn why_it_strays(scene: &ResolvedScene) -> String {
     if wide_mm < roller_mm {
         return format!(
             "the corners of its pockets, {wide_mm:.2} mm wide, hold rollers of {roller_mm:.2} mm from one \
-             side only, and it has left them, so \
-             that they bunch. A smaller `cage.pocket_clearance_um`, or a cage farther from the pitch circle \
-             of {:.2} mm, holds it better",
+             side only, and it has left them, so that they bunch. A smaller `cage.pocket_clearance_um`, or a \
+             cage farther from the pitch circle of {:.2} mm, holds it better",
             2e3 * path
         );
     }
     format!(
         "they are {wide_mm:.2} mm wide between their corners, and rollers of {roller_mm:.2} mm go through, \
-         so that nothing holds it across, and \
-         rollers bunch. A cage that lies farther outside of the pitch circle of {:.2} mm, by \
-         `cage.outer_diameter_mm` and `cage.thickness_mm`, \
-         holds it",
+         so that nothing holds it across, and rollers bunch. A cage that lies farther outside of the pitch \
+         circle of {:.2} mm, by `cage.outer_diameter_mm` and `cage.thickness_mm`, holds it",
         2e3 * path
     )
 }

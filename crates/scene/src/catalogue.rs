@@ -140,9 +140,8 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
     let mm = |mm: f64| (1e4 * mm).round() / 1e4;
     match what {
         Assumed::Clearance => format!(
-            "nobody gave the clearance of this bearing: {:.0} µm are assumed, the middle of the normal \
-             group (ISO \
-             5753-1), between raceways of {} and {} mm and rollers of {} mm",
+            "nobody gave the clearance of this bearing: {:.0} µm are assumed, the middle of the normal group \
+             (ISO 5753-1), between raceways of {} and {} mm and rollers of {} mm",
             1e3 * (b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm),
             mm(b.outer_race_diameter_mm),
             mm(b.inner_race_diameter_mm),
@@ -150,8 +149,7 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
         ),
         Assumed::Pitch => format!(
             "nobody gave the pitch diameter of this bearing: {} mm are assumed, half-way between bore and \
-             outside \
-             diameter, which is right to some 2 %",
+             outside diameter, which is right to some 2 %",
             mm(0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm))
         ),
         Assumed::OuterRing => format!(
@@ -163,9 +161,8 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
             mm(b.inner_ring_thickness_mm)
         ),
         Assumed::Rollers => format!(
-            "nobody gave the number of rollers: {} are assumed, with a fifth of the pitch circle free, \
-             and all \
-             frequencies of defects but that of the cage follow it",
+            "nobody gave the number of rollers: {} are assumed, with a fifth of the pitch circle free, and \
+             all frequencies of defects but that of the cage follow it",
             b.rollers
         ),
         Assumed::Length => format!(

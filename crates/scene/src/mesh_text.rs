@@ -251,7 +251,7 @@ mod tests {
         assert_eq!(
             text("main.inp").as_deref(),
             Ok("*HEADING\n** *Include,\n**  input=\"parts/a.inp\"\n** included: parts/a.inp\n*NODE, \
-                 INPUT=nodes.txt\n** included: nodes.txt\n\
+                INPUT=nodes.txt\n** included: nodes.txt\n\
                 1, 0, 0\n** end of included\n** *INCLUDE, INPUT=main_b.inp\n** included: main_b.inp\n** \
                 b\n** end of included\n\
                 ** end of included\n*NSET, NSET=x\n1\n")

@@ -158,8 +158,8 @@ pub(super) fn name_the_element(families: &mut [Family], bands: &[BandEnvelope]) 
     family.claimed = true;
     family.reason = Reason::Decided(format!(
         "something knocks once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an \
-         element, which no unrelated rhythm \
-         does as much; from turn to turn it loses its phase, so that it has no lines"
+         element, which no unrelated rhythm does as much; from turn to turn it loses its phase, so that it \
+         has no lines"
     ));
     let cage = &mut families[cage];
     cage.claimed = false;

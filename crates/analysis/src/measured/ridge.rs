@@ -64,8 +64,7 @@ pub fn speed(channel: &Channel, rate_hz: f64, low_rpm: f64, high_rpm: f64) -> Re
     if found.height_db < HEIGHT_DB {
         return Err(Error::NoSignal(format!(
             "no line stands out between {low_rpm} and {high_rpm} rpm: the best is {:.1} dB up, {HEIGHT_DB} \
-             are needed. Give \
-             another range, one `--speed-rpm`, or `--tacho`",
+             are needed. Give another range, one `--speed-rpm`, or `--tacho`",
             found.height_db
         )));
     }

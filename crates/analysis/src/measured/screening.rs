@@ -112,8 +112,7 @@ impl Screening {
             if extreme.longest >= CLIPPED_ROW {
                 notes.push(format!(
                     "clipped: up to {} samples in a row stand at {value:.6}; levels are too low and the \
-                     clipping makes harmonics. \
-                     Measure again with a larger range",
+                     clipping makes harmonics. Measure again with a larger range",
                     extreme.longest
                 ));
             }
@@ -175,10 +174,8 @@ impl Screening {
         let others = if count > 1 { format!(", and so do {} others", count - 1) } else { String::new() };
         Some(format!(
             "sample {at} ({:.4} s) is {:.6} and stands {:.0} times as far from the mean as the rest of the \
-             record{others}: it does not ring \
-             as knocks do, so the recording is at fault, and it can hide a defect. Put the mean of its \
-             neighbours in its place, or cut the \
-             record beside it",
+             record{others}: it does not ring as knocks do, so the recording is at fault, and it can hide a \
+             defect. Put the mean of its neighbours in its place, or cut the record beside it",
             at as f64 / rate_hz,
             self.origin.unwrap_or(0.0) + mean + sign * value,
             value / peaks[count].0

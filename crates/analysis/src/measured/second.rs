@@ -59,8 +59,7 @@ pub(super) fn tell(
     family.claimed = true;
     family.reason = Reason::Decided(format!(
         "with the mean course in a period of {name} divided out of the power its lines stand, no unrelated \
-         comb stands as high, and the \
-         power swings by {:.0} %",
+         comb stands as high, and the power swings by {:.0} %",
         100.0 * second.depth
     ));
 }

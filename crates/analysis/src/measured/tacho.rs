@@ -86,8 +86,8 @@ pub fn pulses(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, E
         let edges = edges(&samples, levels);
         let found = match edges.len() {
             0 => Err(format!(
-                "tachometer `{name}` holds no pulse; is it the right channel? A \
-                          speed over time needs its unit, such as `rpm`, behind its name"
+                "tachometer `{name}` holds no pulse; is it the right channel? A speed over time needs its \
+                 unit, such as `rpm`, behind its name"
             )),
             few @ 1..=2 => Err(format!("tachometer `{name}` holds {few} pulses, three are the least")),
             few if few < LEAST && refused.is_some() => continue,

@@ -87,8 +87,7 @@ fn discretisation(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "",
             &format!(
                 "the paper rounds a circumference; a mesh of quadrilaterals needs an even count, best a \
-                 multiple of 4. \
-                 {} edges of {facet_mm:.4} mm give {:.0} Hz without slip",
+                 multiple of 4. {} edges of {facet_mm:.4} mm give {:.0} Hz without slip",
                 mesh.roller_facets,
                 source.prediction.facet_lines.first().map_or(0.0, |l| l.1)
             ),

@@ -171,8 +171,7 @@ fn lines(source: &RowInputs<'_>) -> Vec<PaperRow> {
             "Hz",
             &format!(
                 "as the paper computes it, with the cage's speed. The contact runs over the inner ring at \
-                 ω_i − ω_c: {} Hz. \
-                 Spin is one number, so vertices pass both raceways equally often",
+                 ω_i − ω_c: {} Hz. Spin is one number, so vertices pass both raceways equally often",
                 inner_right.map_or("–".into(), |hz| format!("{hz:.0}"))
             ),
         ),
@@ -213,8 +212,7 @@ fn beat(source: &RowInputs<'_>) -> Vec<PaperRow> {
             &reading.map_or("needs a sample rate".into(), |r| {
                 format!(
                     "{} samples: a cursor reads {:.0}, {:.0} or {:.0} Hz and nothing between. {:.0} % of the \
-                     periods of a pure \
-                     {TONE_HZ:.0} Hz tone are that long. Lines of this run near it: {}",
+                     periods of a pure {TONE_HZ:.0} Hz tone are that long. Lines of this run near it: {}",
                     r.samples,
                     r.neighbours_hz.0,
                     r.reads_hz,
@@ -301,8 +299,7 @@ fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
     let four = notch.map_or("no notch".into(), |n| {
         format!(
             "Hann window, whole record. Of the leading sensor: Hann {} / {} dB, boxcar {} / {} dB with / \
-             without the filter's transient; a clean tone gives 29 \
-             dB (boxcar) and 56 dB (Hann)",
+             without the filter's transient; a clean tone gives 29 dB (boxcar) and 56 dB (Hann)",
             db(n.attenuation_db),
             db(n.attenuation_settled_db),
             db(n.attenuation_boxcar_db),
@@ -317,8 +314,7 @@ fn notch(source: &RowInputs<'_>) -> Vec<PaperRow> {
             15.0,
             notch.map(|n| n.q),
             "",
-            "width at −3 dB exactly centre/Q, as \
-            scipy.signal.iirnotch",
+            "width at −3 dB exactly centre/Q, as scipy.signal.iirnotch",
         ),
         number(
             NOTCH,

@@ -72,9 +72,8 @@ fn overload(loads: &Loads) -> Option<String> {
     (safety < SAFE).then(|| {
         format!(
             "the load of {:.0} N exceeds the static rating of this bearing, {:.0} N by ISO 76 (s₀ = \
-             {safety:.2}): \
-             steel would yield, which the model does not. Take less `operation.load_n`, or check \
-             `bearing.thickness_mm`, the length of the rollers",
+             {safety:.2}): steel would yield, which the model does not. Take less `operation.load_n`, or \
+             check `bearing.thickness_mm`, the length of the rollers",
             loads.load_n, loads.static_rating_n
         )
     })
@@ -110,11 +109,10 @@ fn cage(scene: &ResolvedScene) -> Option<String> {
         "no corner of its pockets lies above or below the middle of a roller".to_owned()
     };
     Some(format!(
-        "nothing holds the cage between the raceways, where it has {:.2} mm of room: {holds}, and in a \
-         free fall it \
-         is through after {:.0} ms. In {:.0} ms it will stray, and may stop the run. Take {}; without `cage.\
-         outer_diameter_mm` and `cage.thickness_mm` it gets the ones that hold it where the bearing is named or \
-         one's own",
+        "nothing holds the cage between the raceways, where it has {:.2} mm of room: {holds}, and in a free \
+         fall it is through after {:.0} ms. In {:.0} ms it will stray, and may stop the run. Take {}; \
+         without `cage.outer_diameter_mm` and `cage.thickness_mm` it gets the ones that hold it where the \
+         bearing is named or one's own",
         1e3 * room,
         1e3 * fall_s,
         1e3 * scene.duration,
@@ -138,8 +136,7 @@ fn penetration(scene: &ResolvedScene, loads: &Loads) -> Option<String> {
     let model = if scene.written.model == ModelScene::Full { "full" } else { "reduced" };
     Some(format!(
         "under its largest force contact sinks in by some {percent:.0} % of an element, {ends} ({model} \
-         model): take \
-         a larger `contact.penalty_scale`, or less `operation.load_n`"
+         model): take a larger `contact.penalty_scale`, or less `operation.load_n`"
     ))
 }
 

@@ -94,8 +94,7 @@ fn acceleration(findings: &EnsembleFindings) -> Option<Figure> {
         ))
         .note(
             "Upright: mean entries (orange) and exits (green) by the contact forces. Start angles move them \
-             by up to a facet. \
-             A single start leaves the band wherever it strikes at its own moment.",
+             by up to a facet. A single start leaves the band wherever it strikes at its own moment.",
         );
     figure.marks = passages(findings);
     if start.of_paper {

@@ -28,8 +28,7 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
         0 => figure,
         1..=DRAWN => figure.note(
             "Upright: entries (orange) and exits (green), read from the contact forces; dashed where the \
-             forces show none and the \
-             place of the roller on its way is drawn.",
+             forces show none and the place of the roller on its way is drawn.",
         ),
         _ => figure.note(
             "Entries and exits are too many to be drawn here; they stand in the table of the \
@@ -121,9 +120,8 @@ fn instantaneous(
         figure
             .caption(
                 "The sensor\u{2019}s acceleration changes within a sampling interval, with every contact \
-                 that opens or closes; an instantaneous one \
-                 aliases what is faster than half the sampling rate, so every other figure uses the mean \
-                 over each interval.",
+                 that opens or closes; an instantaneous one aliases what is faster than half the sampling \
+                 rate, so every other figure uses the mean over each interval.",
             )
             .note("The mean is the change of velocity over one interval divided by the interval."),
     ))
@@ -179,8 +177,7 @@ fn transient_note(findings: &Findings) -> String {
     findings.summary.notch.as_ref().map_or(String::new(), |n| {
         format!(
             "Second-order notch at {:.1} Hz, Q = {}, one pass. In the shaded time the filter still answers \
-             to the start (60 dB \
-             of its ringing, time constant {:.2} ms).{}",
+             to the start (60 dB of its ringing, time constant {:.2} ms).{}",
             n.centre_hz,
             n.q,
             1e3 * n.time_constant_s,

@@ -34,8 +34,7 @@ pub(super) fn figures() -> [Figure; 2] {
         .with(Series::sampled("envelope", Colour::Orange, 0.0, step, envelope))
         .caption(format!(
             "Two neighbouring peaks are a whole number of samples apart: 22 read {:.0} Hz ({:.0} % of them), \
-             23 read {:.0} Hz \
-             ({:.0} %). Within a swell they follow the mean of the two tones, {:.0} Hz.",
+             23 read {:.0} Hz ({:.0} %). Within a swell they follow the mean of the two tones, {:.0} Hz.",
             reads(22),
             share(22),
             reads(23),
@@ -44,9 +43,8 @@ pub(super) fn figures() -> [Figure; 2] {
         ))
         .note(format!(
             "The paper reads {CURSOR_HZ:.0} Hz from one such pair and finds it again in its acceleration. A \
-             pure tone of 4671 Hz \
-             sampled at 100 kHz shows the same pair of cursors in two periods of five, without any second \
-             tone."
+             pure tone of 4671 Hz sampled at 100 kHz shows the same pair of cursors in two periods of five, \
+             without any second tone."
         ));
     zoom.x.range = Some((0.010, 0.015));
     [whole.tabbed("beat", "Fig. 5a"), zoom.tabbed("beat", "Fig. 5b")]

@@ -109,8 +109,7 @@ pub(super) fn sums(record: &Record<'_>, findings: &Findings) -> Option<Figure> {
     .with(Series::sampled("sum, each sample", Colour::Blue, time[0], record.interval_s(), sum.clone()))
     .caption(format!(
         "On average the rollers carry load and weight to {:+.3} %; from sample to sample the sum swings by \
-         {:.1} % (RMS), between \
-         {:+.0} and {:+.0} %, because {}ring and housing have mass.",
+         {:.1} % (RMS), between {:+.0} and {:+.0} %, because {}ring and housing have mass.",
         off(mean),
         100.0 * rms / supported,
         off(low),

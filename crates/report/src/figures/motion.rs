@@ -73,17 +73,13 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
     let figures = [
         spin.caption(
             "A loaded roller rolls; in the defect and outside the load zone nothing drives it at the outer \
-             raceway, and where its \
-             speed then differs from rolling it slips until the contact has it again.",
+             raceway, and where its speed then differs from rolling it slips until the contact has it again.",
         )
         .note(note.clone()),
         orbit
             .caption(
-                format!(
-                    "The cage turns {slip} of its speed without slip, over the whole \
-                record."
-                )
-                .replace('-', "−"),
+                format!("The cage turns {slip} of its speed without slip, over the whole record.")
+                    .replace('-', "−"),
             )
             .note(note),
     ];

@@ -30,8 +30,7 @@ const FAMILY: usize = 10;
 /// The legend of the colours that are drawn.
 fn legend(findings: &Findings) -> String {
     let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, \
-        purple nodes of the outer and \
-                teal of the inner raceway";
+        purple nodes of the outer and teal of the inner raceway";
     let kinds = [
         (!unsteady(findings), mesh),
         (findings.prediction.shocks.is_some(), "red: the defect"),
@@ -309,9 +308,8 @@ pub(in super::super) fn loudest_in_words(findings: &Findings) -> Option<String> 
         there.push(format!("bending of the free ring with {}", modes.join(", ")));
     }
     let why = if there.is_empty() {
-        "no line of the mesh, the defect or the free ring is predicted there: \
-         ringing of rings and housing on their contacts, struck by entries, exits and facets, is the likely \
-         cause"
+        "no line of the mesh, the defect or the free ring is predicted there: ringing of rings and housing \
+         on their contacts, struck by entries, exits and facets, is the likely cause"
             .to_owned()
     } else {
         format!(

@@ -51,8 +51,7 @@ fn lead(answer: &Answer) -> String {
     let told = fields.iter().filter(|field| field.width_of_prior < 0.5).count();
     format!(
         "{} unknowns, {} targets; {scenes} scenes with {starts} start{} each in {rounds} rounds. {reach} \
-         {told} of the \
-         unknowns are known to within half of their prior.",
+         {told} of the unknowns are known to within half of their prior.",
         fields.len(),
         targets.len(),
         if *starts == 1 { "" } else { "s" }
@@ -156,8 +155,10 @@ fn reach(answer: &Answer) -> Markup {
                 }
             }
             @if answer.out_of_reach().next().is_none() && answer.excluded.is_empty() {
-                li { "Every target, and every pair of them, is made by some scene \
-                    within " (format!("{OUT_OF_REACH}")) " standard deviations." }
+                li {
+                    "Every target, and every pair of them, is made by some scene within "
+                    (format!("{OUT_OF_REACH}")) " standard deviations."
+                }
             }
         }
         p { "Nearest to all targets at once: " (scene(&answer.best_together)) }

@@ -97,8 +97,7 @@ impl Sheet {
         let _ = write!(
             self.body,
             "<text x=\"{x:.1}\" y=\"{y:.1}\" font-family=\"sans-serif\" font-size=\"{size}\" \
-             text-anchor=\"{anchor}\" \
-             fill=\"{colour}\">{words}</text>"
+             text-anchor=\"{anchor}\" fill=\"{colour}\">{words}</text>"
         );
     }
 

@@ -91,8 +91,7 @@ impl Entry {
             _ => {
                 return Err(format!(
                     "`{}` in `{}` has some of `bore_mm`, `outside_mm` and `width_mm`: give all three, or \
-                     none for \
-                     its frequencies alone",
+                     none for its frequencies alone",
                     self.name,
                     path.display()
                 ));
@@ -120,9 +119,8 @@ impl Entry {
         if letters.is_empty() || !bearing.is_sane() || !rings {
             return Err(format!(
                 "`{}` in `{}` is no bearing: it needs a `name` with letters or digits, `diameter_mm`, a \
-                 larger \
-                 `pitch_mm` with room for its `elements`, and rings around them: `bore_mm` < pitch − diameter, \
-                 pitch + diameter < `outside_mm`",
+                 larger `pitch_mm` with room for its `elements`, and rings around them: `bore_mm` < pitch − \
+                 diameter, pitch + diameter < `outside_mm`",
                 bearing.name,
                 path.display()
             ));

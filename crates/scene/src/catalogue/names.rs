@@ -79,24 +79,20 @@ fn beyond_a_plane(whole: &str) -> Option<&'static str> {
     }
     match (digits.len(), digits.get(..2)?) {
         (4, "12" | "13" | "22" | "23") => Some(
-            "a self-aligning ball bearing: two rows of balls on one sphere in the outer ring, which a \
-             model of one \
-             row in a plane does not have",
+            "a self-aligning ball bearing: two rows of balls on one sphere in the outer ring, which a model \
+             of one row in a plane does not have",
         ),
         (4, "72" | "73" | "70" | "32" | "33") => Some(
             "an angular contact ball bearing, and a plane model has no contact angle: its rows share the \
-             load along \
-             the shaft, too",
+             load along the shaft, too",
         ),
         (5, "21" | "22" | "23" | "24") => Some(
-            "a spherical roller bearing: two rows of barrels on one sphere in the outer ring, which a \
-             model of one \
-             row in a plane does not have",
+            "a spherical roller bearing: two rows of barrels on one sphere in the outer ring, which a model \
+             of one row in a plane does not have",
         ),
         (5, "30" | "31" | "32" | "33") => Some(
             "a tapered roller bearing, and a plane model has no contact angle: its rollers share the load \
-             along the \
-             shaft, too",
+             along the shaft, too",
         ),
         (5, "51" | "52" | "81") => Some("a thrust bearing: it takes no radial load"),
         _ => None,

@@ -21,17 +21,16 @@ const MFPT: &str =
 const E_TYPE: &str = "raceway diameters F and E of NU and N bearings of E design, makers' catalogues: d = (E \
     − F)/2, pitch (E + F)/2";
 pub(super) const PROPORTION: &str = "bore, outside and width by ISO 15; no catalogue known here prints \
- raceways: F and \
-    E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + F)/2";
+    raceways: F and E lie where those of size 303 do between bore and outside, d = (E − F)/2, pitch (E + \
+    F)/2";
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
 pub(super) const BALL_RULE: &str = "bore, outside and width by ISO 15; balls by rule: pitch (bore + \
- outside)/2, diameter 0.3 (outside − bore). \
-    Of six bearings whose balls are known the rule is off by 6 % at most in diameter and by 1.5 % in pitch";
-pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628; balls by the rule of \
- deep groove bearings of the same outside \
-    diameter (pitch (bore + outside)/2, diameter 0.3 (outside − bore)), which is off by 6 % at most in the \
-    diameter of six known ones";
+    outside)/2, diameter 0.3 (outside − bore). Of six bearings whose balls are known the rule is off by 6 % \
+    at most in diameter and by 1.5 % in pitch";
+pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628; balls by the rule of deep \
+    groove bearings of the same outside diameter (pitch (bore + outside)/2, diameter 0.3 (outside − bore)), \
+    which is off by 6 % at most in the diameter of six known ones";
 
 /// Raceway diameters F and E [mm] of cylindrical roller bearings of E design by size, with bore and outside
 /// diameter [mm] by ISO 15, and width [mm] of the narrow and of the wide series, which have the same

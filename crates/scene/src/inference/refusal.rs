@@ -7,13 +7,11 @@ use crate::document::Kind;
 pub(super) const INFERENCE: Kind = Kind {
     noun: "an inference",
     example: "an inference has `name`, `unknowns` and `targets`, and may have `scene`, `set`, `seed`, \
-        `starts` \
-              and `budget`; fixtures/infer/quick.ron is one",
+        `starts` and `budget`; fixtures/infer/quick.ron is one",
     part,
     lacking,
     for_fields_of_scenes: "a field of the scene stands in `set: [\"{}=…\"]`, or in `unknowns` where it is \
-        not \
-                           known",
+        not known",
     most,
 };
 

@@ -236,8 +236,7 @@ pub(super) fn budget(
     if first < fewest || first > scenes {
         let why = format!(
             "`budget.first` is {first}; it is {fewest} to {scenes}: {FEWEST_BY_UNKNOWN} scenes an unknown, \
-             and no \
-             more than all"
+             and no more than all"
         );
         return Err(place.refuse("budget.first", why));
     }
