@@ -3,7 +3,7 @@
 //! The origin of a signal does not matter: a simulated acceleration and a measured voltage enter through the
 //! same `&[f64]`, or, where a record is longer than memory, through a [`channel::Channel`], whose samples
 //! come in blocks from wherever they lie. Nothing is printed; every refusal is an [`Error`] with a remedy. It
-//! is a crate because nothing here depends on a bearing, a file or a simulation.
+//! is a crate because nothing here depends on a machine, a file or a simulation.
 //!
 //! # Conventions
 //!

@@ -19,7 +19,7 @@ use crate::spacing::{EventSpacing, passage_spacing};
 
 /// The band, over half of the sample rate.
 const BAND: (f64, f64) = (0.25, 1.0);
-/// Passages of a piece of a record: enough for their rhythm, few enough that a simulated bearing makes them
+/// Passages of a piece of a record: enough for their rhythm, few enough that a simulation makes them
 /// in a second or two.
 pub const PASSAGES: f64 = 30.0;
 /// Lags within a passage at which the correlation is returned.

@@ -232,7 +232,7 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
 }
 
-/// A step from which on numbers without a unit are no seconds: bearings are sampled faster than a thousand
+/// A step from which on numbers without a unit are no seconds: vibration is sampled faster than a thousand
 /// times a second, and times in milliseconds look the same.
 pub(crate) const SLOWEST_S: f64 = 1e-3;
 

@@ -217,6 +217,6 @@ impl Model {
 
 /// Checks the rate of rotating nodes [rad/s].
 pub(crate) fn check_rate(rate: f64) -> Result<(), Error> {
-    // Half a turn a millisecond is far beyond any bearing and still harmless.
+    // Half a turn a microsecond is far beyond any machine and still harmless.
     check("rotation rate [rad/s]", rate, rate.abs() < 1e6 * PI, "below π·10⁶")
 }

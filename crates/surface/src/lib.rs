@@ -1,6 +1,6 @@
 //! Oriented polylines in the plane, the smooth curves that they stand for, and the closest points on them.
 //!
-//! It is a crate because contact between finite elements and the reduced bearing share it, and the latter
+//! It is a crate because contact between finite elements and the reduced model share it, and the latter
 //! links neither mesher nor solver.
 //!
 //! 1. A [`Surface`] is a polyline of nodes. It may stand for a smooth curve ([`Surface::smoothed`]), which

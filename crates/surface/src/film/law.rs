@@ -11,8 +11,8 @@ use crate::film::{
 /// Wider gaps hold no film [m].
 pub const WIDEST: f64 = 1e-3;
 
-/// Least entrainment speed [m/s], used below it, too: large enough to divide by, a ten-thousandth of a
-/// bearing's.
+/// Least entrainment speed [m/s], used below it, too: large enough to divide by, and far below that of
+/// surfaces that roll.
 pub(crate) const SLOWEST: f64 = 1e-3;
 
 /// Where a film ends that neither opens nor closes.
