@@ -29,8 +29,8 @@ pub(crate) struct Options {
     out: Option<PathBuf>,
 }
 
-/// Package of the shared library, and its name, which FMI asks for as the identifier of the model.
-const PACKAGE: &str = "stribeck-fmu";
+/// Manifest of the shared library, and its name, which FMI asks for as the identifier of the model.
+const MANIFEST: &str = "crates/fmu/Cargo.toml";
 const IDENTIFIER: &str = "stribeck_fmu";
 
 /// Folder of the library for this machine, as FMI 3.0 names it.
@@ -86,13 +86,13 @@ fn try_it(bearing: &OnShaft) -> Result<()> {
     Ok(())
 }
 
-/// The shared library, built beside the program, whose libraries it shares.
+/// The shared library, built beside the program.
 fn library() -> Result<PathBuf> {
     let root = workspace::root();
     let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from);
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    cargo.current_dir(&root).args(["build", "--quiet", "--release", "-p", PACKAGE, "--lib"]);
-    let done = cargo.args(["--features", "export"]).status().context("cannot start cargo")?;
+    cargo.current_dir(&root).args(["build", "--quiet", "--release", "--lib", "--manifest-path", MANIFEST]);
+    let done = cargo.arg("--target-dir").arg(&folder).status().context("cannot start cargo")?;
     ensure!(
         done.success(),
         "the library of the FMU cannot be built. Its bindings to FMI are made with libclang: `apt-get \

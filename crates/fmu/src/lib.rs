@@ -1,7 +1,6 @@
 //! The reduced bearing as an FMU: co-simulation by FMI 3.0, the shaft's motion in, forces out.
 //!
-//! `cargo xtask fmu SCENE` reduces the bearing of a scene, builds this library with the feature `export`, and
-//! packs both. The library reads the bearing from the resources of its archive and steps it by
+//! `cargo xtask fmu SCENE` reduces the bearing of a scene, builds this library and packs both. The library reads the bearing from the resources of its archive and steps it by
 //! [`stribeck_reduced::shaft`]; it meshes nothing.
 //!
 //! # Where to look
@@ -10,11 +9,10 @@
 //! |---|---|
 //! | What happens between two communication points? | `session.rs` |
 //! | Which variables are there? | `variables.rs` of `stribeck_reduced::shaft` |
-//! | What does an importer call? | `export.rs`, with the feature `export` |
+//! | What does an importer call? | `export.rs` |
 
 pub mod session;
 
 pub mod error;
 
-#[cfg(feature = "export")]
 mod export;

@@ -1,12 +1,11 @@
-//! A bearing between two communication points: what an importer sets and reads, and a state to go back to.
+//! A bearing between two communication points: what an importer sets and reads.
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
 use stribeck_reduced::{
     dense,
     shaft::{
-        BearingOnShaft, LEAST_STEPS, OnShaft, SavedOnShaft, ShaftPoint,
+        BearingOnShaft, LEAST_STEPS, OnShaft, ShaftPoint,
         variables::{OUTPUTS, RESOURCE, SENSORS},
     },
 };
@@ -14,7 +13,7 @@ use stribeck_reduced::{
 use crate::error::Error;
 
 /// What an importer reads, at the end of a communication step.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Outputs {
     /// Force of the bearing on the shaft [N], x and y.
     pub force: [f64; 2],
@@ -51,13 +50,6 @@ impl Outputs {
 pub struct Session {
     from: OnShaft,
     bearing: Option<BearingOnShaft>,
-    outputs: Outputs,
-}
-
-/// Its state.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Saved {
-    bearing: Option<SavedOnShaft>,
     outputs: Outputs,
 }
 
@@ -111,39 +103,6 @@ impl Session {
     /// What an importer reads.
     pub fn outputs(&self) -> &Outputs {
         &self.outputs
-    }
-
-    /// Back to before the start.
-    pub fn reset(&mut self) {
-        (self.bearing, self.outputs) = (None, Outputs::default());
-    }
-
-    /// State to go back to, as bytes.
-    ///
-    /// # Errors
-    /// When there is no memory for them.
-    pub fn save(&self) -> Result<Vec<u8>, Error> {
-        let bearing = self.bearing.as_ref().map(BearingOnShaft::saved);
-        postcard::to_stdvec(&Saved { bearing, outputs: self.outputs }).map_err(Error::Content)
-    }
-
-    /// Goes back to a state.
-    ///
-    /// # Errors
-    /// When the bytes are no state of this bearing.
-    pub fn restore(&mut self, bytes: &[u8]) -> Result<(), Error> {
-        let Saved { bearing, outputs } = postcard::from_bytes(bytes).map_err(Error::Content)?;
-        match bearing {
-            None => self.bearing = None,
-            Some(saved) => {
-                if self.bearing.is_none() {
-                    self.start(ShaftPoint::default())?;
-                }
-                self.bearing.as_mut().ok_or(Error::NotStarted)?.go_on(saved)?;
-            }
-        }
-        self.outputs = outputs;
-        Ok(())
     }
 }
 
