@@ -7,8 +7,8 @@ use stribeck_analysis::defect::Defect;
 use stribeck_analysis::diagnosis::{DiagnosedFamily, DiagnosisFinding, analysis_in_noise};
 use stribeck_analysis::record::Record;
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Run;
 
 use crate::table::number;
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet, Variant};

@@ -5,7 +5,7 @@ use anyhow::Result;
 use stribeck_analysis::families::{Candidate, FamilyFinding, Source, identify};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use crate::table::number;
 use crate::{Answer, Finished, Flags, Host, Runner, Sheet, Variant};

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use anyhow::Result;
-use stribeck_scene::run_info::RunInfo;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_info::RunInfo;
 
 /// One run of a study.
 #[derive(Debug, Clone, Copy)]

@@ -12,7 +12,7 @@ use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::signal::{smoothed_peak, smoothed_rms};
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use self::statistics::{Sample, correlation_within, ratio};
 use self::variants::Family;

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use crate::{Answer, Flags, Host, Runner, Sheet, Variant};
 

@@ -9,7 +9,7 @@ use stribeck_analysis::noise::{Noise, force_ripple, measure, spectrum_g};
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use crate::table::number;
 use crate::{Answer, Column, Finished, Flags, Host, Runner, Sheet, Variant};

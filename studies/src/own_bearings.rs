@@ -1,8 +1,8 @@
 //! `cargo xtask study own`: whether bearings by their own fields run at the first try, by both models.
 
 use stribeck_analysis::plan::Loads;
-use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Assumed;
+use stribeck_store::run_info::{RunInfo, Status, clock};
 
 use anyhow::Result;
 

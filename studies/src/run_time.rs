@@ -7,8 +7,8 @@ use stribeck_analysis::noise;
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::ModelScene;
+use stribeck_store::run_dir::Run;
 
 use self::variants::{Choice, choices};
 use crate::impulse::statistics::{Sample, ratio};

@@ -9,9 +9,9 @@ use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::{Run, RunDir};
-use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::{Run, RunDir};
+use stribeck_store::run_info::{RunInfo, Status, clock};
 
 use crate::{Host, Job};
 

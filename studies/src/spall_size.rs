@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
+use stribeck_plans::campaign::Campaign;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_scene::campaign::Campaign;
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Run;
 
 use crate::impulse::statistics::Sample;
 use crate::table::number;

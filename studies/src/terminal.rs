@@ -8,10 +8,10 @@ use anyhow::{Context, Result};
 use stribeck::host;
 use stribeck::interrupt::Interrupt;
 use stribeck::progress::Meter;
-use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::RunInfo;
 use stribeck_simulation as simulation;
 use stribeck_simulation::run::host::Progress;
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_info::RunInfo;
 use stribeck_studies::{Host, Job};
 
 /// The root of the repository.

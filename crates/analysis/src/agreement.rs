@@ -12,8 +12,8 @@ mod thirds;
 mod waveform;
 
 use serde::{Deserialize, Serialize};
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Run;
 
 use crate::Error;
 use crate::statistic::Statistic;

@@ -18,8 +18,8 @@ use stribeck_dsp::{
 };
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Run;
 
 use crate::Error;
 use crate::defect::{Defect, Shocks};

@@ -6,11 +6,12 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use serde::Serialize;
-use stribeck_scene::ensemble::{Ensemble, folder_name, is_start_of};
+use stribeck_scene::ensemble::{folder_name, is_start_of};
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::{Run, RunDir};
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Ensemble;
+use stribeck_store::run_dir::{Run, RunDir};
+use stribeck_store::run_info::Status;
 
 use crate::Error;
 use crate::findings::Findings;

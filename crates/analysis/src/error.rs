@@ -6,7 +6,10 @@
 pub enum Error {
     /// The run cannot be read, or its scene has no static equilibrium.
     #[error(transparent)]
-    Run(#[from] stribeck_scene::Error),
+    Run(#[from] stribeck_store::Error),
+    /// The loads of the scene cannot be found.
+    #[error(transparent)]
+    Scene(#[from] stribeck_scene::Error),
     /// A signal cannot be processed.
     #[error("a recorded signal cannot be processed: {0}")]
     Signal(#[source] stribeck_dsp::Error),

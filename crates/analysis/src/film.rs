@@ -1,7 +1,8 @@
 //! Oil between rollers and raceways: thickness, load and friction.
 
 use serde::{Deserialize, Serialize};
-use stribeck_scene::{lubrication, run_dir::Run};
+use stribeck_scene::lubrication;
+use stribeck_store::run_dir::Run;
 
 use crate::Error;
 use crate::record::Record;

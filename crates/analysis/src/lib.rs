@@ -6,7 +6,7 @@
 //!
 //! ```no_run
 //! use stribeck_analysis::{findings::Findings, record::Record};
-//! use stribeck_scene::run_dir::Run;
+//! use stribeck_store::run_dir::Run;
 //!
 //! let run = Run::read("runs/singh2014")?;
 //! let summary = Findings::of(&Record::whole(&run)?)?.summary;

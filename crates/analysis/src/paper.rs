@@ -8,8 +8,8 @@ mod model;
 mod signal;
 
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{BearingScene, Scene};
+use stribeck_store::run_info::MeshInfo;
 
 pub use self::figures::{Beside, Shown, beside, sensor, shown};
 use crate::prediction::Prediction;

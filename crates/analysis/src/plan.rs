@@ -9,10 +9,10 @@ use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{
     ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies,
 };
+use stribeck_store::run_info::MeshInfo;
 
 use crate::Error;
 use crate::defect::Shocks;

@@ -3,9 +3,9 @@
 
 use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
-use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies};
 use stribeck_scene::static_load::{RigidRings, angles_to_load_deg};
+use stribeck_store::run_info::MeshInfo;
 
 use crate::Error;
 use crate::defect::{Defect, Shocks};

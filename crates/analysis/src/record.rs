@@ -3,9 +3,9 @@
 use std::borrow::Cow;
 use std::ops::Range;
 
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::DefectRing;
-use stribeck_scene::trace::Trace;
+use stribeck_store::run_dir::Run;
+use stribeck_store::trace::Trace;
 
 use crate::Error;
 use crate::levels::STANDARD_GRAVITY;

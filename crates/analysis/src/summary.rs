@@ -3,8 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Resolution, statistics};
-use stribeck_scene::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
 use stribeck_scene::scene::DefectRing;
+use stribeck_store::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
 
 use crate::artefacts::Artefact;
 use crate::diagnosis::DiagnosisFinding;

@@ -10,15 +10,13 @@ use stribeck_lab::{
     readings::PER_SAMPLE,
 };
 use stribeck_reduced::motion::{BearingInMotion, Saved};
-use stribeck_scene::{
-    run_dir::RunDir,
-    scene::{ModelScene, ReducedScene, Scene},
-};
+use stribeck_scene::scene::{ModelScene, ReducedScene, Scene};
 use stribeck_simulation::run::host::Host;
 use stribeck_simulation::{
     reduced::{Prepared, prepared},
     simulate,
 };
+use stribeck_store::run_dir::RunDir;
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse.

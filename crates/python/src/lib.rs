@@ -10,13 +10,13 @@ mod spectra;
 
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use stribeck_scene::Error;
 use stribeck_scene::scene_file::SceneError;
+use stribeck_store::Error;
 
 /// What went wrong, as the exception that a Python user would expect.
 fn raise(error: &anyhow::Error) -> PyErr {
     let text = format!("{error:#}");
-    let of_scene = error.chain().any(|cause| cause.is::<SceneError>());
+    let of_scene = error.chain().any(|cause| cause.is::<SceneError>() || cause.is::<stribeck_scene::Error>());
     match error.chain().find_map(|cause| cause.downcast_ref::<Error>()) {
         Some(Error::Io { .. }) => PyOSError::new_err(text),
         Some(_) => PyValueError::new_err(text),

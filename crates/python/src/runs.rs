@@ -13,11 +13,11 @@ use stribeck::{Command, Place};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_report as page;
-use stribeck_scene::run_dir::{Run, RunDir};
-use stribeck_scene::run_info::RunInfo;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation as simulation;
 use stribeck_simulation::run::host::Progress;
+use stribeck_store::run_dir::{Run, RunDir};
+use stribeck_store::run_info::RunInfo;
 
 use crate::raise;
 

@@ -6,8 +6,8 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, html};
 use serde_json::Value;
-use stribeck_scene::run_dir::write_atomic;
 use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::page::{head, json, sentence};

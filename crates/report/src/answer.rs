@@ -4,9 +4,9 @@
 use maud::{Markup, html};
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::{DeviationScene, RollingSurface};
-use stribeck_scene::run_dir::Run;
-use stribeck_scene::run_info::imbalance;
 use stribeck_scene::scene::{DefectRing, DefectScene};
+use stribeck_store::run_dir::Run;
+use stribeck_store::run_info::imbalance;
 
 use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::duty::DutyFinding;

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, html};
 use stribeck_analysis::words::significant;
-use stribeck_scene::run_dir::write_atomic;
+use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::field_words::FieldWords;

@@ -8,7 +8,7 @@ use maud::{DOCTYPE, Markup, html};
 use stribeck_analysis::comparison::{Comparison, Contrast, FieldDifference, Kind, Row, Side, Verdict};
 use stribeck_analysis::statistic::Statistic;
 use stribeck_analysis::words::significant;
-use stribeck_scene::run_dir::write_atomic;
+use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::page::{head, json, sentence};

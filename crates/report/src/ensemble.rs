@@ -8,7 +8,7 @@ mod tables;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, html};
-use stribeck_scene::run_dir::{RunDir, write_atomic};
+use stribeck_store::run_dir::{RunDir, write_atomic};
 
 use crate::element_words::ElementWords;
 use crate::figures::Item;

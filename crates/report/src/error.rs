@@ -11,7 +11,10 @@ pub enum Error {
     Analysis(#[from] stribeck_analysis::Error),
     /// The run cannot be read, or a file of its folder cannot be written.
     #[error(transparent)]
-    Run(#[from] stribeck_scene::Error),
+    Run(#[from] stribeck_store::Error),
+    /// The loads of the scene cannot be found.
+    #[error(transparent)]
+    Scene(#[from] stribeck_scene::Error),
     /// A figure cannot be drawn.
     #[error("figure `{figure}` cannot be drawn: {why}")]
     Drawing {

@@ -9,7 +9,7 @@ mod spectra;
 
 use maud::Markup;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 pub(super) use self::forces::{DRAWN as CROSSINGS, crossings as crossing_figures};
 pub(super) use self::spectra::{about_the_tone, density, loudest_in_words};

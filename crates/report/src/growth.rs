@@ -7,7 +7,7 @@ use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
 use stribeck_analysis::growth::Remaining;
 use stribeck_analysis::words::significant;
-use stribeck_scene::run_dir::write_atomic;
+use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::page::{head, json};

@@ -7,7 +7,7 @@ mod page;
 use std::path::Path;
 
 use serde::Serialize;
-use stribeck_scene::run_dir::write_atomic;
+use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::page::json;

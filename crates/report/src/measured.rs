@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, Markup, html};
 use stribeck_dsp::BandEnvelope;
-use stribeck_scene::run_dir::write_atomic;
+use stribeck_store::run_dir::write_atomic;
 
 use crate::figures::Item;
 use crate::page::{self, head, json, sentence};

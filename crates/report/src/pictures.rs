@@ -7,10 +7,10 @@ mod stress;
 
 use std::path::Path;
 
-use stribeck_scene::frames::{self, Window};
 use stribeck_scene::housing::HousingScene;
-use stribeck_scene::mesh_file::RunMesh;
-use stribeck_scene::run_dir::{Run, RunDir};
+use stribeck_store::frames::{self, Window};
+use stribeck_store::mesh_file::RunMesh;
+use stribeck_store::run_dir::{Run, RunDir};
 
 use crate::Error;
 use crate::plot::{Picture, Sheet};

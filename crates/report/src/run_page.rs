@@ -10,9 +10,9 @@ use stribeck_analysis::defect::{Defect, Shocks};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
-use stribeck_scene::run_dir::{LAB, Run, write_atomic};
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::ModelScene;
+use stribeck_store::run_dir::{LAB, Run, write_atomic};
+use stribeck_store::run_info::Status;
 
 use crate::element_words::ElementWords;
 use crate::figures::{self, Figures, Item};

@@ -1,7 +1,7 @@
 //! Sections that are tables with a conclusion: the paper's numbers, the ledger of lines, readings, the spall.
 
 use maud::{Markup, html};
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use super::figures::spoken;
 use super::page::term;

@@ -5,7 +5,7 @@ use std::path::Path;
 use maud::{DOCTYPE, html};
 use serde_json::json;
 use stribeck_analysis::measured::sources::{Component, Sources};
-use stribeck_scene::run_dir::write_atomic;
+use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::measured::write_measured;

@@ -1,7 +1,7 @@
 //! The tables of the report.
 
 use maud::{Markup, html};
-use stribeck_scene::run_info::RunInfo;
+use stribeck_store::run_info::RunInfo;
 
 use stribeck_analysis::film::FilmFinding;
 use stribeck_analysis::floor::FloorContact;

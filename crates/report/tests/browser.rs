@@ -12,7 +12,7 @@ use stribeck_analysis::measured::{Analysis, Machine};
 use stribeck_dsp::channel::Channel;
 use stribeck_report as report;
 use stribeck_scene::catalogue::CatalogueBearing;
-use stribeck_scene::run_info::Status;
+use stribeck_store::run_info::Status;
 use stribeck_testing::Noise;
 use synthetic::Scratch;
 

@@ -9,8 +9,8 @@ use std::path::Path;
 use stribeck_analysis::ensemble::{Ended, EnsembleSummary, Merged};
 use stribeck_report as report;
 use stribeck_scene::ensemble::start;
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_info::Status;
 use synthetic::Scratch;
 
 /// Five starts: three complete, as loud as given; one diverged; one that could not be run.

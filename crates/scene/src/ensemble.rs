@@ -1,4 +1,4 @@
-//! Many starts of one scene: the values drawn for each, and `ensemble.json`, which holds their number.
+//! Many starts of one scene: the values drawn for each.
 //!
 //! The initial position of rollers and cage is unknown, and rattling and impacts depend on it. So each start
 //! draws it at random, from a seed and the start's number:
@@ -14,10 +14,6 @@
 //! rollers have one phase, so that the copies of their mesh keep the pattern of the scene. The drawn values
 //! are in the scene of the start, which makes it a run like any other.
 
-use std::collections::BTreeMap;
-
-use serde::{Deserialize, Serialize};
-
 use crate::dice::Dice;
 use crate::scene::Scene;
 
@@ -28,31 +24,13 @@ const DIGITS: [f64; 2] = [1e6, 1e3];
 /// Longest name of a scene, as [`Scene::validate`] has it.
 const MAX_NAME: usize = 64;
 
-/// Contents of `ensemble.json`.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Ensemble {
-    /// Version of the program.
-    pub version: String,
-    /// Commit it was built from, `unknown` outside a checkout.
-    pub commit: String,
-    /// Hash of the scene that all starts have in common ([`Scene::hash`]).
-    pub scene_hash: String,
-    /// Seed of the draws.
-    pub seed: u64,
-    /// Number of starts requested; they are numbered from 1.
-    pub starts: usize,
-    /// Starts that could not be run, by number, and why. One that diverged is recorded in its own `run.json`.
-    pub failed: BTreeMap<usize, String>,
-}
-
 /// Name of the folder of start `number`.
 pub fn folder_name(number: usize) -> String {
     format!("start-{number:03}")
 }
 
 /// Number of the start whose folder has this name.
-pub(crate) fn number_of(name: &str) -> Option<usize> {
+pub fn number_of(name: &str) -> Option<usize> {
     let digits = name.strip_prefix("start-").filter(|digits| digits.len() >= 3)?;
     digits.parse().ok().filter(|&number| folder_name(number) == name)
 }

@@ -1,6 +1,4 @@
-//! Scenes of rolling element bearings (the input), their kinematics, and run folders and traces (the output).
-//!
-//! Nothing here meshes or simulates, so that a program that only reads runs links neither.
+//! Scenes of rolling element bearings: the input of a simulation, read strictly, and in SI.
 //!
 //! # A scene: its speeds and its load distribution
 //!
@@ -32,11 +30,6 @@
 //! assert!(message.contains("rollers"));
 //! ```
 //!
-//! # A run: its folder
-//!
-//! [`run_dir::Run::read`] reads scene, provenance and sampled channels of a run, also of one that was killed;
-//! [`mesh_file::RunMesh`] its mesh, [`frames`] the positions of nodes about the defect.
-//!
 //! # Where to look
 //!
 //! | question | module |
@@ -46,32 +39,23 @@
 //! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
 //! | How do speed and load vary over time? | [`duty`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
-//! | Which scenes does a campaign make of one? | [`campaign`] |
-//! | What does the file of a growth hold? | [`growth`] |
-//! | Which files are in the folder of a run? | [`run_dir`], [`run_info`], [`trace`], [`mesh_file`], [`frames`] |
 
 pub mod advice;
-pub mod campaign;
 pub mod catalogue;
 mod contact_formula;
 pub mod contact_law;
 pub mod deviation;
 pub mod dice;
-mod document;
 pub mod duty;
 pub mod ensemble;
 pub mod error;
 mod faults;
-pub mod frames;
-pub mod growth;
 pub mod housing;
-pub mod inference;
 pub mod kinematics;
 mod line_contact;
 pub mod load_rating;
 pub mod lubrication;
 pub mod material;
-pub mod mesh_file;
 pub mod mesh_text;
 pub mod paper;
 mod point_contact;
@@ -79,12 +63,9 @@ pub mod records;
 pub mod resolved;
 pub mod ring_mesh;
 pub mod ring_stiffness;
-pub mod run_dir;
-pub mod run_info;
 pub mod scene;
 pub mod scene_file;
 pub mod static_load;
-pub mod trace;
 
 pub use error::Error;
 pub use scene::Scene;

@@ -6,7 +6,7 @@
 
 mod check;
 mod deviations;
-pub(crate) mod dialect;
+mod dialect;
 mod exclusions;
 mod extent;
 mod finding;
@@ -17,28 +17,30 @@ mod load;
 mod named;
 mod operation;
 mod origin;
-pub(crate) mod outline;
+mod outline;
 mod overrides;
 mod own;
-pub(crate) mod problem;
+mod problem;
 mod reference;
 mod ring_meshes;
-pub(crate) mod schema;
-pub(crate) mod suggest;
+mod schema;
+mod suggest;
 mod syntax;
 mod table;
-pub(crate) mod wording;
+mod wording;
 
 use std::path::Path;
 
 use crate::scene::Scene;
 use check::{check, numbers_are_in_range};
+pub use dialect::dialect;
 use load::load;
 use origin::Origin;
-use outline::Outline;
-use problem::place_in_file;
-pub use problem::{Place, Problem, SceneError};
+pub use outline::{Entry, Outline};
+pub use problem::{Place, Problem, SceneError, offset, place_in_file};
 pub use reference::{Field, FieldReference};
+pub use suggest::nearest;
+pub use wording::{list, shown};
 
 impl Scene {
     /// Reads and checks the scene file at `path`.
@@ -222,7 +224,7 @@ fn names_bearing<S: AsRef<str>>(overrides: &[S]) -> bool {
 }
 
 /// Some editors write a byte order mark first, which RON does not accept.
-pub(crate) fn without_mark(text: &str) -> &str {
+pub fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
@@ -247,7 +249,7 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
 /// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. Errors that further
 /// overrides may repair are not checked: numbers outside their range, bodies that cannot exist, tables that
 /// are not there.
-pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
+pub fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
     match path {
         Some(path) => {
             understand(without_mark(&load(path)?), &path.display().to_string(), overrides).map(drop)
@@ -258,10 +260,7 @@ pub(crate) fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> R
 
 /// Those of `overrides` whose value cannot be read as one of its field, with their numbers; none where the
 /// scene that they are for cannot be read itself.
-pub(crate) fn unreadable_values<S: AsRef<str>>(
-    path: Option<&Path>,
-    overrides: &[S],
-) -> Vec<(usize, Problem)> {
+pub fn unreadable_values<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Vec<(usize, Problem)> {
     let scene = match path {
         Some(path) => load(path).and_then(|text| {
             let nothing: &[&str] = &[];
@@ -273,11 +272,16 @@ pub(crate) fn unreadable_values<S: AsRef<str>>(
 }
 
 /// The error on a field name that no scene has; `None` for one that some scene has.
-pub(crate) fn unknown_field(path: &str) -> Option<Problem> {
+pub fn unknown_field(path: &str) -> Option<Problem> {
     let schema = schema::Schema::get();
     let known = schema.default_of(path).is_some();
     let answer = || overrides::known(path, path, schema, "", &Outline::default()).err();
     if known { None } else { answer().map(|problem| *problem) }
+}
+
+/// Whether the field at a path is a whole number.
+pub fn is_count(path: &str) -> bool {
+    matches!(schema::Schema::get().kind(path), schema::Kind::Count | schema::Kind::OptionalCount)
 }
 
 /// The error on a designation that yields no bearing.

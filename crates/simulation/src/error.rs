@@ -4,9 +4,13 @@
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The scene cannot be read, or the folder of the run cannot be read or written.
+    /// The scene cannot be read, or has no equilibrium.
     #[error(transparent)]
     Scene(stribeck_scene::Error),
+
+    /// The folder of the run cannot be written or read.
+    #[error(transparent)]
+    Store(stribeck_store::Error),
 
     /// The bearing cannot be assembled or preloaded.
     #[error(transparent)]
@@ -28,6 +32,15 @@ pub enum Error {
 impl From<stribeck_scene::Error> for Error {
     fn from(error: stribeck_scene::Error) -> Self {
         Self::Scene(error)
+    }
+}
+
+impl From<stribeck_store::Error> for Error {
+    fn from(error: stribeck_store::Error) -> Self {
+        match error {
+            stribeck_store::Error::Scene(error) => error.into(),
+            other => Self::Store(other),
+        }
     }
 }
 
@@ -59,6 +72,7 @@ impl From<crate::run::error::Error> for Error {
     fn from(error: crate::run::error::Error) -> Self {
         match error {
             crate::run::error::Error::Scene(error) => Self::Scene(error),
+            crate::run::error::Error::Store(error) => error.into(),
             other => Self::Run(other),
         }
     }

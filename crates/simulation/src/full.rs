@@ -15,7 +15,8 @@ use crate::run::{
     channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
 };
 use serde::{Deserialize, Serialize};
-use stribeck_scene::{duty::Duty, resolved::ResolvedScene, run_info::RunInfo, scene::Start};
+use stribeck_scene::{duty::Duty, resolved::ResolvedScene, scene::Start};
+use stribeck_store::run_info::RunInfo;
 use stribeck_system::{Ledger, Snapshot};
 
 use crate::{

@@ -3,7 +3,7 @@
 
 use crate::bearing::{assembly::Assembly, error::Error};
 use stribeck_mesh::vtu;
-use stribeck_scene::mesh_file::REFERENCE;
+use stribeck_store::mesh_file::REFERENCE;
 
 /// The file of a mesh whose nodes stand at these places [m].
 ///

@@ -8,7 +8,8 @@ use crate::run::{
     time_loop::Motion,
 };
 use serde::{Serialize, de::DeserializeOwned};
-use stribeck_scene::{resolved::ResolvedScene, run_dir::RunDir, run_info::RunInfo};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_store::{run_dir::RunDir, run_info::RunInfo};
 
 use crate::error::Error;
 

@@ -15,10 +15,10 @@ use stribeck_reduced::{bearing::Bearing, state::State};
 use stribeck_scene::{
     kinematics::Kinematics,
     resolved::ResolvedScene,
-    run_info::{ReducedInfo, RunInfo},
     scene::{ContactSurface, ModelScene, ReducedScene},
     static_load,
 };
+use stribeck_store::run_info::{ReducedInfo, RunInfo};
 
 use crate::{
     error::Error,

@@ -13,9 +13,11 @@ use crate::run::{
 };
 use stribeck_scene::{
     resolved::ResolvedScene,
+    scene::{ModelScene, Scene},
+};
+use stribeck_store::{
     run_dir::{RunDir, write_atomic},
     run_info::RunInfo,
-    scene::{ModelScene, Scene},
 };
 
 use crate::{
@@ -45,7 +47,7 @@ fn dispatch<T: Task>(scene: &ResolvedScene, task: T) -> T::Output {
 /// Runs a scene and leaves its results in `dir`.
 ///
 /// `watch` is called at every sample and may stop the run, which then ends as
-/// [`Interrupted`](stribeck_scene::run_info::Status::Interrupted). A checkpoint is written at the start, now
+/// [`Interrupted`](stribeck_store::run_info::Status::Interrupted). A checkpoint is written at the start, now
 /// and then, and at an interruption; [`resume`] continues from it.
 ///
 /// # Errors

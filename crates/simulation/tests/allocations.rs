@@ -5,12 +5,9 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::host;
-use stribeck_scene::{
-    run_dir::RunDir,
-    run_info::RunInfo,
-    scene::{FilmScene, Scene, Start},
-};
+use stribeck_scene::scene::{FilmScene, Scene, Start};
 use stribeck_simulation::simulate;
+use stribeck_store::{run_dir::RunDir, run_info::RunInfo};
 use stribeck_testing::Scratch;
 
 /// One allocation anywhere in a step would be twenty times this share of the steps; searches that find more

@@ -7,11 +7,11 @@ use std::ops::ControlFlow;
 
 use common::{fine_where_it_rolls, host};
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::run_dir::{Run, RunDir};
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::simulate;
+use stribeck_store::run_dir::{Run, RunDir};
+use stribeck_store::run_info::Status;
 use stribeck_testing::{Scratch, side_by_side};
 
 /// Sound raceways in elements of 1 mm with these deviations.

@@ -7,12 +7,14 @@ use std::{f64::consts::TAU, fs, ops::ControlFlow};
 use common::{coarse, host};
 use stribeck_scene::{
     kinematics::Kinematics,
-    run_dir::{Run, RunDir},
-    run_info::{RunInfo, Status},
     scene::{HarmonicScene, PocketWalls, ProfileScene, RampScene, Scene},
 };
 use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{resume, simulate};
+use stribeck_store::{
+    run_dir::{Run, RunDir},
+    run_info::{RunInfo, Status},
+};
 use stribeck_testing::Scratch;
 
 fn run(scene: &Scene, folder: &Scratch, name: &str) -> (RunInfo, Run) {

@@ -5,12 +5,12 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::{coarse, host};
-use stribeck_scene::{
+use stribeck_scene::scene::{FilmScene, Scene};
+use stribeck_simulation::{resume, simulate};
+use stribeck_store::{
     run_dir::{Run, RunDir},
     run_info::{RunInfo, Status},
-    scene::{FilmScene, Scene},
 };
-use stribeck_simulation::{resume, simulate};
 use stribeck_testing::Scratch;
 
 /// The coarse bearing with oil, and nothing else across the track.

@@ -5,15 +5,13 @@ mod common;
 use std::{f64::consts::TAU, ops::ControlFlow};
 
 use common::host;
-use stribeck_scene::{
-    kinematics::Kinematics,
-    run_dir::{Run, RunDir},
-    run_info::{RunInfo, Status},
-    scene::Scene,
-    static_load,
-};
+use stribeck_scene::{kinematics::Kinematics, scene::Scene, static_load};
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::{extend, simulate};
+use stribeck_store::{
+    run_dir::{Run, RunDir},
+    run_info::{RunInfo, Status},
+};
 use stribeck_testing::Scratch;
 
 /// A small bearing whose sides are quickly meshed.

@@ -6,13 +6,13 @@ use std::ops::ControlFlow;
 
 use common::host;
 use stribeck_mesh::Mesh;
-use stribeck_scene::{
-    run_dir::{Run, RunDir},
-    run_info::Status,
-    scene::{GradingScene, Scene},
-};
+use stribeck_scene::scene::{GradingScene, Scene};
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::simulate;
+use stribeck_store::{
+    run_dir::{Run, RunDir},
+    run_info::Status,
+};
 use stribeck_testing::Scratch;
 
 fn lean() -> Scene {

@@ -5,7 +5,8 @@ mod common;
 use std::path::PathBuf;
 
 use common::run;
-use stribeck_scene::{run_info::Status, scene::Scene};
+use stribeck_scene::scene::Scene;
+use stribeck_store::run_info::Status;
 use stribeck_testing::{Scratch, side_by_side};
 
 /// Elements as a test can afford them, in proportion to the rollers, with contact as stiff as they are.

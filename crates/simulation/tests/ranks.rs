@@ -6,13 +6,10 @@ mod common;
 use std::{fs, ops::ControlFlow, path::Path};
 
 use common::{coarse, host, ranks::together};
-use stribeck_scene::{
-    run_dir::RunDir,
-    run_info::Status,
-    scene::{Scene, Start},
-};
+use stribeck_scene::scene::{Scene, Start};
 use stribeck_simulation::run::host::{Host, Progress};
 use stribeck_simulation::{follow, resume, simulate};
+use stribeck_store::{run_dir::RunDir, run_info::Status};
 use stribeck_testing::Scratch;
 
 /// Runs a scene, or the rest of the run in the folder, over `count` ranks; breaks off after `samples` unless

@@ -8,10 +8,9 @@ use std::f64::consts::TAU;
 use common::{run, trace};
 use stribeck_scene::{
     kinematics::Kinematics,
-    run_info::Status,
     scene::{ModelScene, PocketWalls, ReducedScene, Scene},
-    trace::Trace,
 };
+use stribeck_store::{run_info::Status, trace::Trace};
 use stribeck_testing::{Scratch, ledger::compare, side_by_side};
 
 /// A small bearing on a coarse mesh, dry and quiet by mass damping.

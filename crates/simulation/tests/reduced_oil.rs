@@ -8,13 +8,15 @@ use std::{fs, ops::ControlFlow};
 use common::{host, run, trace};
 use stribeck_scene::{
     lubrication::loaded_films,
-    run_dir::RunDir,
-    run_info::{RunInfo, Status},
     scene::{ModelScene, ReducedScene, Scene},
-    trace::Trace,
 };
 use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{resume, simulate};
+use stribeck_store::{
+    run_dir::RunDir,
+    run_info::{RunInfo, Status},
+    trace::Trace,
+};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse, with its oil.

@@ -10,14 +10,14 @@ use std::{
 
 use common::{coarse, host};
 use proptest::prelude::*;
-use stribeck_scene::{
-    run_dir::RunDir,
-    run_info::{RunInfo, Status},
-    scene::{Scene, Start},
-    trace::TraceFile,
-};
+use stribeck_scene::scene::{Scene, Start};
 use stribeck_simulation::run::host::{Host, Progress};
 use stribeck_simulation::{Error, extend, resume, saved_until, simulate};
+use stribeck_store::{
+    run_dir::RunDir,
+    run_info::{RunInfo, Status},
+    trace::TraceFile,
+};
 use stribeck_testing::Scratch;
 
 /// Bytes before the content of a checkpoint: name, version, scene hash, length, checksum.

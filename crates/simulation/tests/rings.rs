@@ -6,13 +6,13 @@ use std::{fmt::Write, ops::ControlFlow};
 
 use common::host;
 use stribeck_mesh::{Mesh, decks::Deck};
-use stribeck_scene::{
-    run_dir::{Run, RunDir},
-    run_info::Status,
-    scene::Scene,
-};
+use stribeck_scene::scene::Scene;
 use stribeck_simulation::bearing::{assembly::Assembly, start::preload};
 use stribeck_simulation::simulate;
+use stribeck_store::{
+    run_dir::{Run, RunDir},
+    run_info::Status,
+};
 use stribeck_testing::Scratch;
 
 const SCENE: &str =

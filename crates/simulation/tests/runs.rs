@@ -7,16 +7,18 @@ use std::ops::ControlFlow;
 use common::{coarse, fine_where_it_rolls, host};
 use stribeck_scene::{
     kinematics::Kinematics,
-    run_dir::{Run, RunDir},
-    run_info::{RunInfo, Status},
     scene::{
         CageScene, DampedBody, DampingFrame, PocketWalls, RollerCopies, Scene, Start, StructuralDampingScene,
     },
-    trace::Trace,
 };
 use stribeck_simulation::bearing::assembly::{Assembly, BearingSystem, Roller};
 use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::simulate;
+use stribeck_store::{
+    run_dir::{Run, RunDir},
+    run_info::{RunInfo, Status},
+    trace::Trace,
+};
 use stribeck_testing::{Scratch, ledger, side_by_side};
 
 fn run_watched(

@@ -17,7 +17,7 @@ use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity,
 use stribeck_analysis::measured::sources::Component;
 use stribeck_analysis::measured::zone::{Foundation, Group, Zoned};
 use stribeck_report::{TrendEntry, write_measured, write_trend};
-use stribeck_scene::run_dir::{check_folder, write_atomic};
+use stribeck_store::run_dir::{check_folder, write_atomic};
 
 use crate::causes;
 use crate::interrupt::{Interrupt, Interrupted};

@@ -6,8 +6,8 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use stribeck_scene::run_info::clock;
 use stribeck_simulation::run::host::Progress;
+use stribeck_store::run_info::clock;
 
 use crate::out::{caution, is_quiet, tell};
 

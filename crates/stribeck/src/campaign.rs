@@ -15,10 +15,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
+use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_report::{CampaignIndex, CampaignRun, write_campaign};
-use stribeck_scene::campaign::{Campaign, Variant};
-use stribeck_scene::run_dir::check_folder;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::check_folder;
 
 use crate::emit::{self, MOST_PARTS, Part};
 use crate::interrupt::{self, Interrupt};

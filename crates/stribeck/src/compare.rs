@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::Error as AnalysisError;
 use stribeck_analysis::comparison::{Comparison, Row, Side};
 use stribeck_report::{MOST_COMPARED, by_chance, comparison_in_words, difference, mean, write_comparison};
-use stribeck_scene::run_dir::{RunDir, check_folder};
+use stribeck_store::run_dir::{RunDir, check_folder};
 
 use crate::analyse::{Reading, Speed, examine};
 use crate::out::{say, tell};

@@ -14,10 +14,10 @@ use stribeck_formats::{Channel, Recording, csv, mat5, npz, parquet, uff58, wav};
 use stribeck_mesh::decks::Deck;
 use stribeck_mesh::vtu::{self, Field};
 use stribeck_mesh::{Body, Mesh};
-use stribeck_scene::frames;
-use stribeck_scene::mesh_file::RunMesh;
-use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 use stribeck_scene::scene::ModelScene;
+use stribeck_store::frames;
+use stribeck_store::mesh_file::RunMesh;
+use stribeck_store::run_dir::{Run, RunDir, write_atomic};
 
 use crate::out::{caution, say};
 use crate::place::{Place, shown};

@@ -10,12 +10,12 @@ use anyhow::{Context, Result};
 use stribeck_analysis::growth::Law;
 use stribeck_analysis::records::normal;
 use stribeck_formats::parquet::{Column, Values, write_table};
+use stribeck_plans::campaign::Campaign;
+use stribeck_plans::growth::Growth;
 use stribeck_report::{GrowthFindings, write_growth};
-use stribeck_scene::campaign::Campaign;
 use stribeck_scene::dice::Dice;
-use stribeck_scene::growth::Growth;
-use stribeck_scene::run_dir::{check_folder, write_atomic};
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::{check_folder, write_atomic};
 
 use crate::campaign::{CAMPAIGN, GROWTH_TABLE as TABLE, MARKS, carry_out};
 use crate::many_runs::Share;

@@ -15,9 +15,9 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_infer::{Emulator, Levels, NextOptions, Posterior, PosteriorOptions, next, snapped, sobol};
+use stribeck_plans::inference::Inference;
 use stribeck_report::inference::write_inference;
-use stribeck_scene::inference::Inference;
-use stribeck_scene::run_dir::{Keep, check_folder, write_atomic};
+use stribeck_store::run_dir::{Keep, check_folder, write_atomic};
 
 use crate::analyse::Reading;
 use crate::campaign::{Shard, shard};

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, Result};
-use stribeck_scene::run_dir::Reservation;
+use stribeck_store::run_dir::Reservation;
 
 /// Exit code of a program ended by Ctrl-C.
 pub const EXIT_CODE: u8 = 130;

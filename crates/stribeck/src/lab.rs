@@ -5,8 +5,8 @@ use std::process::{Command, ExitCode};
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_lab::page::{self, is_module};
-use stribeck_scene::run_dir::{self, RunDir};
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::{self, RunDir};
 
 use crate::out::say;
 use crate::place::{Place, shown};

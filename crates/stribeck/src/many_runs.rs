@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use anyhow::{Result, bail};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
-use stribeck_scene::Error;
-use stribeck_scene::run_dir::{Keep, Run, RunDir, State, write_atomic};
 use stribeck_scene::scene::Scene;
+use stribeck_store::Error;
+use stribeck_store::run_dir::{Keep, Run, RunDir, State, write_atomic};
 
 use crate::interrupt::Interrupt;
 use crate::memory;

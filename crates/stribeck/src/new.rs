@@ -10,8 +10,8 @@ use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::deviation::HOLLOW_FACETS;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::load_rating;
-use stribeck_scene::run_dir::write_atomic;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::write_atomic;
 
 use crate::out::say;
 use crate::place::{Place, shown};

@@ -12,10 +12,10 @@ use stribeck_analysis::plan::{MeshFacts, Plan};
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_info::clock;
 use stribeck_scene::scene::ModelScene;
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::run::channels;
+use stribeck_store::run_info::clock;
 
 use crate::out::say;
 use crate::place::Place;

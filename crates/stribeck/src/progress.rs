@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use stribeck_scene::run_info::{RunInfo, clock};
 use stribeck_simulation::run::host::Progress;
+use stribeck_store::run_info::{RunInfo, clock};
 
 use crate::out::{is_quiet, tell};
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use stribeck_scene::run_dir::{Run, RunDir};
+use stribeck_store::run_dir::{Run, RunDir};
 
 use crate::lab;
 use crate::out::{caution, detail, say};

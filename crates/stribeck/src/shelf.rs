@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
 use anyhow::{Result, bail};
-use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::{RunInfo, Status};
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_info::{RunInfo, Status};
 
 use crate::place::{Place, shown};
 

@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use stribeck_scene::Error as SceneError;
-use stribeck_scene::run_dir::{RunDir, State};
-use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{self as simulation, Error};
+use stribeck_store::Error as StoreError;
+use stribeck_store::run_dir::{RunDir, State};
+use stribeck_store::run_info::{RunInfo, Status, clock};
 
 use crate::board::Board;
 use crate::host::{self, SharedClock};
@@ -110,23 +110,17 @@ impl<'a> Shop<'a> {
                     self.board.done(due.number, &words(info));
                     ended(due, None);
                 }
-                Err(Error::Scene(SceneError::FolderInUse { .. })) => {
+                Err(Error::Store(StoreError::FolderInUse { .. })) => {
                     self.board.done(due.number, "is being run by another program");
                 }
                 Err(error) => {
                     self.board.done(due.number, &format!("failed: {error}"));
                     match error {
-                        Error::Scene(SceneError::Io { .. }) => {
+                        Error::Store(StoreError::Io { .. }) => {
                             self.disk_refuses.store(true, Ordering::Relaxed);
                         }
-                        // An error of the scene occurs again on any computer.
-                        Error::Scene(
-                            SceneError::Scene(_)
-                            | SceneError::Input { .. }
-                            | SceneError::NoEquilibrium { .. },
-                        ) => ended(due, Some(error)),
-                        // An error of its folder.
-                        Error::Scene(_) => {}
+                        // An error of its folder; one of the scene occurs again on any computer.
+                        Error::Store(_) => {}
                         _ => ended(due, Some(error)),
                     }
                 }

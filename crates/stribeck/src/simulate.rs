@@ -8,12 +8,12 @@ use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_report as report;
-use stribeck_scene::Error;
-use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::{RunInfo, Status, clock};
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_simulation as simulation;
 use stribeck_simulation::run::{host::Progress, ranks::Ranks};
+use stribeck_store::Error;
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_info::{RunInfo, Status, clock};
 
 use crate::conclude;
 use crate::host;

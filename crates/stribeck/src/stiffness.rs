@@ -8,7 +8,7 @@ use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::stiffness::{BearingStiffness, Grid};
 use stribeck_scene::contact_law::ContactLawKind;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::check_folder;
+use stribeck_store::run_dir::check_folder;
 
 use crate::out::{caution, say};
 use crate::place::{Place, shown};

@@ -5,10 +5,10 @@ use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_scene::campaign::Campaign;
+use stribeck_plans::campaign::Campaign;
 use stribeck_scene::catalogue;
-use stribeck_scene::run_dir::{Keep, check_folder};
 use stribeck_scene::scene_file::replaced_by_bearing;
+use stribeck_store::run_dir::{Keep, check_folder};
 
 use crate::campaign::{CAMPAIGN, MARKS, SCENES, carry_out};
 use crate::many_runs::Share;

@@ -7,9 +7,9 @@ use anyhow::{Context, Result, bail};
 use stribeck_analysis::agreement::{Agreement, FINE_S, FROM_S, LEAST_S, Row};
 use stribeck_report as report;
 use stribeck_scene::ensemble::{folder_name, start};
-use stribeck_scene::run_dir::{Run, State, check_folder};
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_store::run_dir::{Run, State, check_folder};
+use stribeck_store::run_info::Status;
 
 use crate::interrupt::{self, Interrupt};
 use crate::out::{say, tell};

@@ -14,12 +14,14 @@ use stribeck_report as report;
 use stribeck_scene::{
     deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},
     kinematics::Kinematics,
-    run_dir::{Run, RunDir},
-    run_info::Status,
     scene::{DefectRing, Scene},
 };
 use stribeck_simulation::run::host::Host;
 use stribeck_simulation::simulate;
+use stribeck_store::{
+    run_dir::{Run, RunDir},
+    run_info::Status,
+};
 use stribeck_testing::{Scratch, said, side_by_side};
 
 fn scene(file: &str, set: &[&str]) -> Scene {

@@ -55,7 +55,7 @@ fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
     let summary: Value =
         serde_json::from_slice(&fs::read(desk.join("truth/summary.json")).expect("a summary")).expect("JSON");
     let number = |path: &str| {
-        let quantity = stribeck_scene::inference::Quantity::parse(path).expect("a path");
+        let quantity = stribeck_plans::inference::Quantity::parse(path).expect("a path");
         quantity.number(&summary).unwrap_or_else(|| panic!("{path} has no number"))
     };
     let (exits, before, length) =

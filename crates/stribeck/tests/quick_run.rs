@@ -6,13 +6,13 @@ use std::path::Path;
 
 use stribeck_analysis::plan::{MeshFacts, Plan};
 use stribeck_report as report;
-use stribeck_scene::mesh_file::RunMesh;
-use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::run::host::Host;
 use stribeck_simulation::simulate;
+use stribeck_store::mesh_file::RunMesh;
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_info::{RunInfo, Status};
 use stribeck_testing::Scratch;
 
 /// Events may be this far from the centre over the edge: contacts have a width.

@@ -5,9 +5,9 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 use stribeck_analysis::agreement::Agreement;
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::Scene;
-use stribeck_scene::trace::{Trace, TraceWriter};
+use stribeck_store::run_dir::Run;
+use stribeck_store::trace::{Trace, TraceWriter};
 use stribeck_testing::{Scratch, said, says};
 
 /// The paper's bearing, coarse, dry and short.

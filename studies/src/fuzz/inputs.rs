@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use stribeck_mesh::{Annulus, ArcBlock, Body, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
-use stribeck_scene::campaign::Campaign;
-use stribeck_scene::run_dir::RunDir;
+use stribeck_plans::campaign::Campaign;
 use stribeck_scene::scene::Scene;
-use stribeck_scene::trace::Trace;
 use stribeck_simulation as simulation;
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::run::host::Progress;
 use stribeck_solver::{Dynamics, Elastic, Model};
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::trace::Trace;
 
 use super::Answer;
 use super::damage::{bytes, text};

@@ -3,11 +3,11 @@
 use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::summary::Summary;
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use crate::Sheet;
 use crate::table::number;
-use stribeck_scene::run_info::clock;
+use stribeck_store::run_info::clock;
 
 /// BPFO as the paper computes it and as it reads it from its trace [Hz].
 const PAPER_BPFO_HZ: [f64; 2] = [90.07, 90.91];

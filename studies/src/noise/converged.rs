@@ -1,7 +1,7 @@
 //! Is the remaining signal right? The paper's method and the cure beside elements of half the size.
 
 use stribeck_analysis::record::Record;
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use super::noise;
 use crate::table::number;

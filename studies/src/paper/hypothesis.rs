@@ -8,7 +8,7 @@ use stribeck_analysis::record::Record;
 use stribeck_analysis::signal::{self, Line};
 use stribeck_analysis::tones::LEAST_PROMINENCE_DB;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use super::{LEAN, LONG};
 use crate::table::{number, quantity_by};

@@ -6,7 +6,7 @@ use anyhow::Result;
 use stribeck_analysis::paper as theirs;
 use stribeck_analysis::record::Record;
 use stribeck_report::plot::{Axis, Colour, Figure, Level, Series};
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use super::{LEAN, LONG, SHORT, tone};
 use crate::table::{number, quantity_by};

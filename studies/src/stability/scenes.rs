@@ -1,8 +1,8 @@
 //! Whole bearings, coarse and short, at and beyond the limits of scenes.
 
-use stribeck_scene::run_dir::Run;
-use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Run;
+use stribeck_store::run_info::{RunInfo, Status};
 
 use super::{Case, Chapter, Verdict};
 use crate::{Finished, Flags, Host, Runner, Variant};

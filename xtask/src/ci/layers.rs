@@ -11,7 +11,7 @@ const PROGRAM: &str = "stribeck";
 
 /// Every crate in `crates/`, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 21] = [
+const LAYERS: [(&str, &[&str]); 23] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -22,24 +22,40 @@ const LAYERS: [(&str, &[&str]); 21] = [
     ("duty", &[]),
     ("infer", &[]),
     ("scene", &["duty"]),
+    ("store", &["scene"]),
+    ("plans", &["scene", "store"]),
     ("system", &["contact", "mesh", "solver"]),
     ("reduced", &["duty", "simd", "surface"]),
-    ("simulation", &["contact", "mesh", "reduced", "scene", "solver", "surface", "system"]),
+    ("simulation", &["contact", "mesh", "reduced", "scene", "solver", "store", "surface", "system"]),
     ("lab", &["duty", "reduced", "scene", "simulation"]),
     ("fmu", &["reduced"]),
     ("dsp", &[]),
     ("formats", &["dsp"]),
-    ("analysis", &["dsp", "scene"]),
-    ("report", &["analysis", "dsp", "scene"]),
+    ("analysis", &["dsp", "scene", "store"]),
+    ("report", &["analysis", "dsp", "scene", "store"]),
     (
         "stribeck",
-        &["analysis", "dsp", "formats", "infer", "lab", "mesh", "mpi", "report", "scene", "simulation"],
+        &[
+            "analysis",
+            "dsp",
+            "formats",
+            "infer",
+            "lab",
+            "mesh",
+            "mpi",
+            "plans",
+            "report",
+            "scene",
+            "simulation",
+            "store",
+        ],
     ),
-    ("python", &["analysis", "dsp", "formats", "report", "scene", "simulation", "stribeck"]),
+    ("python", &["analysis", "dsp", "formats", "report", "scene", "simulation", "store", "stribeck"]),
 ];
 
-/// Arrows of tests alone, beside the layers: verdicts are tried on files of measured records.
-const TESTS_ALONE: [(&str, &str); 1] = [("analysis", "formats")];
+/// Arrows of tests alone, beside the layers: verdicts are tried on files of measured records, the lab on the
+/// folder of a run.
+const TESTS_ALONE: [(&str, &str); 2] = [("analysis", "formats"), ("lab", "store")];
 
 /// Names of the folders in `crates/`, sorted.
 pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {

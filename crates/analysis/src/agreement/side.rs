@@ -1,7 +1,7 @@
 //! One run, reduced to the quantities that are compared.
 
 use stribeck_dsp::{Detrend, Scaling, Sensor, Welch, WelchOptions, running_mean};
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use super::{FROM_S, LEAST_MEANS, MEAN_S, thirds};
 use crate::Error;

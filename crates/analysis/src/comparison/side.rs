@@ -8,9 +8,9 @@ use stribeck_dsp::BandEnvelope;
 use stribeck_dsp::channel::Channel;
 use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::{Run, RunDir};
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::{Run, RunDir};
+use stribeck_store::run_info::Status;
 
 use crate::Error;
 use crate::defect::Defect;

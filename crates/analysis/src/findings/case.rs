@@ -1,8 +1,8 @@
 //! The questions that are put to a record, one function each. [`Findings::of`] asks them in turn.
 
 use stribeck_dsp::PeriodCount;
-use stribeck_scene::run_dir::Run;
-use stribeck_scene::run_info::Status;
+use stribeck_store::run_dir::Run;
+use stribeck_store::run_info::Status;
 
 use super::answers::{Answers, AtRest, Crossings, LeadingSpectrum, MeshLines, Orders, Rollers};
 use super::levels::{level_finding, start_up_end_s};

@@ -2,7 +2,7 @@
 //! that facet lines are fitted to.
 
 use stribeck_dsp::Welch;
-use stribeck_scene::run_dir::Run;
+use stribeck_store::run_dir::Run;
 
 use super::{GRID_HZ, SHORTEST_SPECTRUM, SensorSignal};
 use crate::Error;

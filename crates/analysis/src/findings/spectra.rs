@@ -2,8 +2,8 @@
 //! its envelope.
 
 use stribeck_dsp::{PeriodCount, Spectrum, Welch, WelchOptions};
-use stribeck_scene::run_dir::Run;
 use stribeck_scene::scene::ContactSurface;
+use stribeck_store::run_dir::Run;
 
 use super::{GRID_HZ, SHORTEST_SPECTRUM, SensorSignal};
 use crate::Error;

@@ -2,8 +2,8 @@
 
 use stribeck_analysis::prediction::{Prediction, StaticCurve};
 use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface};
-use stribeck_scene::run_info::MeshInfo;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_info::MeshInfo;
 
 fn mesh(outer_facets: usize, inner_facets: usize) -> MeshInfo {
     MeshInfo { nodes: 0, quads: 0, triangles: 0, roller_facets: 112, outer_facets, inner_facets }

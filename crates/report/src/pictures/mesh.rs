@@ -2,9 +2,9 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use stribeck_scene::mesh_file::{Body, RunMesh};
 use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_scene::scene::DefectRing;
+use stribeck_store::mesh_file::{Body, RunMesh};
 
 use super::{View, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};

@@ -2,9 +2,9 @@
 
 use std::f64::consts::PI;
 
-use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::ContactSurface;
+use stribeck_store::mesh_file::RunMesh;
 
 use super::{View, mesh, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-use stribeck_scene::frames::{Frame, Window};
-use stribeck_scene::mesh_file::RunMesh;
 use stribeck_scene::resolved::ResolvedScene;
+use stribeck_store::frames::{Frame, Window};
+use stribeck_store::mesh_file::RunMesh;
 
 use crate::Error;
 use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};

@@ -14,7 +14,7 @@ use std::path::Path;
 
 use stribeck_analysis::summary::Summary;
 use stribeck_report as report;
-use stribeck_scene::run_info::Status;
+use stribeck_store::run_info::Status;
 use synthetic::Scratch;
 
 /// The whole record of the paper, 30 ms at 100 kHz.

@@ -3,8 +3,8 @@
 use stribeck_analysis::summary::Summary;
 use stribeck_report as report;
 use stribeck_scene::lubrication::loaded_films;
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{FilmScene, Scene};
+use stribeck_store::run_info::Status;
 
 use crate::synthetic::{
     self, ENTRY_LAG_S, EXIT_LEAD_S, FLOATING_M, IMPULSE_G, INTERVAL_S, NOISE_G, OIL_W, SLIP, SUPPORT_N,

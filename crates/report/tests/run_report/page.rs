@@ -4,8 +4,8 @@ use std::fs;
 
 use stribeck_report as report;
 use stribeck_scene::housing::{HousingScene, RigidHousingScene};
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::{ContactSurface, Scene};
+use stribeck_store::run_info::Status;
 
 use crate::synthetic::{self, Scratch};
 use crate::{SAMPLES, read, whole};

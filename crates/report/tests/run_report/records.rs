@@ -3,7 +3,7 @@
 use std::fs;
 
 use stribeck_report as report;
-use stribeck_scene::run_info::Status;
+use stribeck_store::run_info::Status;
 
 use crate::synthetic::{self, INTERVAL_S, Scratch};
 use crate::{SAMPLES, close, read, whole};

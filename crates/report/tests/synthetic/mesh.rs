@@ -4,8 +4,8 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
-use stribeck_scene::mesh_file::REFERENCE;
-use stribeck_scene::run_info::MeshInfo;
+use stribeck_store::mesh_file::REFERENCE;
+use stribeck_store::run_info::MeshInfo;
 
 /// Elements around a ring, and around a roller.
 const AROUND: usize = 120;

@@ -6,13 +6,14 @@ mod mesh;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use stribeck_scene::ensemble::{Ensemble, start};
+use stribeck_scene::ensemble::start;
 use stribeck_scene::kinematics::{Crossing, Kinematics, roller_angles_deg};
 use stribeck_scene::lubrication::loaded_films;
-use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::{EnergyInfo, RunInfo, Status};
 use stribeck_scene::scene::Scene;
-use stribeck_scene::trace::TraceWriter;
+use stribeck_store::run_dir::Ensemble;
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_info::{EnergyInfo, RunInfo, Status};
+use stribeck_store::trace::TraceWriter;
 
 /// Standard acceleration of gravity [m/s²].
 pub(crate) const G: f64 = 9.806_65;

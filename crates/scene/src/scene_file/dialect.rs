@@ -6,7 +6,7 @@ use ron::ser::PrettyConfig;
 use crate::scene::Scene;
 
 /// `cage: (…)` means `cage: Some((…))`.
-pub(crate) fn dialect() -> ron::Options {
+pub fn dialect() -> ron::Options {
     let extensions =
         Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES | Extensions::UNWRAP_VARIANT_NEWTYPES;
     ron::Options::default().with_default_extension(extensions)

@@ -11,7 +11,7 @@ const MAX_DEPTH: usize = 64;
 
 /// One field or list item.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Entry {
+pub struct Entry {
     /// Dotted path from the root, `output.sensors[1].name`.
     pub path: String,
     /// Byte range of the key; that of the value for list items.
@@ -22,7 +22,7 @@ pub(crate) struct Entry {
 
 /// All fields of one RON text, inner ones before the ones that contain them.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(crate) struct Outline {
+pub struct Outline {
     /// The entries.
     pub entries: Vec<Entry>,
     /// Byte range of the whole value; `None` when it could not be scanned to its end.
@@ -31,7 +31,7 @@ pub(crate) struct Outline {
 
 impl Outline {
     /// Scans `text`.
-    pub(crate) fn of(text: &str) -> Self {
+    pub fn of(text: &str) -> Self {
         let mut scanner = Scanner { text, at: 0, entries: Vec::new() };
         scanner.attributes();
         let root = scanner.value("", 0);
@@ -39,12 +39,12 @@ impl Outline {
     }
 
     /// The entry at `path`.
-    pub(crate) fn get(&self, path: &str) -> Option<&Entry> {
+    pub fn get(&self, path: &str) -> Option<&Entry> {
         self.entries.iter().find(|entry| entry.path == path)
     }
 
     /// The innermost entry whose value contains the byte `at`.
-    pub(crate) fn at(&self, at: usize) -> Option<&Entry> {
+    pub fn at(&self, at: usize) -> Option<&Entry> {
         // Inner entries come first, so the first hit is the innermost.
         self.entries.iter().find(|entry| entry.value.start <= at && at <= entry.value.end)
     }

@@ -64,7 +64,8 @@ pub enum Place {
 }
 
 impl SceneError {
-    pub(crate) fn new(problems: Vec<Problem>) -> Self {
+    /// Of one problem or more.
+    pub fn new(problems: Vec<Problem>) -> Self {
         Self { problems }
     }
 
@@ -106,7 +107,7 @@ impl From<Box<Problem>> for SceneError {
 
 impl Problem {
     /// A problem without advice.
-    pub(crate) fn new(message: impl Into<String>, place: Place) -> Self {
+    pub fn new(message: impl Into<String>, place: Place) -> Self {
         let message = message.into();
         let (field, allowed, suggestion) = (String::new(), String::new(), String::new());
         Self { field, message, allowed, suggestion, repair: None, place }
@@ -128,7 +129,7 @@ impl Problem {
     }
 
     /// Where it stands in its file, from 1; zeros where it is not in one.
-    pub(crate) fn line_and_column(&self) -> (usize, usize) {
+    pub fn line_and_column(&self) -> (usize, usize) {
         match self.place {
             Place::File { line, column, .. } => (line, column),
             _ => (0, 0),
@@ -137,7 +138,7 @@ impl Problem {
 
     /// The same problem with a value that is at `place` without the name of its field. No `--set` removes it
     /// there.
-    pub(crate) fn of_value_at(mut self, place: Place) -> Self {
+    pub fn of_value_at(mut self, place: Place) -> Self {
         if let Some((field, value)) = self.repair.take().as_deref().and_then(|repair| repair.split_once('='))
             && let Some(note) = self.suggestion.strip_prefix(&format!("--set {}", for_a_shell(field, value)))
         {
@@ -217,7 +218,7 @@ fn excerpt(
 }
 
 /// The place of a byte range of `text`; a range over several lines is cut to its first.
-pub(crate) fn place_in_file(file: &str, text: &str, range: Range<usize>) -> Place {
+pub fn place_in_file(file: &str, text: &str, range: Range<usize>) -> Place {
     let start = floor_char(text, range.start);
     let end = floor_char(text, range.end).max(start);
     let line_start = text[..start].rfind('\n').map_or(0, |at| at + 1);
@@ -233,7 +234,7 @@ pub(crate) fn place_in_file(file: &str, text: &str, range: Range<usize>) -> Plac
 }
 
 /// Byte offset of a 1-based line and column, counted in characters.
-pub(crate) fn offset(text: &str, line: usize, column: usize) -> usize {
+pub fn offset(text: &str, line: usize, column: usize) -> usize {
     let before: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
     let within: usize = text[before..]
         .chars()

@@ -62,7 +62,7 @@ pub(crate) fn same_quantity(a: &str, b: &str) -> bool {
 }
 
 /// The name in `valid` that is most like `found`, when one is.
-pub(crate) fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
     let found = found.to_lowercase();
     let likeness = |name: &str| {
         let slip = found.len().min(name.len()) >= SLIP && strsim::osa_distance(&found, name) <= 1;

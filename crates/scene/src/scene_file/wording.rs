@@ -38,13 +38,13 @@ fn to_digits(value: f64, digits: i32, round: fn(f64) -> f64) -> f64 {
 }
 
 /// The user's text on one line, shortened.
-pub(crate) fn shown(text: &str) -> String {
+pub fn shown(text: &str) -> String {
     let line: String = text.chars().take(SHOWN).map(|c| if c.is_control() { ' ' } else { c }).collect();
     if text.chars().nth(SHOWN).is_some() { line + "…" } else { line }
 }
 
 /// `` `a`, `b`, `c` ``.
-pub(crate) fn list(names: &[&str]) -> String {
+pub fn list(names: &[&str]) -> String {
     names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }
 

@@ -8,12 +8,12 @@ use stribeck_scene::{
     housing::HousingScene,
     kinematics::{FacetCounts, Kinematics},
     resolved::ResolvedScene,
-    run_info::MeshInfo,
     scene::{DampedBody, DefectRing, RollerCopies},
 };
 use stribeck_solver::{
     Behaviour, Elastic, Model, NodeMotion, critical::damped_time_step, structural_damping::StructuralDamping,
 };
+use stribeck_store::run_info::MeshInfo;
 
 use crate::bearing::{error::Error, housing::housing};
 pub use parts::{CAGE_ELEMENT_MM, MeshedParts};

@@ -1,10 +1,10 @@
-//! Frames: positions of the nodes about the defect at chosen times ([`stribeck_scene::frames`]).
+//! Frames: positions of the nodes about the defect at chosen times ([`stribeck_store::frames`]).
 
 use std::path::PathBuf;
 
-use stribeck_scene::frames::{COLUMNS, Window};
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::trace::TraceWriter;
+use stribeck_store::frames::{COLUMNS, Window};
+use stribeck_store::trace::TraceWriter;
 
 use crate::bearing::assembly::{Assembly, BearingSystem};
 use crate::run::error::Error;
@@ -47,7 +47,7 @@ impl Frames {
         assembly: &Assembly,
         bearing: &BearingSystem,
     ) -> Result<(), Error> {
-        std::fs::create_dir_all(&self.folder).map_err(|source| stribeck_scene::Error::Io {
+        std::fs::create_dir_all(&self.folder).map_err(|source| stribeck_store::Error::Io {
             action: "create",
             path: self.folder.clone(),
             kept: "Samples are safe; free the disk, or set `output.frames: None`".into(),

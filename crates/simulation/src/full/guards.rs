@@ -15,8 +15,9 @@
 
 use crate::bearing::assembly::{Assembly, BearingSystem};
 use crate::run::guards::{self, OUT_OF_PLACE, Placed, When};
-use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
+use stribeck_scene::{resolved::ResolvedScene, scene::GuardsScene};
 use stribeck_solver::Elastic;
+use stribeck_store::run_info::RunInfo;
 use stribeck_system::{Limits, Scale, System, Words};
 
 /// A critical time step that is this share of that of a square cell of the scene's size is worth a warning.

@@ -2,7 +2,8 @@
 
 use crate::run::guards::{self, Placed, When};
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
-use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo, scene::GuardsScene};
+use stribeck_scene::{resolved::ResolvedScene, scene::GuardsScene};
+use stribeck_store::run_info::RunInfo;
 use stribeck_system::Ledger;
 
 /// Imbalance of a run's ledger, and the energies that it is compared with.

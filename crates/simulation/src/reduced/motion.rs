@@ -9,7 +9,8 @@ use serde::{Deserialize, Serialize};
 use stribeck_reduced::{
     bearing::Bearing, motion::BearingInMotion, motion::Energies, readings::RollerReading,
 };
-use stribeck_scene::{resolved::ResolvedScene, run_info::RunInfo};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_store::run_info::RunInfo;
 use stribeck_system::{Balance, Ledger, Scale};
 
 use super::guards::{Guards, LedgerError};

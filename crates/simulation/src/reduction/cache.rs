@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use stribeck_scene::{
     duty::LONGEST_RUN_S,
-    run_dir::write_atomic,
     scene::{
         CageScene, ContactFormula, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene,
         ReducedScene, Scene, SolverScene,
     },
 };
+use stribeck_store::run_dir::write_atomic;
 
 use crate::reduction::{error::Error, reduce::ReducedMesh, structure::modes_khz};
 

@@ -15,7 +15,8 @@ use std::path::Path;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::run::error::Error;
-use stribeck_scene::{run_info::RunInfo, scene::Scene};
+use stribeck_scene::scene::Scene;
+use stribeck_store::run_info::RunInfo;
 
 /// First bytes of every checkpoint.
 const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
@@ -64,7 +65,7 @@ impl<S: Serialize + DeserializeOwned> Checkpoint<S> {
     /// size of the file.
     pub(crate) fn read(path: &Path, scene: &str) -> Result<Self, Error> {
         let bad = |reason: String| refused(path, reason);
-        let io = |source| stribeck_scene::Error::Io {
+        let io = |source| stribeck_store::Error::Io {
             action: "read",
             path: path.to_owned(),
             kept: "Nothing was changed; the samples of the run stay readable".to_owned(),

@@ -10,6 +10,10 @@ pub enum Error {
     #[error(transparent)]
     Scene(#[from] stribeck_scene::Error),
 
+    /// The folder of the run cannot be written or read.
+    #[error(transparent)]
+    Store(#[from] stribeck_store::Error),
+
     /// The bodies cannot take steps.
     #[error("{0}")]
     System(#[from] stribeck_system::Error),

@@ -11,13 +11,14 @@
 //! The fields are those of `guards` in the scene. Energy, penetration over element size and other limits that
 //! depend on the model are watched by the model. A warning is issued once, at the first sample above its
 //! limit. The extremes so far are kept in checkpoints and in
-//! [`GuardInfo`](stribeck_scene::run_info::GuardInfo): a continued run warns as an unbroken one does.
+//! [`GuardInfo`](stribeck_store::run_info::GuardInfo): a continued run warns as an unbroken one does.
 
 mod softness;
 
 use std::fmt::{self, Display, Formatter};
 
-use stribeck_scene::{advice, resolved::ResolvedScene, run_info::RunInfo};
+use stribeck_scene::{advice, resolved::ResolvedScene};
+use stribeck_store::run_info::RunInfo;
 
 use softness::Softness;
 

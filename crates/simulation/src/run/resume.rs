@@ -1,8 +1,8 @@
 //! Continuing a run: the choice of its checkpoint, and the content of `run.json` from there on.
 
 use serde::{Serialize, de::DeserializeOwned};
-use stribeck_scene::{
-    resolved::ResolvedScene,
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_store::{
     run_dir::RunDir,
     run_info::{RunInfo, Status},
 };

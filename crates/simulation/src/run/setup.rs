@@ -1,9 +1,7 @@
 //! The set-up of a run: everything known before its first step.
 
-use stribeck_scene::{
-    resolved::ResolvedScene,
-    run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status},
-};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_store::run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status};
 
 use crate::run::host::Host;
 

@@ -11,8 +11,8 @@ use crate::run::{
     error::Error,
     host::{Host, Progress},
 };
-use stribeck_scene::{
-    resolved::ResolvedScene,
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_store::{
     run_dir::{RunDir, write_atomic},
     run_info::{RunInfo, Status},
     trace::TraceWriter,

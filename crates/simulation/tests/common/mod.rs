@@ -5,14 +5,10 @@ pub(crate) mod ranks;
 
 use std::ops::ControlFlow;
 
-use stribeck_scene::{
-    run_dir::RunDir,
-    run_info::RunInfo,
-    scene::{GradingScene, Scene},
-    trace::Trace,
-};
+use stribeck_scene::scene::{GradingScene, Scene};
 use stribeck_simulation::run::host::Host;
 use stribeck_simulation::simulate;
+use stribeck_store::{run_dir::RunDir, run_info::RunInfo, trace::Trace};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.

@@ -17,15 +17,11 @@ use stribeck_reduced::{
 };
 use stribeck_scene::{
     kinematics::Kinematics,
-    mesh_file::RunMesh,
-    run_dir::RunDir,
-    run_info::Status,
     scene::{
         ContactFormula, HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene,
         RotatingLoadScene, Scene,
     },
     static_load,
-    trace::Trace,
 };
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::reduction::{ReducedMesh, dense, modal_bearing};
@@ -34,6 +30,7 @@ use stribeck_simulation::{
     reduced::{Prepared, prepared},
     resume, simulate,
 };
+use stribeck_store::{mesh_file::RunMesh, run_dir::RunDir, run_info::Status, trace::Trace};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse.

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Result, ensure};
 use stribeck_analysis::measured::sources;
 use stribeck_report::write_sources;
-use stribeck_scene::run_dir::check_folder;
+use stribeck_store::run_dir::check_folder;
 
 use super::{Options, default_folder, print_families, zoned};
 use crate::out::say;

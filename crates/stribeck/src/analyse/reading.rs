@@ -7,8 +7,8 @@ use stribeck_analysis::measured::{Analysis, Machine, Pressed, over_angle, ridge,
 use stribeck_analysis::record;
 use stribeck_formats::{Channel, Recording, says_time};
 use stribeck_scene::catalogue::CatalogueBearing;
-use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::RunDir;
 
 use super::{gaps, turning};
 use crate::out::tell;

@@ -9,8 +9,8 @@ use stribeck_analysis::measured::{Analysis, Defect, Pressed, usual_load_n};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Event;
 use stribeck_scene::catalogue::CatalogueBearing;
-use stribeck_scene::run_dir::{Keep, Run};
 use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_store::run_dir::{Keep, Run};
 
 use super::reading::{Reading, examine};
 use crate::interrupt::{Interrupt, Interrupted};

@@ -8,7 +8,7 @@ use stribeck_analysis::measured::Analysis;
 use stribeck_analysis::measured::joint::Joint;
 use stribeck_formats::{Recording, says_time};
 use stribeck_report::{TrendEntry, write_joint, write_measured};
-use stribeck_scene::run_dir::{check_folder, write_atomic};
+use stribeck_store::run_dir::{check_folder, write_atomic};
 
 use super::reading::{located, moves};
 use super::{Options, Reading, Speed, examine};

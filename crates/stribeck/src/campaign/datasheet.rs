@@ -2,9 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use stribeck_scene::campaign::Campaign;
-use stribeck_scene::run_dir::Keep;
+use stribeck_plans::campaign::Campaign;
 use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_store::run_dir::Keep;
 
 use super::tables::{EVENTS, RUNS, Row, SIGNALS, Truth, Written, model, sampling_rate_hz};
 

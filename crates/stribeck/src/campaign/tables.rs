@@ -12,11 +12,11 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde_json::Value;
 use stribeck_formats::parquet::{Column, Values, write_table};
-use stribeck_scene::campaign::{Campaign, Variant};
+use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::run_dir::{Keep, RunDir};
-use stribeck_scene::run_info::Status;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::{Keep, RunDir};
+use stribeck_store::run_info::Status;
 
 use super::Folder;
 use crate::many_runs::{Stage, summary_of};

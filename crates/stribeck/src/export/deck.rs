@@ -6,11 +6,11 @@ use anyhow::{Result, bail};
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Body, Mesh};
 use stribeck_scene::housing::HousingScene;
-use stribeck_scene::mesh_file::{self, RunMesh};
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
 use stribeck_scene::scene::MaterialScene;
 use stribeck_simulation::bearing::assembly::Assembly;
+use stribeck_store::mesh_file::{self, RunMesh};
+use stribeck_store::run_dir::{Run, RunDir, write_atomic};
 
 use super::provenance;
 

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail, ensure};
 use stribeck_dsp::Sound;
 use stribeck_formats::wav::{Whole, pcm};
 use stribeck_formats::{Channel, Recording, wav};
-use stribeck_scene::run_dir::{Run, RunDir, write_atomic};
+use stribeck_store::run_dir::{Run, RunDir, write_atomic};
 
 use super::{Options, provenance, sensor};
 use crate::out::tell;

@@ -8,13 +8,13 @@ use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
 use stribeck_analysis::measured::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
 use stribeck_formats::{Channel, Recording};
+use stribeck_plans::campaign::{Campaign, Variant};
+use stribeck_plans::growth::{Growth, Indicator};
 use stribeck_report::{GrowthFindings, RecordFindings, UnitFindings};
-use stribeck_scene::campaign::{Campaign, Variant};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::dice::Dice;
-use stribeck_scene::growth::{Growth, Indicator};
-use stribeck_scene::run_dir::RunDir;
 use stribeck_scene::scene::DefectRing;
+use stribeck_store::run_dir::RunDir;
 
 use super::Planned;
 use crate::many_runs::ManyRuns;

@@ -8,10 +8,10 @@ use stribeck_infer::{
     Calibration, Conflict, Emulator, FieldLevels, Levels, NextOptions, Posterior, PosteriorOptions,
     Predictive, Prior, Share, Truth, expected_gain, interval, next, pulls, quantile,
 };
+use stribeck_plans::inference::{Inference, Seen, Unknown};
 use stribeck_report::inference::{
     Answer, Choice, Excluded, FieldCalibrated, FieldFound, Pulled, Quality, TargetFound,
 };
-use stribeck_scene::inference::{Inference, Seen, Unknown};
 
 use super::outputs::{Found, Row, Table};
 use super::{DRAWS_OF_ROUND, FILLING};

@@ -3,8 +3,8 @@
 use anyhow::{Result, bail};
 use serde_json::Value;
 use stribeck_infer::{Curves, Output, Runs, Scale, Target};
-use stribeck_scene::inference::{Inference, Quantity, Seen, Values, names};
-use stribeck_scene::run_dir::Keep;
+use stribeck_plans::inference::{Inference, Quantity, Seen, Values, names};
+use stribeck_store::run_dir::Keep;
 
 use super::rounds::{Point, Rounds};
 use crate::many_runs::{Stage, Wanted, summary_of};
@@ -144,7 +144,7 @@ fn readings(inference: &Inference, shares: &[f64], most: usize) -> Vec<(Vec<f64>
 }
 
 fn found(inference: &Inference, quantities: &[Quantity], summary: &Value) -> Vec<Found> {
-    let one = |(target, of): (&stribeck_scene::inference::Target, &Quantity)| match &target.seen {
+    let one = |(target, of): (&stribeck_plans::inference::Target, &Quantity)| match &target.seen {
         // On a logarithmic scale nothing is no number.
         Seen::Value(_) | Seen::Nothing => {
             Found::Number(of.number(summary).filter(|value| !target.log || *value > 0.0))
@@ -155,7 +155,7 @@ fn found(inference: &Inference, quantities: &[Quantity], summary: &Value) -> Vec
 }
 
 fn nothing(inference: &Inference) -> Vec<Found> {
-    let one = |target: &stribeck_scene::inference::Target| match target.seen {
+    let one = |target: &stribeck_plans::inference::Target| match target.seen {
         Seen::Value(_) | Seen::Nothing => Found::Number(None),
         Seen::Curve(_) => Found::Curve(None),
     };

@@ -12,11 +12,11 @@ use stribeck_analysis::records::{PassageSignature, duration_s, normal, rhythm};
 use stribeck_dsp::{Rhythm, Signature, Sound, at_rate, coloured_like, statistics};
 use stribeck_formats::wav::{Whole, pcm};
 use stribeck_formats::{Channel, uff58};
+use stribeck_plans::inference::{Inference, Values};
 use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::dice::Dice;
-use stribeck_scene::inference::{Inference, Values};
-use stribeck_scene::run_dir::{Keep, Run, check_folder, write_atomic};
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::{Keep, Run, check_folder, write_atomic};
 
 use super::answer::Known;
 use super::rounds::{Point, Rounds};

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
 use stribeck_infer::Prior;
+use stribeck_plans::inference::{Inference, Unknown, Values};
 use stribeck_scene::ensemble::start;
-use stribeck_scene::inference::{Inference, Unknown, Values};
-use stribeck_scene::run_dir::{Keep, write_atomic};
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::{Keep, write_atomic};
 
 use crate::many_runs::{ManyRuns, Stage, Wanted};
 use crate::place::shown;

@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 use anyhow::Result;
 use stribeck_analysis::plan::Plan;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::run_dir::RunDir;
-use stribeck_scene::run_info::{RunInfo, Status};
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_simulation as simulation;
 use stribeck_simulation::run::host::{Host, Progress};
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_info::{RunInfo, Status};
 
 use crate::host;
 use crate::place::Place;

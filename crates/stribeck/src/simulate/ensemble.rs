@@ -6,9 +6,10 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Result, bail, ensure};
 use stribeck_report as report;
-use stribeck_scene::ensemble::{Ensemble, is_start_of, start};
-use stribeck_scene::run_dir::{RunDir, State};
+use stribeck_scene::ensemble::{is_start_of, start};
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Ensemble;
+use stribeck_store::run_dir::{RunDir, State};
 
 use super::{Options, check_overrides, reserve, take_place};
 use crate::host;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Result;
 use stribeck_formats::parquet::{Column, Values, Writer};
-use stribeck_scene::run_dir::{RunDir, SENSOR};
-use stribeck_scene::trace::{Trace, TraceFile};
+use stribeck_store::run_dir::{RunDir, SENSOR};
+use stribeck_store::trace::{Trace, TraceFile};
 
 use super::Row;
 

@@ -9,8 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::{Path, PathBuf};
 
 use crate::error::Error;
-use crate::resolved::ResolvedScene;
 use crate::trace::Trace;
+use stribeck_scene::resolved::ResolvedScene;
 
 /// Columns of a frame.
 pub const COLUMNS: [&str; 4] = ["time_s", "node", "ux_m", "uy_m"];

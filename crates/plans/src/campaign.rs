@@ -24,14 +24,14 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::dice::Dice;
 use crate::document::unreadable;
-use crate::ensemble::start;
-use crate::run_dir::Keep;
-use crate::scene::Scene;
-use crate::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
 use design::{Rows, Variants};
 use refusal::{CAMPAIGN, File};
+use stribeck_scene::dice::Dice;
+use stribeck_scene::ensemble::start;
+use stribeck_scene::scene::Scene;
+use stribeck_scene::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
+use stribeck_store::run_dir::Keep;
 
 /// Most runs of a campaign.
 pub const MOST_RUNS: usize = 1_000_000;
@@ -147,7 +147,7 @@ impl Campaign {
     /// As [`Campaign::read`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
         let place = File::new(name, text, &CAMPAIGN);
-        let file: Text = dialect::dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
+        let file: Text = dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
             return refuse(

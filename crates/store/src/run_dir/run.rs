@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::{ENERGY, RunDir, TRACE};
 use crate::error::Error;
-use crate::resolved::ResolvedScene;
 use crate::run_info::RunInfo;
-use crate::scene::Scene;
 use crate::trace::TraceFile;
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::Scene;
 
 /// A run as a report reads it.
 #[derive(Debug)]

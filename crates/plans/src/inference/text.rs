@@ -10,7 +10,7 @@ use super::{
     Values,
 };
 use crate::document::File;
-use crate::scene_file::{self, SceneError};
+use stribeck_scene::scene_file::{self, SceneError};
 
 /// Content of the file of an inference.
 #[derive(Debug, Clone, Deserialize)]

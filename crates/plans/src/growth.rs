@@ -22,8 +22,8 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::document::{File, Kind, unreadable};
-use crate::scene::DefectRing;
-use crate::scene_file::{self, Problem, SceneError, dialect, without_mark};
+use stribeck_scene::scene::DefectRing;
+use stribeck_scene::scene_file::{self, Problem, SceneError, dialect, without_mark};
 
 /// Most units.
 const MOST_UNITS: usize = 10_000;
@@ -160,7 +160,7 @@ impl Growth {
 
     fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
         let place = File::new(name, text, &GROWTH);
-        let growth: Self = dialect::dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
+        let growth: Self = dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
         growth.check(&place)?;
         let base = growth.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &growth.set).map_err(|why| place.of_base(why))?;

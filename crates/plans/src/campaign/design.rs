@@ -7,8 +7,8 @@ use ron::value::RawValue;
 use serde::Deserialize;
 
 use super::MOST_RUNS;
-use crate::dice::Dice;
-use crate::scene_file::without_mark;
+use stribeck_scene::dice::Dice;
+use stribeck_scene::scene_file::without_mark;
 
 /// Most runs of a Sobol sequence.
 const MOST_OF_SOBOL: usize = 1 << 16;

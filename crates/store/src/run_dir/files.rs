@@ -8,9 +8,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use serde::de::DeserializeOwned;
 
 use super::{FILES, FOLDERS, LOCK, PARTIAL};
-use crate::ensemble::{folder_name, number_of};
 use crate::error::Error;
 use crate::run_info::RunInfo;
+use stribeck_scene::ensemble::{folder_name, number_of};
 
 /// `run.json` holds a page of text and at most some thousand warnings.
 const MAX_INFO_BYTES: u64 = 1 << 24;

@@ -22,7 +22,7 @@ const COPIED_BYTES: usize = 1 << 24;
 /// # Examples
 ///
 /// ```
-/// use stribeck_scene::trace::{Trace, TraceWriter};
+/// use stribeck_store::trace::{Trace, TraceWriter};
 ///
 /// let path = std::env::temp_dir().join(format!("example-{}.npy", std::process::id()));
 /// let mut trace = TraceWriter::create(&path, &["time_s", "ay_m_s2"])?;
@@ -30,7 +30,7 @@ const COPIED_BYTES: usize = 1 << 24;
 /// trace.finish()?;
 /// assert_eq!(Trace::read(&path)?.get("ay_m_s2"), Some(&[9.81][..]));
 /// # std::fs::remove_file(&path).ok();
-/// # Ok::<(), stribeck_scene::Error>(())
+/// # Ok::<(), stribeck_store::Error>(())
 /// ```
 #[derive(Debug)]
 pub struct TraceWriter {

@@ -38,10 +38,10 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use crate::document::{File, unreadable};
-use crate::scene::Scene;
-use crate::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
 pub use quantity::{Quantity, Take, names};
 use refusal::INFERENCE;
+use stribeck_scene::scene::Scene;
+use stribeck_scene::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
 use text::{Text, budget, targets, unknowns};
 
 /// Most unknowns of an inference: beyond, no number of runs that anybody makes fills their space.
@@ -206,7 +206,7 @@ impl Inference {
 
     fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
         let place = File::new(name, text, &INFERENCE);
-        let file: Text = dialect::dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
+        let file: Text = dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
             let why = format!("`name` is `{}`; letters, digits, `-` and `_` make a folder's name", file.name);
             return Err(place.refuse("name", why));

@@ -4,8 +4,7 @@ use super::design::Rows;
 use super::{MOST_RUNS, MOST_STARTS};
 pub(super) use crate::document::File;
 use crate::document::Kind;
-use crate::scene_file::problem::{Place, Problem, SceneError, place_in_file};
-use crate::scene_file::schema::{Kind as FieldKind, Schema};
+use stribeck_scene::scene_file::{Place, Problem, SceneError, is_count, place_in_file};
 
 /// The file of a campaign.
 pub(super) const CAMPAIGN: Kind = Kind {
@@ -67,9 +66,7 @@ impl File<'_> {
 
     /// A value of a range that its field cannot have: one that it can have is no range.
     fn range(&self, problem: Problem, axis: &str) -> Problem {
-        let counts =
-            matches!(Schema::get().kind(&problem.field), FieldKind::Count | FieldKind::OptionalCount);
-        let from = self.outline.get(&format!("{axis}.from")).filter(|_| counts);
+        let from = self.outline.get(&format!("{axis}.from")).filter(|_| is_count(&problem.field));
         let first = from.and_then(|from| self.text[from.value.clone()].parse::<f64>().ok()).map(f64::ceil);
         let mut problem = problem.of_value_at(self.place(axis));
         if let Some(first) = first {

@@ -31,10 +31,10 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Error;
 use crate::run_info::RunInfo;
-use crate::scene::Scene;
+use stribeck_scene::scene::Scene;
 
 use earlier::Earlier;
-pub use ensemble::State;
+pub use ensemble::{Ensemble, State};
 pub use files::write_atomic;
 pub use kept::{Keep, SENSOR};
 pub use product::check_folder;

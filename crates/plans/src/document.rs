@@ -3,10 +3,9 @@
 
 use ron::error::SpannedError;
 
-use crate::scene_file::outline::{Entry, Outline};
-use crate::scene_file::problem::{Place, Problem, SceneError, offset, place_in_file};
-use crate::scene_file::wording::{list, shown};
-use crate::scene_file::{self, suggest};
+use stribeck_scene::scene_file::{
+    self, Entry, Outline, Place, Problem, SceneError, list, nearest, offset, place_in_file, shown,
+};
 
 /// Properties of one kind of file.
 pub(crate) struct Kind {
@@ -104,7 +103,7 @@ impl<'a> File<'a> {
                 problem.message =
                     format!("unknown field `{}` in {}", shown(found), (self.kind.part)(outer.as_deref()));
                 problem.allowed = list(expected);
-                problem.suggestion = match suggest::nearest(found, expected) {
+                problem.suggestion = match nearest(found, expected) {
                     Some(near) => format!("did you mean `{near}`?"),
                     None if scene_file::unknown_field(found).is_none() => {
                         self.kind.for_fields_of_scenes.replace("{}", found)
@@ -117,7 +116,7 @@ impl<'a> File<'a> {
                 problem.message =
                     format!("`{}` is `{}`, which is not one of its words", problem.field, shown(found));
                 problem.allowed = list(expected);
-                if let Some(near) = suggest::nearest(found, expected) {
+                if let Some(near) = nearest(found, expected) {
                     problem.suggestion = format!("did you mean `{near}`?");
                 }
             }

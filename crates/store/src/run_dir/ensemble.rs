@@ -1,12 +1,32 @@
 //! The folder of an ensemble: `scene.ron`, `ensemble.json`, and one folder for each start, which holds a run.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::{ENSEMBLE, RunDir, SCENE, files, is_run, replacement, reservation::Reservation, write_atomic};
-use crate::ensemble::{Ensemble, folder_name};
 use crate::error::Error;
 use crate::run_info::Status;
-use crate::scene::Scene;
+use serde::{Deserialize, Serialize};
+use stribeck_scene::ensemble::folder_name;
+use stribeck_scene::scene::Scene;
+
+/// Contents of `ensemble.json`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Ensemble {
+    /// Version of the program.
+    pub version: String,
+    /// Commit it was built from, `unknown` outside a checkout.
+    pub commit: String,
+    /// Hash of the scene that all starts have in common ([`Scene::hash`]).
+    pub scene_hash: String,
+    /// Seed of the draws.
+    pub seed: u64,
+    /// Number of starts requested; they are numbered from 1.
+    pub starts: usize,
+    /// Starts that could not be run, by number, and why. One that diverged is recorded in its own `run.json`.
+    pub failed: BTreeMap<usize, String>,
+}
 
 /// How far the run of a scene has come in a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::ensemble::Ensemble;
 use super::{CHECKPOINT, ENSEMBLE, INFO, SUMMARY, TRACE, files};
-use crate::ensemble::Ensemble;
 use crate::run_info::{RunInfo, Status};
 use crate::trace::TraceFile;
 

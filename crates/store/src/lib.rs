@@ -1,0 +1,26 @@
+//! The folder of a run: its scene, provenance, sampled channels, mesh and frames, written as a run goes on and
+//! read again, also after a kill.
+//!
+//! [`run_dir::Run::read`] reads scene, provenance and sampled channels of a run;
+//! [`mesh_file::RunMesh`] its mesh, [`frames`] the positions of nodes about the defect.
+//!
+//! ```no_run
+//! let run = stribeck_store::run_dir::Run::read("runs/singh2014")?;
+//! println!("{} samples of {:?}", run.trace.len(), run.trace.names());
+//! # Ok::<(), stribeck_store::Error>(())
+//! ```
+
+pub mod run_dir;
+pub mod run_info;
+
+pub mod frames;
+pub mod mesh_file;
+pub mod trace;
+
+mod error;
+
+pub use error::Error;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
