@@ -418,7 +418,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_lengths_are_written_in_the_unit_of_their_field() {
+    fn by_hand_lengths_are_written_in_the_unit_of_their_field() {
         let list = "(on: outer, form: dent(length_mm: {0.25}, depth_mm: {0.005}, rim_um: {0.3}))";
         let written = in_diameters(list, 8.0);
         assert_eq!(written, "(on: outer, form: dent(length_mm: 2.0000, depth_mm: 0.0400, rim_um: 2.4000))");

@@ -321,7 +321,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_place_in_a_pocket_of_a_cage_that_has_turned() {
+    fn by_hand_place_in_a_pocket_of_a_cage_that_has_turned() {
         let at = |angle: f64| [0.09 * angle.cos(), 0.09 * angle.sin()];
         assert!(behind((at(1.6), 0.2), (at(1.5), 0.1)).abs() < 1e-15);
         // Clockwise rotation decreases the angle: the body that has turned less is behind.

@@ -74,7 +74,7 @@ mod tests {
     use super::Cli;
 
     #[test]
-    fn example_the_command_line_is_consistent() {
+    fn behaves_the_command_line_is_consistent() {
         Cli::command().debug_assert();
     }
 }

@@ -374,7 +374,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_choice_is_held_against_the_same_starts_of_the_reference() {
+    fn by_hand_a_choice_is_held_against_the_same_starts_of_the_reference() {
         let reference = [measured(0, 9.0, 100.0, 5.0, 50.0), measured(1, 9.0, 200.0, 6.0, 70.0)];
         let choice = |name: &str, reference| Choice {
             curve: "c",

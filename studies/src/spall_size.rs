@@ -413,14 +413,14 @@ mod tests {
 
     /// A ball of 7.94 mm over 2 mm of a raceway of 46.98 mm: c²/8 (1/r − 1/R) = 0.105 mm for short chords.
     #[test]
-    fn example_sagitta_of_a_ball_over_a_spall() {
+    fn by_hand_sagitta_of_a_ball_over_a_spall() {
         let set = ["bearing=6205".to_owned()];
         let scene = Scene::singh2014().with_overrides(&set).expect("a scene");
         assert!((sagitta_mm(&scene, 2.0) - 0.105).abs() < 2e-3, "{}", sagitta_mm(&scene, 2.0));
     }
 
     #[test]
-    fn example_forces_before_and_behind_of_passages_that_are_wholly_on_record() {
+    fn by_hand_forces_before_and_behind_of_passages_that_are_wholly_on_record() {
         let past: Vec<f64> = (0..81).map(|n| 0.1 * (f64::from(n) - 40.5)).collect();
         let force: Vec<f64> = past.iter().map(|x| if *x < 0.0 { 2.0 } else { 3.0 + x }).collect();
         let [pair] = forces(&past, &force, 1.0)[..] else { panic!("one passage") };

@@ -152,7 +152,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_sheet_has_a_row_a_variant_and_quotes_commas() {
+    fn behaves_a_sheet_has_a_row_a_variant_and_quotes_commas() {
         let mut sheet = Sheet::new(Path::new(""), "none", "Nothing");
         sheet.table(&["a", "b"], &[vec!["1".into(), "2".into()]]);
         assert!(sheet.text.contains("| a | b |\n|---|---|\n| 1 | 2 |\n"), "{}", sheet.text);

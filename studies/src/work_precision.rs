@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn example_order_front_and_advice() {
+    fn by_hand_order_front_and_advice() {
         let curve = |name: &str, points: Vec<Point>| Curve { name: name.into(), refined: "h", points };
         let problem = Problem {
             id: "x",

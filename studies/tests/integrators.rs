@@ -148,7 +148,7 @@ fn converges_displacements_with_second_order_in_space() {
 }
 
 #[test]
-fn example_mixed_precision_and_viscosity_change_what_they_should() {
+fn by_hand_mixed_precision_and_viscosity_change_what_they_should() {
     let double = standing_wave(32, Choice::default(), Scheme::CentralDifference, 0.5);
     // Strains of 3e-5 in numbers of seven digits: a per mille or so, and never more than a hundredth.
     let mixed = Choice { precision: Precision::Mixed, ..Choice::default() };

@@ -50,14 +50,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_the_guide_has_one_place_for_the_lab() {
+    fn behaves_the_guide_has_one_place_for_the_lab() {
         let guide = include_str!("../../docs/guide/src/lab.md");
         assert!(with_lab(guide).is_ok_and(|page| page.contains("<iframe src=\"lab/lab.html\"")));
         assert!(with_lab("no place").is_err());
     }
 
     #[test]
-    fn example_the_scene_of_the_book_is_there() {
+    fn behaves_the_scene_of_the_book_is_there() {
         assert!(workspace::root().join(SCENE).is_file());
     }
 }

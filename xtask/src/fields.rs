@@ -243,7 +243,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_comments_become_cells() {
+    fn behaves_comments_become_cells() {
         assert_eq!(plain("see [`Scene`](crate::scene) and [m/s²], a|b"), "see `Scene` and [m/s²], a\\|b");
         assert_eq!(snake("OuterRing"), "outer_ring");
     }

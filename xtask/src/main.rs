@@ -97,12 +97,12 @@ mod tests {
     use super::{Cli, Command};
 
     #[test]
-    fn example_the_command_line_is_consistent() {
+    fn behaves_the_command_line_is_consistent() {
         Cli::command().debug_assert();
     }
 
     #[test]
-    fn example_what_follows_study_is_left_to_its_program() {
+    fn behaves_what_follows_study_is_left_to_its_program() {
         for line in ["--help", "-h", "kills --help", "kills --kills 5 --no-page", "help kills", ""] {
             let words = line.split_whitespace();
             let cli = Cli::try_parse_from(["xtask", "-q", "study"].into_iter().chain(words)).expect(line);

@@ -10,7 +10,7 @@ fn xtask(cargo: &str, words: &[&str]) -> Output {
 }
 
 #[test]
-fn example_a_study_is_built_and_run_by_cargo_with_all_its_words() {
+fn behaves_a_study_is_built_and_run_by_cargo_with_all_its_words() {
     // What prints its arguments in the place of cargo.
     let output = xtask("echo", &["--quiet", "study", "kills", "--kills", "3", "--help"]);
     let said = String::from_utf8_lossy(&output.stdout);
@@ -20,7 +20,7 @@ fn example_a_study_is_built_and_run_by_cargo_with_all_its_words() {
 }
 
 #[test]
-fn example_a_command_that_reads_records_is_handed_on_to_the_program() {
+fn behaves_a_command_that_reads_records_is_handed_on_to_the_program() {
     let output = xtask("echo", &["-q", "analyse", "a record.csv", "--bearing", "6205"]);
     let said = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
@@ -35,7 +35,7 @@ fn example_a_command_that_reads_records_is_handed_on_to_the_program() {
 }
 
 #[test]
-fn example_without_cargo_a_study_says_what_it_needs() {
+fn behaves_without_cargo_a_study_says_what_it_needs() {
     let output = xtask("/nowhere/cargo", &["study", "kills"]);
     let said = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{output:?}");

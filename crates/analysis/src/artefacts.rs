@@ -295,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_multiples_of_bpfo_are_teeth_and_what_lies_between_is_not() {
+    fn by_hand_multiples_of_bpfo_are_teeth_and_what_lies_between_is_not() {
         let comb = ShockComb { name: "BPFO", spacing_hz: 89.8, reach_hz: 3.0 };
         assert_eq!((comb.tooth(89.8), comb.tooth(628.7), comb.tooth(592.0)), (Some(1), Some(7), None));
         assert_eq!((comb.tooth(1.0), comb.tooth(45.0)), (None, None));

@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn example_oil_stops_a_roller_or_metal_does() {
+    fn planted_oil_stops_a_roller_or_metal_does() {
         let samples = force(390.0);
         // The film is thinnest where the force is largest, 4 µm or its least of 0.5 µm, and thick before.
         for (thinnest_m, by) in [(4e-6, FloorContact::Film), (0.5e-6, FloorContact::Metal)] {

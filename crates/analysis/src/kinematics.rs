@@ -224,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_slow_cage_slows_the_outer_and_speeds_the_inner_line() {
+    fn by_hand_a_slow_cage_slows_the_outer_and_speeds_the_inner_line() {
         let motion = KinematicsFinding {
             relative_hz: 8.0,
             cage_on_outer_hz: [Some(3.9), Some(4.0)],
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn example_only_loaded_time_counts_for_the_spin() {
+    fn by_hand_only_loaded_time_counts_for_the_spin() {
         // Loaded for the first half at 40 rad/s, free for the second, where it slows down.
         let time: Vec<f64> = (0..=100).map(|n| 0.01 * f64::from(n)).collect();
         let spin: Vec<f64> =
@@ -270,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn example_rate_of_a_wobbling_rotation() {
+    fn planted_rate_of_a_wobbling_rotation() {
         // Whole wobbles leave the slope of least squares within 6A/(π N) of the mean rate over N wobbles.
         let time: Vec<f64> = (0..3000).map(|n| n as f64 * 1e-5).collect();
         let wobble = |t: f64| 1e-4 * (TAU * 1000.0 * t).sin();

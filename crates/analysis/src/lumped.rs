@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn example_few_facets_need_more_friction_than_the_paper_has() {
+    fn analytic_few_facets_need_more_friction_than_the_paper_has() {
         // THEORY §5.4: two cosines of amplitude h₁ g under the load Q are climbed by a couple 2 N_v Q h₁ g,
         // against 2µQr.
         let of = |facets| {
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn example_copies_in_one_orientation_move_the_line_by_a_part_of_bpfo() {
+    fn by_hand_copies_in_one_orientation_move_the_line_by_a_part_of_bpfo() {
         // Rollers at 41.7 Hz against a cage of 3.75 Hz, BPFO 90 Hz. 112 facets are 4 2/3 a roller: a third of
         // BPFO is missing to five. 120 are five, and copies that turn with the pattern have no phase at all.
         let at =
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn example_phases_follow_copies_and_parity() {
+    fn by_hand_phases_follow_copies_and_parity() {
         let of = |facets, copies| Lumped::of(&scene(facets, copies).resolve()).unwrap();
         // Copies in one orientation: 112 facets make three groups that partly cancel (under nine loaded
         // rollers not all of it), 120 = 5·24 are all in step.

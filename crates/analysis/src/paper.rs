@@ -146,7 +146,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_differences_in_words() {
+    fn behaves_differences_in_words() {
         assert_eq!(difference(90.07, 90.109), "+0.04 %");
         assert_eq!(difference(50.0, 50.0), "none");
         assert_eq!(difference(180.0, 960.0), "× 5.33");

@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn example_plan_of_the_paper() {
+    fn by_hand_plan_of_the_paper() {
         let mut scene = Scene::default();
         scene.mesh.size_mm = 2.0;
         scene.mesh.roller_facets = 112;

@@ -108,7 +108,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_pure_tone_shows_two_distances_in_proportion() {
+    fn by_hand_a_pure_tone_shows_two_distances_in_proportion() {
         // 100 000/4671 = 21.409 samples: 22 in 40.9 % of the cases, 21 in the others.
         let reading = CursorReading::of(4545.0, 1e5, 4671.0, (4712.0, 3864.0)).unwrap();
         assert_eq!(reading.samples, 22);
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn example_silence_has_no_gaps() {
+    fn behaves_silence_has_no_gaps() {
         assert_eq!(gaps(&[0.0; 50], 1e5), None);
         assert_eq!(gaps(&[], 1e5), None);
     }

@@ -363,7 +363,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_turning_roller() {
+    fn planted_a_turning_roller() {
         let angle: Vec<f64> = (0..1000).map(|n| 1.6 - 0.02 * n as f64).collect();
         let (x, y): (Vec<f64>, Vec<f64>) = angle.iter().map(|a| (0.09 * a.cos(), 0.09 * a.sin())).unzip();
         let (fx, fy): (Vec<f64>, Vec<f64>) = angle.iter().map(|a| (-5.0 * a.cos(), -5.0 * a.sin())).unzip();

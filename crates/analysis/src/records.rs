@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_record_behind_a_random_path_tells_the_spacing_until_noise_hides_it() {
+    fn planted_a_record_behind_a_random_path_tells_the_spacing_until_noise_hides_it() {
         let scene = scene();
         let rhythm = rhythm_of(&scene).expect("a spall");
         assert!((rhythm.passing_hz / 53.77 - 1.0).abs() < 0.01, "{rhythm:?}");

@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_amplitude_of_a_cosine_between_two_bins() {
+    fn planted_amplitude_of_a_cosine_between_two_bins() {
         let tone = |n: usize| 3.0 + 2.0 * (std::f64::consts::TAU * 4671.5 * n as f64 * 1e-5).cos();
         let signal: Vec<f64> = (0..1200).map(tone).collect();
         assert!((amplitude(&signal, 1e5, 4680.0).unwrap() - 2.0).abs() < 0.02);
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn example_band_and_running_mean_of_a_step_with_a_tone() {
+    fn by_hand_band_and_running_mean_of_a_step_with_a_tone() {
         // A tone of 20 periods in 20 samples each: three bins of Hann's window hold it all.
         let tone: Vec<f64> =
             (0..400).map(|n| 3.0 * (std::f64::consts::TAU * n as f64 / 20.0).sin()).collect();

@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn example_quantiles_lie_between_neighbours() {
+    fn by_hand_quantiles_lie_between_neighbours() {
         let s = Statistic::of(&[40.0, 10.0, 30.0, 20.0], 4).expect("four");
         assert_eq!((s.least, s.median, s.most), (10.0, 25.0, 40.0));
         assert!((s.q10 - 13.0).abs() < 1e-12 && (s.q90 - 37.0).abs() < 1e-12, "{s:?}");

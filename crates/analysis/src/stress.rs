@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn example_uniaxial_strain_and_shear() {
+    fn by_hand_uniaxial_strain_and_shear() {
         // ε_xx = 1e-6 alone: σ = (λ+2µ, λ, λ) ε, so the von Mises stress is 2µ ε.
         let (lame, e) = (steel(), 1e-6);
         let stress = lame.von_mises([[1.0 + e, 0.0], [0.0, 1.0]]);

@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_numbers_have_as_many_digits_as_say_something() {
+    fn behaves_numbers_have_as_many_digits_as_say_something() {
         let digits = |value: f64| significant(value, 4);
         assert_eq!([1499.97, 1.399_405, 0.5, 468_396.351_5].map(digits), ["1500", "1.399", "0.5", "468396"]);
         assert_eq!([0.0, -2.0, 1e-9].map(digits), ["0", "-2", "1.000e-9"]);

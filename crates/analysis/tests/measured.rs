@@ -77,7 +77,7 @@ fn invariant_noise_is_no_defect_and_false_alarms_are_as_rare_as_stated() {
 }
 
 #[test]
-fn example_each_defect_is_distinguished_from_the_others_with_slip() {
+fn planted_each_defect_is_distinguished_from_the_others_with_slip() {
     let shaft_hz = 20.0;
     let always = |_| 1.0;
     let with_the_shaft = move |t: f64| 1.0 + (TAU * shaft_hz * t).cos();
@@ -105,7 +105,7 @@ fn under_the_load(shaft_hz: f64) -> impl Fn(f64) -> f64 {
 }
 
 #[test]
-fn example_a_second_defect_is_distinguished_from_the_sidebands_of_the_first() {
+fn planted_a_second_defect_is_distinguished_from_the_sidebands_of_the_first() {
     let shaft_hz = 20.0;
     let (outer_hz, inner_hz) = (3.585 * 0.995 * shaft_hz, 5.415 * 1.003 * shaft_hz);
     let outer = knocks(outer_hz, SAMPLES, |_| 1.0);
@@ -220,7 +220,7 @@ fn passages(cage_hz: f64, samples: usize, spread: impl Fn(usize, [f64; 2]) -> f6
 }
 
 #[test]
-fn example_an_element_that_loses_its_spin_beyond_the_load_is_distinguished_from_the_cage() {
+fn planted_an_element_that_loses_its_spin_beyond_the_load_is_distinguished_from_the_cage() {
     let shaft_hz = 20.0;
     let (cage_hz, knocks_hz) = (0.398 * shaft_hz, 2.0 * 2.357 * shaft_hz);
     // Half a spin apart, from a phase that is drawn for every turn.
@@ -291,7 +291,7 @@ fn edges(hz: f64, apart_s: f64, decay_s: f64) -> Vec<f64> {
 }
 
 #[test]
-fn example_a_second_event_gives_a_length_and_the_longer_one_that_it_may_mean() {
+fn planted_a_second_event_gives_a_length_and_the_longer_one_that_it_may_mean() {
     // 1200 rpm of a 6205: elements pass 71.7 times a second, 16.4 mm apart, so the contact runs 1.176 m/s.
     let of = |apart_s| {
         let channel = Channel::held("test", edges(71.7, apart_s, 0.2e-3));
@@ -327,7 +327,7 @@ fn issue_one_knock_an_element_is_no_length() {
 }
 
 #[test]
-fn example_a_shallow_modulation_is_seen_and_not_called_a_defect() {
+fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
     // What elements passing under the load do in a sound bearing: the noise swells by a fifth, not quite
     // evenly.
     let swell = |t: f64| 1.0 + 0.2 * (0..4).map(|h| (TAU * 71.7 * f64::from(h + 1) * t).cos()).sum::<f64>();
@@ -345,7 +345,7 @@ fn example_a_shallow_modulation_is_seen_and_not_called_a_defect() {
 }
 
 #[test]
-fn example_a_short_record_says_how_long_it_should_be() {
+fn by_hand_a_short_record_says_how_long_it_should_be() {
     let findings = analysed(coloured(1, 12_800), 300.0);
     let cage = findings.families.iter().find(|f| f.name == Defect::Ftf).unwrap();
     // The cage turns 1.99 times a second: ten periods take 5.0 s.
@@ -354,7 +354,7 @@ fn example_a_short_record_says_how_long_it_should_be() {
 }
 
 #[test]
-fn example_a_record_that_is_too_short_for_every_family_is_no_sign_of_health() {
+fn behaves_a_record_that_is_too_short_for_every_family_is_no_sign_of_health() {
     // 40 ms at 100 rpm hold a third of a period of the inner raceway.
     let findings = analysed(coloured(1, 1024), 100.0);
     assert!(findings.families.iter().all(|f| f.band_hz.is_none()), "{findings:#?}");
@@ -362,7 +362,7 @@ fn example_a_record_that_is_too_short_for_every_family_is_no_sign_of_health() {
 }
 
 #[test]
-fn example_gaps_and_clipping_are_said() {
+fn planted_gaps_and_clipping_are_said() {
     let mut signal = coloured(2, SAMPLES);
     // A slow swing beyond the range: many samples in a row stand at its end.
     let swing = |n: usize| 30.0 * (TAU * 20.0 * n as f64 / RATE_HZ).sin();
@@ -430,7 +430,7 @@ fn issue_the_speed_is_found_by_shaft_and_bearing_together() {
 }
 
 #[test]
-fn example_channels_together_name_the_nearest() {
+fn planted_channels_together_name_the_nearest() {
     let of = |samples| Analysis::of(&Channel::held("a", samples), RATE_HZ, &machine(1200.0)).unwrap();
     let heard = |seed, part: f64| -> Vec<f64> {
         let order = CatalogueBearing::parse("6205").unwrap().orders().unwrap().bpfo;

@@ -67,7 +67,7 @@ fn held(law: &Law, calibration: &Calibration, units: std::ops::Range<u64>) -> f6
 }
 
 #[test]
-fn example_a_gauge_tells_what_units_share_from_what_records_do() {
+fn planted_a_gauge_tells_what_units_share_from_what_records_do() {
     let calibration = calibration(1000..1200);
     assert!((calibration.of_records - OF_RECORDS).abs() < 0.02, "{calibration:?}");
     assert!((calibration.of_units - OF_UNITS).abs() < 0.05, "{calibration:?}");

@@ -109,7 +109,7 @@ fn judged(draw: u64) -> (Sources, Truth) {
 }
 
 #[test]
-fn example_a_gear_and_two_bearings_are_distinguished() {
+fn planted_a_gear_and_two_bearings_are_distinguished() {
     let asked = |name: &str| std::env::var(name).ok().and_then(|draws| draws.parse().ok());
     let first = asked("STRIBECK_FIRST_DRAW").unwrap_or(0);
     let (mut missed, mut wrong, mut defects) = (Vec::new(), Vec::new(), 0);

@@ -4,7 +4,7 @@ use stribeck_analysis::measured::tacho::{Turns, of, of_angle, pulses, turns};
 use stribeck_dsp::channel::Channel;
 
 #[test]
-fn example_pulses_give_the_speed_between_samples() {
+fn planted_pulses_give_the_speed_between_samples() {
     // 1234 rpm, pulses of a tenth of a turn, sampled 1000 times a second.
     let pulse = |n: usize| (1234.0 / 60.0 * n as f64 / 1e3).fract();
     let samples = (0..10_000).map(|n| if pulse(n) < 0.1 { 5.0 } else { 0.1 }).collect();
@@ -16,7 +16,7 @@ fn example_pulses_give_the_speed_between_samples() {
 }
 
 #[test]
-fn example_an_angle_gives_pulses_and_the_mean_speed() {
+fn planted_an_angle_gives_pulses_and_the_mean_speed() {
     // From 10 to 30 turns a second, counter-clockwise, in a second of 10 000 samples.
     let angle =
         (0..10_000).map(|n| 1e-4 * f64::from(n)).map(|t| std::f64::consts::TAU * (10.0 * t + 10.0 * t * t));
@@ -40,7 +40,7 @@ fn wheel(n: usize, keep: impl Fn(usize) -> bool) -> Vec<f64> {
 }
 
 #[test]
-fn example_missing_and_double_pulses_are_bridged_and_noted() {
+fn planted_missing_and_double_pulses_are_bridged_and_noted() {
     let one = turns(&Channel::held("tacho", wheel(26, |k| k != 12)), 12_800.0).unwrap();
     assert!((one.rpm / 1200.0 - 1.0).abs() < 1e-4 && one.variation < 0.01, "{one:?}");
     assert!(
@@ -63,7 +63,7 @@ fn example_missing_and_double_pulses_are_bridged_and_noted() {
 }
 
 #[test]
-fn example_noise_and_sparks_are_no_pulses() {
+fn planted_noise_and_sparks_are_no_pulses() {
     let mut state = 1_u32;
     let mut noise = || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);

@@ -69,7 +69,7 @@ mod tests {
     use super::{REACH, within_reach};
 
     #[test]
-    fn example_facets_within_reach_go_round_a_closed_surface() {
+    fn by_hand_facets_within_reach_go_round_a_closed_surface() {
         let mut marked = vec![false; 100];
         marked[3] = true;
         let near: Vec<usize> = within_reach(&marked, true, 100).collect();

@@ -115,7 +115,7 @@ fn ripple(kind: Ground, recipe: Recipe, positions: usize) -> f64 {
 }
 
 #[test]
-fn example_facets_do_not_act_on_a_rolling_roller() {
+fn behaves_facets_do_not_act_on_a_rolling_roller() {
     // The target of the project.
     const LARGEST: f64 = 1e-3;
     for kind in [Ground::Flat, Ground::Raceway] {

@@ -249,7 +249,7 @@ fn invariant_search_keeps_up_with_motion() {
 }
 
 #[test]
-fn example_a_sharp_corner_is_felt() {
+fn by_hand_a_sharp_corner_is_felt() {
     // A square on its corner is pushed by 0.002 into the flat side of an octagon: no node of that side is
     // near.
     let apothem = (TAU / 16.0).cos();
@@ -306,7 +306,7 @@ fn invariant_points_done_together_push_as_points_done_singly() {
 }
 
 #[test]
-fn example_the_tangent_outlives_the_preload() {
+fn invariant_the_tangent_outlives_the_preload() {
     let shapes = Shapes::new([60, 45], [1.0, 0.7], [[0.0; 2], [1.69, 0.01]], [0.02, 0.3]);
     let mut contacts = shapes
         .contacts(Law::penalty(STIFFNESS).expect("a positive stiffness"), Method::Integrated { points: 4 });

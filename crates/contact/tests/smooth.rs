@@ -90,7 +90,7 @@ fn converges_nagata_to_an_ellipse_with_order_three() {
 }
 
 #[test]
-fn example_corners_stay_sharp() {
+fn behaves_corners_stay_sharp() {
     // A semicircle over a straight base: the two corners and the base keep their places, the arc bulges.
     let n = 20;
     let mut at: Vec<[f64; 2]> =

@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn example_blocks_come_in_order_until_nobody_takes_them() {
+    fn behaves_blocks_come_in_order_until_nobody_takes_them() {
         let long: Vec<f64> = (0..3 * BLOCK + 5).map(|n| n as f64).collect();
         let held = Channel::held("a", long.clone());
         assert_eq!(held.read().unwrap(), long);
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn example_factors_multiply_and_leave_the_samples_where_they_are() {
+    fn by_hand_factors_multiply_and_leave_the_samples_where_they_are() {
         let counted = Channel::new("n", 4, Count).scaled(2.0).scaled(0.25);
         assert_eq!(counted.read().unwrap(), [0.0, 0.5, 1.0, 1.5]);
         assert!(counted.samples_as::<Count>().is_some() && counted.samples_as::<Vec<f64>>().is_none());

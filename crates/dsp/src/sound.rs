@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_rates_are_rounded_to_small_ratios() {
+    fn by_hand_rates_are_rounded_to_small_ratios() {
         assert_eq!(nearest_ratio(48_000.0 / 100_000.0), Some((12, 25)));
         assert_eq!(nearest_ratio(10.0), Some((10, 1)));
         let (up, down) = nearest_ratio(48_000.0 / 25_601.0).unwrap();

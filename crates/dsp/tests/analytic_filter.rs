@@ -157,7 +157,7 @@ fn analytic_envelope_of_an_amplitude_modulated_tone() {
 }
 
 #[test]
-fn example_periods_in_a_record() {
+fn by_hand_periods_in_a_record() {
     // 30 ms of something that repeats 90.1 times a second holds 2.7 periods; ten take 0.111 s.
     let count = PeriodCount::new(0.03, 90.1).unwrap();
     assert_eq!(count.verdict(), PeriodVerdict::TooFew);
@@ -171,7 +171,7 @@ fn example_periods_in_a_record() {
 }
 
 #[test]
-fn example_statistics_of_a_sine_and_of_an_impulse() {
+fn by_hand_statistics_of_a_sine_and_of_an_impulse() {
     const ROUNDING: f64 = 1e-12;
     let x = sine(3.0, 10.0, 1000.0, 1000);
     assert!(statistics::mean(&x).unwrap().abs() < ROUNDING);

@@ -66,7 +66,7 @@ fn analytic_window_response_is_the_transform_of_its_samples() {
 }
 
 #[test]
-fn example_amplitude_of_a_sine_is_read_back() {
+fn planted_amplitude_of_a_sine_is_read_back() {
     // 50 m/s² at 4671 Hz for 30 ms at 100 kHz. What remains of the error is leakage of the negative
     // frequency.
     const AMPLITUDE: f64 = 1e-3;
@@ -95,7 +95,7 @@ fn example_amplitude_of_a_sine_is_read_back() {
 }
 
 #[test]
-fn example_amplitude_with_every_window() {
+fn planted_amplitude_with_every_window() {
     // A boxcar leaks as 1/distance, so the mirror image 280 bins away matters most there.
     for (window, tolerance) in [
         (Window::Boxcar, 3e-3),
@@ -111,7 +111,7 @@ fn example_amplitude_with_every_window() {
 }
 
 #[test]
-fn example_peak_is_interpolated() {
+fn planted_peak_is_interpolated() {
     // On a padded grid the parabola is as good as exact; without padding the documented 0.02 resolutions
     // hold.
     let rate = 1e5;
@@ -129,7 +129,7 @@ fn example_peak_is_interpolated() {
 }
 
 #[test]
-fn example_peak_on_a_flank_says_so() {
+fn planted_peak_on_a_flank_says_so() {
     let spectrum =
         estimate(1e5, &sine(1.0, 4671.0, 1e5, 3000), &WelchOptions::for_grid(1e5, 3000, 3.0).unwrap());
     let flank = spectrum.peak(4680.0, 4700.0).unwrap();
@@ -161,7 +161,7 @@ fn analytic_density_of_white_noise() {
 }
 
 #[test]
-fn example_line_above_noise() {
+fn planted_line_above_noise() {
     // A sine of amplitude A on a density S stands 10 log₁₀(A²/2 / (1.5 resolution) / S) above the mean of the
     // noise; the median of the averaged noise is its mean but for 0.1 dB.
     let (rate, amplitude) = (1000.0, 0.5);
@@ -178,7 +178,7 @@ fn example_line_above_noise() {
 }
 
 #[test]
-fn example_grid_and_resolution_are_stated_apart() {
+fn by_hand_grid_and_resolution_are_stated_apart() {
     // 30 ms at 100 kHz on a grid of 3 Hz: resolution 33.3, −3 dB 48.0, −6 dB 66.7, noise bandwidth 50 Hz.
     let short = Welch::for_grid(1e5, 3000, 3.0).unwrap();
     let r = short.resolution();

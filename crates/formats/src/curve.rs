@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_each_law_at_a_few_places() {
+    fn by_hand_each_law_at_a_few_places() {
         let line = Curve::linear(0.5, 0.001);
         assert_eq!(line.at(2000.0), 2.5);
         assert_eq!(Curve::Polynomial(vec![1.0, 0.0, 2.0]).at(3.0), 19.0);

@@ -110,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_names_with_brackets_quotes_and_escapes() {
+    fn by_hand_names_with_brackets_quotes_and_escapes() {
         let text = "{'descr': [('t (s)', '<f8'), (\"it's\", '|V6'), ('a\\'b\\xb2', '<f4', (2, 3))], 'shape': \
             (9,), }";
         let header = parse(text).unwrap();

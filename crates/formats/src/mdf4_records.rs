@@ -136,7 +136,7 @@ mod tests {
     use std::io::Write;
 
     #[test]
-    fn example_records_go_on_in_the_next_block() {
+    fn by_hand_records_go_on_in_the_next_block() {
         // Records of six bytes with a number of 16 bits at byte 4; a plain block of 20 bytes, and two packed
         // ones.
         let records: Vec<u8> =

@@ -326,7 +326,7 @@ mod tests {
     }
 
     #[test]
-    fn example_records_in_their_short_form() {
+    fn by_hand_records_in_their_short_form() {
         let header = |formats: &str| {
             format!(
                 "{{'descr': ('V24', {{'names':['time_s','a','b c'],'formats':'{formats}'}}), \

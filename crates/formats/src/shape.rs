@@ -31,7 +31,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_extents_of_one_do_not_count() {
+    fn by_hand_extents_of_one_do_not_count() {
         assert_eq!(table(&[1, 9, 1]), Ok((9, 1)));
         assert_eq!(table(&[1, 9]), Ok((1, 9)));
         assert_eq!(table(&[2, 1, 9]), Ok((2, 9)));

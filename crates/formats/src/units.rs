@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_names_and_units_of_rates() {
+    fn by_hand_names_and_units_of_rates() {
         for (name, unit, value) in [
             ("fs", None, 12_800.0),
             ("Fs", Some("Hz"), 12_800.0),
@@ -272,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn example_units_of_a_row() {
+    fn behaves_units_of_a_row() {
         for unit in [
             "m/s²", "mm/s2", "mm/s^2", "EU", "Volts", "mV/g", "ips", "µm/s", "gn", "mg", "%", "°C", "[x]",
             "1/min", "m/s**2",

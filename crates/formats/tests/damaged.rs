@@ -114,7 +114,7 @@ fn issue_a_tdms_file_that_was_not_closed_is_read_up_to_there() {
 
 /// npTDMS reads the same numbers: `cargo xtask fuzz --peers` compares.
 #[test]
-fn example_rows_of_daqmx_become_channels_by_their_scales() {
+fn peer_rows_of_daqmx_become_channels_by_their_scales() {
     let desk = Scratch::create("formats-daqmx");
     let good = small("daqmx.tdms");
     let whole = opened(&desk, "a.tdms", &good);

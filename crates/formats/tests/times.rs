@@ -84,7 +84,7 @@ fn issue_a_count_is_no_signal_and_says_no_rate() {
 
 /// What moves slowly, falls again or lies in noise is a signal, whatever its beginning looks like.
 #[test]
-fn example_a_signal_is_no_time() {
+fn planted_a_signal_is_no_time() {
     let desk = Scratch::create("formats-signals");
     let mut noise = Noise::new(2);
     let signals: [Box<dyn FnMut(f64) -> f64>; 5] = [

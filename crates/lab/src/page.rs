@@ -133,13 +133,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_script_loses_what_joins_it_to_others() {
+    fn behaves_a_script_loses_what_joins_it_to_others() {
         let script = "import { a } from \"./a.js\";\nexport const b = a + 1;\nexport function c() {}\n";
         assert_eq!(plain(script), "const b = a + 1;\nfunction c() {}");
     }
 
     #[test]
-    fn example_every_script_is_a_module_whose_names_are_its_own() {
+    fn invariant_every_script_is_a_module_whose_names_are_its_own() {
         let mut names: Vec<&str> = Vec::new();
         for text in SCRIPTS.iter().map(|(_, text)| *text).chain([ENGINE]) {
             let declared = text.lines().filter_map(|line| {

@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_spall_has_a_floor_between_two_walls() {
+    fn by_hand_a_spall_has_a_floor_between_two_walls() {
         let with = moved(&circle(1200), None, Some(&spall(90.0)), 1.0).expect("room");
         assert_eq!(with.len(), 1200);
         let below = |v: &&[f64; 2]| v[0].hypot(v[1]) > RADIUS + 1e-4;

@@ -108,7 +108,7 @@ fn number(answer: &Value, name: &str) -> f64 {
 
 /// The page runs 200 ms, its load and its spall are moved, and it checks itself.
 #[test]
-fn example_the_page_runs_and_its_numbers_are_right() {
+fn behaves_the_page_runs_and_its_numbers_are_right() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-browser");
     let file = written(&folder, "lab.html", coarse_page(&module));
@@ -156,7 +156,7 @@ fn example_the_page_runs_and_its_numbers_are_right() {
 /// A preset is reached by its link; arcs take the tone of the facets away. Without a worker the page steps
 /// itself.
 #[test]
-fn example_presets_are_links_and_arcs_take_the_tone_away() {
+fn behaves_presets_are_links_and_arcs_take_the_tone_away() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-presets");
     let file = written(&folder, "lab.html", coarse_page(&module));
@@ -181,7 +181,7 @@ fn example_presets_are_links_and_arcs_take_the_tone_away() {
 /// Every control has a name for screen readers, arrow keys do what a mouse does, text that is no number is
 /// refused, and a phone shows the page without scrolling sideways.
 #[test]
-fn example_a_phone_has_room_and_controls_have_names() {
+fn behaves_a_phone_has_room_and_controls_have_names() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-phone");
     let file = written(&folder, "lab.html", coarse_page(&module));
@@ -295,7 +295,7 @@ fn refuses_to_go_on_with_a_run_that_goes_wrong() {
 
 /// Three bearings in one page: each runs with its own rollers, and is itself again when it is chosen again.
 #[test]
-fn example_a_page_with_three_bearings_goes_from_one_to_another() {
+fn behaves_a_page_with_three_bearings_goes_from_one_to_another() {
     let Some((browser, module)) = tools() else { return };
     let folder = Scratch::create("lab-three");
     let small = |designation: &str| {

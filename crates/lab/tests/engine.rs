@@ -153,7 +153,7 @@ fn invariant_handles_turned_back_give_the_scene_again() {
 
 /// A spall that is moved is met where it lies: the roller over it is unloaded there and nowhere else.
 #[test]
-fn example_a_spall_that_is_moved_unloads_the_roller_over_it() {
+fn behaves_a_spall_that_is_moved_unloads_the_roller_over_it() {
     let folder = Scratch::create("lab-spall");
     let content = content(&folder);
     let mut engine = engine(&content);

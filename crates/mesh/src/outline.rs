@@ -50,7 +50,7 @@ mod tests {
     use crate::{Annulus, Rectangle};
 
     #[test]
-    fn example_the_boundary_of_a_ring_and_of_a_block() {
+    fn by_hand_the_boundary_of_a_ring_and_of_a_block() {
         let (facets, layers) = (24, 3);
         let ring = Annulus {
             inner_radius: 1.0,

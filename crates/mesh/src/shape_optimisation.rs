@@ -272,7 +272,7 @@ mod tests {
     /// Each of several grooves is shaped by itself: beside others, around a ring and as close as two may
     /// be, one costs as much as alone.
     #[test]
-    fn example_several_grooves_keep_the_time_step_of_one() {
+    fn behaves_several_grooves_keep_the_time_step_of_one() {
         let at = |angle, depth| Groove::rectangular(angle, 0.01, depth);
         let eight: Vec<Groove> = (0..8).map(|k| at(0.1 + k as f64 * TAU / 8.0, 0.2e-3)).collect();
         let two = vec![at(0.5, 3e-3), at(0.72, 3e-3)];
@@ -299,7 +299,7 @@ mod tests {
     /// an eighth, where columns that follow it straight would cost four tenths; short grooves cost up to a
     /// fifth, deep ones a third.
     #[test]
-    fn example_grooves_keep_the_time_step() {
+    fn behaves_grooves_keep_the_time_step() {
         let graded = Grading { fine: Circle::Inner, fine_layers: 2, transitions: 1 };
         for (mesh, (facets, layers)) in [(1257, 20), (628, 10)].into_iter().enumerate() {
             for (length, depth, least) in [

@@ -308,7 +308,7 @@ mod tests {
     /// One element alone vibrates as the formula for its length says; in these shapes hourglass stiffness has
     /// no part in it.
     #[test]
-    fn example_single_elements_have_their_characteristic_length() {
+    fn invariant_single_elements_have_their_characteristic_length() {
         let shapes: [&[[f64; 2]]; 3] = [
             &[[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
             &[[0.0, 0.0], [1.1, -0.1], [1.2, 0.8], [0.1, 0.9]],
@@ -335,7 +335,7 @@ mod tests {
 
     /// Nodes of a submesh have the mass of the whole part: what is far away does not change its frequencies.
     #[test]
-    fn example_mass_of_the_surroundings_counts() {
+    fn invariant_mass_of_the_surroundings_counts() {
         let grid = |n: usize| {
             let side = n as f64;
             let grid = Rectangle { x0: 0.0, y0: 0.0, width: side, height: side, columns: n, rows: n };
@@ -352,7 +352,7 @@ mod tests {
     }
 
     #[test]
-    fn example_derivative_is_that_of_differences() {
+    fn invariant_derivative_is_that_of_differences() {
         let grid = Rectangle { x0: 0.0, y0: 0.0, width: 4.0, height: 3.0, columns: 4, rows: 3 };
         let mut part = grid.part().expect("a grid");
         for (i, (x, y)) in part.x.iter_mut().zip(&mut part.y).enumerate() {

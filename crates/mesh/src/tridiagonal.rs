@@ -66,8 +66,9 @@ mod tests {
     use super::*;
 
     /// 2 on the diagonal and −1 beside it: 2 − 2 cos(kπ/(n + 1)), vectors sin(ikπ/(n + 1)).
+    /// Source: Strang 2007, §1.5.
     #[test]
-    fn example_eigenvalues_of_the_second_difference() {
+    fn analytic_eigenvalues_of_the_second_difference() {
         for n in [1, 2, 3, 32] {
             let pairs = eigenpairs(vec![2.0; n], vec![-1.0; n - 1]);
             assert_eq!(pairs.len(), n);
@@ -84,7 +85,7 @@ mod tests {
 
     /// A diagonal matrix, equal eigenvalues, and NaN.
     #[test]
-    fn example_matrices_that_fall_apart_or_hold_no_number() {
+    fn behaves_matrices_that_fall_apart_or_hold_no_number() {
         let pairs = eigenpairs(vec![1.0, 1.0, 5.0], vec![0.0, 0.0]);
         assert_eq!(pairs.iter().map(|p| p.0).collect::<Vec<_>>(), [5.0, 1.0, 1.0]);
         assert!(eigenpairs(vec![f64::NAN; 3], vec![1.0; 2]).is_empty());

@@ -41,7 +41,7 @@ fn wall_column(part: &Part, n: usize) -> usize {
 }
 
 #[test]
-fn example_area_of_two_polygons() {
+fn by_hand_area_of_two_polygons() {
     let part = ring(None);
     let expected = polygon(0.11, 1257) - polygon(0.1, 1257);
     // The sum over 25 140 elements adds their roundings.
@@ -50,7 +50,7 @@ fn example_area_of_two_polygons() {
 }
 
 #[test]
-fn example_boundary_is_two_oriented_circles() {
+fn by_hand_boundary_is_two_oriented_circles() {
     let part = ring(None);
     assert_boundary_is(&part, &["inner", "outer"]);
     // Solid on the left: the outer circle encloses it, the inner one is walked the other way round.
@@ -71,7 +71,7 @@ fn example_boundary_is_two_oriented_circles() {
 }
 
 #[test]
-fn example_rows_are_two_strips_each() {
+fn by_hand_rows_are_two_strips_each() {
     let part = ring(Some(GROOVE));
     let strips = find_strips(&part.quads);
     assert_eq!(strips.len(), 2 * 20, "one strip and the quadrilateral that closes the row");
@@ -90,7 +90,7 @@ fn example_rows_are_two_strips_each() {
 
 /// The groove takes the polygonal ring sector between floor and inner surface out of the ring.
 #[test]
-fn example_groove_has_its_length_depth_and_area() {
+fn by_hand_groove_has_its_length_depth_and_area() {
     let part = ring(Some(GROOVE));
     let n = 1257;
     let sector = GROOVE.length / RING.inner_radius;
@@ -125,7 +125,7 @@ fn example_groove_has_its_length_depth_and_area() {
 }
 
 #[test]
-fn example_groove_keeps_facets_outer_circle_and_orientation() {
+fn invariant_groove_keeps_facets_outer_circle_and_orientation() {
     let (plain, cut) = (ring(None), ring(Some(GROOVE)));
     assert_eq!(surface(&cut, "inner").facets(), 1257);
     assert_eq!(cut.quads, plain.quads, "no element is removed or renumbered");
@@ -145,7 +145,7 @@ fn example_groove_keeps_facets_outer_circle_and_orientation() {
 
 /// Beyond two thicknesses from the walls the cells of a row are alike, so that solvers need only one of them.
 #[test]
-fn example_cells_away_from_a_groove_are_alike() {
+fn invariant_cells_away_from_a_groove_are_alike() {
     let part = ring(Some(GROOVE));
     let wall = wall_column(&part, 1257);
     let beside = (2.0 * 0.01 / (TAU * 0.1 / 1257.0)).ceil() as usize + 1;
@@ -172,7 +172,7 @@ fn example_cells_away_from_a_groove_are_alike() {
 
 /// A cell of 0.2 mm among cells of 0.5 mm would have 0.4 of the length; slanted cells keep three quarters.
 #[test]
-fn example_groove_keeps_the_critical_step() {
+fn behaves_groove_keeps_the_critical_step() {
     let kept = relative_length(&ring(Some(GROOVE)), 0.5e-3);
     assert!(kept > 0.72, "the groove leaves {kept:.3} of the length of a 0.5 mm square");
     assert!(relative_length(&ring(None), 0.5e-3) > 0.99);
@@ -210,7 +210,7 @@ fn issue_groove_in_a_single_layer() {
 
 /// The deepest groove that is promised, through six layers of ten.
 #[test]
-fn example_deepest_groove_stays_in_order() {
+fn behaves_deepest_groove_stays_in_order() {
     let grooves = vec![Groove { depth: 6e-3, ..GROOVE }];
     let part = Annulus { facets: 628, layers: 10, grooves, ..RING }.part().expect("60 % of the thickness");
     assert!(smallest_jacobian(&part) > 0.0);
@@ -220,7 +220,7 @@ fn example_deepest_groove_stays_in_order() {
 /// Each groove as it would be alone, in whatever order they are given; facets between two of them are equally
 /// long.
 #[test]
-fn example_several_grooves_of_one_surface() {
+fn behaves_several_grooves_of_one_surface() {
     let n = RING.facets;
     let short = Groove::rectangular(1.9, 0.004, 0.5e-3);
     let sloped = Groove { slope: PI / 4.0, ..Groove::rectangular(-0.2, 0.02, 0.1e-3) };
@@ -273,7 +273,7 @@ fn example_several_grooves_of_one_surface() {
 /// Columns on the far side of two grooves that are near to each other stay radial, and facets of either
 /// surface alike.
 #[test]
-fn example_cells_away_from_two_near_grooves_are_alike() {
+fn invariant_cells_away_from_two_near_grooves_are_alike() {
     let n = RING.facets;
     let other = Groove { centre_angle: GROOVE.centre_angle + 0.21, ..GROOVE };
     let part = Annulus { grooves: vec![GROOVE, other], ..RING }.part().expect("grooves that can be cut");
@@ -319,7 +319,7 @@ fn refuses_with_field_and_limit() {
 }
 
 #[test]
-fn example_a_groove_in_the_outer_surface_is_that_in_the_inner_one_seen_from_outside() {
+fn invariant_a_groove_in_the_outer_surface_is_that_in_the_inner_one_seen_from_outside() {
     let groove = Groove { circle: Circle::Outer, ..GROOVE };
     let ring = Annulus {
         inner_radius: 0.0715,
@@ -349,7 +349,7 @@ fn example_a_groove_in_the_outer_surface_is_that_in_the_inner_one_seen_from_outs
 }
 
 #[test]
-fn example_sloped_walls_are_as_wide_as_their_slope_asks() {
+fn by_hand_sloped_walls_are_as_wide_as_their_slope_asks() {
     for circle in [Circle::Inner, Circle::Outer] {
         let slope = PI / 6.0;
         let groove = Groove { slope, circle, ..GROOVE };

@@ -35,7 +35,7 @@ fn assert_is_a_grid(part: &Part, rows: usize, columns: usize) {
 }
 
 #[test]
-fn example_rectangle() {
+fn by_hand_rectangle() {
     let part = RECTANGLE.part().expect("a rectangle");
     assert_is_a_grid(&part, 20, 60);
     assert_close(part.area(), 0.03 * 0.01, 1e-12, "area");
@@ -52,7 +52,7 @@ fn example_rectangle() {
 
 /// Area = rectangle up to the top edge, less the polygon under the seat (trapezia of equal width).
 #[test]
-fn example_seated_block() {
+fn by_hand_seated_block() {
     let part = BLOCK.part().expect("a block");
     assert_is_a_grid(&part, 80, 320);
     assert_boundary_is(&part, &["seat", "right", "top", "left"]);
@@ -75,7 +75,7 @@ fn example_seated_block() {
 }
 
 #[test]
-fn example_arc_block_has_parallel_walls() {
+fn by_hand_arc_block_has_parallel_walls() {
     let part = PIECE.part().expect("a piece");
     assert_is_a_grid(&part, 8, 14);
     for (name, line, side) in [("left", PIECE.left_line_angle, -1.0), ("right", PIECE.right_line_angle, 1.0)]
@@ -96,7 +96,7 @@ fn example_arc_block_has_parallel_walls() {
 }
 
 #[test]
-fn example_arc_block_boundary_is_one_loop() {
+fn invariant_arc_block_boundary_is_one_loop() {
     let part = PIECE.part().expect("a piece");
     assert_boundary_is(&part, &["boundary"]);
     assert_boundary_is(&part, &["outer", "left", "inner", "right"]);
@@ -107,7 +107,7 @@ fn example_arc_block_boundary_is_one_loop() {
 }
 
 #[test]
-fn example_mesh_keeps_bodies_apart() {
+fn by_hand_mesh_keeps_bodies_apart() {
     let mut mesh = Mesh::new();
     let rectangle = RECTANGLE.part().expect("a rectangle");
     let first = mesh.add("first", &rectangle);
@@ -150,7 +150,7 @@ fn refuses_with_field_and_limit() {
 
 /// A polyline as the seat: columns of different widths, each a trapezium under the top edge.
 #[test]
-fn example_seated_block_on_a_polyline() {
+fn by_hand_seated_block_on_a_polyline() {
     let seat = [[-0.08, 0.07], [-0.05, 0.1], [-0.01, 0.109], [0.0, 0.11], [0.03, 0.105], [0.08, 0.075]];
     let block = SeatedBlock { columns: 5, rows: 10, ..BLOCK };
     let part = block.part_on(&seat).expect("a block");

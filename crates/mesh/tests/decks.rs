@@ -278,7 +278,7 @@ fn roundtrip_a_step() {
 }
 
 #[test]
-fn example_files_of_other_hands() {
+fn behaves_files_of_other_hands() {
     // Columns of fixed width, a triangle, comments, a card that is no mesh.
     let k = "*KEYWORD
 $ comment

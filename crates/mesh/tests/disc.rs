@@ -41,12 +41,12 @@ fn assert_is_a_disc(disc: Disc, part: &Part) {
 }
 
 #[test]
-fn example_default_disc_is_the_polygon() {
+fn behaves_default_disc_is_the_polygon() {
     assert_is_a_disc(DISC, &made(DISC));
 }
 
 #[test]
-fn example_default_disc_has_about_a_thousand_even_cells() {
+fn behaves_default_disc_has_about_a_thousand_even_cells() {
     let part = made(DISC);
     let elements = part.quads.len() + part.triangles.len();
     assert!((1000..=1250).contains(&elements), "{elements} elements");
@@ -56,7 +56,7 @@ fn example_default_disc_has_about_a_thousand_even_cells() {
 }
 
 #[test]
-fn example_uniform_discs_keep_the_critical_step() {
+fn behaves_uniform_discs_keep_the_critical_step() {
     for facets in [15, 16, 31, 56, 97, 112, 113, 120, 224, 500] {
         let size = TAU * DISC.radius / facets as f64;
         let disc = Disc { facets, size, ..DISC };
@@ -68,7 +68,7 @@ fn example_uniform_discs_keep_the_critical_step() {
 }
 
 #[test]
-fn example_coarse_and_fine_rims_on_one_core() {
+fn behaves_coarse_and_fine_rims_on_one_core() {
     for facets in 8..=40 {
         assert_is_a_disc(Disc { facets, ..DISC }, &made(Disc { facets, ..DISC }));
     }
@@ -79,7 +79,7 @@ fn example_coarse_and_fine_rims_on_one_core() {
 
 /// Squares twenty times smaller or larger than the facets make needles, but never an element inside out.
 #[test]
-fn example_sizes_far_from_the_facet_length() {
+fn behaves_sizes_far_from_the_facet_length() {
     for (facets, size) in [(8, 0.05e-3), (13, 0.2e-3), (24, 0.05e-3), (200, 9e-3), (500, 50e-3)] {
         let disc = Disc { facets, size, ..DISC };
         assert_is_a_disc(disc, &made(disc));
@@ -99,7 +99,7 @@ fn invariant_rotation_turns_the_whole_pattern() {
 }
 
 #[test]
-fn example_rows_are_strips() {
+fn behaves_rows_are_strips() {
     let part = made(DISC);
     let strips = find_strips(&part.quads);
     assert_eq!(strips.iter().map(|s| s.len).sum::<usize>(), part.quads.len());
@@ -144,7 +144,7 @@ proptest! {
 /// A fine rim around a core of three times larger squares: each layer is a row of quadrilaterals, no cell is
 /// smaller than in a disc of fine cells, and far fewer cells are needed.
 #[test]
-fn example_layers_around_a_coarse_core() {
+fn behaves_layers_around_a_coarse_core() {
     let coarse = Disc { size: 1.5e-3, ..DISC };
     let fine = made(DISC);
     for layers in 0..=coarse.most_layers() {

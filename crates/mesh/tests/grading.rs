@@ -36,7 +36,7 @@ fn polygon(radius: f64, n: usize) -> f64 {
 /// that remain (cells of 1.59 mm), and area, boundary and both circles are those of two polygons. Where three
 /// do not divide the facets, one or two groups of two facets cost 2 quadrilaterals and a triangle each.
 #[test]
-fn example_area_surfaces_and_counts() {
+fn by_hand_area_surfaces_and_counts() {
     for (facets, threes, pairs) in [(1257, 419, 0), (1256, 418, 1), (1255, 417, 2)] {
         for fine in [Circle::Inner, Circle::Outer] {
             let part = made(Annulus { facets, ..RING }, Grading { fine, ..INWARDS });
@@ -69,7 +69,7 @@ fn example_area_surfaces_and_counts() {
 
 /// Fine cells keep their size: the ring is the uniform one down to the last fine row.
 #[test]
-fn example_fine_rows_are_those_of_the_uniform_ring() {
+fn invariant_fine_rows_are_those_of_the_uniform_ring() {
     let (uniform, graded) = (RING.part().expect("a ring"), made(RING, INWARDS));
     let fine = 3 * 1257;
     assert_eq!(graded.x[..fine], uniform.x[..fine]);
@@ -79,7 +79,7 @@ fn example_fine_rows_are_those_of_the_uniform_ring() {
 
 /// All but the cells above the zigzag, the first coarse row and the one that closes each row lie in strips.
 #[test]
-fn example_most_cells_lie_in_strips() {
+fn by_hand_most_cells_lie_in_strips() {
     let part = made(RING, INWARDS);
     let strips: Vec<usize> = find_strips(&part.quads).iter().map(|s| s.len).filter(|&len| len > 1).collect();
     assert_eq!(strips, [1256, 1256, 1256, 418, 418, 418, 418]);
@@ -87,7 +87,7 @@ fn example_most_cells_lie_in_strips() {
 
 /// A transition has no cell of a shorter characteristic length than a fine square, so it costs no time step.
 #[test]
-fn example_grading_keeps_the_critical_step() {
+fn behaves_grading_keeps_the_critical_step() {
     for (layers, transitions) in [(10, 1), (20, 1), (20, 2), (60, 3)] {
         let side = 0.01 / layers as f64;
         for fine_layers in [1, 2] {
@@ -109,7 +109,7 @@ fn example_grading_keeps_the_critical_step() {
 
 /// The groove has the same walls and floor as in the uniform ring.
 #[test]
-fn example_groove_in_the_fine_circle() {
+fn invariant_groove_in_the_fine_circle() {
     let ring = Annulus { start_angle: 0.0, grooves: vec![GROOVE], ..RING };
     let uniform = ring.part().expect("a ring with a groove");
     for fine_layers in [1, 2, 3] {

@@ -57,7 +57,7 @@ fn centre_gradients(corners: &[[f64; 2]]) -> [Vec<f64>; 2] {
 }
 
 #[test]
-fn example_square_rectangle_and_equilateral_triangle() {
+fn by_hand_square_rectangle_and_equilateral_triangle() {
     let square = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]];
     assert_close(characteristic_length(&square, 0.3), 2.0 * 0.7_f64.sqrt(), ROUNDING, "square");
     // A needle of a rectangle behaves like a bar across its short side: the length is that side.
@@ -70,7 +70,7 @@ fn example_square_rectangle_and_equilateral_triangle() {
 }
 
 #[test]
-fn example_length_of_what_is_no_element() {
+fn behaves_length_of_what_is_no_element() {
     assert_eq!(characteristic_length(&[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]], 0.3), 0.0, "turned over");
     assert!(characteristic_length(&[[0.0, 0.0], [1.0, 0.0]], 0.3).is_nan(), "two corners");
 }
@@ -98,7 +98,7 @@ proptest! {
 }
 
 #[test]
-fn example_report_of_two_bodies() {
+fn by_hand_report_of_two_bodies() {
     let mut mesh = Mesh::new();
     let cell = Rectangle { x0: 0.0, y0: 0.0, width: 0.02, height: 0.01, columns: 10, rows: 10 };
     mesh.add("plate", &cell.part().expect("a plate"));
@@ -131,7 +131,7 @@ fn example_report_of_two_bodies() {
 /// One node of a plate of squares is pulled out of place, even through its neighbours: the search restores
 /// the squares to the precision of its last step, and moves nothing that it may not move.
 #[test]
-fn example_search_restores_a_displaced_node() {
+fn planted_search_restores_a_displaced_node() {
     let plate = Rectangle { x0: 0.0, y0: 0.0, width: 4.0, height: 4.0, columns: 4, rows: 4 };
     let plate = plate.part().expect("a plate");
     for (dx, dy) in [(0.4, -0.3), (1.3, 0.2)] {

@@ -104,7 +104,7 @@ fn roundtrip_file_gives_back_the_mesh() {
 }
 
 #[test]
-fn example_header_counts_points_and_cells() {
+fn behaves_header_counts_points_and_cells() {
     let mesh = mesh();
     let mut file = Vec::new();
     vtu::write(&mut file, &mesh, &[], &[]).expect("a file");
@@ -116,7 +116,7 @@ fn example_header_counts_points_and_cells() {
 }
 
 #[test]
-fn example_meshes_of_one_kind_or_none() {
+fn by_hand_meshes_of_one_kind_or_none() {
     let mut triangle = Mesh::new();
     let (x, y) = (vec![0.0, 1.0, 0.0], vec![0.0, 0.0, 1.0]);
     triangle.add("triangle", &Part { x, y, triangles: vec![[0, 1, 2]], ..Part::default() });

@@ -288,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn example_what_a_growth_leaves_out_has_a_default() {
+    fn behaves_what_a_growth_leaves_out_has_a_default() {
         let growth = parse(TEXT).expect("a growth");
         assert_eq!((growth.seed, growth.angle_deg, growth.by), (1, 90.0, Indicator::Rms));
         // A twentieth of its length, and 0.08 mm at most.

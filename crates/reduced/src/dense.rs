@@ -38,7 +38,7 @@ mod tests {
 
     /// A system whose first pivot is zero, worked out by hand: 2y = 4, x + y = 5.
     #[test]
-    fn example_rows_are_exchanged_where_a_pivot_is_zero() {
+    fn by_hand_rows_are_exchanged_where_a_pivot_is_zero() {
         assert_eq!(solve(&[0.0, 2.0, 1.0, 1.0], &[4.0, 5.0]), [3.0, 2.0]);
     }
 

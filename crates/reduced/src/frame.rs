@@ -172,7 +172,7 @@ mod tests {
 
     /// Communication steps of 2.5 steps: 2, 3, 2, 3 … of them, all on the path, none lost.
     #[test]
-    fn example_what_is_left_of_a_communication_step_is_carried_over() {
+    fn by_hand_what_is_left_of_a_communication_step_is_carried_over() {
         let (dt, length, speed) = (1.0, 2.5, 3.0);
         let mut frame = Frame::at(point(0.0, speed));
         let mut taken = Vec::new();

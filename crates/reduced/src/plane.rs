@@ -76,7 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_rotation_and_back() {
+    fn by_hand_a_rotation_and_back() {
         let rotation = Rotation::by(0.5 * std::f64::consts::PI);
         let [x, y] = rotation.forth([2.0, 1.0]);
         assert!((x + 1.0).abs() < 1e-15 && (y - 2.0).abs() < 1e-15);

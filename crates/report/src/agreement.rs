@@ -252,7 +252,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_scenes_differ_by_what_makes_another_model() {
+    fn behaves_scenes_differ_by_what_makes_another_model() {
         let scene = Scene::default();
         let mut other = scene.clone();
         other.name = "other".to_owned();

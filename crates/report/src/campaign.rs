@@ -368,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_line_goes_through_the_means_of_each_place() {
+    fn by_hand_the_line_goes_through_the_means_of_each_place() {
         let index = index(vec![run(1, "100", 1.0), run(2, "200", 4.0), run(3, "100", 3.0)]);
         let figure = figure(&index, 0, &Abscissa::of(&index, 0), &QUANTITIES[0]).expect("a number");
         assert_eq!((figure.series[0].y.as_slice(), figure.series[1].y.len()), (&[2.0, 4.0][..], 3));
@@ -380,7 +380,7 @@ mod tests {
     }
 
     #[test]
-    fn example_words_stand_side_by_side_and_decades_over_their_logarithm() {
+    fn by_hand_words_stand_side_by_side_and_decades_over_their_logarithm() {
         let of_words = index(vec![run(1, "outer", 1.0), run(2, "inner", 2.0), run(3, "outer", 1.5)]);
         let abscissa = Abscissa::of(&of_words, 0);
         assert_eq!(abscissa.places, [1.0, 2.0, 1.0]);

@@ -330,7 +330,7 @@ mod tests {
     }
 
     #[test]
-    fn example_rows_of_a_waterfall_go_by_speed_where_there_is_one() {
+    fn behaves_rows_of_a_waterfall_go_by_speed_where_there_is_one() {
         let rows = waterfall_rows(&course(), None);
         assert_eq!((rows.len(), rows[0].0.as_str()), (10, "50 ms"));
         // Columns of one speed are one row, whatever their time.
@@ -377,7 +377,7 @@ mod tests {
     }
 
     #[test]
-    fn example_pictures_name_their_axes() {
+    fn behaves_pictures_name_their_axes() {
         let svg = |picture: Picture| picture.sheet.to_svg();
         assert!(svg(picture(&course(), "g")).contains(">Frequency<"));
         assert!(svg(order_map(&course(), (0.0, 1.0), &[])).contains(">Turns of the shaft<"));

@@ -107,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_people_read_of_balls_and_programs_of_rollers() {
+    fn behaves_people_read_of_balls_and_programs_of_rollers() {
         let page = "<p title=\"a roller\">Rollers pass; roller 3, <code>bearing.rollers</code>, roller_1.</p>\
                     <pre>roller</pre><figure id=\"roller\"><script>roller</script>\
                     <script type=\"application/json\">{\"rollers\":9,\"name\":\"roller 3\"}</script>";
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_scene_decides() {
+    fn behaves_the_scene_decides() {
         let of = |text: &str| ElementWords::of(&Scene::parse(text, "here").expect("known"));
         assert_eq!(of("(bearing: \"6205\")"), ElementWords::Balls);
         assert_eq!(of("(bearing: \"NU 205\")"), ElementWords::Rollers);

@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_fields_have_words_and_units() {
+    fn behaves_fields_have_words_and_units() {
         for (field, title) in [
             ("operation.load_n", "Load, N"),
             ("operation.speed_rpm", "Speed, rpm"),

@@ -103,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_chosen_band_is_outlined_in_its_level() {
+    fn behaves_the_chosen_band_is_outlined_in_its_level() {
         let bands = [
             band(20.0, 1000.0, 0.5),
             band(20.0, 500.0, 0.1),

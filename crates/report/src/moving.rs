@@ -364,7 +364,7 @@ mod tests {
 
     /// Samples every 10 µs, rollers 10 ms apart.
     #[test]
-    fn example_a_short_record_is_shown_whole_and_a_long_one_about_its_first_event() {
+    fn behaves_a_short_record_is_shown_whole_and_a_long_one_about_its_first_event() {
         let whole = Stretch::of(3000, 1e-5, 0.01, Some(0.005));
         assert_eq!(whole, Stretch { samples: 0..3000, per_frame: 5 });
         // 40 frames in 10 ms are 25 samples each: 600 of them are 150 ms of the second.

@@ -158,7 +158,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_note_falls_into_sentences_and_keeps_its_decimals() {
+    fn behaves_a_note_falls_into_sentences_and_keeps_its_decimals() {
         assert_eq!(sentences("Up to 33.3 Hz. Red: the defect."), ["Up to 33.3 Hz.", "Red: the defect."]);
         assert!(sentences("").is_empty());
     }

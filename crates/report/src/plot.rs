@@ -383,7 +383,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_ranges_are_never_points_and_ignore_gaps() {
+    fn behaves_ranges_are_never_points_and_ignore_gaps() {
         let line = |y: Vec<f64>| {
             Figure::new("f", "f", Axis::plain("x", ""), Axis::plain("y", "g")).with(Series::sampled(
                 "s",

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_short_record_is_slowed_and_a_constant_one_is_not_played() {
+    fn behaves_a_short_record_is_slowed_and_a_constant_one_is_not_played() {
         let signal: Vec<f64> = (0..6_000).map(|n| f64::from(n % 50)).collect();
         let page = player("a signal", &signal, 100_000.0, "g").into_string();
         assert!(page.contains("played 10 times slower") && page.contains("data:audio/wav;base64,UklGR"));

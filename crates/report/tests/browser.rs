@@ -103,7 +103,7 @@ fn title_in(browser: &Path, page: &Path, profile: &Path, dark: bool, size: &str)
 }
 
 #[test]
-fn example_a_browser_draws_every_figure_without_an_error() {
+fn behaves_a_browser_draws_every_figure_without_an_error() {
     let Some(browser) = browser() else { return };
     let folder = Scratch::new("browser");
     synthetic::write(&folder.0, Status::Complete, 3000);
@@ -112,7 +112,7 @@ fn example_a_browser_draws_every_figure_without_an_error() {
 }
 
 #[test]
-fn example_a_browser_draws_every_figure_of_an_ensemble() {
+fn behaves_a_browser_draws_every_figure_of_an_ensemble() {
     let Some(browser) = browser() else { return };
     let folder = Scratch::new("browser-ensemble");
     synthetic::write_ensemble(&folder.0, &[0.8, 1.0, 1.2], 3);
@@ -132,7 +132,7 @@ fn knocks(height: f64) -> Channel {
 
 /// A measured record over one of the sound machine: kurtogram, spectrogram, waterfall, both curves.
 #[test]
-fn example_a_browser_draws_every_figure_of_a_measured_record() {
+fn behaves_a_browser_draws_every_figure_of_a_measured_record() {
     let folder = Scratch::new("browser-measured");
     let machine = Machine {
         speed_rpm: Some(1200.0),
@@ -162,7 +162,7 @@ fn example_a_browser_draws_every_figure_of_a_measured_record() {
 /// Buttons, keys and clicks on the page of a run: the bearing plays, goes by frames, follows a click on a
 /// trace; tabs, the whole band and files of figures.
 #[test]
-fn example_buttons_keys_and_clicks_move_the_page_of_a_run() {
+fn behaves_buttons_keys_and_clicks_move_the_page_of_a_run() {
     let Some(browser) = browser() else { return };
     let folder = Scratch::new("browser-hands");
     synthetic::write(&folder.0, Status::Complete, 3000);

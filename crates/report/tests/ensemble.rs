@@ -27,7 +27,7 @@ fn json(folder: &Path) -> serde_json::Value {
 }
 
 #[test]
-fn example_numbers_of_three_starts_that_differ_by_their_gain() {
+fn planted_numbers_of_three_starts_that_differ_by_their_gain() {
     let (folder, summary) = ensemble("gains", [0.8, 1.0, 1.2]);
     assert_eq!((summary.count(Ended::Complete), summary.count(Ended::Diverged)), (3, 1));
     assert_eq!((summary.starts[4].ended, summary.starts[3].ended), (Ended::Failed, Ended::Diverged));
@@ -68,7 +68,7 @@ fn example_numbers_of_three_starts_that_differ_by_their_gain() {
 }
 
 #[test]
-fn example_the_page_says_first_what_is_chosen_and_how_much_starts_scatter() {
+fn behaves_the_page_says_first_what_is_chosen_and_how_much_starts_scatter() {
     let (folder, _) = ensemble("page", [0.9, 1.0, 1.1]);
     let page = fs::read_to_string(folder.0.join("report.html")).expect("a page");
     let place = |words: &str| page.find(words).unwrap_or_else(|| panic!("`{words}` is missing"));

@@ -425,7 +425,7 @@ mod tests {
     }
 
     #[test]
-    fn example_names_and_numbers() {
+    fn behaves_names_and_numbers() {
         let roller = CatalogueBearing::parse("NU205ECP, elements=13").unwrap();
         assert_eq!(
             (roller.name.as_str(), roller.elements, roller.diameter_mm, roller.pitch_mm),
@@ -465,7 +465,7 @@ mod tests {
     }
 
     #[test]
-    fn example_names_that_begin_alike_make_a_list() {
+    fn behaves_names_that_begin_alike_make_a_list() {
         let names = |text: &str| -> Vec<String> {
             beginning_with(text).expect("no file").into_iter().map(|bearing| bearing.name).collect()
         };
@@ -478,7 +478,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_number_that_was_counted_is_not_assumed() {
+    fn behaves_a_number_that_was_counted_is_not_assumed() {
         for (text, assumed) in [("NU 305", true), ("NU 305, elements=12", false)] {
             let scene = Scene::parse(&format!("(bearing: \"{text}\")"), "mine").unwrap();
             let notes = assumptions(&scene.bearing);

@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_load_that_turns_with_the_shaft_comes_once_a_turn() {
+    fn by_hand_a_load_that_turns_with_the_shaft_comes_once_a_turn() {
         let duty = with(&["operation.rotating_load=(force_n: 2000, angle_deg: 270)"]);
         // Downwards at the start, upwards half a turn later, which 500 rpm make in 60 ms.
         close(duty.load_n(0.0), 52_000.0);
@@ -166,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_shaft_that_turns_back_has_no_time_for_its_turns() {
+    fn by_hand_a_shaft_that_turns_back_has_no_time_for_its_turns() {
         let set =
             ["operation.speed_rpm=-500", "operation.speed_profile=ramp(from_ms: 0, to_ms: 100, to: 500)"];
         let duty = with(&set);
@@ -180,7 +180,7 @@ mod tests {
     }
 
     #[test]
-    fn example_rings_that_both_change_their_speed() {
+    fn by_hand_rings_that_both_change_their_speed() {
         const RIGID: &str = "housing=rigid()";
         // The shaft from 500 to 1500 rpm in 20 ms, the outer ring at −100 rpm: turns against it are the area
         // between the two.

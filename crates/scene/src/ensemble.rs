@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn example_folders_of_starts_are_numbered() {
+    fn behaves_folders_of_starts_are_numbered() {
         assert_eq!((folder_name(7), folder_name(1000)), ("start-007".into(), "start-1000".into()));
         assert_eq!((number_of("start-007"), number_of("start-1000")), (Some(7), Some(1000)));
         for other in ["start-7", "start-0007", "start-+07", "start-abc", "figures"] {
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_bearing_without_a_cage_draws_angle_and_phase() {
+    fn behaves_a_bearing_without_a_cage_draws_angle_and_phase() {
         let bare = Scene { cage: None, ..Scene::default() };
         let drawn = start(&bare, 1, 1);
         assert!(drawn.cage.is_none() && drawn.mesh.roller_phase_deg > 0.0 && is_start_of(&drawn, &bare));

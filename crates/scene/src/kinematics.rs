@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn example_crossings_repeat_at_bpfo() {
+    fn invariant_crossings_repeat_at_bpfo() {
         // One second: exits come at 24 times the cage frequency, whatever the roller's first angle.
         let k = paper();
         let scene = Scene::default();
@@ -437,7 +437,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_standing_shaft_has_no_events() {
+    fn behaves_a_standing_shaft_has_no_events() {
         let scene = Scene::default();
         let defect = scene.defect.as_ref().expect("the default has one");
         assert_eq!(Kinematics::new(&scene.bearing, 0.0).crossings(defect, &[94.0], 1.0).len(), 0);

@@ -63,7 +63,7 @@ mod tests {
     /// By hand: 44 (1 − 7.5/39) 13 · 9 · 7.5 = 31.2 kN for 13 rollers 9 mm long and 7.5 mm thick (less a
     /// clearance of 32.5 µm, a fifth of a per cent).
     #[test]
-    fn example_static_rating_of_rollers() {
+    fn by_hand_static_rating_of_rollers() {
         let scene = Scene::parse("(bearing: \"NU 205\")", "here").expect("known");
         assert!((static_rating_n(&scene) / 31_185.0 - 1.0).abs() < 5e-3, "{}", static_rating_n(&scene));
     }

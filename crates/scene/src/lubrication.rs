@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn example_rough_surfaces_are_held_apart_by_their_tips() {
+    fn by_hand_rough_surfaces_are_held_apart_by_their_tips() {
         let film = Some(FilmScene { roughness_um: 0.1, ..FilmScene::default() });
         let [smooth, _] =
             loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");

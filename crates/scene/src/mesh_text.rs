@@ -231,7 +231,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_included_files_stand_in_their_place() {
+    fn behaves_included_files_stand_in_their_place() {
         let folder = Scratch::create("includes");
         std::fs::create_dir(folder.join("parts")).expect("a folder");
         for (name, text) in [

@@ -130,7 +130,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_first_takes_items_from_the_first_one_on_in_order() {
+    fn invariant_first_takes_items_from_the_first_one_on_in_order() {
         for threads in 1..=5 {
             let pool = micropool::ThreadPoolBuilder::default().num_threads(threads.max(2) - 1).build();
             let mut met = Met::default();

@@ -6,7 +6,7 @@ use stribeck_testing::side_by_side;
 
 /// Light and medium series from a bore of 15 to one of 60 mm, by three places of their flanges.
 #[test]
-fn example_cylindrical_roller_bearings_of_two_series_are_meshed_and_say_what_is_assumed() {
+fn behaves_cylindrical_roller_bearings_of_two_series_are_meshed_and_say_what_is_assumed() {
     let names: Vec<String> = ["NU", "N", "NJ"]
         .iter()
         .flat_map(|flanges| (202..=212).chain(302..=312).map(move |size| format!("{flanges} {size}")))

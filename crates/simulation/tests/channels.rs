@@ -33,7 +33,7 @@ fn sample(scene: &stribeck_scene::resolved::ResolvedScene) -> Sample {
 
 /// SI units throughout, as the ends of the names say: nothing is scaled on the way into a row.
 #[test]
-fn example_a_row_holds_each_value_under_its_name() {
+fn behaves_a_row_holds_each_value_under_its_name() {
     let scene = Scene::default().resolve();
     let sample = sample(&scene);
     let names = names(&scene);

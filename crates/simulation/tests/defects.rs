@@ -139,7 +139,7 @@ fn invariant_the_time_step_stays_within_a_tenth_where_slopes_are_steepest() {
 
 /// A spall with steep walls is the same mesh as `defect`, whatever else is on other surfaces.
 #[test]
-fn example_rectangular_spalls_are_cut_as_the_defect_is() {
+fn invariant_rectangular_spalls_are_cut_as_the_defect_is() {
     let nodes = |scene: &Scene| {
         let mesh = Assembly::new(&scene.resolve()).expect("it meshes").model.mesh;
         (mesh.x, mesh.y)

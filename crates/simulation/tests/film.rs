@@ -29,7 +29,7 @@ fn run(scene: &Scene, folder: &Scratch, threads: usize) -> (RunInfo, Run) {
 }
 
 #[test]
-fn example_rollers_float_and_loaded_contacts_are_dry() {
+fn behaves_rollers_float_and_loaded_contacts_are_dry() {
     /// Of the peak strain energy.
     const LEDGER: f64 = 1e-4;
     let folder = Scratch::new("film");

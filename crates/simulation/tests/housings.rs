@@ -74,7 +74,7 @@ fn analytic_every_housing_hands_its_load_to_the_rollers() {
 }
 
 #[test]
-fn example_a_missing_roller_leaves_its_pocket_empty_and_its_load_to_others() {
+fn behaves_a_missing_roller_leaves_its_pocket_empty_and_its_load_to_others() {
     let folder = Scratch::new("missing");
     let whole = scene(&[]);
     let scene = scene(&["defects=[(on: roller(1), form: missing)]"]);

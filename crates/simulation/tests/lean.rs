@@ -25,7 +25,7 @@ fn assembled(scene: &Scene) -> Assembly {
 
 /// A lean scene may have at most 30 % of the elements; facets that roll stay unchanged.
 #[test]
-fn example_lean_scene_has_a_quarter_of_the_elements() {
+fn behaves_lean_scene_has_a_quarter_of_the_elements() {
     const SHARE: f64 = 0.30;
     let (uniform, lean) = (assembled(&Scene::default()), assembled(&lean()));
     let (before, after) = (uniform.mesh_info(), lean.mesh_info());
@@ -47,7 +47,7 @@ fn example_lean_scene_has_a_quarter_of_the_elements() {
 /// No coarse cell, no transition and no column of the seat holds the time step back; the third layer along
 /// the rims of rollers, whose cells become narrower inwards, costs 3 %.
 #[test]
-fn example_lean_scene_keeps_the_critical_step() {
+fn behaves_lean_scene_keeps_the_critical_step() {
     // Of the elements and dry contact alone: structural damping and oil take their share of any mesh's step.
     let of = |mut scene: Scene| {
         (scene.film, scene.solver.structural_damping) = (None, None);
@@ -64,7 +64,7 @@ fn example_lean_scene_keeps_the_critical_step() {
 /// The seat has the nodes of the ring's back and at its ends continues the ring's facets, so that long facets
 /// do not press against the vertices of the other surface.
 #[test]
-fn example_seat_and_ring_meet_node_to_node() {
+fn invariant_seat_and_ring_meet_node_to_node() {
     let lean = assembled(&lean());
     let mesh = &lean.model.mesh;
     let body = |name: &str| mesh.bodies.iter().find(|b| b.name == name).expect("a body of this name");
@@ -93,7 +93,7 @@ fn example_seat_and_ring_meet_node_to_node() {
 
 /// A ring too thin for the transition keeps its fine cells; the scene stays valid.
 #[test]
-fn example_thin_rings_stay_fine() {
+fn behaves_thin_rings_stay_fine() {
     let mut scene = Scene::default();
     scene.mesh.size_mm = 2.0;
     scene.mesh.roller_facets = 88;
@@ -111,7 +111,7 @@ fn example_thin_rings_stay_fine() {
 
 /// `--set mesh.grading.fine_layers=1` grades a scene that was not, with the default for the other field.
 #[test]
-fn example_an_override_opens_the_grading() {
+fn behaves_an_override_opens_the_grading() {
     let set = |what: &str| Scene::default().with_overrides(&[what]).expect("a field of a scene").mesh.grading;
     let default = GradingScene::default();
     assert_eq!(set("mesh.grading.fine_layers=1"), Some(GradingScene { fine_layers: 1, ..default }));
@@ -152,7 +152,7 @@ fn first_forces(scene: &Scene) -> Vec<f64> {
 /// Static load distribution, uniform and graded: rings that are coarse outside and rollers that are coarse
 /// inside must share the load as fine ones do.
 #[test]
-fn example_graded_bearing_carries_its_load_like_the_uniform_one() {
+fn behaves_graded_bearing_carries_its_load_like_the_uniform_one() {
     // Of the largest force. The project's limit for a lean scene is 5 %; compliance of the coarse cells
     // costs less.
     const TOLERANCE: f64 = 0.02;

@@ -90,7 +90,7 @@ fn peer_contact_damping_of_rolling_is_that_of_the_full_model() {
 /// spall, also beside a shaft that speeds up and at a speed of its own that changes, a roller that is
 /// missing, and steep walls on both rings and on a roller.
 #[test]
-fn example_arrangements_are_felt_as_by_the_full_model() {
+fn peer_arrangements_are_felt_as_by_the_full_model() {
     // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes
     // the stiffness of contacts by ±4 % (THEORY §9.6).
     const FORCES: f64 = 0.03;
@@ -256,7 +256,7 @@ fn peer_loads_in_a_pedestal_are_those_of_the_full_model() {
 /// Modes below 30 kHz leave out how the ring of a small bearing bends between its balls, which a run says;
 /// those that a scene takes by itself do not.
 #[test]
-fn example_a_run_says_that_its_modes_are_too_few() {
+fn behaves_a_run_says_that_its_modes_are_too_few() {
     let folder = Scratch::create("reduced-few");
     for (model, warns) in [("reduced(modes_khz: 30)", true), ("reduced()", false)] {
         let text = format!(

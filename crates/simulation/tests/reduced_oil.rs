@@ -124,7 +124,7 @@ fn conserves_energy_and_carries_the_load_with_oil() {
 
 /// Full and reduced model from one start, until a roller has left the defect.
 #[test]
-fn example_films_are_those_of_the_full_model() {
+fn peer_films_are_those_of_the_full_model() {
     // Means over a quarter of a millisecond, over the largest: as without oil, where nodes of a coarse mesh
     // lie changes the stiffness of contacts by ±4 % (THEORY §9.6).
     const FORCES: f64 = 0.03;
@@ -192,8 +192,8 @@ fn example_films_are_those_of_the_full_model() {
 /// Both rings turn, the outer one with a dent under the oil, and a roller is missing: what drives them makes
 /// good what films do, and forces and films are those of the full model.
 #[test]
-fn example_films_between_turning_rings() {
-    // As of dry arrangements (`example_arrangements_are_felt_as_by_the_full_model`).
+fn behaves_films_between_turning_rings() {
+    // As of dry arrangements (`peer_arrangements_are_felt_as_by_the_full_model`).
     const ENERGY: f64 = 0.01;
     const FORCES: f64 = 0.03;
     // A film is as thick as the gap between the circles of roller and inner ring, its least thickness and

@@ -103,7 +103,7 @@ fn analytic_bearing_rolls_and_carries_its_load() {
 /// The preload leaves equilibrium: before the first roller reaches the defect the vertical force through the
 /// rollers stays near the load, while a load put on at once overshoots by its own size.
 #[test]
-fn example_preloaded_start_does_not_ring() {
+fn behaves_preloaded_start_does_not_ring() {
     // What remains is the facet passing of a coarse polygon.
     const RIPPLE: f64 = 0.2;
     let (info, run) = run(&coarse(0.5), 1);
@@ -116,7 +116,7 @@ fn example_preloaded_start_does_not_ring() {
 /// Bearings whose rollers lie loosely while the preload is sought: the rings of the paper's mesh are thin, or
 /// nothing but their weight moves the rollers that carry nothing. Those must stay in their clearance.
 #[test]
-fn example_thin_and_slow_bearings_find_their_equilibrium() {
+fn behaves_thin_and_slow_bearings_find_their_equilibrium() {
     let lean = ("lean.ron", include_str!("../../../fixtures/scenes/lean.ron"));
     let quick = ("quick.ron", include_str!("../../../fixtures/scenes/quick.ron"));
     for ((name, text), thickness_mm, speed_rpm) in
@@ -146,7 +146,7 @@ fn invariant_same_bits_with_1_2_and_3_threads() {
 
 /// Stiffness damping shortens the step, its heat closes the ledger, and threads change no bit.
 #[test]
-fn example_stiffness_damping_is_paid_and_counted() {
+fn behaves_stiffness_damping_is_paid_and_counted() {
     /// Share of the peak strain energy that the ledger may lack before a bearing gets a warning.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
@@ -174,7 +174,7 @@ fn example_stiffness_damping_is_paid_and_counted() {
 /// Structural damping shortens the step by a few per cent, its loss closes the ledger, and threads change no
 /// bit.
 #[test]
-fn example_structural_damping_is_paid_and_counted() {
+fn behaves_structural_damping_is_paid_and_counted() {
     /// Share of the peak strain energy that the ledger may lack before a bearing gets a warning.
     const LEDGER: f64 = 5e-3;
     let mut plain = coarse(0.3);
@@ -203,7 +203,7 @@ fn example_structural_damping_is_paid_and_counted() {
 /// Pockets push rollers along their track: walls that touch them at their flanks have no other direction,
 /// corners do.
 #[test]
-fn example_straight_pockets_push_along_the_track() {
+fn behaves_straight_pockets_push_along_the_track() {
     let across = |pocket: PocketWalls| {
         let mut scene = coarse(1.5);
         // Without play the cage carries idle rollers from the beginning.
@@ -338,7 +338,7 @@ fn golden_coarse_bearing() {
 /// Centres stand where angle and place in the pocket say, and meshes are turned by their phase; the cage
 /// stays.
 #[test]
-fn example_rollers_start_where_the_scene_puts_them() {
+fn by_hand_rollers_start_where_the_scene_puts_them() {
     // Sums and products of numbers of the size of one metre.
     const ROUNDING: f64 = 1e-14;
     let plain = coarse(1.0);

@@ -112,7 +112,7 @@ mod tests {
     use super::cut_in_place;
 
     #[test]
-    fn example_work_is_cut_into_equal_pieces_across_the_longer_side() {
+    fn by_hand_work_is_cut_into_equal_pieces_across_the_longer_side() {
         let places: Vec<[f64; 2]> = (0..60).map(|i| [f64::from(i % 12), f64::from(i / 12)]).collect();
         for ranks in 1..=6 {
             let rank_of = cut_in_place(&places, &[1.0; 60], ranks);

@@ -174,7 +174,7 @@ fn invariant_the_limit_is_sharp() {
 }
 
 #[test]
-fn example_rigid_bodies_on_springs_limit_the_step() {
+fn by_hand_rigid_bodies_on_springs_limit_the_step() {
     // A rigid block on a spring at each corner: ω² = 4 k/M for translation; the bound adds the rotation.
     let mut model = body(&rectangle(0.02, 0.01, 1, 1));
     model.behaviour[0] = Behaviour::Rigid;
@@ -195,7 +195,7 @@ fn example_rigid_bodies_on_springs_limit_the_step() {
 
 /// A body all of whose nodes are held vibrates at no frequency.
 #[test]
-fn example_held_bodies_have_no_limit() {
+fn behaves_held_bodies_have_no_limit() {
     let mut model = body(&rectangle(0.02, 0.01, 2, 1));
     model.motion.fill(NodeMotion::Held);
     let d = lay_out(&model);
@@ -204,7 +204,7 @@ fn example_held_bodies_have_no_limit() {
 }
 
 #[test]
-fn example_a_ring_has_the_step_of_its_shortest_cells() {
+fn invariant_a_ring_has_the_step_of_its_shortest_cells() {
     // Halving the cells halves the step.
     let step = |facets, layers| {
         let ring = Annulus {

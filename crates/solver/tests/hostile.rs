@@ -91,7 +91,7 @@ fn refuses_foreign_nodes_and_bodies_by_name() {
 }
 
 #[test]
-fn example_distortion_tells_area_and_stretch() {
+fn by_hand_distortion_tells_area_and_stretch() {
     let mut d = ready(&body(&rectangle(2e-3, 1e-3, 4, 2)), 0.9);
     let rest = d.distortion();
     assert!((rest.least_area - 1.0).abs() < 1e-12 && (rest.largest_stretch - 1.0).abs() < 1e-12, "{rest:?}");

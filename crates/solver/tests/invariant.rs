@@ -108,7 +108,7 @@ fn refuses_a_snapshot_of_another_model() {
 }
 
 #[test]
-fn example_forces_on_nodes_that_were_not_announced_are_lost() {
+fn behaves_forces_on_nodes_that_were_not_announced_are_lost() {
     // The contract of `loaded`: it lets the sweep leave the other nodes alone.
     let model = body(&rectangle(0.01, 0.01, 4, 4));
     let mut loaded = vec![true; 25];
@@ -142,7 +142,7 @@ fn invariant_held_components_stay() {
 }
 
 #[test]
-fn example_one_of_two_like_bodies_is_held() {
+fn behaves_one_of_two_like_bodies_is_held() {
     // Bodies of one shape share a tile, but not when their nodes move by different rules.
     let part = rectangle(0.01, 0.01, 4, 4);
     let mut mesh = Mesh::new();
@@ -158,7 +158,7 @@ fn example_one_of_two_like_bodies_is_held() {
 }
 
 #[test]
-fn example_rigid_bodies_keep_the_order_of_the_mesh() {
+fn invariant_rigid_bodies_keep_the_order_of_the_mesh() {
     let mut mesh = Mesh::new();
     for (i, n) in [2, 9, 4, 7].into_iter().enumerate() {
         mesh.add(format!("block {i}"), &rectangle(0.01, 0.01, n, n).translated(0.1 * i as f64, 0.0));

@@ -29,7 +29,7 @@ fn refuses_impossible_materials() {
 }
 
 #[test]
-fn example_moduli_of_steel() {
+fn by_hand_moduli_of_steel() {
     // E = 208 GPa, ν = 0.3: µ = E/2.6, λ = E·0.3/(1.3·0.4), E' = E/0.91.
     let s = steel();
     assert_close(s.shear(), 80e9, 1e-12, "µ");
@@ -133,7 +133,7 @@ fn refuses_statics_of_what_is_not_a_number() {
 }
 
 #[test]
-fn example_a_held_body_is_already_in_equilibrium() {
+fn invariant_a_held_body_is_already_in_equilibrium() {
     let mut model = body(&rectangle(1.0, 1.0, 2, 2));
     model.motion.fill(NodeMotion::Held);
     let mut d = lay_out(&model);

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn example_times_are_written_for_people() {
+    fn behaves_times_are_written_for_people() {
         assert_eq!(clock(7.26), "7.3 s");
         assert_eq!(clock(185.4), "3:05");
         assert_eq!(clock(7385.0), "2:03:05");

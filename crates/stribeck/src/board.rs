@@ -137,7 +137,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_line_holds_starts_parts_and_eta() {
+    fn by_hand_a_line_holds_starts_parts_and_eta() {
         let going = BTreeMap::from([(5, 0.5), (6, 0.25)]);
         let state = State { noun: "start", all: 12, done: 4, going, earlier: 0.75, shown: Instant::now() };
         // Four starts of work in 40 s; 7.25 are left.

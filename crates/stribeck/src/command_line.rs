@@ -61,7 +61,7 @@ mod tests {
     }
 
     #[test]
-    fn example_every_command_has_an_example_that_is_right() {
+    fn behaves_every_command_has_an_example_that_is_right() {
         let program = Cli::command();
         for command in program.get_subcommands() {
             let example = example(&program, &[command.get_name().to_owned()]).expect("an example");

@@ -234,7 +234,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_equal_names_keep_their_paths_apart() {
+    fn behaves_equal_names_keep_their_paths_apart() {
         let of = |paths: &[&str]| labels(&paths.iter().map(PathBuf::from).collect::<Vec<_>>());
         assert_eq!(of(&["a/x.csv", "b/y.csv"]), ["x", "y"]);
         assert_eq!(of(&["a/x.csv", "b/x.csv", "y.mat"]), ["a/x.csv", "b/x.csv", "y"]);

@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_runs_side_by_side_share_the_processor_time() {
+    fn by_hand_runs_side_by_side_share_the_processor_time() {
         let mut shares = Shares::default();
         shares.deal(5.0);
         shares.going.insert(1, 0.0);
@@ -145,14 +145,14 @@ mod tests {
     }
 
     #[test]
-    fn example_processor_time_of_a_stat_line() {
+    fn by_hand_processor_time_of_a_stat_line() {
         let stat = "42 (a ) name) S 1 42 42 0 -1 4194304 100 0 0 0 250 50 0 0 20 0 2 0 1 1 1";
         assert_eq!(cpu_of(stat), Some(3.0));
         assert_eq!(cpu_of("nonsense"), None);
     }
 
     #[test]
-    fn example_processor_name_of_cpuinfo() {
+    fn by_hand_processor_name_of_cpuinfo() {
         assert_eq!(
             processor_name("processor\t: 0\nmodel name\t: Some CPU @ 2 GHz\n"),
             Some("Some CPU @ 2 GHz")

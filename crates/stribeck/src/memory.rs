@@ -44,7 +44,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_long_records_take_more() {
+    fn behaves_long_records_take_more() {
         let mut scene = Scene { film: None, ..Scene::default() };
         let short = need_gb(&scene);
         assert!((MODEL_GB..1.1 * MODEL_GB).contains(&short), "{short}");

@@ -370,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn example_every_answer_makes_a_scene_that_can_be() {
+    fn behaves_every_answer_makes_a_scene_that_can_be() {
         for bearing in ["6205", "NU 205", "NU 205, elements=12", "6305", "6320", "NU 2320"] {
             for defect in [Where::Outer, Where::Inner, Where::Roller, Where::None] {
                 let of = answers(bearing, defect);
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn example_names_are_those_of_bearing_and_defect() {
+    fn behaves_names_are_those_of_bearing_and_defect() {
         assert_eq!(name(&answers("NU 205, elements=12", Where::None)), "nu205-sound");
         assert_eq!(name(&answers("6205", Where::Inner)), "6205-inner");
         let bearing = bearing("SKF 6205-2RS1, elements=8").expect("of the catalogue");

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_line_holds_time_eta_energy_and_pace() {
+    fn by_hand_a_line_holds_time_eta_energy_and_pace() {
         let meter = Meter::new(30.0);
         let progress = Progress {
             step: 250,

@@ -224,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_sizes_and_ages_in_words() {
+    fn by_hand_sizes_and_ages_in_words() {
         assert_eq!(
             [12, 980, 123_456, 1_900_000_000].map(in_words),
             ["12 bytes", "1.0 kB", "123 kB", "1.9 GB"]
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_folder_is_known_by_what_lies_in_it() {
+    fn behaves_a_folder_is_known_by_what_lies_in_it() {
         let folder = stribeck_testing::Scratch::create("kinds");
         assert_eq!(Kind::of(folder.path()), None);
         fs::write(folder.join("compare.json"), "{}").expect("writable");

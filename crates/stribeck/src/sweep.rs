@@ -347,7 +347,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_values_between_commas() {
+    fn behaves_values_between_commas() {
         for (text, values) in [
             ("1,2, 4", vec!["1", "2", "4"]),
             ("(a: 1, b: 2),None", vec!["(a: 1, b: 2)", "None"]),
@@ -360,7 +360,7 @@ mod tests {
     }
 
     #[test]
-    fn example_texts_get_their_quotes_and_words_none() {
+    fn behaves_texts_get_their_quotes_and_words_none() {
         assert_eq!(as_ron("operation.load_n", "1e3"), "1e3");
         assert_eq!(as_ron("defect.ring", "inner"), "inner");
         assert_eq!(as_ron("model", "reduced(modes_khz: 20)"), "reduced(modes_khz: 20)");
@@ -370,7 +370,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_scene_is_found_from_its_folder() {
+    fn behaves_a_scene_is_found_from_its_folder() {
         assert_eq!(
             relative(Path::new("/a/b/x.ron"), Path::new("/a/b/runs/y")).unwrap(),
             Path::new("../../x.ron")

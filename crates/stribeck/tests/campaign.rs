@@ -292,7 +292,7 @@ fn refuses_values_that_no_field_takes_before_anything_runs() {
 }
 
 #[test]
-fn example_variants_that_cannot_be_are_rows_with_their_reason() {
+fn behaves_variants_that_cannot_be_are_rows_with_their_reason() {
     let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
         "(field: \"operation.load_n\", from: 5000, to: 50000),",
         "(field: \"bearing.roller_diameter_mm\", values: [18.0, 19.0]),",
@@ -319,7 +319,7 @@ fn column(table: &Path, name: &str) -> Vec<f64> {
 }
 
 #[test]
-fn example_a_run_that_fails_at_set_up_is_a_row_and_the_others_go_on() {
+fn behaves_a_run_that_fails_at_set_up_is_a_row_and_the_others_go_on() {
     // Beyond the law of a line contact: there is no static distribution for the film to be made from.
     let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
         "(field: \"operation.load_n\", from: 5000, to: 50000),",
@@ -334,7 +334,7 @@ fn example_a_run_that_fails_at_set_up_is_a_row_and_the_others_go_on() {
 }
 
 #[test]
-fn example_equal_scenes_are_run_once_and_what_two_programs_have_run_stays() {
+fn behaves_equal_scenes_are_run_once_and_what_two_programs_have_run_stays() {
     let text = keeping("numbers").replace("from: 5000, to: 50000", "values: [10000, 1e4, 20000]");
     let desk = desk("campaign-equal", &text.replace("count: 8", "count: 24"));
     // Programs that find the same runs due, and take them up at their own pace.
@@ -382,7 +382,7 @@ fn refuses_a_folder_whose_table_or_scene_was_changed() {
 }
 
 #[test]
-fn example_a_run_that_diverges_has_a_row_and_no_signals() {
+fn behaves_a_run_that_diverges_has_a_row_and_no_signals() {
     let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
         "(field: \"operation.load_n\", from: 5000, to: 50000),",
         "(field: \"guards.energy_stop_percent\", values: [25, 0.00001]),",
@@ -403,7 +403,7 @@ fn example_a_run_that_diverges_has_a_row_and_no_signals() {
 }
 
 #[test]
-fn example_scripts_for_engines_name_every_part() {
+fn behaves_scripts_for_engines_name_every_part() {
     let desk = desk("campaign-emit", CAMPAIGN);
     for (engine, words) in [
         ("slurm", ["--array=1-16", "$SLURM_ARRAY_TASK_ID/16", "--cpus-per-task=1\n", "--threads 1\n"]),

@@ -60,7 +60,7 @@ fn summaries(campaign: &Path) -> Vec<(f64, Value)> {
 }
 
 #[test]
-fn example_the_tables_hold_the_truth_and_every_event() {
+fn behaves_the_tables_hold_the_truth_and_every_event() {
     let desk = Scratch::create("data-set");
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/reduced.ron");
     fs::copy(scenes, desk.join("reduced.ron")).expect("a scene");

@@ -291,7 +291,7 @@ fn refuses_the_mesh_of_another_bearing_where_the_scene_names_it() {
 /// A reduced run of a scene that names its bearing, as a user begins with: its plan has its steps, its mesh
 /// goes to other programs, and another bearing on the command line says what it has replaced.
 #[test]
-fn example_a_reduced_run_from_its_plan_to_a_deck() {
+fn behaves_a_reduced_run_from_its_plan_to_a_deck() {
     let desk = Desk::new("reduced");
     let text =
         "(name: \"mine\", model: reduced(), bearing: \"NU 205\", defect: None, film: None, operation: \

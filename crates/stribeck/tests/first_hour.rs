@@ -75,7 +75,7 @@ fn json(output: &Output) -> serde_json::Value {
 /// The scene that the README begins with, shorter: its spall is claimed at BPFO, and the page of the record
 /// plays it.
 #[test]
-fn example_the_first_look_shows_its_spall() {
+fn behaves_the_first_look_shows_its_spall() {
     let desk = Desk::new("first-look");
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/first_look.ron");
     desk.succeeds(&["simulate", scene, "-q", "--no-report", "--set=solver.duration_ms=400"]);
@@ -92,7 +92,7 @@ fn example_the_first_look_shows_its_spall() {
 }
 
 #[test]
-fn example_runs_and_an_ensemble_beside_each_other() {
+fn behaves_runs_and_an_ensemble_beside_each_other() {
     let desk = Desk::with_scene("compare");
     desk.simulate("a", &[]);
     desk.simulate("b", &["--set=operation.load_n=20000"]);
@@ -148,7 +148,7 @@ fn refuses_what_cannot_be_compared() {
 
 /// A plan for a script; the same numbers as for a person, and without a trial no cost.
 #[test]
-fn example_a_plan_is_written_for_scripts() {
+fn behaves_a_plan_is_written_for_scripts() {
     let desk = Desk::with_scene("plan-json");
     let plan = |words: &[&str]| json(&desk.succeeds(&[&["plan", "quick.ron", "--json"][..], words].concat()));
     let bare = plan(&["--no-trial"]);
@@ -173,7 +173,7 @@ fn knocks(height: f64, seed: u64) -> Vec<f64> {
 }
 
 #[test]
-fn example_a_sound_and_a_damaged_record() {
+fn planted_a_sound_and_a_damaged_record() {
     let desk = Desk::new("compare-records");
     for (name, height) in [("sound.mat", 0.0), ("damaged.mat", 3.0)] {
         let channel = Channel::held("housing", knocks(height, 7)).in_unit(Some("g".to_owned()));
@@ -209,7 +209,7 @@ fn example_a_sound_and_a_damaged_record() {
 }
 
 #[test]
-fn example_a_sweep_has_a_page_and_takes_further_values() {
+fn behaves_a_sweep_has_a_page_and_takes_further_values() {
     let desk = Desk::with_scene("sweep");
     let sweep = |values: &str| {
         let set = format!("--set=operation.load_n={values}");
@@ -277,7 +277,7 @@ fn refuses_what_is_no_sweep() {
 }
 
 #[test]
-fn example_a_run_is_heard() {
+fn behaves_a_run_is_heard() {
     let desk = Desk::with_scene("sound");
     desk.simulate("a", &[]);
     // Channels, samples a second, bits.
@@ -311,7 +311,7 @@ fn example_a_run_is_heard() {
 }
 
 #[test]
-fn example_a_scene_of_ones_own_is_written_once() {
+fn behaves_a_scene_of_ones_own_is_written_once() {
     let desk = Desk::new("new");
     let made = desk.succeeds(&["new", "--bearing=SKF NU 205 ECP", "--load-n=3000", "--defect=inner"]);
     says(&made, &["nu205-inner.ron", "BPFI", "stribeck simulate nu205-inner.ron"]);
@@ -332,7 +332,7 @@ fn example_a_scene_of_ones_own_is_written_once() {
 }
 
 #[test]
-fn example_runs_are_listed_opened_and_removed_after_asking() {
+fn behaves_runs_are_listed_opened_and_removed_after_asking() {
     let desk = Desk::with_scene("shelf");
     says(&desk.succeeds(&["list"]), &["no runs in `runs`"]);
     desk.refuses(&["open"], &["has a page"]);
@@ -364,7 +364,7 @@ fn example_runs_are_listed_opened_and_removed_after_asking() {
 }
 
 #[test]
-fn example_shells_readers_and_scripts_get_what_they_take() {
+fn behaves_shells_readers_and_scripts_get_what_they_take() {
     let desk = Desk::new("shells");
     for (shell, word) in
         [("bash", "complete"), ("zsh", "#compdef stribeck"), ("fish", "complete -c stribeck")]

@@ -26,7 +26,7 @@ fn growth(from: &str, to: &str) -> String {
 }
 
 #[test]
-fn example_spalls_grow_and_a_second_command_runs_nothing() {
+fn behaves_spalls_grow_and_a_second_command_runs_nothing() {
     let desk = Scratch::create("grow");
     fs::write(desk.join("g.ron"), growth("", "")).expect("written");
     let output = stribeck(&desk, &["grow", "g.ron", "--out", "out"]);
@@ -82,7 +82,7 @@ fn refuses_growths_that_cannot_be() {
 }
 
 #[test]
-fn example_a_path_leads_the_force_to_a_sensor_and_back() {
+fn behaves_a_path_leads_the_force_to_a_sensor_and_back() {
     let desk = Scratch::create("path");
     let scene = format!("{ROOT}/fixtures/scenes/first_look.ron");
     let output =

@@ -73,7 +73,7 @@ fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
 }
 
 #[test]
-fn example_load_and_length_are_found_from_a_run_with_both() {
+fn planted_load_and_length_are_found_from_a_run_with_both() {
     let desk = desk("infer-found", &with_targets(4.1, 700.0, "runs: 60, first: 12, round: 9, check: 4"));
     let done = run(&desk, &["--out=A", "--calibrate=40"]);
     assert!(done.status.success(), "{}", said(&done));

@@ -43,7 +43,7 @@ fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
 }
 
 #[test]
-fn example_a_record_gives_a_verdict_findings_and_a_page() {
+fn planted_a_record_gives_a_verdict_findings_and_a_page() {
     let desk = Scratch::create("measured");
     let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
     mat5::write(&desk.join("a.mat"), &[channel, Channel::held("shaft_rpm", vec![1200.0])], &[]).unwrap();
@@ -104,7 +104,7 @@ fn refuses_a_record_with_what_to_give() {
 }
 
 #[test]
-fn example_a_run_is_exported_and_read_back() {
+fn behaves_a_run_is_exported_and_read_back() {
     let desk = Scratch::create("exported");
     std::fs::copy(
         concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron"),
@@ -204,7 +204,7 @@ fn vtkhdf_is_read_by_vtk(desk: &Scratch) {
 }
 
 #[test]
-fn example_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle() {
+fn planted_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle() {
     let desk = Scratch::create("ridge");
     let mut noise = Noise::new(8);
     let rate_hz = 12_800.0;
@@ -272,7 +272,7 @@ fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
 }
 
 #[test]
-fn example_limits_are_given_or_follow_from_sound_records() {
+fn behaves_limits_are_given_or_follow_from_sound_records() {
     let desk = Scratch::create("alarm");
     let mut noise = Noise::new(10);
     let mut words = vec!["analyse".to_owned()];
@@ -348,7 +348,7 @@ fn issue_sound_records_give_limits_for_each_family() {
 }
 
 #[test]
-fn example_several_records_are_set_side_by_side() {
+fn behaves_several_records_are_set_side_by_side() {
     let desk = Scratch::create("trend");
     let mut noise = Noise::new(9);
     let sound: Vec<f64> = (0..100_000).map(|_| noise.uniform()).collect();
@@ -381,7 +381,7 @@ fn example_several_records_are_set_side_by_side() {
 }
 
 #[test]
-fn example_channels_of_one_machine_make_one_verdict() {
+fn planted_channels_of_one_machine_make_one_verdict() {
     let desk = Scratch::create("together");
     let mut noise = Noise::new(9);
     let knocks = knocks(12_800.0);
@@ -547,7 +547,7 @@ fn edges(rate_hz: f64) -> Vec<f64> {
 /// The bearing in its housing says how far it presses an element together: in a rigid one between half of
 /// what the formula says and one and a half times as much (THEORY §7.9), with less of an interval.
 #[test]
-fn example_a_length_by_a_simulated_scene_of_the_bearing() {
+fn planted_a_length_by_a_simulated_scene_of_the_bearing() {
     let desk = Scratch::create("simulated-length");
     let channel = Channel::held("housing", edges(51_200.0)).at_rate(Some(51_200.0));
     mat5::write(&desk.join("a.mat"), &[channel], &[]).unwrap();

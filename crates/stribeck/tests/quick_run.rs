@@ -53,7 +53,7 @@ fn its_mesh_reads_back(scene: &Scene, folder: &Path) {
 }
 
 #[test]
-fn example_a_simulated_passage_gives_events_length_and_pictures() {
+fn behaves_a_simulated_passage_gives_events_length_and_pictures() {
     let scene =
         Scene::parse(include_str!("../../../fixtures/scenes/quick.ron"), "quick.ron").expect("a sound scene");
     let folder = Scratch::new("quick");

@@ -147,7 +147,7 @@ fn survives_an_interruption_and_goes_on() {
 }
 
 #[test]
-fn example_a_continued_run_takes_its_scene_from_its_folder() {
+fn behaves_a_continued_run_takes_its_scene_from_its_folder() {
     for other in [&["--set", "mesh.size_mm=1.0"][..], &["--out", "elsewhere"], &["fixtures/scenes/quick.ron"]]
     {
         let output = Command::new(env!("CARGO_BIN_EXE_stribeck"))

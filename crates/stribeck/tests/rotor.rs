@@ -41,7 +41,7 @@ fn json(desk: &Scratch, name: &str) -> Value {
 }
 
 #[test]
-fn example_stiffness_as_table_json_and_for_ross() {
+fn behaves_stiffness_as_table_json_and_for_ross() {
     let desk = desk("stiffness");
     let words = ["stiffness", "sound.ron", "--loads-n", "1000,3000", "--speeds-rpm", "300,600,1200"];
     let output = stribeck(&desk, &words);

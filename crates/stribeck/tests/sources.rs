@@ -36,7 +36,7 @@ fn desk(name: &str) -> Scratch {
 }
 
 #[test]
-fn example_components_of_a_record_are_distinguished() {
+fn planted_components_of_a_record_are_distinguished() {
     let desk = desk("components");
     let words =
         ["record.csv", "--speed-rpm=1500", "--unit=g", "--iso-group=2", "--foundation=rigid", "--component"];

@@ -29,7 +29,7 @@ fn run(desk: &Scratch, words: &[&str]) -> Output {
 }
 
 #[test]
-fn example_both_models_from_the_same_starts() {
+fn behaves_both_models_from_the_same_starts() {
     let desk = Scratch::create("validate");
     fs::write(desk.join("scene.ron"), SCENE).unwrap();
     let words = ["validate", "scene.ron", "--starts=2", "--jobs=2", "--threads=1"];

@@ -117,7 +117,7 @@ proptest! {
 const L: ([f64; 6], [f64; 6]) = ([0.0, 1.0, 1.0, 0.5, 0.5, 0.0], [0.0, 0.0, 0.5, 0.5, 1.0, 1.0]);
 
 #[test]
-fn example_gap_at_a_concave_corner() {
+fn by_hand_gap_at_a_concave_corner() {
     let (x, y) = L;
     let surface = polygon(&x, &y);
     // Outside, in the notch: the nearer of both walls, from whichever side the walk begins.
@@ -142,7 +142,7 @@ fn example_gap_at_a_concave_corner() {
 }
 
 #[test]
-fn example_gap_at_a_convex_corner() {
+fn by_hand_gap_at_a_convex_corner() {
     // Outside a corner the vertex is nearest, its normal points to the point.
     let (x, y) = L;
     let surface = polygon(&x, &y);
@@ -157,7 +157,7 @@ fn example_gap_at_a_convex_corner() {
 }
 
 #[test]
-fn example_open_surfaces_end() {
+fn by_hand_open_surfaces_end() {
     // A wall of three facets along x, solid below (walked to the left).
     let (x, y) = ([3.0, 2.0, 1.0, 0.0], [0.0; 4]);
     let wall = Surface::new("wall", vec![0, 1, 2, 3], false, &x, &y).expect("a wall");

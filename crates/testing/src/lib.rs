@@ -39,12 +39,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_errors_of_second_order_show_it() {
+    fn by_hand_errors_of_second_order_show_it() {
         assert_eq!(orders(&[16.0, 4.0, 1.0]), [2.0, 2.0]);
     }
 
     #[test]
-    fn example_a_number_within_its_tolerance_is_close() {
+    fn behaves_a_number_within_its_tolerance_is_close() {
         assert_close(-1.01, -1.0, 0.011, "a number");
     }
 

@@ -23,7 +23,7 @@ mod tests {
 
     /// Mean 0 and variance 1/3, within four standard deviations of the estimates.
     #[test]
-    fn example_mean_and_variance_are_those_of_an_even_distribution() {
+    fn by_hand_mean_and_variance_are_those_of_an_even_distribution() {
         const N: usize = 10_000;
         let mut noise = Noise::new(1);
         let numbers: Vec<f64> = (0..N).map(|_| noise.uniform()).collect();

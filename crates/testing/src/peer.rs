@@ -34,7 +34,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_peer_may_be_absent_unless_a_variable_asks_for_it() {
+    fn behaves_a_peer_may_be_absent_unless_a_variable_asks_for_it() {
         assert_eq!(absent::<()>("STRIBECK_NO_SUCH_VARIABLE", "nobody is there"), None);
         // PATH is set everywhere.
         assert!(std::panic::catch_unwind(|| absent::<()>("PATH", "nobody is there")).is_err());

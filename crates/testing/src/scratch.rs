@@ -50,7 +50,7 @@ mod tests {
     use super::Scratch;
 
     #[test]
-    fn example_a_folder_goes_with_what_is_in_it() {
+    fn behaves_a_folder_goes_with_what_is_in_it() {
         let (one, other) = (Scratch::new("x"), Scratch::create("x"));
         assert!(!one.path().exists() && one.path() != other.path());
         std::fs::write(other.join("file"), "text").expect("writable");

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_correlation_does_not_see_what_groups_differ_by() {
+    fn by_hand_correlation_does_not_see_what_groups_differ_by() {
         let falling =
             |x0: f64, y0: f64| (0..4).map(|i| [x0 + f64::from(i), y0 - 2.0 * f64::from(i)]).collect();
         let groups: [Vec<[f64; 2]>; 2] = [falling(0.0, 0.0), falling(10.0, 100.0)];
@@ -60,7 +60,7 @@ mod tests {
     }
 
     #[test]
-    fn example_means_of_four_numbers_and_their_ratio() {
+    fn by_hand_means_of_four_numbers_and_their_ratio() {
         let sample = Sample::of(&[1.0, 3.0, 5.0, 7.0]);
         assert_eq!(sample.mean, 4.0);
         assert!((sample.scatter - (20.0_f64 / 3.0).sqrt()).abs() < 1e-15);

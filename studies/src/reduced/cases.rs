@@ -171,7 +171,7 @@ mod tests {
 
     /// A field that is misspelt here would come to light after hours.
     #[test]
-    fn example_every_case_is_a_scene_of_both_models() {
+    fn behaves_every_case_is_a_scene_of_both_models() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
         for case in CASES {
             for model in case.models {

@@ -295,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_band_is_outside_where_two_standard_errors_leave_no_other_answer() {
+    fn by_hand_a_band_is_outside_where_two_standard_errors_leave_no_other_answer() {
         let band = |off_db, error_db| Band { sensor: "seat", hz: 6349.6, off_db, error_db };
         let sure = band(-2.9, Some(0.6));
         assert!(sure.is_outside() && sure.is_certain());

@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_finer_mesh_keeps_the_stiffness_of_an_area() {
+    fn by_hand_a_finer_mesh_keeps_the_stiffness_of_an_area() {
         let set = graded(0.25);
         for field in ["mesh.roller_facets=224", "contact.penalty_scale=0.025", "mesh.grading.fine_layers=4"] {
             assert!(set.iter().any(|s| s == field), "{field} is not in {set:?}");

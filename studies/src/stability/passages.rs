@@ -200,7 +200,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_roller_that_slips_or_floats_is_not_right() {
+    fn behaves_a_roller_that_slips_or_floats_is_not_right() {
         let rolling = Passage { crossing: Some(1.01), events: [Some(0.02), Some(-0.05)], loaded: true };
         let slips = Passage { crossing: Some(1.2), ..rolling };
         assert!(rolling.is_right(0.0) && !slips.is_right(0.0) && slips.is_right(0.2));

@@ -594,7 +594,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_the_area_of_a_perfect_and_of_a_blind_score() {
+    fn by_hand_the_area_of_a_perfect_and_of_a_blind_score() {
         assert_eq!(area_under_roc(&[(3.0, true), (2.0, false), (1.0, false)]), Some(1.0));
         assert_eq!(area_under_roc(&[(1.0, true), (1.0, false)]), Some(0.5));
         assert_eq!(area_under_roc(&[(1.0, true), (2.0, false), (0.0, false)]), Some(0.5));

@@ -217,12 +217,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_words_in_quotation_marks_are_one() {
+    fn behaves_words_in_quotation_marks_are_one() {
         assert_eq!(words(r#" export a  --path "mass=1, damping=0.1; mass=2""#).len(), 4);
     }
 
     #[test]
-    fn example_crates_and_architecture_agree() {
+    fn behaves_crates_and_architecture_agree() {
         let exist = BTreeSet::from(["mesh".to_owned(), "solver".to_owned()]);
         assert!(compare_crates("`crates/mesh`, stribeck-solver", &exist).is_empty());
         let complaints = compare_crates("crates/mesh and crates/mush", &exist);
@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn example_links_that_break_in_the_book_are_found() {
+    fn behaves_links_that_break_in_the_book_are_found() {
         let pages = |a: &str, b: &str| [("guide/a.md", a.to_owned()), ("B.md", b.to_owned())];
         let fine = pages(
             "[b](../B.md#x), ![p](a/p.svg), [t](../t.csv), https://x.org",
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn example_glossaries_out_of_order_are_found() {
+    fn behaves_glossaries_out_of_order_are_found() {
         assert!(compare_terms("**Bore** x\n**cage** y").is_empty());
         assert_eq!(compare_terms("**cage** x\n**Bore** y").len(), 1);
         assert_eq!(compare_terms("**cage** x\n## More\n**Cage** y").len(), 1);
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn example_commands_that_do_not_exist_are_found() {
+    fn behaves_commands_that_do_not_exist_are_found() {
         let root = Path::new("/nowhere");
         for fine in [
             "cargo xtask simulate",

@@ -126,7 +126,7 @@ mod tests {
     use super::compare;
 
     #[test]
-    fn example_arrows_against_the_layers_are_found() {
+    fn behaves_arrows_against_the_layers_are_found() {
         let manifest = "[package]\nname = \"stribeck-solver\"\n[dependencies]\nstribeck-mesh.workspace = \
             true\n\
             stribeck-contact = { path = \"x\" }\n[dev-dependencies]\nstribeck-dsp.workspace = true\n";
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn example_what_tests_share_is_for_tests() {
+    fn behaves_what_tests_share_is_for_tests() {
         let of = |section: &str| {
             compare("mesh", &format!("[{section}]\nstribeck-testing.workspace = true\n"), &[])
         };

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_long_comments_and_texts_are_found_but_for_tables_and_code() {
+    fn behaves_long_comments_and_texts_are_found_but_for_tables_and_code() {
         let long = "word ".repeat(30);
         let text = format!(
             "// {long}\n//! | {long} |\n//! ```\n//! {long}\n//! ```\n// \

@@ -92,24 +92,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_code_is_found_in_fences_and_backticks() {
+    fn behaves_code_is_found_in_fences_and_backticks() {
         let text = "Run `cargo xtask ci` or `x`.\n```sh\ncargo xtask simulate\n```\nno code";
         assert_eq!(code(text), ["cargo xtask ci", "x", "cargo xtask simulate"]);
     }
 
     #[test]
-    fn example_blocks_of_a_language() {
+    fn behaves_blocks_of_a_language() {
         assert_eq!(blocks("a\n```ron\n(\n)\n```\n```sh\nb\n```", "ron"), ["(\n)"]);
     }
 
     #[test]
-    fn example_links_to_files() {
+    fn behaves_links_to_files() {
         let text = "[a](docs/x.md#part) and ![b](y.svg), [c](https://example.org), [d](#here), `f[0](x, y)`";
         assert_eq!(links(text), ["docs/x.md", "y.svg"]);
     }
 
     #[test]
-    fn example_sections_and_their_citations() {
+    fn behaves_sections_and_their_citations() {
         assert_eq!(section_number("## 4.1 Gap"), Some("4.1"));
         assert_eq!(section_number("### §12. Statics"), Some("12"));
         assert_eq!(section_number("## Contact"), None);
@@ -119,7 +119,7 @@ mod tests {
     }
 
     #[test]
-    fn example_terms_of_a_glossary() {
+    fn behaves_terms_of_a_glossary() {
         let text =
             "# Words\n**bore** a hole\n- **cage** a ring\n## More\n| **apex** | top |\nplain **bold** text";
         assert_eq!(terms(text), [vec![], vec!["bore", "cage"], vec!["apex"]]);

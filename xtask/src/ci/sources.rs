@@ -104,7 +104,7 @@ mod tests {
     use super::{noise, word_of_bearings};
 
     #[test]
-    fn example_words_are_found_in_prose_and_identifiers() {
+    fn behaves_words_are_found_in_prose_and_identifiers() {
         for line in
             ["the rollers turn", "let roller_count = 1;", "struct CageBody;", "const ROLLER: f64", "Spalls!"]
         {
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn example_what_prints_or_asks_the_clock_is_found() {
+    fn behaves_what_prints_or_asks_the_clock_is_found() {
         for line in ["    println!(\"x\");", "let t = std::time::Instant::now();", "eprint!(\"x\"); // once"]
         {
             assert!(noise(line).is_some(), "{line}");

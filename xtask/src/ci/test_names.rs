@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use super::{layers, sources};
 
 /// Prefixes of test names, as the table in CONTRIBUTING explains them.
-const PREFIXES: [&str; 12] = [
+const PREFIXES: [&str; 14] = [
     "patch_",
     "conserves_",
     "invariant_",
@@ -16,7 +16,9 @@ const PREFIXES: [&str; 12] = [
     "peer_",
     "golden_",
     "issue_",
-    "example_",
+    "by_hand_",
+    "planted_",
+    "behaves_",
     "refuses_",
     "roundtrip_",
     "survives_",
@@ -116,7 +118,7 @@ mod tests {
     #[test]
     fn refuses_tests_without_prefix_or_source() {
         assert!(one("#[test]\nfn it_works() {\n}\n").is_some());
-        assert!(one("#[test]\nfn example_one() {\n}\n").is_none());
+        assert!(one("#[test]\nfn behaves_one() {\n}\n").is_none());
         assert!(one("/// Closed form.\n#[test]\nfn analytic_ring() {\n    // Thin.\n}\n// 1950\n").is_some());
         for source in ["THEORY §2.1", "Timoshenko (1951)", "RFC 4648", "scipy 1.17.1"] {
             assert_eq!(one(&format!("/// {source}.\n#[test]\nfn analytic_ring() {{\n}}\n")), None);

@@ -209,7 +209,7 @@ mod tests {
         §1.3\tanalytic_speed\t5.8561234e3\t5.8560e3\t1e-3";
 
     #[test]
-    fn example_rows_are_rendered_with_their_digits() {
+    fn by_hand_rows_are_rendered_with_their_digits() {
         let text = render(&[parse(LINE).expect("a row")]);
         let row = "| speed of a wave | 5856.1 | 5856 | m/s | 0.0021 % | 0.1 % | Achenbach 1973, §1.3 | \
             `analytic_speed` |";
@@ -218,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_test_that_has_moved_is_found_without_being_run() {
+    fn behaves_a_test_that_has_moved_is_found_without_being_run() {
         let text = render(&[parse(LINE).expect("a row")]);
         assert_eq!(strays(&text, |package, name| package == "solver" && name == "analytic_speed"), [""; 0]);
         assert_eq!(
@@ -228,7 +228,7 @@ mod tests {
     }
 
     #[test]
-    fn example_rounding_is_no_change_and_everything_else_is() {
+    fn behaves_rounding_is_no_change_and_everything_else_is() {
         let line = |ours: &str, word: &str| {
             let row = LINE.replace("5.8561234e3", ours).replace("Achenbach", word);
             render(&[parse(&row).expect("a row")]).lines().last().unwrap_or_default().to_owned()

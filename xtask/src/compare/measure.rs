@@ -227,14 +227,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_distance_is_relative_and_refuses_other_lengths() {
+    fn by_hand_distance_is_relative_and_refuses_other_lengths() {
         assert_eq!(distance(&[3.0, 0.0], &[0.0, 4.0]), 1.25);
         assert_eq!(distance(&[1.0], &[1.0, 2.0]), f64::INFINITY);
         assert!(distance(&[f64::NAN], &[1.0]).is_nan());
     }
 
     #[test]
-    fn example_an_answer_that_is_no_number_does_not_agree() {
+    fn behaves_an_answer_that_is_no_number_does_not_agree() {
         let word = String::new;
         let about = About { program: word(), version: word(), element: word() };
         let difference = |found| Difference { steps: 1, from: OURS.into(), found, limit: 1.0, reason: "" };

@@ -191,7 +191,7 @@ mod tests {
     use super::{Time, answer};
 
     #[test]
-    fn example_what_a_program_prints_by_itself_is_no_answer() {
+    fn behaves_what_a_program_prints_by_itself_is_no_answer() {
         let mut lines = "Welcome\n@{\"wall_s\": 2.0, \"cpu_s\": 1.5}\n".as_bytes();
         let time: Time = answer(&mut lines, Path::new("none")).expect("one marked line");
         assert_eq!((time.wall_s, time.cpu_s), (2.0, 1.5));

@@ -147,14 +147,14 @@ mod tests {
     use super::{Spread, digits};
 
     #[test]
-    fn example_least_and_median() {
+    fn by_hand_least_and_median() {
         assert_eq!(Spread::of([3.0, 1.0, 2.0].into_iter()), Spread { least: 1.0, median: 2.0 });
         assert_eq!(Spread::of([4.0, 1.0].into_iter()), Spread { least: 1.0, median: 2.5 });
         assert!(Spread::of(std::iter::empty()).median.is_nan(), "of nothing there is none");
     }
 
     #[test]
-    fn example_numbers_have_three_digits() {
+    fn by_hand_numbers_have_three_digits() {
         assert_eq!([digits(1.234), digits(12.34), digits(1234.5)], ["1.23", "12.3", "1234"]);
     }
 }

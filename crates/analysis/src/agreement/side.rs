@@ -175,7 +175,7 @@ mod tests {
     /// Five lines of known amplitudes at frequencies between those of the record's own grid, on a mean that
     /// is not zero.
     #[test]
-    fn example_lines_between_grid_points_have_their_amplitudes() {
+    fn planted_lines_between_grid_points_have_their_amplitudes() {
         // At most half a step of the finer grid beside its place; sidelobes of the neighbours are a hundred
         // times smaller.
         const CLOSE: f64 = 2e-4;

@@ -146,7 +146,7 @@ mod tests {
     /// Two sines of 100 Hz, sixty degrees apart, beside tones of 3 kHz that differ: below 500 Hz the
     /// correlation is cos 60°.
     #[test]
-    fn example_only_what_lies_below_the_frequency_is_correlated() {
+    fn planted_only_what_lies_below_the_frequency_is_correlated() {
         use std::f64::consts::{FRAC_PI_3, TAU};
         let signal = |lag: f64, high: f64| -> Vec<f64> {
             let tone = |t: f64| (TAU * 100.0 * t - lag).sin() + high * (TAU * 3000.0 * t).sin();

@@ -458,7 +458,7 @@ mod tests {
     /// Thirty-seven orbits of a roller whose cage turns 0.4 % slower than without slip, and so is ten
     /// traverses late in the end, or 0.4 % faster.
     #[test]
-    fn example_a_slipping_roller_is_followed_through_a_long_record() {
+    fn planted_a_slipping_roller_is_followed_through_a_long_record() {
         for slip in [0.004, -0.004] {
             follow(slip);
         }

@@ -92,7 +92,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     #[test]
-    fn example_a_tone_that_changes_stands_where_and_when_it_sounds() {
+    fn planted_a_tone_that_changes_stands_where_and_when_it_sounds() {
         let rate_hz = 10_000.0;
         let tone = |hz: f64| -> Vec<f64> {
             (0..40_000).map(|n| (TAU * hz * f64::from(n) / rate_hz).sin()).collect()

@@ -191,7 +191,7 @@ mod tests {
     /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move
     /// either.
     #[test]
-    fn example_one_line_is_claimed_for_one_family() {
+    fn planted_one_line_is_claimed_for_one_family() {
         let mut families = [found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];
         share_out(&mut families, 1.25, true);
         decide(&mut families, None, true);

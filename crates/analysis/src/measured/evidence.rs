@@ -192,7 +192,7 @@ mod tests {
     /// of a resolution, the swing is that of the power less what steps of 5° average, and an unrelated
     /// rate shows nothing.
     #[test]
-    fn example_the_mean_over_a_period_is_the_modulation() {
+    fn planted_the_mean_over_a_period_is_the_modulation() {
         const RATE_HZ: f64 = 8_000.0;
         /// Averaging over a step of 1/72 of a period, and a rate off by a fortieth of a resolution.
         const LOST: f64 = 0.01;

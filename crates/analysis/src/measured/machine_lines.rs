@@ -111,7 +111,7 @@ mod tests {
     };
 
     #[test]
-    fn example_the_search_passes_over_multiples_of_the_shaft() {
+    fn by_hand_the_search_passes_over_multiples_of_the_shaft() {
         assert_eq!(OWN.ranges_without(89.0, 92.0), [(89.0, 89.8), (90.2, 92.0)]);
         assert_eq!(OWN.ranges_without(89.9, 92.0), [(90.2, 92.0)]);
         assert_eq!(OWN.ranges_without(91.0, 92.0), [(91.0, 92.0)]);
@@ -120,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn example_other_shafts_and_gears_are_the_machines_own() {
+    fn by_hand_other_shafts_and_gears_are_the_machines_own() {
         let own = OwnLines { shafts_hz: vec![12.0], meshes_hz: vec![230.0], ..OWN };
         // 2 · 230 − 3 · 12; 230 + 2 · 30 and 7 · 12 are multiples of nothing of OWN's.
         for hz in [84.0, 230.0, 290.0, 424.0] {
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_multiple_of_a_cage_that_is_its_raceway_is_kept() {
+    fn by_hand_the_multiple_of_a_cage_that_is_its_raceway_is_kept() {
         let own = OwnLines { cage_hz: Some(11.45), ..OWN };
         assert!(own.holds(4.0 * 11.45) && !own.holds(8.0 * 11.45));
         assert_eq!(own.ranges_without(91.0, 92.0), [(91.0, 92.0)]);

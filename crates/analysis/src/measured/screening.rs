@@ -318,7 +318,7 @@ mod tests {
 
     /// Knocks ring, however rare, high and short they are, and many spikes are how a machine sounds.
     #[test]
-    fn example_knocks_are_not_called_spurious() {
+    fn planted_knocks_are_not_called_spurious() {
         for (period, hz, q) in [
             (700, 0.2, 20.0),
             (90_000, 0.2, 20.0),

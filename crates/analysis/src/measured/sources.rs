@@ -295,7 +295,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_components_from_words() {
+    fn behaves_components_from_words() {
         let of = |text: &str| Component::parse(text);
         let bearing = of("bearing=NU 205, elements=13, ratio=2.5").expect("a bearing");
         assert_eq!((bearing.ratio, bearing.bearing().and_then(|b| b.elements)), (2.5, Some(13)));

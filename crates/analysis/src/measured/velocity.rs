@@ -53,7 +53,7 @@ mod tests {
     use std::f64::consts::TAU;
 
     #[test]
-    fn example_one_g_at_a_hundred_hertz() {
+    fn by_hand_one_g_at_a_hundred_hertz() {
         let rate_hz = 5_000.0;
         let samples: Vec<f64> = (0..20_000).map(|n| (TAU * 100.0 * f64::from(n) / rate_hz).sin()).collect();
         let level = |unit: &str| {

@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_zones_of_a_level() {
+    fn by_hand_zones_of_a_level() {
         let of = |v: f64, group, foundation| Zoned::of(v, group, foundation).zone;
         assert_eq!(of(2.3, Group::Large, Foundation::Rigid), Zone::A);
         assert_eq!(of(2.31, Group::Large, Foundation::Rigid), Zone::B);

@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn example_loads_that_no_bearing_carries_are_warned_of() {
+    fn behaves_loads_that_no_bearing_carries_are_warned_of() {
         let (loads, dangers) = of("(bearing: \"NU 205\", operation: (load_n: 60000))");
         assert!(loads.static_safety() < 1.0 && dangers[0].contains("ISO 76"), "{dangers:?}");
     }

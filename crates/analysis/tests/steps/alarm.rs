@@ -26,7 +26,7 @@ fn analytic_further_records_pass_a_limit_as_rarely_as_stated() {
 }
 
 #[test]
-fn example_limits_are_read_as_they_are_written() {
+fn behaves_limits_are_read_as_they_are_written() {
     let limit = Limit::parse("velocity=2.8..7.1").unwrap();
     assert_eq!(limit, Limit { quantity: Quantity::VelocityMmS, warning: 2.8, alarm: 7.1 });
     assert_eq!(Limit::parse("bpfo = 20 .. 30").unwrap().quantity, Quantity::Bpfo);

@@ -23,7 +23,7 @@ fn record(label: &str, height: f64, unit: &str, scale: f64, seed: u64) -> Side {
 }
 
 #[test]
-fn example_a_sound_and_a_damaged_record_in_two_units_of_acceleration() {
+fn planted_a_sound_and_a_damaged_record_in_two_units_of_acceleration() {
     let damaged = record("damaged", 3.0, "m/s²", STANDARD_GRAVITY, 5);
     let both = Comparison::of(vec![record("sound", 0.0, "g", 1.0, 4), damaged]).expect("two records");
     let row = |name: &str| both.rows.iter().find(|row| row.name == name);

@@ -4,7 +4,7 @@ use stribeck_analysis::comparison::differences;
 use stribeck_scene::scene::Scene;
 
 #[test]
-fn example_two_scenes_and_a_record() {
+fn behaves_two_scenes_and_a_record() {
     let scene = |set: &[&str]| Scene::default().with_overrides(set).expect("a scene");
     let first = scene(&["operation.load_n=3000", "defect.length_mm=4"]);
     let mut other = scene(&["operation.load_n=5000", "defect=None"]);

@@ -25,7 +25,7 @@ fn knocks() -> (Vec<f64>, Vec<f64>) {
 const BPFO: ShockOrder = ShockOrder { defect: Defect::Bpfo, order: 10.81 };
 
 #[test]
-fn example_knocks_of_a_shaft_that_speeds_up_stand_at_their_order() {
+fn planted_knocks_of_a_shaft_that_speeds_up_stand_at_their_order() {
     let (signal, turns) = knocks();
     let (_, finding) = over_angle(&signal, 1e5, &turns, BPFO, None).unwrap().unwrap();
     assert!((finding.periods - 12.5 * 10.81).abs() < 0.1 && (finding.resolution - 0.08).abs() < 1e-3);

@@ -5,7 +5,7 @@ use serde_json::json;
 use stribeck_analysis::ensemble::Merged;
 
 #[test]
-fn example_three_summaries_as_one() {
+fn by_hand_three_summaries_as_one() {
     let all = [
         json!({"status": "complete", "found": true, "level_g": 10.0,
                "events": [{"roller": 1, "floor_n": 100.0}, {"roller": 2, "floor_n": null}]}),
@@ -31,7 +31,7 @@ fn example_three_summaries_as_one() {
 }
 
 #[test]
-fn example_no_summary_has_no_numbers() {
+fn behaves_no_summary_has_no_numbers() {
     let none: [Value; 0] = [];
     assert_eq!(Merged::of(none.iter()).expect("nothing to write"), Merged::Nothing);
 }

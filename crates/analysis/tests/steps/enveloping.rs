@@ -20,7 +20,7 @@ fn family() -> Vec<PredictedLine> {
 }
 
 #[test]
-fn example_knocks_show_their_rate_and_its_multiples() {
+fn planted_knocks_show_their_rate_and_its_multiples() {
     let (_, finding) = analyse(&knocks(0.4), 1e5, &family()).unwrap().unwrap();
     assert!(finding.periods > 36.0);
     for line in &finding.lines {

@@ -27,7 +27,7 @@ fn force(entry: f64, exit: f64, samples: usize) -> (Vec<f64>, Vec<f64>) {
 }
 
 #[test]
-fn example_events_are_found_under_facet_noise_and_a_floor_shock() {
+fn planted_events_are_found_under_facet_noise_and_a_floor_shock() {
     let (entry, exit) = (1.1e-3, 4.8e-3);
     let (time, force) = force(entry, exit, 800);
     let picked = pick(&time, &force, &PASSAGE);
@@ -37,7 +37,7 @@ fn example_events_are_found_under_facet_noise_and_a_floor_shock() {
 }
 
 #[test]
-fn example_a_trapped_roller_has_no_exit_and_says_why() {
+fn planted_a_trapped_roller_has_no_exit_and_says_why() {
     let (time, force) = force(1.1e-3, 1.0, 3000);
     let picked = pick(&time, &force, &PASSAGE);
     assert!(picked.exit_s.is_none() && picked.entry_s.is_some());
@@ -45,7 +45,7 @@ fn example_a_trapped_roller_has_no_exit_and_says_why() {
 }
 
 #[test]
-fn example_a_record_that_ends_early_invents_no_event() {
+fn planted_a_record_that_ends_early_invents_no_event() {
     let (time, force) = force(1.1e-3, 4.8e-3, 350);
     let picked = pick(&time, &force, &PASSAGE);
     assert!(picked.entry_s.is_some() && picked.exit_s.is_none());
@@ -56,14 +56,14 @@ fn example_a_record_that_ends_early_invents_no_event() {
 }
 
 #[test]
-fn example_a_sound_raceway_gives_no_event() {
+fn planted_a_sound_raceway_gives_no_event() {
     let (time, force) = force(2.0, 3.0, 800);
     let picked = pick(&time, &force, &PASSAGE);
     assert_eq!((picked.entry_s, picked.exit_s), (None, None));
 }
 
 #[test]
-fn example_crossings_of_a_steady_rotation() {
+fn by_hand_crossings_of_a_steady_rotation() {
     // 94° at −1351.4672 °/s passes 92.86479° after 0.84 ms and again one turn later.
     let time: Vec<f64> = (0..30_000).map(|n| n as f64 * INTERVAL).collect();
     let rate = -1_351.467_194_2_f64.to_radians();

@@ -146,7 +146,7 @@ fn found(families: &[FamilyFinding]) -> Vec<&str> {
 }
 
 #[test]
-fn example_of_a_long_record_the_last_part_is_judged() {
+fn behaves_of_a_long_record_the_last_part_is_judged() {
     let periods = |samples: usize| samples as f64 * INTERVAL_S * CAGE_HZ * ROLLERS as f64;
     let samples = (1.25 * MOST_PERIODS / periods(1)) as usize;
     let record = sounding(silent(samples, 0.0), &[Sound::of(CANDIDATES[0].1)], 8.0, 5);
@@ -164,7 +164,7 @@ fn example_of_a_long_record_the_last_part_is_judged() {
 }
 
 #[test]
-fn example_each_family_is_distinguished_from_its_neighbours() {
+fn planted_each_family_is_distinguished_from_its_neighbours() {
     for (name, source) in CANDIDATES {
         let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[Sound::of(source)], 8.0, 5));
         assert_eq!(found(&families), [name], "{families:#?}");
@@ -176,7 +176,7 @@ fn example_each_family_is_distinguished_from_its_neighbours() {
 }
 
 #[test]
-fn example_two_combs_of_one_motion_are_not_distinguished() {
+fn planted_two_combs_of_one_motion_are_not_distinguished() {
     // A fiftieth of a facet is 0.08 Hz, and three degrees of phase from one end of the load zone to the
     // other.
     let twins = [CANDIDATES[1], ("other_race_nodes", Source::OuterNodes(1255.02)), CANDIDATES[0]];
@@ -191,7 +191,7 @@ fn example_two_combs_of_one_motion_are_not_distinguished() {
 }
 
 #[test]
-fn example_two_families_are_both_found() {
+fn planted_two_families_are_both_found() {
     let both = [("roller_vertices", Source::RotatedVertices(98.0)), CANDIDATES[1], CANDIDATES[2]];
     let sounds = [Sound::of(both[0].1), Sound { gain_g: 5.0, ..Sound::of(both[1].1) }];
     let families = judged(&both, &sounding(silent(SAMPLES, 0.0), &sounds, 4.0, 5));
@@ -199,7 +199,7 @@ fn example_two_families_are_both_found() {
 }
 
 #[test]
-fn example_slip_moves_the_prediction_with_the_line() {
+fn planted_slip_moves_the_prediction_with_the_line() {
     // Two per cent of slip are 93 Hz, three resolutions: without the recorded motion nothing would stand
     // where it should.
     let families =
@@ -211,7 +211,7 @@ fn example_slip_moves_the_prediction_with_the_line() {
 }
 
 #[test]
-fn example_the_carrier_is_a_line_of_the_comb() {
+fn planted_the_carrier_is_a_line_of_the_comb() {
     // 1255 nodes over 24 rollers are 52.29 a roller spacing: the outer raceway sounds at whole multiples of
     // BPFO, here 52, not at 1255 times the cage. Copies of 112 facets in one orientation are a third of a
     // facet out of step.
@@ -237,7 +237,7 @@ fn example_the_carrier_is_a_line_of_the_comb() {
 }
 
 #[test]
-fn example_ten_records_of_noise_hold_no_family() {
+fn planted_ten_records_of_noise_hold_no_family() {
     for seed in 1..=10 {
         let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[], 8.0, seed * 7919));
         assert_eq!(found(&families), [""; 0], "{families:#?}");
@@ -247,7 +247,7 @@ fn example_ten_records_of_noise_hold_no_family() {
 }
 
 #[test]
-fn example_a_comb_in_the_wrong_place_has_no_name() {
+fn planted_a_comb_in_the_wrong_place_has_no_name() {
     // Laid over each other, the three combs have lines at −14, 0 and 24 Hz from a multiple of BPFO. These are
     // at 50 Hz, 26 Hz or 0.8 resolutions from the nearest.
     let sound = Sound { detuned_hz: 64.0, ..Sound::of(CANDIDATES[0].1) };
@@ -257,7 +257,7 @@ fn example_a_comb_in_the_wrong_place_has_no_name() {
 }
 
 #[test]
-fn example_a_short_record_is_not_judged() {
+fn behaves_a_short_record_is_not_judged() {
     let families = judged(&CANDIDATES, &sounding(silent(600, 0.0), &[Sound::of(CANDIDATES[0].1)], 1.0, 5));
     assert_eq!(found(&families), [""; 0]);
     assert!(families.iter().all(|f| f.verdict.contains("0.5 periods of BPFO")), "{families:#?}");

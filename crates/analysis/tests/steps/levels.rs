@@ -3,7 +3,7 @@
 use stribeck_analysis::levels::{Phase, Visit, gap_spans, level, phase_level, phases};
 
 #[test]
-fn example_level_of_a_sine() {
+fn by_hand_level_of_a_sine() {
     let sine: Vec<f64> = (0..1000).map(|n| 50.0 * (std::f64::consts::TAU * 0.05 * n as f64).sin()).collect();
     let found = level(&sine, &[0..500, 500..1000]).unwrap();
     // Whole periods: peak A, root mean square A/√2 to rounding.
@@ -27,7 +27,7 @@ fn visits() -> Vec<Visit> {
 }
 
 #[test]
-fn example_every_sample_has_one_phase() {
+fn by_hand_every_sample_has_one_phase() {
     let time: Vec<f64> = (0..3000).map(|n| n as f64 * 1e-5).collect();
     let found = phases(&time, &visits());
     // By hand [ms]: 0.84 − 0.5, 0.94 + 1, 4.88 − 1, 5.08 + 2, 11.94 − 0.5.
@@ -59,7 +59,7 @@ fn example_every_sample_has_one_phase() {
 }
 
 #[test]
-fn example_a_sound_bearing_has_start_up_and_gap_only() {
+fn behaves_a_sound_bearing_has_start_up_and_gap_only() {
     let time: Vec<f64> = (0..1000).map(|n| n as f64 * 1e-5).collect();
     let found = phases(&time, &[]);
     assert!(found[..200].iter().all(|p| *p == Phase::StartUp));

@@ -8,7 +8,7 @@ use stribeck_dsp::Welch;
 /// Two tones: 3 g at 1 kHz and 4 g in two neighbouring parts at 5.9 and 6.1 kHz, sampled at 20 kHz; parts
 /// are 400 Hz wide, and the band's root mean square is that of its two tones.
 #[test]
-fn example_the_band_of_two_tones_beside_a_weaker_one() {
+fn planted_the_band_of_two_tones_beside_a_weaker_one() {
     const RATE_HZ: f64 = 20e3;
     /// The window spreads each tone over neighbouring lines.
     const SPREAD: f64 = 0.01;

@@ -4,7 +4,7 @@ use stribeck_analysis::levels::STANDARD_GRAVITY;
 use stribeck_analysis::noise::{force_ripple, spectrum_g};
 
 #[test]
-fn example_ripple_leaves_a_cubic_alone_and_finds_a_sine() {
+fn planted_ripple_leaves_a_cubic_alone_and_finds_a_sine() {
     let cubic = |t: f64| 1000.0 + 50.0 * t - 30.0 * t * t + 20.0 * t * t * t;
     let force = |ripple: f64| -> Vec<f64> {
         (0..500).map(|i| cubic(i as f64 / 500.0) + ripple * (0.9 * i as f64).sin()).collect()
@@ -17,7 +17,7 @@ fn example_ripple_leaves_a_cubic_alone_and_finds_a_sine() {
 }
 
 #[test]
-fn example_spectrum_of_a_sine() {
+fn by_hand_spectrum_of_a_sine() {
     let sine: Vec<f64> =
         (0..1000).map(|i| 3.0 * STANDARD_GRAVITY * (std::f64::consts::TAU * 0.05 * i as f64).sin()).collect();
     let found = spectrum_g(&sine, 1e5, &[5000.0, 20_000.0]);

@@ -44,7 +44,7 @@ fn of(paper: f64, ours: &[Option<f64>]) -> Beside {
 }
 
 #[test]
-fn example_a_number_differs_beyond_the_scatter_of_starts() {
+fn by_hand_a_number_differs_beyond_the_scatter_of_starts() {
     // One run is granted 30 g, and 5 g of the print.
     assert!(!of(180.0, &[Some(214.0)]).differs() && of(180.0, &[Some(216.0)]).differs());
     // Three starts, 200 ± 10: by hand, a further one is within 4.303 · 10 · √(4/3) = 49.7 g of the mean.

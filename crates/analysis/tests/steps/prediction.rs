@@ -31,7 +31,7 @@ fn analytic_paper_events_and_lines() {
 }
 
 #[test]
-fn example_static_curve_has_a_hole_and_relieving_neighbours() {
+fn behaves_static_curve_has_a_hole_and_relieving_neighbours() {
     let mut scene = Scene::default();
     scene.bearing.thickness_mm = 20.0;
     let prediction = Prediction::of(&scene.resolve(), &mesh(1257, 1030));
@@ -71,7 +71,7 @@ fn issue_a_missing_roller_makes_no_sawtooth_of_the_static_curve() {
 }
 
 #[test]
-fn example_a_sound_bearing_has_no_passage() {
+fn behaves_a_sound_bearing_has_no_passage() {
     let scene = Scene { defect: None, ..Scene::default() };
     let prediction = Prediction::of(&scene.resolve(), &mesh(0, 0));
     assert!(prediction.passages().is_empty() && prediction.standing().is_none());

@@ -19,7 +19,7 @@ fn channel(strength: f64) -> Channel {
 }
 
 #[test]
-fn example_a_speed_that_rises_is_followed() {
+fn planted_a_speed_that_rises_is_followed() {
     let found = speed(&channel(0.1), RATE_HZ, 1_000.0, 1_800.0).unwrap();
     // The least deviation that 0.96 s allow (Cramér and Rao): √(6/72)/(2π 0.96) Hz, 72 being the power of
     // the line over that of the noise times its samples; Hann's window and the parabola cost as much

@@ -13,7 +13,7 @@ use stribeck_store::run_info::MeshInfo;
 /// 16/6000) = 0.037 to turn over the edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and
 /// no more than a quarter of 0.3 mm over 6 mm, 0.0125, over a short one.
 #[test]
-fn example_friction_that_turns_a_roller_over_an_edge() {
+fn by_hand_friction_that_turns_a_roller_over_an_edge() {
     let scene = Scene::default();
     let geometry = ResolvedScene { roller_radius: 6e-3, ..scene.resolve() };
     let rings = RigidRings::new(&geometry);
@@ -50,7 +50,7 @@ fn example_friction_that_turns_a_roller_over_an_edge() {
 }
 
 #[test]
-fn example_a_roller_that_has_stopped_is_named() {
+fn planted_a_roller_that_has_stopped_is_named() {
     let of = |roller: usize, spin_hz: f64| RollerMotion { roller, orbit_hz: 8.0, spin_hz, loaded: true };
     let motion = KinematicsFinding {
         expected_roller_spin_hz: 52.9,
@@ -63,7 +63,7 @@ fn example_a_roller_that_has_stopped_is_named() {
 }
 
 #[test]
-fn example_a_cage_that_strays_is_named() {
+fn planted_a_cage_that_strays_is_named() {
     // Pockets of 100 µm.
     let scene = Scene::default();
     let path = |far: f64| straying(&scene.resolve(), &[1e-3, 1e-3 + 0.6 * far, 1e-3], &[0.0, 0.8 * far, 0.0]);
@@ -93,7 +93,7 @@ fn example_a_cage_that_strays_is_named() {
 
 /// The paper's bearing by hand: 0.3 N m s² … I = ½ m r² with m = 7850 · π · 9² · 30 mm³ = 59.9 g.
 #[test]
-fn example_the_paper_s_load_spins_rollers_up_many_times_over() {
+fn by_hand_the_paper_s_load_spins_rollers_up_many_times_over() {
     let scene = Scene::default();
     let mesh = MeshInfo {
         nodes: 0,

@@ -26,7 +26,7 @@ fn tone_in_noise(samples: usize) -> Vec<f64> {
 }
 
 #[test]
-fn example_a_tone_in_noise_is_measured_and_merged() {
+fn planted_a_tone_in_noise_is_measured_and_merged() {
     // Uniform noise of ±10 g has a density of 33.3/50 000 g²/Hz: under 50 Hz it moves 40 g by about 0.4
     // g.
     const LEVEL_TOLERANCE_G: f64 = 1.5;
@@ -45,7 +45,7 @@ fn example_a_tone_in_noise_is_measured_and_merged() {
 }
 
 #[test]
-fn example_a_long_record_splits_the_lines() {
+fn planted_a_long_record_splits_the_lines() {
     // 0.3 s resolve 3.3 Hz: the line 2.3 Hz above the prediction belongs to the rollers alone.
     let tones = measure("side", &paper_lines(), &spectrum_of(&tone_in_noise(30_000))).unwrap();
     assert!(tones[0].unresolved_from.is_empty());
@@ -54,7 +54,7 @@ fn example_a_long_record_splits_the_lines() {
 }
 
 #[test]
-fn example_recorded_motion_claims_a_line_that_slip_has_moved() {
+fn planted_recorded_motion_claims_a_line_that_slip_has_moved() {
     // Rollers 1 % slower than rolling: the line is out of reach of the prediction without slip.
     let mut lines = harmonics(&[("roller vertices".into(), 4721.2)], 1, 5e4);
     let signal = tone_in_noise(30_000);
@@ -67,7 +67,7 @@ fn example_recorded_motion_claims_a_line_that_slip_has_moved() {
 /// 36 g at 4775 Hz, 104 Hz away and out of reach, 12 g at 4655 Hz, and 4 g at five times the latter, in
 /// noise of ±10 g.
 #[test]
-fn example_the_nearest_line_beside_a_stronger_one() {
+fn planted_the_nearest_line_beside_a_stronger_one() {
     let line = |hz: f64, t: f64| (std::f64::consts::TAU * hz * t).sin();
     let noise = tone_in_noise(3000);
     let signal: Vec<f64> = (0..3000)
@@ -91,7 +91,7 @@ fn example_the_nearest_line_beside_a_stronger_one() {
 }
 
 #[test]
-fn example_silence_measures_nothing() {
+fn behaves_silence_measures_nothing() {
     let tones = measure("side", &paper_lines(), &spectrum_of(&vec![0.0; 3000])).unwrap();
     assert!(tones.iter().all(|t| t.measured_hz.is_none() && t.level_g.is_none()));
     assert_eq!((dominant(&tones, "side"), clearest(&tones)), (None, None));

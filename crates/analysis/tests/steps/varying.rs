@@ -7,7 +7,7 @@ use stribeck_analysis::measured::varying::turns_between;
 
 /// Knocks 3.6 times a turn of a shaft from 10 to 30 turns a second stand at their order all the time.
 #[test]
-fn example_a_family_stands_still_over_the_angle() {
+fn planted_a_family_stands_still_over_the_angle() {
     let rate_hz = 20_000.0;
     let times: Vec<f64> = (0..80_000).map(|n| f64::from(n) / rate_hz).collect();
     let turns: Vec<f64> = times.iter().map(|t| 10.0 * t + 2.5 * t * t).collect();
@@ -34,7 +34,7 @@ fn example_a_family_stands_still_over_the_angle() {
 }
 
 #[test]
-fn example_turns_between_pulses() {
+fn by_hand_turns_between_pulses() {
     let (range, turns) = turns_between(&[1.5, 3.5, 7.5], 2.0, 20);
     assert_eq!(range, 2..8);
     assert_eq!(turns, [0.25, 0.75, 1.125, 1.375, 1.625, 1.875]);

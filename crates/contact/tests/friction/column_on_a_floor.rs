@@ -50,7 +50,7 @@ const WEIGHT: f64 = 1e-4;
 const ACROSS: f64 = 1e-9;
 
 #[test]
-fn example_penetration_is_pressure_over_stiffness() {
+fn by_hand_penetration_is_pressure_over_stiffness() {
     let (height, width) = (0.01, 0.02);
     for (method, tolerance) in
         [(Method::Collocated, LEANING), (Method::Integrated { points: 3 }, CORNERS + LEANING)]

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use stribeck_dsp::{means_over_angle, order_track};
 
 #[test]
-fn example_a_line_of_a_shaft_that_speeds_up_stands_still_over_the_angle() {
+fn planted_a_line_of_a_shaft_that_speeds_up_stands_still_over_the_angle() {
     // Turns of 100, 99, … samples; three waves a turn.
     let mut pulses = vec![2.0];
     (0..40).for_each(|n| pulses.push(pulses[n] + 100.0 - n as f64));
@@ -26,7 +26,7 @@ fn example_a_line_of_a_shaft_that_speeds_up_stands_still_over_the_angle() {
 }
 
 #[test]
-fn example_means_over_the_angle_of_a_shaft_that_starts_from_rest() {
+fn planted_means_over_the_angle_of_a_shaft_that_starts_from_rest() {
     // 20 turns in 10 000 samples of a constant acceleration; three waves a turn about 2.
     let turns: Vec<f64> = (0..10_000).map(|n| 20.0 * (f64::from(n) / 9_999.0).powi(2)).collect();
     let signal: Vec<f64> = turns.iter().map(|turn| 2.0 + (3.0 * TAU * turn).sin()).collect();

@@ -16,7 +16,7 @@ fn modulated(depth: f64, samples: usize) -> Vec<f64> {
 }
 
 #[test]
-fn example_the_depth_of_a_modulation_is_read_back() {
+fn planted_the_depth_of_a_modulation_is_read_back() {
     let mut plan = BandEnvelopes::new(RATE_HZ, 8_000, &[(1_250.0, 3_750.0)], 500.0).unwrap();
     for segment in modulated(0.6, 24_000).chunks(8_000) {
         plan.add(segment).unwrap();
@@ -59,7 +59,7 @@ fn invariant_processing_moves_no_buffer() {
 }
 
 #[test]
-fn example_segments_are_smooth_and_fit() {
+fn by_hand_segments_are_smooth_and_fit() {
     assert_eq!(BandEnvelopes::segment_of(262_144, 1 << 20), 262_144);
     assert_eq!(BandEnvelopes::segment_of(121_991, 1 << 20), 121_500);
     assert_eq!(BandEnvelopes::segment_of(92_160_000, 1 << 19), 1 << 19);

@@ -43,7 +43,7 @@ fn invariant_false_alarms_are_no_more_frequent_than_stated() {
 }
 
 #[test]
-fn example_four_harmonics_are_a_family_and_one_line_is_none() {
+fn planted_four_harmonics_are_a_family_and_one_line_is_none() {
     let mut noise = Noise(3);
     let mut values = noise.spectrum(2_000, 1);
     let plain = CombTest::FOUR_OF_FIVE.search(&Whitened::new(&values, 0.2, 1).unwrap(), 49.0, 51.0).unwrap();

@@ -24,7 +24,7 @@ fn record(period: f64, noise: f64) -> Vec<f64> {
 }
 
 #[test]
-fn example_pulses_are_recovered_through_a_resonance() {
+fn planted_pulses_are_recovered_through_a_resonance() {
     let found = momeda(&record(50.0, 0.05), 120, &[50.0]).unwrap().remove(0);
     let at_pulses: Vec<f64> = found.output.iter().step_by(50).copied().collect();
     let all: f64 = found.output.iter().map(|y| y * y).sum();
@@ -35,7 +35,7 @@ fn example_pulses_are_recovered_through_a_resonance() {
 }
 
 #[test]
-fn example_the_right_period_stands_above_others() {
+fn planted_the_right_period_stands_above_others() {
     let periods: Vec<f64> = (60..200).map(|t| 0.5 * f64::from(t)).collect();
     let found = momeda(&record(50.0, 0.6), 120, &periods).unwrap();
     let best = found.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis)).unwrap();

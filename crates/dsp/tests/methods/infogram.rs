@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use stribeck_dsp::{fast_kurtogram, infogram};
 
 #[test]
-fn example_one_loud_bang_does_not_hide_what_repeats() {
+fn planted_one_loud_bang_does_not_hide_what_repeats() {
     let mut state = 21_u64;
     let mut signal: Vec<f64> = (0..32_768)
         .map(|n| {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use stribeck_dsp::resample_poly;
 
 #[test]
-fn example_a_tone_keeps_its_amplitude_and_its_place_at_another_rate() {
+fn planted_a_tone_keeps_its_amplitude_and_its_place_at_another_rate() {
     let tone = |rate: f64, n: usize| (TAU * 3.0 * n as f64 / rate).cos();
     let signal: Vec<f64> = (0..2000).map(|n| tone(100.0, n)).collect();
     for (up, down) in [(1, 2), (3, 2), (441, 480), (5, 1), (4, 4)] {

@@ -31,7 +31,7 @@ fn followed(signal: &[f64]) -> Ridge {
 }
 
 #[test]
-fn example_a_ramp_is_followed_to_its_angle() {
+fn planted_a_ramp_is_followed_to_its_angle() {
     let signal = ramp();
     let found = followed(&signal);
     assert!(found.height_db > 15.0, "{}", found.height_db);
@@ -59,7 +59,7 @@ fn example_a_ramp_is_followed_to_its_angle() {
 }
 
 #[test]
-fn example_noise_has_no_high_ridge() {
+fn planted_noise_has_no_high_ridge() {
     let mut state = 99_u64;
     let signal: Vec<f64> = (0..40_000)
         .map(|_| {

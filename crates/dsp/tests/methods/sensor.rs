@@ -13,7 +13,7 @@ fn rms(signal: &[f64]) -> f64 {
 }
 
 #[test]
-fn example_what_the_filter_passes_keeps_its_time_and_what_it_stops_is_gone() {
+fn planted_what_the_filter_passes_keeps_its_time_and_what_it_stops_is_gone() {
     let sensor = Sensor::ideal(25_600.0);
     let passed = sensor.record(&sine(3_000.0, 100_000.0, 20_000), 100_000.0).unwrap();
     assert_eq!(passed.len(), 19_999 * 32 / 125 + 1);
@@ -41,7 +41,7 @@ fn issue_ends_of_a_record_are_filtered_like_its_middle() {
 }
 
 #[test]
-fn example_a_resonance_amplifies_by_its_quality() {
+fn planted_a_resonance_amplifies_by_its_quality() {
     let sensor = Sensor { resonance: Some((10_000.0, 20.0)), ..Sensor::ideal(100_000.0) };
     let at = sensor.record(&sine(10_000.0, 100_000.0, 20_000), 100_000.0).unwrap();
     assert!((rms(&at[5_000..15_000]) * 2_f64.sqrt() / 20.0 - 1.0).abs() < 1e-2);
@@ -51,7 +51,7 @@ fn example_a_resonance_amplifies_by_its_quality() {
 }
 
 #[test]
-fn example_noise_range_and_steps() {
+fn planted_noise_range_and_steps() {
     let quiet = vec![0.0; 50_000];
     let noisy = Sensor { noise_density: 0.01, seed: 3, ..Sensor::ideal(50_000.0) };
     let recorded = noisy.record(&quiet, 50_000.0).unwrap();

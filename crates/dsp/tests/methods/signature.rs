@@ -62,7 +62,7 @@ fn invariant_a_path_leaves_the_signature_alone() {
 }
 
 #[test]
-fn example_order_slip_and_load_zone_are_told() {
+fn planted_order_slip_and_load_zone_are_told() {
     let plain = of(&record(4_100.0, 6.0, 0.02, 0.0));
     let turned = of(&record(4_100.0, -6.0, 0.02, 0.0));
     assert!(turned.first_over_second_db > plain.first_over_second_db.map(|db| db + 8.0));

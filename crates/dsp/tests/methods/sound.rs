@@ -16,7 +16,7 @@ fn pitch_hz(sound: &Sound) -> f64 {
 }
 
 #[test]
-fn example_a_tone_keeps_its_pitch_and_slowed_it_sinks() {
+fn planted_a_tone_keeps_its_pitch_and_slowed_it_sinks() {
     let rate = 97_656.25;
     let tone: Vec<f64> =
         (0..97_656).map(|n| 40.0 + 3.0 * (TAU * 1_500.0 * f64::from(n) / rate).sin()).collect();

@@ -40,7 +40,7 @@ fn unequal(apart_s: f64, decay_s: f64, louder: f64) -> Vec<f64> {
 }
 
 #[test]
-fn example_the_distance_of_pairs_is_found() {
+fn planted_the_distance_of_pairs_is_found() {
     for apart_s in [1.5e-3, 3.1e-3] {
         let found = event_spacing(&pairs(apart_s, 0.2e-3), RATE_HZ, 0.5e-3, 7e-3).unwrap();
         let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
@@ -51,7 +51,7 @@ fn example_the_distance_of_pairs_is_found() {
 
 /// A second event of a twenty-fifth of the first one’s energy drowns in the correlation.
 #[test]
-fn example_a_weak_second_event_shows_where_the_rhythm_is_known() {
+fn planted_a_weak_second_event_shows_where_the_rhythm_is_known() {
     for louder in [0.2, 5.0] {
         let signal = unequal(3.1e-3, 0.2e-3, louder);
         let blind = event_spacing(&signal, RATE_HZ, 0.5e-3, 7e-3).unwrap();
@@ -64,7 +64,7 @@ fn example_a_weak_second_event_shows_where_the_rhythm_is_known() {
 
 /// A second event that stands twice above what lies between passages in one band only.
 #[test]
-fn example_a_faint_second_event_shows_in_both_bands_together() {
+fn planted_a_faint_second_event_shows_in_both_bands_together() {
     let found = passage_spacing(&unequal(3.1e-3, 0.2e-3, 0.16), RATE_HZ, 60.0, 0.5e-3, 8e-3).unwrap();
     let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
     assert!((found.lag_s - 3.1e-3).abs() < 0.1e-3, "{found:?}");
@@ -75,7 +75,7 @@ fn example_a_faint_second_event_shows_in_both_bands_together() {
 
 /// Half of a period is looked at, where an event is as far from the passage before as from the next.
 #[test]
-fn example_a_second_event_halfway_between_passages_shows() {
+fn planted_a_second_event_halfway_between_passages_shows() {
     let found = passage_spacing(&unequal(8.2e-3, 0.2e-3, 0.4), RATE_HZ, 60.0, 0.5e-3, 0.5 / 60.0).unwrap();
     let EventSpacing::Pairs(found) = found else { panic!("{found:?}") };
     assert!((found.lag_s - 8.2e-3).abs() < 0.1e-3, "{found:?}");
@@ -83,7 +83,7 @@ fn example_a_second_event_halfway_between_passages_shows() {
 
 /// An element that is let go knocks twice, the second time louder: the entry is the first of them.
 #[test]
-fn example_an_event_of_two_peaks_begins_with_the_first() {
+fn planted_an_event_of_two_peaks_begins_with_the_first() {
     let first = unequal(5e-3, 0.2e-3, 0.5);
     let second = unequal(5.5e-3, 0.2e-3, 0.6);
     let signal: Vec<f64> = first.iter().zip(&second).map(|(x, y)| 0.5 * (x + y)).collect();
@@ -95,7 +95,7 @@ fn example_an_event_of_two_peaks_begins_with_the_first() {
 /// A body that bounces at the second event knocks twice within a millisecond, both times louder
 /// than the next one that enters.
 #[test]
-fn example_a_bounce_is_not_taken_for_the_second_event() {
+fn planted_a_bounce_is_not_taken_for_the_second_event() {
     let weak = unequal(5e-3, 0.2e-3, 0.75);
     let bounce = unequal(0.75e-3, 0.2e-3, 0.9);
     let signal: Vec<f64> = weak.iter().zip(&bounce).map(|(x, y)| 0.5 * (x + y)).collect();
@@ -105,7 +105,7 @@ fn example_a_bounce_is_not_taken_for_the_second_event() {
 }
 
 #[test]
-fn example_a_known_rhythm_makes_no_second_event() {
+fn planted_a_known_rhythm_makes_no_second_event() {
     let signal = pairs(0.0, 0.6e-3);
     let blind = event_spacing(&signal, RATE_HZ, 0.5e-3, 7e-3).unwrap();
     assert_eq!(passage_spacing(&signal, RATE_HZ, 60.0, 0.5e-3, 7e-3).unwrap(), blind);
@@ -124,7 +124,7 @@ fn refuses_a_distance_beyond_half_of_a_period() {
 }
 
 #[test]
-fn example_single_events_say_what_would_have_shown() {
+fn planted_single_events_say_what_would_have_shown() {
     let found = event_spacing(&pairs(0.0, 0.6e-3), RATE_HZ, 0.5e-3, 7e-3).unwrap();
     // Bursts die away with 0.6 ms, their energy with 0.3 ms.
     assert!(
@@ -137,7 +137,7 @@ fn example_single_events_say_what_would_have_shown() {
 }
 
 #[test]
-fn example_noise_cannot_tell() {
+fn planted_noise_cannot_tell() {
     let mut uniform = uniform(7);
     let quiet: Vec<f64> = pairs(3e-3, 0.2e-3).iter().map(|x| 0.02 * x + uniform()).collect();
     assert_eq!(event_spacing(&quiet, RATE_HZ, 0.5e-3, 7e-3).unwrap(), EventSpacing::Unknown);

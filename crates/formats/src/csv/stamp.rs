@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_stamps_of_many_programs() {
+    fn by_hand_stamps_of_many_programs() {
         let base = stamp("2024-05-01 08:00:00").unwrap();
         for (text, nanos) in [
             ("2024-05-01T08:00:00.000078125", 78_125),

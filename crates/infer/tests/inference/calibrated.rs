@@ -20,7 +20,7 @@ fn calibration(times: f64, draws: usize) -> Calibration {
 /// 90 % intervals hold 85 to 95 % of the truths of every field, ranks are even, and the field without
 /// influence keeps its prior while the others are learned.
 #[test]
-fn example_intervals_hold_the_truths_that_they_should() {
+fn planted_intervals_hold_the_truths_that_they_should() {
     let calibration = calibration(1.0, 300);
     for (number, field) in calibration.fields.iter().enumerate() {
         assert!((0.85..=0.95).contains(&field.coverage_90.share), "field {number}: {field:?}");
@@ -61,7 +61,7 @@ fn issue_readings_of_one_run_counted_as_runs() {
 
 /// The same check finds an emulator whose scatter is half of the truths'.
 #[test]
-fn example_half_the_scatter_is_found_out() {
+fn planted_half_the_scatter_is_found_out() {
     let calibration = calibration(2.0, 150);
     let worst = calibration.fields.iter().map(|field| field.coverage_90.share).fold(1.0, f64::min);
     assert!(worst < 0.8, "{worst}");

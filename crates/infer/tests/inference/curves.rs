@@ -35,7 +35,7 @@ fn analytic_two_shapes_and_their_variances() {
 }
 
 #[test]
-fn example_equal_curves_have_no_shapes() {
+fn invariant_equal_curves_have_no_shapes() {
     let curves = vec![curve(1.0, 0.0); 3];
     let fitted = Curves::fit(&curves, 0.9, 10).unwrap();
     assert!(fitted.shapes.is_empty() && fitted.misfit(&curves[0]).unwrap() < 1e-12);

@@ -9,7 +9,7 @@ fn linear(names: &[&str]) -> Vec<Output> {
 
 /// A linear function is its own trend.
 #[test]
-fn example_a_linear_function_is_met_exactly() {
+fn invariant_a_linear_function_is_met_exactly() {
     let f = |x: &[f64]| 3.0 + 2.0 * x[0] - 0.7 * x[1];
     let points = sobol(1, 3, 0, 24).unwrap();
     let outputs = points.iter().map(|x| vec![Some(f(x))]).collect();
@@ -25,7 +25,7 @@ fn example_a_linear_function_is_met_exactly() {
 }
 
 #[test]
-fn example_a_constant_output_stays_constant() {
+fn invariant_a_constant_output_stays_constant() {
     let points = sobol(1, 2, 0, 16).unwrap();
     let outputs = points.iter().map(|_| vec![Some(7.5)]).collect();
     let emulator = Emulator::fit(&Runs { points, outputs, ..Runs::default() }, &linear(&["y"]), 0).unwrap();
@@ -36,7 +36,7 @@ fn example_a_constant_output_stays_constant() {
 /// Scatter that grows fourfold with one field, existence that grows with another, and residuals of two
 /// outputs that share 80 % of their variance.
 #[test]
-fn example_scatter_existence_and_correlation_are_found() {
+fn planted_scatter_existence_and_correlation_are_found() {
     let emulator = Emulator::fit(&runs(5, 200, 2), &columns(), 0).unwrap();
     let mut quiet = [0.5; FIELDS];
     quiet[1] = 0.05;
@@ -71,7 +71,7 @@ fn example_scatter_existence_and_correlation_are_found() {
 /// 2.8 %, nearly all from the 128 points that the width of intervals follows from; the mean over outputs
 /// less.
 #[test]
-fn example_intervals_hold_the_runs_that_they_should() {
+fn planted_intervals_hold_the_runs_that_they_should() {
     let emulator = Emulator::fit(&runs(6, 128, 2), &columns(), 0).unwrap();
     let fresh = truths(60, 1000, 1.0);
     let share = |output: usize| {

@@ -12,7 +12,7 @@ const KEPT: [usize; 3] = [1, 2, 5];
 /// Every output taken three times over, as if for outputs of their own: the central 90 % of the draws are too
 /// narrow, and the intervals that the runs ask for hold truths that no run has seen.
 #[test]
-fn example_evidence_that_counts_three_times_is_found_out_by_the_runs() {
+fn planted_evidence_that_counts_three_times_is_found_out_by_the_runs() {
     let names: Vec<Output> = KEPT.iter().map(|&output| columns()[output].clone()).collect();
     let runs = only(runs(8, 60, 1), &KEPT);
     let once: Vec<(usize, f64)> = (0..KEPT.len()).map(|output| (output, 0.0)).collect();
@@ -40,7 +40,7 @@ fn example_evidence_that_counts_three_times_is_found_out_by_the_runs() {
 
 /// Few runs say nothing of their intervals.
 #[test]
-fn example_few_runs_have_no_levels() {
+fn behaves_few_runs_have_no_levels() {
     let all: Vec<(usize, f64)> = (0..columns().len()).map(|output| (output, 0.0)).collect();
     let levels = Levels::of(&runs(8, 30, 1), &columns(), &PRIORS, &all, usize::MAX, 3).unwrap();
     assert!(levels.is_none());

@@ -12,7 +12,7 @@ fn functions(x: &[f64]) -> [f64; 3] {
 /// y₀ = 4 (x₀ − ½)² = 0.36 ± 0.03 holds at 0.2 and at 0.8, with nothing between; y₁ = x₀ = 0.46 ± 0.5 prefers
 /// the first a little, and y₂ ties two other fields. Weights of the regions by quadrature over x₀.
 #[test]
-fn example_both_regions_are_found_with_their_weights() {
+fn planted_both_regions_are_found_with_their_weights() {
     let points = sobol(1, DIMENSIONS, 0, 128).unwrap();
     let outputs = points.iter().map(|x| functions(x).map(Some).to_vec()).collect();
     let columns = ["y0", "y1", "y2"].map(|name| Output { name: name.to_owned(), scale: Scale::Linear });

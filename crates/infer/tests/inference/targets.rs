@@ -26,7 +26,7 @@ fn target(output: usize, value: impl Into<Option<f64>>, tolerance: f64) -> Targe
 }
 
 #[test]
-fn example_a_missing_output_tells_where_it_is_missing() {
+fn planted_a_missing_output_tells_where_it_is_missing() {
     let emulator = emulator(128);
     for (value, lower) in [(None, true), (Some(0.4), false)] {
         let posterior = Posterior::of(&emulator, &PRIORS, &[target(2, value, 0.05)], OPTIONS).unwrap();
@@ -36,7 +36,7 @@ fn example_a_missing_output_tells_where_it_is_missing() {
 }
 
 #[test]
-fn example_conflicts_are_named() {
+fn planted_conflicts_are_named() {
     let emulator = emulator(128);
     // y₀ = 0.9 makes y₁ = 0.19; both are within reach alone. y₂ = 1.6 is not.
     let targets = [target(0, 0.9, 0.02), target(1, 0.75, 0.05), target(2, 1.6, 0.05)];
@@ -54,7 +54,7 @@ fn example_conflicts_are_named() {
 }
 
 #[test]
-fn example_runs_at_the_posterior_lie_about_their_targets() {
+fn planted_runs_at_the_posterior_lie_about_their_targets() {
     let emulator = emulator(128);
     let targets = [target(0, 0.6, 0.02), target(1, 0.64, 0.05)];
     let posterior = Posterior::of(&emulator, &PRIORS, &targets, OPTIONS).unwrap();
@@ -70,7 +70,7 @@ fn example_runs_at_the_posterior_lie_about_their_targets() {
 /// Few runs do not resolve the ripple; runs at the requested points narrow the posterior no less than was
 /// expected of any, and the expectation lies between the present posterior and the limit.
 #[test]
-fn example_further_runs_narrow_the_posterior() {
+fn planted_further_runs_narrow_the_posterior() {
     let emulator = emulator(24);
     let targets = [target(1, 0.64, 0.01)];
     let posterior = Posterior::of(&emulator, &PRIORS, &targets, OPTIONS).unwrap();

@@ -7,7 +7,7 @@ fn parse(text: &str) -> Result<Campaign, String> {
 }
 
 #[test]
-fn example_a_grid_has_every_value_with_every_other() {
+fn by_hand_a_grid_has_every_value_with_every_other() {
     let text = "(name: \"g\", starts: 2, variants: grid([
         (field: \"operation.load_n\", values: [10000, 20000]),
         (field: \"bearing\", values: [\"NU 205\", \"NU 206\", \"6205\"]),
@@ -50,7 +50,7 @@ fn invariant_designs_fill_their_ranges_and_repeat() {
 }
 
 #[test]
-fn example_a_scene_that_cannot_be_is_a_row_with_its_reason() {
+fn behaves_a_scene_that_cannot_be_is_a_row_with_its_reason() {
     let text = "(name: \"x\", variants: grid([(field: \"defect.depth_mm\", values: [0.2, 9])]))";
     let campaign = parse(text).unwrap();
     assert!(campaign.runs[0].scene.is_ok());
@@ -250,7 +250,7 @@ fn refuses_cells_that_their_field_cannot_have_in_the_tables_own_lines() {
 }
 
 #[test]
-fn example_a_table_as_spreadsheets_write_it() {
+fn behaves_a_table_as_spreadsheets_write_it() {
     let scratch = stribeck_testing::Scratch::create("campaign-quoted");
     let table = "\u{feff}\"operation.load_n\",\"bearing\",\"contact.surface\",name,output.sensors\r\n\
                  10000,\"NU 205\",\"arc\",\"rig\",\"[(name: \"\"a\"\", angle_deg: \
@@ -265,7 +265,7 @@ fn example_a_table_as_spreadsheets_write_it() {
 }
 
 #[test]
-fn example_values_that_contradict_each_other_are_rows_with_their_reason() {
+fn behaves_values_that_contradict_each_other_are_rows_with_their_reason() {
     // The sensor is there in one variant and missing in the other: no value is misspelt.
     let text = "(name: \"x\", variants: grid([
         (field: \"output.sensors\", values: [[], [(name: \"a\", angle_deg: 10.0)]]),
@@ -277,7 +277,7 @@ fn example_values_that_contradict_each_other_are_rows_with_their_reason() {
 }
 
 #[test]
-fn example_campaigns_of_the_repository_have_no_variant_that_cannot_be() {
+fn behaves_campaigns_of_the_repository_have_no_variant_that_cannot_be() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/campaigns");
     let files = std::fs::read_dir(folder).expect("fixtures").flatten().map(|entry| entry.path());
     let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "ron"));
@@ -294,7 +294,7 @@ fn example_campaigns_of_the_repository_have_no_variant_that_cannot_be() {
 }
 
 #[test]
-fn example_the_guide_shows_the_campaigns_of_the_repository() {
+fn behaves_the_guide_shows_the_campaigns_of_the_repository() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let read = |path: &str| std::fs::read_to_string(root.join(path)).expect("a file of the repository");
     let page = read("docs/guide/src/campaign_file.md");
@@ -306,7 +306,7 @@ fn example_the_guide_shows_the_campaigns_of_the_repository() {
 }
 
 #[test]
-fn example_variants_repair_the_scene_that_they_start_from() {
+fn behaves_variants_repair_the_scene_that_they_start_from() {
     // Deeper than the ring is thick, but for what varies.
     let text = "(name: \"x\", set: [\"defect.depth_mm=9\"], variants: grid([(field: \"defect.depth_mm\", \
         values: [0.2])]))";

@@ -16,7 +16,7 @@ fn parse(text: &str) -> Result<Inference, String> {
 }
 
 #[test]
-fn example_values_of_unknowns_make_a_scene() {
+fn behaves_values_of_unknowns_make_a_scene() {
     let unknowns = format!(
         "{UNKNOWN}, (field: \"mesh.roller_copies\", values: [rotated, translated]),
          (name: \"damping\", sets: [[\"solver.mass_damping_per_s=5000\", \"solver.structural_damping=None\"], []])"
@@ -56,7 +56,7 @@ fn refuses_what_cannot_be_inferred_with_its_line() {
 }
 
 #[test]
-fn example_quantities_name_numbers_of_a_summary() {
+fn behaves_quantities_name_numbers_of_a_summary() {
     let summary = json!({
         "levels": { "impulse_g": 180.0, "gap_g": null },
         "tones": [
@@ -102,7 +102,7 @@ fn example_quantities_name_numbers_of_a_summary() {
 }
 
 #[test]
-fn example_the_file_of_the_guide_is_one() {
+fn behaves_the_file_of_the_guide_is_one() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/infer/quick.ron");
     let inference = Inference::read(&path).unwrap();
     assert_eq!((inference.unknowns.len(), inference.targets.len(), inference.budget.first), (2, 3, 12));

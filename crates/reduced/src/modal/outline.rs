@@ -22,7 +22,7 @@ mod tests {
 
     /// A square with a step in one of its sides.
     #[test]
-    fn example_a_step_along_a_radius_is_a_wall() {
+    fn by_hand_a_step_along_a_radius_is_a_wall() {
         let square = [[1.0, -1.0], [1.0, 0.0], [1.1, 0.0], [1.1, 1.1], [-1.0, 1.0], [-1.0, -1.0]];
         let per_angle = per_angle(&square);
         assert_eq!(per_angle[1], 0.0);

@@ -369,7 +369,7 @@ mod tests {
     use super::labels;
 
     #[test]
-    fn example_choices_are_told_apart_by_what_differs() {
+    fn behaves_choices_are_told_apart_by_what_differs() {
         let films = [
             "None",
             "(viscosity_pa_s: 0.002, roughness_um: 0.3)",

@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_square_fills_its_pixels_and_no_other() {
+    fn by_hand_a_square_fills_its_pixels_and_no_other() {
         for corners in [
             [[1.0, 1.0], [4.0, 1.0], [4.0, 3.0], [1.0, 3.0]],
             [[1.0, 3.0], [4.0, 3.0], [4.0, 1.0], [1.0, 1.0]],
@@ -141,7 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_gif_has_its_signature_and_refuses_nothing_or_a_mixture() {
+    fn behaves_a_gif_has_its_signature_and_refuses_nothing_or_a_mixture() {
         let bytes = gif("g", &[Canvas::new(4, 4), Canvas::new(4, 4)], 5).unwrap();
         assert!(bytes.starts_with(b"GIF89a") && bytes.ends_with(&[0x3b]));
         assert!(gif("g", &[], 5).is_err());

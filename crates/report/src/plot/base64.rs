@@ -56,7 +56,7 @@ mod tests {
     }
 
     #[test]
-    fn example_one_is_3f800000() {
+    fn by_hand_one_is_3f800000() {
         assert_eq!(floats(&[1.0]), "AACAPw==");
     }
 }

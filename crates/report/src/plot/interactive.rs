@@ -207,7 +207,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_label_cannot_end_the_script() {
+    fn behaves_a_label_cannot_end_the_script() {
         let figure = Figure::new("x", "t", Axis::plain("</script>", ""), Axis::plain("y", ""))
             .with(Series::sampled("s", Colour::Blue, 0.0, 1.0, vec![1.0, 2.0]));
         assert!(!figure.data().unwrap().contains("</script>"));

@@ -26,7 +26,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_overlapping_labels_take_different_rows() {
+    fn by_hand_overlapping_labels_take_different_rows() {
         assert_eq!(rows(&[(100.0, 80.0), (110.0, 80.0), (200.0, 80.0)]), [0, 1, 0]);
         assert!(rows(&[]).is_empty());
     }

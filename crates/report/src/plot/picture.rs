@@ -204,7 +204,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_sheet_is_well_formed_and_its_words_are_escaped() {
+    fn behaves_a_sheet_is_well_formed_and_its_words_are_escaped() {
         let mut sheet = Sheet::new(100.0, 50.0);
         sheet.clipped("c", [0.0, 0.0], [50.0, 50.0], |s| {
             s.path(&[[0.0, 0.0], [10.0, 5.0]], true, "fill:none")

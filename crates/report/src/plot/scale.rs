@@ -68,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_prefixes_of_units() {
+    fn by_hand_prefixes_of_units() {
         assert_eq!(Scale::of(0.03).text(0.005, 0.005, "s"), "5 ms");
         assert_eq!(Scale::of(0.03).text(0.016_18, 0.000_01, "s"), "16.18 ms");
         assert_eq!(Scale::of(50_000.0).text(-10_000.0, 10_000.0, "Hz"), "−10 kHz");
@@ -77,7 +77,7 @@ mod tests {
     }
 
     #[test]
-    fn example_ticks_are_round() {
+    fn by_hand_ticks_are_round() {
         let (at, step) = ticks(-183.0, 176.0, 7);
         assert_eq!((at, step), (vec![-150.0, -100.0, -50.0, 0.0, 50.0, 100.0, 150.0], 50.0));
         let (at, step) = ticks(4000.0, 6000.0, 8);

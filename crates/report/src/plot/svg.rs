@@ -338,7 +338,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_ticks_of_counted_things_are_whole() {
+    fn invariant_ticks_of_counted_things_are_whole() {
         for count in [1, 2, 3, 7, 40] {
             let axis = Axis::counted("Record", count);
             let ticks = tick_texts(&axis, axis.range.unwrap(), 8);

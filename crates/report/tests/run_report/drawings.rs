@@ -3,7 +3,7 @@
 use stribeck_report::plot::{Axis, Band, Colour, Figure, Mark, Series, png};
 
 #[test]
-fn example_everything_asked_for_is_in_the_picture() {
+fn behaves_everything_asked_for_is_in_the_picture() {
     let y = (0..3000).map(|n| 100.0 * (0.3 * n as f64).sin()).collect();
     let mut figure = Figure::new("a", "Acceleration <raw>", Axis::si("Time", "s"), Axis::plain("a_y", "g"))
         .with(Series::sampled("side", Colour::Blue, 0.0, 1e-5, y));
@@ -18,13 +18,13 @@ fn example_everything_asked_for_is_in_the_picture() {
 }
 
 #[test]
-fn example_an_empty_figure_still_draws_its_frame() {
+fn behaves_an_empty_figure_still_draws_its_frame() {
     let figure = Figure::new("e", "Empty", Axis::si("Time", "s"), Axis::plain("a", "g"));
     assert!(figure.to_svg().unwrap().contains("Empty"));
 }
 
 #[test]
-fn example_letters_leave_ink() {
+fn behaves_letters_leave_ink() {
     let drawing = |words: &str| {
         let svg = format!(
             "<svg width=\"60\" height=\"20\" xmlns=\"http://www.w3.org/2000/svg\"><rect width=\"60\" \

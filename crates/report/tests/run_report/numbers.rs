@@ -41,7 +41,7 @@ fn roundtrip_every_number_of_the_synthetic_run() {
 }
 
 #[test]
-fn example_tone_levels_and_notch_of_the_synthetic_run() {
+fn planted_tone_levels_and_notch_of_the_synthetic_run() {
     let (_folder, summary) = whole("levels");
     let tone = &summary.tones[0];
     assert_eq!((tone.sensor.as_str(), tone.name.as_str(), tone.harmonic), ("side", "roller_vertices", 1));
@@ -185,7 +185,7 @@ fn golden_the_summary_has_its_stable_names() {
 }
 
 #[test]
-fn example_the_ledger_tells_mesh_from_physics() {
+fn planted_the_ledger_tells_mesh_from_physics() {
     use stribeck_analysis::artefacts::Origin;
     let (_, summary) = whole("ledger");
     let of = |family| summary.artefacts.iter().filter(move |a| a.family == family);

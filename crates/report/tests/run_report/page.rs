@@ -18,7 +18,7 @@ const PAGE_LIMIT_BYTES: u64 = 15_000_000;
 const MOVING_LIMIT_BYTES: usize = 60_000;
 
 #[test]
-fn example_the_page_holds_every_figure_and_needs_no_network() {
+fn behaves_the_page_holds_every_figure_and_needs_no_network() {
     let (folder, _) = whole("page");
     let page = read(&folder.0, "report.html");
     assert!((page.len() as u64) < PAGE_LIMIT_BYTES, "{} bytes", page.len());
@@ -81,7 +81,7 @@ fn example_the_page_holds_every_figure_and_needs_no_network() {
 }
 
 #[test]
-fn example_the_page_begins_with_the_answer() {
+fn behaves_the_page_begins_with_the_answer() {
     let (folder, _) = whole("answer");
     let page = read(&folder.0, "report.html");
     let places = [
@@ -103,7 +103,7 @@ fn example_the_page_begins_with_the_answer() {
 }
 
 #[test]
-fn example_a_quiet_sound_bearing_has_digits_and_no_words_on_defects() {
+fn behaves_a_quiet_sound_bearing_has_digits_and_no_words_on_defects() {
     let folder = Scratch::new("quiet");
     let scene = Scene {
         defect: None,
@@ -138,7 +138,7 @@ fn example_a_quiet_sound_bearing_has_digits_and_no_words_on_defects() {
 
 /// Facets of other lengths than those that the tone of the record is from: none of theirs stands out.
 #[test]
-fn example_arcs_without_a_facet_tone_have_no_notch_and_the_page_says_why() {
+fn behaves_arcs_without_a_facet_tone_have_no_notch_and_the_page_says_why() {
     let of = |name: &str, surface: ContactSurface| {
         let folder = Scratch::new(name);
         let mut scene = Scene::default();

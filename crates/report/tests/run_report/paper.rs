@@ -4,7 +4,7 @@ use crate::synthetic::{TONE_G, TONE_HZ};
 use crate::{close, read, whole};
 
 #[test]
-fn example_every_number_of_the_paper_has_a_row_without_a_blank() {
+fn behaves_every_number_of_the_paper_has_a_row_without_a_blank() {
     let (folder, summary) = whole("paper");
     let page = read(&folder.0, "report.html");
     for row in &summary.paper {
@@ -75,7 +75,7 @@ fn example_every_number_of_the_paper_has_a_row_without_a_blank() {
 /// The sensors have 1, 1.4, 0.7 and 2 times the paper's impulse; the one at the bottom is the most radial
 /// outside the seat, and its levels are twice the paper's.
 #[test]
-fn example_the_paper_is_answered_figure_by_figure() {
+fn planted_the_paper_is_answered_figure_by_figure() {
     let (folder, summary) = whole("figures");
     let page = read(&folder.0, "report.html");
     let section = &page[page.find("id=\"numbers\"").expect("a section")..];

@@ -87,7 +87,7 @@ fn refuses_a_stretch_that_holds_nothing_and_keeps_the_report() {
 }
 
 #[test]
-fn example_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
+fn behaves_a_diverged_run_is_reported_with_a_banner_and_nothing_invented() {
     let folder = Scratch::new("diverged");
     // 4 ms: roller 1 has entered the defect and not left it.
     synthetic::write(&folder.0, Status::Diverged, 400);

@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn example_bearings_of_ones_own_have_names() {
+    fn behaves_bearings_of_ones_own_have_names() {
         let bearings = of(EXAMPLE).expect("the example");
         assert_eq!(bearings.len(), 1);
         let orders = bearings[0].orders().expect("16 rollers");

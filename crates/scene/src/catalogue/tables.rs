@@ -280,7 +280,7 @@ mod tests {
 
     /// The accuracy stated by [`BALL_RULE`], checked with bearings whose balls are listed with their source.
     #[test]
-    fn example_balls_by_rule_beside_known_ones() {
+    fn behaves_balls_by_rule_beside_known_ones() {
         // Diameter to 6 %, pitch to 1.5 %, and all of the numbers.
         let known = OTHERS.iter().filter(|row| row.1 == Element::Ball && row.5 == 0.0);
         let mut compared = 0;

@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_formats_are_recognised_by_their_first_line() {
+    fn behaves_formats_are_recognised_by_their_first_line() {
         for (text, words) in [
             ("{\"name\": \"x\"}", "JSON"),
             ("\n  {\n \"name\": 1}", "JSON"),
@@ -139,7 +139,7 @@ mod tests {
     }
 
     #[test]
-    fn example_decimal_commas() {
+    fn by_hand_decimal_commas() {
         for (text, length) in
             [("50,0)", Some(4)), ("-3,25, x", Some(5)), ("50, 0", None), ("50.000,5", Some(8))]
         {

@@ -491,7 +491,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_every_number_of_a_scene_has_a_range() {
+    fn behaves_every_number_of_a_scene_has_a_range() {
         for housing in HousingScene::of_every_form() {
             let scene = Scene { housing, ..with_everything() };
             let text = scene.to_ron();
@@ -508,7 +508,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_defaults_are_in_range() {
+    fn behaves_the_defaults_are_in_range() {
         assert_eq!(findings(&Scene::default()).len(), 0);
     }
 }

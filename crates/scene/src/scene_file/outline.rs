@@ -264,7 +264,7 @@ mod tests {
     "#;
 
     #[test]
-    fn example_every_field_is_found_with_its_value() {
+    fn behaves_every_field_is_found_with_its_value() {
         let outline = Outline::of(TEXT);
         let value = |path: &str| outline.get(path).map(|entry| &TEXT[entry.value.clone()]);
         assert_eq!(value("bearing.rollers"), Some("24"));
@@ -278,14 +278,14 @@ mod tests {
     }
 
     #[test]
-    fn example_the_innermost_field_is_found_from_a_place() {
+    fn behaves_the_innermost_field_is_found_from_a_place() {
         let outline = Outline::of(TEXT);
         let at = TEXT.find("2.5e1").expect("the text contains it");
         assert_eq!(outline.at(at + 1).map(|entry| entry.path.as_str()), Some("bearing.thickness_mm"));
     }
 
     #[test]
-    fn example_single_values_are_distinguished_from_fragments() {
+    fn behaves_single_values_are_distinguished_from_fragments() {
         for good in ["1.0", "None", "(a: 1)", "[1, 2]", "\"x\"", "Some((a: (b: 2)))", " -3e4 "] {
             assert!(is_single_value(good), "{good}");
         }

@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn example_to_a_stranger_nothing_is_like() {
+    fn behaves_to_a_stranger_nothing_is_like() {
         assert_eq!(field("qqq", SIBLINGS, ALL), None);
     }
 }

@@ -294,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_profile_of_a_surface_from_a_table() {
+    fn behaves_the_profile_of_a_surface_from_a_table() {
         let folder = Scratch::create("surface-tables");
         let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).expect("writable");
         write("pit.csv", "position_mm,depth_um\n-2,0\n0.5,40\n2,0\n");
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_longest_table_is_a_scene_that_can_be_read_again() {
+    fn roundtrip_the_longest_table_is_a_scene_that_can_be_read_again() {
         let rows: String = (0..MAX_ROWS)
             .map(|n| format!("{},{}\n", 0.1 + n as f64 / 3.0, 100.0 + 1.0 / (n + 1) as f64))
             .collect();

@@ -231,7 +231,7 @@ fn refuses_impossible_cage_adapter_defect_mesh_and_sampling() {
 }
 
 #[test]
-fn example_overrides_reach_every_kind_of_field() {
+fn behaves_overrides_reach_every_kind_of_field() {
     let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid");
     assert_eq!(set(&["mesh.size_mm=1"]).mesh.size_mm, 1.0);
     assert_eq!(set(&["mesh.roller_facets=56"]).mesh.roller_facets, 56);
@@ -282,7 +282,7 @@ fn refuses_overrides_and_points_at_the_command_line() {
 }
 
 #[test]
-fn example_an_override_may_repair_a_file_or_break_it() {
+fn behaves_an_override_may_repair_a_file_or_break_it() {
     let folder = Scratch::create("scene");
     let path = folder.join("x.ron");
     std::fs::write(&path, "(mesh: (size_mm: -1.0))").expect("writable");

@@ -75,7 +75,7 @@ mod tests {
     }
 
     #[test]
-    fn example_rounding_keeps_its_direction() {
+    fn by_hand_rounding_keeps_its_direction() {
         assert_eq!((round_up(17.51, 2), round_down(17.51, 2)), (18.0, 17.0));
         assert_eq!((round_up(0.001_21, 2), round_down(0.001_29, 2)), (0.0013, 0.0012));
         assert_eq!((round_up(123_456.0, 1), round_down(123_456.0, 1)), (200_000.0, 100_000.0));

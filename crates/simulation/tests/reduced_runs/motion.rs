@@ -27,7 +27,7 @@ fn invariant_rollers_that_are_not_looked_at_do_not_touch() {
 }
 
 #[test]
-fn example_a_step_beyond_the_critical_one_is_shortened() {
+fn behaves_a_step_beyond_the_critical_one_is_shortened() {
     let folder = Scratch::create("reduced-step");
     let text = "(bearing: \"NU 205\", model: reduced(modes_khz: 100.0, step_us: 5.0), film: None,
         operation: (load_n: 3000.0, speed_rpm: 1500.0), mesh: (size_mm: 0.5, roller_facets: 56), output: \
@@ -42,7 +42,7 @@ fn example_a_step_beyond_the_critical_one_is_shortened() {
 /// Over defects on raceways and rollers, in both models from one start: the same forces, and the energy
 /// balances.
 #[test]
-fn example_defects_are_felt_as_by_the_full_model() {
+fn peer_defects_are_felt_as_by_the_full_model() {
     // Means over a quarter of a millisecond, of the largest of them: where nodes of a coarse mesh lie changes
     // the stiffness of contacts by ±4 % (THEORY §9.6).
     const FORCES: f64 = 0.03;
@@ -86,7 +86,7 @@ fn example_defects_are_felt_as_by_the_full_model() {
 
 /// From one start, full and reduced model carry the load on the same rollers at first.
 #[test]
-fn example_the_reduced_model_starts_as_the_full_one() {
+fn peer_the_reduced_model_starts_as_the_full_one() {
     // Of the largest roller force. Where nodes of a mesh of 2 mm lie under a contact changes its stiffness by
     // ±4 % at the largest force and ±5 % at light ones; the reduced model has the mean (THEORY §9.6).
     const TOLERANCE: f64 = 0.04;
@@ -192,7 +192,7 @@ fn analytic_a_start_from_rest_takes_the_rollers_along() {
 /// A bearing that hardly anything loads: one or two rollers carry, and the ring would swing far before they
 /// touch. They carry the load, and the ring stays within its clearance.
 #[test]
-fn example_light_loads() {
+fn behaves_light_loads() {
     for load_n in [300, 30, 3] {
         let text = format!(
             "(bearing: \"NU 205\", model: reduced(step_us: 0.5), film: None, defect: None, \

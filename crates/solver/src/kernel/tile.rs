@@ -328,7 +328,7 @@ mod tests {
     use crate::{Dynamics, Elastic, Model};
 
     #[test]
-    fn example_elements_that_are_alike_are_whole_groups_or_the_last() {
+    fn by_hand_elements_that_are_alike_are_whole_groups_or_the_last() {
         let of = |shapes: &[(u8, usize)]| {
             let shapes: Vec<u8> = shapes.iter().flat_map(|&(shape, n)| vec![shape; n]).collect();
             alike(shapes.len(), |i, j| shapes[i] == shapes[j])
@@ -351,7 +351,7 @@ mod tests {
     }
 
     #[test]
-    fn example_strips_of_a_grooved_ring_are_mostly_alike() {
+    fn behaves_strips_of_a_grooved_ring_are_mostly_alike() {
         let grooves = vec![Groove::rectangular(0.5 * PI, 0.01, 0.2e-3)];
         let ring = Annulus {
             inner_radius: 0.1,

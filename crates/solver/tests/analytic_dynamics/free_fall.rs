@@ -50,7 +50,7 @@ const TIME: f64 = 1e-14;
 const STRAIN: f64 = 1e-12;
 
 #[test]
-fn example_free_fall() {
+fn by_hand_free_fall() {
     let mut mesh = Mesh::new();
     let disc = Disc { radius: 0.01, facets: 24, size: 3e-3, rotation: 0.0 }.part().expect("a disc");
     for i in 0..3 {

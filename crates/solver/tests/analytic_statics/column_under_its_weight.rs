@@ -44,7 +44,7 @@ const SINKS: f64 = 1e-5;
 const MOVED: f64 = 1e-12;
 
 #[test]
-fn example_column_under_its_weight() {
+fn by_hand_column_under_its_weight() {
     let height = 0.2;
     let mut model = body(&rectangle(0.02, height, 2, 20));
     model.gravity = [0.0, -9.81];
@@ -60,7 +60,7 @@ fn example_column_under_its_weight() {
 }
 
 #[test]
-fn example_a_run_from_equilibrium_does_not_ring() {
+fn behaves_a_run_from_equilibrium_does_not_ring() {
     let mut model = body(&rectangle(0.02, 0.2, 2, 20));
     model.gravity = [0.0, -9.81];
     for n in 0..3 {

@@ -97,7 +97,7 @@ fn conserves_rigid_motion_under_relative_damping() {
 }
 
 #[test]
-fn example_damping_set_in_the_middle_of_a_run_acts_at_once() {
+fn behaves_damping_set_in_the_middle_of_a_run_acts_at_once() {
     // Whatever the number of the step: a body in flight must not be braked against a frame that was never
     // placed.
     for late in [0, 10, 63] {

@@ -149,7 +149,7 @@ fn invariant_a_run_that_never_starts_takes_away_the_folders_above_it() {
 }
 
 #[test]
-fn example_of_a_run_its_signals_stay() {
+fn behaves_of_a_run_its_signals_stay() {
     let folder = Scratch::new("kept");
     for (keep, left) in [
         (Keep::All, &[CHECKPOINT, ENERGY, FRAMES, MESH, INFO, SCENE, SUMMARY, TRACE][..]),
@@ -275,7 +275,7 @@ fn issue_what_is_made_of_runs_takes_no_folder_of_others() {
 }
 
 #[test]
-fn example_a_run_that_never_starts_leaves_no_folder() {
+fn behaves_a_run_that_never_starts_leaves_no_folder() {
     let folder = Scratch::new("never");
     drop(RunDir::create(folder.path()).expect("free"));
     assert!(!folder.path().exists());

@@ -41,7 +41,7 @@ fn rows(count: usize) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn example_the_file_is_a_structured_npy_array() {
+fn by_hand_the_file_is_a_structured_npy_array() {
     let file = File::new();
     let bytes = file.write(&["time_s", "ay_m_s2"], &rows(3));
     let data = bytes.len() - 3 * 16;
@@ -217,7 +217,7 @@ fn refuses_wrong_rows_and_names() {
 }
 
 #[test]
-fn example_many_channels_take_version_2() {
+fn behaves_many_channels_take_version_2() {
     let file = File::new();
     let names: Vec<String> = (0..4000).map(|i| format!("roller.{i}.outer_n")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();

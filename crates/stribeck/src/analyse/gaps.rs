@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_a_short_gap_is_bridged_and_a_long_one_cuts() {
+    fn behaves_a_short_gap_is_bridged_and_a_long_one_cuts() {
         let mut samples: Vec<f64> = (0..1000).map(f64::from).collect();
         samples[500] = f64::NAN;
         samples[501] = f64::NAN;

@@ -231,7 +231,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_units_are_read_from_names() {
+    fn behaves_units_are_read_from_names() {
         for (column, expected) in [
             ("sensor.side.ay_m_s2", "m/s²"),
             ("summary.levels.gap_rms_g", "g"),
@@ -252,7 +252,7 @@ mod tests {
     }
 
     #[test]
-    fn example_limits_are_those_of_what_is_there() {
+    fn behaves_limits_are_those_of_what_is_there() {
         let scene = |set: &[&str]| Scene::default().with_overrides(set).expect("a scene");
         let full = scene(&["film=None"]);
         let dented = scene(&[

@@ -79,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn example_names_say_number_values_and_start() {
+    fn behaves_names_say_number_values_and_start() {
         let text = "(name: \"a\", starts: 2, variants: grid([(field: \"operation.load_n\", values: [2000, 1e4]), \
                     (field: \"bearing\", values: [\"NU 205\"])]))";
         let campaign = Campaign::parse(text, "here", Path::new("")).expect("a campaign");

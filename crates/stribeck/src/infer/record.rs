@@ -371,7 +371,7 @@ mod tests {
     }
 
     #[test]
-    fn example_the_inference_of_a_record_can_be_read_and_its_scenes_simulated() {
+    fn behaves_the_inference_of_a_record_can_be_read_and_its_scenes_simulated() {
         let analysis = analysis();
         let claim = claim(&analysis).expect("one raceway");
         assert_eq!(claim.ring, "outer");

@@ -100,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn example_each_verdict() {
+    fn behaves_each_verdict() {
         let one = || Ok(vec![held("a", 9, 1.0)]);
         let two = || Ok(vec![held("x", 9, 1.0), held("b", 9, 2.0)]);
         let no = || Err("cut off".to_owned());

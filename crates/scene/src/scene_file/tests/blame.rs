@@ -96,7 +96,7 @@ fn issue_a_short_run_is_not_blamed_on_the_sampling_interval() {
 }
 
 #[test]
-fn example_another_field_is_proposed_where_the_blamed_one_cannot_help() {
+fn behaves_another_field_is_proposed_where_the_blamed_one_cannot_help() {
     // Half the bearing with rollers of the same size: the number of rollers must change, no diameter can.
     let problem = only(parse(
         "(bearing: (outer_race_diameter_mm: 120, inner_race_diameter_mm: 83.96), cage: None, adapter: \
@@ -116,7 +116,7 @@ fn issue_a_bearing_that_lacks_a_number_is_named_beside_other_problems() {
 }
 
 #[test]
-fn example_a_second_sensor_of_one_name_gets_a_free_one() {
+fn behaves_a_second_sensor_of_one_name_gets_a_free_one() {
     let sensor = |name: &str| format!("(name: \"{name}\", angle_deg: 0)");
     let text = format!("(output: (sensors: [{}, {}, {}]))", sensor("a"), sensor("a_2"), sensor("a"));
     let problem = only(parse(&text));

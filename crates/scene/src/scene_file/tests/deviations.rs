@@ -10,7 +10,7 @@ fn dry(defects: &str) -> String {
 }
 
 #[test]
-fn example_defects_of_every_form_are_read_and_written_again() {
+fn roundtrip_defects_of_every_form_are_read_and_written_again() {
     let text = dry(
         "(on: roller(3), angle_deg: 20, form: spall(length_mm: 4)), (on: inner, form: dent(depth_mm: 0.02)), \
          (form: profile(points: [(at_mm: -1, depth_um: 0), (at_mm: 0, depth_um: 5), (at_mm: 1, depth_um: \
@@ -170,7 +170,7 @@ fn refuses_spalls_of_one_surface_that_meet() {
 }
 
 #[test]
-fn example_several_spalls_with_steep_walls() {
+fn behaves_several_spalls_with_steep_walls() {
     let grooves = |apart: f64| {
         let spall = "form: spall(length_mm: 4, depth_mm: 0.2, edge: rectangular)";
         dry(&format!(

@@ -48,7 +48,7 @@ fn issue_a_decimal_comma_is_recognised() {
 }
 
 #[test]
-fn example_a_value_of_the_wrong_type_shows_what_is_allowed_and_a_value_that_is() {
+fn behaves_a_value_of_the_wrong_type_shows_what_is_allowed_and_a_value_that_is() {
     for (text, allowed, proposed) in [
         ("(bearing: (rollers: 24.5))", "a whole number, 3 to 400", "rollers: 25"),
         ("(bearing: (rollers: -3))", "a whole number, 3 to 400", "rollers: 24"),

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn example_a_bearing_by_its_name_starts_from_rest_or_turns_back() {
+fn behaves_a_bearing_by_its_name_starts_from_rest_or_turns_back() {
     for operation in
         ["speed_rpm: 0", "speed_rpm: -1500", "speed_rpm: 0, speed_profile: ramp(to_ms: 5, to: 1500)"]
     {
@@ -15,7 +15,7 @@ fn example_a_bearing_by_its_name_starts_from_rest_or_turns_back() {
 }
 
 #[test]
-fn example_a_bearing_by_its_name() {
+fn behaves_a_bearing_by_its_name() {
     let scene = Scene::parse("(bearing: \"NU 205\", operation: (speed_rpm: 1500))", "mine").unwrap();
     let b = &scene.bearing;
     assert_eq!((scene.name.as_str(), b.designation.as_str(), b.rollers), ("nu-205", "NU 205", 13));
@@ -66,7 +66,7 @@ fn issue_what_arguments_replace_has_the_size_of_the_bearing() {
 }
 
 #[test]
-fn example_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
+fn behaves_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
     let mut refused = Vec::new();
     for bearing in crate::catalogue::all() {
         let text = format!("(bearing: \"{}\")", bearing.name);
@@ -119,7 +119,7 @@ fn refuses_a_bearing_that_nobody_knows() {
 }
 
 #[test]
-fn example_defects_on_either_ring_with_sloped_edges() {
+fn behaves_defects_on_either_ring_with_sloped_edges() {
     let scene = parse("(defect: (ring: inner, edge_slope_deg: 30))").unwrap();
     let defect = scene.resolve().grooves[0];
     assert_eq!(defect.ring, crate::scene::DefectRing::Inner);

@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn example_profiles_are_written_in_files_and_behind_set() {
+fn behaves_profiles_are_written_in_files_and_behind_set() {
     let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid").operation;
     let ramp = RampScene { from_ms: 5.0, to_ms: 25.0, to: 1500.0 };
     let in_file =
@@ -80,7 +80,7 @@ fn issue_a_pedestal_is_as_large_as_its_bearing_asks_where_its_sides_are_not_give
 }
 
 #[test]
-fn example_housings_are_written_in_files_and_behind_set() {
+fn behaves_housings_are_written_in_files_and_behind_set() {
     let set = |arguments: &[&str]| Scene::default().with_overrides(arguments).expect("valid");
     let pedestal = parse("(housing: pedestal(width_mm: 300, base_mm: 150))").expect("valid");
     let HousingScene::Pedestal(of) = &pedestal.housing else { panic!("{:?}", pedestal.housing) };

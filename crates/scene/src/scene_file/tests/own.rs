@@ -51,7 +51,7 @@ fn issue_half_a_bearing_does_not_keep_the_papers_raceways() {
 
 /// NU 2210 by its boundary dimensions, its inner raceway and its rollers, whichever way they are given.
 #[test]
-fn example_dimensions_of_one_bearing_in_any_form() {
+fn behaves_dimensions_of_one_bearing_in_any_form() {
     let of = |fields: &str| {
         parse(&format!("(bearing: ({fields}))")).unwrap_or_else(|why| panic!("{fields}: {why}")).bearing
     };
@@ -83,7 +83,7 @@ fn example_dimensions_of_one_bearing_in_any_form() {
 }
 
 #[test]
-fn example_the_command_line_completes_a_bearing_too() {
+fn behaves_the_command_line_completes_a_bearing_too() {
     let set = ["bearing.rollers=8", "bearing.roller_diameter_mm=17.462", "bearing.pitch_mm=72.5"];
     let scene = Scene::default().with_overrides(&set).expect("a bearing");
     assert_eq!(scene, parse("(bearing: (rollers: 8, roller_diameter_mm: 17.462, pitch_mm: 72.5))").unwrap());
@@ -94,7 +94,7 @@ fn example_the_command_line_completes_a_bearing_too() {
 }
 
 #[test]
-fn example_other_numbers_of_the_papers_bearing_leave_it_the_papers() {
+fn behaves_other_numbers_of_the_papers_bearing_leave_it_the_papers() {
     let paper = Scene::default();
     for fields in
         ["rollers: 20", "thickness_mm: 100", "inner_race_diameter_mm: 163.5", "clearance_change_um: 9"]

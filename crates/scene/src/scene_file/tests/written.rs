@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn example_an_empty_group_is_the_default_scene() {
+fn behaves_an_empty_group_is_the_default_scene() {
     assert_eq!(parse("()").expect("valid"), Scene::default());
 }
 
@@ -18,7 +18,7 @@ fn unwritten(text: &str, scene: &Scene) -> Vec<String> {
 }
 
 #[test]
-fn example_oiled_steel_spells_out_the_defaults() {
+fn behaves_oiled_steel_spells_out_the_defaults() {
     let text = include_str!("../../../../../fixtures/scenes/oiled_steel.ron");
     assert_eq!(parse(text).expect("valid"), Scene::default());
     assert_eq!(unwritten(text, &Scene::default()), Vec::<String>::new());
@@ -26,13 +26,13 @@ fn example_oiled_steel_spells_out_the_defaults() {
 
 /// The file of the paper's scene holds every number, whatever the defaults are.
 #[test]
-fn example_the_scene_of_the_paper_leaves_nothing_out() {
+fn behaves_the_scene_of_the_paper_leaves_nothing_out() {
     let text = include_str!("../../../../../fixtures/scenes/singh2014.ron");
     assert_eq!(unwritten(text, &parse(text).expect("valid")), Vec::<String>::new());
 }
 
 #[test]
-fn example_the_quick_scene_holds_the_exit_of_roller_1() {
+fn behaves_the_quick_scene_holds_the_exit_of_roller_1() {
     let scene = parse(include_str!("../../../../../fixtures/scenes/quick.ron")).expect("valid");
     assert_eq!(scene.bearing, Scene::default().bearing);
     assert!(scene.solver.duration_ms > 5.08 + 0.5, "the exit and half a millisecond of ringing");
@@ -53,7 +53,7 @@ fn roundtrip_the_resolved_scene_reads_back_equal() {
 }
 
 #[test]
-fn example_the_hash_is_fnv_1a_of_the_content() {
+fn behaves_the_hash_is_fnv_1a_of_the_content() {
     let plain = parse("()").expect("valid");
     let spelled = parse("( /* same */ mesh: (size_mm: 0.5))").expect("valid");
     assert_eq!(plain.hash(), spelled.hash());
@@ -63,7 +63,7 @@ fn example_the_hash_is_fnv_1a_of_the_content() {
 }
 
 #[test]
-fn example_a_later_field_changes_the_hash_only_where_it_is_used() {
+fn behaves_a_later_field_changes_the_hash_only_where_it_is_used() {
     // The hash of the paper's scene before there was stiffness damping, with what were defaults then: a field
     // that it does not use leaves it alone.
     const FIRST: &str = "d300e82243b85717";

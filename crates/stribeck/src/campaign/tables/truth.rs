@@ -116,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn example_several_defects_of_several_forms() {
+    fn behaves_several_defects_of_several_forms() {
         let found = truth(&[
             "film=None",
             "defect=None",
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn example_a_sound_bearing_and_the_papers() {
+    fn behaves_a_sound_bearing_and_the_papers() {
         let sound = truth(&["defect=None"]);
         assert_eq!(
             (sound.location.as_str(), sound.form, sound.count, sound.first),
