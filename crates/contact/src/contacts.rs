@@ -1,7 +1,5 @@
 //! All contacts of a model: one more force on nodes.
 
-mod divided;
-
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -92,8 +90,6 @@ pub struct Contacts {
     preload: Option<f64>,
     parallel: bool,
     together: bool,
-    /// Whether ranks share the pairs, so that energies are summed once all ranks have sent theirs.
-    divided: bool,
     energy: Energy,
 }
 
@@ -103,8 +99,6 @@ struct Pair {
     /// The first surface's points against the second, then, if wanted, the other way round.
     passes: Vec<Pass>,
     found: Vec<(u32, u32)>,
-    /// Whether this rank computes it.
-    here: bool,
     result: PairResult,
 }
 
@@ -187,7 +181,6 @@ impl Contacts {
                         Sides::First => vec![pass(spec.first, spec.second)],
                     },
                     found: Vec::new(),
-                    here: true,
                     result: PairResult::default(),
                 }
             })
@@ -204,7 +197,6 @@ impl Contacts {
             preload: None,
             parallel: false,
             together: true,
-            divided: false,
             energy: Energy::default(),
         })
     }
@@ -362,9 +354,6 @@ impl Pair {
         weights: &impl Fn(&PairSpec) -> PassLaw,
         push: &mut Vec<Push>,
     ) {
-        if !self.here {
-            return;
-        }
         let result = &mut self.result;
         if at.step < result.idle_until {
             if result.work > 0 {
@@ -457,9 +446,7 @@ impl Contacts {
         };
         share_out_beside(pairs, threads, LEAST_WORK, &Pair::work, met, beside, &mut at_once, &later);
         self.pairs.iter_mut().for_each(|pair| hand_over(&mut pair.result.push, force));
-        if !self.divided {
-            self.count_energies();
-        }
+        self.count_energies();
     }
 }
 

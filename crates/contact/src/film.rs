@@ -4,8 +4,6 @@
 //! nodes' curves is the film's thickness less the deflection of the surfaces under its pressure. So its force
 //! depends on positions alone, is never tensile, and is no stiffer than contact.
 
-mod divided;
-
 use serde::{Deserialize, Serialize};
 
 use stribeck_solver::{
@@ -71,8 +69,6 @@ pub struct Films {
     first: Vec<usize>,
     /// Whether films are those of steady rolling, in a static preload.
     preload: bool,
-    /// Whether ranks share the films, so that heat is summed once all ranks have sent theirs.
-    divided: bool,
     heat: f64,
 }
 
@@ -90,8 +86,6 @@ struct Film {
     nodes: [u32; 4],
     /// Results of the last step.
     pushed: Pushed,
-    /// Whether this rank computes it.
-    here: bool,
 }
 
 /// State of a film from step to step.
@@ -172,12 +166,11 @@ impl Films {
                     memory: Memory::new(speed),
                     nodes: [0; 4],
                     pushed: Pushed::default(),
-                    here: true,
                 });
             }
         }
         first.push(films.len());
-        Ok(Self { surfaces, films, first, preload: false, divided: false, heat: 0.0 })
+        Ok(Self { surfaces, films, first, preload: false, heat: 0.0 })
     }
 
     /// For a static preload: films have the thickness of steady rolling at any moment.
@@ -353,18 +346,16 @@ impl Films {
     /// Takes all films to this moment, without their forces on nodes: these follow with [`Films::hand_over`].
     /// Nothing is read that other forces change, so that it may be done beside them.
     pub fn evaluate(&mut self, at: Moment<'_>) {
-        let Self { surfaces, films, preload, .. } = self;
-        for film in films.iter_mut().filter(|film| film.here) {
+        let Self { surfaces, films, preload, heat, .. } = self;
+        for film in films {
             film.evaluate(surfaces, &at, *preload);
-        }
-        if !self.divided {
-            self.count_heat();
+            *heat += film.pushed.heat;
         }
     }
 
     /// Adds the forces [N] of the last [`Films::evaluate`] at nodes.
     pub fn hand_over(&self, force: &mut NodeForces) {
-        for film in self.films.iter().filter(|film| film.here && film.pushed.force != 0.0) {
+        for film in self.films.iter().filter(|film| film.pushed.force != 0.0) {
             for (&n, [x, y]) in film.nodes.iter().zip(&film.memory.shares) {
                 force.fx[n as usize] += film.pushed.force * x;
                 force.fy[n as usize] += film.pushed.force * y;

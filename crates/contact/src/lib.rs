@@ -117,7 +117,6 @@
 mod broad_phase;
 mod contacts;
 mod film;
-mod interactions;
 mod kernel;
 mod memory;
 mod moving_facet;
@@ -127,7 +126,6 @@ mod points;
 
 pub use contacts::{ContactState, Contacts, PairSpec, Resultant, Sides};
 pub use film::{FilmResultant, FilmSpec, FilmState, Films};
-pub use interactions::Interactions;
 pub use points::Method;
 pub use stribeck_surface::film::{Bed, FilmLaw, Land, Layer, Oil, Place, Point, Pushed, Spring, WIDEST};
 pub use stribeck_surface::{Error, Law, Projection, Smoothing, Surface, project};

@@ -15,7 +15,6 @@ use stribeck_surface::{
 };
 
 use crate::{
-    interactions::within_reach,
     kernel::{
         evaluate::{Evaluation, Sum},
         nearest_chord::NearestChord,
@@ -171,23 +170,6 @@ impl Pass {
     pub(crate) fn forget_candidates(&mut self) {
         self.memory.clear();
         self.memory.pad();
-    }
-
-    /// Adds the slots of all nodes that evaluations may read or push until the next candidates are taken.
-    pub(crate) fn reach(&self, surfaces: &[Surface], slots: &mut Vec<u32>) {
-        let (secondary, primary) = (&surfaces[self.secondary], &surfaces[self.primary]);
-        let (mut own, mut other) = (vec![false; secondary.facets()], vec![false; primary.facets()]);
-        let stride = self.arrangement.stride();
-        for candidate in &self.memory.candidates {
-            own[candidate.facet as usize] = true;
-            for k in 0..candidate.pattern.points as usize {
-                other[self.memory.nearest[candidate.first as usize + k * stride] as usize] = true;
-            }
-        }
-        for (surface, marked) in [(secondary, own), (primary, other)] {
-            let near = within_reach(&marked, surface.closed, surface.slots.len());
-            slots.extend(near.map(|vertex| surface.slots[vertex]));
-        }
     }
 
     /// Pushes that one evaluation makes at most, until the next candidates are taken.

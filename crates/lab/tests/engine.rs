@@ -227,5 +227,5 @@ fn issue_a_run_that_stops_says_what_the_program_says() {
 fn host() -> Host<'static> {
     let clock: &dyn Fn() -> f64 = &|| 0.0;
     let [version, commit, machine] = ["test"; 3].map(String::from);
-    Host { threads: 1, version, commit, machine, wall_s: clock, cpu_s: clock, ranks: None }
+    Host { threads: 1, version, commit, machine, wall_s: clock, cpu_s: clock }
 }

@@ -4,7 +4,7 @@ mod frames;
 mod guards;
 mod recorder;
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::ops::ControlFlow;
 
 use crate::bearing::{
     assembly::{Assembly, BearingSystem, load},
@@ -58,14 +58,13 @@ impl Full {
         std::iter::once(self.bearing.outer).chain(self.bearing.housing).map(mass).sum()
     }
 
-    /// The model in motion, with its duty, ranks and guards.
+    /// The model in motion, with its duty and guards.
     fn moving(self, with: &Preparation<'_>, recorder: Recorder) -> FullMotion {
-        let Self { assembly, mut bearing } = self;
-        let (scene, host) = (with.scene, with.host);
-        host.ranks.iter().for_each(|ranks| bearing.system.divide(Arc::clone(ranks)));
+        let Self { assembly, bearing } = self;
+        let scene = with.scene;
         FullMotion {
             recorder,
-            frames: with.dir.and_then(|dir| Frames::of(scene, dir.frames())),
+            frames: Frames::of(scene, with.dir.frames()),
             guards: Guards::new(scene, &assembly, &bearing),
             duty: scene.varying_duty().map(|duty| (duty.clone(), scene.written.operation.load_n)),
             outer_turns: scene.written.operation.outer_turns(),
@@ -184,8 +183,6 @@ impl Motion for FullMotion {
             self.recorder.after_step(&self.bearing);
         }
         self.drive()?;
-        // Sensors may lie on other ranks.
-        self.bearing.system.gather()?;
         self.recorder.before_step(&self.bearing);
         let ledger = self.bearing.system.step_with_ledger()?;
         self.recorder.after_step(&self.bearing);

@@ -28,7 +28,7 @@ mod simulate;
 
 pub use error::Error;
 pub use reduced::make_modes;
-pub use simulate::{Watch, extend, follow, resume, saved_until, simulate};
+pub use simulate::{Watch, extend, resume, saved_until, simulate};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

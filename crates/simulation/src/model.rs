@@ -16,17 +16,17 @@ use crate::error::Error;
 /// The run of a scene that is being prepared.
 pub(crate) struct Preparation<'a> {
     pub(crate) scene: &'a ResolvedScene,
-    /// The program, with the threads and ranks that the model makes use of.
+    /// The program, with the threads that the model makes use of.
     pub(crate) host: &'a Host<'a>,
-    /// The folder of the run; none on ranks that write nothing.
-    pub(crate) dir: Option<&'a RunDir>,
+    /// The folder of the run.
+    pub(crate) dir: &'a RunDir,
     pub(crate) progress: Progress,
 }
 
 impl Preparation<'_> {
     /// The folder in which the run's folder lies.
     pub(crate) fn runs(&self) -> Option<&Path> {
-        self.dir?.path().parent()
+        self.dir.path().parent()
     }
 
     /// Reports the start of a phase to `watch`, whose answer is ignored: a run cannot end before its first
@@ -40,12 +40,12 @@ impl Preparation<'_> {
 /// A model of a bearing between its preload and its first step.
 pub(crate) trait Model: Sized {
     /// Its state in a checkpoint.
-    type Saved: Serialize + DeserializeOwned + Clone;
+    type Saved: Serialize + DeserializeOwned;
 
     /// The model in motion.
     type Motion: Motion<Saved = Self::Saved>;
 
-    /// Whether threads and ranks share its steps.
+    /// Whether threads share its steps.
     const SHARED: bool;
 
     /// The model of a scene in equilibrium under its load, with rolling velocities.

@@ -12,14 +12,12 @@
 //! | What is a sampling interval? | `time_loop.rs` |
 //! | What is watched? | `guards.rs`, of rollers and cage `placed.rs`, of contact `softness.rs` |
 //! | How does a run continue? | `checkpoint.rs`, `resume.rs` |
-//! | How do processes share one run? | `ranks.rs` |
 
 pub mod channels;
 pub mod checkpoint;
 pub mod error;
 pub mod guards;
 pub mod host;
-pub mod ranks;
 pub mod resume;
 pub mod setup;
 pub mod time_loop;

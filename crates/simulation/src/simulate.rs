@@ -1,5 +1,4 @@
-//! **One run** of the model that a scene names: from its start, from a checkpoint, or on a rank that follows
-//! the first.
+//! **One run** of the model that a scene names: from its start, or from a checkpoint.
 
 use std::ops::ControlFlow;
 
@@ -7,7 +6,6 @@ use crate::run::{
     checkpoint::Checkpoint,
     error::Error as RunError,
     host::{Host, Progress},
-    ranks::{called_to, lead},
     resume::{read_saved, take_over},
     time_loop::Run,
 };
@@ -97,31 +95,6 @@ pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
     dispatch(scene, SavedUntil { scene, dir })
 }
 
-/// Takes part in the run that the first of several ranks begins or continues, to its end, and writes nothing.
-/// For all ranks but the first.
-///
-/// # Errors
-/// As on the first rank, but for its files.
-pub fn follow(host: &Host<'_>) -> Result<(), Error> {
-    let Some(ranks) = &host.ranks else { return Ok(()) };
-    // The full model alone is shared out.
-    let (scene, checkpoint) = called_to::<<Full as Model>::Saved>(&**ranks)?;
-    let scene = &scene.resolve();
-    let mut with = Preparation { scene, host, dir: None, progress: Progress::begin() };
-    match checkpoint {
-        None => {
-            let (full, setup) = Full::prepare(&mut with, &mut |_| ControlFlow::Continue(()))?;
-            Run::follow(full.start(&with), setup.info(scene, host), host)?;
-        }
-        Some(Checkpoint { info, motion }) => {
-            let full = Full::prepare_again(&mut with, &info)?;
-            let motion = full.go_on(&with, &info, motion).map_err(|Misfit(what)| RunError::Ranks(what))?;
-            Run::follow(motion, info, host)?;
-        }
-    }
-    Ok(())
-}
-
 struct Begin<'a> {
     scene: &'a ResolvedScene,
     dir: &'a RunDir,
@@ -136,9 +109,8 @@ impl Task for Begin<'_> {
         let Self { scene, dir, host, watch } = self;
         let alone = host.on_one_thread();
         let working = if M::SHARED { host } else { &alone };
-        let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
+        let mut with = Preparation { scene, host: working, dir, progress: Progress::begin() };
         with.enter("mesh", watch);
-        lead::<M::Saved>(working, &scene.written, None)?;
         let (model, setup) = M::prepare(&mut with, watch)?;
         let mut info = setup.info(scene, host);
         info.warnings.extend(model.warnings(scene, &info));
@@ -164,11 +136,9 @@ impl Task for Continue<'_> {
         let started = (host.wall_s)();
         let alone = host.on_one_thread();
         let working = if M::SHARED { host } else { &alone };
-        let checkpoint = read_saved::<M::Saved>(dir, scene)?;
-        let mut with = Preparation { scene, host: working, dir: Some(dir), progress: Progress::begin() };
+        let Checkpoint { mut info, motion: saved } = read_saved::<M::Saved>(dir, scene)?;
+        let mut with = Preparation { scene, host: working, dir, progress: Progress::begin() };
         with.enter("mesh", watch);
-        lead(working, &scene.written, Some(&checkpoint))?;
-        let Checkpoint { mut info, motion: saved } = checkpoint;
         let model = M::prepare_again(&mut with, &info)?;
         take_over(&mut info, scene, host);
         let motion = model.go_on(&with, &info, saved).map_err(|Misfit(what)| RunError::Resume {

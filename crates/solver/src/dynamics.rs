@@ -15,11 +15,10 @@ use crate::{
         stiffness_damping::Extrapolated,
         structural_damping::Evaluation,
         sweep::{Scratch, StepEnergies},
-        tile::{Tile, TileDamping, Turn},
+        tile::{Tile, TileDamping},
     },
     model::{Model, NodeMotion, check_rate},
     rigid::{RigidBody, RigidMotion, RigidState},
-    route::Division,
     state::{Accumulated, Moment, NodeForces, State},
     structural_damping::StructuralDamping,
 };
@@ -59,7 +58,7 @@ pub struct Dynamics {
     pub(crate) forces: NodeForces,
     scratch: Vec<Scratch>,
     /// Energies of each tile in the last step.
-    pub(crate) counted: Vec<StepEnergies>,
+    counted: Vec<StepEnergies>,
     pub(crate) time_step: f64,
     pub(crate) gravity: [f64; 2],
     parallel: bool,
@@ -70,8 +69,6 @@ pub struct Dynamics {
     pub(crate) damped: Option<Vec<DampedBody>>,
     /// Step at which the damping frames were last placed.
     pub(crate) frames_placed: Option<u64>,
-    /// The part of this rank, where there are several.
-    pub(crate) division: Option<Division>,
 }
 
 /// One damped body: the tiles and lanes that it lies in.
@@ -168,7 +165,6 @@ impl Dynamics {
             state,
             driven: vec![0.0; rigid.len()],
             rigid,
-            division: None,
             drive: Accumulated::default(),
             heat: Accumulated::default(),
             damped: None,
@@ -305,7 +301,6 @@ impl Dynamics {
             force.accumulate(self.moment(), &mut pushed);
         }
         self.forces = pushed;
-        self.drop_pushes_elsewhere();
         let since_placed = self.place_damping_frames();
         self.measure_spins();
         self.fill_ghosts();
@@ -398,13 +393,11 @@ impl Dynamics {
         let mut tiles = std::mem::take(&mut self.tiles);
         if place {
             let add_up = |tile: &mut Tile| {
-                let here = tile.turn != Turn::Elsewhere;
-                if let Some(d) = tile.damping.as_mut().filter(|d| here && d.frames.follow()) {
+                if let Some(d) = tile.damping.as_mut().filter(|d| d.frames.follow()) {
                     d.sums = lane_sums(&d.mass, &self.state, tile.slots.clone());
                 }
             };
             self.share_out(&mut tiles, &|tile| tile.slots.len(), &add_up);
-            self.share_sums(&mut tiles, |tile| tile.damping.as_mut().map(|d| &mut d.sums));
             for body in &damped {
                 let mut sums = MassSums::default();
                 for &(tile, lane) in &body.places {
@@ -430,9 +423,11 @@ impl Dynamics {
         let fetch = self.fetch;
         let back = !self.state.step.is_multiple_of(2);
         let parameters = StepParameters { dt, gravity, beta, since_placed, count_heat, fetch, back };
-        self.sweep_and_exchange(parameters, evaluation.as_ref());
-        self.move_rigid_and_share(&parameters, evaluation.is_some());
-        // In the order of the tiles, whatever thread or rank each was on.
+        self.sweep_tiles(parameters, evaluation.as_ref());
+        for ((body, at), driven) in self.rigid_bodies.iter().zip(&mut self.rigid).zip(&mut self.driven) {
+            *driven = body.advance(at, &mut self.state, &mut self.forces, dt, gravity);
+        }
+        // In the order of the tiles, whatever thread each was on.
         let StepEnergies { work, heat, held } =
             self.counted.iter().fold(StepEnergies::default(), |sum, &e| sum + e);
         self.drive.add(work);
@@ -448,13 +443,17 @@ impl Dynamics {
         }
     }
 
-    /// Sweeps the tiles whose turn it is.
-    pub(crate) fn sweep_turn(
-        &mut self,
-        turn: Turn,
-        parameters: StepParameters,
-        evaluation: Option<&Evaluation>,
-    ) {
+    /// Copies nodes to the ghosts of tiles.
+    fn fill_ghosts(&mut self) {
+        let ahead = self.sees_ahead();
+        let State { x, y, vx, vy, .. } = &mut self.state;
+        for field in [x, y].into_iter().chain(ahead.then_some([vx, vy]).into_iter().flatten()) {
+            self.layout.copy_to_ghosts(field);
+        }
+    }
+
+    /// Sums the elements of every tile and moves its nodes.
+    fn sweep_tiles(&mut self, parameters: StepParameters, evaluation: Option<&Evaluation>) {
         let State { x, y, vx, vy, springs, .. } = &mut self.state;
         let mut branches = BranchFields {
             held: springs.held.each_mut().map(|field| &mut field[..]),
@@ -466,7 +465,7 @@ impl Dynamics {
         let NodeForces { fx, fy } = &mut self.forces;
         let fields = TileFields { x, y, vx, vy, fx, fy, branches };
         let scratch = if self.parallel { self.scratch.as_mut_slice() } else { &mut self.scratch[..1] };
-        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted, evaluation, turn };
+        let runs = TileRuns { tiles: &self.tiles, fields, counted: &mut self.counted, evaluation };
         sweep_all(runs, scratch, parameters);
     }
 

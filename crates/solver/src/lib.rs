@@ -94,8 +94,6 @@ pub mod material;
 pub mod model;
 
 pub mod force;
-pub mod ranks;
-mod route;
 pub mod snapshot;
 pub mod state;
 
@@ -103,7 +101,6 @@ pub mod element;
 mod internal_forces;
 
 pub mod damping;
-mod division;
 pub mod dynamics;
 pub mod rigid;
 pub mod springs;

@@ -8,7 +8,7 @@ use crate::{
     kernel::{
         mass_sums::{LaneSums, MassSums, lane_sums},
         structural_damping::{Evaluation, HeldWork},
-        tile::{Tile, TileStructural, Turn},
+        tile::{Tile, TileStructural},
     },
     state::{SpringState, State},
     structural_damping::StructuralDamping,
@@ -134,12 +134,11 @@ impl Dynamics {
         let mut tiles = std::mem::take(&mut self.tiles);
         let mut spins = std::mem::take(&mut self.state.springs.spins);
         let add_up = |tile: &mut Tile| {
-            if let Some(s) = tile.structural.as_mut().filter(|_| tile.turn != Turn::Elsewhere) {
+            if let Some(s) = &mut tile.structural {
                 s.sums = lane_sums(&s.mass, &self.state, tile.slots.clone());
             }
         };
         self.share_out(&mut tiles, &|tile| tile.slots.len(), &add_up);
-        self.share_sums(&mut tiles, |tile| tile.structural.as_mut().map(|s| &mut s.sums));
         spins.clear();
         for body in self.springs.iter().flat_map(|springs| &springs.bodies) {
             let mut sums = MassSums::default();

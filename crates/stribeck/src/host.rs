@@ -2,10 +2,10 @@
 //! never read them.
 
 use std::collections::BTreeMap;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use stribeck_simulation::run::{host::Host, ranks::Ranks};
+use stribeck_simulation::run::host::Host;
 
 /// Ticks per second in `/proc/self/stat`; Linux promises this number to programs on every architecture.
 const TICKS_PER_SECOND: f64 = 100.0;
@@ -19,22 +19,12 @@ pub const COMMIT: &str = env!("STRIBECK_COMMIT");
 
 /// Calls `work` with a [`Host`] that describes this process; its clocks begin now.
 pub fn with<T>(threads: usize, work: impl FnOnce(&Host<'_>) -> T) -> T {
-    with_ranks(threads, None, work)
-}
-
-/// The same for a process that runs a scene together with others, if there are any.
-pub fn with_ranks<T>(threads: usize, ranks: Option<Arc<dyn Ranks>>, work: impl FnOnce(&Host<'_>) -> T) -> T {
     let before = cpu_s();
-    with_clock(threads, ranks, &|| cpu_s() - before, work)
+    with_clock(threads, &|| cpu_s() - before, work)
 }
 
 /// As [`with`], with another count of processor time.
-fn with_clock<T>(
-    threads: usize,
-    ranks: Option<Arc<dyn Ranks>>,
-    cpu_s: &dyn Fn() -> f64,
-    work: impl FnOnce(&Host<'_>) -> T,
-) -> T {
+fn with_clock<T>(threads: usize, cpu_s: &dyn Fn() -> f64, work: impl FnOnce(&Host<'_>) -> T) -> T {
     let start = Instant::now();
     work(&Host {
         threads,
@@ -43,7 +33,6 @@ fn with_clock<T>(
         machine: machine(),
         wall_s: &|| start.elapsed().as_secs_f64(),
         cpu_s,
-        ranks,
     })
 }
 
@@ -72,7 +61,7 @@ impl SharedClock {
         deal(|going, number| {
             going.insert(number, 0.0);
         });
-        let done = with_clock(threads, None, &|| deal(|_, _| {}), work);
+        let done = with_clock(threads, &|| deal(|_, _| {}), work);
         deal(|going, number| {
             going.remove(&number);
         });

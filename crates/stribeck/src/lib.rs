@@ -37,7 +37,6 @@ mod open;
 mod out;
 mod pdf;
 mod plan;
-mod ranks;
 mod remove;
 mod report;
 mod shelf;

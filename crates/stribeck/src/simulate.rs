@@ -4,24 +4,21 @@ mod ensemble;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::Arc;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_report as report;
-use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_scene::scene::Scene;
 use stribeck_simulation as simulation;
-use stribeck_simulation::run::{host::Progress, ranks::Ranks};
+use stribeck_simulation::run::host::Progress;
 use stribeck_store::Error;
 use stribeck_store::run_dir::RunDir;
 use stribeck_store::run_info::{RunInfo, Status, clock};
 
-use crate::conclude;
 use crate::host;
 use crate::interrupt::{self, Interrupt};
 use crate::out::{alert, caution, say, tell};
 use crate::place::{Place, shown};
 use crate::progress::{Meter, energy_error};
-use crate::ranks::Processes;
 
 /// Flags of `simulate`.
 #[derive(Debug, clap::Args)]
@@ -89,35 +86,6 @@ fn starts(text: &str) -> Result<usize, String> {
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
-    let processes = Processes::meet();
-    let done = run_with(options, place, processes.ranks());
-    if let Err(error) = done {
-        // The others would wait for this one.
-        if processes.ranks().is_some() {
-            conclude(Err(error));
-            processes.abort(1);
-            return Ok(ExitCode::FAILURE);
-        }
-        return Err(error);
-    }
-    done
-}
-
-/// Takes part in the run of the first process.
-fn take_part(options: &Options, ranks: Arc<dyn Ranks>) -> Result<ExitCode> {
-    host::with_ranks(options.threads.unwrap_or(1), Some(ranks), simulation::follow)?;
-    Ok(ExitCode::SUCCESS)
-}
-
-fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> Result<ExitCode> {
-    if let Some(ranks) = ranks.as_ref().filter(|ranks| ranks.rank() > 0) {
-        return take_part(options, Arc::clone(ranks));
-    }
-    ensure!(
-        ranks.is_none() || options.starts.is_none(),
-        "an ensemble is many runs side by side, and several processes run one: start it without `mpirun`, or \
-         its starts one by one"
-    );
     let continued = options.resume.as_deref().map(|run| place.locate_run(run));
     match &continued {
         Some(folder) if RunDir::is_ensemble(folder) => return ensemble::run(options, place),
@@ -138,7 +106,7 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
              `--threads` and no seed"
         );
     }
-    let threads = options.threads.unwrap_or_else(|| if ranks.is_some() { 1 } else { host::cores() });
+    let threads = options.threads.unwrap_or_else(host::cores);
     let interrupt = Interrupt::listen()?;
     let (scene, dir) = match &options.resume {
         Some(run) => reopen(&place.locate_run(run), &options.set)?,
@@ -148,22 +116,16 @@ fn run_with(options: &Options, place: &Place, ranks: Option<Arc<dyn Ranks>>) -> 
             (scene, dir)
         }
     };
-    ensure!(
-        ranks.is_none() || scene.model == ModelScene::Full,
-        "several processes run a full model, and this scene has a reduced one: start it without `mpirun`"
-    );
     interrupt.need_not_wait_for(dir.reservation());
-    let processes =
-        ranks.as_ref().map_or_else(String::new, |ranks| format!("{} processes of ", ranks.count()));
     let path = shown(dir.path());
-    tell!("{}: {} ms, {processes}{threads} threads → {path}", scene.name, scene.solver.duration_ms);
+    tell!("{}: {} ms, {threads} threads → {path}", scene.name, scene.solver.duration_ms);
 
     let mut meter = Meter::new(scene.solver.duration_ms);
     let mut watch = |progress: &Progress| {
         meter.show(progress);
         interrupt.flow()
     };
-    let finished = host::with_ranks(threads, ranks, |host| match options.resume {
+    let finished = host::with(threads, |host| match options.resume {
         Some(_) if options.set.is_empty() => simulation::resume(&dir, host, &mut watch),
         Some(_) => simulation::extend(&dir, scene.solver.duration_ms, host, &mut watch),
         None => simulation::simulate(&scene, &dir, host, &mut watch),

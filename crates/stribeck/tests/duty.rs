@@ -42,7 +42,6 @@ fn simulated(scene: &Scene, folder: &Path) {
         machine: "test".into(),
         wall_s: &|| 0.0,
         cpu_s: &|| 0.0,
-        ranks: None,
     };
     let dir = RunDir::create(folder).expect("the folder is new");
     let info =

@@ -65,7 +65,6 @@ fn behaves_a_simulated_passage_gives_events_length_and_pictures() {
         machine: "test".into(),
         wall_s: &|| 0.0,
         cpu_s: &|| 0.0,
-        ranks: None,
     };
     let info = simulate(&scene, &dir, &host, &mut |_| ControlFlow::Continue(())).expect("a sound scene");
     assert_eq!(info.status, Status::Complete);

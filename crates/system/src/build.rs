@@ -54,7 +54,6 @@ impl Plan {
             Load::new(name, pushes)
         });
         let loads = loads.collect();
-        let of_laws: Vec<u32> = further.iter().flat_map(|law| slots(&law.nodes)).collect();
         let further = further
             .into_iter()
             .map(|PlannedForce { name, nodes, make }| (name, make(&slots(&nodes))))
@@ -108,9 +107,7 @@ impl Plan {
         }
         let forces = Forces { loads, contacts, films: oil, further };
         let pairs = pairs.into_iter().map(|pair| pair.name).collect();
-        let mut system = System::new(dynamics, forces, names, model.behaviour, pairs, shortest_facet);
-        system.of_laws = of_laws;
-        Ok(system)
+        Ok(System::new(dynamics, forces, names, model.behaviour, pairs, shortest_facet))
     }
 
     /// Which nodes forces may push: those of contact surfaces, of films, of loads and of the user's laws.

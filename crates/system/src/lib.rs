@@ -60,11 +60,9 @@
 //! | Which threads do the work? | `workers.rs` |
 
 mod build;
-mod division;
 mod error;
 mod forces;
 mod guards;
-mod leaders;
 mod ledger;
 mod load;
 mod names;

@@ -30,11 +30,6 @@ impl Load {
         Self { name, pushes, memory: LoadMemory { factor: 1.0, before: 1.0, supplied: 0.0 } }
     }
 
-    /// Slots that it pushes.
-    pub(crate) fn slots(&self) -> impl Iterator<Item = u32> {
-        self.pushes.iter().map(|&(slot, ..)| slot)
-    }
-
     /// Σ of the magnitudes at a factor of one [N].
     pub(crate) fn magnitude(&self) -> f64 {
         self.pushes.iter().map(|(_, fx, fy)| fx.hypot(*fy)).sum()

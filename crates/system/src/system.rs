@@ -10,7 +10,6 @@ use crate::{
     error::Error,
     forces::Forces,
     guards::{Finding, Limits, Seen, Words},
-    leaders::Division,
     ledger::{Balance, Ledger},
     names::{Names, unknown},
 };
@@ -38,10 +37,6 @@ pub struct System {
     pub(crate) balance: Balance,
     pub(crate) seen: Seen,
     ledger: Ledger,
-    /// Slots of the nodes that laws of the user have announced.
-    pub(crate) of_laws: Vec<u32>,
-    /// The part of this rank, where there are several.
-    pub(crate) division: Option<Division>,
     /// Velocities before a step, for the kinetic energy at its start.
     before: Velocities,
 }
@@ -79,8 +74,6 @@ impl System {
             balance: Balance::default(),
             seen: Seen::default(),
             ledger: Ledger::default(),
-            of_laws: Vec::new(),
-            division: None,
             before: Velocities::default(),
         }
     }
@@ -164,7 +157,8 @@ impl System {
     /// of the user has pushed on a node that it did not announce.
     pub fn step(&mut self) -> Result<(), Error> {
         if self.balance.reference.is_some() && self.dynamics.time_step() > 0.0 {
-            return self.advance();
+            self.dynamics.step(&mut [&mut self.forces]);
+            return Ok(());
         }
         self.first_step().map(|_| ())
     }
@@ -230,12 +224,10 @@ impl System {
         if self.time_step() <= 0.0 {
             return Err(Error::NoTimeStep);
         }
-        self.gather()?;
         let d = &mut self.dynamics;
         d.velocities_into(&mut self.before);
         let (elastic, gravity) = (d.measure_elastic_energy(), d.gravity_work());
-        self.advance()?;
-        self.gather()?;
+        self.dynamics.step(&mut [&mut self.forces]);
         self.check_announced()?;
         let d = &self.dynamics;
         let (contact, film, others) =

@@ -11,12 +11,11 @@ const PROGRAM: &str = "stribeck";
 
 /// Every crate in `crates/`, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 23] = [
+const LAYERS: [(&str, &[&str]); 22] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
     ("solver", &["mesh", "simd"]),
-    ("mpi", &["solver"]),
     ("surface", &["simd"]),
     ("contact", &["mesh", "simd", "solver", "surface"]),
     ("duty", &[]),
@@ -42,7 +41,6 @@ const LAYERS: [(&str, &[&str]); 23] = [
             "infer",
             "lab",
             "mesh",
-            "mpi",
             "plans",
             "report",
             "scene",

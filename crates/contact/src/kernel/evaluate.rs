@@ -51,23 +51,6 @@ pub(crate) struct Sum {
     pub(crate) work: usize,
 }
 
-impl Sum {
-    /// Length of its results as numbers.
-    pub(crate) const NUMBERS: usize = 6;
-
-    /// All but the work, as numbers.
-    pub(crate) fn numbers(&self) -> [f64; Self::NUMBERS] {
-        let Self { force: [x, y], stored, friction, damping, penetration, .. } = *self;
-        [x, y, stored, friction, damping, penetration]
-    }
-
-    /// From the numbers of [`Sum::numbers`].
-    pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
-        let &[x, y, stored, friction, damping, penetration] = numbers else { return Self::default() };
-        Self { force: [x, y], stored, friction, damping, penetration, work: 0 }
-    }
-}
-
 /// How rows of points on facets of one kind are done in vectors, against facets of the same kind.
 trait RowFacet: Facet {
     /// Forces on the other surface may wait in `others`; the moving facet is stored in `own` where it was

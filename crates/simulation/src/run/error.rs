@@ -18,12 +18,6 @@ pub enum Error {
     #[error("{0}")]
     System(#[from] stribeck_system::Error),
 
-    /// Ranks that run one model together do not understand each other.
-    #[error(
-        "the ranks of this run do not understand each other ({0}): start the same program on all of them"
-    )]
-    Ranks(String),
-
     /// A run cannot be continued.
     #[error("the run in `{}` cannot be continued: {reason}", path.display())]
     Resume {

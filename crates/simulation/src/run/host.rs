@@ -1,9 +1,5 @@
 //! The program around a run: identity, threads, clocks, and the progress that it reports.
 
-use std::sync::Arc;
-
-use stribeck_solver::ranks::{Ranks, broadcast};
-
 /// The program around a run: its identity, its threads and clocks.
 pub struct Host<'a> {
     /// Worker threads.
@@ -18,15 +14,6 @@ pub struct Host<'a> {
     pub wall_s: &'a dyn Fn() -> f64,
     /// Processor time of this process so far, all threads [s].
     pub cpu_s: &'a dyn Fn() -> f64,
-    /// Processes that this one runs full models together with, if there are any.
-    pub ranks: Option<Arc<dyn Ranks>>,
-}
-
-impl Host<'_> {
-    /// Whether the run ends here; with several ranks the first decides.
-    pub(crate) fn agree(&self, stop: bool) -> bool {
-        self.ranks.as_ref().map_or(stop, |ranks| broadcast(&**ranks, &[u8::from(stop)]) == [1])
-    }
 }
 
 impl<'a> Host<'a> {
@@ -40,7 +27,6 @@ impl<'a> Host<'a> {
             machine: machine.clone(),
             wall_s: *wall_s,
             cpu_s: *cpu_s,
-            ranks: None,
         }
     }
 }

@@ -214,7 +214,7 @@ impl<M: Motion> Run<M> {
                 self.info.stop_reason = stop;
                 break;
             }
-            if host.agree(watch(&progress).is_break()) {
+            if watch(&progress).is_break() {
                 self.info.status = Status::Interrupted;
                 self.info.stop_reason = Some(format!("interrupted at {:.4} ms", 1e3 * progress.time_s));
                 break;
@@ -231,24 +231,6 @@ impl<M: Motion> Run<M> {
             self.save(dir, &mut saved, host)?;
         }
         self.close(dir)
-    }
-
-    /// Runs the remaining steps, writing nothing: for all ranks but the first.
-    ///
-    /// # Errors
-    /// When the model cannot take steps.
-    pub fn follow(mut motion: M, mut info: RunInfo, host: &Host<'_>) -> Result<(), Error> {
-        let steps_per_sample = (info.interval_s / info.time_step_s).round().max(1.0) as usize;
-        let workers = Workers::new(host.threads)?;
-        for sample in info.samples + 1..=info.steps_planned as usize / steps_per_sample {
-            workers.run(|| motion.interval(steps_per_sample))?;
-            motion.sample();
-            (info.steps, info.samples) = (motion.steps(), sample);
-            if motion.look(&mut info).is_some() || host.agree(false) {
-                break;
-            }
-        }
-        Ok(())
     }
 
     /// Ends the run in good order.

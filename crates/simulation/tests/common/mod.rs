@@ -1,8 +1,6 @@
 //! Scenes and hosts that several test files share.
 #![allow(dead_code, reason = "each test file uses its own part of it")]
 
-pub(crate) mod ranks;
-
 use std::ops::ControlFlow;
 
 use stribeck_scene::scene::{GradingScene, Scene};
@@ -41,7 +39,6 @@ pub(crate) fn host(threads: usize) -> Host<'static> {
         machine: "test".into(),
         wall_s: &|| 0.0,
         cpu_s: &|| 0.0,
-        ranks: None,
     }
 }
 

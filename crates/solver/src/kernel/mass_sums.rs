@@ -19,25 +19,10 @@ pub(crate) struct MassSums {
     angular: f64,
 }
 
-/// Numbers that make up the sums of a lane.
-pub(crate) const NUMBERS: usize = 7;
-
 /// Sums of each lane of a tile.
 pub(crate) type LaneSums = [MassSums; LANES];
 
 impl MassSums {
-    /// The sums as numbers.
-    pub(crate) fn numbers(&self) -> [f64; NUMBERS] {
-        let Self { mass, first: [x, y], second, momentum: [px, py], angular } = *self;
-        [mass, x, y, second, px, py, angular]
-    }
-
-    /// What [`MassSums::numbers`] has given.
-    pub(crate) fn of_numbers(numbers: &[f64]) -> Self {
-        let &[mass, x, y, second, px, py, angular] = numbers else { return Self::default() };
-        Self { mass, first: [x, y], second, momentum: [px, py], angular }
-    }
-
     /// The motion of a rigid body with these sums.
     pub(crate) fn motion(&self) -> RigidMotion {
         let Self { mass, first, second, momentum, angular } = *self;

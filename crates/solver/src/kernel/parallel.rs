@@ -5,7 +5,7 @@ use crate::kernel::{
     fields::TileFields,
     structural_damping::Evaluation,
     sweep::{Scratch, StepEnergies, sweep},
-    tile::{Tile, Turn},
+    tile::Tile,
 };
 use stribeck_simd::threads::{cut, from_both_ends};
 
@@ -16,8 +16,6 @@ pub(crate) struct TileRuns<'a> {
     pub(crate) counted: &'a mut [StepEnergies],
     /// Action of the branches of structural damping, in a step that evaluates them.
     pub(crate) evaluation: Option<&'a Evaluation>,
-    /// The tiles that are swept; others are left alone.
-    pub(crate) turn: Turn,
 }
 
 impl<'a> TileRuns<'a> {
@@ -29,14 +27,14 @@ impl<'a> TileRuns<'a> {
             (_, None) => self.fields.x.len(),
         };
         let (a, b) = self.fields.split_at(nodes);
-        let ((p, q), evaluation, turn) = (self.counted.split_at_mut(tile), self.evaluation, self.turn);
-        let left = Self { tiles: left, fields: a, counted: p, evaluation, turn };
-        (left, Self { tiles: right, fields: b, counted: q, evaluation, turn })
+        let ((p, q), evaluation) = (self.counted.split_at_mut(tile), self.evaluation);
+        let left = Self { tiles: left, fields: a, counted: p, evaluation };
+        (left, Self { tiles: right, fields: b, counted: q, evaluation })
     }
 
     fn take(&mut self) -> Self {
         let (tiles, fields, counted) = (&[][..], TileFields::default(), &mut [][..]);
-        std::mem::replace(self, Self { tiles, fields, counted, evaluation: self.evaluation, turn: self.turn })
+        std::mem::replace(self, Self { tiles, fields, counted, evaluation: self.evaluation })
     }
 
     /// From the first one on, or backwards.
@@ -45,9 +43,7 @@ impl<'a> TileRuns<'a> {
     }
 
     fn sweep_one(self, scratch: &mut Scratch, parameters: StepParameters) {
-        if let ([tile], [energies]) = (self.tiles, self.counted)
-            && tile.turn == self.turn
-        {
+        if let ([tile], [energies]) = (self.tiles, self.counted) {
             *energies = sweep(tile, self.fields, scratch, parameters, self.evaluation);
         }
     }

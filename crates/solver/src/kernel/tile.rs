@@ -51,21 +51,6 @@ pub(crate) struct Tile {
     pub(crate) damping: Option<TileDamping>,
     /// Structural damping of this tile's bodies, if any.
     pub(crate) structural: Option<TileStructural>,
-    /// Whether nodes of it are driven round, which is work.
-    pub(crate) turns: bool,
-    /// When it is swept.
-    pub(crate) turn: Turn,
-}
-
-/// When a tile is swept, where a model is divided among ranks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Turn {
-    /// First: another rank waits for nodes of it.
-    Early,
-    /// Then, as all tiles are where there is one rank.
-    Late,
-    /// By another rank.
-    Elsewhere,
 }
 
 /// Mass-proportional damping of one tile.
@@ -214,8 +199,6 @@ impl Tile {
             step_over_mass: Field::default(),
             damping: None,
             structural: None,
-            turns: false,
-            turn: Turn::Late,
         };
         if layout.congruent {
             tile.add_runs(layout, quads);
@@ -223,7 +206,6 @@ impl Tile {
             tile.add_strips(layout, quads);
         }
         tile.schedule(layout, motion);
-        tile.turns = tile.finish.iter().any(|finish| matches!(finish.motion, NodeMotion::Rotating { .. }));
         let strips: usize = tile.strips.iter().map(|s| s.len).sum();
         let congruent = LANES * (tile.quads_of_runs.len() + tile.triangles.len());
         tile.work = 1 + 3 * strips + 2 * congruent + 12 * tile.quads.len();
