@@ -1,10 +1,13 @@
 //! A file that defines scenes, such as that of a campaign: its text, the places of its fields, and messages
 //! as those on scenes, with line, field, allowed values and remedy.
 
+use std::ops::Range;
+
 use ron::error::SpannedError;
 
+use stribeck_scene::fields::tree::{self, Content, Node};
 use stribeck_scene::scene_file::{
-    self, Entry, Outline, Place, Problem, SceneError, list, nearest, offset, place_in_file, shown,
+    self, Place, Problem, SceneError, list, nearest, offset, place_in_file, shown,
 };
 
 /// Properties of one kind of file.
@@ -27,7 +30,8 @@ pub(crate) struct Kind {
 pub(crate) struct File<'a> {
     pub(crate) name: &'a str,
     pub(crate) text: &'a str,
-    pub(crate) outline: Outline,
+    /// Its values; none of a text that is broken.
+    pub(crate) tree: Node,
     kind: &'static Kind,
 }
 
@@ -42,13 +46,14 @@ pub(crate) fn unreadable(name: &str, kind: &Kind, example: &str, error: &std::io
 
 impl<'a> File<'a> {
     pub(crate) fn new(name: &'a str, text: &'a str, kind: &'static Kind) -> Self {
-        Self { name, text, outline: Outline::of(text), kind }
+        let tree = tree::parse(text).unwrap_or_else(|_| Node::group([]));
+        Self { name, text, tree, kind }
     }
 
     /// The value at a path; the whole file where it is not written.
     pub(crate) fn place(&self, path: &str) -> Place {
-        match self.outline.get(path) {
-            Some(entry) => place_in_file(self.name, self.text, entry.value.clone()),
+        match self.tree.get(path).filter(|_| !path.is_empty()) {
+            Some(node) => place_in_file(self.name, self.text, node.span.clone()),
             None => Place::Unwritten { file: self.name.to_owned() },
         }
     }
@@ -74,12 +79,14 @@ impl<'a> File<'a> {
     /// The same problem in the item of `set` that is to blame.
     pub(crate) fn in_set(&self, mut problem: Problem) -> Problem {
         if let Place::CommandLine { argument, .. } = &problem.place {
-            let items = self.outline.entries.iter().filter(|entry| entry.path.starts_with("set["));
-            let item = items
-                .map(|entry| &entry.value)
-                .find(|at| self.text[(*at).clone()].trim_matches('"') == argument.as_str());
+            let is_argument =
+                |node: &&Node| self.text[node.span.clone()].trim_matches('"') == argument.as_str();
+            let item = match self.tree.get("set").map(|set| &set.content) {
+                Some(Content::List(items)) => items.iter().find(is_argument),
+                _ => None,
+            };
             problem.place = match item {
-                Some(at) => place_in_file(self.name, self.text, at.clone()),
+                Some(node) => place_in_file(self.name, self.text, node.span.clone()),
                 None => self.place("set"),
             };
             problem.suggestion = problem.suggestion.replacen("--set ", "", 1);
@@ -96,9 +103,9 @@ impl<'a> File<'a> {
         let mut problem = Problem::new("", self.place(""));
         match &error.code {
             E::NoSuchStructField { expected, found, outer } => {
-                let named = self.outline.entries.iter().map(|entry| &entry.key);
-                let named = named.filter(|key| self.text[(*key).clone()] == **found && key.end <= end + 1);
-                range = named.max_by_key(|key| key.start).cloned().unwrap_or(range);
+                let named = self.tree.entries("").into_iter().map(|(_, key, _)| key);
+                let named = named.filter(|key| self.text[key.clone()] == **found && key.end <= end + 1);
+                range = named.max_by_key(|key| key.start).unwrap_or(range);
                 problem.field.clone_from(found);
                 problem.message =
                     format!("unknown field `{}` in {}", shown(found), (self.kind.part)(outer.as_deref()));
@@ -112,7 +119,7 @@ impl<'a> File<'a> {
                 };
             }
             E::NoSuchEnumVariant { expected, found, .. } => {
-                problem.field = self.outline.at(start).map_or_else(String::new, |entry| entry.path.clone());
+                problem.field = self.at(start).map_or_else(String::new, |(path, _)| path);
                 problem.message =
                     format!("`{}` is `{}`, which is not one of its words", problem.field, shown(found));
                 problem.allowed = list(expected);
@@ -133,12 +140,12 @@ impl<'a> File<'a> {
                 problem.suggestion = "keep one of the two".to_owned();
             }
             code => match self.no_whole_number(start) {
-                Some((entry, most)) => {
-                    problem.field = entry.path.clone();
-                    let value = shown(&self.text[entry.value.clone()]);
-                    problem.message = format!("`{}` is `{value}`", entry.path);
+                Some((path, at, most)) => {
+                    let value = shown(&self.text[at.clone()]);
+                    problem.message = format!("`{path}` is `{value}`");
+                    problem.field = path;
                     problem.allowed = format!("a whole number, at most {most}");
-                    range = entry.value.clone();
+                    range = at;
                 }
                 None => {
                     problem.message = format!("the file of {} cannot be read: {code}", self.kind.noun);
@@ -150,10 +157,16 @@ impl<'a> File<'a> {
         problem.into()
     }
 
+    /// The innermost field whose value contains a byte of the text: its path and the range of its value.
+    fn at(&self, at: usize) -> Option<(String, Range<usize>)> {
+        let entries = self.tree.entries("").into_iter().map(|(path, _, node)| (path, node.span.clone()));
+        entries.into_iter().find(|(_, span)| span.start <= at && at <= span.end)
+    }
+
     /// The number at a byte of the text that is to be a whole one and is not, and how large it may be.
-    fn no_whole_number(&self, at: usize) -> Option<(&Entry, u64)> {
-        let entry = self.outline.at(at)?;
-        let most = (self.kind.most)(entry.path.rsplit('.').next()?)?;
-        self.text[entry.value.clone()].parse::<u64>().is_err().then_some((entry, most))
+    fn no_whole_number(&self, at: usize) -> Option<(String, Range<usize>, u64)> {
+        let (path, range) = self.at(at)?;
+        let most = (self.kind.most)(path.rsplit('.').next()?)?;
+        self.text[range.clone()].parse::<u64>().is_err().then_some((path, range, most))
     }
 }

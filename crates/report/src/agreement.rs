@@ -227,7 +227,7 @@ fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
         if let Some(cage) = &mut scene.cage {
             cage.roller_offsets_um.clear();
         }
-        serde_json::to_value(scene).unwrap_or_default()
+        stribeck_scene::fields::to_json(&scene)
     };
     let mut found = Vec::new();
     compare("", &plain(scene), &plain(other), &mut found);

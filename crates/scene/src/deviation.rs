@@ -3,192 +3,156 @@
 
 use std::f64::consts::{PI, TAU};
 
-use serde::{Deserialize, Serialize};
-
 use crate::dice::Dice;
+use crate::fields::{group, words};
+use crate::scene::Scene;
 
 /// Facets that a hollow needs at least.
 pub const HOLLOW_FACETS: f64 = 4.0;
 
-/// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct DeviationScene {
-    /// The surface.
-    pub on: RollingSurface,
-    /// Angle of its middle at the start [°], counter-clockwise from the x axis, about the centre of the body.
-    pub angle_deg: f64,
-    /// Its form.
-    pub form: FormScene,
+/// Number of the last roller.
+fn rollers(scene: &Scene) -> f64 {
+    scene.bearing.rollers as f64
 }
 
-/// A surface that rolls or is rolled over.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RollingSurface {
-    /// The raceway of the outer ring.
-    Outer,
-    /// The raceway of the inner ring; its deviations turn with the shaft.
-    Inner,
-    /// A rolling element, from 1.
-    Roller(usize),
+group! {
+    /// A defect or another deviation from round of one surface. Depths of several on the same surface add up.
+    pub struct DeviationScene {
+        /// The surface.
+        pub on: RollingSurface = RollingSurface::Outer, up_to(1.0, rollers);
+        /// Angle of its middle at the start [°], counter-clockwise from the x axis, about the centre of the body.
+        pub angle_deg: f64 = 90.0, within(-360.0, 360.0);
+        /// Its form.
+        pub form: FormScene = FormScene::Spall(SpallScene::default());
+    }
 }
 
-/// Form of a deviation over the arc length along its surface.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum FormScene {
+words! {
+    /// A surface that rolls or is rolled over.
+    pub enum RollingSurface: Copy, Eq, PartialOrd, Ord {
+        /// The raceway of the outer ring.
+        Outer = "outer",
+        /// The raceway of the inner ring; its deviations turn with the shaft.
+        Inner = "inner",
+        /// A rolling element, from 1.
+        Roller(of: usize) = "roller",
+    }
+}
+
+words! {
+    /// Form of a deviation over the arc length along its surface.
+    pub enum FormScene {
+        /// A flat floor between two edges.
+        Spall(of: SpallScene) = "spall",
+        /// A dent with a raised rim.
+        Dent(of: DentScene) = "dent",
+        /// Any profile, as points.
+        Profile(of: SurfaceProfileScene) = "profile",
+        /// A sine wave around the whole surface; of order 2 an oval.
+        Waviness(of: WavinessScene) = "waviness",
+        /// Random waves over a band of wavelengths.
+        Roughness(of: RoughnessScene) = "roughness",
+        /// Another diameter of a rolling element.
+        Diameter(of: DiameterScene) = "diameter",
+        /// A rolling element that is not there; its pocket stays empty.
+        Missing = "missing",
+    }
+}
+
+group! {
     /// A flat floor between two edges.
-    Spall(SpallScene),
+    pub struct SpallScene {
+        /// Circumferential length between the upper ends of its edges [mm].
+        pub length_mm: f64 = 5.0, positive(20_000.0);
+        /// Depth [mm].
+        pub depth_mm: f64 = 0.1, positive(5_000.0);
+        /// Length of each edge [mm]; 0 for one facet, and for rectangular ones.
+        pub edge_mm: f64 = 0.0, within(0.0, 5_000.0);
+        /// Form of its edges.
+        pub edge: Edge = Edge::Sloped;
+    }
+}
+
+words! {
+    /// Form of an edge.
+    pub enum Edge: Copy, Eq {
+        /// A plane with corners at both ends.
+        Sloped = "sloped",
+        /// Half a cosine wave.
+        Rounded = "rounded",
+        /// Walls at right angles to the surface, as those of `defect`.
+        Rectangular = "rectangular",
+    }
+}
+
+group! {
     /// A dent with a raised rim.
-    Dent(DentScene),
-    /// Any profile, as points.
-    Profile(SurfaceProfileScene),
-    /// A sine wave around the whole surface; of order 2 an oval.
-    Waviness(WavinessScene),
+    pub struct DentScene {
+        /// Length of the hollow [mm]; the rim takes half as much again on either side.
+        pub length_mm: f64 = 3.0, positive(20_000.0);
+        /// Depth of its middle [mm].
+        pub depth_mm: f64 = 0.05, positive(5_000.0);
+        /// Height of the rim [µm].
+        pub rim_um: f64 = 5.0, within(0.0, 10_000.0);
+    }
+}
+
+group! {
+    /// Any profile, linear between points.
+    pub struct SurfaceProfileScene {
+        /// Table with the columns `position_mm` and `depth_um`, beside the scene; read where there are no
+        /// `points`.
+        pub file: String = String::new();
+        /// Its points, in the order of their places; the surface is not changed outside of them.
+        pub points: Vec<PointScene> = Vec::new();
+    }
+}
+
+group! {
+    /// One point of a profile.
+    pub struct PointScene: Copy {
+        /// Place along the surface, counter-clockwise from the middle [mm].
+        pub at_mm: f64 = 0.0, within(-20_000.0, 20_000.0), required();
+        /// Depth [µm]; negative where the surface stands out.
+        pub depth_um: f64 = 0.0, within(-10_000.0, 1e6), required();
+    }
+}
+
+group! {
+    /// A sine wave around the whole surface.
+    pub struct WavinessScene {
+        /// Waves around the surface.
+        pub order: usize = 11, within(1.0, 10_000.0);
+        /// Half the height from valley to crest [µm]; the surface is deepest at the angle of the deviation.
+        pub amplitude_um: f64 = 1.0, within(0.0, 1_000.0);
+    }
+}
+
+group! {
     /// Random waves over a band of wavelengths.
-    Roughness(RoughnessScene),
-    /// Another diameter of a rolling element.
-    Diameter(DiameterScene),
-    /// A rolling element that is not there; its pocket stays empty.
-    Missing,
+    pub struct RoughnessScene {
+        /// Root mean square of the depth, Rq [µm].
+        pub rq_um: f64 = 0.3, within(0.0, 100.0);
+        /// Longest wave [mm].
+        pub longest_mm: f64 = 10.0, positive(20_000.0);
+        /// Shortest wave [mm].
+        pub shortest_mm: f64 = 2.5, positive(20_000.0);
+        /// Seed of the phases.
+        pub seed: u64 = 1, within(0.0, 1e9);
+        /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random walk,
+        /// 0 the same at all wavelengths of the band; a self-affine profile of the Hurst exponent H has 1 + 2H.
+        pub slope: f64 = RANDOM_WALK, within(0.0, 6.0), omitted();
+    }
 }
 
-/// A flat floor between two edges.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SpallScene {
-    /// Circumferential length between the upper ends of its edges [mm].
-    pub length_mm: f64,
-    /// Depth [mm].
-    pub depth_mm: f64,
-    /// Length of each edge [mm]; 0 for one facet, and for rectangular ones.
-    pub edge_mm: f64,
-    /// Form of its edges.
-    pub edge: Edge,
-}
-
-/// Form of an edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Edge {
-    /// A plane with corners at both ends.
-    Sloped,
-    /// Half a cosine wave.
-    Rounded,
-    /// Walls at right angles to the surface, as those of `defect`.
-    Rectangular,
-}
-
-/// A dent with a raised rim.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct DentScene {
-    /// Length of the hollow [mm]; the rim takes half as much again on either side.
-    pub length_mm: f64,
-    /// Depth of its middle [mm].
-    pub depth_mm: f64,
-    /// Height of the rim [µm].
-    pub rim_um: f64,
-}
-
-/// Any profile, linear between points.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SurfaceProfileScene {
-    /// Table with the columns `position_mm` and `depth_um`, beside the scene; read where there are no
-    /// `points`.
-    pub file: String,
-    /// Its points, in the order of their places; the surface is not changed outside of them.
-    pub points: Vec<PointScene>,
-}
-
-/// One point of a profile.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct PointScene {
-    /// Place along the surface, counter-clockwise from the middle [mm].
-    pub at_mm: f64,
-    /// Depth [µm]; negative where the surface stands out.
-    pub depth_um: f64,
-}
-
-/// A sine wave around the whole surface.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct WavinessScene {
-    /// Waves around the surface.
-    pub order: usize,
-    /// Half the height from valley to crest [µm]; the surface is deepest at the angle of the deviation.
-    pub amplitude_um: f64,
-}
-
-/// Random waves over a band of wavelengths.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct RoughnessScene {
-    /// Root mean square of the depth, Rq [µm].
-    pub rq_um: f64,
-    /// Longest wave [mm].
-    pub longest_mm: f64,
-    /// Shortest wave [mm].
-    pub shortest_mm: f64,
-    /// Seed of the phases.
-    pub seed: u64,
-    /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random walk,
-    /// 0 the same at all wavelengths of the band; a self-affine profile of the Hurst exponent H has 1 + 2H.
-    #[serde(skip_serializing_if = "is_random_walk")]
-    pub slope: f64,
-}
-
-/// The default slope, which is not written to a scene.
+/// The slope of a random walk.
 const RANDOM_WALK: f64 = 2.0;
 
-fn is_random_walk(slope: &f64) -> bool {
-    *slope == RANDOM_WALK
-}
-
-/// Another diameter of a rolling element.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct DiameterScene {
-    /// By how much the diameter is larger [µm].
-    pub larger_um: f64,
-}
-
-impl Default for DeviationScene {
-    fn default() -> Self {
-        Self { on: RollingSurface::Outer, angle_deg: 90.0, form: FormScene::Spall(SpallScene::default()) }
-    }
-}
-
-impl Default for SpallScene {
-    fn default() -> Self {
-        Self { length_mm: 5.0, depth_mm: 0.1, edge_mm: 0.0, edge: Edge::Sloped }
-    }
-}
-
-impl Default for DentScene {
-    fn default() -> Self {
-        Self { length_mm: 3.0, depth_mm: 0.05, rim_um: 5.0 }
-    }
-}
-
-impl Default for WavinessScene {
-    fn default() -> Self {
-        Self { order: 11, amplitude_um: 1.0 }
-    }
-}
-
-impl Default for RoughnessScene {
-    fn default() -> Self {
-        Self { rq_um: 0.3, longest_mm: 10.0, shortest_mm: 2.5, seed: 1, slope: RANDOM_WALK }
-    }
-}
-
-impl Default for DiameterScene {
-    fn default() -> Self {
-        Self { larger_um: -5.0 }
+group! {
+    /// Another diameter of a rolling element.
+    pub struct DiameterScene {
+        /// By how much the diameter is larger [µm].
+        pub larger_um: f64 = -5.0, within(-1_000.0, 1_000.0);
     }
 }
 
@@ -233,22 +197,6 @@ impl RollingSurface {
 }
 
 impl DeviationScene {
-    /// One of every form, with all fields of each: items of a list may have different ones.
-    pub(crate) fn of_every_form() -> Vec<Self> {
-        let profile = SurfaceProfileScene { points: vec![PointScene::default()], ..Default::default() };
-        let forms = [
-            FormScene::Spall(SpallScene::default()),
-            FormScene::Dent(DentScene::default()),
-            FormScene::Profile(profile),
-            FormScene::Waviness(WavinessScene::default()),
-            // Its slope is not written by default.
-            FormScene::Roughness(RoughnessScene { slope: 0.5, ..Default::default() }),
-            FormScene::Diameter(DiameterScene::default()),
-            FormScene::Missing,
-        ];
-        forms.into_iter().map(|form| Self { form, ..Self::default() }).collect()
-    }
-
     /// Whether it has steep walls, which a mesh is cut for; nodes move for all others.
     pub fn is_cut(&self) -> bool {
         matches!(&self.form, FormScene::Spall(spall) if spall.edge == Edge::Rectangular)
@@ -421,7 +369,7 @@ fn random_waves(roughness: &RoughnessScene, radius: f64, at: f64) -> Vec<Wave> {
     let mut dice = Dice::new(roughness.seed);
     // A power rounds otherwise than a quotient, and scenes without a slope keep their bits.
     let amplitude = |order: f64| {
-        if is_random_walk(&roughness.slope) { 1.0 / order } else { order.powf(-0.5 * roughness.slope) }
+        if roughness.slope == RANDOM_WALK { 1.0 / order } else { order.powf(-0.5 * roughness.slope) }
     };
     let mut waves: Vec<Wave> = (first..=last)
         .map(|order| {
@@ -542,14 +490,18 @@ mod tests {
     /// bit.
     #[test]
     fn invariant_roughness_without_a_slope_is_a_random_walk() {
-        let plain = ron::to_string(&RoughnessScene::default()).expect("written");
-        assert!(!plain.contains("slope"), "{plain}");
+        let written = |form: RoughnessScene| {
+            let deviation = DeviationScene { form: FormScene::Roughness(form), ..Default::default() };
+            Scene { defects: vec![deviation], ..Default::default() }.to_ron()
+        };
+        let plain = written(RoughnessScene::default());
+        assert!(!plain.contains("slope:"), "{plain}");
         let relief = on_outer(FormScene::Roughness(RoughnessScene::default()));
         let mut ratio =
             relief.waves.windows(2).map(|w| w[0].amplitude / w[1].amplitude * w[0].order / w[1].order);
         assert!(ratio.all(|ratio| (ratio - 1.0).abs() < 1e-15));
-        let steeper = ron::to_string(&RoughnessScene { slope: 3.0, ..Default::default() }).expect("written");
-        assert!(steeper.contains("slope:3.0"), "{steeper}");
+        let steeper = written(RoughnessScene { slope: 3.0, ..Default::default() });
+        assert!(steeper.contains("slope: 3.0"), "{steeper}");
     }
 
     #[test]

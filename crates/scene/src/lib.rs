@@ -50,6 +50,7 @@ pub mod duty;
 pub mod ensemble;
 pub mod error;
 mod faults;
+pub mod fields;
 pub mod housing;
 pub mod kinematics;
 mod line_contact;

@@ -10,37 +10,41 @@ mod dialect;
 mod exclusions;
 mod extent;
 mod finding;
-mod foreign;
+pub(crate) mod foreign;
 mod geometry;
-mod limits;
 mod load;
 mod named;
 mod operation;
-mod origin;
-mod outline;
-mod overrides;
 mod own;
 mod problem;
-mod reference;
+mod ranges;
+mod reading;
 mod ring_meshes;
-mod schema;
+mod sources;
 mod suggest;
-mod syntax;
 mod table;
-mod wording;
+pub(crate) mod wording;
 
 use std::path::Path;
 
+use crate::fields::tree::{Content, Node};
+use crate::fields::value::Value;
+use crate::fields::{Spot, spot};
 use crate::scene::Scene;
 use check::{check, numbers_are_in_range};
 pub use dialect::dialect;
 use load::load;
-use origin::Origin;
-pub use outline::{Entry, Outline};
 pub use problem::{Place, Problem, SceneError, offset, place_in_file};
-pub use reference::{Field, FieldReference};
+use sources::{Sources, written_by};
 pub use suggest::nearest;
 pub use wording::{list, shown};
+
+/// Paths of fields that several checks name.
+const OUTER_RING_MESH: &str = "outer_ring_mesh";
+const INNER_RING_MESH: &str = "inner_ring_mesh";
+const SPEED_PROFILE: &str = "operation.speed_profile";
+const OUTER_SPEED_PROFILE: &str = "operation.outer_speed_profile";
+const LOAD_PROFILE: &str = "operation.load_profile";
 
 impl Scene {
     /// Reads and checks the scene file at `path`.
@@ -85,10 +89,10 @@ impl Scene {
     ///
     /// As [`Scene::read_with`].
     pub fn with_overrides<S: AsRef<str>>(&self, overrides: &[S]) -> Result<Self, SceneError> {
-        let (scene, set) = overrides::apply(self.clone(), overrides)?;
+        let mut sources = Sources::of_scene(self);
+        sources.set_all(overrides)?;
         let is_papers = own::is_papers(&self.bearing) && !names_bearing(overrides);
-        let understood = complete(scene, set, is_papers.then(|| named::written_by(overrides)));
-        understood.check("", "", Path::new(""))
+        complete(sources, is_papers.then(|| written_by(overrides)))?.check(Path::new(""))
     }
 
     /// Checks a scene that was built in memory.
@@ -97,7 +101,7 @@ impl Scene {
     ///
     /// [`SceneError`] with every number outside its range, or every geometric impossibility.
     pub fn validate(&self) -> Result<(), SceneError> {
-        check(self, &Origin::in_memory(Vec::new()), None)
+        check(self, &Sources::of_scene(self), None)
     }
 }
 
@@ -121,18 +125,18 @@ pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<R
     let others: Vec<&str> = all.iter().copied().filter(|text| !is_bearing(text)).collect();
     let Some(text) = load(path).ok().filter(|_| others.len() < all.len()) else { return Vec::new() };
     let (text, file) = (without_mark(&text), path.display().to_string());
-    let complete = |overrides: &[&str]| Some(understand(text, &file, overrides).ok()?.scene.to_ron());
-    let (Some(before), Some(after)) = (complete(&others), complete(&all)) else { return Vec::new() };
-    let [in_file, there] = [&before, &after].map(|text| Outline::of(text));
-    let value = |text: &str, outline: &Outline, field: &str| {
-        outline.get(field).map(|entry| text[entry.value.clone()].to_owned())
+    let values = |overrides: &[&str]| Some(understand(text, &file, overrides).ok()?.scene.write());
+    let (Some(before), Some(after)) = (values(&others), values(&all)) else { return Vec::new() };
+    let value = |tree: &Node, field: &str| match &tree.get(field)?.content {
+        Content::Atom(text) => Some(text.clone()),
+        _ => None,
     };
-    let fields = named::written(text).into_iter().filter(|field| !field.starts_with("bearing"));
+    let written = crate::fields::tree::parse(text).map_or_else(|_| Vec::new(), |tree| paths_in(&tree));
+    let fields = written.into_iter().filter(|field| !field.starts_with("bearing"));
     fields
         .filter_map(|field| {
-            let (written, now) = (value(&before, &in_file, &field)?, value(&after, &there, &field)?);
-            let group = written.contains(['(', '[']);
-            (written != now && !group).then_some(Replaced { field, written, now })
+            let (written, now) = (value(&before, &field)?, value(&after, &field)?);
+            (written != now).then_some(Replaced { field, written, now })
         })
         .collect()
 }
@@ -147,12 +151,16 @@ pub fn refused_at<S: AsRef<str>>(
 ) -> SceneError {
     let text = path.and_then(|path| load(path).ok()).unwrap_or_default();
     let file = path.map_or_else(String::new, |path| path.display().to_string());
-    let text = without_mark(&text);
-    let set = match understand(text, &file, overrides) {
-        Ok(understood) if path.is_some() => understood.set,
-        _ => overrides::apply(Scene::singh2014(), overrides).map_or_else(|_| Vec::new(), |(_, set)| set),
+    let sources = match understand(without_mark(&text), &file, overrides) {
+        Ok(understood) if path.is_some() => understood.sources,
+        _ => {
+            let mut sources = Sources::of_scene(&Scene::singh2014());
+            // A scene that could be read before.
+            let _ = sources.set_all(overrides);
+            sources
+        }
     };
-    let mut problem = Problem::new(message, Origin::in_file(&file, text, set).place(field));
+    let mut problem = Problem::new(message, sources.place(field));
     field.clone_into(&mut problem.field);
     problem.into()
 }
@@ -164,14 +172,13 @@ fn compose<S: AsRef<str>>(
     folder: &Path,
     overrides: &[S],
 ) -> Result<Scene, SceneError> {
-    let text = without_mark(text);
-    understand(text, file, overrides)?.check(file, text, folder)
+    understand(without_mark(text), file, overrides)?.check(folder)
 }
 
 /// A scene as it was read, before its meaning is checked.
 struct Understood {
     scene: Scene,
-    set: Vec<origin::Override>,
+    sources: Sources,
     /// Why the fields of its bearing do not define one.
     refusal: Option<Box<own::Refusal>>,
     /// Where its fields were to be completed and define a bearing.
@@ -179,19 +186,18 @@ struct Understood {
 }
 
 impl Understood {
-    /// The scene with its tables in `folder`, if it can be. `text` is that of `file`.
-    fn check(self, file: &str, text: &str, folder: &Path) -> Result<Scene, SceneError> {
-        let Self { mut scene, set, refusal, written } = self;
-        let origin = Origin::in_file(file, text, set);
-        table::read(&mut scene, folder, &origin)?;
+    /// The scene with its tables in `folder`, if it can be.
+    fn check(self, folder: &Path) -> Result<Scene, SceneError> {
+        let Self { mut scene, sources, refusal, written } = self;
+        table::read(&mut scene, folder, &sources)?;
         if let Some(refusal) = refusal.as_ref().filter(|refusal| refusal.is_of_another()) {
-            return Err(refusal.problem(&origin).into());
+            return Err(refusal.problem(&sources).into());
         }
-        match (check(&scene, &origin, written.as_ref()), refusal) {
+        match (check(&scene, &sources, written.as_ref()), refusal) {
             (checked, None) => checked.map(|()| scene),
-            (Ok(()), Some(refusal)) => Err(refusal.problem(&origin).into()),
+            (Ok(()), Some(refusal)) => Err(refusal.problem(&sources).into()),
             (Err(error), Some(refusal)) => {
-                let problem = refusal.problem(&origin);
+                let problem = refusal.problem(&sources);
                 if numbers_are_in_range(&scene) {
                     Err(error.about_bearing(&refusal.hint(), problem))
                 } else {
@@ -205,7 +211,8 @@ impl Understood {
 
 /// The scene with a bearing of its own completed. `given` has the paths of the fields written by the user;
 /// `None` where its bearing is another one already.
-fn complete(mut scene: Scene, set: Vec<origin::Override>, given: Option<Vec<String>>) -> Understood {
+fn complete(sources: Sources, given: Option<Vec<String>>) -> Result<Understood, SceneError> {
+    let mut scene = scene_of(&sources)?;
     let written = given.map(|given| own::Written { scene: scene.clone(), given });
     let own = written.as_ref().map(|written| own::complete(&mut scene, &written.given));
     let refusal = match own {
@@ -213,7 +220,13 @@ fn complete(mut scene: Scene, set: Vec<origin::Override>, given: Option<Vec<Stri
         _ => None,
     };
     let written = written.filter(|_| refusal.is_none());
-    Understood { scene, set, refusal, written }
+    Ok(Understood { scene, sources, refusal, written })
+}
+
+/// The values of a tree that the table allows.
+fn scene_of(sources: &Sources) -> Result<Scene, SceneError> {
+    let too_large = "a number of this scene is too large for this computer";
+    sources.scene().ok_or_else(|| Problem::new(too_large, sources.place("")).into())
 }
 
 /// Whether one of `overrides` is the name of a bearing.
@@ -228,60 +241,58 @@ pub fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
 }
 
+/// Paths of all fields in a tree.
+fn paths_in(tree: &Node) -> Vec<String> {
+    tree.entries("").into_iter().map(|(path, ..)| path).collect()
+}
+
 /// Text → scene, overrides.
 fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Understood, SceneError> {
-    let outline = Outline::of(text);
-    let in_file = named::take(text, &outline);
-    let mut scene = syntax::parse(in_file.as_ref().map_or(text, |(blanked, _)| blanked), text, file)?;
-    let mut given = named::written(text);
-    given.extend(named::written_by(overrides));
-    if let Some((_, name)) = &in_file {
-        named::put(&mut scene, name, &given).map_err(|why| {
-            let place = outline.get("bearing").map(|entry| place_in_file(file, text, entry.value.clone()));
-            unknown_bearing(why, place.unwrap_or(Place::Unwritten { file: file.to_owned() }))
-        })?;
+    let mut sources = Sources::of_text(text, file)?;
+    let mut given = paths_in(&sources.tree);
+    given.extend(written_by(overrides));
+    let name = sources.tree.get("bearing").and_then(String::read).filter(|name| !name.contains('"'));
+    if name.is_some() {
+        sources.open("bearing");
     }
-    let has_name = in_file.is_some() || names_bearing(overrides);
-    let (scene, set) = overrides::apply(scene, overrides)?;
-    Ok(complete(scene, set, (!has_name).then_some(given)))
+    let found = reading::faults(&sources.tree, Spot::ROOT, "", &sources);
+    if !found.is_empty() {
+        return Err(SceneError::new(found));
+    }
+    let mut scene = scene_of(&sources)?;
+    if let Some(name) = &name {
+        named::put(&mut scene, name, &given).map_err(|why| unknown_bearing(why, sources.place("bearing")))?;
+    }
+    sources.take(&scene);
+    sources.set_all(overrides)?;
+    let has_name = name.is_some() || names_bearing(overrides);
+    complete(sources, (!has_name).then_some(given))
 }
 
 /// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. Errors that further
 /// overrides may repair are not checked: numbers outside their range, bodies that cannot exist, tables that
 /// are not there.
 pub fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
-    match path {
-        Some(path) => {
-            understand(without_mark(&load(path)?), &path.display().to_string(), overrides).map(drop)
-        }
-        None => overrides::apply(Scene::singh2014(), overrides).map(drop),
-    }
+    base(path)?.set_all(overrides)
+}
+
+/// The scene file at `path`, or the paper's scene, without a check of its meaning.
+fn base(path: Option<&Path>) -> Result<Sources, SceneError> {
+    let nothing: &[&str] = &[];
+    let Some(path) = path else { return Ok(Sources::of_scene(&Scene::singh2014())) };
+    Ok(understand(without_mark(&load(path)?), &path.display().to_string(), nothing)?.sources)
 }
 
 /// Those of `overrides` whose value cannot be read as one of its field, with their numbers; none where the
 /// scene that they are for cannot be read itself.
 pub fn unreadable_values<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Vec<(usize, Problem)> {
-    let scene = match path {
-        Some(path) => load(path).and_then(|text| {
-            let nothing: &[&str] = &[];
-            Ok(understand(without_mark(&text), &path.display().to_string(), nothing)?.scene)
-        }),
-        None => Ok(Scene::singh2014()),
-    };
-    scene.map_or_else(|_| Vec::new(), |scene| overrides::unreadable_values(scene, overrides))
+    base(path).map_or_else(|_| Vec::new(), |mut sources| sources.unreadable_values(overrides))
 }
 
 /// The error on a field name that no scene has; `None` for one that some scene has.
 pub fn unknown_field(path: &str) -> Option<Problem> {
-    let schema = schema::Schema::get();
-    let known = schema.default_of(path).is_some();
-    let answer = || overrides::known(path, path, schema, "", &Outline::default()).err();
-    if known { None } else { answer().map(|problem| *problem) }
-}
-
-/// Whether the field at a path is a whole number.
-pub fn is_count(path: &str) -> bool {
-    matches!(schema::Schema::get().kind(path), schema::Kind::Count | schema::Kind::OptionalCount)
+    let nowhere = Place::Unwritten { file: String::new() };
+    spot(path, None).is_none().then(|| sources::unknown(path, nowhere))
 }
 
 /// The error on a designation that yields no bearing.

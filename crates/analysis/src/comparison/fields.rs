@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use serde_json::Value;
+use stribeck_scene::fields::to_json;
 use stribeck_scene::scene::Scene;
 
 /// A field that is not the same in all scenes.
@@ -15,9 +16,7 @@ pub struct FieldDifference {
 
 /// Fields in which `scenes` differ, in the order of their names. The name of a scene makes no difference.
 pub fn differences(scenes: &[Option<&Scene>]) -> Vec<FieldDifference> {
-    let plain = |scene: &Scene| {
-        serde_json::to_value(Scene { name: String::new(), ..scene.clone() }).unwrap_or_default()
-    };
+    let plain = |scene: &Scene| to_json(&Scene { name: String::new(), ..scene.clone() });
     let values: Vec<Option<Value>> = scenes.iter().map(|scene| scene.map(plain)).collect();
     let mut found = Vec::new();
     compare("", &values.iter().map(Option::as_ref).collect::<Vec<_>>(), &mut found);

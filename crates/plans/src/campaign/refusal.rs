@@ -4,7 +4,8 @@ use super::design::Rows;
 use super::{MOST_RUNS, MOST_STARTS};
 pub(super) use crate::document::File;
 use crate::document::Kind;
-use stribeck_scene::scene_file::{Place, Problem, SceneError, is_count, place_in_file};
+use stribeck_scene::fields;
+use stribeck_scene::scene_file::{Place, Problem, SceneError, place_in_file};
 
 /// The file of a campaign.
 pub(super) const CAMPAIGN: Kind = Kind {
@@ -53,10 +54,10 @@ impl File<'_> {
             None => {
                 let axis = rows.fields[column].1.trim_end_matches(".field");
                 let written = &rows.values[row][column];
-                let listed = |i: usize| self.outline.get(&format!("{axis}.values[{i}]"));
-                let item = (0..).map_while(listed).find(|entry| self.text[entry.value.clone()] == **written);
+                let listed = |i: usize| self.tree.get(&format!("{axis}.values[{i}]"));
+                let item = (0..).map_while(listed).find(|node| self.text[node.span.clone()] == **written);
                 match item {
-                    Some(entry) => Some(place_in_file(self.name, self.text, entry.value.clone())),
+                    Some(node) => Some(place_in_file(self.name, self.text, node.span.clone())),
                     None => return self.range(problem, axis),
                 }
             }
@@ -66,8 +67,9 @@ impl File<'_> {
 
     /// A value of a range that its field cannot have: one that it can have is no range.
     fn range(&self, problem: Problem, axis: &str) -> Problem {
-        let from = self.outline.get(&format!("{axis}.from")).filter(|_| is_count(&problem.field));
-        let first = from.and_then(|from| self.text[from.value.clone()].parse::<f64>().ok()).map(f64::ceil);
+        let counts = fields::counts(&problem.field);
+        let from = self.tree.get(&format!("{axis}.from")).filter(|_| counts);
+        let first = from.and_then(|from| self.text[from.span.clone()].parse::<f64>().ok()).map(f64::ceil);
         let mut problem = problem.of_value_at(self.place(axis));
         if let Some(first) = first {
             problem.suggestion =

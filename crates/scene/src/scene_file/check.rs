@@ -2,37 +2,35 @@
 //! tried.
 
 use super::finding::{Finding, Proposal};
-use super::origin::Origin;
-use super::overrides;
 use super::problem::SceneError;
-use super::schema::Schema;
-use super::{deviations, exclusions, extent, geometry, limits, operation, own, ring_meshes};
+use super::sources::{self, Sources};
+use super::{deviations, exclusions, extent, geometry, operation, own, ranges, ring_meshes};
+use crate::fields::{Shape, Spot, spot};
 use crate::scene::Scene;
 
 /// Refuses a scene with a number outside its range, or with bodies or demands that are impossible. `written`
 /// is the scene before its bearing was completed.
 pub(crate) fn check(
     scene: &Scene,
-    origin: &Origin<'_>,
+    sources: &Sources,
     written: Option<&own::Written>,
 ) -> Result<(), SceneError> {
     let found = findings(scene);
     if found.is_empty() {
         return Ok(());
     }
-    let schema = Schema::get();
-    let problem = |finding: &Finding| origin.problem(tried(finding, &found, scene, schema, written));
+    let problem = |finding: &Finding| sources.problem(tried(finding, &found, scene, written));
     Err(SceneError::new(found.iter().map(problem).collect()))
 }
 
 /// Whether every number lies in the range of its field.
 pub(crate) fn numbers_are_in_range(scene: &Scene) -> bool {
-    limits::findings(scene).is_empty()
+    ranges::findings(scene).is_empty()
 }
 
 /// Geometry only of numbers that are in range.
 fn findings(scene: &Scene) -> Vec<Finding> {
-    let found = limits::findings(scene);
+    let found = ranges::findings(scene);
     if !found.is_empty() {
         return found;
     }
@@ -47,17 +45,14 @@ fn findings(scene: &Scene) -> Vec<Finding> {
 
 /// The finding with at most one value in each remedy: the one that leaves fewest of those `found`, this one
 /// not.
-fn tried(
-    finding: &Finding,
-    found: &[Finding],
-    scene: &Scene,
-    schema: &Schema,
-    written: Option<&own::Written>,
-) -> Finding {
+fn tried(finding: &Finding, found: &[Finding], scene: &Scene, written: Option<&own::Written>) -> Finding {
     let mut finding = finding.clone();
     let this = finding.clone();
     for remedy in &mut finding.remedies {
-        let default = schema.plain_default(&remedy.field).map(|value| Proposal::new(value, "the default"));
+        // Leaving a group out is a remedy of its own.
+        let is_plain = |spot: &Spot| spot.shape.counts() || !matches!(spot.shape, Shape::Optional(_));
+        let at = spot(&remedy.field, None).filter(|spot| is_plain(spot) && !remedy.field.contains('['));
+        let default = at.and_then(Spot::plain_default).map(|value| Proposal::new(value, "the default"));
         let values = remedy.values.drain(..).chain(default);
         let left = |value: &Proposal| {
             let argument = format!("{}={}", remedy.field, value.value);
@@ -73,8 +68,7 @@ fn tried(
 /// How many findings are left with the override `argument`; `None` when `finding` is among them, or a new
 /// one.
 fn left_by(argument: &str, finding: &Finding, found: &[Finding], scene: &Scene) -> Option<usize> {
-    let (repaired, _) = overrides::apply(scene.clone(), &[argument]).ok()?;
-    let left = findings(&repaired);
+    let left = findings(&sources::with(scene, argument)?);
     let known = |left: &Finding| found.iter().any(|old| old.is_about_the_same_as(left));
     left.iter().all(|left| !left.is_about_the_same_as(finding) && known(left)).then_some(left.len())
 }

@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use super::outline::{Entry, Outline};
-
 /// A recognised habit: its error, and the spelling in RON.
 pub(crate) struct Habit {
     pub(crate) range: Range<usize>,
@@ -77,19 +75,6 @@ fn one_value(text: &str) -> String {
     let value = text.split(" #").next().unwrap_or(text).trim().trim_end_matches(',');
     let word = value.starts_with(|c: char| c.is_alphabetic()) && value != "None";
     super::wording::shown(&if word { format!("{value:?}") } else { value.to_owned() })
-}
-
-/// A decimal comma where reading stopped, at the byte `at`: the field, its whole value, and the value with a
-/// point.
-pub(crate) fn decimal_comma<'a>(text: &str, outline: &'a Outline, at: usize) -> Option<(&'a Entry, Habit)> {
-    let entry = outline.entries.iter().rfind(|entry| entry.value.end <= at && entry.key != entry.value)?;
-    let end = comma_number(&text[entry.value.start..])? + entry.value.start;
-    (at <= end && entry.value.end < end).then(|| {
-        let range = entry.value.start..end;
-        let written = &text[range.clone()];
-        let message = format!("`{}` is `{written}`, with a decimal comma", entry.path);
-        (entry, Habit { range, message, suggestion: with_point(written) })
-    })
 }
 
 /// The length of a number with a decimal comma at the beginning of `text`.

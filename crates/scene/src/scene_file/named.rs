@@ -4,7 +4,6 @@
 //! Dimensions that no catalogue prints are in proportion to the paper's bearing: the mesh has as many facets,
 //! contact the same pressure.
 
-use super::outline::Outline;
 use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
 use crate::housing::{HousingScene, PedestalScene};
 use crate::line_contact::LineContacts;
@@ -23,31 +22,6 @@ pub(super) const ROLLER_LENGTH: f64 = 0.6;
 
 /// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.
 const STRIBECK: f64 = 4.37;
-
-/// The text with a designation in the place of its bearing's numbers blanked out, so that all other places
-/// stay, and the designation.
-pub(crate) fn take(text: &str, outline: &Outline) -> Option<(String, String)> {
-    let value = outline.get("bearing")?.value.clone();
-    let name = designation(&text[value.clone()])?;
-    let blank = format!("{:<1$}", "()", value.len());
-    Some((format!("{}{blank}{}", &text[..value.start], &text[value.end..]), name))
-}
-
-/// Paths of all fields written in a text.
-pub(crate) fn written(text: &str) -> Vec<String> {
-    Outline::of(text).entries.into_iter().map(|entry| entry.path).collect()
-}
-
-/// Paths of all fields that arguments `field=value` set.
-pub(crate) fn written_by<S: AsRef<str>>(arguments: &[S]) -> Vec<String> {
-    let fields = |argument: &S| {
-        let (path, value) = argument.as_ref().split_once('=')?;
-        let path = path.trim().to_owned();
-        let inside: Vec<String> = written(value).iter().map(|inner| format!("{path}.{inner}")).collect();
-        Some(std::iter::once(path).chain(inside).collect::<Vec<_>>())
-    };
-    arguments.iter().filter_map(fields).flatten().collect()
-}
 
 /// The text between quotes.
 pub(crate) fn designation(value: &str) -> Option<String> {

@@ -2,8 +2,8 @@
 //! that cannot turn, and courses over time out of range.
 
 use super::finding::{Finding, Remedy};
-use super::limits::{self, LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE};
 use super::wording::{number, round_down, shown};
+use super::{LOAD_PROFILE, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
 use crate::housing::HousingScene;
 use crate::scene::{ProfileScene, Scene};
 
@@ -97,8 +97,7 @@ fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Op
         }
         ProfileScene::Harmonic(sine) => {
             let ends = [mean - sine.amplitude, mean + sine.amplitude];
-            let (end, allowed) =
-                ends.into_iter().find_map(|end| Some((end, limits::refuses_in_profile(path, end)?)))?;
+            let (end, allowed) = ends.into_iter().find_map(|end| Some((end, ranges::refuses(path, end)?)))?;
             let amplitude = format!("{path}.amplitude");
             let message = format!(
                 "`{field}` = {} and `{amplitude}` = {} come to {}, outside the range of `{field}`",

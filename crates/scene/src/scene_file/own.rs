@@ -6,9 +6,8 @@
 //! ([`surround`](super::named::surround)).
 
 use super::named::{self, Surrounded, tidy};
-use super::origin::Origin;
-use super::overrides;
 use super::problem::Problem;
+use super::sources::{self, Sources};
 use super::wording::number;
 use crate::catalogue;
 use crate::scene::{Assumed, BearingScene, Scene};
@@ -51,8 +50,8 @@ pub(super) struct Refusal {
 }
 
 impl Refusal {
-    pub(super) fn problem(&self, origin: &Origin<'_>) -> Problem {
-        let mut problem = Problem::new(self.message.clone(), origin.place(&self.field));
+    pub(super) fn problem(&self, sources: &Sources) -> Problem {
+        let mut problem = Problem::new(self.message.clone(), sources.place(&self.field));
         problem.field.clone_from(&self.field);
         problem.allowed.clone_from(&self.allowed);
         if let Some((field, value)) = &self.repair {
@@ -84,7 +83,7 @@ pub(crate) struct Written {
 impl Written {
     /// Whether its fields define no bearing any more with the override `argument` of `field`.
     pub(super) fn is_refused_with(&self, field: &str, argument: &str) -> bool {
-        let Ok((mut scene, _)) = overrides::apply(self.scene.clone(), &[argument]) else { return true };
+        let Some(mut scene) = sources::with(&self.scene, argument) else { return true };
         let given: Vec<String> = self.given.iter().cloned().chain([field.to_owned()]).collect();
         matches!(complete(&mut scene, &given), Own::Refused(_))
     }

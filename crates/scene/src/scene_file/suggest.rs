@@ -62,13 +62,13 @@ pub(crate) fn same_quantity(a: &str, b: &str) -> bool {
 }
 
 /// The name in `valid` that is most like `found`, when one is.
-pub fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a, S: AsRef<str>>(found: &str, valid: &'a [S]) -> Option<&'a str> {
     let found = found.to_lowercase();
     let likeness = |name: &str| {
         let slip = found.len().min(name.len()) >= SLIP && strsim::osa_distance(&found, name) <= 1;
         strsim::jaro_winkler(&found, name).max(if slip { NEAR } else { 0.0 })
     };
-    let rated = valid.iter().map(|name| (likeness(&name.to_lowercase()), *name));
+    let rated = valid.iter().map(AsRef::as_ref).map(|name| (likeness(&name.to_lowercase()), name));
     let best = rated.max_by(|a, b| a.0.total_cmp(&b.0))?;
     (best.0 >= NEAR).then_some(best.1)
 }
@@ -76,7 +76,7 @@ pub fn nearest<'a>(found: &str, valid: &[&'a str]) -> Option<&'a str> {
 /// Replacement for the unknown field `found`; `None` where none is similar.
 ///
 /// `siblings` are the names valid in that place, `all` the dotted paths of every field there is.
-pub(crate) fn field(found: &str, siblings: &[&str], all: &[&str]) -> Option<String> {
+pub(crate) fn field(found: &str, siblings: &[&str], all: &[String]) -> Option<String> {
     let (stem, unit) = split_unit(found);
     if let Some(name) = siblings.iter().find(|name| split_unit(name).0 == stem) {
         return Some(match (unit, split_unit(name).1) {
@@ -114,10 +114,10 @@ mod tests {
     use super::*;
 
     const SIBLINGS: &[&str] = &["load_n", "speed_rpm", "gravity_m_s2"];
-    const ALL: &[&str] = &["bearing.rollers", "mesh.size_mm", "operation.load_n", "solver.duration_ms"];
+    const ALL: [&str; 4] = ["bearing.rollers", "mesh.size_mm", "operation.load_n", "solver.duration_ms"];
 
     fn said(found: &str) -> String {
-        field(found, SIBLINGS, ALL).expect("something is like it")
+        field(found, SIBLINGS, &ALL.map(str::to_owned)).expect("something is like it")
     }
 
     #[test]
@@ -146,6 +146,6 @@ mod tests {
 
     #[test]
     fn behaves_to_a_stranger_nothing_is_like() {
-        assert_eq!(field("qqq", SIBLINGS, ALL), None);
+        assert_eq!(field("qqq", SIBLINGS, &ALL.map(str::to_owned)), None);
     }
 }

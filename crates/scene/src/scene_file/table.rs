@@ -14,12 +14,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::limits::{
-    self, INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE,
-};
-use super::origin::Origin;
 use super::problem::{Problem, SceneError, place_in_file};
+use super::sources::Sources;
 use super::wording::{number, shown};
+use super::{INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
 use crate::deviation::{FormScene, PointScene};
 use crate::housing::HousingScene;
 use crate::mesh_text;
@@ -42,7 +40,7 @@ struct Table<'a> {
 }
 
 /// Puts the points of tables in their place; `folder` is where their paths count from.
-pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Result<(), SceneError> {
+pub(crate) fn read(scene: &mut Scene, folder: &Path, sources: &Sources) -> Result<(), SceneError> {
     let o = &mut scene.operation;
     for (path, profile) in [
         (SPEED_PROFILE, &mut o.speed_profile),
@@ -50,18 +48,18 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Res
         (LOAD_PROFILE, &mut o.load_profile),
     ] {
         let Some(ProfileScene::Table(name)) = profile else { continue };
-        let refuses = |value: f64| limits::refuses_in_profile(path, value);
+        let refuses = |value: f64| ranges::refuses(path, value);
         let table = Table { path, columns: ["time_ms", "value"], refuses: &refuses };
-        *profile = Some(ProfileScene::Points(table.read(folder, name, origin)?));
+        *profile = Some(ProfileScene::Points(table.read(folder, name, sources)?));
     }
     if let HousingScene::Mesh(housing) = &mut scene.housing {
-        read_mesh("housing", &housing.file, &mut housing.text, folder, origin)?;
+        read_mesh("housing", &housing.file, &mut housing.text, folder, sources)?;
     }
     for (path, mesh) in
         [(OUTER_RING_MESH, &mut scene.outer_ring_mesh), (INNER_RING_MESH, &mut scene.inner_ring_mesh)]
     {
         if let Some(mesh) = mesh {
-            read_mesh(path, &mesh.file, &mut mesh.text, folder, origin)?;
+            read_mesh(path, &mesh.file, &mut mesh.text, folder, sources)?;
         }
     }
     for (i, deviation) in scene.defects.iter_mut().enumerate() {
@@ -72,7 +70,7 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, origin: &Origin<'_>) -> Res
         }
         let path = format!("defects[{i}].form.file");
         let table = Table { path: &path, columns: ["position_mm", "depth_um"], refuses: &|_| None };
-        let points = table.read(folder, &profile.file, origin)?;
+        let points = table.read(folder, &profile.file, sources)?;
         profile.points = points.into_iter().map(|(at_mm, depth_um)| PointScene { at_mm, depth_um }).collect();
     }
     Ok(())
@@ -84,7 +82,7 @@ fn read_mesh(
     file: &str,
     text: &mut String,
     folder: &Path,
-    origin: &Origin<'_>,
+    sources: &Sources,
 ) -> Result<(), SceneError> {
     if !text.is_empty() {
         return Ok(());
@@ -92,7 +90,7 @@ fn read_mesh(
     *text = mesh_text::read(&folder.join(file), MAX_MESH_BYTES).map_err(|why| {
         let field = format!("{path}.file");
         let mut problem =
-            Problem::new(format!("cannot read the mesh `{}`: {why}", shown(file)), origin.place(&field));
+            Problem::new(format!("cannot read the mesh `{}`: {why}", shown(file)), sources.place(&field));
         problem.field = field;
         "a Gmsh (`.msh`), Abaqus (`.inp`) or LS-DYNA (`.k`) file".clone_into(&mut problem.allowed);
         "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
@@ -103,10 +101,10 @@ fn read_mesh(
 
 impl Table<'_> {
     /// Its points, from the file of that name; `folder` is where its path counts from.
-    fn read(&self, folder: &Path, name: &str, origin: &Origin<'_>) -> Result<Vec<(f64, f64)>, SceneError> {
+    fn read(&self, folder: &Path, name: &str, sources: &Sources) -> Result<Vec<(f64, f64)>, SceneError> {
         let file = folder.join(name);
         let text = text_of(&file, MAX_BYTES).map_err(|why| {
-            let place = origin.place(self.path);
+            let place = sources.place(self.path);
             let mut problem = Problem::new(format!("cannot read the table `{}`: {why}", shown(name)), place);
             self.path.clone_into(&mut problem.field);
             problem.allowed = self.form();

@@ -1,6 +1,7 @@
 //! Inconsistent fields: which one is blamed, and whether the proposed value works.
 
 use super::*;
+use crate::fields::{Shape, counts, paths, spot};
 
 /// Each relation, broken by one field alone: that field is blamed, from a file and from the command line.
 const BROKEN_BY_ONE: [&str; 30] = [
@@ -131,7 +132,7 @@ fn issue_no_number_in_a_message_is_longer_than_a_word() {
     let longest =
         |text: &str| text.split([' ', '`', ',']).map(|word| word.chars().count()).max().unwrap_or(0);
     for value in ["1e308", "-1e308", "5e-324", "1e-310", "123456789.123456789", "NaN", "inf", "-inf", "0"] {
-        for path in super::super::schema::Schema::get().paths() {
+        for path in crate::fields::paths() {
             let Err(error) = Scene::default().with_overrides(&[format!("{path}={value}")]) else { continue };
             for problem in error.problems() {
                 for text in [&problem.message, &problem.allowed, &problem.suggestion] {
@@ -192,16 +193,13 @@ proptest! {
     fn invariant_what_is_proposed_removes_the_problem_and_makes_no_new_one(
         first in 0_usize..60, x in number(), second in 0_usize..60, y in number(), as_is in any::<bool>(),
     ) {
-        let schema = super::super::schema::Schema::get();
-        let fields: Vec<&str> = schema
-            .paths()
-            .into_iter()
-            .filter(|path| schema.default_of(path).is_some_and(|v| v == "None" || v.parse::<f64>().is_ok()))
-            .collect();
+        let number = |path: &&String| {
+            spot(path, None).is_some_and(|spot| matches!(spot.shape.there(), Shape::Number | Shape::Count))
+        };
+        let fields: Vec<&String> = paths().iter().filter(number).collect();
         let set = |field: usize, value: f64| {
             let path = fields[field % fields.len()];
-            let count = schema.default_of(path).is_some_and(|v| v == "None" || v.parse::<u64>().is_ok());
-            let value = if count { value.abs().round().min(1e9) } else { value };
+            let value = if counts(path) { value.abs().round().min(1e9) } else { value };
             format!("{path}={value}")
         };
         let mut arguments = vec![set(first, x)];

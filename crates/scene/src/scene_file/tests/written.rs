@@ -9,10 +9,7 @@ fn behaves_an_empty_group_is_the_default_scene() {
 
 /// Paths of the fields of `scene` that a text does not write.
 fn unwritten(text: &str, scene: &Scene) -> Vec<String> {
-    let paths = |text: &str| {
-        let entries = crate::scene_file::outline::Outline::of(text).entries;
-        entries.into_iter().map(|entry| entry.path).collect::<Vec<String>>()
-    };
+    let paths = |text: &str| super::super::paths_in(&crate::fields::tree::parse(text).expect("sound"));
     let written = paths(text);
     paths(&scene.to_ron()).into_iter().filter(|path| !written.contains(path)).collect()
 }

@@ -1,0 +1,266 @@
+//! What the table of fields does not allow in a tree of values: unknown names, missing fields, values of the
+//! wrong type; and texts that are no tree.
+
+use std::ops::Range;
+
+use super::foreign;
+use super::problem::Problem;
+use super::sources::Sources;
+use super::suggest;
+use super::wording::{list, number, shown};
+use crate::catalogue::CatalogueBearing;
+use crate::fields::tree::{Broken, Content, Kind, Node};
+use crate::fields::value::Value;
+use crate::fields::{Group, Shape, Spot, Words, paths};
+
+/// Everything in `node` that its entry of the table does not allow.
+pub(crate) fn faults(node: &Node, spot: Spot, path: &str, sources: &Sources) -> Vec<Problem> {
+    let mut found = Found { sources, problems: Vec::new() };
+    found.check(node, spot, path);
+    found.problems
+}
+
+struct Found<'a> {
+    sources: &'a Sources,
+    problems: Vec<Problem>,
+}
+
+impl Found<'_> {
+    fn add(&mut self, field: &str, message: String, node: &Node, span: Range<usize>) -> &mut Problem {
+        let mut problem = Problem::new(message, self.sources.place_at(node.source, span));
+        field.clone_into(&mut problem.field);
+        self.problems.push(problem);
+        let last = self.problems.len() - 1;
+        &mut self.problems[last]
+    }
+
+    fn check(&mut self, node: &Node, spot: Spot, path: &str) {
+        if node.is_none() && matches!(spot.shape, Shape::Optional(_)) {
+            return;
+        }
+        match (spot.shape.there(), &node.content) {
+            (Shape::Number, _) if f64::read(node).is_some() => {}
+            (Shape::Count, _) if u64::read(node).is_some() => {}
+            (Shape::Text, _) if String::read(node).is_some() => {}
+            (Shape::Pair, _) if <(f64, f64)>::read(node).is_some() => {}
+            (Shape::List(item), Content::List(items)) => {
+                let of_item = spot.item().unwrap_or_else(|| spot.with(*item));
+                for (i, node) in items.iter().enumerate() {
+                    self.check(node, of_item, &format!("{path}[{i}]"));
+                }
+            }
+            (Shape::Group(group), Content::Group(_)) => self.group(node, spot, group, path),
+            // RON allows the name of a group before its brackets.
+            (Shape::Group(group), Content::Behind(name, inside)) if name == group.name => {
+                self.check(inside, spot, path);
+            }
+            (Shape::Group(_), Content::Behind(name, inside)) => {
+                let span = node.span.start..inside.span.start;
+                let problem = self.add(path, format!("`{}(` is no part of a scene", shown(name)), node, span);
+                "leave the name in front of the bracket out: `( … )`".clone_into(&mut problem.suggestion);
+            }
+            (Shape::Words(words), _) => self.word(node, spot, words, path),
+            _ => self.mismatch(node, spot, path),
+        }
+    }
+
+    fn group(&mut self, node: &Node, spot: Spot, group: &'static Group, path: &str) {
+        let Content::Group(fields) = &node.content else { return };
+        let inside = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+        for (i, (key, value)) in fields.iter().enumerate() {
+            let at = inside(&key.name);
+            match group.get(&key.name) {
+                _ if fields[..i].iter().any(|(before, _)| before.name == key.name) => {
+                    let message = format!("field `{}` is given twice", key.name);
+                    let problem = self.add(&at, message, node, key.span.clone());
+                    "keep one of the two lines".clone_into(&mut problem.suggestion);
+                }
+                Some(field) => self.check(value, spot.at(group, field), &at),
+                None => {
+                    let home = if path.is_empty() { "a scene".to_owned() } else { format!("`{path}`") };
+                    let names: Vec<&str> = group
+                        .fields
+                        .iter()
+                        .filter(|field| !field.is_internal)
+                        .map(|field| field.name)
+                        .collect();
+                    let message = format!("unknown field `{}` in {home}", shown(&key.name));
+                    let problem = self.add(&at, message, node, key.span.clone());
+                    problem.allowed = list(&names);
+                    problem.suggestion = suggest::field(&key.name, &names, paths()).unwrap_or_default();
+                }
+            }
+        }
+        for field in group.fields.iter().filter(|field| field.is_required && node.field(field.name).is_none())
+        {
+            let message = format!("`{path}` has no field `{}`, which has no default", field.name);
+            let problem = self.add(&inside(field.name), message, node, node.span.clone());
+            problem.suggestion = format!("add `{}: …` ({})", field.name, field.shape.words());
+        }
+    }
+
+    fn word(&mut self, node: &Node, spot: Spot, words: &'static Words, path: &str) {
+        let Some(written) = node.word() else { return self.mismatch(node, spot, path) };
+        let known = words.get(written);
+        match (&node.content, known.map(|word| word.inside)) {
+            (Content::Atom(_), Some(None)) => {}
+            (Content::Behind(_, inside), Some(Some(shape))) => self.check(inside, spot.inside(shape), path),
+            (Content::Atom(_), Some(Some(shape))) => {
+                let message = format!("`{path}` is `{written}` without its brackets");
+                let problem = self.add(path, message, node, node.span.clone());
+                problem.allowed = spot.allowed();
+                match meant(written, spot.shape, path) {
+                    Some((value, note)) => problem.propose(path, &value, note),
+                    None => problem.suggestion = format!("`{written}( … )`, with {} in it", shape.words()),
+                }
+            }
+            (Content::Behind(..), Some(None)) => {
+                let message =
+                    format!("`{path}` is `{written}( … )`, and `{written}` has nothing in brackets");
+                let problem = self.add(path, message, node, node.span.clone());
+                problem.propose(path, written, "without brackets");
+            }
+            (_, None) if written.starts_with(|c: char| c.is_alphabetic()) && !spot_is_none(spot, written) => {
+                let message = format!("`{path}` is `{}`, which is not one of its words", shown(written));
+                let span = node.span.start..node.span.start + written.len();
+                let problem = self.add(path, message, node, span);
+                let names = words.names();
+                problem.allowed = list(&names);
+                match (suggest::nearest(written, &names), spot.plain_default()) {
+                    (Some(near), _) => problem.suggestion = format!("did you mean `{near}`?"),
+                    (None, Some(word)) => problem.propose(path, &word, "the default"),
+                    (None, None) => {}
+                }
+            }
+            _ => self.mismatch(node, spot, path),
+        }
+    }
+
+    /// A value of the wrong type.
+    fn mismatch(&mut self, node: &Node, spot: Spot, path: &str) {
+        let value = self.sources.text_of(node).to_owned();
+        let too_large = spot.shape.counts() && !value.is_empty() && value.bytes().all(|b| b.is_ascii_digit());
+        let not = if too_large { "too large".to_owned() } else { format!("not {}", spot.shape.words()) };
+        let message = if path.is_empty() {
+            "a group `( … )` is expected here".to_owned()
+        } else {
+            format!("`{path}` is `{}`, which is {not}", shown(&value))
+        };
+        let is_plain = matches!(node.content, Content::Atom(_));
+        let proposal = meant(&value, spot.shape, path)
+            .or_else(|| spot.plain_default().map(|default| (default, "the default")))
+            .filter(|_| is_plain || !matches!(spot.shape.there(), Shape::Group(_)));
+        let unnamed = matches!((spot.shape.there(), &node.content), (Shape::Group(_), Content::Tuple(_)));
+        let problem = self.add(path, message, node, node.span.clone());
+        problem.allowed = spot.allowed();
+        if unnamed || path.is_empty() {
+            "fields stand with their names in round brackets: `(name: value, …)`"
+                .clone_into(&mut problem.suggestion);
+        } else if let Some((value, note)) = proposal {
+            if spot.is_whole() || path.ends_with(']') {
+                problem.propose(path, &value, note);
+            } else {
+                problem.suggestion = format!("`{value}` ({note})");
+            }
+        }
+    }
+}
+
+/// Whether a word is meant for `None`.
+fn spot_is_none(spot: Spot, written: &str) -> bool {
+    matches!(spot.shape, Shape::Optional(_)) && written.eq_ignore_ascii_case("none")
+}
+
+/// The value that was probably meant by one of the wrong type.
+fn meant(value: &str, shape: Shape, path: &str) -> Option<(String, &'static str)> {
+    let bare = value.trim_matches('"');
+    if matches!(shape, Shape::Optional(_)) && bare.eq_ignore_ascii_case("none") {
+        return Some(("None".to_owned(), "with a capital letter"));
+    }
+    match shape.there() {
+        Shape::Number if bare != value && bare.parse::<f64>().is_ok_and(f64::is_finite) => {
+            Some((bare.to_owned(), "without quotes"))
+        }
+        Shape::Count if bare.parse::<u32>().is_ok() => Some((bare.to_owned(), "without quotes")),
+        Shape::Count => {
+            let count = bare.parse::<f64>().ok().filter(|count| (1.0..1e6).contains(count))?;
+            Some((number(count.round()), "rounded"))
+        }
+        Shape::Text if bare.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !bare.is_empty() => {
+            Some((format!("\"{bare}\""), "in quotes"))
+        }
+        Shape::Words(words) => match words.get(bare)?.inside {
+            None => Some((bare.to_owned(), "without quotes")),
+            Some(Shape::Group(_)) => Some((format!("{bare}()"), "with brackets for its fields")),
+            Some(Shape::Count) => Some((format!("{bare}(1)"), "with its number")),
+            Some(_) => None,
+        },
+        Shape::Group(_) if path == "bearing" => {
+            let known = CatalogueBearing::parse(bare).ok()?;
+            Some((format!("\"{}\"", known.name), "the name of a bearing of the catalogue, in quotes"))
+        }
+        _ => None,
+    }
+}
+
+/// The error on a text that is no tree, which `noun` it should be.
+pub(crate) fn broken(text: &str, broken: Broken, sources: &Sources) -> Problem {
+    let source = crate::fields::tree::Source::File;
+    if let Some(habit) = foreign::other_format(text) {
+        let mut problem = Problem::new(habit.message, sources.place_at(source, habit.range));
+        problem.suggestion = habit.suggestion;
+        return problem;
+    }
+    let Broken { field, range, kind } = broken;
+    let mut problem = Problem::new("", sources.place_at(source, range.clone()));
+    let [message, suggestion] = match kind {
+        Kind::Empty => ["the scene is empty", "`()` is the complete default scene; is the file cut off?"],
+        Kind::Ends => [
+            "the scene ends too early: a closing bracket or a value is missing",
+            "is the file cut off? Every `(` needs its `)`",
+        ],
+        Kind::Deep => ["the scene cannot be read: no scene has so many brackets in each other", ""],
+        Kind::NoValue if text[range.start..].starts_with('{') => {
+            ["a group `( … )` is expected here", hint(text, range.start)]
+        }
+        Kind::NoValue => ["the scene cannot be read: a value is expected here", hint(text, range.start)],
+        Kind::Expected(what) => {
+            problem.message = format!("the scene cannot be read: {what} is expected here");
+            ["", hint(text, range.start)]
+        }
+        Kind::DecimalComma => {
+            let written = &text[range];
+            problem.message = format!("`{field}` is `{written}`, with a decimal comma");
+            problem.field.clone_from(&field);
+            problem.allowed = crate::fields::spot(&field, None).map(Spot::allowed).unwrap_or_default();
+            problem.propose(&field, &foreign::with_point(written), foreign::comma_note(written));
+            return problem;
+        }
+    };
+    if problem.message.is_empty() {
+        message.clone_into(&mut problem.message);
+    }
+    problem.field = field;
+    suggestion.clone_into(&mut problem.suggestion);
+    problem
+}
+
+/// Hint on the place where reading stopped.
+fn hint(text: &str, at: usize) -> &'static str {
+    let before = text[..at].trim_end();
+    let rest = text[at..].trim_start();
+    let next = rest.trim_start_matches(|c: char| c.is_ascii_alphanumeric() || "_ ".contains(c));
+    if rest.starts_with('{') || before.ends_with('{') {
+        "a group stands in round brackets: `( … )`"
+    } else if rest.starts_with('=') || next.starts_with('=') {
+        "a value follows a colon: `name: value`"
+    } else if rest.starts_with('"') && !before.ends_with(':') {
+        "names of fields are written without quotes: `name: value`"
+    } else if rest.starts_with('\'') {
+        "a text stands in double quotes"
+    } else if rest.starts_with('#') {
+        "`//` begins a comment"
+    } else {
+        "look for a missing comma, bracket or quote near the mark"
+    }
+}

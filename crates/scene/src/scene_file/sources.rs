@@ -1,0 +1,431 @@
+//! The values of a scene with their origins: lines of the file, arguments `field=value` of the command line,
+//! and defaults; and from that, which field to blame where several are inconsistent.
+
+use std::ops::Range;
+
+use super::finding::{Finding, Proposal};
+use super::problem::{Place, Problem, SceneError, place_in_file};
+use super::wording::{list, shown};
+use super::{foreign, named, reading, suggest};
+use crate::catalogue::CatalogueBearing;
+use crate::fields::tree::{self, Content, Node, Source, Step, steps};
+use crate::fields::value::Value;
+use crate::fields::{Shape, Spot, names_in, paths, spot};
+use crate::scene::Scene;
+
+/// A complete scene as a tree, and its sources.
+#[derive(Debug)]
+pub(crate) struct Sources {
+    file: String,
+    text: String,
+    arguments: Vec<String>,
+    pub(crate) tree: Node,
+}
+
+/// An argument that cannot be applied.
+pub(crate) struct Refused {
+    pub(crate) problems: Vec<Problem>,
+    /// Its field is known: the value is to blame.
+    pub(crate) is_of_value: bool,
+}
+
+impl From<Problem> for Refused {
+    fn from(problem: Problem) -> Self {
+        Self { problems: vec![problem], is_of_value: false }
+    }
+}
+
+impl Sources {
+    /// A scene in memory, which nobody wrote.
+    pub(crate) fn of_scene(scene: &Scene) -> Self {
+        Self { file: String::new(), text: String::new(), arguments: Vec::new(), tree: scene.write() }
+    }
+
+    /// A scene from a file, its fields alone.
+    ///
+    /// # Errors
+    /// When the text is no tree of fields and values of a scene.
+    pub(crate) fn of_text(text: &str, file: &str) -> Result<Self, SceneError> {
+        let nothing = Node::group([]);
+        let mut sources =
+            Self { file: file.to_owned(), text: text.to_owned(), arguments: Vec::new(), tree: nothing };
+        sources.tree = tree::parse(text).map_err(|why| reading::broken(text, why, &sources))?;
+        Ok(sources)
+    }
+
+    /// The scene; `None` where a value is not one of its field.
+    pub(crate) fn scene(&self) -> Option<Scene> {
+        <Scene as Value>::read(&self.tree)
+    }
+
+    /// Puts an empty group at a path, in the place of what is written there.
+    pub(crate) fn open(&mut self, path: &str) {
+        if let Some(node) = find(&mut self.tree, path) {
+            node.content = Content::Group(Vec::new());
+        }
+    }
+
+    /// Takes the values of a scene, and keeps the origins of those that are the same.
+    pub(crate) fn take(&mut self, scene: &Scene) {
+        self.tree = scene.write().placed_as(&self.tree);
+    }
+
+    /// A place in the text of a source, by byte range.
+    pub(crate) fn place_at(&self, source: Source, span: Range<usize>) -> Place {
+        match source {
+            Source::Default => Place::Unwritten { file: self.file.clone() },
+            Source::File => place_in_file(&self.file, &self.text, span),
+            Source::Argument(number) => command_line(&self.arguments[number], span.start, span.end),
+        }
+    }
+
+    /// A value as it is written.
+    pub(crate) fn text_of<'a>(&'a self, node: &'a Node) -> &'a str {
+        match (node.source, &node.content) {
+            (Source::File, _) => &self.text[node.span.clone()],
+            (Source::Argument(number), _) => self.arguments[number][node.span.clone()].trim(),
+            (Source::Default, Content::Atom(text)) => text,
+            (Source::Default, _) => "",
+        }
+    }
+
+    /// Where `field` was written, if it was.
+    fn written(&self, field: &str) -> Option<Place> {
+        let node = self.tree.get(field).filter(|node| node.source != Source::Default)?;
+        Some(self.place_at(node.source, node.span.clone()))
+    }
+
+    /// Place where `field` was written, if it was.
+    pub(crate) fn place(&self, field: &str) -> Place {
+        self.written(field).unwrap_or_else(|| self.place_at(Source::Default, 0..0))
+    }
+
+    /// Applies arguments in order.
+    ///
+    /// # Errors
+    /// The first one that cannot be applied.
+    pub(crate) fn set_all<S: AsRef<str>>(&mut self, arguments: &[S]) -> Result<(), SceneError> {
+        let given = written_by(arguments);
+        arguments.iter().try_for_each(|argument| {
+            self.set(argument.as_ref(), &given).map_err(|refused| SceneError::new(refused.problems))
+        })
+    }
+
+    /// Those of `arguments` whose value no reading of their field takes: words that are not its words, numbers
+    /// of another type, names of no bearing. The others are applied as far as they go, so each value meets the
+    /// scene that it is written for. Ranges and relations to other fields are not checked.
+    pub(crate) fn unreadable_values<S: AsRef<str>>(&mut self, arguments: &[S]) -> Vec<(usize, Problem)> {
+        let given = written_by(arguments);
+        let mut unreadable = Vec::new();
+        for (index, argument) in arguments.iter().enumerate() {
+            if let Err(refused) = self.set(argument.as_ref(), &given)
+                && refused.is_of_value
+            {
+                unreadable.extend(refused.problems.into_iter().map(|problem| (index, problem)));
+            }
+        }
+        unreadable
+    }
+
+    /// Applies one argument; `given` has the paths of all fields that arguments set.
+    fn set(&mut self, argument: &str, given: &[String]) -> Result<(), Refused> {
+        let number = self.arguments.len();
+        self.arguments.push(argument.to_owned());
+        let Some((written, value)) = argument.split_once('=') else {
+            let message = format!("`{}` has no `=`", shown(argument));
+            let mut problem = Problem::new(message, command_line(argument, 0, argument.len()));
+            "write `--set field=value`, for example `--set mesh.size_mm=1.0`"
+                .clone_into(&mut problem.suggestion);
+            return Err(problem.into());
+        };
+        let path = written.trim();
+        let at = written.len() + 1;
+        let spot = self.known(path, argument)?;
+        let of_value = |problems: Vec<Problem>| Refused { problems, is_of_value: true };
+        let place = command_line(argument, at, argument.len());
+        if path == "bearing"
+            && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
+        {
+            let refuse = |why| Refused {
+                is_of_value: CatalogueBearing::parse(&name).is_err(),
+                ..of_value(vec![super::unknown_bearing(why, place.clone())])
+            };
+            let mut scene = self.scene().unwrap_or_default();
+            named::put(&mut scene, &name, given).map_err(refuse)?;
+            self.take(&scene);
+            let source = Source::Argument(number);
+            if let Some(bearing) = find(&mut self.tree, path) {
+                bearing.place_all(source, &(at..argument.len()));
+            }
+            return Ok(());
+        }
+        let node = if matches!(spot.shape.there(), Shape::Text) && !Node::atom(value.trim()).is_quoted() {
+            // The shell has already eaten the user's quotes.
+            let content = Content::Atom(format!("{:?}", value.trim()));
+            Node { content, span: at..argument.len(), source: Source::Argument(number) }
+        } else {
+            tree::parse_argument(argument, at, number, path)
+                .map_err(|_| of_value(vec![incomplete(path, value.trim(), spot, place)]))?
+        };
+        let found = reading::faults(&node, spot, path, self);
+        if !found.is_empty() {
+            return Err(of_value(found));
+        }
+        put(&mut self.tree, path, node);
+        if let Some(mut scene) = self.scene() {
+            // Sizes that follow from the bearing, as for `housing=pedestal()`.
+            named::follow_bearing(&mut scene, path, given);
+            self.take(&scene);
+        }
+        Ok(())
+    }
+
+    /// The entry of the table at a path; refuses one that no scene has, or not this one.
+    fn known(&self, path: &str, argument: &str) -> Result<Spot, Problem> {
+        let mark = command_line(argument, 0, argument.find('=').unwrap_or(argument.len()));
+        let Some(found) = spot(path, Some(&self.tree)) else { return Err(unknown(path, mark)) };
+        let refuse = |message: String, allowed: String, suggestion: String| {
+            let mut problem = Problem::new(message, mark.clone());
+            path.clone_into(&mut problem.field);
+            (problem.allowed, problem.suggestion) = (allowed, suggestion);
+            Err(problem)
+        };
+        // Items of lists must be there, and have the form that has such a field.
+        let (mut at, mut node, mut in_list) = (String::new(), Some(&self.tree), false);
+        for step in steps(path) {
+            let next = node.and_then(|node| node.step(step));
+            match step {
+                Step::Item(_) if next.is_none() => {
+                    let items = node.map(|node| &node.inside().content);
+                    let count = if let Some(Content::List(items)) = items { items.len() } else { 0 };
+                    let message =
+                        format!("`{path}` does not exist: `{at}` has {count} items, numbered from 0");
+                    return refuse(message, String::new(), format!("give the whole list: `{at}=[ … ]`"));
+                }
+                Step::Field(name) if in_list && next.is_none() => {
+                    let word = node.and_then(Node::word).unwrap_or_default();
+                    let groups = spot(&at, None).map(|spot| spot.shape.there());
+                    let Some(Shape::Words(words)) = groups else { return Ok(found) };
+                    let names: Vec<&str> =
+                        words.get(word).and_then(|word| word.inside).map_or_else(Vec::new, |inside| {
+                            inside
+                                .groups()
+                                .iter()
+                                .flat_map(|group| group.fields)
+                                .map(|field| field.name)
+                                .collect()
+                        });
+                    let message = format!("`{at}` is `{word}`, which has no field `{name}`");
+                    return refuse(message, list(&names), format!("give the whole form: `{at}= … `"));
+                }
+                _ => {}
+            }
+            match step {
+                Step::Field(name) if at.is_empty() => name.clone_into(&mut at),
+                Step::Field(name) => at += &format!(".{name}"),
+                Step::Item(item) => {
+                    in_list = true;
+                    at += &format!("[{item}]");
+                }
+            }
+            node = next;
+        }
+        Ok(found)
+    }
+
+    /// Blames one field of a finding, and proposes the first value of its remedy.
+    ///
+    /// The command line was written last, a default not at all: the field written last is blamed first, and
+    /// among equals the likeliest one that a single value can repair.
+    pub(crate) fn problem(&self, finding: Finding) -> Problem {
+        let candidates: Vec<Candidate> = finding
+            .remedies
+            .into_iter()
+            .map(|remedy| Candidate {
+                place: self.written(&remedy.field),
+                proposal: remedy.values.into_iter().next(),
+                field: remedy.field,
+                allowed: remedy.allowed,
+            })
+            .collect();
+        let last = candidates.iter().map(Candidate::rank).max().unwrap_or(0);
+        let among = |candidate: &&Candidate| candidate.rank() == last;
+        let best = candidates.iter().filter(among).find(|candidate| candidate.proposal.is_some());
+        let nowhere = self.place_at(Source::Default, 0..0);
+        let Some(blamed) = best.or_else(|| candidates.iter().find(among)) else {
+            return Problem::new(finding.message, nowhere);
+        };
+        let mut problem = Problem::new(finding.message, blamed.place.clone().unwrap_or(nowhere));
+        problem.field.clone_from(&blamed.field);
+        problem.allowed.clone_from(&blamed.allowed);
+        let another = candidates.iter().find(|candidate| candidate.proposal.is_some());
+        match best.or(another) {
+            Some(Candidate { field, proposal: Some(Proposal { value, note }), .. }) => {
+                problem.propose(field, value, note);
+            }
+            // Items of a list cannot be tried beforehand.
+            _ if blamed.field.contains('[') => {
+                problem.suggestion = "take a value that is allowed there".to_owned();
+            }
+            _ if candidates.len() == 1 => {
+                problem.suggestion = format!("give `{}` an allowed value", blamed.field);
+            }
+            _ => {
+                problem.suggestion =
+                    "no single value repairs this; change several of the fields together".to_owned()
+            }
+        }
+        problem
+    }
+}
+
+/// A field that may be to blame.
+struct Candidate {
+    field: String,
+    allowed: String,
+    /// A value that repairs the finding.
+    proposal: Option<Proposal>,
+    place: Option<Place>,
+}
+
+impl Candidate {
+    fn rank(&self) -> u8 {
+        match self.place {
+            Some(Place::CommandLine { .. }) => 2,
+            Some(_) => 1,
+            None => 0,
+        }
+    }
+}
+
+/// Paths of all fields that arguments `field=value` set.
+pub(crate) fn written_by<S: AsRef<str>>(arguments: &[S]) -> Vec<String> {
+    let fields = |argument: &S| {
+        let (path, value) = argument.as_ref().split_once('=')?;
+        let path = path.trim();
+        let mut paths = vec![path.to_owned()];
+        if let Ok(value) = tree::parse(value) {
+            paths.extend(value.entries(path).into_iter().map(|(path, ..)| path));
+        }
+        Some(paths)
+    };
+    arguments.iter().filter_map(fields).flatten().collect()
+}
+
+/// A scene with one argument applied; `None` where it cannot be.
+pub(crate) fn with(scene: &Scene, argument: &str) -> Option<Scene> {
+    let mut sources = Sources::of_scene(scene);
+    sources.set_all(&[argument]).ok()?;
+    sources.scene()
+}
+
+/// A place in an argument, by byte range.
+fn command_line(argument: &str, from: usize, to: usize) -> Place {
+    let column = argument[..from].chars().count() + 1;
+    let width = argument[from..to].chars().count().max(1);
+    Place::CommandLine { argument: argument.to_owned(), column, width }
+}
+
+/// A designation without its quotes, which shells take away.
+fn bare_designation(value: &str) -> Option<String> {
+    let value = value.trim();
+    (!value.is_empty() && !value.contains(['(', ')', '"'])).then(|| value.to_owned())
+}
+
+/// Refuses a value that is not one value: a bracket is missing, or something follows.
+fn incomplete(path: &str, value: &str, spot: Spot, place: Place) -> Problem {
+    let mut problem = Problem::new("", place);
+    path.clone_into(&mut problem.field);
+    if foreign::comma_number(value) == Some(value.len()) {
+        problem.message = format!("`{path}` is given `{}`, with a decimal comma", shown(value));
+        problem.propose(path, &foreign::with_point(value), foreign::comma_note(value));
+        return problem;
+    }
+    problem.message = match value {
+        "" => format!("`{path}` is given no value"),
+        _ => format!("`{path}` is given `{}`, which is not one complete value", shown(value)),
+    };
+    match spot.plain_default().filter(|_| !path.contains('[')) {
+        Some(default) => problem.propose(path, &default, "the default"),
+        None => problem.suggestion = format!("`{path}` takes {}", spot.shape.words()),
+    }
+    problem
+}
+
+/// The error on a path that no scene has.
+pub(crate) fn unknown(path: &str, mark: Place) -> Problem {
+    // The longest prefix that exists is the section; the rest is the unknown name.
+    let sections = path.match_indices('.').rev().map(|(at, _)| &path[..at]);
+    let section = sections.into_iter().find(|section| !names_in(section).is_empty()).unwrap_or("");
+    let name = path.strip_prefix(section).unwrap_or(path).trim_start_matches('.');
+    let siblings = names_in(section);
+    let leaf = path.rsplit_once('.').map_or(path, |(_, leaf)| leaf);
+    let named = |p: &&String| p.rsplit_once('.').is_some_and(|(_, name)| suggest::same_quantity(name, leaf));
+    let suggestion = match paths().iter().find(named) {
+        // Right name, wrong section or none: the most common slip. A slip of the unit deserves the factor.
+        Some(home) if !home.starts_with(&format!("{section}.")) => Some(format!("did you mean `{home}`?")),
+        _ => match suggest::nearest(path, paths()).filter(|near| near.contains('.')) {
+            Some(near) if section.is_empty() => Some(format!("did you mean `{near}`?")),
+            _ => {
+                suggest::field(name, &siblings, paths()).map(|words| with_section(words, section, &siblings))
+            }
+        },
+    };
+    let message = match path {
+        "" => "the name of a field is missing in front of `=`".to_owned(),
+        _ => format!("no field `{}` in a scene", shown(path)),
+    };
+    let mut problem = Problem::new(message, mark);
+    path.clone_into(&mut problem.field);
+    problem.suggestion = suggestion.unwrap_or_default();
+    problem.allowed = with_section(list(&siblings), section, &siblings);
+    problem
+}
+
+/// Writes the names in a text with their section, as `--set` takes them.
+fn with_section(text: String, section: &str, names: &[&str]) -> String {
+    if section.is_empty() {
+        return text;
+    }
+    let full = |text: String, name: &&str| text.replace(&format!("`{name}`"), &format!("`{section}.{name}`"));
+    names.iter().fold(text, full)
+}
+
+/// The value at a path that is there.
+fn find<'a>(tree: &'a mut Node, path: &str) -> Option<&'a mut Node> {
+    fn one<'a>(node: &'a mut Node, step: Step<'_>) -> Option<&'a mut Node> {
+        match (&mut node.content, step) {
+            (Content::Behind(_, inside), _) => one(inside, step),
+            (Content::Group(fields), Step::Field(name)) => {
+                fields.iter_mut().find(|(key, _)| key.name == name).map(|(_, node)| node)
+            }
+            (Content::List(items), Step::Item(at)) => items.get_mut(at),
+            _ => None,
+        }
+    }
+    steps(path).try_fold(tree, one)
+}
+
+/// Puts a value at a path. A group that is `None` is opened, and a word that has no such field becomes the first
+/// one that has it.
+fn put(tree: &mut Node, path: &str, value: Node) {
+    if let Some(node) = find(tree, path) {
+        *node = value;
+        return;
+    }
+    let Some((section, name)) = path.rsplit_once('.') else { return };
+    let (source, span) = (value.source, value.span.clone());
+    let mut group = Node::group([(name, value)]);
+    (group.source, group.span) = (source, span.clone());
+    let words = match spot(section, None).map(|spot| spot.shape.there()) {
+        Some(Shape::Words(words)) => words.words,
+        _ => &[],
+    };
+    let has = |inside: Shape| inside.groups().iter().any(|group| group.get(name).is_some());
+    let word = words.iter().find(|word| word.inside.is_some_and(has));
+    let opened = match word {
+        Some(word) => Node { source, span, ..Node::behind(word.word, group) },
+        None => group,
+    };
+    put(tree, section, opened);
+}
