@@ -138,6 +138,11 @@ pub struct EnergyFinding {
 }
 
 impl Summary {
+    /// The duty of a run whose speed changes, so that no line has a frequency.
+    pub fn unsteady(&self) -> Option<&DutyFinding> {
+        self.duty.as_ref().filter(|duty| duty.is_unsteady())
+    }
+
     /// The first passage of each roller over the first spall.
     pub fn first_passages(&self) -> Vec<&Event> {
         let mut first: Vec<&Event> = Vec::new();

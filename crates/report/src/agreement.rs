@@ -10,7 +10,7 @@ use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{head, json, sentence};
+use crate::page::{Section, head, json, sentence};
 use crate::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::agreement::{Agreement, Octaves, Row};
 
@@ -174,9 +174,9 @@ fn octaves(octaves: &Octaves) -> Figure {
 
 /// Error of a reduced run as far as it is known: from the validation in a neighbouring folder whose scene
 /// differs least.
-pub(super) fn of_run(scene: &Scene, run_dir: &Path) -> Markup {
+pub(super) fn section(scene: &Scene, run_dir: &Path) -> Option<Section> {
     if scene.model == ModelScene::Full {
-        return html! {};
+        return None;
     }
     // The folder of a name alone is the present one.
     let beside = run_dir.parent().map(|p| if p.as_os_str().is_empty() { Path::new(".") } else { p });
@@ -186,8 +186,7 @@ pub(super) fn of_run(scene: &Scene, run_dir: &Path) -> Markup {
         Some((differences(scene, &other), agreement))
     });
     let nearest = found.min_by_key(|(differences, agreement)| (differences.len(), agreement.scene.clone()));
-    html! {
-        h2 #model { "Beside the full model" }
+    Some(Section::new("model", "Beside the full model").linked("The full model").after(html! {
         @match nearest {
             None => p {
                 "This is a reduced model, and no validation of a scene like it lies beside the run. "
@@ -199,7 +198,7 @@ pub(super) fn of_run(scene: &Scene, run_dir: &Path) -> Markup {
                 (table(&agreement))
             }
         }
-    }
+    }))
 }
 
 fn distance(differences: &[String], agreement: &Agreement) -> String {

@@ -11,11 +11,9 @@ use maud::{DOCTYPE, Markup, html};
 use stribeck_store::run_dir::{RunDir, write_atomic};
 
 use crate::element_words::ElementWords;
-use crate::figures::Item;
-use crate::lead::lead;
-use crate::page::{head, json, section, sentence, write_figures};
+use crate::page::{Item, Section, charts, contents, drawn, head, json, sentence, write_figures};
+use crate::run::lead::lead;
 use crate::{Error, agreement};
-use figures::Figures;
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
 
 /// Writes the report of the ensemble in `folder` into that folder and returns its numbers.
@@ -28,24 +26,22 @@ pub fn write_ensemble(folder: &Path) -> Result<EnsembleSummary, Error> {
     let findings = EnsembleFindings::of(folder)?;
     let dir = RunDir::open_ensemble(folder)?;
     write_atomic(&dir.summary(), json(&findings.summary)?.as_bytes())?;
-    let figures = Figures::of(&findings);
-    let all: Vec<&Item> = figures.all().collect();
+    let sections = sections(&findings, &dir);
+    let figures: Vec<&Item> = sections.iter().flat_map(|section| &section.figures).collect();
     let words = ElementWords::of(&findings.scene.written);
-    write_figures(&all, &dir.figures(), words)?;
-    // The scene as written, comments and all; an ensemble without it was refused above.
-    let scene = std::fs::read_to_string(dir.scene()).unwrap_or_default();
-    let page = page(&findings, &figures, &scene, dir.path())?.into_string();
+    write_figures(&figures, &dir.figures(), words)?;
+    let page = page(&findings, &sections)?.into_string();
     write_atomic(&dir.report(), words.markup(page).as_bytes())?;
     Ok(findings.summary)
 }
 
-fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Path) -> Result<Markup, Error> {
+fn page(findings: &EnsembleFindings, sections: &[Section]) -> Result<Markup, Error> {
     let summary = &findings.summary;
     let (complete, asked) = (summary.count(Ended::Complete), summary.starts.len());
     let simulated_ms = findings.scene.written.solver.duration_ms;
     let first = findings.complete.first().map(|(_, first)| first);
-    let paper = figures::paper_case(findings);
     let duty = first.and_then(|first| first.summary.duty.as_ref());
+    let drawn = sections.iter().map(Section::markup).collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
@@ -55,37 +51,59 @@ fn page(findings: &EnsembleFindings, figures: &Figures, scene: &str, folder: &Pa
                 p class="lead" { (lead(&findings.scene, duty, simulated_ms)) }
                 @if complete < asked { (banner(summary, complete)) }
                 (answer::paragraphs(findings))
-                (contents(paper.is_some()))
-                @if let Some(case) = &paper { (case.section(&figures.paper, all_numbers(summary))?) }
-                (section("levels", "Levels", tables::main(summary), &figures.levels, tables::sensors(summary), "No start is complete.")?)
-                (section("acceleration", "Acceleration", html! {}, &figures.acceleration, html! {}, "No sensor was recorded.")?)
-                (section("spectra", "Spectrum", tables::families(summary), &figures.spectra, html! {}, "The records are too short for a spectrum.")?)
-                (section("forces", "Contact forces and events", tables::events(findings), &figures.forces, html! {}, "No roller crosses a defect.")?)
-                (agreement::of_run(&findings.scene.written, folder))
-                h2 #starts { "Starts" }
-                (tables::starts(summary))
-                h2 #notes { "Notes" }
-                @if summary.notes.is_empty() { p { "None." } }
-                ul class="notes" { @for note in &summary.notes { li { (sentence(note)) } } }
-                h2 #provenance { "Provenance" }
-                (tables::provenance(findings))
-                details {
-                    summary { "The scene, with every default" }
-                    pre { (scene) }
-                }
+                (contents(sections))
+                @for section in drawn { (section) }
             }
         }
     })
 }
 
-/// Every number of the paper's text, folded up.
-fn all_numbers(summary: &EnsembleSummary) -> Markup {
-    html! {
+/// All sections, in the order of the page.
+fn sections(findings: &EnsembleFindings, dir: &RunDir) -> Vec<Section> {
+    let summary = &findings.summary;
+    // The scene as written, comments and all; an ensemble without it was refused above.
+    let scene = std::fs::read_to_string(dir.scene()).unwrap_or_default();
+    let notes = html! {
+        @if summary.notes.is_empty() { p { "None." } }
+        ul class="notes" { @for note in &summary.notes { li { (sentence(note)) } } }
+    };
+    let provenance = html! {
+        (tables::provenance(findings))
         details {
-            summary { "Each number of the paper, and ours" }
-            (tables::paper(summary))
+            summary { "The scene, with every default" }
+            pre { (scene) }
         }
-    }
+    };
+    let forces = drawn(strips::events(findings)).chain(charts(figures::forces(findings)));
+    let sections = [
+        figures::paper_case(findings).map(|case| case.section(tables::paper(summary))),
+        Some(
+            Section::new("levels", "Levels")
+                .before(tables::main(summary))
+                .figures(drawn(strips::levels(findings)), "No start is complete.")
+                .after(tables::sensors(summary)),
+        ),
+        Some(
+            Section::new("acceleration", "Acceleration")
+                .figures(charts(figures::acceleration(findings)), "No sensor was recorded."),
+        ),
+        Some(
+            Section::new("spectra", "Spectrum")
+                .before(tables::families(summary))
+                .figures(charts(figures::spectra(findings)), "The records are too short for a spectrum."),
+        ),
+        Some(
+            Section::new("forces", "Contact forces and events")
+                .linked("Forces and events")
+                .before(tables::events(findings))
+                .figures(forces, "No roller crosses a defect."),
+        ),
+        agreement::section(&findings.scene.written, dir.path()).map(|section| section.linked("")),
+        Some(Section::new("starts", "Starts").after(tables::starts(summary))),
+        Some(Section::new("notes", "Notes").after(notes)),
+        Some(Section::new("provenance", "Provenance").after(provenance)),
+    ];
+    sections.into_iter().flatten().collect()
 }
 
 fn banner(summary: &EnsembleSummary, complete: usize) -> Markup {
@@ -108,20 +126,4 @@ fn banner(summary: &EnsembleSummary, complete: usize) -> Markup {
             ". The numbers are those of complete starts."
         }
     }
-}
-
-fn contents(of_paper: bool) -> Markup {
-    let entries = [
-        ("summary", "Summary"),
-        ("numbers", "The paper"),
-        ("levels", "Levels"),
-        ("acceleration", "Acceleration"),
-        ("spectra", "Spectrum"),
-        ("forces", "Forces and events"),
-        ("starts", "Starts"),
-        ("notes", "Notes"),
-        ("provenance", "Provenance"),
-    ];
-    let shown = entries.into_iter().filter(|(id, _)| of_paper || *id != "numbers");
-    html! { nav aria-label="Contents" { @for (id, name) in shown { a href={ "#" (id) } { (name) } } } }
 }

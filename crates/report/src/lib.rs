@@ -31,20 +31,14 @@ pub mod plot;
 
 mod page;
 
-mod lead;
-mod sound;
-
-mod answer;
-mod course;
 mod element_words;
 mod field_words;
-mod figures;
+
+mod course;
 mod kurtogram;
-mod moving;
-mod paper;
-mod pictures;
-mod sections;
-mod tables;
+mod sound;
+
+mod run;
 
 mod agreement;
 mod campaign;
@@ -53,7 +47,6 @@ mod ensemble;
 mod growth;
 pub mod inference;
 mod measured;
-mod run_page;
 mod sources;
 mod trend;
 
@@ -68,7 +61,7 @@ pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use growth::{GrowthFindings, RecordFindings, UnitFindings, write_growth};
 pub use measured::{Baseline, write_measured};
-pub use run_page::{write, write_between};
+pub use run::{write, write_between};
 pub use sources::write_sources;
 pub use trend::{TrendEntry, write_joint, write_trend};
 

@@ -6,8 +6,7 @@ use maud::{DOCTYPE, Markup, html};
 use stribeck_dsp::BandEnvelope;
 use stribeck_store::run_dir::write_atomic;
 
-use crate::figures::Item;
-use crate::page::{self, head, json, sentence};
+use crate::page::{self, charts, drawn, head, json, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
 use crate::{Error, course, kurtogram, sound};
 use stribeck_analysis::measured::evidence::{SynchronousMean, synchronous, what_would_change};
@@ -47,13 +46,9 @@ pub fn write_measured(
 fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Markup, Error> {
     let findings = &analysis.findings;
     let unit = findings.unit.as_deref().unwrap_or("unit");
-    let drawn = |figures: Vec<Figure>| {
-        page::figures(&figures.into_iter().map(|figure| Item::Chart(Box::new(figure))).collect::<Vec<_>>())
-    };
-    let evidence = drawn(evidence(analysis, baseline)?)?;
-    let figures = drawn(figures(analysis, unit, baseline))?;
-    let pictures: Vec<Item> = pictures(analysis, unit).into_iter().map(Item::Picture).collect();
-    let pictures = page::figures(&pictures)?;
+    let evidence = page::figures(&charts(evidence(analysis, baseline)?).collect::<Vec<_>>())?;
+    let figures = page::figures(&charts(figures(analysis, unit, baseline)).collect::<Vec<_>>())?;
+    let pictures = page::figures(&drawn(pictures(analysis, unit)).collect::<Vec<_>>())?;
     let title = format!("{file}, {}", findings.channel);
     let number = |x: f64| format!("{x:.4}");
     let health = &findings.health;

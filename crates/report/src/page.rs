@@ -1,4 +1,4 @@
-//! Common parts of all pages: head, sections, sentences and the files of their figures.
+//! Common parts of all pages: head, sections, tables, sentences and the files of their figures.
 
 use std::fs;
 use std::panic::resume_unwind;
@@ -9,10 +9,14 @@ use std::thread;
 use maud::{Markup, PreEscaped, html};
 use serde::Serialize;
 
-use crate::Error;
 use crate::element_words::ElementWords;
-use crate::figures::Item;
-use crate::plot;
+use crate::{Error, plot};
+
+mod item;
+mod table;
+
+pub(crate) use item::{Item, charts, drawn};
+pub(crate) use table::{cell, folded, grouped, minus, pairs, said_once, table, wide_table};
 
 /// Writes every figure, on all cores.
 pub(crate) fn write_figures(figures: &[&Item], folder: &Path, words: ElementWords) -> Result<(), Error> {
@@ -62,23 +66,72 @@ pub(crate) fn head(name: &str) -> Markup {
     }
 }
 
-/// A heading, text before the figures, the figures (`otherwise` when there are none) and text after them.
-pub(crate) fn section(
-    id: &str,
-    name: &str,
+/// A section of a page: text, figures, text. Without a heading it is a part of what stands before it.
+#[derive(Debug, Default)]
+pub(crate) struct Section {
+    id: &'static str,
+    heading: &'static str,
+    /// Name in the contents; empty where they leave it out.
+    link: &'static str,
     before: Markup,
-    items: &[Item],
+    pub(crate) figures: Vec<Item>,
+    /// Text where there are no figures.
+    otherwise: &'static str,
     after: Markup,
-    otherwise: &str,
-) -> Result<Markup, Error> {
-    let drawn = figures(items)?;
-    Ok(html! {
-        h2 id=(id) { (name) }
-        (before)
-        @if items.is_empty() { p { (otherwise) } }
-        (drawn)
-        (after)
-    })
+}
+
+impl Section {
+    /// A section with its anchor and its heading, which the contents show as well.
+    pub(crate) fn new(id: &'static str, heading: &'static str) -> Self {
+        Self { id, heading, link: heading, ..Self::default() }
+    }
+
+    /// Text without a heading.
+    pub(crate) fn text(after: Markup) -> Self {
+        Self { after, ..Self::default() }
+    }
+
+    /// With a shorter name in the contents.
+    pub(crate) fn linked(self, link: &'static str) -> Self {
+        Self { link, ..self }
+    }
+
+    /// With text in front of the figures.
+    pub(crate) fn before(self, before: Markup) -> Self {
+        Self { before, ..self }
+    }
+
+    /// With figures, or the text `otherwise`.
+    pub(crate) fn figures(self, figures: impl IntoIterator<Item = Item>, otherwise: &'static str) -> Self {
+        Self { figures: figures.into_iter().collect(), otherwise, ..self }
+    }
+
+    /// With text behind the figures.
+    pub(crate) fn after(self, after: Markup) -> Self {
+        Self { after, ..self }
+    }
+
+    /// For the page.
+    pub(crate) fn markup(&self) -> Result<Markup, Error> {
+        let drawn = figures(&self.figures)?;
+        Ok(html! {
+            @if !self.id.is_empty() { h2 id=(self.id) { (self.heading) } }
+            (self.before)
+            @if self.figures.is_empty() && !self.otherwise.is_empty() { p { (self.otherwise) } }
+            (drawn)
+            (self.after)
+        })
+    }
+}
+
+/// Links to the summary and to all sections.
+pub(crate) fn contents(sections: &[Section]) -> Markup {
+    let linked = sections.iter().filter(|section| !section.link.is_empty()).map(|s| (s.id, s.link));
+    html! {
+        nav aria-label="Contents" {
+            @for (id, name) in [("summary", "Summary")].into_iter().chain(linked) { a href={ "#" (id) } { (name) } }
+        }
+    }
 }
 
 /// Figures one after the other; neighbours of one group share a frame with tabs, and sentences that the notes
@@ -143,6 +196,11 @@ fn sentences(note: &str) -> Vec<&str> {
 pub(crate) fn with_code(words: &str) -> Markup {
     let parts = words.split('`').enumerate();
     html! { @for (n, part) in parts { @if n % 2 == 1 { code { (part) } } @else { (part) } } }
+}
+
+/// A stable name as words.
+pub(crate) fn spoken(name: &str) -> String {
+    name.replace('_', " ")
 }
 
 /// A note with a capital and a full stop.

@@ -195,6 +195,13 @@ pub struct Mark {
     pub dashed: bool,
 }
 
+impl Mark {
+    /// A line at `x` with its label.
+    pub fn new(x: f64, label: impl Into<String>, colour: Colour, dashed: bool) -> Self {
+        Self { x, label: label.into(), colour, dashed }
+    }
+}
+
 /// A shaded span of the horizontal axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Band {

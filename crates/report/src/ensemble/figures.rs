@@ -1,9 +1,9 @@
 //! Charts of an ensemble: one start over the range of all.
 
-use super::super::figures::{Item, about_the_tone, mark};
 use super::strips;
-use crate::paper::PaperCase;
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
+use crate::run::paper::PaperCase;
+use crate::run::spectrum::about_the_tone;
 use stribeck_analysis::ensemble::{EnsembleFindings, Merged};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::paper;
@@ -16,38 +16,6 @@ const DEPTH_DB: f64 = 120.0;
 const ROLLERS: usize = 3;
 /// Time before the entry and after the exit that is drawn of a force [s].
 const AROUND_S: f64 = 1e-3;
-
-/// All charts, grouped by section.
-#[derive(Debug, Default)]
-pub(super) struct Figures {
-    pub(super) levels: Vec<Item>,
-    pub(super) acceleration: Vec<Item>,
-    pub(super) spectra: Vec<Item>,
-    pub(super) forces: Vec<Item>,
-    /// Those of the paper, in its order.
-    pub(super) paper: Vec<Item>,
-}
-
-impl Figures {
-    pub(super) fn of(findings: &EnsembleFindings) -> Self {
-        let charts = |figures: Vec<Figure>| figures.into_iter().map(|f| Item::Chart(Box::new(f)));
-        Self {
-            levels: strips::levels(findings).map(Item::Picture).into_iter().collect(),
-            acceleration: charts(acceleration(findings).into_iter().collect()).collect(),
-            spectra: charts(spectra(findings)).collect(),
-            forces: strips::events(findings)
-                .map(Item::Picture)
-                .into_iter()
-                .chain(charts(forces(findings)))
-                .collect(),
-            paper: paper_case(findings).map_or(Vec::new(), |case| case.figures(Vec::new())),
-        }
-    }
-
-    pub(super) fn all(&self) -> impl Iterator<Item = &Item> {
-        [&self.paper, &self.levels, &self.acceleration, &self.spectra, &self.forces].into_iter().flatten()
-    }
-}
 
 /// The paper beside all complete starts, of which the typical one is drawn.
 pub(super) fn paper_case(findings: &EnsembleFindings) -> Option<PaperCase<'_>> {
@@ -74,7 +42,7 @@ fn typical(findings: &EnsembleFindings) -> Option<&(usize, Findings)> {
 }
 
 /// One start in front of the band of all.
-fn acceleration(findings: &EnsembleFindings) -> Option<Figure> {
+pub(super) fn acceleration(findings: &EnsembleFindings) -> Option<Figure> {
     let (number, start) = typical(findings)?;
     let leading = start.sensors.first().filter(|s| !s.raw_g.is_empty())?;
     let curves: Vec<&[f64]> =
@@ -115,7 +83,7 @@ fn passages(findings: &EnsembleFindings) -> Vec<Mark> {
         let roller = event.roller.to_string();
         let mut add = |what: &str, colour, of: fn(&Event) -> Option<f64>| {
             let time = findings.over_events(&roller, of);
-            marks.extend(time.map(|t| mark(1e-3 * t.mean, &format!("{what} {roller}"), colour, false)));
+            marks.extend(time.map(|t| Mark::new(1e-3 * t.mean, format!("{what} {roller}"), colour, false)));
         };
         add("entry", Colour::Orange, |e| e.entry_ms);
         add("exit", Colour::Green, |e| e.exit_ms);
@@ -124,7 +92,7 @@ fn passages(findings: &EnsembleFindings) -> Vec<Mark> {
 }
 
 /// Mean power and band of the leading sensor, whole and about the tone; means of all sensors.
-fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
+pub(super) fn spectra(findings: &EnsembleFindings) -> Vec<Figure> {
     let Some((_, first)) = findings.complete.first() else { return Vec::new() };
     let Some(density) = first.sensors.first().and_then(|s| s.raw_density.as_ref()) else { return Vec::new() };
     let (half, grid) = (0.5 * density.sample_rate_hz(), density.resolution().grid_hz);
@@ -198,13 +166,13 @@ fn families(findings: &EnsembleFindings, first: &Findings) -> Vec<Mark> {
             (None, Some(s)) => (s.mean, "absent".to_owned()),
             (None, None) => (*geometry_hz, "by geometry".to_owned()),
         };
-        mark(hz, &format!("{name} {word}"), colour, found.is_none())
+        Mark::new(hz, format!("{name} {word}"), colour, found.is_none())
     };
     items.iter().zip(&first.prediction.facet_lines).zip(colours.into_iter().cycle()).map(carrier).collect()
 }
 
 /// Force of the raceway on each of the first rollers, from before its entry to after its exit.
-fn forces(findings: &EnsembleFindings) -> Vec<Figure> {
+pub(super) fn forces(findings: &EnsembleFindings) -> Vec<Figure> {
     let Some((_, first)) = findings.complete.first() else { return Vec::new() };
     let passages = first.summary.first_passages().into_iter().take(ROLLERS);
     passages.map(|e| e.roller).filter_map(|roller| force(findings, first, roller)).collect()
@@ -246,8 +214,8 @@ fn force(findings: &EnsembleFindings, first: &Findings, roller: usize) -> Option
     .caption(strips::story(findings, roller))
     .note("Upright: the centre over the edges of the defect without slip.");
     figure.marks = vec![
-        mark(0.0, "leading edge", Colour::Orange, true),
-        mark(traverse_s, "trailing edge", Colour::Green, true),
+        Mark::new(0.0, "leading edge", Colour::Orange, true),
+        Mark::new(traverse_s, "trailing edge", Colour::Green, true),
     ];
     Some(figure)
 }

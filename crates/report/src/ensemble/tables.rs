@@ -2,10 +2,8 @@
 
 use maud::{Markup, html};
 
-use super::super::figures::spoken;
-use super::super::page::term;
-use super::super::sections::OFF;
-use super::super::tables::cell;
+use crate::page::{cell, spoken, term};
+use crate::run::spectrum::families::OFF;
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
 use stribeck_analysis::statistic::{CONFIDENCE, Statistic};
 use stribeck_analysis::summary::Event;

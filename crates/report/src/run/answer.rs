@@ -16,7 +16,7 @@ use stribeck_analysis::rolling;
 use stribeck_analysis::summary::{EnergyFinding, Event, PhaseLevels, Summary};
 use stribeck_analysis::words::{gravities, significant};
 
-use crate::figures::loudest_in_words;
+use super::spectrum::{families, loudest_in_words};
 use crate::page::{sentence, with_code};
 
 /// Rollers that are named one by one, at most.
@@ -77,8 +77,8 @@ pub(super) fn is_of_pictures(warning: &str) -> bool {
 /// Which families of facet lines are there, in one sentence; where exactly stands at the spectrum.
 fn mesh_in_short(summary: &Summary) -> String {
     let found: Vec<&FamilyFinding> = summary.families.iter().filter(|f| f.found).collect();
-    if unsteady(summary).is_some() || found.is_empty() {
-        return mesh(summary);
+    if summary.unsteady().is_some() || found.is_empty() {
+        return families::in_words(summary);
     }
     let each: Vec<String> = found
         .iter()
@@ -114,7 +114,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
         );
     }
     if events.is_empty()
-        && unsteady(summary).is_some_and(|duty| duty.relative_speed_rpm.0 * duty.relative_speed_rpm.1 < 0.0)
+        && summary.unsteady().is_some_and(|duty| duty.relative_speed_rpm.0 * duty.relative_speed_rpm.1 < 0.0)
     {
         return "The rings turn back on the way, and passages are predicted for one direction of rotation only."
             .into();
@@ -230,67 +230,6 @@ fn radial(summary: &Summary) -> Option<&PhaseLevels> {
     sensor.components.iter().find(|c| c.component == "radial").map(|c| &c.phases)
 }
 
-/// The families of facet lines in full.
-pub(super) fn mesh(summary: &Summary) -> String {
-    if let Some(duty) = unsteady(summary) {
-        let (least, most) = duty.relative_speed_rpm;
-        return format!(
-            "The speed of the {} goes from {least:.0} to {most:.0} rpm, so facet lines have no frequency and \
-             are not looked for.",
-            duty.over()
-        )
-        .replace('-', "−");
-    }
-    let families = &summary.families;
-    if summary.kinematics.relative_hz == 0.0 {
-        return "Nothing turns, so that no facets pass a contact.".into();
-    }
-    if families.iter().all(|f| f.lead.is_none()) {
-        return "This record is too short, or sampled too slowly, to tell a family of facet lines from \
-            anything else."
-            .into();
-    }
-    let spacing_hz = summary.kinematics.bpfo_hz.unwrap_or(summary.kinematics.expected_bpfo_hz);
-    let resolution_hz = summary.spectrum.as_ref().map_or(0.0, |s| 1.0 / s.record_s);
-    // Of families that are there, which have a carrier.
-    let place = |f: &FamilyFinding| {
-        let level = f.level_g.map_or(String::new(), |g| format!(", up to {}", gravities(g)));
-        let off_hz = f.offset_resolutions.unwrap_or(0.0) * resolution_hz;
-        format!(
-            "a carrier at {:.0} Hz ({off_hz:+.0} Hz from where the recorded motion puts it) with sidebands \
-             every {spacing_hz:.1} Hz{level}",
-            f.carrier_hz.unwrap_or(f64::NAN)
-        )
-        .replace('-', "−")
-    };
-    let mut said: Vec<String> = families
-        .iter()
-        .filter(|f| f.found)
-        .map(|f| format!("The {} make {}.", f.spoken(), place(f)))
-        .collect();
-    if let Some(first) = families.iter().find(|f| !f.not_told_apart_from.is_empty()) {
-        said.push(format!("The {} make {}; this record does not tell which.", first.spoken(), place(first)));
-    }
-    if said.is_empty() {
-        return "No family of facet lines is there, neither in the accelerations nor in the roller forces."
-            .into();
-    }
-    let absent: Vec<String> =
-        families.iter().filter(|f| f.carrier_hz.is_none()).map(FamilyFinding::spoken).collect();
-    if !absent.is_empty() {
-        said.push(format!("No lines of the {} are found.", absent.join(" or the ")));
-    }
-    format!(
-        "{} Facet lines are artefacts: a real bearing has none, and another mesh moves them.",
-        said.join(" ")
-    )
-}
-
-/// The duty of a run whose speed changes.
-fn unsteady(summary: &Summary) -> Option<&DutyFinding> {
-    summary.duty.as_ref().filter(|duty| duty.is_unsteady())
-}
-
 /// The envelope's order spectrum, in words.
 fn orders(duty: &DutyFinding) -> String {
     let Some(envelope) = &duty.envelope else {
@@ -316,7 +255,7 @@ fn orders(duty: &DutyFinding) -> String {
 }
 
 fn physics(summary: &Summary) -> String {
-    if let Some(duty) = unsteady(summary) {
+    if let Some(duty) = summary.unsteady() {
         return orders(duty);
     }
     let of_defect: Vec<&Artefact> = summary.artefacts.iter().filter(|a| a.family == Origin::Defect).collect();

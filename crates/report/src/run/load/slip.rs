@@ -3,11 +3,12 @@
 
 use std::f64::consts::TAU;
 
-use crate::Error;
-use crate::plot::{Axis, Colour, Figure, Level, Series};
-use stribeck_analysis::findings::Findings;
-use stribeck_analysis::record::Record;
 use stribeck_dsp::running_mean;
+
+use super::super::Subject;
+use crate::Error;
+use crate::page::minus;
+use crate::plot::{Axis, Colour, Figure, Level, Series};
 
 /// Rates are means over this time [s]; at most a tenth of the record.
 const SMOOTHING_S: f64 = 0.5e-3;
@@ -16,7 +17,8 @@ const SMOOTHING_S: f64 = 0.5e-3;
 const LEAST_PACE: f64 = 0.05;
 
 /// Spin of the rollers that cross the defect, and orbit of rollers and cage.
-pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Figure>, Error> {
+pub(super) fn figures(of: &Subject<'_>) -> Result<Vec<Figure>, Error> {
+    let (record, findings) = (of.record, of.findings);
     if record.len() < 20 {
         return Ok(Vec::new());
     }
@@ -77,10 +79,9 @@ pub(super) fn figures(record: &Record<'_>, findings: &Findings) -> Result<Vec<Fi
         )
         .note(note.clone()),
         orbit
-            .caption(
-                format!("The cage turns {slip} of its speed without slip, over the whole record.")
-                    .replace('-', "−"),
-            )
+            .caption(minus(format!(
+                "The cage turns {slip} of its speed without slip, over the whole record."
+            )))
             .note(note),
     ];
     Ok(figures.into_iter().filter(|figure| !figure.series.is_empty()).collect())

@@ -1,11 +1,13 @@
-//! Pictures of the bearing: its mesh, a roller, the load zone, stresses.
+//! Pictures of the mesh, a roller and stresses.
 
 mod mesh;
-mod polar;
 mod roller;
-mod stress;
+mod stresses;
 
 use std::path::Path;
+
+use stribeck_analysis::findings::Findings;
+use stribeck_analysis::record::Record;
 
 use stribeck_scene::housing::HousingScene;
 use stribeck_store::frames::{self, Window};
@@ -13,67 +15,54 @@ use stribeck_store::mesh_file::RunMesh;
 use stribeck_store::run_dir::{Run, RunDir};
 
 use crate::Error;
+use crate::page::{Section, drawn};
 use crate::plot::{Picture, Sheet};
-use stribeck_analysis::findings::Findings;
-use stribeck_analysis::record::Record;
 
-/// All pictures that the run can yield, by the section that shows them.
-#[derive(Debug, Default)]
-pub(super) struct Pictures {
-    pub(super) mesh: Vec<Picture>,
-    pub(super) load: Vec<Picture>,
-    pub(super) stress: Vec<Picture>,
-    /// Why some are missing.
-    pub(super) notes: Vec<String>,
+/// The section, and why some of its pictures are missing.
+pub(super) fn section(
+    record: &Record<'_>,
+    findings: &Findings,
+    folder: &Path,
+) -> Result<(Section, Vec<String>), Error> {
+    let run = record.run();
+    let section = Section::new("stress", "Mesh and stress");
+    let otherwise = "No frames were kept: see the notes.";
+    let dir = RunDir::open(folder)?;
+    let mesh = match mesh_of(run, &dir) {
+        Ok(mesh) => mesh,
+        Err(why) => {
+            let note = format!("no pictures of the mesh and of the stress: {why}");
+            return Ok((section.figures([], otherwise), vec![note]));
+        }
+    };
+    let mut pictures = meshes(run, findings, &mesh);
+    let frames = frames::read_all(&dir.frames())?;
+    let note = match Window::of(&run.scene).filter(|_| !frames.is_empty()) {
+        Some(window) => {
+            let of_stress = stresses::pictures(record, findings, &mesh, &window, &frames)?;
+            let missing = of_stress.iter().all(|picture| picture.id != "stress");
+            pictures.extend(of_stress);
+            missing.then_some(
+                "no picture of the stress under a roller: none that crosses the spall stands in the window \
+                 while frames are kept (`output.frames`)",
+            )
+        }
+        None => Some("no picture of the stress: the run kept no frames (`output.frames`)"),
+    };
+    Ok((section.figures(drawn(pictures), otherwise), note.map(str::to_owned).into_iter().collect()))
 }
 
-impl Pictures {
-    /// Draws them. `run_dir` is the folder of the run, for its mesh and its frames.
-    pub(super) fn of(record: &Record<'_>, findings: &Findings, run_dir: &Path) -> Result<Self, Error> {
-        let run = record.run();
-        let mut pictures =
-            Self { load: polar::picture(&run.scene, findings).into_iter().collect(), ..Self::default() };
-        let dir = RunDir::open(run_dir)?;
-        let mesh = match mesh_of(run, &dir) {
-            Ok(mesh) => mesh,
-            Err(why) => {
-                pictures.notes.push(format!("no pictures of the mesh and of the stress: {why}"));
-                return Ok(pictures);
-            }
-        };
-        pictures.mesh = vec![
-            mesh::whole(&run.scene, &mesh),
-            mesh::defect(&run.scene, &mesh),
-            roller::picture(&run.scene, &mesh),
-        ];
-        if findings.of_paper {
-            let numbers = ["Fig. 1a: ", "Fig. 1b: ", "Fig. 4: "];
-            for (picture, number) in pictures.mesh.iter_mut().zip(numbers) {
-                picture.title = format!("{number}{}", picture.title);
-            }
-            if let Some(roller) = pictures.mesh.last_mut() {
-                roller.note += " The paper draws a schematic of 15 edges and counts 113 in its model.";
-            }
+/// The mesh, whole and about the defect, and a roller; of the paper's bearing with the numbers of its figures.
+fn meshes(run: &Run, findings: &Findings, mesh: &RunMesh) -> Vec<Picture> {
+    let mut pictures =
+        [mesh::whole(&run.scene, mesh), mesh::defect(&run.scene, mesh), roller::picture(&run.scene, mesh)];
+    if findings.of_paper {
+        for (picture, number) in pictures.iter_mut().zip(["Fig. 1a: ", "Fig. 1b: ", "Fig. 4: "]) {
+            picture.title = format!("{number}{}", picture.title);
         }
-        let frames = frames::read_all(&dir.frames())?;
-        match Window::of(&run.scene).filter(|_| !frames.is_empty()) {
-            Some(window) => {
-                pictures.stress = stress::pictures(record, findings, &mesh, &window, &frames)?;
-                if pictures.stress.iter().all(|picture| picture.id != "stress") {
-                    pictures.notes.push(
-                        "no picture of the stress under a roller: none that crosses the spall stands in the \
-                         window while frames are kept \
-                         (`output.frames`)"
-                            .into(),
-                    );
-                }
-            }
-            None => pictures
-                .notes
-                .push("no picture of the stress: the run kept no frames (`output.frames`)".into()),
-        }
-        Ok(pictures)
+        pictures[2].note += " The paper draws a schematic of 15 edges and counts 113 in its model.";
     }
+    pictures.into()
 }
 
 /// The mesh that the run has kept, or why it cannot be drawn.

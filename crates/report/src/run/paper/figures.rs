@@ -5,8 +5,9 @@ use stribeck_analysis::paper::{BETWEEN_G, CURSOR_HZ, FILTERED_G, IMPULSE_G, TONE
 use stribeck_analysis::statistic::band;
 use stribeck_dsp::Spectrum;
 
+use super::super::drawing::{sampled, transient};
+use super::super::{forces::crossings, spectrum::density};
 use super::{PaperCase, number, ours, printed};
-use crate::figures::{crossing_figures, density, mark, sampled, transient};
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 
 /// The paper's record [s].
@@ -126,7 +127,7 @@ fn spectra(case: &PaperCase<'_>) -> Vec<Figure> {
     both_of.marks = both(TONE_HZ, tone);
     let mut zoom = overlay("7b", "The same from 4 to 6 kHz", ZOOM_HZ).caption(numbers(case, "7"));
     zoom.marks = both(TONE_HZ, tone);
-    zoom.marks.push(mark(CURSOR_HZ, "paper 4545 Hz", Colour::Red, true));
+    zoom.marks.push(Mark::new(CURSOR_HZ, "paper 4545 Hz", Colour::Red, true));
     vec![whole, both_of.tabbed("paper-7", "Fig. 7a"), zoom.tabbed("paper-7", "Fig. 7b")]
 }
 
@@ -140,7 +141,7 @@ fn forces(case: &PaperCase<'_>) -> Vec<Figure> {
         figure.sync = Some("paper-time".into());
         figure.tabbed("paper-8", format!("Fig. 8{letter}"))
     };
-    crossing_figures(case.drawn).into_iter().zip(PANELS).map(panel).collect()
+    crossings(case.drawn).into_iter().zip(PANELS).map(panel).collect()
 }
 
 /// Name of the unfiltered curve, with the number of the start that is drawn.
@@ -206,8 +207,8 @@ fn levels(paper: &[(f64, &str)], case: &PaperCase<'_>, of: &[usize], figure: &st
 /// A place on the abscissa in the paper, and ours.
 fn both(paper: f64, ours: Option<f64>) -> Vec<Mark> {
     let label = |x: f64| if x < 1.0 { format!("{} ms", number(1e3 * x)) } else { format!("{x:.0} Hz") };
-    let mut marks = vec![mark(paper, &format!("paper {}", label(paper)), Colour::Red, true)];
-    marks.extend(ours.map(|x| mark(x, &format!("ours {}", label(x)), Colour::Blue, false)));
+    let mut marks = vec![Mark::new(paper, format!("paper {}", label(paper)), Colour::Red, true)];
+    marks.extend(ours.map(|x| Mark::new(x, format!("ours {}", label(x)), Colour::Blue, false)));
     marks
 }
 

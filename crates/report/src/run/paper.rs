@@ -1,18 +1,23 @@
 //! The paper, figure by figure: its numbers beside those of a run or of many starts, differences first, and
 //! its figures redrawn on its axes.
 
+mod beating;
 mod figures;
+mod numbers;
 
 use maud::{Markup, html};
 use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper::{self, Beside};
-use stribeck_analysis::summary::SensorLevels;
+use stribeck_analysis::summary::{SensorLevels, Summary};
 use stribeck_analysis::words::significant;
 use stribeck_scene::scene::Scene;
 
-use crate::figures::Item;
-use crate::tables::cell;
-use crate::{Error, page};
+use crate::page::{self, Section, cell, charts, grouped, wide_table};
+
+/// The section of a run.
+pub(super) fn section(case: &PaperCase<'_>, summary: &Summary) -> Section {
+    case.section(html! { (numbers::table(summary)) (numbers::readings(summary)) })
+}
 
 /// A run of the paper's bearing, or many starts of it of which one is drawn.
 pub(crate) struct PaperCase<'a> {
@@ -67,28 +72,25 @@ impl<'a> PaperCase<'a> {
         self.short && b.ours.is_none_or(|ours| ours.mean == 0.0)
     }
 
-    /// The paper's figures 2, 3, 6, 7 and 8 with ours in them, in its order, and its figure 5 among them,
-    /// which is drawn without a run.
-    pub(crate) fn figures(&self, fifth: Vec<Item>) -> Vec<Item> {
-        let chart = |figure| Item::Chart(Box::new(figure));
-        let mut all: Vec<Item> = figures::all(self).into_iter().map(chart).collect();
-        let sixth = all.iter().position(|item| item.id() == "paper-6").unwrap_or(all.len());
-        let behind = all.split_off(sixth);
-        all.extend(fifth.into_iter().chain(behind));
-        all
-    }
-
-    /// The section of the page: differences, numbers, `figures`, and `more` folded up behind them.
-    pub(crate) fn section(&self, figures: &[Item], more: Markup) -> Result<Markup, Error> {
-        let drawn = page::figures(figures)?;
-        Ok(html! {
-            h2 #numbers { "The paper, figure by figure" }
+    /// The section: differences, numbers, the paper's figures in its order, and `more` folded up behind them.
+    pub(crate) fn section(&self, more: Markup) -> Section {
+        let mut figures = figures::all(self);
+        // Its figure 5 is drawn without a run.
+        if self.number.is_none() {
+            let sixth = figures.iter().position(|figure| figure.id == "paper-6").unwrap_or(figures.len());
+            figures.splice(sixth..sixth, beating::figures());
+        }
+        let before = html! {
             p { (self.verdict()) }
             (self.table())
             p class="hint" { (page::with_code(&self.about())) }
-            (drawn)
-            (more)
-        })
+        };
+        let after = html! { details { summary { "Each number of the paper, and ours" } (more) } };
+        Section::new("numbers", "The paper, figure by figure")
+            .linked("The paper")
+            .before(before)
+            .figures(charts(figures), "")
+            .after(after)
     }
 
     /// Quantities that differ by more than the scatter, the largest difference first, then the others.
@@ -125,38 +127,27 @@ impl<'a> PaperCase<'a> {
     /// Paper and ours, in the order of the figures.
     fn table(&self) -> Markup {
         let several = self.starts.len() > 1;
-        let mut last = "";
-        let rows: Vec<(bool, &Beside)> = self
-            .beside
-            .iter()
-            .map(|b| (std::mem::replace(&mut last, b.shown.figure) != b.shown.figure, b))
-            .collect();
-        html! {
-            div class="scroll" {
-                table class="numbers" {
-                    thead {
-                        tr {
-                            th { "Figure" } th { "What it shows" } th class="n" { "Paper" }
-                            th class="n" { @if several { "Ours, mean ± 95 %" } @else { "Ours" } }
-                            @if several { th class="n" { "Single starts" } }
-                            th { "Beyond the scatter" }
-                        }
-                    }
-                    tbody {
-                        @for (first, b) in rows {
-                            tr {
-                                td { @if first { (b.shown.figure) } }
-                                td { (b.shown.quantity) }
-                                td class="n" { (printed(b)) }
-                                (cell(ours(b)))
-                                @if several { (cell(b.ours.map(|s| format!("{} to {}", number(s.least), number(s.most))))) }
-                                td { @if self.is_behind_the_end(b) { "not on record" } @else if b.differs() { strong { "differs" } } @else { "agrees" } }
-                            }
-                        }
-                    }
-                }
+        let head = html! {
+            th { "Figure" } th { "What it shows" } th class="n" { "Paper" }
+            th class="n" { @if several { "Ours, mean ± 95 %" } @else { "Ours" } }
+            @if several { th class="n" { "Single starts" } }
+            th { "Beyond the scatter" }
+        };
+        let row = |(first, b): (bool, &Beside)| {
+            html! {
+                td { @if first { (b.shown.figure) } }
+                td { (b.shown.quantity) }
+                td class="n" { (printed(b)) }
+                (cell(ours(b)))
+                @if several { (cell(b.ours.map(|s| format!("{} to {}", number(s.least), number(s.most))))) }
+                td { @if self.is_behind_the_end(b) { "not on record" } @else if b.differs() { strong { "differs" } } @else { "agrees" } }
             }
-        }
+        };
+        wide_table(
+            Some("numbers"),
+            &head,
+            grouped(&self.beside, |a, b| a.shown.figure == b.shown.figure).map(row),
+        )
     }
 
     /// Sources of the numbers, and the limits of the comparison.

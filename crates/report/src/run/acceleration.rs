@@ -1,21 +1,36 @@
-//! Acceleration over time: the paper's Figs. 2 and 6, the other sensors, the instantaneous one.
+//! Acceleration over time: the paper's Figs. 2 and 6, the other sensors, the instantaneous one; levels by
+//! phase.
 
-use super::{mark, sampled, transient};
-use crate::Error;
-use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
+use maud::{Markup, html};
 use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper;
 use stribeck_analysis::record::Record;
-use stribeck_analysis::summary::{Event, PhaseLevels};
-use stribeck_analysis::words::gravities;
+use stribeck_analysis::summary::{Event, PhaseLevels, Summary};
+use stribeck_analysis::words::{gravities, level, significant};
+
+use super::Subject;
+use super::drawing::{sampled, transient};
+use crate::page::{Section, cell, charts, wide_table};
+use crate::plot::{Axis, Band, Colour, Figure, Level, Mark};
+use crate::{Error, sound};
 
 /// All of them stand behind tabs.
 const TABS: &str = "acceleration";
 /// Most exits that are named in full.
 const NAMED: usize = 6;
 
+/// The section.
+pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
+    let findings = of.findings;
+    let figures = raw(findings).into_iter().chain(others(of.record, findings)?).chain(notched(findings));
+    let after = html! { (levels(&findings.summary)) (sound::of_run(findings)) };
+    Ok(Section::new("acceleration", "Acceleration")
+        .figures(charts(figures), "No sensor was recorded.")
+        .after(after))
+}
+
 /// As recorded (the paper's Fig. 2).
-pub(super) fn raw(findings: &Findings) -> Option<Figure> {
+fn raw(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first().filter(|s| !s.raw_g.is_empty())?;
     let levels = &findings.summary.levels;
     let title = format!("Acceleration a_y at sensor “{}”", leading.name);
@@ -43,7 +58,7 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
 }
 
 /// Behind the notch, over the raw trace (the paper's Fig. 6).
-pub(super) fn notched(findings: &Findings) -> Option<Figure> {
+fn notched(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first().filter(|s| !s.filtered_g.is_empty())?;
     let levels = &findings.summary.levels;
     let title = format!("The same at “{}” with the tone filtered out", leading.name);
@@ -77,7 +92,7 @@ pub(super) fn notched(findings: &Findings) -> Option<Figure> {
 }
 
 /// Every other sensor, and the instantaneous acceleration beside the mean over an interval.
-pub(super) fn others(record: &Record<'_>, findings: &Findings) -> Result<Vec<Figure>, Error> {
+fn others(record: &Record<'_>, findings: &Findings) -> Result<Vec<Figure>, Error> {
     let mut figures = Vec::new();
     for sensor in findings.sensors.iter().skip(1) {
         let mut figure = over_time(
@@ -127,6 +142,40 @@ fn instantaneous(
     ))
 }
 
+/// Levels by phase at every sensor, as the paper takes them and along and across the radius.
+fn levels(summary: &Summary) -> Markup {
+    let both = |peak: Option<f64>, rms: Option<f64>| {
+        cell(peak.zip(rms).map(|(p, r)| format!("{} / {}", level(p), significant(r, 3))))
+    };
+    let row = |sensor: &str, component: &str, l: &PhaseLevels| {
+        html! {
+            td { (sensor) } td { (component) }
+            (both(l.start_g, l.start_rms_g))
+            (both(l.entry_g, l.entry_rms_g))
+            (both(l.defect_g, l.defect_rms_g))
+            (both(l.exit_g, l.exit_rms_g))
+            (both(l.gap_g, l.gap_rms_g))
+        }
+    };
+    let head = html! {
+        th { "Sensor" } th { "Component" } th class="n" { "Start-up" } th class="n" { "Entry" } th class="n" { "In the defect" }
+        th class="n" { "Exit" } th class="n" { "Gap" }
+    };
+    let rows = summary.levels.sensors.iter().flat_map(|sensor| {
+        let others = sensor.components.iter().map(|c| row("", &c.component, &c.phases));
+        std::iter::once(row(&sensor.sensor, "a_y", &sensor.phases)).chain(others)
+    });
+    html! {
+        h3 { "Levels by phase, peak / RMS in g" }
+        (wide_table(None, &head, rows))
+        p class="hint" {
+            "Mean acceleration of each sampling interval. Start-up: to the first entry, 2 ms at most. Entry: \
+             from 0.5 ms before the edge to \
+             1 ms after unloading. Exit: from 1 ms before loading to 2 ms after the edge."
+        }
+    }
+}
+
 fn over_time(id: &str, title: &str) -> Figure {
     Figure::new(id, title, Axis::si("Time", "s"), Axis::plain("a_y", "g")).synced("time")
 }
@@ -145,8 +194,8 @@ fn passages(events: &[Event]) -> Vec<Mark> {
         let full = events.len() <= NAMED || n == 0;
         let label = |what: &str| if full { format!("{what} {}", e.roller) } else { e.roller.to_string() };
         let visit = e.visit();
-        marks.push(mark(visit.entry_s, &label("entry"), Colour::Orange, e.entry_ms.is_none()));
-        marks.push(mark(visit.exit_s, &label("exit"), Colour::Green, e.exit_ms.is_none()));
+        marks.push(Mark::new(visit.entry_s, &label("entry"), Colour::Orange, e.entry_ms.is_none()));
+        marks.push(Mark::new(visit.exit_s, &label("exit"), Colour::Green, e.exit_ms.is_none()));
     }
     marks
 }

@@ -16,7 +16,9 @@ use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::resolved::{ResolvedScene, pocket_half_width};
 use stribeck_scene::scene::DefectRing;
 
+use super::Subject;
 use crate::Error;
+use crate::page::Section;
 use crate::plot::base64;
 
 /// Frames at most.
@@ -140,12 +142,13 @@ fn angles(frames: usize) -> usize {
     frames.saturating_sub(1).div_ceil(ANGLES_EVERY) + 1
 }
 
-/// The figure of the page; `None` where fewer than two frames or no roller are on record.
+/// The section; `None` where fewer than two frames or no roller are on record.
 ///
 /// # Errors
 /// [`Error::Run`] when the trace cannot be read.
-pub(super) fn figure(record: &Record<'_>, findings: &Findings) -> Result<Option<Markup>, Error> {
-    let (scene, interval_s) = (&record.run().scene, record.interval_s());
+pub(super) fn section(of: &Subject<'_>) -> Result<Option<Section>, Error> {
+    let (record, findings) = (of.record, of.findings);
+    let (scene, interval_s) = (&of.run.scene, record.interval_s());
     let motion = &findings.prediction.kinematics;
     let passage_s = 1.0 / motion.bpfo_hz.abs();
     let events = &findings.summary.events;
@@ -197,7 +200,8 @@ pub(super) fn figure(record: &Record<'_>, findings: &Findings) -> Result<Option<
         first: first.min(stretch.frames() - 1),
         passage_s,
     };
-    markup(&sent, &stretch, record).map(Some)
+    let moving = markup(&sent, &stretch, record)?;
+    Ok(Some(Section::new("motion", "The bearing in motion").linked("In motion").after(moving)))
 }
 
 /// Motion and forces of all rollers, interleaved.
@@ -353,7 +357,7 @@ fn markup(sent: &Sent<'_>, stretch: &Stretch, record: &Record<'_>) -> Result<Mar
                 (part)
             }
             script type="application/json" { (PreEscaped(data)) }
-            script { (PreEscaped(include_str!("../assets/bearing.js"))) }
+            script { (PreEscaped(include_str!("../../assets/bearing.js"))) }
         }
     })
 }

@@ -1,21 +1,28 @@
-//! Spectra: the paper's Figs. 3 and 7, the other sensors, low frequencies, the envelope.
+//! Spectra: the paper's Figs. 3 and 7, the other sensors, low frequencies, the envelope, and their lines.
 //!
 //! Colours say where a line comes from: green, purple and teal are the mesh, red is the defect, brown is the
 //! ring.
 
+mod diagnosis;
+mod envelope;
+pub(crate) mod families;
+mod over_time;
+
 use std::f64::consts::SQRT_2;
 
-use stribeck_dsp::Spectrum;
-
-use super::{mark, spoken};
-use crate::plot::{Axis, Colour, Cursor, Figure, Mark, Series};
+use maud::html;
 use stribeck_analysis::artefacts;
-use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::{FamilyFinding, SIDEBANDS};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::loudest::loudest;
 use stribeck_analysis::tones;
 use stribeck_analysis::words::significant;
+use stribeck_dsp::Spectrum;
+
+use super::Subject;
+use crate::Error;
+use crate::page::{Section, charts, drawn, minus, spoken};
+use crate::plot::{Axis, Colour, Cursor, Figure, Mark, Series};
 
 /// How far below its highest value a spectrum is drawn [dB]; rounding noise lies lower.
 const DEPTH_DB: f64 = 120.0;
@@ -27,12 +34,30 @@ const FIRST_HZ: f64 = 10_000.0;
 const TABS: &str = "spectra";
 /// Multiples of the defect's frequency that are marked.
 const FAMILY: usize = 10;
+
+/// The section.
+pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
+    let (findings, summary) = (of.findings, &of.findings.summary);
+    let charts = charts(raw(findings).into_iter().chain(notched(findings)).chain(others(findings)));
+    let figures = charts.chain(drawn(over_time::pictures(of.record, findings)?));
+    let after = html! {
+        (envelope::table(findings))
+        (diagnosis::table(summary))
+        h3 { "Lines of the mesh" }
+        p { (families::in_words(summary)) }
+        (families::table(summary))
+    };
+    Ok(Section::new("spectra", "Spectrum")
+        .figures(figures, "The record is too short for a spectrum.")
+        .after(after))
+}
+
 /// The legend of the colours that are drawn.
 fn legend(findings: &Findings) -> String {
     let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, \
         purple nodes of the outer and teal of the inner raceway";
     let kinds = [
-        (!unsteady(findings), mesh),
+        (findings.summary.unsteady().is_none(), mesh),
         (findings.prediction.shocks.is_some(), "red: the defect"),
         (!findings.modes.is_empty(), "brown: modes of the free outer ring"),
     ];
@@ -41,7 +66,7 @@ fn legend(findings: &Findings) -> String {
 }
 
 /// The leading sensor, as recorded (the paper's Fig. 3).
-pub(super) fn raw(findings: &Findings) -> Option<Figure> {
+fn raw(findings: &Findings) -> Option<Figure> {
     let leading = findings.sensors.first()?;
     let raw = leading.raw_density.as_ref()?;
     let title = format!("Power spectral density of a_y at sensor “{}”", leading.name);
@@ -58,14 +83,9 @@ pub(super) fn raw(findings: &Findings) -> Option<Figure> {
     Some(figure)
 }
 
-/// Whether the speed changes: lines at constant frequencies are then neither looked for nor taken out.
-fn unsteady(findings: &Findings) -> bool {
-    findings.summary.duty.as_ref().is_some_and(DutyFinding::is_unsteady)
-}
-
 /// Which families were found, in one sentence.
 fn found(findings: &Findings) -> String {
-    if unsteady(findings) {
+    if findings.summary.unsteady().is_some() {
         return "The speed changes: what stands here are resonances, and lines are smeared.".into();
     }
     let name = |f: &FamilyFinding| Some(format!("{} at {:.0} Hz", f.spoken(), f.carrier_hz?));
@@ -81,8 +101,10 @@ fn found(findings: &Findings) -> String {
 }
 
 /// Raw and notched, whole and about the tone (the paper's Figs. 7a and 7b).
-pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
-    let Some(leading) = findings.sensors.first().filter(|_| !unsteady(findings)) else { return Vec::new() };
+fn notched(findings: &Findings) -> Vec<Figure> {
+    let Some(leading) = findings.sensors.first().filter(|_| findings.summary.unsteady().is_none()) else {
+        return Vec::new();
+    };
     let (Some(raw), Some(filtered)) = (&leading.raw_density, &leading.filtered_density) else {
         return Vec::new();
     };
@@ -116,14 +138,14 @@ pub(super) fn notched(findings: &Findings) -> Vec<Figure> {
 }
 
 /// All sensors about the tone, the low frequencies of the leading one, its envelope.
-pub(super) fn others(findings: &Findings) -> Vec<Figure> {
+fn others(findings: &Findings) -> Vec<Figure> {
     let Some(raw) = findings.sensors.first().and_then(|s| s.raw_density.as_ref()) else { return Vec::new() };
     let mut figures = Vec::new();
-    if findings.sensors.len() > 1 && !unsteady(findings) {
+    if findings.sensors.len() > 1 && findings.summary.unsteady().is_none() {
         figures.push(all_sensors(findings, zoom(findings, raw), raw));
     }
     figures.push(low(findings, raw));
-    figures.extend(envelope(findings));
+    figures.extend(envelope::figure(findings));
     figures
 }
 
@@ -140,7 +162,7 @@ fn zoom(findings: &Findings, raw: &Spectrum) -> (f64, f64) {
 
 /// Where a spectrum is drawn close: about the notch, or without one about the carriers among `marks`, those
 /// that are there first. The paper zooms to 4–6 kHz; a coarser mesh has its tone elsewhere.
-pub(in super::super) fn about_the_tone(notch_hz: Option<f64>, marks: &[Mark], half_hz: f64) -> (f64, f64) {
+pub(crate) fn about_the_tone(notch_hz: Option<f64>, marks: &[Mark], half_hz: f64) -> (f64, f64) {
     const PAPER_HZ: (f64, f64) = (4000.0, 6000.0);
     const AROUND_HZ: f64 = 1000.0;
     let dashed = marks.iter().all(|mark| mark.dashed);
@@ -177,7 +199,7 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     let mut figure = over_frequency("spectrum-low", &title, (0.0, top))
         .tabbed(TABS, "low frequencies")
         .with(decibels("raw", Colour::Blue, raw, drawn));
-    let unsteady = unsteady(findings);
+    let unsteady = findings.summary.unsteady().is_some();
     let caption = match findings.prediction.shocks.map(|shocks| (shocks.name(), shocks.hz)) {
         None if unsteady => {
             "The speed changes: what comes once a passage is smeared here, and stands over the angle."
@@ -199,56 +221,20 @@ fn low(findings: &Findings, raw: &Spectrum) -> Figure {
     figure
 }
 
-fn envelope(findings: &Findings) -> Option<Figure> {
-    let (spectrum, finding) = findings.envelope.as_ref().zip(findings.summary.envelope.as_ref())?;
-    let shocks = findings.prediction.shocks?;
-    let (name, hz) = (shocks.name(), shocks.hz);
-    let top = (FAMILY as f64 + 1.0) * hz;
-    let power = Axis::plain("Squared envelope spectrum", "dB re 1 g⁴");
-    let mut figure =
-        Figure::new("envelope", "Envelope spectrum", Axis::si("Frequency", "Hz").over(0.0, top), power)
-            .with(density("squared envelope", Colour::Blue, spectrum));
-    let seen: Vec<String> = finding
-        .lines
-        .iter()
-        .filter(|l| l.measured_hz.is_some())
-        .map(|l| format!("×{}", l.harmonic))
-        .collect();
-    figure = figure
-        .caption(if seen.is_empty() {
-            format!("No multiple of {name} stands 10 dB above its surroundings.")
-        } else {
-            format!(
-                "Knocks come at {name}: of its multiples {} stand 10 dB above their surroundings.",
-                seen.join(", ")
-            )
-        })
-        .note(format!(
-            "Envelope of {:.0} to {:.0} Hz, {:.1} periods of {name} on record. {}",
-            finding.band_hz.0,
-            finding.band_hz.1,
-            finding.periods,
-            stated(spectrum)
-        ));
-    figure.marks = physics_marks(findings, top);
-    figure.cursor = Some(cursor(findings));
-    Some(figure)
-}
-
 /// The defect's family and the ring's modes below `top`.
 fn physics_marks(findings: &Findings, top: f64) -> Vec<Mark> {
     let mut marks = Vec::new();
     if let Some(shocks) = findings.prediction.shocks {
         let (name, hz) = (shocks.name(), shocks.hz);
         let text = |n: usize| if n == 1 { format!("{name} {hz:.1} Hz") } else { format!("×{n}") };
-        marks.extend((1..=FAMILY).map(|n| mark(n as f64 * hz, &text(n), Colour::Red, true)));
+        marks.extend((1..=FAMILY).map(|n| Mark::new(n as f64 * hz, text(n), Colour::Red, true)));
     }
     marks.extend(
         findings
             .modes
             .iter()
             .filter(|m| m.1 < top)
-            .map(|(n, hz)| mark(*hz, &format!("ring n = {n}, {hz:.0} Hz"), Colour::Brown, true)),
+            .map(|(n, hz)| Mark::new(*hz, format!("ring n = {n}, {hz:.0} Hz"), Colour::Brown, true)),
     );
     marks
 }
@@ -279,7 +265,7 @@ fn whole_band(id: &str, title: &str, spectrum: &Spectrum) -> Figure {
 }
 
 /// Where most of the signal lies, beside the strongest facet tone, in words.
-pub(in super::super) fn loudest_in_words(findings: &Findings) -> Option<String> {
+pub(crate) fn loudest_in_words(findings: &Findings) -> Option<String> {
     let leading = findings.sensors.first()?;
     let found = loudest(leading.raw_density.as_ref()?)?;
     let (low, high) = found.band_hz;
@@ -349,7 +335,7 @@ fn cursor(findings: &Findings) -> Cursor {
 }
 
 /// A spectrum in decibels, cut [`DEPTH_DB`] below its highest value.
-pub(in super::super) fn density(name: &str, colour: Colour, spectrum: &Spectrum) -> Series {
+pub(crate) fn density(name: &str, colour: Colour, spectrum: &Spectrum) -> Series {
     decibels(name, colour, spectrum, spectrum.values().len())
 }
 
@@ -374,11 +360,11 @@ fn harmonic_marks(findings: &Findings) -> Vec<Mark> {
     for (index, (name, _)) in findings.prediction.facet_lines.iter().enumerate().rev() {
         let of_name = findings.lines.iter().filter(|l| l.name == *name);
         marks.extend(
-            of_name.map(|l| mark(l.predicted_hz, &label(index, l.harmonic), colours[index % 3], true)),
+            of_name.map(|l| Mark::new(l.predicted_hz, label(index, l.harmonic), colours[index % 3], true)),
         );
     }
     let ring = findings.modes.iter().filter(|m| m.1 > LOW_HZ);
-    marks.extend(ring.map(|(n, hz)| mark(*hz, &format!("ring n = {n}"), Colour::Brown, true)));
+    marks.extend(ring.map(|(n, hz)| Mark::new(*hz, format!("ring n = {n}"), Colour::Brown, true)));
     marks
 }
 
@@ -391,15 +377,15 @@ fn line_marks(findings: &Findings) -> Vec<Mark> {
     for ((family, (_, geometry_hz)), colour) in families.zip([Colour::Green, Colour::Purple, Colour::Teal]) {
         let Some(carrier) = family.carrier_hz else {
             let (hz, word) = family.predicted_hz.map_or((*geometry_hz, "by geometry"), |hz| (hz, "absent"));
-            marks.push(mark(hz, &format!("{} {word}", spoken(&family.name)), colour, true));
+            marks.push(Mark::new(hz, format!("{} {word}", spoken(&family.name)), colour, true));
             continue;
         };
         for m in -SIDEBANDS..=SIDEBANDS {
             let label = match m {
                 0 => format!("{} {carrier:.0} Hz", family.spoken()),
-                _ => format!("{m:+}").replace('-', "−"),
+                _ => minus(format!("{m:+}")),
             };
-            marks.push(mark(carrier + f64::from(m) * bpfo, &label, colour, false));
+            marks.push(Mark::new(carrier + f64::from(m) * bpfo, label, colour, false));
         }
     }
     marks
@@ -412,7 +398,7 @@ mod tests {
     /// Without a notch the zoom was 4 to 6 kHz, whose marks lay elsewhere.
     #[test]
     fn issue_the_close_spectrum_is_about_the_carriers() {
-        let at = |hz: f64, dashed: bool| mark(hz, "", Colour::Green, dashed);
+        let at = |hz: f64, dashed: bool| Mark::new(hz, "", Colour::Green, dashed);
         let zoom = |notch_hz, marks: &[Mark]| about_the_tone(notch_hz, marks, 50_000.0);
         assert_eq!(zoom(None, &[at(1500.0, true), at(1800.0, true)]), (500.0, 2800.0));
         assert_eq!(zoom(None, &[at(1500.0, true), at(9000.0, false)]), (8000.0, 10_000.0));
