@@ -1,7 +1,8 @@
 //! The reduced bearing as an FMU: co-simulation by FMI 3.0, the shaft's motion in, forces out.
 //!
-//! `cargo xtask fmu SCENE` reduces the bearing of a scene, builds this library and packs both. The library reads the bearing from the resources of its archive and steps it by
-//! [`stribeck_reduced::shaft`]; it meshes nothing.
+//! `cargo xtask fmu SCENE` reduces the bearing of a scene, builds this library and packs both. The library
+//! reads the bearing from the resources of its archive and steps it by [`stribeck_reduced::shaft`]; it meshes
+//! nothing.
 //!
 //! # Where to look
 //!

@@ -1,7 +1,8 @@
 //! The page of a run: from a run directory to `report.html`, `summary.json` and figures. Nothing here
 //! simulates: the same directory gives the same bytes.
 //!
-//! The sections stand in the order of the page; each is a file or a folder with its figures, tables and words.
+//! The sections stand in the order of the page; each is a file or a folder that makes its figures, tables
+//! and words.
 
 mod answer;
 pub(crate) mod lead;

@@ -116,7 +116,8 @@ fn defect(run: &Run, summary: &Summary) -> String {
     if events.is_empty()
         && summary.unsteady().is_some_and(|duty| duty.relative_speed_rpm.0 * duty.relative_speed_rpm.1 < 0.0)
     {
-        return "The rings turn back on the way, and passages are predicted for one direction of rotation only."
+        return "The rings turn back on the way, and passages are predicted for one direction of rotation \
+            only."
             .into();
     }
     let it = if spalls.len() == 1 { "it" } else { "them" };

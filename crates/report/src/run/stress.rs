@@ -52,7 +52,7 @@ pub(super) fn section(
     Ok((section.figures(drawn(pictures), otherwise), note.map(str::to_owned).into_iter().collect()))
 }
 
-/// The mesh, whole and about the defect, and a roller; of the paper's bearing with the numbers of its figures.
+/// The mesh, whole and about the defect, and a roller; of the paper's bearing with its numbers of figures.
 fn meshes(run: &Run, findings: &Findings, mesh: &RunMesh) -> Vec<Picture> {
     let mut pictures =
         [mesh::whole(&run.scene, mesh), mesh::defect(&run.scene, mesh), roller::picture(&run.scene, mesh)];
