@@ -13,8 +13,8 @@ group! {
         /// Load on the top edge of the adapter, downwards, or on another housing [N].
         pub load_n: f64 = 50_000.0, positive(MOST_LOAD_N);
         /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; absent for 270,
-        /// downwards, with the load zone at the top. A pedestal and a housing from a mesh take 90, too, a rigid
-        /// one and springs any.
+        /// downwards, with the load zone at the top. Pedestals and mesh housings also accept 90; rigid and
+        /// spring housings any angle.
         pub load_angle_deg: f64 = housing::DOWN_DEG, within(-360.0, 360.0), omitted();
         /// Speed of the inner ring [rpm]; positive clockwise, negative counter-clockwise.
         pub speed_rpm: f64 = 500.0, within(-MOST_SPEED_RPM, MOST_SPEED_RPM);
