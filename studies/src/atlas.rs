@@ -6,7 +6,6 @@ use anyhow::Result;
 use stribeck_analysis::defect::Defect;
 use stribeck_analysis::diagnosis::{DiagnosedFamily, DiagnosisFinding, analysis_in_noise};
 use stribeck_analysis::record::Record;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::Run;
 
@@ -79,7 +78,7 @@ pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
     for bearing in BEARINGS {
         for (name, list, _) in DEFECTS {
             let variant = variant(host, bearing, name, list)?;
-            let passage_ms = 1e3 * PASSAGES / Kinematics::of(&variant.1).bpfo_hz;
+            let passage_ms = 1e3 * PASSAGES / variant.1.kinematics().bpfo_hz;
             let short = format!("solver.duration_ms={}", (100.0 * passage_ms).ceil() / 100.0);
             let own = Variant { name: format!("{}-full", variant.0.name), ..variant.0.clone() };
             full.push(own.with("model=full").with(short));
@@ -326,7 +325,7 @@ fn claimed_in_noise(cell: &Cell<'_>) -> Option<Vec<&'static str>> {
     let channel = &run.numbers()?.diagnosis.as_ref()?.channel;
     let read = Run::read(&run.folder).ok()?;
     let record = Record::new(&read).ok()?;
-    let expected = Kinematics::of(&run.scene.written);
+    let expected = run.scene.written.kinematics();
     let judged = analysis_in_noise(&run.scene, &record, &expected, channel, NOISE).ok()??;
     Some(judged.findings.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect())
 }

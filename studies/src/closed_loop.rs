@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use serde_json::Value;
-use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::scene::DefectRing;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use crate::table::number;
 use crate::{Answer, Flags, Host, Runner, Sheet, Variant};

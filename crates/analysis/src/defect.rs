@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::kinematics::Kinematics;
+use stribeck_theory::kinematics::Kinematics;
 
 /// Part of the bearing that is damaged, under the name of its frequency.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -4,10 +4,10 @@
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
+use stribeck_theory::kinematics::Kinematics;
 
 use crate::Error;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
@@ -122,7 +122,7 @@ pub(crate) fn machine(scene: &ResolvedScene, expected: &Kinematics) -> Machine {
     Machine {
         speed_rpm: Some(60.0 * relative_hz(expected)),
         outer_speed_rpm: Machine::outer_speed_rpm(&scene.written),
-        bearing: Some(CatalogueBearing::of_scene(&scene.written)),
+        bearing: Some(catalogue::of_scene(&scene.written)),
         speed_is_exact: true,
         ..Machine::default()
     }

@@ -16,10 +16,10 @@ use stribeck_dsp::{
     Detrend, Envelope, PeriodCount, PeriodVerdict, Scaling, Spectrum, Welch, WelchOptions, Window,
     means_over_angle,
 };
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::Run;
+use stribeck_theory::kinematics::Kinematics;
 
 use crate::Error;
 use crate::defect::{Defect, Shocks};

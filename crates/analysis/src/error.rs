@@ -9,7 +9,7 @@ pub enum Error {
     Run(#[from] stribeck_store::Error),
     /// The loads of the scene cannot be found.
     #[error(transparent)]
-    Scene(#[from] stribeck_scene::Error),
+    Theory(#[from] stribeck_theory::Error),
     /// A signal cannot be processed.
     #[error("a recorded signal cannot be processed: {0}")]
     Signal(#[source] stribeck_dsp::Error),

@@ -1,7 +1,6 @@
 //! Oil between rollers and raceways: thickness, load and friction.
 
 use serde::{Deserialize, Serialize};
-use stribeck_scene::lubrication;
 use stribeck_store::run_dir::Run;
 
 use crate::Error;
@@ -37,7 +36,7 @@ impl FilmFinding {
     /// # Errors
     /// [`Error::Run`] when the trace cannot be read.
     pub fn measure(run: &Run, record: &Record<'_>) -> Result<Option<Self>, Error> {
-        let Ok(Some(loaded)) = lubrication::loaded_films(&run.scene) else { return Ok(None) };
+        let Ok(Some(loaded)) = run.scene.loaded_films() else { return Ok(None) };
         let rollers: Vec<usize> = run.scene.written.rollers_in_place().collect();
         let mut floating = [Vec::new(), Vec::new()];
         let mut largest = [None; 2];

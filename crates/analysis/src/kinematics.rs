@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use stribeck_scene::kinematics::Kinematics;
+use stribeck_theory::kinematics::Kinematics;
 
 use crate::record::{Record, Roller};
 

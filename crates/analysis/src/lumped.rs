@@ -21,11 +21,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_scene::Error;
-use stribeck_scene::kinematics::{Kinematics, roller_angles_deg};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::RollerCopies;
-use stribeck_scene::static_load;
+use stribeck_theory::Error;
 
 use crate::levels::STANDARD_GRAVITY;
 
@@ -58,7 +56,7 @@ impl Lumped {
     /// # Errors
     /// When the scene has no static load distribution.
     pub fn of(scene: &ResolvedScene) -> Result<Self, Error> {
-        let load = static_load::at_start(scene)?;
+        let load = scene.static_load()?;
         let facets = scene.written.mesh.roller_facets as f64;
         let radius = scene.roller_radius;
         let facet = TAU * radius / facets;
@@ -66,7 +64,7 @@ impl Lumped {
         let (mut re, mut im, mut springs, mut arms) = (0.0, 0.0, 0.0, 0.0);
         let mut smoothing = 1.0;
         let largest = load.max_roller_n();
-        let angles = roller_angles_deg(&scene.written);
+        let angles = scene.written.roller_angles_deg();
         let in_place = scene.written.rollers_in_place().map(|number| angles[number - 1]);
         for (force, deg) in load.roller_n.iter().zip(in_place) {
             if *force <= 0.0 {
@@ -87,7 +85,7 @@ impl Lumped {
             springs += angle.sin().powi(2);
         }
         let both_contacts = 1.0 + (PI * facets).cos();
-        let frequency_hz = facets * Kinematics::at_mean_speed(&scene.written).roller_spin_hz;
+        let frequency_hz = facets * scene.written.mean_kinematics().roller_spin_hz;
         let y = re.hypot(im) * both_contacts * height_m / springs;
         Ok(Self {
             frequency_hz,

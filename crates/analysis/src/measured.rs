@@ -6,7 +6,7 @@
 //! ```
 //! use stribeck_analysis::measured::{Analysis, Defect, Machine};
 //! use stribeck_dsp::channel::Channel;
-//! use stribeck_scene::catalogue::CatalogueBearing;
+//! use stribeck_theory::catalogue::CatalogueBearing;
 //!
 //! // Knocks at 3.585 times 20 Hz that ring at 3 kHz, in noise.
 //! let rate_hz = 12_800.0;
@@ -70,7 +70,8 @@ pub mod zone;
 use serde::Serialize;
 use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelope, BandEnvelopes};
-use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
+use stribeck_scene::scene::Scene;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use crate::Error;
 pub use crate::defect::Defect;

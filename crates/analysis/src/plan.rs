@@ -7,12 +7,12 @@ use std::f64::consts::PI;
 
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::RollingSurface;
-use stribeck_scene::lubrication::{self, LoadedFilm};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::{
     ContactInterpolation, ContactMethod, ContactSurface, DampingFrame, ModelScene, RollerCopies,
 };
 use stribeck_store::run_info::MeshInfo;
+use stribeck_theory::lubrication::LoadedFilm;
 
 use crate::Error;
 use crate::defect::Shocks;
@@ -123,7 +123,7 @@ impl Plan {
             dangers: loads::dangers(scene, &loads),
             loads,
             half_width_m,
-            films: lubrication::loaded_films(scene)?,
+            films: scene.loaded_films()?,
             facet_m: 2.0 * PI * radius / facets,
             elements: counts.quads + counts.triangles,
             time_step_s: interval_s / per_sample,
@@ -308,7 +308,7 @@ mod tests {
             |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a load distribution").envelope;
         let mut scene = Scene::default();
         let of = |scene: &Scene| {
-            let k = stribeck_scene::kinematics::Kinematics::of(scene);
+            let k = scene.kinematics();
             [("BPFO", 10.0 / k.bpfo_hz), ("BPFI", 10.0 / k.bpfi_hz), ("2×BSF", 5.0 / k.bsf_hz)]
         };
         let [outer, inner, roller] = of(&scene);

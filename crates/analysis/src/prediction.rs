@@ -1,11 +1,11 @@
 //! Prediction for a scene from rolling without slip and rigid rings: frequencies, facet lines, passages of
 //! rollers over the defect, and the load distribution.
 
-use stribeck_scene::kinematics::{Crossing, FacetCounts, Kinematics, roller_angles_deg};
 use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_scene::scene::{DefectRing, DefectScene, RollerCopies};
-use stribeck_scene::static_load::{RigidRings, angles_to_load_deg};
 use stribeck_store::run_info::MeshInfo;
+use stribeck_theory::kinematics::{Crossing, FacetCounts, Kinematics};
+use stribeck_theory::static_load::RigidRings;
 
 use crate::Error;
 use crate::defect::{Defect, Shocks};
@@ -74,7 +74,7 @@ pub struct StaticCurve {
 impl Prediction {
     /// Predicts from the resolved scene and the counts of the mesh that was run.
     pub fn of(scene: &ResolvedScene, mesh: &MeshInfo) -> Self {
-        let kinematics = Kinematics::at_mean_speed(&scene.written);
+        let kinematics = scene.written.mean_kinematics();
         let counts = FacetCounts {
             roller: mesh.roller_facets,
             outer: scene.facets_around(DefectRing::Outer, mesh.outer_facets),
@@ -108,7 +108,7 @@ impl Prediction {
             // at most one traverse later.
             let early = if turns(defect) { EARLY } else { 0.0 };
             let until_s = (1.0 + early) * scene.duration + traverse_s;
-            kinematics.crossings(defect, &roller_angles_deg(&scene.written), until_s)
+            kinematics.crossings(defect, &scene.written.roller_angles_deg(), until_s)
         };
         let in_place = |defect: &DefectScene| {
             let mut passages = passages(defect);
@@ -196,7 +196,7 @@ impl Prediction {
         let rings = RigidRings::new(scene);
         // The rings see the load from above.
         let turned_by = scene.written.load_zone_deg() - 90.0;
-        let start = angles_to_load_deg(&scene.written);
+        let start = scene.written.angles_to_load_deg();
         // After a spacing the bearing is the same again, or after a turn where a roller is missing.
         let rollers = scene.written.bearing.rollers;
         let alike = if start.len() == rollers { rollers } else { 1 };
@@ -267,7 +267,7 @@ fn over_turns(scene: &ResolvedScene, defect: &DefectScene) -> Vec<Crossing> {
     let (rpm, all) = (60.0_f64.copysign(all), all.abs());
     let mut crossings = Kinematics::new(&scene.written.bearing, rpm).crossings(
         defect,
-        &roller_angles_deg(&scene.written),
+        &scene.written.roller_angles_deg(),
         all,
     );
     crossings.retain_mut(|c| {

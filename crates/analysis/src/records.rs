@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 use stribeck_dsp::{PASSAGES, Path, Rhythm, Signature, statistics};
 use stribeck_scene::dice::Dice;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::{DefectRing, Scene};
 
 use crate::Error;
@@ -71,7 +70,7 @@ pub fn rhythm(passing_hz: f64, shaft_hz: f64, cage_hz: f64) -> Rhythm {
 /// The rhythm of a scene with one spall and one speed; `None` for another one.
 pub fn rhythm_of(scene: &Scene) -> Option<Rhythm> {
     let spall = scene.leading_spall().filter(|_| !scene.operation.speed_varies())?;
-    let kinematics = Kinematics::of(scene);
+    let kinematics = scene.kinematics();
     let passing_hz = match spall.ring {
         DefectRing::Outer => kinematics.bpfo_hz,
         DefectRing::Inner => kinematics.bpfi_hz,

@@ -3,10 +3,9 @@
 use std::f64::consts::PI;
 
 use stribeck_scene::deviation::{FormScene, RollingSurface, SpallScene};
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::{ResolvedScene, pocket_half_width};
 use stribeck_scene::scene::PocketWalls;
-use stribeck_scene::static_load::RigidRings;
+use stribeck_theory::static_load::RigidRings;
 
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::StaticCurve;
@@ -20,7 +19,7 @@ const SLIDING: f64 = 0.02;
 /// is the distribution under `support_n` (THEORY §5.4): under less, rollers that have lost their spin do not
 /// roll again. `None` when nothing turns or nothing is loaded, infinite without friction.
 pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f64) -> Option<f64> {
-    let motion = Kinematics::at_mean_speed(&scene.written);
+    let motion = scene.written.mean_kinematics();
     let radius = scene.roller_radius;
     let inertia = 0.5 * PI * scene.material.density * scene.thickness * radius.powi(4);
     let pairs = curve.angle_deg.windows(2).zip(curve.force_n.windows(2));

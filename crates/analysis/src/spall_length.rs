@@ -22,7 +22,7 @@
 
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::DefectRing;
-use stribeck_scene::static_load::RigidRings;
+use stribeck_theory::static_load::RigidRings;
 
 /// Halvings of the bracket: beyond rounding.
 const HALVINGS: usize = 60;

@@ -5,10 +5,10 @@ use std::f64::consts::TAU;
 
 use serde::Serialize;
 use serde_json::{Map, Value, json};
-use stribeck_scene::contact_law::ContactLawKind;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_scene::ring_stiffness::{RingState, TurningRings};
+use stribeck_theory::contact_law::ContactLawKind;
+use stribeck_theory::kinematics::Kinematics;
+use stribeck_theory::ring_stiffness::RingState;
 
 use crate::Error;
 
@@ -229,7 +229,7 @@ impl BearingStiffness {
 
 impl Point {
     fn of(scene: &ResolvedScene, grid: &Grid, load_n: f64, speed_rpm: f64) -> Result<Self, Error> {
-        let rings = TurningRings::new(scene, grid.law, speed_rpm);
+        let rings = scene.turning_rings(grid.law, speed_rpm);
         let pitch = TAU / scene.rollers as f64;
         let cages: Vec<f64> = (0..grid.angles).map(|i| pitch * i as f64 / grid.angles as f64).collect();
         let states: Vec<RingState> =

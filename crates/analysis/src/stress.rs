@@ -6,9 +6,9 @@
 
 use std::collections::HashMap;
 
-use stribeck_scene::material::Material;
 use stribeck_store::frames::Frame;
 use stribeck_store::mesh_file::RunMesh;
+use stribeck_theory::material::Material;
 
 /// Lamé's constants [Pa].
 #[derive(Debug, Clone, Copy)]

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use stribeck_analysis::measured::{Analysis, Machine, MeasuredFindings};
 use stribeck_dsp::channel::Channel;
-use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_testing::Noise;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 const RATE_HZ: f64 = 12_800.0;
 const SAMPLES: usize = 131_072;

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use stribeck_dsp::channel::Channel;
 use stribeck_formats::Recording;
-use stribeck_scene::{catalogue::CatalogueBearing, scene::Scene};
+use stribeck_scene::scene::Scene;
 use stribeck_testing::Noise;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use stribeck_analysis::measured::joint::Joint;
 use stribeck_analysis::measured::{Analysis, Defect, Family, Machine, MeasuredFindings};

@@ -18,10 +18,9 @@
 use std::f64::consts::PI;
 
 use stribeck_analysis::stiffness::{BearingStiffness, Grid, Point};
-use stribeck_scene::contact_law::ContactLawKind;
-use stribeck_scene::ring_stiffness::TurningRings;
 use stribeck_scene::{Scene, resolved::ResolvedScene};
 use stribeck_testing::{ball_approach, ledger::compare};
+use stribeck_theory::contact_law::ContactLawKind;
 
 /// Tolerance: nine balls are not spread without gaps, and the fit of the elliptic integrals is within 2 %.
 const ASKED: f64 = 0.02;
@@ -35,7 +34,7 @@ fn scene(bearing: &str) -> ResolvedScene {
 
 /// Mean stiffness along and across the load [N/m], at rest.
 fn ours(scene: &ResolvedScene, law: ContactLawKind, clearance_m: f64, load_n: f64) -> [f64; 2] {
-    let rings = TurningRings::new(scene, law, 0.0).with_clearance(clearance_m);
+    let rings = scene.turning_rings(law, 0.0).with_clearance(clearance_m);
     let pitch = 2.0 * PI / scene.rollers as f64;
     let mut sum = [0.0; 2];
     for i in 0..ANGLES {
@@ -144,7 +143,7 @@ fn analytic_stiffness_of_the_papers_bearing_under_preload() {
 fn invariant_stiffness_is_the_derivative_of_the_load() {
     let scene = scene("NU 205, elements=13");
     for speed_rpm in [0.0, 20_000.0] {
-        let rings = TurningRings::new(&scene, ContactLawKind::Line, speed_rpm);
+        let rings = scene.turning_rings(ContactLawKind::Line, speed_rpm);
         for cage in [0.0, 0.1, 0.2, 0.4] {
             let at = |load: f64| rings.equilibrium(load, cage).expect("an equilibrium");
             let (below, here, above) = (at(1999.0), at(2000.0), at(2001.0));
@@ -165,10 +164,10 @@ fn invariant_series_and_mirror() {
         loads_n: vec![500.0],
         speeds_rpm: vec![speed_rpm],
         angles: ANGLES,
-        law: ContactLawKind::of(&scene),
+        law: scene.contact_law(),
         damping_s: 8e-6,
     };
-    assert_eq!(ContactLawKind::of(&scene), ContactLawKind::Ball);
+    assert_eq!(scene.contact_law(), ContactLawKind::Ball);
     let of = |speed: f64| BearingStiffness::of(&scene, &grid(speed)).expect("stiffness").points.remove(0);
     let (there, back): (Point, Point) = (of(1500.0), of(-1500.0));
     for i in 0..ANGLES {
@@ -196,7 +195,7 @@ fn issue_light_loads_have_a_stiffness_at_any_speed() {
         // Between two elements, so that both are loaded and no direction is without stiffness.
         let cage = 0.4 * 2.0 * PI / scene.rollers as f64;
         for rpm in [0.0, 500.0, 1500.0, 6000.0, 20_000.0] {
-            let rings = TurningRings::new(&scene, law, rpm);
+            let rings = scene.turning_rings(law, rpm);
             for load_n in [1e-3, 1.0, 5.0, 20.0, 100.0, 110.0, 150.0, 200.0] {
                 let at = |load_n: f64| {
                     rings

@@ -12,9 +12,6 @@ use stribeck_reduced::motion::{BearingInMotion, Saved};
 use stribeck_scene::{
     advice,
     housing::HousingScene,
-    kinematics::Kinematics,
-    load_rating::is_ball_bearing,
-    lubrication::loaded_films,
     resolved::ResolvedScene,
     scene::{
         ContactSurface, DampingFrame, DefectRing, FilmScene, ModelScene, ReducedScene, Scene, SensorScene,
@@ -23,6 +20,8 @@ use stribeck_scene::{
 use stribeck_simulation::reduced::{Prepared, prepared};
 use stribeck_simulation::reduction::modal_bearing;
 use stribeck_simulation::run::guards::OUT_OF_PLACE;
+use stribeck_theory::catalogue::Element;
+use stribeck_theory::kinematics::Kinematics;
 
 use crate::{
     content::{Content, Rates},
@@ -160,7 +159,7 @@ fn rates(scene: &Scene, modal: &stribeck_reduced::modal::ModalBearing) -> Result
     let Parameters { contact, oil, .. } = modal_bearing(&resolved, modal.reduction.clone())
         .map_err(stribeck_simulation::Error::from)?
         .parameters;
-    let films = loaded_films(&resolved).map_err(stribeck_simulation::Error::from)?;
+    let films = resolved.loaded_films().map_err(stribeck_simulation::Error::from)?;
     let (Some(oil), Some(films)) = (oil, films) else {
         return Err(Error::Unsuited(
             "the scene has no loaded roller: `operation.load_n` is too small".to_owned(),
@@ -285,7 +284,7 @@ fn facts(
         "name": scene.name,
         "title": title,
         "rollers": resolved.rollers,
-        "balls": is_ball_bearing(scene),
+        "balls": scene.element() == Element::Ball,
         "outer": resolved.outer_race_radius, "outerThickness": resolved.outer_ring_thickness,
         "inner": resolved.inner_race_radius, "innerThickness": resolved.inner_ring_thickness,
         "roller": resolved.roller_radius, "width": resolved.thickness, "clearance": resolved.clearance,
@@ -325,7 +324,7 @@ fn fixed(scene: &Scene) -> Value {
     };
     json!([
         [
-            if is_ball_bearing(scene) { "Balls" } else { "Rollers" },
+            if scene.element() == Element::Ball { "Balls" } else { "Rollers" },
             format!("{} of {} mm", bearing.rollers, bearing.roller_diameter_mm),
             "bearing.rollers=20"
         ],

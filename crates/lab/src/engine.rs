@@ -163,7 +163,7 @@ impl Engine {
 
     /// The bearing of the handles that were asked for, and the steps of a sample: no step is longer than the
     /// critical one.
-    fn bearing(&self, duty: Option<stribeck_duty::Duty>) -> Result<(Bearing, usize), Error> {
+    fn bearing(&self, duty: Option<stribeck_theory::duty::Duty>) -> Result<(Bearing, usize), Error> {
         let modal = modal(&self.content, &self.asked, duty)?;
         let interval = self.content.interval;
         let in_steps = |longest: f64| ((interval / longest - 1e-9).ceil() as usize).max(2);

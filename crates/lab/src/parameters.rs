@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_duty::{Course, Duty};
 use stribeck_reduced::modal::{
     ModalBearing, Reduction,
     parameters::{Oil, Speeds},
 };
+use stribeck_theory::duty::{Course, Duty};
 
 use crate::{
     content::{Content, Rates},

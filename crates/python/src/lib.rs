@@ -16,7 +16,8 @@ use stribeck_store::Error;
 /// What went wrong, as the exception that a Python user would expect.
 fn raise(error: &anyhow::Error) -> PyErr {
     let text = format!("{error:#}");
-    let of_scene = error.chain().any(|cause| cause.is::<SceneError>() || cause.is::<stribeck_scene::Error>());
+    let of_scene =
+        error.chain().any(|cause| cause.is::<SceneError>() || cause.is::<stribeck_theory::Error>());
     match error.chain().find_map(|cause| cause.downcast_ref::<Error>()) {
         Some(Error::Io { .. }) => PyOSError::new_err(text),
         Some(_) => PyValueError::new_err(text),

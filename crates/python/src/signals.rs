@@ -5,7 +5,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use stribeck_analysis::measured::{Analysis, Machine};
 use stribeck_formats::Channel;
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
 
 /// An array of numbers that goes back to Python.
 pub(crate) type Array<'py> = Bound<'py, PyArray1<f64>>;
@@ -36,7 +36,7 @@ pub(crate) fn analyse(
 ) -> PyResult<String> {
     let samples = signal.as_slice()?.to_vec();
     py.detach(|| {
-        let bearing = bearing.map(|text| CatalogueBearing::parse(&text)).transpose().map_err(refused)?;
+        let bearing = bearing.map(|text| catalogue::parse(&text)).transpose().map_err(refused)?;
         let channel = Channel::held(name, samples).in_unit(unit);
         let machine = Machine { speed_rpm, bearing, ..Machine::default() };
         let analysis = Analysis::of(&channel, rate_hz, &machine).map_err(refused)?;
@@ -47,6 +47,6 @@ pub(crate) fn analyse(
 /// Frequencies of a bearing's defects over that of the shaft: outer and inner raceway, element, cage.
 #[pyfunction]
 pub(crate) fn defect_orders(bearing: &str) -> PyResult<(f64, f64, f64, f64)> {
-    let orders = CatalogueBearing::parse(bearing).and_then(|b| b.orders()).map_err(refused)?;
+    let orders = catalogue::parse(bearing).and_then(|b| b.orders()).map_err(refused)?;
     Ok((orders.bpfo, orders.bpfi, orders.bsf, orders.ftf))
 }

@@ -148,7 +148,7 @@ impl Bearing {
     }
 
     /// Speeds and load, where they change.
-    pub fn duty(&self) -> Option<&stribeck_duty::Duty> {
+    pub fn duty(&self) -> Option<&stribeck_theory::duty::Duty> {
         self.operation.duty.as_ref()
     }
 

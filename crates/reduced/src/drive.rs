@@ -2,8 +2,8 @@
 
 use crate::modal::{Parameters, parameters::Speeds, reduction::Load};
 use pulp::Simd;
-use stribeck_duty::Duty;
 use stribeck_simd::lanes::Vector;
+use stribeck_theory::duty::Duty;
 
 use crate::plane::{Rotation, Vec2};
 

@@ -4,8 +4,8 @@
 //! replaces the word where people read it: in text, in names for screen readers, and in the labels of charts.
 //! Code, scenes, scripts, channels such as `roller_1` and the keys of data stay as they are.
 
-use stribeck_scene::load_rating::is_ball_bearing;
 use stribeck_scene::scene::Scene;
+use stribeck_theory::catalogue::Element;
 
 /// The word for a scene's rolling elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,7 @@ const SHOWN: [&str; 3] = ["aria-label=\"", "title=\"", "alt=\""];
 impl ElementWords {
     /// Of the bearing of a scene.
     pub(crate) fn of(scene: &Scene) -> Self {
-        if is_ball_bearing(scene) { Self::Balls } else { Self::Rollers }
+        if scene.element() == Element::Ball { Self::Balls } else { Self::Rollers }
     }
 
     /// A page or an SVG in these words.

@@ -14,7 +14,7 @@ pub enum Error {
     Run(#[from] stribeck_store::Error),
     /// The loads of the scene cannot be found.
     #[error(transparent)]
-    Scene(#[from] stribeck_scene::Error),
+    Theory(#[from] stribeck_theory::Error),
     /// A figure cannot be drawn.
     #[error("figure `{figure}` cannot be drawn: {why}")]
     Drawing {

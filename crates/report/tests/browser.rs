@@ -11,9 +11,9 @@ use std::process::Command;
 use stribeck_analysis::measured::{Analysis, Machine};
 use stribeck_dsp::channel::Channel;
 use stribeck_report as report;
-use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_store::run_info::Status;
 use stribeck_testing::Noise;
+use stribeck_theory::catalogue::CatalogueBearing;
 use synthetic::Scratch;
 
 /// Time that scripts get [ms of the browser's own clock].

@@ -1,82 +1,62 @@
-//! Bearings by name, with the dimensions that their defect frequencies follow from.
-//!
-//! Makers do not print the number of rolling elements of every bearing; where no source is known for it, the
-//! entry has none and the user must give it. Any bearing can be given by its numbers:
-//! `elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0`, or have a name in a file of the user's own,
-//! `bearings.ron` in the working folder or in `stribeck` below that of the configuration.
+//! Bearings by name: those of the user's own, in `bearings.ron` in the working folder or in `stribeck` below
+//! that of the configuration, and those of the catalogue; and the assumptions that a bearing rests on.
 
-mod file;
-mod names;
-mod tables;
+use std::path::{Path, PathBuf};
 
-use std::f64::consts::PI;
-use std::fmt;
+use ron::extensions::Extensions;
+use serde::Deserialize;
+
+use stribeck_theory::catalogue::{self, ADVICE, Boundary, CatalogueBearing, Element, plain};
 
 use crate::scene::{Assumed, BearingScene, Scene};
 
-/// Shapes of rolling elements.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Element {
-    /// Balls.
-    Ball,
-    /// Cylindrical or tapered rollers.
+/// Name of the file in either folder.
+const NAME: &str = "bearings.ron";
+/// Folder of the program in that of the configuration.
+const FOLDER: &str = "stribeck";
+
+/// One bearing of such a file. Lengths in mm.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    name: String,
+    #[serde(default)]
+    element: Kind,
+    #[serde(default)]
+    elements: Option<u32>,
+    diameter_mm: f64,
+    pitch_mm: f64,
+    #[serde(default)]
+    angle_deg: f64,
+    #[serde(default)]
+    bore_mm: Option<f64>,
+    #[serde(default)]
+    outside_mm: Option<f64>,
+    #[serde(default)]
+    width_mm: Option<f64>,
+    #[serde(default)]
+    source: String,
+}
+
+#[derive(Debug, Default, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+enum Kind {
+    #[default]
     Roller,
+    Ball,
 }
 
-/// Dimensions of one row of a bearing.
-#[derive(Debug, Clone, PartialEq)]
-pub struct CatalogueBearing {
-    /// Designation.
-    pub name: String,
-    /// Shape of the rolling elements.
-    pub element: Element,
-    /// Rolling elements in the row; `None` where no source is known.
-    pub elements: Option<u32>,
-    /// Diameter of a rolling element [mm].
-    pub diameter_mm: f64,
-    /// Pitch diameter [mm].
-    pub pitch_mm: f64,
-    /// Contact angle [°].
-    pub angle_deg: f64,
-    /// Boundary dimensions; `None` where no source is known.
-    pub boundary: Option<Boundary>,
-    /// Where the numbers are from.
-    pub source: String,
-}
-
-/// Boundary dimensions of a bearing [mm].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Boundary {
-    /// Diameter of the bore.
-    pub bore_mm: f64,
-    /// Outside diameter.
-    pub outside_mm: f64,
-    /// Width of the outer ring.
-    pub width_mm: f64,
-}
-
-/// Frequencies of a defect over that of the shaft; inner ring turning, outer ring fixed, no slip.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DefectOrders {
-    /// Ball pass frequency of the outer raceway.
-    pub bpfo: f64,
-    /// Ball pass frequency of the inner raceway.
-    pub bpfi: f64,
-    /// Spin frequency of a rolling element; a defect on it strikes twice a turn.
-    pub bsf: f64,
-    /// Fundamental train frequency, that of the cage.
-    pub ftf: f64,
-}
-
-pub use tables::{PAPER, all};
+/// Example of such a file.
+const EXAMPLE: &str = "[(name: \"mine\", element: roller, elements: 16, diameter_mm: 9.0, pitch_mm: 68.5, \
+    bore_mm: 50, outside_mm: 85, width_mm: 20)]";
 
 /// All bearings that have a name: those of the user's own files, then those of the catalogue.
 ///
 /// # Errors
 /// Words on a file of the user's own that cannot be read.
 pub fn known() -> Result<Vec<CatalogueBearing>, String> {
-    let mut bearings = file::bearings()?;
-    bearings.extend(all());
+    let mut bearings = bearings()?;
+    bearings.extend(catalogue::all());
     Ok(bearings)
 }
 
@@ -85,7 +65,38 @@ pub fn known() -> Result<Vec<CatalogueBearing>, String> {
 /// # Errors
 /// As [`known`].
 pub fn beginning_with(text: &str) -> Result<Vec<CatalogueBearing>, String> {
-    Ok(names::beginning_with(text, known()?))
+    Ok(catalogue::beginning_with(text, known()?))
+}
+
+/// A bearing by its name among [`known`], by its numbers, or both, as [`CatalogueBearing::parse`].
+///
+/// # Errors
+/// As there, and words on a file of the user's own that cannot be read.
+pub fn parse(text: &str) -> Result<CatalogueBearing, String> {
+    parse_or_advise(text, ADVICE)
+}
+
+/// As [`parse`], with other advice where a name is unknown.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_or_advise(text: &str, advice: &str) -> Result<CatalogueBearing, String> {
+    CatalogueBearing::parse_among(text, known, advice)
+}
+
+/// The bearing of a scene, as far as its frequencies go.
+pub fn of_scene(scene: &Scene) -> CatalogueBearing {
+    let b = &scene.bearing;
+    CatalogueBearing {
+        name: scene.name.clone(),
+        element: Element::Roller,
+        elements: u32::try_from(b.rollers).ok(),
+        diameter_mm: b.roller_diameter_mm,
+        pitch_mm: 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm),
+        angle_deg: 0.0,
+        boundary: None,
+        source: "the scene".to_owned(),
+    }
 }
 
 /// Assumptions of a scene: dimensions that no catalogue prints, and dimensions that the fields of a bearing
@@ -95,7 +106,7 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
         return bearing.assumed.iter().map(|what| assumption(*what, bearing)).collect();
     }
     // A file that can no longer be read does not concern the scene.
-    let bearings = self::known().unwrap_or_else(|_| all());
+    let bearings = self::known().unwrap_or_else(|_| catalogue::all());
     let Some(known) = bearings.into_iter().find(|known| known.name == bearing.designation) else {
         return Vec::new();
     };
@@ -109,13 +120,13 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
             bearing.rollers
         ));
     }
-    if [tables::BALL_RULE, tables::INSERT_RULE].contains(&known.source.as_str()) {
+    if known.has_balls_by_rule() {
         notes.push(format!(
             "no source is known here for the balls of {name}: they are assumed to be 0.3 (outside − bore) in \
              diameter, half-way between bore and outside, which is right to some 6 %"
         ));
     }
-    if known.source == tables::PROPORTION {
+    if known.has_raceways_in_proportion() {
         notes.push(format!(
             "no catalogue known here prints the raceways of {name}; they are assumed to lie where those of \
              its next larger size do, between bore and outside"
@@ -173,308 +184,128 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
     }
 }
 
-/// Circumference of the pitch circle over the rolling elements side by side, where their number is not known:
-/// cages of E design leave about a quarter.
-const SPACING: f64 = 1.25;
-
-/// Part of the pitch circle [°] over which balls lie side by side when a deep groove bearing is filled.
-const FILLING_DEG: f64 = 186.0;
-
-/// Number of balls that can be filled into a deep groove bearing while its rings lie against each other:
-/// right for all of the catalogue whose number is known.
-pub(crate) fn filled(pitch_mm: f64, diameter_mm: f64) -> usize {
-    let one = 2.0 * (diameter_mm / pitch_mm).min(1.0).asin();
-    (1.0 + FILLING_DEG.to_radians() / one).round() as usize
-}
-
-/// As many rolling elements as cages usually hold.
-pub(crate) fn usual_elements(pitch_mm: f64, diameter_mm: f64) -> usize {
-    (PI * pitch_mm / (SPACING * diameter_mm)).round() as usize
-}
-
-/// Diametral clearance [mm] of a bearing with this bore [mm]: the middle of the normal group, ISO
-/// 5753-1:2009.
-pub(crate) fn normal_clearance_mm(element: Element, bore_mm: f64) -> f64 {
-    // Largest bore [mm], clearance [µm].
-    const BALL: [(f64, f64); 9] = [
-        (10.0, 7.5),
-        (18.0, 10.5),
-        (30.0, 12.5),
-        (40.0, 13.0),
-        (50.0, 14.5),
-        (65.0, 18.0),
-        (80.0, 20.0),
-        (100.0, 24.0),
-        (120.0, 28.0),
-    ];
-    const ROLLER: [(f64, f64); 16] = [
-        (30.0, 32.5),
-        (40.0, 37.5),
-        (50.0, 45.0),
-        (65.0, 55.0),
-        (80.0, 57.5),
-        (100.0, 67.5),
-        (120.0, 70.0),
-        (140.0, 82.5),
-        (160.0, 95.0),
-        (180.0, 100.0),
-        (200.0, 117.5),
-        (225.0, 135.0),
-        (250.0, 142.5),
-        (280.0, 160.0),
-        (315.0, 167.5),
-        (355.0, 185.0),
-    ];
-    let of = |table: &[(f64, f64)]| {
-        let found = table.iter().find(|(largest, _)| bore_mm <= *largest).or(table.last());
-        1e-3 * found.map_or(0.0, |(_, um)| *um)
-    };
-    match element {
-        Element::Ball => of(&BALL),
-        Element::Roller => of(&ROLLER),
-    }
-}
-
-impl CatalogueBearing {
-    /// Diameter of a rolling element and of the pitch circle as they are read [mm]: to the micrometre, which
-    /// differences of raceways miss by their last digits.
-    pub fn shown_mm(&self) -> [f64; 2] {
-        [self.diameter_mm, self.pitch_mm].map(|mm| (1e3 * mm).round() / 1e3)
-    }
-
-    /// As many rolling elements as cages usually hold.
-    pub(crate) fn usual_elements(&self) -> usize {
-        match self.element {
-            Element::Ball => filled(self.pitch_mm, self.diameter_mm),
-            Element::Roller => usual_elements(self.pitch_mm, self.diameter_mm),
+/// Bearings of the files that there are: those of the working folder first.
+///
+/// # Errors
+/// Words on a file that is there and cannot be read.
+fn bearings() -> Result<Vec<CatalogueBearing>, String> {
+    let mut all = Vec::new();
+    for path in paths() {
+        if path.is_file() {
+            all.extend(read(&path)?);
         }
     }
+    Ok(all)
+}
 
-    /// The most that find room on the pitch circle.
-    fn most_elements(&self) -> u32 {
-        (PI / (self.diameter_mm / self.pitch_mm).asin() + 1e-9) as u32
-    }
+fn paths() -> Vec<PathBuf> {
+    let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let home = || folder("HOME").map(|home| home.join(".config"));
+    let configuration = folder("XDG_CONFIG_HOME").or_else(|| folder("APPDATA")).or_else(home);
+    let of_user = configuration.map(|folder| folder.join(FOLDER).join(NAME));
+    std::iter::once(PathBuf::from(NAME)).chain(of_user).collect()
+}
 
-    fn has_sane_diameters(&self) -> bool {
-        self.diameter_mm > 0.0
-            && self.pitch_mm > 1.1 * self.diameter_mm
-            && self.pitch_mm.is_finite()
-            && (0.0..90.0).contains(&self.angle_deg)
-    }
+fn read(path: &Path) -> Result<Vec<CatalogueBearing>, String> {
+    let shown = path.display();
+    let text = std::fs::read_to_string(path).map_err(|why| format!("`{shown}` cannot be read: {why}"))?;
+    // Some editors write a byte order mark first.
+    let text = text.trim_start_matches('\u{feff}');
+    let dialect = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+    let entries: Vec<Entry> = dialect
+        .from_str(text)
+        .map_err(|why| format!("`{shown}` is no list of bearings: {why}. Such a list is `{EXAMPLE}`"))?;
+    entries.into_iter().map(|entry| entry.bearing(path)).collect()
+}
 
-    /// Whether there is such a bearing.
-    fn is_sane(&self) -> bool {
-        self.has_sane_diameters() && self.elements.is_none_or(|n| (3..=self.most_elements()).contains(&n))
-    }
-
-    /// The bearing of a scene, as far as its frequencies go.
-    pub fn of_scene(scene: &Scene) -> Self {
-        let b = &scene.bearing;
-        Self {
-            name: scene.name.clone(),
-            element: Element::Roller,
-            elements: u32::try_from(b.rollers).ok(),
-            diameter_mm: b.roller_diameter_mm,
-            pitch_mm: 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm),
-            angle_deg: 0.0,
-            boundary: None,
-            source: "the scene".to_owned(),
-        }
-    }
-
-    /// A bearing by its name (spaces, hyphens and suffixes such as `-2RS1/C3` or `ECP` do not matter), by its
-    /// numbers, or both: `NU 205, elements=13`.
-    ///
-    /// # Errors
-    /// Parts that are not understood, with the valid names and numbers.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let numbers = "`--bearing \"elements=9, diameter_mm=7.94, pitch_mm=39.04, angle_deg=0\"`";
-        Self::parse_or_advise(text, &format!("give its numbers, {numbers}"))
-    }
-
-    /// As [`parse`](Self::parse), with other advice where a name is unknown.
-    ///
-    /// # Errors
-    /// As [`parse`](Self::parse).
-    pub fn parse_or_advise(text: &str, advice: &str) -> Result<Self, String> {
-        let mut parts = text.split(',').map(str::trim).filter(|part| !part.is_empty()).peekable();
-        if parts.peek().is_none() {
-            return Err(format!("the name of the bearing is empty; {advice}, or a name such as `6205`"));
-        }
-        let named = match parts.peek() {
-            Some(name) if !name.contains('=') => {
-                let found = known().and_then(|known| names::find(name, known, advice));
-                parts.next();
-                Some(found?)
+impl Entry {
+    fn bearing(self, path: &Path) -> Result<CatalogueBearing, String> {
+        let boundary = match (self.bore_mm, self.outside_mm, self.width_mm) {
+            (Some(bore_mm), Some(outside_mm), Some(width_mm)) => {
+                Some(Boundary { bore_mm, outside_mm, width_mm })
             }
-            _ => None,
+            (None, None, None) => None,
+            _ => {
+                return Err(format!(
+                    "`{}` in `{}` has some of `bore_mm`, `outside_mm` and `width_mm`: give all three, or \
+                     none for its frequencies alone",
+                    self.name,
+                    path.display()
+                ));
+            }
         };
-        let own = named.is_none();
-        let mut bearing = named.unwrap_or_else(|| Self {
-            name: text.trim().to_owned(),
-            element: Element::Ball,
-            elements: None,
-            diameter_mm: f64::NAN,
-            pitch_mm: f64::NAN,
-            angle_deg: 0.0,
-            boundary: None,
-            source: "the user".to_owned(),
+        let source = if self.source.is_empty() { path.display().to_string() } else { self.source };
+        let bearing = CatalogueBearing {
+            name: self.name,
+            element: match self.element {
+                Kind::Roller => Element::Roller,
+                Kind::Ball => Element::Ball,
+            },
+            elements: self.elements,
+            diameter_mm: self.diameter_mm,
+            pitch_mm: self.pitch_mm,
+            angle_deg: self.angle_deg,
+            boundary,
+            source,
+        };
+        let rings = bearing.boundary.is_none_or(|b| {
+            let [inner, outer] = [-1.0, 1.0].map(|side| bearing.pitch_mm + side * bearing.diameter_mm);
+            b.bore_mm > 0.0 && b.bore_mm < inner && outer < b.outside_mm && b.width_mm > 0.0
         });
-        for part in parts {
-            let known = "`elements`, `diameter_mm`, `pitch_mm` and `angle_deg`";
-            let (key, value) = part
-                .split_once('=')
-                .ok_or_else(|| format!("`{part}` of the bearing is no `name=number`; known are {known}"))?;
-            let number: f64 = value
-                .trim()
-                .parse()
-                .map_err(|_| format!("`{}` of the bearing is no number", value.trim()))?;
-            match key.trim() {
-                "elements" if number.fract() == 0.0 && (3.0..=200.0).contains(&number) => {
-                    bearing.elements = Some(number as u32);
-                }
-                "elements" => return Err(format!("a bearing has 3 to 200 rolling elements, not {number}")),
-                name if name.contains(' ') => {
-                    return Err(format!(
-                        "`{name}` is no number of a bearing: a comma parts a name from its numbers, as in \
-                         `NU 205, elements=13`"
-                    ));
-                }
-                "diameter_mm" => bearing.diameter_mm = number,
-                "pitch_mm" => bearing.pitch_mm = number,
-                "angle_deg" => bearing.angle_deg = number,
-                other => return Err(format!("`{other}` is no number of a bearing; known are {known}")),
-            }
-        }
-        if !bearing.has_sane_diameters() {
-            let wanted = if own {
-                "give `diameter_mm`, a larger `pitch_mm`"
-            } else {
-                "check `diameter_mm`, `pitch_mm`"
-            };
-            return Err(format!("`{text}` is no bearing: {wanted} and an `angle_deg` from 0 to below 90"));
-        }
-        let ([diameter, pitch], most) = (bearing.shown_mm(), bearing.most_elements());
-        if let Some(elements) = bearing.elements.filter(|elements| *elements > most) {
+        let letters = plain(&bearing.name);
+        if letters.is_empty() || !bearing.is_sane() || !rings {
             return Err(format!(
-                "`{text}` is no bearing: {elements} rolling elements of {diameter} mm do not fit on a pitch \
-                 circle of {pitch} mm: {most} at most"
+                "`{}` in `{}` is no bearing: it needs a `name` with letters or digits, `diameter_mm`, a \
+                 larger `pitch_mm` with room for its `elements`, and rings around them: `bore_mm` < pitch − \
+                 diameter, pitch + diameter < `outside_mm`",
+                bearing.name,
+                path.display()
             ));
         }
         Ok(bearing)
-    }
-
-    /// Frequencies of its defects over that of the shaft.
-    ///
-    /// # Errors
-    /// When the number of rolling elements is not known.
-    pub fn orders(&self) -> Result<DefectOrders, String> {
-        let Some(elements) = self.elements else {
-            return Err(format!(
-                "makers fit different numbers of rolling elements into `{0}`: count them, and give \
-                 `--bearing \"{0}, elements=…\"`",
-                self.name
-            ));
-        };
-        let ratio = self.diameter_mm / self.pitch_mm * self.angle_deg.to_radians().cos();
-        let half = 0.5 * f64::from(elements);
-        Ok(DefectOrders {
-            bpfo: half * (1.0 - ratio),
-            bpfi: half * (1.0 + ratio),
-            bsf: 0.5 * self.pitch_mm / self.diameter_mm * (1.0 - ratio * ratio),
-            ftf: 0.5 * (1.0 - ratio),
-        })
-    }
-}
-
-impl fmt::Display for CatalogueBearing {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.elements {
-            Some(elements) => write!(f, "{elements} ")?,
-            None => f.write_str("? ")?,
-        }
-        let what = match self.element {
-            Element::Ball => "balls",
-            Element::Roller => "rollers",
-        };
-        let [diameter, pitch] = self.shown_mm();
-        write!(f, "{what} of {diameter} mm, pitch {pitch} mm, contact angle {}°", self.angle_deg)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stribeck_testing::Scratch;
 
-    #[test]
-    fn peer_orders_are_those_that_the_data_center_prints() {
-        // Case Western Reserve University Bearing Data Center (2000), defect frequencies, in multiples of the
-        // shaft; its 4.7135 and 3.9874 are twice the spin. Dimensions have four digits there, so the third
-        // decimal is shared.
-        const SHARED: f64 = 2e-3;
-        for (name, bpfi, bpfo, ftf, twice_bsf) in
-            [("6205-2RS", 5.4152, 3.5848, 0.39828, 4.7135), ("6203 2RS", 4.9469, 3.0530, 0.3817, 3.9874)]
-        {
-            let orders = CatalogueBearing::parse(name).unwrap().orders().unwrap();
-            for (ours, theirs) in
-                [(orders.bpfi, bpfi), (orders.bpfo, bpfo), (orders.ftf, ftf), (2.0 * orders.bsf, twice_bsf)]
-            {
-                assert!((ours - theirs).abs() < SHARED, "{name}: {ours} {theirs}");
-            }
-        }
+    fn of(text: &str) -> Result<Vec<CatalogueBearing>, String> {
+        let folder = Scratch::create("bearings");
+        let path = folder.join(NAME);
+        std::fs::write(&path, text).expect("writable");
+        read(&path)
     }
 
     #[test]
-    fn behaves_names_and_numbers() {
-        let roller = CatalogueBearing::parse("NU205ECP, elements=13").unwrap();
-        assert_eq!(
-            (roller.name.as_str(), roller.elements, roller.diameter_mm, roller.pitch_mm),
-            ("NU 205", Some(13), 7.5, 39.0)
-        );
-        for text in
-            ["6205-2Z", "6205 2RSH", "6205.2RSR", "SKF 6205-2RS1/C3", "6205-2rs", "6205 ZZ", "6205 C3"]
-        {
-            assert_eq!(
-                CatalogueBearing::parse(text).map(|known| known.name),
-                Ok("6205".to_owned()),
-                "{text}"
-            );
-        }
-        assert_eq!(CatalogueBearing::parse("UER204-12").unwrap().name, "UER204");
-        let printed = all().iter().map(CatalogueBearing::to_string).collect::<Vec<_>>();
-        assert!(printed.iter().all(|words| !words.contains("999") && !words.contains("000")), "{printed:?}");
-        for (text, name) in [("NJ 205", "NJ 205"), ("NUP205-ECP", "NUP 205"), ("N 205", "N 205")] {
-            let other = CatalogueBearing::parse(text).unwrap();
-            assert_eq!((other.name.as_str(), other.diameter_mm), (name, roller.diameter_mm));
-        }
-        for (text, name) in [
-            ("SKF6205", "6205"),
-            ("NU2210 ECP", "NU 2210"),
-            ("nu 220 ecm/c3", "NU 220"),
-            ("NU 2202 ECP", "NU 2202"),
-            ("FAG NU2305-E-TVP2", "NU 2305"),
-            ("6310-2Z", "6310"),
-            ("UC206", "UC206"),
-            ("UC205-16", "UC205"),
+    fn behaves_bearings_of_ones_own_have_names() {
+        let bearings = of(EXAMPLE).expect("the example");
+        assert_eq!(bearings.len(), 1);
+        let orders = bearings[0].orders().expect("16 rollers");
+        assert!((orders.bpfo - 8.0 * (1.0 - 9.0 / 68.5)).abs() < 1e-12);
+        assert!(bearings[0].source.ends_with(NAME));
+        let found = CatalogueBearing::parse_among("Mine-2RS", || Ok(bearings), "").expect("known");
+        assert_eq!(found.name, "mine");
+    }
+
+    #[test]
+    fn refuses_lists_that_are_none_and_bearings_that_cannot_be() {
+        for (text, words) in [
+            ("(name: \"x\")", "is no list of bearings"),
+            ("[(name: \"x\", diameter_mm: 9)]", "pitch_mm"),
+            ("[(name: \"x\", diameter_mm: 9, pitch_mm: 8)]", "is no bearing"),
+            ("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, elements: 99)]", "is no bearing"),
+            ("[(name: \"-\", diameter_mm: 9, pitch_mm: 68)]", "is no bearing"),
+            ("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, bore_mm: 50)]", "all three"),
+            (
+                "[(name: \"x\", diameter_mm: 9, pitch_mm: 68, bore_mm: 60, outside_mm: 90, width_mm: 9)]",
+                "rings",
+            ),
         ] {
-            assert_eq!(CatalogueBearing::parse(text).map(|known| known.name), Ok(name.to_owned()), "{text}");
+            let why = of(text).unwrap_err();
+            assert!(why.contains(words) && why.contains(NAME), "{text}: {why}");
         }
-        let own = CatalogueBearing::parse("elements=9, diameter_mm=7.94, pitch_mm=39.04").unwrap();
-        assert!((own.orders().unwrap().bpfo - 3.585).abs() < 1e-3);
-        assert!(CatalogueBearing::parse("NU 312").unwrap().orders().unwrap_err().contains("elements=…"));
-    }
-
-    #[test]
-    fn behaves_names_that_begin_alike_make_a_list() {
-        let names = |text: &str| -> Vec<String> {
-            beginning_with(text).expect("no file").into_iter().map(|bearing| bearing.name).collect()
-        };
-        let of_kind = names("nu");
-        assert_eq!(of_kind.len(), 76);
-        assert!(of_kind.iter().all(|name| name.starts_with("NU ")), "{of_kind:?}");
-        assert_eq!(names("N").len(), 76);
-        assert_eq!(names("62").len(), 21);
-        assert!(names("xyz").is_empty() && names("").is_empty());
     }
 
     #[test]
@@ -487,31 +318,6 @@ mod tests {
                 assumed,
                 "{text}: {notes:?}"
             );
-        }
-    }
-
-    #[test]
-    fn refuses_what_is_no_bearing() {
-        for (text, says) in [
-            ("62055", "no bearing `62055`"),
-            ("62052", "no bearing `62052`"),
-            ("6205-12", "no bearing `6205-12`"),
-            ("", "the name of the bearing is empty"),
-            ("6205, balls=9", "`balls`"),
-            ("6205, elements=2.5", "3 to 200"),
-            ("diameter_mm=8, pitch_mm=8", "is no bearing"),
-            ("6205, elements=x", "no number"),
-            ("NU 205, elements=200", "16 at most"),
-            ("NU 221", "no bearing `NU 221`"),
-            ("1205 ETN9", "self-aligning"),
-            ("2205-2RS", "self-aligning"),
-            ("22210 E", "spherical"),
-            ("7205 B", "contact angle"),
-            ("32010", "tapered"),
-            ("51105", "thrust"),
-        ] {
-            let why = CatalogueBearing::parse(text).unwrap_err();
-            assert!(why.contains(says), "{text}: {why}");
         }
     }
 }

@@ -1,9 +1,8 @@
 //! Stiffness and damping of contact by the formula that a scene names, as numbers of one law (THEORY §4.2).
 
-use crate::{
-    material::Material,
-    scene::{ContactFormula, ContactPasses, Scene},
-};
+use stribeck_theory::material::Material;
+
+use crate::scene::{ContactFormula, ContactPasses, Scene};
 
 /// Parameters of a contact law.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,7 +49,7 @@ mod tests {
     fn numbers(formula: ContactFormula, passes: ContactPasses) -> (ContactNumbers, Scene) {
         let mut scene = Scene::default();
         (scene.contact.formula, scene.contact.passes, scene.contact.penalty_scale) = (formula, passes, 0.1);
-        let material = Material::of(&scene.material);
+        let material = Material::from(&scene.material);
         (ContactNumbers::of(&scene, &material, 1e-3 * scene.mesh.size_mm), scene)
     }
 

@@ -1,7 +1,6 @@
 //! Speeds and load of a scene over time, in SI: [`Duty`] (THEORY §6.3).
 
-use stribeck_duty::Course;
-pub use stribeck_duty::Duty;
+use stribeck_theory::duty::{Course, Duty};
 
 use crate::scene::{OperationScene, ProfileScene, Scene};
 

@@ -6,20 +6,20 @@
 //! unit in their name there, and are SI in a [`ResolvedScene`](resolved::ResolvedScene).
 //!
 //! ```
-//! use stribeck_scene::{Scene, kinematics::Kinematics, static_load};
+//! use stribeck_scene::Scene;
 //!
 //! let text = "(bearing: (rollers: 20), operation: (load_n: 30000, speed_rpm: 1200))";
 //! let scene = Scene::parse(text, "my bearing")?;
 //! let resolved = scene.resolve();
 //! assert_eq!(resolved.rollers, 20);
 //!
-//! let kinematics = Kinematics::of(&scene);
+//! let kinematics = scene.kinematics();
 //! println!("rollers pass the outer raceway at {:.1} Hz", kinematics.bpfo_hz);
 //! assert!((kinematics.bpfo_hz - 180.2).abs() < 0.1);
 //!
-//! let load = static_load::at_start(&resolved)?;
+//! let load = resolved.static_load()?;
 //! println!("{} rollers carry, one {:.0} N", load.loaded_rollers(), load.max_roller_n());
-//! # Ok::<(), stribeck_scene::Error>(())
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! Impossible values are refused with their place and the allowed range:
@@ -36,39 +36,29 @@
 //! |---|---|
 //! | Which fields has a scene, and what is checked? | [`scene`], [`scene_file`] |
 //! | What is that in SI? | [`resolved`]; surfaces that are not round [`deviation`] |
-//! | Which speeds, tones and loads follow from it? | [`kinematics`], [`static_load`] |
+//! | Which speeds, tones and loads follow from it? | [`Scene::kinematics`], [`ResolvedScene::static_load`](resolved::ResolvedScene::static_load) |
 //! | How do speed and load vary over time? | [`duty`] |
 //! | What is drawn when a scene is run from many starts? | [`ensemble`], [`dice`] |
 
 pub mod advice;
 pub mod catalogue;
 mod contact_formula;
-pub mod contact_law;
 pub mod deviation;
 pub mod dice;
 pub mod duty;
 pub mod ensemble;
-pub mod error;
 mod faults;
 pub mod fields;
 pub mod housing;
-pub mod kinematics;
-mod line_contact;
-pub mod load_rating;
-pub mod lubrication;
-pub mod material;
 pub mod mesh_text;
 pub mod paper;
-mod point_contact;
 pub mod records;
 pub mod resolved;
 pub mod ring_mesh;
-pub mod ring_stiffness;
 pub mod scene;
 pub mod scene_file;
-pub mod static_load;
+mod theory;
 
-pub use error::Error;
 pub use scene::Scene;
 
 #[cfg(doctest)]

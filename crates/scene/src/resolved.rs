@@ -5,15 +5,17 @@
 //! command that plans or exports. From there on a [`ResolvedScene`] is passed.
 //!
 //! Where the rounding of a quotient may change a bit of a result, the numbers as written are used instead:
-//! the ratios of diameters in [`kinematics`](crate::kinematics), the samples at which frames are written.
+//! the ratios of diameters in [`Kinematics`](stribeck_theory::kinematics::Kinematics), the samples at which frames are written.
 
 use std::f64::consts::{PI, TAU};
 
+use stribeck_theory::duty::Duty;
+use stribeck_theory::lubrication::Oil;
+use stribeck_theory::material::Material;
+
 use crate::contact_formula::ContactNumbers;
 use crate::deviation::{Relief, RollingSurface};
-use crate::duty::Duty;
 use crate::faults::rolling_circle;
-use crate::material::Material;
 use crate::scene::{
     CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
 };
@@ -84,7 +86,7 @@ pub struct ResolvedScene {
     /// Gap at which contact of rollers sets in [m].
     pub contact_onset: f64,
     /// Oil between rollers and raceways, if there is any.
-    pub film: Option<FilmGeometry>,
+    pub film: Option<Oil>,
     /// Stiffness-proportional damping β [s].
     pub stiffness_damping: f64,
     /// Structural damping, if there is some.
@@ -144,17 +146,6 @@ pub struct DampedBand {
     pub band: [f64; 2],
 }
 
-/// Oil between rollers and raceways.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FilmGeometry {
-    /// Dynamic viscosity η [Pa s].
-    pub viscosity: f64,
-    /// Pressure–viscosity coefficient α [1/Pa].
-    pub pressure_viscosity: f64,
-    /// Composite roughness [m].
-    pub roughness: f64,
-}
-
 impl Scene {
     /// The scene in SI.
     pub fn resolve(&self) -> ResolvedScene {
@@ -192,7 +183,7 @@ impl ResolvedScene {
 
     fn of(scene: &Scene) -> Self {
         let b = &scene.bearing;
-        let material = Material::of(&scene.material);
+        let material = Material::from(&scene.material);
         let element_size = 1e-3 * scene.mesh.size_mm;
         let contact = ContactNumbers::of(scene, &material, element_size);
         let relief = |on: RollingSurface| {
@@ -233,7 +224,7 @@ impl ResolvedScene {
             penalty_stiffness: contact.stiffness,
             contact_layer_mass: contact.layer_mass,
             contact_onset: 1e-6 * scene.contact.onset_um,
-            film: scene.film.as_ref().map(FilmGeometry::of),
+            film: scene.film.as_ref().map(oil),
             stiffness_damping: 1e-9 * scene.solver.stiffness_damping_ns,
             structural_damping: scene.solver.structural_damping.as_ref().map(DampedBand::of),
             load: scene.operation.load_n,
@@ -336,13 +327,12 @@ impl DampedBand {
     }
 }
 
-impl FilmGeometry {
-    fn of(film: &FilmScene) -> Self {
-        Self {
-            viscosity: film.viscosity_pa_s,
-            pressure_viscosity: 1e-9 * film.pressure_viscosity_per_gpa,
-            roughness: 1e-6 * film.roughness_um,
-        }
+/// Oil in SI.
+fn oil(film: &FilmScene) -> Oil {
+    Oil {
+        viscosity: film.viscosity_pa_s,
+        pressure_viscosity: 1e-9 * film.pressure_viscosity_per_gpa,
+        roughness: 1e-6 * film.roughness_um,
     }
 }
 

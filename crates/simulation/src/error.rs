@@ -4,9 +4,13 @@
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The scene cannot be read, or has no equilibrium.
+    /// The scene cannot be read.
     #[error(transparent)]
-    Scene(stribeck_scene::Error),
+    Scene(#[from] stribeck_scene::scene_file::SceneError),
+
+    /// The scene has no static load distribution.
+    #[error(transparent)]
+    Theory(#[from] stribeck_theory::Error),
 
     /// The folder of the run cannot be written or read.
     #[error(transparent)]
@@ -29,12 +33,6 @@ pub enum Error {
     Run(crate::run::error::Error),
 }
 
-impl From<stribeck_scene::Error> for Error {
-    fn from(error: stribeck_scene::Error) -> Self {
-        Self::Scene(error)
-    }
-}
-
 impl From<stribeck_store::Error> for Error {
     fn from(error: stribeck_store::Error) -> Self {
         match error {
@@ -44,16 +42,11 @@ impl From<stribeck_store::Error> for Error {
     }
 }
 
-impl From<stribeck_scene::scene_file::SceneError> for Error {
-    fn from(error: stribeck_scene::scene_file::SceneError) -> Self {
-        Self::Scene(error.into())
-    }
-}
-
 impl From<crate::bearing::error::Error> for Error {
     fn from(error: crate::bearing::error::Error) -> Self {
         match error {
             crate::bearing::error::Error::Scene(error) => Self::Scene(error),
+            crate::bearing::error::Error::Theory(error) => Self::Theory(error),
             other => Self::Bearing(other),
         }
     }
@@ -72,6 +65,7 @@ impl From<crate::run::error::Error> for Error {
     fn from(error: crate::run::error::Error) -> Self {
         match error {
             crate::run::error::Error::Scene(error) => Self::Scene(error),
+            crate::run::error::Error::Theory(error) => Self::Theory(error),
             crate::run::error::Error::Store(error) => error.into(),
             other => Self::Run(other),
         }

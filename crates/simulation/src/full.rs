@@ -15,9 +15,10 @@ use crate::run::{
     channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
 };
 use serde::{Deserialize, Serialize};
-use stribeck_scene::{duty::Duty, resolved::ResolvedScene, scene::Start};
+use stribeck_scene::{resolved::ResolvedScene, scene::Start};
 use stribeck_store::run_info::RunInfo;
 use stribeck_system::{Ledger, Snapshot};
+use stribeck_theory::duty::Duty;
 
 use crate::{
     error::Error,

@@ -13,12 +13,11 @@ use crate::run::{host::Progress, setup::Setup};
 use stribeck_reduced::modal::ModalBearing;
 use stribeck_reduced::{bearing::Bearing, state::State};
 use stribeck_scene::{
-    kinematics::Kinematics,
     resolved::ResolvedScene,
     scene::{ContactSurface, ModelScene, ReducedScene},
-    static_load,
 };
 use stribeck_store::run_info::{ReducedInfo, RunInfo};
+use stribeck_theory::kinematics::Kinematics;
 
 use crate::{
     error::Error,
@@ -144,7 +143,7 @@ const LEFT_OUT: f64 = 0.15;
 /// A warning where the raceway bends between rollers in more than the modes, by some length [m] at the
 /// preload.
 fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: f64) -> Option<String> {
-    let approach = static_load::at_start(scene).ok()?.max_approach_m();
+    let approach = scene.static_load().ok()?.max_approach_m();
     let share = between_rollers / approach;
     (share > LEFT_OUT).then(|| {
         format!(

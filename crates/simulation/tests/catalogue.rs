@@ -1,6 +1,6 @@
 //! Bearings of the catalogue: each is meshed, and rests as theory says.
 
-use stribeck_scene::{catalogue, scene::Scene, static_load};
+use stribeck_scene::{catalogue, scene::Scene};
 use stribeck_simulation::bearing::{assembly::Assembly, start::preload};
 use stribeck_testing::side_by_side;
 
@@ -72,7 +72,7 @@ fn off_from_rigid_rings(scene: &Scene) -> (f64, f64) {
     assert_eq!(warning, None, "{bearing}");
     let _ = machine.system.contact_forces();
     let force: Vec<f64> = machine.system.resultants().map(|r| r.force[0].hypot(r.force[1])).collect();
-    let theory = static_load::at_start(&scene).expect("an equilibrium");
+    let theory = scene.static_load().expect("an equilibrium");
     let largest = theory.max_roller_n();
     let off = theory
         .roller_n
@@ -90,10 +90,10 @@ fn off_from_rigid_rings(scene: &Scene) -> (f64, f64) {
 fn analytic_rollers_between_rigid_rings() {
     const SHARE: f64 = 0.02;
     let of_flanges = |name: &str| ["NJ ", "NUP ", "N "].iter().any(|flanges| name.starts_with(flanges));
-    let mut cases: Vec<(String, &str)> = catalogue::all()
+    let mut cases: Vec<(String, &str)> = stribeck_theory::catalogue::all()
         .into_iter()
         .filter(|bearing| bearing.angle_deg == 0.0 && !of_flanges(&bearing.name))
-        .filter(|bearing| bearing.boundary.is_some() || bearing.name == catalogue::PAPER)
+        .filter(|bearing| bearing.boundary.is_some() || bearing.name == stribeck_theory::catalogue::PAPER)
         .map(|bearing| (bearing.name, ""))
         .collect();
     // Narrow and wide series have the same rollers, and further sizes differ by their size alone.

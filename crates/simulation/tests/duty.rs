@@ -5,10 +5,7 @@ mod common;
 use std::{f64::consts::TAU, fs, ops::ControlFlow};
 
 use common::{coarse, host};
-use stribeck_scene::{
-    kinematics::Kinematics,
-    scene::{HarmonicScene, PocketWalls, ProfileScene, RampScene, Scene},
-};
+use stribeck_scene::scene::{HarmonicScene, PocketWalls, ProfileScene, RampScene, Scene};
 use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{resume, simulate};
 use stribeck_store::{
@@ -16,6 +13,7 @@ use stribeck_store::{
     run_info::{RunInfo, Status},
 };
 use stribeck_testing::Scratch;
+use stribeck_theory::kinematics::Kinematics;
 
 fn run(scene: &Scene, folder: &Scratch, name: &str) -> (RunInfo, Run) {
     let dir = RunDir::create(folder.join(name)).expect("the folder is new");

@@ -5,7 +5,7 @@ mod common;
 use std::{f64::consts::TAU, ops::ControlFlow};
 
 use common::host;
-use stribeck_scene::{kinematics::Kinematics, scene::Scene, static_load};
+use stribeck_scene::scene::Scene;
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::{extend, simulate};
 use stribeck_store::{
@@ -13,6 +13,7 @@ use stribeck_store::{
     run_info::{RunInfo, Status},
 };
 use stribeck_testing::Scratch;
+use stribeck_theory::kinematics::Kinematics;
 
 /// A small bearing whose sides are quickly meshed.
 fn scene(more: &[&str]) -> Scene {
@@ -88,10 +89,9 @@ fn behaves_a_missing_roller_leaves_its_pocket_empty_and_its_load_to_others() {
     let on = |i: &usize| -mean(&run, &format!("roller.{i}.outer_fy_n"));
     let carried: f64 = rollers.iter().map(on).sum();
     assert!((carried / info.expected_support_n - 1.0).abs() < 0.02, "{carried}");
-    let outer_hz = Kinematics::of(&scene).bpfo_hz;
-    assert!(outer_hz == Kinematics::of(&whole).bpfo_hz, "{outer_hz} Hz");
-    let [most, before] =
-        [&scene, &whole].map(|s| static_load::at_start(&s.resolve()).expect("rests").max_roller_n());
+    let outer_hz = scene.kinematics().bpfo_hz;
+    assert!(outer_hz == whole.kinematics().bpfo_hz, "{outer_hz} Hz");
+    let [most, before] = [&scene, &whole].map(|s| s.resolve().static_load().expect("rests").max_roller_n());
     let found = rollers.iter().map(on).fold(0.0, f64::max);
     println!("largest force {found:.0} N, between rigid rings {most:.0}, of all rollers {before:.0}");
     assert!(found > 1.1 * before, "{found} N and {before} N with all rollers");
@@ -113,7 +113,7 @@ fn analytic_rollers_between_turning_rings() {
         assert_eq!(info.status, Status::Complete, "{:?}", info.warnings);
         assert!(info.energy.max_relative_error < 2e-3, "{inner} {outer}: {}", info.energy.max_relative_error);
         let run = Run::read(folder.path()).expect("readable");
-        let k = Kinematics::of(&scene);
+        let k = scene.kinematics();
         let trace = run.trace.read_all().expect("readable");
         let angle = trace.get("cage.angle_rad").expect("a cage");
         let time = trace.get("time_s").expect("a time");

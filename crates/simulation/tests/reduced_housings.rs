@@ -6,12 +6,10 @@ mod common;
 use std::f64::consts::TAU;
 
 use common::{run, trace};
-use stribeck_scene::{
-    kinematics::Kinematics,
-    scene::{ModelScene, PocketWalls, ReducedScene, Scene},
-};
+use stribeck_scene::scene::{ModelScene, PocketWalls, ReducedScene, Scene};
 use stribeck_store::{run_info::Status, trace::Trace};
 use stribeck_testing::{Scratch, ledger::compare, side_by_side};
+use stribeck_theory::kinematics::Kinematics;
 
 /// A small bearing on a coarse mesh, dry and quiet by mass damping.
 fn small(more: &str) -> Scene {

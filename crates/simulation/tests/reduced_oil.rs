@@ -6,10 +6,7 @@ mod common;
 use std::{fs, ops::ControlFlow};
 
 use common::{host, run, trace};
-use stribeck_scene::{
-    lubrication::loaded_films,
-    scene::{ModelScene, ReducedScene, Scene},
-};
+use stribeck_scene::scene::{ModelScene, ReducedScene, Scene};
 use stribeck_simulation::run::host::Progress;
 use stribeck_simulation::{resume, simulate};
 use stribeck_store::{
@@ -140,7 +137,7 @@ fn peer_films_are_those_of_the_full_model() {
     complete(&scene, &folder, "reduced");
     complete(&Scene { model: ModelScene::Full, ..scene.clone() }, &folder, "full");
     let traces = ["full", "reduced"].map(|name| trace(&folder, name));
-    let least = loaded_films(&scene.resolve()).expect("a load").expect("oil").map(|film| film.least);
+    let least = scene.resolve().loaded_films().expect("a load").expect("oil").map(|film| film.least);
     let forces = |of: &Trace, i: usize, side: &str| -> Vec<f64> {
         let [x, y] = ["x", "y"].map(|c| channel(of, &format!("roller.{i}.{side}_f{c}_n")));
         x.iter().zip(y).map(|(x, y)| x.hypot(*y)).collect()
@@ -216,7 +213,7 @@ fn behaves_films_between_turning_rings() {
     let (mut square, mut count, mut largest) = (0.0, 0, 0.0_f64);
     let mut clearances = [Vec::new(), Vec::new()];
     let g = scene.resolve();
-    let [_, least] = loaded_films(&g).expect("a load").expect("oil").map(|film| film.least);
+    let [_, least] = g.loaded_films().expect("a load").expect("oil").map(|film| film.least);
     let mut seen = 0;
     for (i, of) in scene.rollers_in_place().flat_map(|i| traces.iter().map(move |of| (i, of))) {
         let of = |what: &str| channel(of, &format!("roller.{i}.{what}"));

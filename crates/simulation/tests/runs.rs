@@ -5,11 +5,8 @@ mod common;
 use std::ops::ControlFlow;
 
 use common::{coarse, fine_where_it_rolls, host};
-use stribeck_scene::{
-    kinematics::Kinematics,
-    scene::{
-        CageScene, DampedBody, DampingFrame, PocketWalls, RollerCopies, Scene, Start, StructuralDampingScene,
-    },
+use stribeck_scene::scene::{
+    CageScene, DampedBody, DampingFrame, PocketWalls, RollerCopies, Scene, Start, StructuralDampingScene,
 };
 use stribeck_simulation::bearing::assembly::{Assembly, BearingSystem, Roller};
 use stribeck_simulation::run::host::Progress;
@@ -84,7 +81,7 @@ fn analytic_bearing_rolls_and_carries_its_load() {
     let angle = column(&run, "cage.angle_rad");
     let end = run.trace.len() - 1;
     let cage_hz = -angle[end] / (std::f64::consts::TAU * column(&run, "time_s")[end]);
-    let expected = Kinematics::of(&scene).cage_hz;
+    let expected = scene.kinematics().cage_hz;
     let source = "f_s D_i/(D_i + D_o), no slip: paper, equation 24";
     ledger::compare("coarse bearing, cage", source, "Hz", cage_hz, expected, TOLERANCE);
 

@@ -4,7 +4,8 @@ use std::process::ExitCode;
 
 use anyhow::{Result, anyhow};
 use serde_json::{Value, json};
-use stribeck_scene::catalogue::{self, CatalogueBearing};
+use stribeck_scene::catalogue;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use crate::out::say;
 
@@ -25,7 +26,7 @@ const NUMBERS: &str = "give its numbers, `\"elements=9, diameter_mm=7.94, pitch_
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let all = match &options.name {
         None => catalogue::known().map_err(|why| anyhow!(why))?,
-        Some(name) => match CatalogueBearing::parse_or_advise(name, NUMBERS) {
+        Some(name) => match catalogue::parse_or_advise(name, NUMBERS) {
             Ok(bearing) if options.json => return print(&as_json(&bearing)),
             Ok(bearing) => {
                 one(&bearing);

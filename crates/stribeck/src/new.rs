@@ -6,12 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
 use stribeck_scene::deviation::HOLLOW_FACETS;
-use stribeck_scene::kinematics::Kinematics;
-use stribeck_scene::load_rating;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use crate::out::say;
 use crate::place::{Place, shown};
@@ -83,7 +82,7 @@ fn bearing(text: &str) -> Result<CatalogueBearing, String> {
     if text.starts_with(|c: char| c.is_ascii_lowercase()) && text.contains('=') {
         return Err(format!("`{text}` are numbers without a name; {advice}"));
     }
-    CatalogueBearing::parse_or_advise(text, advice)
+    catalogue::parse_or_advise(text, advice)
 }
 
 /// The five answers.
@@ -120,7 +119,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         std::fs::create_dir_all(folder).with_context(|| format!("cannot make `{}`", shown(folder)))?;
     }
     write_atomic(&file, text.as_bytes())?;
-    let k = Kinematics::of(&scene);
+    let k = scene.kinematics();
     say!("{}", shown(&file));
     say!(
         "  BPFO {:.2} Hz, BPFI {:.2} Hz, BSF {:.2} Hz, FTF {:.2} Hz, without slip",
@@ -161,9 +160,9 @@ const LONGEST_S: f64 = 100.0;
 impl Limits {
     fn of(bearing: &str) -> Result<Self> {
         let scene = Scene::parse(&format!("(bearing: {bearing:?})"), bearing)?;
-        let k = Kinematics::of(&scene);
+        let k = scene.kinematics();
         Ok(Self {
-            rating_n: load_rating::static_rating_n(&scene),
+            rating_n: scene.static_rating_n(),
             pitch_mm: 0.5 * (scene.bearing.outer_race_diameter_mm + scene.bearing.inner_race_diameter_mm),
             passing: k.bpfo_hz.min(k.bpfi_hz).min(2.0 * k.bsf_hz) / k.shaft_hz,
         })

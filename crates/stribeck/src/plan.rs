@@ -10,7 +10,6 @@ use anyhow::{Result, ensure};
 use stribeck_analysis::paper;
 use stribeck_analysis::plan::{MeshFacts, Plan};
 use stribeck_scene::housing::HousingScene;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::ModelScene;
 use stribeck_simulation::bearing::assembly::Assembly;
@@ -204,7 +203,7 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
             inner.lambda
         );
     }
-    let k = &Kinematics::at_mean_speed(&scene.written);
+    let k = &scene.written.mean_kinematics();
     let speed = if scene.written.operation.speed_varies() { " at the mean speed" } else { "" };
     say!(
         "  families{speed}, without slip: BPFO {:.2} Hz, BPFI {:.2}, BSF {:.2} (a spot strikes twice as \

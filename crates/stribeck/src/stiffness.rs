@@ -6,9 +6,9 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::stiffness::{BearingStiffness, Grid};
-use stribeck_scene::contact_law::ContactLawKind;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_store::run_dir::check_folder;
+use stribeck_theory::contact_law::ContactLawKind;
 
 use crate::out::{caution, say};
 use crate::place::{Place, shown};
@@ -135,7 +135,7 @@ fn grid(options: &Options, scene: &ResolvedScene) -> Result<Grid> {
         "`--damping-us` is {beta}: between 0 and 1000 µs; rolling bearings have 2.5 to 25 (Krämer 1993)"
     );
     let law = match options.contact {
-        None => ContactLawKind::of(scene),
+        None => scene.contact_law(),
         Some(Contact::Line) => ContactLawKind::Line,
         Some(Contact::Ball) => ContactLawKind::Ball,
         Some(Contact::Palmgren) => ContactLawKind::Palmgren,

@@ -13,7 +13,6 @@ use stribeck_analysis::{
 use stribeck_report as report;
 use stribeck_scene::{
     deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},
-    kinematics::Kinematics,
     scene::{DefectRing, Scene},
 };
 use stribeck_simulation::run::host::Host;
@@ -23,6 +22,7 @@ use stribeck_store::{
     run_info::Status,
 };
 use stribeck_testing::{Scratch, said, side_by_side};
+use stribeck_theory::kinematics::Kinematics;
 
 fn scene(file: &str, set: &[&str]) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes").join(file);

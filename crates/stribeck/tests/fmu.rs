@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 
 use serde_json::Value;
 use stribeck_formats::Recording;
-use stribeck_scene::{kinematics::Kinematics, scene::Scene};
+use stribeck_scene::scene::Scene;
 use stribeck_simulation::reduced::{on_shaft, prepared};
 use stribeck_testing::{
     Scratch,
@@ -60,7 +60,7 @@ fn peer_fmpy_runs_a_rotor_on_our_fmu() {
     let desk = Scratch::create("fmu");
     let scene = Scene::read(SCENE).expect("a sound scene");
     let load = scene.operation.load_n;
-    let turns = Kinematics::of(&scene);
+    let turns = scene.kinematics();
     let (bpfo, shaft) = (turns.bpfo_hz.abs(), turns.shaft_hz.abs());
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/fmpy_rotor.py");
     let answer = desk.join("answer.json");

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use stribeck_analysis::measured::Defect;
 use stribeck_formats::{Channel, Recording};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 /// Half of the records: thresholds are chosen on one, and the other is quoted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -130,7 +131,7 @@ fn labelled(
         beside: false,
         rate_hz,
         speed_rpm,
-        bearing: CatalogueBearing::parse(bearing).map_err(anyhow::Error::msg)?,
+        bearing: catalogue::parse(bearing).map_err(anyhow::Error::msg)?,
         length_mm: None,
         load_n: (set == HIT).then_some(HIT_LOAD_N),
         samples: channel.read()?,

@@ -3,8 +3,8 @@
 use stribeck_analysis::measured::{Analysis, Defect, Family, Interval, Machine};
 use stribeck_dsp::resample_poly;
 use stribeck_formats::Channel;
-use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_scene::dice::Dice;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use super::records::Labelled;
 

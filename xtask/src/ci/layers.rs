@@ -18,20 +18,23 @@ const LAYERS: [(&str, &[&str]); 22] = [
     ("solver", &["mesh", "simd"]),
     ("surface", &["simd"]),
     ("contact", &["mesh", "simd", "solver", "surface"]),
-    ("duty", &[]),
+    ("theory", &[]),
     ("infer", &[]),
-    ("scene", &["duty"]),
+    ("scene", &["theory"]),
     ("store", &["scene"]),
     ("plans", &["scene", "store"]),
     ("system", &["contact", "mesh", "solver"]),
-    ("reduced", &["duty", "simd", "surface"]),
-    ("simulation", &["contact", "mesh", "reduced", "scene", "solver", "store", "surface", "system"]),
-    ("lab", &["duty", "reduced", "scene", "simulation"]),
+    ("reduced", &["simd", "surface", "theory"]),
+    (
+        "simulation",
+        &["contact", "mesh", "reduced", "scene", "solver", "store", "surface", "system", "theory"],
+    ),
+    ("lab", &["reduced", "scene", "simulation", "theory"]),
     ("fmu", &["reduced"]),
     ("dsp", &[]),
     ("formats", &["dsp"]),
-    ("analysis", &["dsp", "scene", "store"]),
-    ("report", &["analysis", "dsp", "scene", "store"]),
+    ("analysis", &["dsp", "scene", "store", "theory"]),
+    ("report", &["analysis", "dsp", "scene", "store", "theory"]),
     (
         "stribeck",
         &[
@@ -46,9 +49,13 @@ const LAYERS: [(&str, &[&str]); 22] = [
             "scene",
             "simulation",
             "store",
+            "theory",
         ],
     ),
-    ("python", &["analysis", "dsp", "formats", "report", "scene", "simulation", "store", "stribeck"]),
+    (
+        "python",
+        &["analysis", "dsp", "formats", "report", "scene", "simulation", "store", "stribeck", "theory"],
+    ),
 ];
 
 /// Arrows of tests alone, beside the layers: verdicts are tried on files of measured records, the lab on the

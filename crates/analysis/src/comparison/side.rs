@@ -6,7 +6,6 @@ use serde::Serialize;
 use serde_json::Value;
 use stribeck_dsp::BandEnvelope;
 use stribeck_dsp::channel::Channel;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::{Run, RunDir};
@@ -194,7 +193,7 @@ fn judged(
     let machine = if scene.written.operation.speed_varies() {
         Machine::default()
     } else {
-        diagnosis::machine(scene, &Kinematics::of(&scene.written))
+        diagnosis::machine(scene, &scene.written.kinematics())
     };
     let unit = AccelerationUnit::Gravity.symbol().to_owned();
     let channel = Channel::held(name.to_owned(), signal_g.to_vec()).in_unit(Some(unit));

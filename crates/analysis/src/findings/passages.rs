@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use stribeck_scene::kinematics::Crossing;
-use stribeck_scene::lubrication;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::DefectRing;
+use stribeck_theory::kinematics::Crossing;
 
 use super::CrossingForce;
 use crate::Error;
@@ -52,7 +51,7 @@ struct Oiled<'a> {
 
 impl<'a> Oiled<'a> {
     fn of(scene: &'a ResolvedScene) -> Self {
-        let films = lubrication::loaded_films(scene).ok().flatten();
+        let films = scene.loaded_films().ok().flatten();
         Self { scene, least_film_m: films.map(|films| films.map(|film| film.least)) }
     }
 

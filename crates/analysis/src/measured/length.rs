@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use stribeck_dsp::{EventSpacing, Spacing, passage_spacing};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use super::pressed::{Loading, Pressed};
 use super::{Defect, Family, Interval, Machine};

@@ -15,7 +15,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_scene::catalogue::{CatalogueBearing, Element};
+use stribeck_theory::catalogue::{CatalogueBearing, Element};
 
 use super::Defect;
 

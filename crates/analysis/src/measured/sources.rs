@@ -7,7 +7,7 @@
 use std::fmt;
 
 use stribeck_dsp::channel::Channel;
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use super::unrelated::SLIP;
 use super::{Analysis, Defect, Family, Machine, sentence};

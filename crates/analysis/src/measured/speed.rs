@@ -7,7 +7,7 @@
 //! (THEORY §7.9).
 
 use stribeck_dsp::{BandEnvelope, Welch, WelchOptions, Whitened};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 /// Speeds that are looked at [Hz].
 pub(super) const FROM_HZ: f64 = 5.0;

@@ -14,7 +14,7 @@
 //! stands higher than all that are, nothing weaker is claimed (`unexplained.rs`).
 
 use stribeck_dsp::{BandEnvelope, Whitened};
-use stribeck_scene::catalogue::DefectOrders;
+use stribeck_theory::catalogue::DefectOrders;
 
 use super::comb_at_half::comb_at_half;
 use super::controls::{controls, part_as_high, rank};

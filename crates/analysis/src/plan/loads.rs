@@ -4,10 +4,8 @@ use std::f64::consts::PI;
 
 use stribeck_scene::{
     advice::holds_cage,
-    load_rating,
     resolved::ResolvedScene,
     scene::{ModelScene, PocketWalls},
-    static_load,
 };
 
 use crate::Error;
@@ -35,7 +33,7 @@ impl Loads {
     /// # Errors
     /// [`Error::Run`] when the scene has no static load distribution.
     pub fn of(scene: &ResolvedScene) -> Result<Self, Error> {
-        let shared = static_load::at_start(scene)?;
+        let shared = scene.static_load()?;
         let largest_n = shared.max_roller_n();
         let w = largest_n / scene.thickness;
         let pressure = |radius: f64| (w * scene.material.contact_modulus() / (PI * radius)).sqrt();
@@ -45,7 +43,7 @@ impl Loads {
             largest_n,
             loaded: shared.loaded_rollers(),
             pressure_pa: [pressure(scene.outer_contact_radius()), pressure(scene.inner_contact_radius())],
-            static_rating_n: load_rating::static_rating_n(&scene.written),
+            static_rating_n: scene.written.static_rating_n(),
             load_n: most.max(scene.load),
         })
     }

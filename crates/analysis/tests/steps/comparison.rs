@@ -6,8 +6,8 @@ use stribeck_analysis::comparison::{Comparison, Side, Verdict};
 use stribeck_analysis::levels::STANDARD_GRAVITY;
 use stribeck_analysis::measured::{Analysis, Machine};
 use stribeck_dsp::channel::Channel;
-use stribeck_scene::catalogue::CatalogueBearing;
 use stribeck_testing::Noise;
+use stribeck_theory::catalogue::CatalogueBearing;
 
 /// Knocks of the outer raceway of a 6205 at 1200 rpm, `height` times as strong as the noise.
 fn record(label: &str, height: f64, unit: &str, scale: f64, seed: u64) -> Side {

@@ -6,8 +6,8 @@ use stribeck_analysis::rolling::{flats, friction_over_edge, least_support_n, str
 use stribeck_scene::deviation::{DeviationScene, FormScene, RollingSurface, SpallScene};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::{CageScene, PocketWalls, Scene};
-use stribeck_scene::static_load::RigidRings;
 use stribeck_store::run_info::MeshInfo;
+use stribeck_theory::static_load::RigidRings;
 
 /// By hand: a roller of 6 mm in radius whose raceways approach each other by δ = 16 µm takes ½ √(2 ·
 /// 16/6000) = 0.037 to turn over the edge of a deep spall, ½ √(2 · 5/6000) = 0.020 over one of 5 µm, and

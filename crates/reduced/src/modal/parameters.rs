@@ -1,7 +1,7 @@
 //! Numbers of one scene for a reduction: outlines, contact, damping, speeds, cage and oil, in SI.
 
 use serde::{Deserialize, Serialize};
-use stribeck_duty::Duty;
+use stribeck_theory::duty::Duty;
 
 /// The numbers of a scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

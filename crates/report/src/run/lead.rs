@@ -6,10 +6,10 @@ use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::words::{kilonewtons, significant};
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::housing::HousingScene;
-use stribeck_scene::load_rating::is_ball_bearing;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::ring_mesh::RingMeshScene;
 use stribeck_scene::scene::DefectRing;
+use stribeck_theory::catalogue::Element;
 
 /// The sentence under the title.
 pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_ms: f64) -> String {
@@ -32,7 +32,7 @@ pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_
         name => format!("{name}: "),
     };
     // The page calls them balls where the bearing has balls.
-    let as_cylinders = if is_ball_bearing(&scene.written) { ", modelled as cylinders," } else { "" };
+    let as_cylinders = if scene.written.element() == Element::Ball { ", modelled as cylinders," } else { "" };
     format!(
         "{name}{} rollers{as_cylinders}{} under {} at {}, {defect}; {:.1} ms on record.",
         scene.written.rollers_in_place().count(),

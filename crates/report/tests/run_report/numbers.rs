@@ -2,7 +2,6 @@
 
 use stribeck_analysis::summary::Summary;
 use stribeck_report as report;
-use stribeck_scene::lubrication::loaded_films;
 use stribeck_scene::scene::{FilmScene, Scene};
 use stribeck_store::run_info::Status;
 
@@ -219,7 +218,7 @@ fn roundtrip_oil_films_of_the_synthetic_run() {
     for (ring, what) in ["outer", "inner"].into_iter().enumerate() {
         close(film.floating_um[ring], 1e6 * FLOATING_M[ring], ROUNDING, what);
         close(film.largest_n[ring], [0.0, WEIGHT_N][ring], ROUNDING, what);
-        let loaded = loaded_films(&scene.resolve()).expect("a load").expect("oil")[ring];
+        let loaded = scene.resolve().loaded_films().expect("a load").expect("oil")[ring];
         close(Some(film.loaded_um[ring]), 1e6 * loaded.thickness, ROUNDING, what);
         close(Some(film.lambda[ring]), loaded.thickness / 0.3e-6, ROUNDING, what);
     }

@@ -7,13 +7,12 @@ use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
 use stribeck_scene::ensemble::start;
-use stribeck_scene::kinematics::{Crossing, Kinematics, roller_angles_deg};
-use stribeck_scene::lubrication::loaded_films;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::Ensemble;
 use stribeck_store::run_dir::RunDir;
 use stribeck_store::run_info::{EnergyInfo, RunInfo, Status};
 use stribeck_store::trace::TraceWriter;
+use stribeck_theory::kinematics::Crossing;
 
 /// Standard acceleration of gravity [m/s²].
 pub(crate) const G: f64 = 9.806_65;
@@ -144,7 +143,7 @@ pub(crate) fn write_scene(path: &Path, scene: &Scene, status: Status, samples: u
 }
 
 fn crossings(scene: &Scene) -> Vec<Crossing> {
-    let of = |defect| Kinematics::of(scene).crossings(defect, &roller_angles_deg(scene), 40e-3);
+    let of = |defect| scene.kinematics().crossings(defect, &scene.roller_angles_deg(), 40e-3);
     scene.defect.as_ref().map_or(Vec::new(), of)
 }
 
@@ -172,7 +171,7 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
     names.extend(["cage.x_m", "cage.y_m", "cage.angle_rad", "seat.fx_n", "seat.fy_n"].map(str::to_owned));
     let duty = scene.duty();
     names.extend(scene.operation.load_varies().then(|| "adapter.load_n".to_owned()));
-    let (films, oiled) = (loaded_films(&scene.resolve()).expect("a load"), roller_angles_deg(scene));
+    let (films, oiled) = (scene.resolve().loaded_films().expect("a load"), scene.roller_angles_deg());
     if films.is_some() {
         for roller in 1..=scene.bearing.rollers {
             names.extend(["outer", "inner"].map(|ring| format!("roller.{roller}.{ring}_film_m")));
@@ -190,7 +189,7 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
             row.extend([0.3 * ay, ay, 0.3 * instant, instant]);
         }
         rollers(scene, t, &crossings, &mut row);
-        let cage = -TAU * Kinematics::of(scene).cage_hz * (1.0 - SLIP) * t;
+        let cage = -TAU * scene.kinematics().cage_hz * (1.0 - SLIP) * t;
         row.extend([0.0, 0.0, cage, 0.0, -SUPPORT_N + 60.0]);
         row.extend(scene.operation.load_varies().then(|| duty.load_n(t)));
         if let Some(films) = &films {
@@ -221,9 +220,9 @@ fn acceleration_g(t: f64, sensor: usize, crossings: &[Crossing], noise: &mut Noi
 /// Motion and forces of all rollers: the upper ones share the load by the cosine, those in the defect carry
 /// nothing.
 fn rollers(scene: &Scene, t: f64, crossings: &[Crossing], row: &mut Vec<f64>) {
-    let k = Kinematics::of(scene);
+    let k = scene.kinematics();
     let count = scene.bearing.rollers;
-    let start = roller_angles_deg(scene);
+    let start = scene.roller_angles_deg();
     let angle_of = |roller: usize| start[roller].to_radians() - TAU * k.cage_hz * (1.0 - SLIP) * t;
     let unloaded = |roller: usize| {
         crossings

@@ -4,11 +4,12 @@
 //! Dimensions that no catalogue prints are in proportion to the paper's bearing: the mesh has as many facets,
 //! contact the same pressure.
 
-use crate::catalogue::{self, Boundary, CatalogueBearing, Element};
+use stribeck_theory::catalogue::{Boundary, CatalogueBearing, Element, PAPER, normal_clearance_mm};
+use stribeck_theory::line_contact::LineContacts;
+use stribeck_theory::point_contact;
+
+use crate::catalogue;
 use crate::housing::{HousingScene, PedestalScene};
-use crate::line_contact::LineContacts;
-use crate::load_rating;
-use crate::point_contact;
 use crate::scene::{
     BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, ReducedScene,
     Scene,
@@ -43,11 +44,11 @@ const FRICTION: f64 = 0.05;
 /// In words: unknown dimensions of the bearing, or why a plane model has no such bearing.
 pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
     let fields = "give it by its fields, `bearing: (rollers: 13, roller_diameter_mm: 7.5, …)`";
-    let known = CatalogueBearing::parse_or_advise(name, fields)?;
+    let known = catalogue::parse_or_advise(name, fields)?;
     let paper = Scene::default();
     // Omitted fields are those of the paper's scene.
-    if known.name == catalogue::PAPER {
-        let own = CatalogueBearing::of_scene(&paper);
+    if known.name == PAPER {
+        let own = catalogue::of_scene(&paper);
         let off = [known.diameter_mm - own.diameter_mm, known.pitch_mm - own.pitch_mm, known.angle_deg];
         if off.iter().any(|off| off.abs() > 1e-6) {
             return Err(
@@ -69,7 +70,7 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         // none.
         let thickness_mm = tidy(thickness_of_balls(scene));
         if thickness_mm < THINNEST_MM {
-            let rating_n = load_rating::static_rating_n(scene);
+            let rating_n = scene.static_rating_n();
             if scene.operation.load_n < rating_n {
                 return Err(format!(
                     "a cylinder that gives way under `operation.load_n` = {:e} N as the balls of `{}` do \
@@ -266,7 +267,7 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
         return Err(format!("the rings of `{name}` are not known: give the bearing by its fields"));
     };
     let (ball, pitch) = (known.diameter_mm, known.pitch_mm);
-    let clearance = catalogue::normal_clearance_mm(known.element, bore_mm);
+    let clearance = normal_clearance_mm(known.element, bore_mm);
     // The distance of the rings is that of the catalogue; the clearance is taken from the rollers, or from
     // the groove of the outer ring.
     let (roller, outer) = match known.element {

@@ -9,8 +9,8 @@ use super::named::{self, Surrounded, tidy};
 use super::problem::Problem;
 use super::sources::{self, Sources};
 use super::wording::number;
-use crate::catalogue;
 use crate::scene::{Assumed, BearingScene, Scene};
+use stribeck_theory::catalogue;
 
 /// Diameters of the paper's bearing of which some are given are still its own where its other ones leave such
 /// a clearance, in diameters of a roller …

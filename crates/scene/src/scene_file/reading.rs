@@ -8,7 +8,7 @@ use super::problem::Problem;
 use super::sources::Sources;
 use super::suggest;
 use super::wording::{list, number, shown};
-use crate::catalogue::CatalogueBearing;
+use crate::catalogue;
 use crate::fields::tree::{Broken, Content, Kind, Node};
 use crate::fields::value::Value;
 use crate::fields::{Group, Shape, Spot, Words, paths};
@@ -196,7 +196,7 @@ fn meant(value: &str, shape: Shape, path: &str) -> Option<(String, &'static str)
             Some(_) => None,
         },
         Shape::Group(_) if path == "bearing" => {
-            let known = CatalogueBearing::parse(bare).ok()?;
+            let known = catalogue::parse(bare).ok()?;
             Some((format!("\"{}\"", known.name), "the name of a bearing of the catalogue, in quotes"))
         }
         _ => None,

@@ -7,7 +7,7 @@ use super::finding::{Finding, Proposal};
 use super::problem::{Place, Problem, SceneError, place_in_file};
 use super::wording::{list, shown};
 use super::{foreign, named, reading, suggest};
-use crate::catalogue::CatalogueBearing;
+use crate::catalogue;
 use crate::fields::tree::{self, Content, Node, Source, Step, steps};
 use crate::fields::value::Value;
 use crate::fields::{Shape, Spot, names_in, paths, spot};
@@ -147,7 +147,7 @@ impl Sources {
             && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
         {
             let refuse = |why| Refused {
-                is_of_value: CatalogueBearing::parse(&name).is_err(),
+                is_of_value: catalogue::parse(&name).is_err(),
                 ..of_value(vec![super::unknown_bearing(why, place.clone())])
             };
             let mut scene = self.scene().unwrap_or_default();

@@ -6,7 +6,6 @@ mod system;
 use stribeck_mesh::{Circle, Mesh, Part, Placed, Surface, characteristic_length};
 use stribeck_scene::{
     housing::HousingScene,
-    kinematics::{FacetCounts, Kinematics},
     resolved::ResolvedScene,
     scene::{DampedBody, DefectRing, RollerCopies},
 };
@@ -14,6 +13,7 @@ use stribeck_solver::{
     Behaviour, Elastic, Model, NodeMotion, critical::damped_time_step, structural_damping::StructuralDamping,
 };
 use stribeck_store::run_info::MeshInfo;
+use stribeck_theory::kinematics::{FacetCounts, Kinematics};
 
 use crate::bearing::{error::Error, housing::housing};
 pub use parts::{CAGE_ELEMENT_MM, MeshedParts};
@@ -87,7 +87,7 @@ impl Assembly {
         });
         let cage_mesh = cage_mesh.transpose()?;
 
-        let kinematics = Kinematics::of(&scene.written);
+        let kinematics = scene.written.kinematics();
         let mut bodies = Bodies::new(scene, mesh)?;
         let cage = match cage_mesh {
             Some((cage, density)) => {

@@ -1,14 +1,16 @@
 //! The error type of this crate.
 
-use stribeck_scene::scene_file::SceneError;
-
 /// Everything that can go wrong between a scene and a bearing under its preload.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The scene cannot be read, or is impossible.
     #[error(transparent)]
-    Scene(#[from] stribeck_scene::Error),
+    Scene(#[from] stribeck_scene::scene_file::SceneError),
+
+    /// The scene has no static load distribution.
+    #[error(transparent)]
+    Theory(#[from] stribeck_theory::Error),
 
     /// The bodies cannot be meshed.
     #[error("mesh: {0}")]
@@ -45,12 +47,6 @@ pub enum Error {
         /// The system's answer.
         source: std::io::Error,
     },
-}
-
-impl From<SceneError> for Error {
-    fn from(error: SceneError) -> Self {
-        Self::Scene(error.into())
-    }
 }
 
 impl From<stribeck_system::Error> for Error {

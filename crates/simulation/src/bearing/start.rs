@@ -4,7 +4,8 @@ use stribeck_solver::damping::{Frame, MassDamping};
 use stribeck_system::{Preload, UndecidedMotion};
 
 use crate::bearing::{assembly::BearingSystem, error::Error};
-use stribeck_scene::{kinematics::Kinematics, resolved::ResolvedScene, scene::DampingFrame};
+use stribeck_scene::{resolved::ResolvedScene, scene::DampingFrame};
+use stribeck_theory::kinematics::Kinematics;
 
 /// Diametral clearance for which the stages of a preload serve [m]; in a larger one they grow with it.
 const CLEARANCE: f64 = 40e-6;

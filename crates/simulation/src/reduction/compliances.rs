@@ -4,10 +4,7 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_reduced::modal::{OVERLOAD, compliance::Compliance};
-use stribeck_scene::{
-    resolved::{DefectGeometry, ResolvedScene},
-    static_load,
-};
+use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_solver::{Dynamics, statics::Modes, statics::SmallMotions};
 
 use crate::reduction::{
@@ -64,7 +61,7 @@ impl Compliances {
         structure: &mut Structure,
         raceway: &[[f64; 2]],
     ) -> Result<Self, Error> {
-        let most = OVERLOAD * static_load::at_start(scene).map_or(scene.load, |load| load.max_roller_n());
+        let most = OVERLOAD * scene.static_load().map_or(scene.load, |load| load.max_roller_n());
         let size = Size { scene, most: most.clamp(1.0, OVERLOAD * scene.load.max(1.0)) };
         let [ro, ri] = [scene.outer_contact_radius(), scene.inner_contact_radius()];
         let beside = beside_grooves(scene);

@@ -21,8 +21,8 @@ pub enum Error {
     Contact(#[from] stribeck_surface::Error),
 }
 
-impl From<stribeck_scene::Error> for Error {
-    fn from(error: stribeck_scene::Error) -> Self {
+impl From<stribeck_theory::Error> for Error {
+    fn from(error: stribeck_theory::Error) -> Self {
         Self::Bearing(error.into())
     }
 }

@@ -11,13 +11,12 @@ use stribeck_reduced::modal::{
 };
 use stribeck_scene::{
     deviation::Relief,
-    kinematics::Kinematics,
-    lubrication::loaded_films,
     resolved::{ResolvedScene, pocket_half_width},
     scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies},
 };
 use stribeck_solver::structural_damping::StructuralDamping;
 use stribeck_surface::Law;
+use stribeck_theory::kinematics::Kinematics;
 
 use crate::reduction::{error::Error, seat};
 
@@ -95,7 +94,7 @@ fn parameters(scene: &ResolvedScene, reduction: &Reduction) -> Result<Parameters
         },
         damping: damping(scene)?,
         gravity: scene.gravity,
-        speeds: speeds(&Kinematics::of(&scene.written)),
+        speeds: speeds(&scene.written.kinematics()),
         outer_turns: scene.written.operation.outer_turns(),
         load_at_start: scene.duty.load_n(0.0),
         duty: scene.varying_duty().cloned(),
@@ -203,7 +202,7 @@ fn pockets(scene: &ResolvedScene, numbers: &[usize]) -> Option<Pockets> {
 }
 
 fn oil(scene: &ResolvedScene) -> Result<Option<Oil>, Error> {
-    let (Some(oil), Some([outer, inner])) = (scene.film, loaded_films(scene)?) else { return Ok(None) };
+    let (Some(oil), Some([outer, inner])) = (scene.film, scene.loaded_films()?) else { return Ok(None) };
     let [outer, inner] = [outer, inner].map(|film| Film { least: film.least, speed: film.speed });
     Ok(Some(Oil { viscosity: oil.viscosity, outer, inner }))
 }

@@ -9,7 +9,7 @@ use crate::bearing::{
 use serde::{Deserialize, Serialize};
 use stribeck_mesh::Mesh;
 use stribeck_reduced::modal::{GROUP, Reduction, Seat};
-use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene, static_load};
+use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_system::Parts;
 
 use crate::reduction::{
@@ -117,7 +117,7 @@ const MAY_CLOSE: f64 = 0.1;
 fn may_close(scene: &ResolvedScene) -> f64 {
     match scene.written.housing {
         HousingScene::Pedestal(_) => {
-            static_load::at_start(scene).map_or(0.0, |load| MAY_CLOSE * load.max_approach_m())
+            scene.static_load().map_or(0.0, |load| MAY_CLOSE * load.max_approach_m())
         }
         _ => 0.0,
     }

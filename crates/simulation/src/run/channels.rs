@@ -7,7 +7,8 @@
 
 use std::fmt::Arguments;
 
-use stribeck_scene::{duty::Duty, resolved::ResolvedScene};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_theory::duty::Duty;
 
 /// The state of a bearing at the end of a sampling interval. Forces are means over the interval.
 #[derive(Debug, Clone, PartialEq, Default)]

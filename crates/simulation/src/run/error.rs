@@ -8,7 +8,11 @@ use std::path::PathBuf;
 pub enum Error {
     /// The scene cannot be read, or the folder of the run cannot be read or written.
     #[error(transparent)]
-    Scene(#[from] stribeck_scene::Error),
+    Scene(#[from] stribeck_scene::scene_file::SceneError),
+
+    /// The scene has no static load distribution.
+    #[error(transparent)]
+    Theory(#[from] stribeck_theory::Error),
 
     /// The folder of the run cannot be written or read.
     #[error(transparent)]
@@ -26,10 +30,4 @@ pub enum Error {
         /// Why, and what to try.
         reason: String,
     },
-}
-
-impl From<stribeck_scene::scene_file::SceneError> for Error {
-    fn from(error: stribeck_scene::scene_file::SceneError) -> Self {
-        Self::Scene(error.into())
-    }
 }

@@ -15,13 +15,9 @@ use stribeck_reduced::{
     bearing::Bearing,
     motion::{BearingInMotion, Saved},
 };
-use stribeck_scene::{
-    kinematics::Kinematics,
-    scene::{
-        ContactFormula, HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene,
-        RotatingLoadScene, Scene,
-    },
-    static_load,
+use stribeck_scene::scene::{
+    ContactFormula, HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene,
+    RotatingLoadScene, Scene,
 };
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::reduction::{ReducedMesh, dense, modal_bearing};
@@ -32,6 +28,7 @@ use stribeck_simulation::{
 };
 use stribeck_store::{mesh_file::RunMesh, run_dir::RunDir, run_info::Status, trace::Trace};
 use stribeck_testing::Scratch;
+use stribeck_theory::kinematics::Kinematics;
 
 /// The paper's bearing, coarse.
 fn coarse(duration_ms: f64) -> Scene {

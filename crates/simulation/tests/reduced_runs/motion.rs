@@ -240,7 +240,7 @@ fn analytic_rollers_in_a_rigid_housing() {
         let force = |roller: usize, n: usize| {
             ["x", "y"].map(|c| channel(&trace, &format!("roller.{roller}.outer_f{c}_n"))[n])
         };
-        let theory = static_load::at_start(&scene.resolve()).expect("an equilibrium");
+        let theory = scene.resolve().static_load().expect("an equilibrium");
         for (i, expected) in theory.roller_n.iter().enumerate() {
             let [x, y] = force(i + 1, 0);
             let off = (x.hypot(y) - expected).abs() / theory.max_roller_n();

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::measured::{Analysis, Machine, Pressed, over_angle, ridge, tacho};
 use stribeck_analysis::record;
 use stribeck_formats::{Channel, Recording, says_time};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::RunDir;
 
@@ -376,8 +376,8 @@ fn machine(
     notes: &mut Vec<String>,
 ) -> Result<(Machine, Option<Vec<f64>>)> {
     let bearing = match (&options.bearing, scene) {
-        (Some(text), _) => Some(CatalogueBearing::parse(text).map_err(anyhow::Error::msg)?),
-        (None, Some(scene)) => Some(CatalogueBearing::of_scene(scene)),
+        (Some(text), _) => Some(catalogue::parse(text).map_err(anyhow::Error::msg)?),
+        (None, Some(scene)) => Some(catalogue::of_scene(scene)),
         (None, None) => None,
     };
     let said = speed_in_file(recording)?;

@@ -8,9 +8,10 @@ use stribeck_analysis::findings::Findings;
 use stribeck_analysis::measured::{Analysis, Defect, Pressed, usual_load_n};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Event;
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::{Keep, Run};
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use super::reading::{Reading, examine};
 use crate::interrupt::{Interrupt, Interrupted};
@@ -68,7 +69,7 @@ fn scenes(analysis: &Analysis, file: &Path, options: &Reading, lengths_mm: [f64;
     let rpm = findings.speed_rpm.context("the speed of the shaft is not known")?;
     let hz = claimed.measured_hz.unwrap_or(claimed.expected_hz);
     let named = options.bearing.as_deref().context("name the bearing with `--bearing`")?;
-    let known = CatalogueBearing::parse(named).map_err(anyhow::Error::msg)?;
+    let known = catalogue::parse(named).map_err(anyhow::Error::msg)?;
     let (least, most) = options.load_n.unwrap_or_else(|| usual_load_n(&known));
     let duration_ms = 1e3 * (PASSAGES / hz).max(TURNS * 60.0 / rpm);
     let mut scenes: Vec<Scene> = Vec::new();
@@ -98,7 +99,7 @@ fn scenes(analysis: &Analysis, file: &Path, options: &Reading, lengths_mm: [f64;
 
 /// Whether a scene is of this bearing and takes seconds.
 fn fits(scene: &Scene, known: &CatalogueBearing, named: &str, file: &Path) -> Result<()> {
-    let of_scene = CatalogueBearing::of_scene(scene);
+    let of_scene = catalogue::of_scene(scene);
     let same = |a: f64, b: f64| (a / b - 1.0).abs() <= SAME;
     ensure!(
         known.elements.is_none_or(|n| of_scene.elements == Some(n))

@@ -13,10 +13,10 @@ use anyhow::{Context, Result};
 use serde_json::Value;
 use stribeck_formats::parquet::{Column, Values, write_table};
 use stribeck_plans::campaign::{Campaign, Variant};
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::{Keep, RunDir};
 use stribeck_store::run_info::Status;
+use stribeck_theory::kinematics::Kinematics;
 
 use super::Folder;
 use crate::many_runs::{Stage, summary_of};
@@ -199,7 +199,7 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
         values: Values::Number(rows.iter().map(of).collect()),
     };
     let of_scene = |name: &str, of: &dyn Fn(&Scene) -> f64| number(name, &|row| row.scene.as_ref().map(of));
-    let kinematic = |name: &str, of: &dyn Fn(&Kinematics) -> f64| of_scene(name, &|s| of(&Kinematics::of(s)));
+    let kinematic = |name: &str, of: &dyn Fn(&Kinematics) -> f64| of_scene(name, &|s| of(&s.kinematics()));
     let as_count = |n: usize| i64::try_from(n).ok();
     let truth = |row: &Row| row.scene.as_ref().map(Truth::of);
     let mut columns = vec![

@@ -11,7 +11,7 @@ use stribeck_formats::{Channel, Recording};
 use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_plans::growth::{Growth, Indicator};
 use stribeck_report::{GrowthFindings, RecordFindings, UnitFindings};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
 use stribeck_scene::dice::Dice;
 use stribeck_scene::scene::DefectRing;
 use stribeck_store::run_dir::RunDir;
@@ -120,7 +120,7 @@ fn findings(growth: &Growth, variant: &Variant, runs: &ManyRuns) -> Result<Measu
     let machine = Machine {
         speed_rpm: Some((scene.operation.speed_rpm - scene.operation.outer_speed_rpm).abs()),
         outer_speed_rpm: Machine::outer_speed_rpm(scene),
-        bearing: Some(CatalogueBearing::of_scene(scene)),
+        bearing: Some(catalogue::of_scene(scene)),
         speed_is_exact: true,
         ..Machine::default()
     };

@@ -13,10 +13,11 @@ use stribeck_dsp::{Rhythm, Signature, Sound, at_rate, coloured_like, statistics}
 use stribeck_formats::wav::{Whole, pcm};
 use stribeck_formats::{Channel, uff58};
 use stribeck_plans::inference::{Inference, Values};
-use stribeck_scene::catalogue::CatalogueBearing;
+use stribeck_scene::catalogue;
 use stribeck_scene::dice::Dice;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::{Keep, Run, check_folder, write_atomic};
+use stribeck_theory::catalogue::CatalogueBearing;
 
 use super::answer::Known;
 use super::rounds::{Point, Rounds};
@@ -81,7 +82,7 @@ pub(super) fn prepare(record: &Path, options: &Options, out: &Path, place: &Plac
     let bearing = reading.bearing.as_deref().context(
         "a record is inferred by simulating its bearing: name it with `--bearing`, for example 6205",
     )?;
-    let known = CatalogueBearing::parse(bearing).map_err(anyhow::Error::msg)?;
+    let known = catalogue::parse(bearing).map_err(anyhow::Error::msg)?;
     let findings = &analysis.findings;
     let rpm = findings.speed_rpm.context("give the speed of the shaft with `--speed-rpm`")?;
     let claim = claim(&analysis)?;

@@ -2,7 +2,6 @@
 
 use serde_json::{Map, Value, json};
 use stribeck_analysis::plan::Plan;
-use stribeck_scene::kinematics::Kinematics;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_simulation::run::channels;
 
@@ -11,7 +10,7 @@ use super::trial::{Cost, Trial};
 /// The plan; `cost` is `null` where nothing was tried.
 pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> Value {
     let loads = &plan.loads;
-    let k = &Kinematics::of(&scene.written);
+    let k = &scene.written.kinematics();
     let lines: Map<String, Value> = plan.lines.iter().map(|(name, hz)| (name.clone(), json!(hz))).collect();
     let mut warnings = plan.dangers.clone();
     if let Some(trial) = trial {

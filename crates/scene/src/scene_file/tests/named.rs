@@ -68,10 +68,12 @@ fn issue_what_arguments_replace_has_the_size_of_the_bearing() {
 #[test]
 fn behaves_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
     let mut refused = Vec::new();
-    for bearing in crate::catalogue::all() {
+    for bearing in stribeck_theory::catalogue::all() {
         let text = format!("(bearing: \"{}\")", bearing.name);
         match Scene::parse(&text, "mine") {
-            Ok(scene) if bearing.name == crate::catalogue::PAPER => assert_eq!(scene, Scene::default()),
+            Ok(scene) if bearing.name == stribeck_theory::catalogue::PAPER => {
+                assert_eq!(scene, Scene::default())
+            }
             Ok(scene) => assert_eq!(scene.bearing.designation, bearing.name),
             Err(why) => {
                 let why = why.to_string();
@@ -89,7 +91,7 @@ fn behaves_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
 
 #[test]
 fn invariant_balls_are_cylinders_of_their_own_stiffness() {
-    use crate::{line_contact::LineContacts, point_contact};
+    use stribeck_theory::{line_contact::LineContacts, point_contact};
     let scene = Scene::parse("(bearing: \"6205\", operation: (load_n: 2000))", "mine").unwrap();
     let g = scene.resolve();
     let load = 4.37 * 2000.0 / 9.0;

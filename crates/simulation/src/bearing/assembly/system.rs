@@ -5,13 +5,12 @@ use std::ops::Range;
 use stribeck_contact::{Law, Method, Oil, Sides, Smoothing};
 use stribeck_mesh::Surface;
 use stribeck_scene::{
-    duty::Duty,
     housing::HousingScene,
-    lubrication,
     resolved::ResolvedScene,
     scene::{ContactInterpolation, ContactMethod, ContactPasses, ContactSurface},
 };
 use stribeck_system::{Film, Pair, Plan, System};
+use stribeck_theory::duty::Duty;
 
 use super::{Assembly, surface};
 use crate::bearing::{error::Error, suspension::suspend};
@@ -284,7 +283,7 @@ pub fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> Result<
 
 /// Puts oil between every roller and both raceways, the outer one first.
 fn oil(plan: &mut Plan, scene: &ResolvedScene, rollers: &[Roller]) -> Result<(), Error> {
-    let (Some(film), Some(loaded)) = (scene.film, lubrication::loaded_films(scene)?) else { return Ok(()) };
+    let (Some(film), Some(loaded)) = (scene.film, scene.loaded_films()?) else { return Ok(()) };
     for roller in rollers {
         for (track, loaded) in [OUTER_RACEWAY, INNER_RACEWAY].into_iter().zip(&loaded) {
             plan.film(Film {

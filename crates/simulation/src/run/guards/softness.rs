@@ -1,9 +1,7 @@
 //! Contact that is softer than the bearing itself.
 
-use stribeck_scene::{
-    resolved::ResolvedScene,
-    static_load::{RigidRings, angles_to_load_deg},
-};
+use stribeck_scene::resolved::ResolvedScene;
+use stribeck_theory::static_load::RigidRings;
 
 use super::When;
 
@@ -25,7 +23,7 @@ impl Softness {
     pub(super) fn of(scene: &ResolvedScene) -> Self {
         // Rollers that carry nothing in equilibrium leave the clearance alone.
         let [_, most] = scene.duty.load_range_n(scene.duration);
-        let load = RigidRings::new(scene).distribute(most, &angles_to_load_deg(&scene.written));
+        let load = RigidRings::new(scene).distribute(most, &scene.written.angles_to_load_deg());
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
         let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
         Self { radial_clearance: 0.5 * scene.clearance, hertz, depth }

@@ -1,9 +1,19 @@
 //! Oil films of loaded contacts in steady rolling, from the textbook: for a plan, and for the least thickness
 //! that a film keeps (THEORY §4.6). No pressure is computed.
 
-use crate::{
-    duty::LONGEST_RUN_S, error::Error, kinematics::Kinematics, resolved::ResolvedScene, static_load,
-};
+use crate::bearing::Bearing;
+use crate::kinematics::Kinematics;
+
+/// Oil between rollers and raceways.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Oil {
+    /// Dynamic viscosity η [Pa s].
+    pub viscosity: f64,
+    /// Pressure–viscosity coefficient α [1/Pa].
+    pub pressure_viscosity: f64,
+    /// Composite roughness [m].
+    pub roughness: f64,
+}
 
 /// The film of the most loaded roller on one raceway.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,40 +31,36 @@ pub struct LoadedFilm {
     pub least: f64,
 }
 
-/// Films of the most loaded roller on the outer and on the inner raceway; `None` for a scene without oil.
-///
-/// # Errors
-/// When the scene has no static load distribution.
-pub fn loaded_films(scene: &ResolvedScene) -> Result<Option<[LoadedFilm; 2]>, Error> {
-    let Some(film) = scene.film else { return Ok(None) };
-    let load = static_load::at_start(scene)?.max_roller_n() / scene.thickness;
-    let k = Kinematics::of(&scene.written);
+/// Films on the outer and on the inner raceway of a roller under the force `roller_n` [N], while the rings turn
+/// as `kinematics` says; thicknesses are those at `slowest` times these speeds.
+pub fn loaded_films(
+    bearing: impl Into<Bearing>,
+    oil: &Oil,
+    kinematics: &Kinematics,
+    slowest: f64,
+    roller_n: f64,
+) -> [LoadedFilm; 2] {
+    let (bearing, k) = (bearing.into(), kinematics);
+    let load = roller_n / bearing.thickness;
     // The contact moves over each raceway: with the cage over the outer one, relative to the shaft over the
     // inner one.
     let speeds = [
-        (k.cage_rad_s - k.outer_rad_s).abs() * scene.outer_race_radius,
-        (k.shaft_rad_s - k.cage_rad_s).abs() * scene.inner_race_radius,
+        (k.cage_rad_s - k.outer_rad_s).abs() * bearing.outer_race_radius,
+        (k.shaft_rad_s - k.cage_rad_s).abs() * bearing.inner_race_radius,
     ];
-    let modulus = 2.0 * scene.material.contact_modulus();
-    // The least film is that of the slowest moment of the profile, however long the run: it can be made
-    // longer.
-    let slowest = scene.varying_duty().map_or(1.0, |duty| {
-        let slowest = duty.slowest_rpm(LONGEST_RUN_S) / 60.0;
-        let at_start = k.cage_on_outer_hz + k.cage_on_inner_hz;
-        if at_start > 0.0 { slowest / at_start } else { 0.0 }
-    });
+    let modulus = 2.0 * bearing.material.contact_modulus();
     let of = |radius: f64, speed: f64| {
         let slow = slowest * speed;
-        let thickness = least_thickness(film.viscosity, film.pressure_viscosity, modulus, radius, slow, load);
+        let thickness = least_thickness(oil.viscosity, oil.pressure_viscosity, modulus, radius, slow, load);
         LoadedFilm {
             radius,
             speed,
             thickness,
-            lambda: thickness / film.roughness,
-            least: thickness.max(film.roughness),
+            lambda: thickness / oil.roughness,
+            least: thickness.max(oil.roughness),
         }
     };
-    Ok(Some([of(scene.outer_contact_radius(), speeds[0]), of(scene.inner_contact_radius(), speeds[1])]))
+    [of(bearing.outer_contact_radius(), speeds[0]), of(bearing.inner_contact_radius(), speeds[1])]
 }
 
 /// Least film thickness of a loaded line contact [m]:
@@ -83,7 +89,6 @@ fn least_thickness(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{FilmScene, OperationScene, Scene};
 
     /// B. J. Hamrock, S. R. Schmid, B. O. Jacobson, Fundamentals of Fluid Film Lubrication, 2nd ed. 2004, use
     /// the same groups. By hand, for η = 0.04 Pa s, α = 22/GPa, E′ = 228 GPa, R = 11.43 mm, u = 2 m/s and w =
@@ -93,25 +98,5 @@ mod tests {
     fn analytic_film_of_a_loaded_line_contact() {
         let found = least_thickness(0.04, 22e-9, 228e9, 11.43e-3, 2.0, 5e5);
         assert!((found / 0.402e-6 - 1.0).abs() < 0.01, "{found}");
-    }
-
-    #[test]
-    fn by_hand_rough_surfaces_are_held_apart_by_their_tips() {
-        let film = Some(FilmScene { roughness_um: 0.1, ..FilmScene::default() });
-        let [smooth, _] =
-            loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
-        assert_eq!(smooth.least, smooth.thickness);
-        let film = Some(FilmScene { roughness_um: 2.0, ..FilmScene::default() });
-        let [rough, _] =
-            loaded_films(&Scene { film, ..Scene::default() }.resolve()).expect("a load").expect("oil");
-        assert!(rough.lambda < 1.0 && (rough.least / 2e-6 - 1.0).abs() < 1e-12, "{rough:?}");
-        let still = OperationScene { speed_rpm: 0.0, ..Scene::default().operation };
-        let film = Some(FilmScene::default());
-        let [still, _] = loaded_films(&Scene { film, operation: still, ..Scene::default() }.resolve())
-            .expect("a load")
-            .expect("oil");
-        assert_eq!((still.thickness, still.least), (0.0, 0.3e-6));
-        let dry = Scene { film: None, ..Scene::default() };
-        assert_eq!(loaded_films(&dry.resolve()).expect("a load"), None);
     }
 }

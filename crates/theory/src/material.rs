@@ -1,6 +1,4 @@
-//! The material of a scene in SI, and the moduli that follow from it.
-
-use crate::scene::MaterialScene;
+//! An elastic material, and the moduli that follow from it.
 
 /// A linear elastic, isotropic material in plane strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,15 +12,6 @@ pub struct Material {
 }
 
 impl Material {
-    /// A material in SI.
-    pub fn of(material: &MaterialScene) -> Self {
-        Self {
-            youngs_modulus: 1e9 * material.youngs_modulus_gpa,
-            poissons_ratio: material.poissons_ratio,
-            density: material.density_kg_m3,
-        }
-    }
-
     /// Modulus of two touching bodies of this material, E* = E/(2(1 − ν²)) [Pa].
     pub fn contact_modulus(&self) -> f64 {
         self.youngs_modulus / (2.0 * (1.0 - self.poissons_ratio.powi(2)))

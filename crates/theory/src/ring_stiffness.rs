@@ -6,10 +6,10 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
+use crate::bearing::Bearing;
 use crate::contact_law::{ContactLaw, ContactLawKind, element_mass};
 use crate::error::Error;
 use crate::kinematics::Kinematics;
-use crate::resolved::ResolvedScene;
 
 /// Unbalanced force, as a part of the load, at which the search ends.
 const TOLERANCE: f64 = 1e-10;
@@ -22,7 +22,7 @@ pub type Symmetric = [f64; 3];
 /// Equilibrium at one angle of the cage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RingState {
-    /// Shift of the shaft against the housing [m], (x, y), in the axes of the scene.
+    /// Shift of the shaft against the housing [m], (x, y), in fixed axes.
     pub shift_m: [f64; 2],
     /// Stiffness xx, xy, yy [N/m] in these axes.
     pub stiffness_n_m: Symmetric,
@@ -42,26 +42,30 @@ pub struct TurningRings {
     clearance_m: f64,
     /// Centrifugal force of each element [N].
     outwards_n: f64,
-    /// Angle of the middle of the load zone in the scene [rad].
+    /// Angle of the middle of the load zone [rad].
     load_zone: f64,
     /// −1 where the cage turns clockwise as seen from the outer ring, else 1.
     sense: f64,
 }
 
 impl TurningRings {
-    /// The bearing of a scene, without defects, with its inner ring at `speed_rpm`; the outer one turns as in
-    /// the scene.
-    pub fn new(scene: &ResolvedScene, kind: ContactLawKind, speed_rpm: f64) -> Self {
-        let written = &scene.written;
-        let k = Kinematics::between(&written.bearing, speed_rpm, written.operation.outer_speed_rpm);
-        let path = 0.5 * (scene.outer_race_radius + scene.inner_race_radius);
+    /// A bearing without defects that moves as `kinematics` says, with the middle of its load zone at the
+    /// angle `load_zone` [rad], counter-clockwise from the x axis.
+    pub fn new(
+        bearing: impl Into<Bearing>,
+        kind: ContactLawKind,
+        kinematics: &Kinematics,
+        load_zone: f64,
+    ) -> Self {
+        let bearing = bearing.into();
+        let path = 0.5 * (bearing.outer_race_radius + bearing.inner_race_radius);
         Self {
-            law: ContactLaw::of(scene, kind),
-            elements: scene.rollers,
-            clearance_m: 0.5 * scene.clearance,
-            outwards_n: element_mass(scene, kind) * k.cage_rad_s.powi(2) * path,
-            load_zone: written.load_zone_deg().to_radians(),
-            sense: -k.sense(),
+            law: ContactLaw::of(bearing, kind),
+            elements: bearing.rollers,
+            clearance_m: 0.5 * bearing.clearance,
+            outwards_n: element_mass(&bearing, kind) * kinematics.cage_rad_s.powi(2) * path,
+            load_zone,
+            sense: -kinematics.sense(),
         }
     }
 
@@ -147,7 +151,7 @@ impl TurningRings {
         out
     }
 
-    /// A state in the axes of the scene.
+    /// A state in fixed axes.
     fn state(&self, shift: [f64; 2], carried: &Carried) -> RingState {
         let (s, c) = (self.load_zone - FRAC_PI_2).sin_cos();
         let [xx, xy, yy] = carried.stiffness;

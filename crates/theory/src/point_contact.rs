@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 /// Radius of the grooves of raceways over the diameter of the balls [-]; 0.515 to 0.53 are usual.
-pub(crate) const CONFORMITY: f64 = 0.52;
+pub const CONFORMITY: f64 = 0.52;
 
 /// Approach [m] of a ball and a raceway under the force `load` [N]. `across` is the radius of the raceway in
 /// the plane of rotation [m], negative where the ball lies inside it; `groove` that of its groove [m];
@@ -11,7 +11,7 @@ pub(crate) const CONFORMITY: f64 = 0.52;
 ///
 /// Source: Hamrock and Brewe 1983, *Simplified Solution for Stresses and Deformations*, J. Lubr. Technol.
 /// 105, 171–177: fits of the elliptic integrals, within 2 % for balls in grooves.
-pub(crate) fn approach(ball_radius: f64, across: f64, groove: f64, load: f64, modulus: f64) -> f64 {
+pub fn approach(ball_radius: f64, across: f64, groove: f64, load: f64, modulus: f64) -> f64 {
     let along = 1.0 / (1.0 / ball_radius + 1.0 / across);
     let beside = 1.0 / (1.0 / ball_radius - 1.0 / groove);
     let ratio = beside / along;

@@ -1,10 +1,10 @@
 //! Approach of two raceways with a roller pressed between them: plane-strain line contacts (THEORY §6.2).
 
-use crate::resolved::ResolvedScene;
+use crate::bearing::Bearing;
 
 /// The two contacts of one roller in series.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct LineContacts {
+pub struct LineContacts {
     /// (1 − ν²)/(π E) [m²/N].
     softness: f64,
     /// E* = E/(2(1 − ν²)) [Pa].
@@ -20,19 +20,17 @@ pub(crate) struct LineContacts {
 
 impl LineContacts {
     /// Of a roller of this bearing.
-    pub(crate) fn of(scene: &ResolvedScene) -> Self {
-        let (m, nu) = (&scene.material, scene.material.poissons_ratio);
+    pub fn of(bearing: impl Into<Bearing>) -> Self {
+        let bearing = bearing.into();
+        let (m, nu) = (&bearing.material, bearing.material.poissons_ratio);
         Self {
             softness: (1.0 - nu * nu) / (std::f64::consts::PI * m.youngs_modulus),
             modulus: m.contact_modulus(),
             poisson: nu,
-            roller: scene.roller_radius,
+            roller: bearing.roller_radius,
             sides: [
-                (
-                    scene.outer_contact_radius(),
-                    Some(scene.outer_ring_thickness).filter(|_| !scene.outer_ring_rigid),
-                ),
-                (scene.inner_contact_radius(), Some(scene.inner_ring_thickness)),
+                (bearing.outer_contact_radius(), bearing.outer_ring_thickness),
+                (bearing.inner_contact_radius(), Some(bearing.inner_ring_thickness)),
             ],
         }
     }
@@ -43,7 +41,7 @@ impl LineContacts {
     /// b² = 4 w R / (π E*)
     /// δ  = Σ w (1−ν²)/(π E) · [2 ln(4 r/b) − 1 + 2 ln(2 h/b) − ν/(1−ν)]     over both contacts
     /// ```
-    pub(crate) fn approach(&self, w: f64) -> (f64, f64) {
+    pub fn approach(&self, w: f64) -> (f64, f64) {
         let mut sum = (0.0, 0.0);
         for side in 0..2 {
             let (approach, slope) = self.approach_at(side, w);
@@ -54,7 +52,7 @@ impl LineContacts {
     }
 
     /// The same of one contact: 0 the outer, 1 the inner one.
-    pub(crate) fn approach_at(&self, side: usize, w: f64) -> (f64, f64) {
+    pub fn approach_at(&self, side: usize, w: f64) -> (f64, f64) {
         let (radius, depth) = self.sides[side];
         // Against a rigid ring the contact is half as soft.
         let modulus = if depth.is_some() { self.modulus } else { 2.0 * self.modulus };
@@ -69,7 +67,7 @@ impl LineContacts {
 
     /// Line load [N/m] at the approach `delta` [m], and its derivative [N/m²]; `None` beyond the largest
     /// approach for which the law holds: its stiffness vanishes where contacts are as wide as the roller.
-    pub(crate) fn load(&self, delta: f64) -> Option<(f64, f64)> {
+    pub fn load(&self, delta: f64) -> Option<(f64, f64)> {
         // δ(w) is concave, so Newton from below never overshoots; 80 is more than the logarithms of any real
         // load.
         let mut w = delta / (80.0 * self.softness);
@@ -87,7 +85,7 @@ impl LineContacts {
 
     /// Energy of the contacts under the line load `w` at the approach `delta` that it makes [J/m]: ∫ w dδ, by
     /// parts w δ less ∫ δ dw, in which each logarithm of w leaves w²/4.
-    pub(crate) fn energy(&self, w: f64, delta: f64) -> f64 {
+    pub fn energy(&self, w: f64, delta: f64) -> f64 {
         let all: f64 = self.sides.iter().map(|(_, depth)| logarithms(*depth)).sum();
         0.5 * w * delta - 0.25 * all * self.softness * w * w
     }

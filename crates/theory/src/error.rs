@@ -1,15 +1,9 @@
 //! The error type of this crate.
 
-use crate::scene_file::SceneError;
-
-/// Everything that can go wrong with a scene and the loads that follow from it.
+/// Everything that can go wrong between numbers of a bearing and its loads.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The scene cannot be read or describes something impossible.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-
     /// A number given to a function of this crate lies outside its range.
     #[error("`{field}` is {value}; allowed: {allowed}. {suggestion}")]
     Input {

@@ -4,10 +4,10 @@ use std::f64::consts::PI;
 
 use serde::{Deserialize, Serialize};
 
+use crate::bearing::Bearing;
+use crate::catalogue::Element;
 use crate::line_contact::LineContacts;
-use crate::load_rating::is_ball_bearing;
 use crate::point_contact::{self, CONFORMITY};
-use crate::resolved::ResolvedScene;
 
 /// A law of contact of rolling elements and raceways.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -23,9 +23,12 @@ pub enum ContactLawKind {
 }
 
 impl ContactLawKind {
-    /// The one that a bearing has: points for balls of the catalogue, lines for all others.
-    pub fn of(scene: &ResolvedScene) -> Self {
-        if is_ball_bearing(&scene.written) { Self::Ball } else { Self::Line }
+    /// The one that such elements have: points for balls, lines for rollers.
+    pub fn of(element: Element) -> Self {
+        match element {
+            Element::Ball => Self::Ball,
+            Element::Roller => Self::Line,
+        }
     }
 
     /// In words, with its source.
@@ -53,19 +56,22 @@ enum Law {
 }
 
 impl ContactLaw {
-    /// Of a scene's rolling elements.
-    pub fn of(scene: &ResolvedScene, kind: ContactLawKind) -> Self {
+    /// Of a bearing's rolling elements.
+    pub fn of(bearing: impl Into<Bearing>, kind: ContactLawKind) -> Self {
+        let bearing = bearing.into();
         Self(match kind {
-            ContactLawKind::Line => Law::Line { contacts: LineContacts::of(scene), length: scene.thickness },
+            ContactLawKind::Line => {
+                Law::Line { contacts: LineContacts::of(bearing), length: bearing.thickness }
+            }
             ContactLawKind::Ball => {
-                let (r, groove) = (scene.roller_radius, 2.0 * CONFORMITY * scene.roller_radius);
-                let modulus = 2.0 * scene.material.contact_modulus();
-                let across = [-scene.outer_race_radius, scene.inner_race_radius];
+                let (r, groove) = (bearing.roller_radius, 2.0 * CONFORMITY * bearing.roller_radius);
+                let modulus = 2.0 * bearing.material.contact_modulus();
+                let across = [-bearing.outer_race_radius, bearing.inner_race_radius];
                 let factors = across.map(|across| point_contact::approach(r, across, groove, 1.0, modulus));
                 Law::Power { factors, power: 2.0 / 3.0 }
             }
             ContactLawKind::Palmgren => {
-                let factor = 3.84e-8 * (1e3 * scene.thickness).powf(-0.8);
+                let factor = 3.84e-8 * (1e3 * bearing.thickness).powf(-0.8);
                 Law::Power { factors: [factor; 2], power: 0.9 }
             }
         })
@@ -126,10 +132,10 @@ impl ContactLaw {
 }
 
 /// Mass of a rolling element [kg]: of a ball, or of a cylinder as long as the model is thick.
-pub fn element_mass(scene: &ResolvedScene, kind: ContactLawKind) -> f64 {
-    let (r, rho) = (scene.roller_radius, scene.material.density);
+pub fn element_mass(bearing: &Bearing, kind: ContactLawKind) -> f64 {
+    let (r, rho) = (bearing.roller_radius, bearing.material.density);
     match kind {
         ContactLawKind::Ball => rho * 4.0 / 3.0 * PI * r.powi(3),
-        ContactLawKind::Line | ContactLawKind::Palmgren => rho * PI * r * r * scene.thickness,
+        ContactLawKind::Line | ContactLawKind::Palmgren => rho * PI * r * r * bearing.thickness,
     }
 }

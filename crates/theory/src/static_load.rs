@@ -4,11 +4,9 @@
 //! roller's half by Johnson (*Contact Mechanics*, 1985, §5.6), the ring's side as a half-plane down to the
 //! ring's thickness (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
 
+use crate::bearing::Bearing;
 use crate::error::Error;
-use crate::kinematics::roller_angles_deg;
 use crate::line_contact::LineContacts;
-use crate::resolved::ResolvedScene;
-use crate::scene::Scene;
 
 /// Unbalanced force, as a part of the load, at which the search ends.
 const TOLERANCE: f64 = 1e-10;
@@ -59,12 +57,13 @@ pub struct RigidRings {
 }
 
 impl RigidRings {
-    /// Rings, rollers and material of a scene.
-    pub fn new(scene: &ResolvedScene) -> Self {
+    /// Rings, rollers and material of a bearing.
+    pub fn new(bearing: impl Into<Bearing>) -> Self {
+        let b = bearing.into();
         Self {
-            clearance_m: scene.outer_race_radius - scene.inner_race_radius - 2.0 * scene.roller_radius,
-            length_m: scene.thickness,
-            compliance: LineContacts::of(scene),
+            clearance_m: b.outer_race_radius - b.inner_race_radius - 2.0 * b.roller_radius,
+            length_m: b.thickness,
+            compliance: LineContacts::of(b),
         }
     }
 
@@ -215,41 +214,25 @@ impl Residual {
     }
 }
 
-/// Load distribution of a scene at its start, under its load alone (no weights).
-///
-/// # Errors
-///
-/// As [`RigidRings::distribute`].
-pub fn at_start(scene: &ResolvedScene) -> Result<StaticLoad, Error> {
-    RigidRings::new(scene).distribute(scene.duty.load_n(0.0), &angles_to_load_deg(&scene.written))
-}
-
-/// Angles of a scene's rollers at the start as seen in a frame whose load comes from above [°], in their
-/// order, without those that are missing: the argument of [`RigidRings::distribute`]. For a load downwards
-/// they are the angles themselves.
-pub fn angles_to_load_deg(scene: &Scene) -> Vec<f64> {
-    let turned = scene.load_zone_deg() - 90.0;
-    let angles = roller_angles_deg(scene);
-    scene.rollers_in_place().map(|number| angles[number - 1] - turned).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::BearingScene;
+    use crate::bearing::singh2014::BEARING;
 
     /// The reference table prints three digits.
     const PRINTED: f64 = 0.01;
 
+    /// Angles of rollers, the first of them at `first` [°].
+    fn angles_deg(rollers: usize, first: f64) -> Vec<f64> {
+        (0..rollers).map(|n| first - 360.0 * n as f64 / rollers as f64).collect()
+    }
+
     fn centred(thickness_mm: f64, without: &[usize]) -> StaticLoad {
-        let scene = Scene::default();
-        let bearing = BearingScene { thickness_mm, first_roller_deg: 90.0, ..scene.bearing };
-        let scene = Scene { bearing, ..scene };
-        let mut angles = roller_angles_deg(&scene);
+        let mut angles = angles_deg(24, 90.0);
         for at in without {
             angles.remove(*at);
         }
-        let rings = RigidRings::new(&scene.resolve());
+        let rings = RigidRings::new(Bearing { thickness: 1e-3 * thickness_mm, ..BEARING });
         rings.distribute(50_000.0, &angles).expect("equilibrium")
     }
 
@@ -277,19 +260,18 @@ mod tests {
     #[test]
     fn analytic_stribeck_number_without_clearance() {
         // Without clearance and with Q ∝ δ, Q_max = 4 W/Z; line contact stiffens a little: Stribeck's 4.08.
-        let scene = Scene::default();
-        let bearing = BearingScene { inner_race_diameter_mm: 164.0, first_roller_deg: 90.0, ..scene.bearing };
-        let load = at_start(&Scene { bearing, ..Scene::default() }.resolve()).expect("equilibrium");
+        let rings = RigidRings::new(Bearing { inner_race_radius: 82e-3, ..BEARING });
+        let load = rings.distribute(50_000.0, &angles_deg(24, 90.0)).expect("equilibrium");
         let stribeck = load.max_roller_n() * 24.0 / 50_000.0;
         assert!((stribeck - 4.08).abs() < 0.06, "{stribeck}");
     }
 
     #[test]
     fn conserves_the_load_in_both_directions() {
-        let scene = Scene::default();
-        let load = at_start(&scene.resolve()).expect("equilibrium");
+        let angles = angles_deg(24, 94.0);
+        let load = RigidRings::new(BEARING).distribute(50_000.0, &angles).expect("equilibrium");
         let mut sum = [0.0, 0.0];
-        for (force, angle) in load.roller_n.iter().zip(roller_angles_deg(&scene)) {
+        for (force, angle) in load.roller_n.iter().zip(angles) {
             sum[0] += force * angle.to_radians().cos();
             sum[1] += force * angle.to_radians().sin();
         }
@@ -301,17 +283,14 @@ mod tests {
         // Under light loads the search passes positions without contact, from which it must not leave the
         // bearing. With few rollers one of them may carry alone. Between rigid rings the law of the contact
         // has fewer logarithms.
-        let rigid = Scene::parse("(housing: rigid(), defect: None)", "here").expect("valid");
         for rollers in [3, 4, 5, 24] {
             for turned in 0..8 {
                 let first = 90.0 + 45.0 * turned as f64 / rollers as f64;
-                let angles: Vec<f64> =
-                    (0..rollers).map(|n| first - 360.0 * n as f64 / rollers as f64).collect();
-                for inner_race_diameter_mm in [163.8, 163.9, 163.95, 164.0] {
-                    let scene = Scene::default();
-                    let bearing = BearingScene { inner_race_diameter_mm, ..scene.bearing };
-                    let housing = if turned % 2 == 0 { scene.housing.clone() } else { rigid.housing.clone() };
-                    let rings = RigidRings::new(&Scene { bearing, housing, ..Scene::default() }.resolve());
+                let angles = angles_deg(rollers, first);
+                for inner_race_radius in [81.9e-3, 81.95e-3, 81.975e-3, 82e-3] {
+                    let outer_ring_thickness = BEARING.outer_ring_thickness.filter(|_| turned % 2 == 0);
+                    let rings =
+                        RigidRings::new(Bearing { inner_race_radius, outer_ring_thickness, ..BEARING });
                     for load_n in (-6..12).map(|power| 10.0_f64.powf(0.5 * f64::from(power))) {
                         let load = rings
                             .distribute(load_n, &angles)
@@ -330,8 +309,7 @@ mod tests {
 
     #[test]
     fn refuses_bad_loads_and_positions() {
-        let scene = Scene::default();
-        let rings = RigidRings::new(&scene.resolve());
+        let rings = RigidRings::new(BEARING);
         assert!(rings.distribute(0.0, &[60.0, 90.0, 120.0]).is_err());
         assert!(rings.distribute(f64::NAN, &[60.0, 90.0, 120.0]).is_err());
         for fallen in [&[270.0][..], &[30.0, 60.0], &[80.0, 260.1], &[]] {

@@ -2,7 +2,7 @@
 //! §6.3).
 //!
 //! ```
-//! use stribeck_duty::{Course, Duty};
+//! use stribeck_theory::duty::{Course, Duty};
 //!
 //! // From 500 to 1500 rpm between 10 and 30 ms, under 50 kN that point downwards.
 //! let duty = Duty {
@@ -338,10 +338,6 @@ fn samples(from_s: f64, until_s: f64) -> impl Iterator<Item = f64> {
 fn least_and_largest(values: impl Iterator<Item = f64>) -> [f64; 2] {
     values.fold([f64::INFINITY, f64::NEG_INFINITY], |[least, most], v| [least.min(v), most.max(v)])
 }
-
-#[cfg(doctest)]
-#[doc = include_str!("../README.md")]
-struct Readme;
 
 #[cfg(test)]
 mod tests {

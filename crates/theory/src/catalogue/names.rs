@@ -9,7 +9,7 @@ const MAKERS: [&str; 14] = [
 ];
 
 /// Letters and digits alone, in capitals.
-pub(super) fn plain(text: &str) -> String {
+pub fn plain(text: &str) -> String {
     text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_uppercase()
 }
 

@@ -7,8 +7,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::resolved::DefectGeometry;
-use crate::scene::{BearingScene, DefectRing, DefectScene, Scene};
+use crate::bearing::{Dimensions, Ring};
 
 /// Speeds of a bearing whose rollers do not slip.
 ///
@@ -54,14 +53,19 @@ pub struct Kinematics {
     /// Speed of the contact point along the outer raceway [m/s], positive, with
     /// [`Kinematics::cage_on_outer_hz`].
     pub contact_speed_m_s: f64,
-    bearing: Dimensions,
+    /// Diameters of the outer and the inner raceway [m].
+    raceways_m: [f64; 2],
 }
 
-/// Dimensions and speeds that kinematics needs.
+/// A spall on a raceway, as far as rollers cross it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Dimensions {
-    outer_m: f64,
-    inner_m: f64,
+pub struct Stretch {
+    /// Ring on whose raceway it lies.
+    pub ring: Ring,
+    /// Circumferential length [m].
+    pub length: f64,
+    /// Angle of its middle at the start [°].
+    pub angle_deg: f64,
 }
 
 /// Facets of the polygons that a mesh makes of the circles.
@@ -106,35 +110,22 @@ pub struct Crossing {
 }
 
 impl Kinematics {
-    /// Kinematics of a scene's bearing at its speed at the start.
-    pub fn of(scene: &Scene) -> Self {
-        let duty = scene.duty();
-        Self::between(&scene.bearing, duty.speed_rpm(0.0), duty.outer_speed_rpm(0.0))
-    }
-
-    /// Kinematics of a scene's bearing at its mean speeds over the run: where a speed changes, only ratios of
-    /// its frequencies to the relative speed of the rings are meaningful.
-    pub fn at_mean_speed(scene: &Scene) -> Self {
-        let duration_s = 1e-3 * scene.solver.duration_ms;
-        let [inner_rpm, outer_rpm] = scene.duty().mean_speeds_rpm(duration_s);
-        Self::between(&scene.bearing, inner_rpm, outer_rpm)
-    }
-
     /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive, and the
     /// outer one at rest.
-    pub fn new(bearing: &BearingScene, speed_rpm: f64) -> Self {
+    pub fn new(bearing: impl Into<Dimensions>, speed_rpm: f64) -> Self {
         Self::between(bearing, speed_rpm, 0.0)
     }
 
     /// Kinematics of `bearing` with the inner and the outer ring at these speeds [rpm], clockwise where they
     /// are positive.
-    pub fn between(bearing: &BearingScene, inner_rpm: f64, outer_rpm: f64) -> Self {
+    pub fn between(bearing: impl Into<Dimensions>, inner_rpm: f64, outer_rpm: f64) -> Self {
+        let Dimensions { outer_race_mm: outer, inner_race_mm: inner, roller_mm: roller, rollers } =
+            bearing.into();
+        let count = rollers as f64;
         let (shaft, ring) = (inner_rpm / 60.0, outer_rpm / 60.0);
         // Rollers follow the relative speed; the outer ring's rotation is added to their motion in space.
         let clockwise_hz = shaft - ring;
         let relative_hz = clockwise_hz.abs();
-        let (outer, inner) = (bearing.outer_race_diameter_mm, bearing.inner_race_diameter_mm);
-        let (roller, count) = (bearing.roller_diameter_mm, bearing.rollers as f64);
         let pitch = (outer + inner) / 2.0;
         let cage_on_outer_hz = relative_hz * inner / (inner + outer);
         let bpfo_hz = relative_hz * count / 2.0 * (1.0 - roller / pitch);
@@ -164,7 +155,7 @@ impl Kinematics {
             roller_rad_s: outer_rad_s + spin_on_outer,
             roller_relative_rad_s: spin_on_outer - on_outer_rad_s,
             contact_speed_m_s: TAU * cage_on_outer_hz * outer / 2.0 * 1e-3,
-            bearing: Dimensions { outer_m: outer * 1e-3, inner_m: inner * 1e-3 },
+            raceways_m: [outer * 1e-3, inner * 1e-3],
         }
     }
 
@@ -194,7 +185,7 @@ impl Kinematics {
     /// inner ring belongs, so it stands for no motion in the bearing.
     pub fn paper_noise_hz(&self, element_size: f64) -> (f64, f64) {
         let tone = |diameter_m: f64| TAU * self.cage_on_outer_hz * diameter_m / (2.0 * element_size);
-        (tone(self.bearing.outer_m), tone(self.bearing.inner_m))
+        (tone(self.raceways_m[0]), tone(self.raceways_m[1]))
     }
 
     /// Rollers that leave `defect` within `duration_s`, in the order of their entry.
@@ -203,16 +194,16 @@ impl Kinematics {
     /// shaft: clockwise at a positive speed, where the leading edge is the one at the larger angle; as seen
     /// from the inner one, which turns faster, the other way round. A roller that starts inside the defect
     /// has a negative entry time. Empty when the rings stand still against each other.
-    pub fn crossings(&self, defect: &DefectScene, start_deg: &[f64], duration_s: f64) -> Vec<Crossing> {
-        let sense = self.sense();
+    pub fn crossings(&self, defect: impl Into<Stretch>, start_deg: &[f64], duration_s: f64) -> Vec<Crossing> {
+        let (defect, sense, [outer_m, inner_m]) = (defect.into(), self.sense(), self.raceways_m);
         let (speed, diameter, ahead) = match defect.ring {
-            DefectRing::Outer => (360.0 * self.cage_on_outer_hz, self.bearing.outer_m, sense),
-            DefectRing::Inner => (360.0 * self.cage_on_inner_hz, self.bearing.inner_m, -sense),
+            Ring::Outer => (360.0 * self.cage_on_outer_hz, outer_m, sense),
+            Ring::Inner => (360.0 * self.cage_on_inner_hz, inner_m, -sense),
         };
         if !(speed > 0.0 && duration_s.is_finite()) {
             return Vec::new();
         }
-        let half = (DefectGeometry::of(defect).length / diameter).to_degrees();
+        let half = (defect.length / diameter).to_degrees();
         let mut crossings = Vec::new();
         for (roller, start) in start_deg.iter().enumerate() {
             let trailing = defect.angle_deg - ahead * half;
@@ -228,29 +219,26 @@ impl Kinematics {
     }
 }
 
-/// Angles of a scene's rollers at the start [°], counter-clockwise from the x axis, roller 1 first, and those
-/// where one is missing.
-pub fn roller_angles_deg(scene: &Scene) -> Vec<f64> {
-    let b = &scene.bearing;
-    let path_mm = 0.5 * (b.outer_race_diameter_mm - b.roller_diameter_mm);
-    let offset = |i: usize| scene.cage.as_ref().and_then(|cage| cage.roller_offsets_um.get(i));
-    let offset_deg = |i: usize| offset(i).map_or(0.0, |um| (1e-3 * um / path_mm).to_degrees());
-    let pocket_deg = |i: usize| b.first_roller_deg + 360.0 * i as f64 / b.rollers as f64;
-    (0..b.rollers).map(|i| pocket_deg(i) + offset_deg(i)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bearing::singh2014::DIMENSIONS;
+
+    /// The spall of the paper, at the top of the outer raceway.
+    const SPALL: Stretch = Stretch { ring: Ring::Outer, length: 1e-3 * 10.0, angle_deg: 90.0 };
+
+    /// Angles of its rollers at the start.
+    fn angles() -> Vec<f64> {
+        (0..24).map(|i| 94.0 + 360.0 * f64::from(i) / 24.0).collect()
+    }
 
     /// Source: an inner raceway meets every roller (f_s − f_c) N times in N turns of the cage relative to it,
     /// THEORY §5.1.
     #[test]
     fn analytic_rollers_cross_an_inner_defect_at_bpfi() {
-        let scene = Scene::default();
-        let defect = DefectScene { ring: DefectRing::Inner, ..DefectScene::default() };
+        let defect = Stretch { ring: Ring::Inner, ..SPALL };
         let k = paper();
-        let crossings = k.crossings(&defect, &roller_angles_deg(&scene), 1.0);
+        let crossings = k.crossings(defect, &angles(), 1.0);
         let apart = (crossings[100].centre_s - crossings[0].centre_s) / 100.0;
         // Formulas with the pitch circle share the clearance between the raceways otherwise.
         assert_close(apart, 1.0 / k.bpfi_hz, PRINTED);
@@ -265,9 +253,9 @@ mod tests {
     /// Source: in a frame that turns with the outer ring it stands still, and speeds add; THEORY §5.1.
     #[test]
     fn analytic_rings_that_turn_against_each_other() {
-        let bearing = BearingScene::default();
-        let still = Kinematics::new(&bearing, 700.0);
-        let both = Kinematics::between(&bearing, 500.0, -200.0);
+        let bearing = DIMENSIONS;
+        let still = Kinematics::new(bearing, 700.0);
+        let both = Kinematics::between(bearing, 500.0, -200.0);
         for (a, b) in [
             (still.bpfo_hz, both.bpfo_hz),
             (still.bpfi_hz, both.bpfi_hz),
@@ -279,12 +267,12 @@ mod tests {
             assert_close(a, b, ROUNDING);
         }
         // Speeds of the contacts, (ω_i D_i + ω_o D_o)/(D_i + D_o), clockwise positive.
-        let (d_i, d_o) = (bearing.inner_race_diameter_mm, bearing.outer_race_diameter_mm);
+        let (d_i, d_o) = (bearing.inner_race_mm, bearing.outer_race_mm);
         assert_close(both.cage_hz, ((500.0 * d_i - 200.0 * d_o) / (60.0 * (d_i + d_o))).abs(), ROUNDING);
-        let hub = Kinematics::between(&bearing, 0.0, 600.0);
+        let hub = Kinematics::between(bearing, 0.0, 600.0);
         assert_close(hub.cage_hz, 10.0 * d_o / (d_i + d_o), ROUNDING);
         assert_eq!((hub.shaft_hz, hub.outer_ring_hz, hub.sense()), (0.0, 10.0, -1.0));
-        let together = Kinematics::between(&bearing, 300.0, 300.0);
+        let together = Kinematics::between(bearing, 300.0, 300.0);
         assert_eq!((together.bpfo_hz, together.cage_hz), (0.0, 5.0));
     }
 
@@ -294,7 +282,7 @@ mod tests {
     const ROUNDING: f64 = 1e-12;
 
     fn paper() -> Kinematics {
-        Kinematics::of(&Scene::default())
+        Kinematics::new(DIMENSIONS, 500.0)
     }
 
     fn assert_close(ours: f64, theirs: f64, relative: f64) {
@@ -364,9 +352,7 @@ mod tests {
     fn analytic_event_times_of_the_reference() {
         let text = include_str!("../../../fixtures/reference/event_times.json");
         let reference: serde_json::Value = serde_json::from_str(text).expect("valid JSON");
-        let scene = Scene::default();
-        let defect = scene.defect.as_ref().expect("the default has one");
-        let crossings = paper().crossings(defect, &roller_angles_deg(&scene), 30e-3);
+        let crossings = paper().crossings(SPALL, &angles(), 30e-3);
         assert_eq!(crossings.iter().map(|c| c.roller).collect::<Vec<_>>(), [1, 2, 3]);
         for crossing in crossings {
             let expected = &reference[format!("roller{}", crossing.roller)];
@@ -381,52 +367,32 @@ mod tests {
     fn invariant_crossings_repeat_at_bpfo() {
         // One second: exits come at 24 times the cage frequency, whatever the roller's first angle.
         let k = paper();
-        let scene = Scene::default();
-        let defect = scene.defect.as_ref().expect("the default has one");
-        let crossings = k.crossings(defect, &roller_angles_deg(&scene), 1.0);
+        let crossings = k.crossings(SPALL, &angles(), 1.0);
         assert_eq!(crossings.len(), 90);
         for pair in crossings.windows(2) {
             assert_close(pair[1].exit_s - pair[0].exit_s, 1.0 / (24.0 * k.cage_hz), 1e-9);
         }
-        let inside = k.crossings(defect, &[91.0, 106.0], 6e-3);
+        let inside = k.crossings(SPALL, &[91.0, 106.0], 6e-3);
         assert!(inside[0].entry_s < 0.0 && inside[0].roller == 1);
-    }
-
-    /// Rolling without slip (THEORY §5.1): a roller ahead by s arrives earlier by s over the speed of its
-    /// centre.
-    #[test]
-    fn analytic_a_roller_out_of_the_middle_of_its_pocket_arrives_as_much_later() {
-        let mut scene = Scene::default();
-        let offsets: Vec<f64> = (0..24).map(|i| 80.0 - 7.0 * f64::from(i)).collect();
-        let crossings = |scene: &Scene| {
-            paper().crossings(scene.defect.as_ref().expect("one"), &roller_angles_deg(scene), 30e-3)
-        };
-        let centred = crossings(&scene);
-        scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.clone_from(&offsets));
-        for (a, b) in centred.iter().zip(crossings(&scene)) {
-            let speed = TAU * paper().cage_hz * 91e-3;
-            assert_close(b.exit_s - a.exit_s, 1e-6 * offsets[a.roller - 1] / speed, 1e-9);
-        }
     }
 
     /// Rotation in the other direction is the mirror image: frequencies stay, angular velocities change their
     /// sign, and rollers that start at mirrored angles meet a mirrored defect at the same times.
     #[test]
     fn invariant_a_shaft_that_turns_back_is_the_mirror_image() {
-        let scene = Scene::default();
-        let (there, back) = (paper(), Kinematics::new(&scene.bearing, -500.0));
+        let (there, back) = (paper(), Kinematics::new(DIMENSIONS, -500.0));
         let hz = |k: &Kinematics| [k.shaft_hz, k.cage_hz, k.bpfo_hz, k.bpfi_hz, k.bsf_hz, k.roller_spin_hz];
         assert_eq!(hz(&there), hz(&back));
         assert_eq!(there.contact_speed_m_s, back.contact_speed_m_s);
         let turns = |k: &Kinematics| [k.shaft_rad_s, k.cage_rad_s, k.roller_rad_s, k.roller_relative_rad_s];
         assert_eq!(turns(&there), turns(&back).map(|rate| -rate));
         assert_eq!((there.sense(), back.sense()), (1.0, -1.0));
-        let angles = roller_angles_deg(&scene);
+        let angles = angles();
         let mirrored: Vec<f64> = angles.iter().map(|angle| 180.0 - angle).collect();
-        for ring in [DefectRing::Outer, DefectRing::Inner] {
-            let defect = |angle_deg| DefectScene { ring, angle_deg, ..DefectScene::default() };
-            let ours = there.crossings(&defect(70.0), &angles, 1.0);
-            let theirs = back.crossings(&defect(110.0), &mirrored, 1.0);
+        for ring in [Ring::Outer, Ring::Inner] {
+            let defect = |angle_deg| Stretch { ring, angle_deg, ..SPALL };
+            let ours = there.crossings(defect(70.0), &angles, 1.0);
+            let theirs = back.crossings(defect(110.0), &mirrored, 1.0);
             assert!(ours.len() > 80 && ours.len() == theirs.len());
             for (a, b) in ours.iter().zip(&theirs) {
                 assert_eq!(a.roller, b.roller);
@@ -438,8 +404,6 @@ mod tests {
 
     #[test]
     fn behaves_a_standing_shaft_has_no_events() {
-        let scene = Scene::default();
-        let defect = scene.defect.as_ref().expect("the default has one");
-        assert_eq!(Kinematics::new(&scene.bearing, 0.0).crossings(defect, &[94.0], 1.0).len(), 0);
+        assert_eq!(Kinematics::new(DIMENSIONS, 0.0).crossings(SPALL, &[94.0], 1.0).len(), 0);
     }
 }

@@ -1,0 +1,204 @@
+//! Numbers of a scene for the theory of rolling bearings, and what the theory says of the scene.
+
+use stribeck_theory::bearing::{Bearing, Dimensions, Ring};
+use stribeck_theory::catalogue::{self, Element};
+use stribeck_theory::kinematics::{Kinematics, Stretch};
+use stribeck_theory::lubrication::{self, LoadedFilm};
+use stribeck_theory::material::Material;
+use stribeck_theory::ring_stiffness::TurningRings;
+use stribeck_theory::static_load::{RigidRings, StaticLoad};
+use stribeck_theory::{Error, contact_law::ContactLawKind, load_rating};
+
+use crate::duty::LONGEST_RUN_S;
+use crate::resolved::ResolvedScene;
+use crate::scene::{BearingScene, DefectRing, DefectScene, MaterialScene, Scene};
+
+impl From<&BearingScene> for Dimensions {
+    fn from(bearing: &BearingScene) -> Self {
+        Self {
+            outer_race_mm: bearing.outer_race_diameter_mm,
+            inner_race_mm: bearing.inner_race_diameter_mm,
+            roller_mm: bearing.roller_diameter_mm,
+            rollers: bearing.rollers,
+        }
+    }
+}
+
+impl From<&ResolvedScene> for Bearing {
+    fn from(scene: &ResolvedScene) -> Self {
+        Self {
+            outer_race_radius: scene.outer_race_radius,
+            inner_race_radius: scene.inner_race_radius,
+            outer_ring_thickness: Some(scene.outer_ring_thickness).filter(|_| !scene.outer_ring_rigid),
+            inner_ring_thickness: scene.inner_ring_thickness,
+            roller_radius: scene.roller_radius,
+            rollers: scene.rollers,
+            clearance: scene.clearance,
+            thickness: scene.thickness,
+            material: scene.material,
+        }
+    }
+}
+
+impl From<&MaterialScene> for Material {
+    fn from(material: &MaterialScene) -> Self {
+        Self {
+            youngs_modulus: 1e9 * material.youngs_modulus_gpa,
+            poissons_ratio: material.poissons_ratio,
+            density: material.density_kg_m3,
+        }
+    }
+}
+
+impl From<&DefectScene> for Stretch {
+    fn from(defect: &DefectScene) -> Self {
+        let ring = match defect.ring {
+            DefectRing::Outer => Ring::Outer,
+            DefectRing::Inner => Ring::Inner,
+        };
+        Self { ring, length: 1e-3 * defect.length_mm, angle_deg: defect.angle_deg }
+    }
+}
+
+impl Scene {
+    /// Speeds of the bearing at the start.
+    pub fn kinematics(&self) -> Kinematics {
+        let duty = self.duty();
+        Kinematics::between(&self.bearing, duty.speed_rpm(0.0), duty.outer_speed_rpm(0.0))
+    }
+
+    /// Speeds of the bearing at the mean speeds over the run: where a speed changes, only ratios of its
+    /// frequencies to the relative speed of the rings are meaningful.
+    pub fn mean_kinematics(&self) -> Kinematics {
+        let duration_s = 1e-3 * self.solver.duration_ms;
+        let [inner_rpm, outer_rpm] = self.duty().mean_speeds_rpm(duration_s);
+        Kinematics::between(&self.bearing, inner_rpm, outer_rpm)
+    }
+
+    /// Angles of the rollers at the start [°], counter-clockwise from the x axis, roller 1 first, and those
+    /// where one is missing.
+    pub fn roller_angles_deg(&self) -> Vec<f64> {
+        let b = &self.bearing;
+        let path_mm = 0.5 * (b.outer_race_diameter_mm - b.roller_diameter_mm);
+        let offset = |i: usize| self.cage.as_ref().and_then(|cage| cage.roller_offsets_um.get(i));
+        let offset_deg = |i: usize| offset(i).map_or(0.0, |um| (1e-3 * um / path_mm).to_degrees());
+        let pocket_deg = |i: usize| b.first_roller_deg + 360.0 * i as f64 / b.rollers as f64;
+        (0..b.rollers).map(|i| pocket_deg(i) + offset_deg(i)).collect()
+    }
+
+    /// Angles of the rollers at the start as seen in a frame whose load comes from above [°], in their order,
+    /// without those that are missing: the argument of [`RigidRings::distribute`]. For a load downwards they
+    /// are the angles themselves.
+    pub fn angles_to_load_deg(&self) -> Vec<f64> {
+        let turned = self.load_zone_deg() - 90.0;
+        let angles = self.roller_angles_deg();
+        self.rollers_in_place().map(|number| angles[number - 1] - turned).collect()
+    }
+
+    /// Rolling elements that its cylinders stand for: balls in a bearing with the name of one of the
+    /// catalogue's ball bearings.
+    pub fn element(&self) -> Element {
+        let name = &self.bearing.designation;
+        let known = || crate::catalogue::known().unwrap_or_else(|_| catalogue::all());
+        let is_ball = !name.is_empty()
+            && known().iter().any(|known| known.name == *name && known.element == Element::Ball);
+        if is_ball { Element::Ball } else { Element::Roller }
+    }
+
+    /// Basic static radial load rating by ISO 76 [N]; rollers are as long as the model is thick.
+    pub fn static_rating_n(&self) -> f64 {
+        load_rating::static_rating_n(&self.bearing, self.element(), self.bearing.thickness_mm)
+    }
+}
+
+impl ResolvedScene {
+    /// Load distribution at the start, under the load alone (no weights).
+    ///
+    /// # Errors
+    ///
+    /// As [`RigidRings::distribute`].
+    pub fn static_load(&self) -> Result<StaticLoad, Error> {
+        RigidRings::new(self).distribute(self.duty.load_n(0.0), &self.written.angles_to_load_deg())
+    }
+
+    /// Films of the most loaded roller on the outer and on the inner raceway; `None` for a scene without oil.
+    ///
+    /// # Errors
+    /// When the scene has no static load distribution.
+    pub fn loaded_films(&self) -> Result<Option<[LoadedFilm; 2]>, Error> {
+        let Some(oil) = &self.film else { return Ok(None) };
+        let load_n = self.static_load()?.max_roller_n();
+        let k = self.written.kinematics();
+        // The least film is that of the slowest moment of the profile, however long the run: it can be made
+        // longer.
+        let slowest = self.varying_duty().map_or(1.0, |duty| {
+            let slowest = duty.slowest_rpm(LONGEST_RUN_S) / 60.0;
+            let at_start = k.cage_on_outer_hz + k.cage_on_inner_hz;
+            if at_start > 0.0 { slowest / at_start } else { 0.0 }
+        });
+        Ok(Some(lubrication::loaded_films(self, oil, &k, slowest, load_n)))
+    }
+
+    /// Law of its contacts: points for balls of the catalogue, lines for all others.
+    pub fn contact_law(&self) -> ContactLawKind {
+        ContactLawKind::of(self.written.element())
+    }
+
+    /// The bearing between rigid rings, without defects, with its inner ring at `speed_rpm`; the outer one
+    /// turns as in the scene.
+    pub fn turning_rings(&self, kind: ContactLawKind, speed_rpm: f64) -> TurningRings {
+        let outer_rpm = self.written.operation.outer_speed_rpm;
+        let k = Kinematics::between(&self.written.bearing, speed_rpm, outer_rpm);
+        TurningRings::new(self, kind, &k, self.written.load_zone_deg().to_radians())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{FilmScene, OperationScene};
+
+    /// Rolling without slip (THEORY §5.1): a roller ahead by s arrives earlier by s over the speed of its
+    /// centre.
+    #[test]
+    fn analytic_a_roller_out_of_the_middle_of_its_pocket_arrives_as_much_later() {
+        let mut scene = Scene::default();
+        let offsets: Vec<f64> = (0..24).map(|i| 80.0 - 7.0 * f64::from(i)).collect();
+        let crossings = |scene: &Scene| {
+            scene.kinematics().crossings(
+                scene.defect.as_ref().expect("one"),
+                &scene.roller_angles_deg(),
+                30e-3,
+            )
+        };
+        let centred = crossings(&scene);
+        scene.cage.iter_mut().for_each(|cage| cage.roller_offsets_um.clone_from(&offsets));
+        for (a, b) in centred.iter().zip(crossings(&scene)) {
+            let speed = std::f64::consts::TAU * scene.kinematics().cage_hz * 91e-3;
+            let expected = 1e-6 * offsets[a.roller - 1] / speed;
+            assert!((b.exit_s - a.exit_s - expected).abs() <= 1e-9 * expected.abs());
+        }
+    }
+
+    #[test]
+    fn by_hand_rough_surfaces_are_held_apart_by_their_tips() {
+        let film = Some(FilmScene { roughness_um: 0.1, ..FilmScene::default() });
+        let [smooth, _] =
+            Scene { film, ..Scene::default() }.resolve().loaded_films().expect("a load").expect("oil");
+        assert_eq!(smooth.least, smooth.thickness);
+        let film = Some(FilmScene { roughness_um: 2.0, ..FilmScene::default() });
+        let [rough, _] =
+            Scene { film, ..Scene::default() }.resolve().loaded_films().expect("a load").expect("oil");
+        assert!(rough.lambda < 1.0 && (rough.least / 2e-6 - 1.0).abs() < 1e-12, "{rough:?}");
+        let still = OperationScene { speed_rpm: 0.0, ..Scene::default().operation };
+        let film = Some(FilmScene::default());
+        let [still, _] = Scene { film, operation: still, ..Scene::default() }
+            .resolve()
+            .loaded_films()
+            .expect("a load")
+            .expect("oil");
+        assert_eq!((still.thickness, still.least), (0.0, 0.3e-6));
+        let dry = Scene { film: None, ..Scene::default() };
+        assert_eq!(dry.resolve().loaded_films().expect("a load"), None);
+    }
+}
