@@ -159,8 +159,8 @@ fn fold_down_note(sampled_s: f64) -> Option<String> {
     (sampled_s > 1.01 * FINE_S).then(|| {
         format!(
             "samples of the full model every {:.3} µs fold down what nodes ring with above {:.0} kHz, at the \
-             seat above all: its third \
-             octaves are higher than they should be. A shorter record is sampled every {:.0} µs",
+             seat above all: its third octaves are higher than they should be. A shorter record is sampled \
+             every {:.0} µs",
             1e6 * sampled_s,
             5e-4 / sampled_s,
             1e6 * FINE_S

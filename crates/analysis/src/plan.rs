@@ -180,8 +180,8 @@ impl Plan {
         if c.interpolation == ContactInterpolation::Linear && c.penalty_scale > 0.2 {
             advice.push(format!(
                 "`contact.interpolation=spline`: with a contact as stiff as elements (penalty_scale {}) a \
-                 load between \
-                 two nodes sinks in less than one at a node, and arcs alone leave a third of the tone",
+                 load between two nodes sinks in less than one at a node, and arcs alone leave a third of \
+                 the tone",
                 c.penalty_scale
             ));
         }
@@ -200,8 +200,7 @@ impl Plan {
         if in_points && c.surface != ContactSurface::Facet && audible && scene.contact_onset < onset_m {
             advice.push(format!(
                 "`contact.onset_um={:.1}`: points that come into contact and leave it sound at {:.1} kHz \
-                 unless their pressure \
-                 sets in over several of them",
+                 unless their pressure sets in over several of them",
                 1e6 * onset_m,
                 1e-3 * points_hz
             ));

@@ -49,8 +49,7 @@ fn lead(agreement: &Agreement) -> String {
     let [full, reduced, times] = agreement.cost();
     format!(
         "{} by both models, {:.0} ms each. A simulated millisecond takes {full} of processor time by the \
-         full model and {reduced} by the \
-         reduced one: {times}.",
+         full model and {reduced} by the reduced one: {times}.",
         starts(agreement.starts),
         agreement.simulated_ms
     )
@@ -90,10 +89,8 @@ fn table(agreement: &Agreement) -> Markup {
         }
         p class="hint" {
             "Pairs of runs have the same start. Third octaves are levels of the mean power over the starts, \
-             both components together, and \
-             their range is that of the bands. A limit is kept or not where the interval, or twice the \
-             standard error of each band, \
-             leaves no other answer."
+             both components together, and their range is that of the bands. A limit is kept or not where \
+             the interval, or twice the standard error of each band, leaves no other answer."
         }
         @if !agreement.correlations.is_empty() {
             p class="hint" { (alike(agreement)) }
@@ -119,11 +116,9 @@ fn peaks(agreement: &Agreement) -> Markup {
         p class="hint" {
             (format!(
                 "Magnitude of both components below {:.0} kHz, as a recorder shows it: means of the largest \
-                 of each start with their \
-                 95 % intervals, and how far the means are apart with one standard error. It has no limit, \
-                 because it is that of a single \
-                 impact. Above that the modes of the reduced model end, and peaks of raw samples do not \
-                 compare.",
+                 of each start with their 95 % intervals, and how far the means are apart with one standard \
+                 error. It has no limit, because it is that of a single impact. Above that the modes of the \
+                 reduced model end, and peaks of raw samples do not compare.",
                 1e-3 * first.below_hz
             ))
         }
@@ -165,8 +160,8 @@ fn octaves(octaves: &Octaves) -> Figure {
     .with(line("reduced", Colour::Blue, &octaves.reduced_db));
     if let Some(largest) = octaves.error_db.iter().copied().reduce(f64::max) {
         figure = figure.note(format!(
-            "By the scatter of the starts the difference is known to {largest:.1} \
-            dB at worst (one standard error)."
+            "By the scatter of the starts the difference is known to {largest:.1} dB at worst (one standard \
+             error)."
         ));
     }
     figure

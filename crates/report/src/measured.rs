@@ -414,13 +414,11 @@ fn enhanced(spectrum: &Enhanced, families: &[Family]) -> Figure {
     )
     .caption(
         "How surely each part of the spectrum comes and goes at a rate, averaged over all parts. It shows \
-         what knocks where the \
-         signal is weak; the verdict does not rest on it.",
+         what knocks where the signal is weak; the verdict does not rest on it.",
     )
     .note(format!(
         "From the first {:.2} s: cyclic lines {:.3} Hz apart, carriers {:.1} Hz apart. Dashed where a family \
-         is expected, solid \
-         where it was found.",
+         is expected, solid where it was found.",
         spectrum.duration_s, spectrum.grid_hz, spectrum.carrier_hz
     ))
     .with(Series::sampled(

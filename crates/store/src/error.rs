@@ -47,8 +47,7 @@ pub enum Error {
     /// The folder for a run, or for a result made from runs, holds something else.
     #[error(
         "`{}` holds files of something else (for example `{found}`), and what is written there would mix \
-         with them. \
-         Try another folder with --out, or empty this one",
+         with them. Try another folder with --out, or empty this one",
         path.display()
     )]
     ForeignFolder {
@@ -109,8 +108,7 @@ pub enum Error {
     /// `scene.ron` is not the scene that was simulated.
     #[error(
         "`scene.ron` in `{}` was changed after the run: it is the scene {found}, and `run.json` names \
-         {expected}. Put the run's own \
-         `scene.ron` back, or simulate the changed one anew",
+         {expected}. Put the run's own `scene.ron` back, or simulate the changed one anew",
         path.display()
     )]
     OtherScene {

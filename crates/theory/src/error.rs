@@ -20,8 +20,8 @@ pub enum Error {
     /// The rigid-ring load distribution was not found.
     #[error(
         "no static load distribution found: after {iterations} iterations {residual_n:.3e} N of {load_n:.4} \
-         N are unbalanced. \
-         Check `load_n` against `thickness_mm`: the approach must stay far below the roller's radius"
+         N are unbalanced. Check `load_n` against `thickness_mm`: the approach must stay far below the \
+         roller's radius"
     )]
     NoEquilibrium {
         /// Iterations done.

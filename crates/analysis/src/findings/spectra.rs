@@ -102,8 +102,7 @@ pub(super) fn filter(
             };
             notes.push(format!(
                 "no notch: with `contact.surface: {}` no roller goes over edges of facets, and {seen}, so \
-                 that a filter there would take \
-                 nothing of them away; its figures and numbers are left out",
+                 that a filter there would take nothing of them away; its figures and numbers are left out",
                 if run.scene.written.contact.surface == ContactSurface::Arc { "arc" } else { "nagata" },
             ));
             return Ok(None);

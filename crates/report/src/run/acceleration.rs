@@ -170,8 +170,8 @@ fn levels(summary: &Summary) -> Markup {
         (wide_table(None, &head, rows))
         p class="hint" {
             "Mean acceleration of each sampling interval. Start-up: to the first entry, 2 ms at most. Entry: \
-             from 0.5 ms before the edge to \
-             1 ms after unloading. Exit: from 1 ms before loading to 2 ms after the edge."
+             from 0.5 ms before the edge to 1 ms after unloading. Exit: from 1 ms before loading to 2 ms \
+             after the edge."
         }
     }
 }

@@ -278,8 +278,7 @@ fn physics(summary: &Summary) -> String {
         } else {
             format!(
                 " {name} ({hz:.1} Hz) does not stand as a line of the spectrum, though the record holds \
-                 {periods:.1} of its periods: look at the \
-                 envelope."
+                 {periods:.1} of its periods: look at the envelope."
             )
         }
     });

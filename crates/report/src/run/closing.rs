@@ -15,8 +15,7 @@ pub(super) fn notes(of: &Subject<'_>) -> Section {
     Section::new("notes", "Notes").after(html! {
         p class="hint" {
             "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a \
-             name in a legend hides its \
-             curve."
+             name in a legend hides its curve."
         }
         ul class="notes" {
             @for note in of.findings.summary.notes.iter().chain(of_pictures) { li { (with_code(&sentence(note))) } }

@@ -177,8 +177,7 @@ fn lengths(events: &[Event], spalls: &[DefectScene]) -> Markup {
         (folded(table, events.len(), "lengths, passage by passage"))
         p class="hint" {
             "Off: event against the roller's centre over the edge without slip. The estimate allows for the \
-             load that a roller still carries \
-             behind an edge (THEORY §7.5)."
+             load that a roller still carries behind an edge (THEORY §7.5)."
         }
     }
 }

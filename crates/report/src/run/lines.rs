@@ -35,8 +35,7 @@ fn table(summary: &Summary) -> Markup {
     html! {
         p {
             "Sensor “" (summary.levels.sensor.as_deref().unwrap_or("none")) "”, a_y. Facet lines are claimed \
-             by a family that was found, never by \
-             their place alone."
+                by a family that was found, never by their place alone."
         }
         div class="scroll" {
             table class="ledger" {

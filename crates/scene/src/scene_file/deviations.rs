@@ -443,8 +443,7 @@ impl<'a> Checked<'a> {
             let path = self.path("angle_deg");
             let message = format!(
                 "`defects[{}]` lies {apart:.2} mm from `defects[{other}]`, middle to middle, and needs \
-                 {needed:.2} mm: lengths and \
-                 {} facets",
+                 {needed:.2} mm: lengths and {} facets",
                 self.index,
                 number(facets)
             );
@@ -473,8 +472,7 @@ impl<'a> Checked<'a> {
         }
         let message = format!(
             "`film` is there, and `defects[{}]` lies on {}: oil needs round rollers, and raceways that slope \
-             by {:.0}° at most \
-             without kinks, but for walls at right angles{}",
+             by {:.0}° at most without kinks, but for walls at right angles{}",
             self.index,
             self.surface(),
             GENTLE.atan().to_degrees(),

@@ -137,8 +137,7 @@ fn clearance_change(scene: &Scene) -> Option<Finding> {
     }
     let message = format!(
         "`{CHANGE}` is {}, which leaves a clearance of {:.0} µm: between {:.0} µm ({} % of the roller's \
-         diameter) and {:.0} µm ({} %) is \
-         expected of fits and temperature",
+         diameter) and {:.0} µm ({} %) is expected of fits and temperature",
         number(b.clearance_change_um),
         1e3 * clearance,
         1e3 * least,

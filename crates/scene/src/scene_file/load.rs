@@ -52,8 +52,7 @@ fn advice(error: &std::io::Error, path: &Path) -> String {
         },
         ErrorKind::PermissionDenied => {
             "`ls -l` shows who may read it, and `chmod` changes that for a file of your own; its folders \
-             must be \
-             open to you, too"
+             must be open to you, too"
                 .to_owned()
         }
         ErrorKind::NotADirectory => "check the path".to_owned(),

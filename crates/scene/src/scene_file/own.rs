@@ -364,8 +364,7 @@ impl Given {
                     field: format!("bearing.{name}"),
                     message: format!(
                         "`bearing.{name}` is {}, which leaves the {name_of_ring} ring {} mm beside its \
-                         raceway of \
-                         {} mm{also}",
+                         raceway of {} mm{also}",
                         number(boundary.unwrap_or(0.0)),
                         number(tidy(left)),
                         number(tidy(race)),

@@ -56,10 +56,12 @@ pub(super) fn readings(summary: &Summary) -> Markup {
             thead { tr { th { "Formula" } th class="n" { "Gives" } th { "Evidence in this run" } } }
             tbody {
                 tr {
-                    td { "Paper, equation (2): π f_c D_i / ℓ, the cage's \
-                        speed" } td class="n" { (format!("{printed:.0} Hz")) }
-                    td { "the measured facet line nearest to it, at any \
-                        sensor: " (hz(nearest).unwrap_or("none".into())) }
+                    td { "Paper, equation (2): π f_c D_i / ℓ, the cage's speed" }
+                    td class="n" { (format!("{printed:.0} Hz")) }
+                    td {
+                        "the measured facet line nearest to it, at any sensor: "
+                        (hz(nearest).unwrap_or("none".into()))
+                    }
                 }
                 tr {
                     td { "Speed of the contact along the ring: π (f_s − f_c) D_i / ℓ" } (cell(hz(inner)))
@@ -73,9 +75,8 @@ pub(super) fn readings(summary: &Summary) -> Markup {
             p {
                 "A cursor between two sampled peaks reads a whole number of samples: " (format!("{:.0}, {:.0} or {:.0} Hz", r.neighbours_hz.0, r.reads_hz, r.neighbours_hz.1))
                 ". " (format!("{:.0} %", 100.0 * r.share_in_tone)) " of the periods of a pure 4671 Hz tone \
-                 are " (r.samples) " samples long, so the reading \
-                 needs no second tone. The paper's own sum of two tones swells on a carrier \
-                 of " (format!("{:.0} Hz", r.equation_3_carrier_hz)) "; "
+                 are " (r.samples) " samples long, so the reading needs no second tone. The paper's own sum \
+                 of two tones swells on a carrier of " (format!("{:.0} Hz", r.equation_3_carrier_hz)) "; "
                 (format!("{:.0} %", 100.0 * r.equation_3_common.1)) " of its gaps are " (r.equation_3_common.0) " samples, "
                 (format!("{:.0} %", 100.0 * r.share_in_equation_3)) " read 4545 Hz."
             }

@@ -45,8 +45,8 @@ pub(super) fn table(summary: &Summary) -> Markup {
         (wide_table(None, &head, diagnosis.families.iter().map(row)))
         p class="hint" {
             "The envelope spectra resolve " (format!("{:.2} Hz", diagnosis.resolution_hz)) ". BSF is the \
-             spin of a rolling element, which strikes \
-             twice a turn; sidebands are those of the first three harmonics."
+                spin of a rolling element, which strikes twice a turn; sidebands are those of the first \
+                three harmonics."
             @if summary.kinematics.outer_ring_hz > 0.0 { " FTF is the cage as seen from the outer ring." }
         }
     }

@@ -113,8 +113,7 @@ pub(super) fn table(summary: &Summary) -> Markup {
             "Each family is a middle line (the carrier) with sidebands at multiples of BPFO on both sides. \
              These equally spaced lines (the comb) are fitted with the recorded motion of the rollers to \
              both components of every sensor and to the force on every loaded roller, and must explain them \
-             clearly better than combs \
-             that are off their place and than the other families (THEORY §7.7)."
+             clearly better than combs that are off their place and than the other families (THEORY §7.7)."
         }
         @if summary.families.iter().any(|f| f.carrier_hz.is_some()) {
             details {

@@ -61,8 +61,7 @@ impl Hertz {
         let expected = VON_MISES_OF_PRESSURE * self.pressure;
         format!(
             "Hertz has a pressure of {:.2} GPa over a half-width of {:.2} mm under this load, and a highest \
-             von Mises stress of {:.2} GPa \
-             below it: the picture shows {:.0} % of that.",
+             von Mises stress of {:.2} GPa below it: the picture shows {:.0} % of that.",
             1e-9 * self.pressure,
             1e3 * self.half_width,
             1e-9 * expected,
@@ -225,9 +224,8 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
     }
     picture.caption = format!("The highest stress is {}.{hertz}", places.join(" and "));
     picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this \
-        model. A penalty softer than the \
-                    material and elements wider than the contact spread the pressure; a sharp edge has as \
-                    much stress as its elements resolve."
+        model. A penalty softer than the material and elements wider than the contact spread the pressure; a \
+        sharp edge has as much stress as its elements resolve."
         .into();
     picture
 }
@@ -323,8 +321,7 @@ fn moving(
     picture.caption = match crossing {
         Some(event) => format!(
             "Roller {} unloads over the leading edge, its neighbours take its load, and it is caught again \
-             by the trailing edge; watch the \
-             stress run into the rings.",
+             by the trailing edge; watch the stress run into the rings.",
             event.roller
         ),
         None => "No roller unloads over the spall and is loaded again here while frames are kept.".to_owned(),

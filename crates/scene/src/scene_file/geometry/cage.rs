@@ -137,8 +137,7 @@ fn pockets_miss(cage: &CageScene, roller: f64, pitch: f64) -> Finding {
     let pocket = roller + 2e-3 * cage.pocket_clearance_um;
     let message = format!(
         "the pockets, {} mm wide on the pitch circle of diameter {} mm, do not cut through the cage, whose \
-         diameters \
-         are {} and {} mm",
+         diameters are {} and {} mm",
         number(pocket),
         number(pitch),
         number(inner),
