@@ -20,17 +20,16 @@
 mod design;
 mod refusal;
 
-use std::path::{Path, PathBuf};
-
-use serde::Deserialize;
+use std::path::Path;
 
 use crate::document::unreadable;
 use design::{Rows, Variants};
-use refusal::{CAMPAIGN, File};
+use refusal::{CAMPAIGN, File, varies};
 use stribeck_scene::dice::Dice;
 use stribeck_scene::ensemble::start;
+use stribeck_scene::fields::group;
 use stribeck_scene::scene::Scene;
-use stribeck_scene::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
+use stribeck_scene::scene_file::{self, Place, Problem, SceneError, without_mark};
 use stribeck_store::run_dir::Keep;
 
 /// Most runs of a campaign.
@@ -46,49 +45,37 @@ const MOST_PROBLEMS: usize = 10;
 /// has one in nearly all.
 const MOST_LOOKED_AT: usize = 1000;
 
-/// Content of a campaign's file.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename = "campaign")]
-struct Text {
-    name: String,
-    #[serde(default)]
-    scene: Option<PathBuf>,
-    #[serde(default)]
-    set: Vec<String>,
-    #[serde(default = "one")]
-    seed: u64,
-    #[serde(default = "one_start")]
-    starts: usize,
-    variants: Variants,
-    #[serde(default)]
-    split: Split,
-    #[serde(default)]
-    keep: Keep,
+group! {
+    /// Content of a campaign's file.
+    struct Text {
+        /// Its name.
+        name: String = String::new(), required();
+        /// The scene that all variants start from.
+        scene: Option<String> = None;
+        /// Overrides of that scene.
+        set: Vec<String> = Vec::new();
+        /// Seed of all draws.
+        seed: u64 = 1;
+        /// Starts of each variant.
+        starts: usize = 1, within(1.0, MOST_STARTS as f64);
+        /// How values are chosen.
+        variants: Variants = Variants::Grid(Vec::new()), required();
+        /// Shares of the variants.
+        split: Split = Split::default();
+        /// Files that are kept.
+        keep: Keep = Keep::All;
+    }
 }
 
-fn one() -> u64 {
-    1
-}
-
-fn one_start() -> usize {
-    1
-}
-
-/// Shares of the variants that a model learns from, is tuned with and is tested with.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields, rename = "split")]
-pub struct Split {
-    /// To learn from.
-    pub train: f64,
-    /// To tune with.
-    pub validation: f64,
-    /// To test with.
-    pub test: f64,
-}
-
-impl Default for Split {
-    fn default() -> Self {
-        Self { train: 0.7, validation: 0.15, test: 0.15 }
+group! {
+    /// Shares of the variants that a model learns from, is tuned with and is tested with.
+    pub struct Split: Copy {
+        /// To learn from.
+        pub train: f64 = 0.7, required();
+        /// To tune with.
+        pub validation: f64 = 0.15, required();
+        /// To test with.
+        pub test: f64 = 0.15, required();
     }
 }
 
@@ -146,17 +133,13 @@ impl Campaign {
     /// # Errors
     /// As [`Campaign::read`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
-        let place = File::new(name, text, &CAMPAIGN);
-        let file: Text = dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
+        let (file, place): (Text, _) = File::read(name, text, &CAMPAIGN)?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
             return refuse(
                 "name",
                 format!("is `{}`; letters, digits, `-` and `_` make a folder's name", file.name),
             );
-        }
-        if file.starts == 0 || file.starts > MOST_STARTS {
-            return refuse("starts", format!("is {}; it is 1 to {MOST_STARTS}", file.starts));
         }
         let Split { train, validation, test } = file.split;
         let sum = train + validation + test;
@@ -171,7 +154,8 @@ impl Campaign {
         }
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
-        let rows = file.variants.rows(file.seed, folder).map_err(|no| place.refuse(&no.at, no.why))?;
+        let rows =
+            file.variants.rows(file.seed, folder, &place).map_err(|no| place.refuse(&no.at, no.why))?;
         check_fields(&rows, &place)?;
         let count = rows.values.len() * file.starts;
         if count == 0 || count > MOST_RUNS {
@@ -222,13 +206,12 @@ fn variants(
             Some(path) => Scene::read_with(path, &set),
             None => Scene::singh2014().with_overrides(&set),
         };
-        if scene.is_err() {
-            for (index, problem) in scene_file::unreadable_values(base, &set) {
-                let Some(column) = index.checked_sub(file.set.len()) else { continue };
-                let problem = place.value(problem, rows, row, column);
-                if unreadable.iter().all(|other| other.place != problem.place) {
-                    unreadable.push(problem);
-                }
+        let problems = scene.as_ref().err().map_or(&[][..], SceneError::problems);
+        for problem in problems.iter().filter(|problem| problem.is_unreadable) {
+            let Some(column) = varies(problem, rows, row) else { continue };
+            let problem = place.value(problem.clone(), rows, row, column);
+            if unreadable.iter().all(|other| other.place != problem.place) {
+                unreadable.push(problem);
             }
         }
         if !unreadable.is_empty() {

@@ -41,7 +41,7 @@ use crate::document::{File, unreadable};
 pub use quantity::{Quantity, Take, names};
 use refusal::INFERENCE;
 use stribeck_scene::scene::Scene;
-use stribeck_scene::scene_file::{self, Place, Problem, SceneError, dialect, without_mark};
+use stribeck_scene::scene_file::{self, Place, Problem, SceneError, without_mark};
 use text::{Text, budget, targets, unknowns};
 
 /// Most unknowns of an inference: beyond, no number of runs that anybody makes fills their space.
@@ -205,17 +205,11 @@ impl Inference {
     }
 
     fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
-        let place = File::new(name, text, &INFERENCE);
-        let file: Text = dialect().from_str(text).map_err(|e| place.not_understood(&e))?;
+        let (file, place): (Text, _) = File::read(name, text, &INFERENCE)?;
         if file.name.is_empty() || !file.name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
             let why = format!("`name` is `{}`; letters, digits, `-` and `_` make a folder's name", file.name);
             return Err(place.refuse("name", why));
         }
-        let count = |field: &str, count: usize, most: usize| {
-            let why = || format!("`{field}` is {count}; it is 1 to {most}");
-            if (1..=most).contains(&count) { Ok(count) } else { Err(place.refuse(field, why())) }
-        };
-        count("starts", file.starts, MOST_STARTS)?;
         let base = file.scene.as_ref().map(|scene| folder.join(scene));
         scene_file::readable(base.as_deref(), &file.set).map_err(|why| place.of_base(why))?;
         let unknowns = unknowns(&file.unknowns, &place)?;

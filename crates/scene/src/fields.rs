@@ -18,7 +18,7 @@ pub(crate) mod page;
 pub(crate) mod range;
 pub(crate) mod schema;
 pub mod tree;
-pub(crate) mod value;
+pub mod value;
 
 use std::sync::LazyLock;
 
@@ -33,7 +33,9 @@ use crate::scene_file::wording::list;
 
 /// What is written for a value.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Shape {
+pub enum Shape {
+    /// Any value.
+    Any,
     /// A number.
     Number,
     /// A whole number, 0 or more.
@@ -54,7 +56,7 @@ pub(crate) enum Shape {
 
 /// Named fields in brackets.
 #[derive(Debug)]
-pub(crate) struct Group {
+pub struct Group {
     /// Name of its type.
     pub name: &'static str,
     /// Lines of its description.
@@ -67,7 +69,7 @@ pub(crate) struct Group {
 
 /// Several words of which one is written.
 #[derive(Debug)]
-pub(crate) struct Words {
+pub struct Words {
     /// Lines of their description.
     pub about: &'static [&'static str],
     /// The words.
@@ -76,7 +78,7 @@ pub(crate) struct Words {
 
 /// A word, and what stands in brackets behind it.
 #[derive(Debug)]
-pub(crate) struct Word {
+pub struct Word {
     /// As it is written.
     pub word: &'static str,
     /// Lines of its description.
@@ -87,7 +89,7 @@ pub(crate) struct Word {
 
 /// A field of a group.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Field {
+pub struct Field {
     /// As it is written.
     pub name: &'static str,
     /// Lines of its description.
@@ -95,7 +97,7 @@ pub(crate) struct Field {
     /// What is written for it.
     pub shape: Shape,
     /// Limits of its numbers.
-    pub limits: Limits,
+    pub(crate) limits: Limits,
     /// It has no default.
     pub is_required: bool,
     /// The program writes it, not the user.
@@ -107,29 +109,30 @@ pub(crate) struct Field {
 }
 
 impl Field {
-    pub(crate) const fn new<T: Value>(name: &'static str, about: &'static [&'static str]) -> Self {
+    /// A field of any values of its type.
+    pub const fn new<T: Value>(name: &'static str, about: &'static [&'static str]) -> Self {
         let (limits, before) = (Limits::None, None);
         let (is_required, is_internal, is_omitted) = (false, false, false);
         Self { name, about, shape: T::SHAPE, limits, is_required, is_internal, is_omitted, before }
     }
 
     /// Numbers above 0, up to `high`.
-    pub(crate) const fn positive(self, high: f64) -> Self {
+    pub const fn positive(self, high: f64) -> Self {
         self.range(Range { low: 0.0, low_included: false, high, high_included: true, most: None })
     }
 
     /// Numbers from `low` to `high`.
-    pub(crate) const fn within(self, low: f64, high: f64) -> Self {
+    pub const fn within(self, low: f64, high: f64) -> Self {
         self.range(Range { low, low_included: true, high, high_included: true, most: None })
     }
 
     /// Numbers from `low` to below `high`.
-    pub(crate) const fn below(self, low: f64, high: f64) -> Self {
+    pub const fn below(self, low: f64, high: f64) -> Self {
         self.range(Range { low, low_included: true, high, high_included: false, most: None })
     }
 
     /// Numbers from `low` to a limit that other fields set.
-    pub(crate) const fn up_to(self, low: f64, most: fn(&Scene) -> f64) -> Self {
+    pub const fn up_to(self, low: f64, most: fn(&Scene) -> f64) -> Self {
         self.range(Range { low, low_included: true, high: f64::NAN, high_included: true, most: Some(most) })
     }
 
@@ -139,37 +142,37 @@ impl Field {
     }
 
     /// A value of the field that the group varies.
-    pub(crate) const fn varied(mut self) -> Self {
+    pub const fn varied(mut self) -> Self {
         self.limits = Limits::Varied;
         self
     }
 
     /// An amplitude of the field that the group varies.
-    pub(crate) const fn amplitude(mut self) -> Self {
+    pub const fn amplitude(mut self) -> Self {
         self.limits = Limits::Amplitude;
         self
     }
 
     /// There is no default.
-    pub(crate) const fn required(mut self) -> Self {
+    pub const fn required(mut self) -> Self {
         self.is_required = true;
         self
     }
 
     /// The program writes it, not the user.
-    pub(crate) const fn internal(mut self) -> Self {
+    pub const fn internal(mut self) -> Self {
         self.is_internal = true;
         self
     }
 
     /// Not written where it has its default.
-    pub(crate) const fn omitted(mut self) -> Self {
+    pub const fn omitted(mut self) -> Self {
         self.is_omitted = true;
         self
     }
 
     /// Without effect where it has this value.
-    pub(crate) const fn before(mut self, value: &'static str) -> Self {
+    pub const fn before(mut self, value: &'static str) -> Self {
         self.before = Some(value);
         self
     }
@@ -188,6 +191,7 @@ impl Shape {
     /// In words, with an article.
     pub(crate) fn words(self) -> String {
         match self {
+            Self::Any => "a value".to_owned(),
             Self::Number => "a number".to_owned(),
             Self::Count => "a whole number".to_owned(),
             Self::Text => "a text in double quotes".to_owned(),
@@ -270,7 +274,12 @@ pub(crate) struct Spot {
 
 impl Spot {
     /// The whole scene.
-    pub(crate) const ROOT: Self = Self { shape: Scene::SHAPE, range: None, field: None, is_item: false };
+    pub(crate) const ROOT: Self = Self::of(Scene::SHAPE);
+
+    /// The whole of a file.
+    pub(crate) const fn of(shape: Shape) -> Self {
+        Self { shape, range: None, field: None, is_item: false }
+    }
 
     /// The field of a group in here.
     pub(crate) fn at(self, group: &'static Group, field: &'static Field) -> Self {
@@ -390,15 +399,16 @@ pub(crate) fn paths() -> &'static [String] {
 
 /// Declares a group of fields: the structure, its default, and its part of the table. Behind the default of a
 /// field stand its range and other rules, which are methods of [`Field`].
+#[macro_export]
 macro_rules! group {
-    ($(#[doc = $about:literal])* pub struct $name:ident $(: $($also:ident),+)? {
+    ($(#[doc = $about:literal])* $vis:vis struct $name:ident $(: $($also:ident),+)? {
         $($(#[doc = $doc:literal])*
-        pub $field:ident: $type:ty = $default:expr $(, $rule:ident($($with:tt)*))*;)*
+        $of:vis $field:ident: $type:ty = $default:expr $(, $rule:ident($($with:tt)*))*;)*
     }) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, PartialEq $(, $($also),+)?)]
-        pub struct $name {
-            $($(#[doc = $doc])* pub $field: $type,)*
+        $vis struct $name {
+            $($(#[doc = $doc])* $of $field: $type,)*
         }
 
         impl Default for $name {
@@ -441,14 +451,15 @@ macro_rules! group {
 }
 
 /// Declares words of which one is written: the enumeration and its part of the table.
+#[macro_export]
 macro_rules! words {
-    ($(#[doc = $about:literal])* $(#[serde($($serde:tt)*)])? pub enum $name:ident $(: $($also:ident),+)? {
+    ($(#[doc = $about:literal])* $(#[serde($($serde:tt)*)])? $vis:vis enum $name:ident $(: $($also:ident),+)? {
         $($(#[doc = $doc:literal])* $variant:ident $(($of:ident: $type:ty))? = $word:literal,)*
     }) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, PartialEq $(, $($also),+)?)]
         $(#[serde($($serde)*)])?
-        pub enum $name {
+        $vis enum $name {
             $($(#[doc = $doc])* $variant $(($type))?,)*
         }
 
@@ -458,7 +469,7 @@ macro_rules! words {
                 words: &[$($crate::fields::Word {
                     word: $word,
                     about: &[$($doc),*],
-                    inside: words!(@inside $($type)?),
+                    inside: $crate::words!(@inside $($type)?),
                 }),*],
             };
         }
@@ -475,7 +486,7 @@ macro_rules! words {
 
             fn write(&self) -> $crate::fields::tree::Node {
                 match self {
-                    $(Self::$variant $(($of))? => words!(@write $word $(, $of)?),)*
+                    $(Self::$variant $(($of))? => $crate::words!(@write $word $(, $of)?),)*
                 }
             }
         }
@@ -488,7 +499,7 @@ macro_rules! words {
     };
 }
 
-pub(crate) use {group, words};
+pub use crate::{group, words};
 
 #[cfg(test)]
 mod tests {

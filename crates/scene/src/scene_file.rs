@@ -32,10 +32,10 @@ use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
 use crate::scene::Scene;
 use check::{check, numbers_are_in_range};
-pub use dialect::dialect;
 use load::load;
 pub use problem::{Place, Problem, SceneError, offset, place_in_file};
-use sources::{Sources, written_by};
+pub use sources::Kind;
+use sources::{SCENE, Sources, written_by};
 pub use suggest::nearest;
 pub use wording::{list, shown};
 
@@ -248,7 +248,7 @@ fn paths_in(tree: &Node) -> Vec<String> {
 
 /// Text → scene, overrides.
 fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Understood, SceneError> {
-    let mut sources = Sources::of_text(text, file)?;
+    let mut sources = Sources::of_text(text, file, &SCENE)?;
     let mut given = paths_in(&sources.tree);
     given.extend(written_by(overrides));
     let name = sources.tree.get("bearing").and_then(String::read).filter(|name| !name.contains('"'));
@@ -269,24 +269,34 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
     complete(sources, (!has_name).then_some(given))
 }
 
+/// Reads the text of another file than a scene by the table of its fields: what it says, and where it says it.
+///
+/// # Errors
+/// Unknown and missing fields, values of the wrong type and numbers outside their range, with their places.
+pub fn read_as<T: Value>(text: &str, file: &str, kind: &'static Kind) -> Result<(T, Node), SceneError> {
+    let sources = Sources::of_text(text, file, kind)?;
+    let whole = Spot::of(T::SHAPE);
+    let mut found = reading::faults(&sources.tree, whole, "", &sources);
+    if found.is_empty() {
+        let outside = ranges::in_tree(&Scene::default(), &sources.tree, whole);
+        found = outside.into_iter().map(|finding| sources.problem(finding)).collect();
+    }
+    match T::read(&sources.tree).filter(|_| found.is_empty()) {
+        Some(read) => Ok((read, sources.tree)),
+        None => Err(SceneError::new(found)),
+    }
+}
+
 /// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. Errors that further
 /// overrides may repair are not checked: numbers outside their range, bodies that cannot exist, tables that
 /// are not there.
 pub fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
-    base(path)?.set_all(overrides)
-}
-
-/// The scene file at `path`, or the paper's scene, without a check of its meaning.
-fn base(path: Option<&Path>) -> Result<Sources, SceneError> {
-    let nothing: &[&str] = &[];
-    let Some(path) = path else { return Ok(Sources::of_scene(&Scene::singh2014())) };
-    Ok(understand(without_mark(&load(path)?), &path.display().to_string(), nothing)?.sources)
-}
-
-/// Those of `overrides` whose value cannot be read as one of its field, with their numbers; none where the
-/// scene that they are for cannot be read itself.
-pub fn unreadable_values<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Vec<(usize, Problem)> {
-    base(path).map_or_else(|_| Vec::new(), |mut sources| sources.unreadable_values(overrides))
+    match path {
+        Some(path) => {
+            understand(without_mark(&load(path)?), &path.display().to_string(), overrides).map(drop)
+        }
+        None => Sources::of_scene(&Scene::singh2014()).set_all(overrides),
+    }
 }
 
 /// The error on a field name that no scene has; `None` for one that some scene has.

@@ -1,46 +1,55 @@
 //! How the values of a campaign are chosen: a grid, a design over ranges, or the rows of a table.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-
-use ron::value::RawValue;
-use serde::Deserialize;
+use std::path::Path;
 
 use super::MOST_RUNS;
+use crate::document::{File, Written};
 use stribeck_scene::dice::Dice;
+use stribeck_scene::fields::{group, words};
 use stribeck_scene::scene_file::without_mark;
 
 /// Most runs of a Sobol sequence.
 const MOST_OF_SOBOL: usize = 1 << 16;
 
-/// How values are chosen.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "snake_case")]
-pub(super) enum Variants {
-    /// Every value with every other.
-    Grid(Vec<Axis>),
-    /// Each of `count` equal parts of every range once.
-    LatinHypercube { count: usize, over: Vec<Axis> },
-    /// A scrambled Sobol sequence.
-    Sobol { count: usize, over: Vec<Axis> },
-    /// The rows of a CSV file, whose first row names the fields.
-    Table(PathBuf),
+words! {
+    /// How values are chosen.
+    pub(super) enum Variants {
+        /// Every value with every other.
+        Grid(of: Vec<Axis>) = "grid",
+        /// Each of `count` equal parts of every range once.
+        LatinHypercube(of: Design) = "latin_hypercube",
+        /// A scrambled Sobol sequence.
+        Sobol(of: Design) = "sobol",
+        /// The rows of a CSV file, whose first row names the fields.
+        Table(of: String) = "table",
+    }
 }
 
-/// A field and its values, or its range.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename = "axis")]
-pub(super) struct Axis {
-    field: String,
-    #[serde(default)]
-    values: Vec<Box<RawValue>>,
-    #[serde(default)]
-    from: Option<f64>,
-    #[serde(default)]
-    to: Option<f64>,
-    /// Evenly over the logarithm.
-    #[serde(default)]
-    log: bool,
+group! {
+    /// Points over ranges.
+    pub(super) struct Design {
+        /// How many.
+        count: usize = 1, within(1.0, MOST_RUNS as f64), required();
+        /// Over which fields.
+        over: Vec<Axis> = Vec::new(), required();
+    }
+}
+
+group! {
+    /// A field and its values, or its range.
+    pub(super) struct Axis {
+        /// Path of the field.
+        field: String = String::new(), required();
+        /// Its values.
+        values: Vec<Written> = Vec::new();
+        /// Least value.
+        from: Option<f64> = None;
+        /// Greatest value.
+        to: Option<f64> = None;
+        /// Evenly over the logarithm.
+        log: bool = false;
+    }
 }
 
 /// Fields, each with the place in the campaign's file that names it, and the values of each variant.
@@ -140,20 +149,20 @@ impl Refused {
 
 impl Variants {
     /// The values of each variant. Tables are looked for from `folder`.
-    pub(super) fn rows(&self, seed: u64, folder: &Path) -> Result<Rows, Refused> {
+    pub(super) fn rows(&self, seed: u64, folder: &Path, file: &File<'_>) -> Result<Rows, Refused> {
         match self {
-            Self::Grid(axes) => grid(axes),
-            Self::LatinHypercube { count, over } => {
+            Self::Grid(axes) => grid(axes, file),
+            Self::LatinHypercube(Design { count, over }) => {
                 possible(*count, MOST_RUNS, over)?;
                 let places = latin_hypercube(seed, *count, over.len());
-                drawn(over, *count, &|row, axis| places[axis][row])
+                drawn(over, *count, file, &|row, axis| places[axis][row])
             }
-            Self::Sobol { count, over } => {
+            Self::Sobol(Design { count, over }) => {
                 possible(*count, MOST_OF_SOBOL, over)?;
                 let seed = (seed ^ (seed >> 32)) as u32;
                 let place =
                     |row: usize, axis: usize| f64::from(sobol_burley::sample(row as u32, axis as u32, seed));
-                drawn(over, *count, &place)
+                drawn(over, *count, file, &place)
             }
             Self::Table(path) => table(&folder.join(path)).map_err(|why| Refused::new("variants", why)),
         }
@@ -161,13 +170,13 @@ impl Variants {
 }
 
 impl Axis {
-    fn listed(&self) -> Vec<String> {
-        self.values.iter().map(|value| value.get_ron().trim().to_owned()).collect()
+    fn listed(&self, file: &File<'_>) -> Vec<String> {
+        self.values.iter().map(|value| file.written(value)).collect()
     }
 
     /// The value at `share` of the way, 0 to 1.
-    fn at(&self, share: f64) -> Result<String, String> {
-        let values = self.listed();
+    fn at(&self, share: f64, file: &File<'_>) -> Result<String, String> {
+        let values = self.listed(file);
         let field = &self.field;
         match (self.from, self.to) {
             (None, None) if !values.is_empty() => {
@@ -191,14 +200,14 @@ impl Axis {
     }
 }
 
-fn grid(axes: &[Axis]) -> Result<Rows, Refused> {
+fn grid(axes: &[Axis], file: &File<'_>) -> Result<Rows, Refused> {
     if axes.is_empty() {
         let why = "the grid names no field; `(field: \"operation.load_n\", values: [10000, 20000])` is one";
         return Err(Refused::new("variants", why.to_owned()));
     }
     let mut rows = vec![Vec::new()];
     for (n, axis) in axes.iter().enumerate() {
-        let values = axis.listed();
+        let values = axis.listed(file);
         if values.is_empty() || axis.from.is_some() || axis.to.is_some() {
             let why = "a grid takes `values: […]`, one at least; `latin_hypercube` and `sobol` take ranges";
             return Err(Refused::new(format!("variants[{n}]"), format!("`{}`: {why}", axis.field)));
@@ -227,9 +236,14 @@ fn possible(count: usize, most: usize, axes: &[Axis]) -> Result<(), Refused> {
     Ok(())
 }
 
-fn drawn(axes: &[Axis], count: usize, place: &dyn Fn(usize, usize) -> f64) -> Result<Rows, Refused> {
+fn drawn(
+    axes: &[Axis],
+    count: usize,
+    file: &File<'_>,
+    place: &dyn Fn(usize, usize) -> f64,
+) -> Result<Rows, Refused> {
     let value = |row, (n, axis): (usize, &Axis)| {
-        axis.at(place(row, n)).map_err(|why| Refused::new(format!("variants.over[{n}]"), why))
+        axis.at(place(row, n), file).map_err(|why| Refused::new(format!("variants.over[{n}]"), why))
     };
     let row = |row: usize| axes.iter().enumerate().map(|axis| value(row, axis)).collect();
     let values: Result<Vec<Vec<String>>, Refused> = (0..count).map(row).collect();

@@ -1,20 +1,17 @@
 //! Errors of a campaign's file, as those of scenes: with line, field, allowed values and remedy.
 
 use super::design::Rows;
-use super::{MOST_RUNS, MOST_STARTS};
 pub(super) use crate::document::File;
-use crate::document::Kind;
 use stribeck_scene::fields;
-use stribeck_scene::scene_file::{Place, Problem, SceneError, place_in_file};
+use stribeck_scene::scene_file::{Kind, Place, Problem, SceneError, place_in_file};
 
 /// The file of a campaign.
 pub(super) const CAMPAIGN: Kind = Kind {
     noun: "a campaign",
     example: EXAMPLE,
-    part,
-    lacking,
-    for_fields_of_scenes: "a field of the scene stands in `set: [\"{}=…\"]`, or in `variants` where it varies",
-    most,
+    for_fields_of_scenes: Some(
+        "a field of the scene stands in `set: [\"{}=…\"]`, or in `variants` where it varies",
+    ),
 };
 
 /// A file to look at.
@@ -80,7 +77,7 @@ impl File<'_> {
 }
 
 /// Column of the value that causes the error of a variant's scene.
-fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize> {
+pub(super) fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize> {
     let Place::CommandLine { argument, .. } = &problem.place else { return None };
     (0..rows.fields.len()).find(|column| rows.argument(row, *column) == *argument)
 }
@@ -88,32 +85,3 @@ fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize> {
 const EXAMPLE: &str = "a campaign has `name` and `variants`, and may have `scene`, `set`, `seed`, `starts`, \
     `split` and `keep`; \
                        fixtures/campaigns/quick64.ron is one";
-
-/// The part of a campaign that has this name among its types.
-fn part(outer: Option<&str>) -> &'static str {
-    match outer {
-        Some("split") => "`split`",
-        Some("axis") => "a field that varies",
-        Some("sobol" | "latin_hypercube" | "Sobol" | "LatinHypercube") => "`variants`",
-        _ => "a campaign",
-    }
-}
-
-/// Remedy for a missing field without default.
-fn lacking(outer: Option<&str>) -> Option<&'static str> {
-    match outer {
-        Some("split") => Some("`train`, `validation` and `test` sum to 1; `{field}: 0` for none"),
-        Some("axis") => Some("`(field: \"operation.load_n\", values: [10000, 20000])` is one"),
-        _ => None,
-    }
-}
-
-/// How large a whole number may be.
-fn most(field: &str) -> Option<u64> {
-    match field {
-        "seed" => Some(u64::MAX),
-        "starts" => Some(MOST_STARTS as u64),
-        "count" => Some(MOST_RUNS as u64),
-        _ => None,
-    }
-}

@@ -108,7 +108,11 @@ fn refuses_campaigns_that_cannot_be() {
             with("variants: grid([(field: \"operation.load_n\", from: 1, to: 2)])"),
             &["a.ron:2:17", "a grid takes"],
         ),
-        (with("variants: sobol(count: 0, over: [])"), &["a.ron:2:11", "0 points"]),
+        (
+            with("variants: sobol(count: 0, over: [])"),
+            &["a.ron:2:24", "`variants.count` is 0", "1 to 1000000"],
+        ),
+        (with("variants: sobol(count: 2, over: [])"), &["a.ron:2:11", "2 points over 0 fields"]),
         (
             with("variants: sobol(count: 2, over: [(field: \"mesh.size_mm\", from: 2, to: 1)])"),
             &["a.ron:2:34", "below `to`"],
@@ -124,14 +128,14 @@ fn refuses_campaigns_that_cannot_be() {
                 "variants: latin_hypercube(count: 1000000000000000, over: [(field: \"seed\", from: 1, to: \
                  2)])",
             ),
-            &["a.ron:2:11", "1000000000000000 points", "1 to 1000000"],
+            &["a.ron:2:34", "`variants.count` is 1e15", "1 to 1000000"],
         ),
         (
             with("variants: latin_hypercube(count: 4.5, over: [])"),
-            &["a.ron:2:34", "`variants.count` is `4.5`", "a whole number, at most 1000000"],
+            &["a.ron:2:34", "`variants.count` is `4.5`", "a whole number, 1 to 1000000"],
         ),
         (with("seed: 1.5, variants: grid([])"), &["a.ron:2:7", "`seed` is `1.5`", "a whole number"]),
-        (with("starts: -1, variants: grid([])"), &["a.ron:2:9", "`starts` is `-1`", "at most 10000"]),
+        (with("starts: -1, variants: grid([])"), &["a.ron:2:9", "`starts` is `-1`", "1 to 10000"]),
         (with("starts: 0, variants: grid([])"), &["a.ron:2:9", "`starts`"]),
         (with("split: (train: 1, validation: 1, test: 1), variants: grid([])"), &["a.ron:2:8", "sums to 3"]),
         (
@@ -147,7 +151,7 @@ fn refuses_campaigns_that_cannot_be() {
         ),
         (
             with("split: (train: 0.8, test: 0.2), variants: grid([])"),
-            &["a.ron:2:", "`split` lacks `validation`", "`validation: 0`"],
+            &["a.ron:2:", "`split` has no field `validation`", "add `validation: …`"],
         ),
         ("(nam: \"x\")".to_owned(), &["a.ron:1:2", "`nam`", "did you mean `name`?"]),
         (with("bearing: \"NU 205\""), &["a.ron:2:1", "`bearing`", "`set"]),

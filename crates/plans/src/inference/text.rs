@@ -1,94 +1,93 @@
 //! The text of an inference's file, and its meaning.
 
-use std::path::PathBuf;
-
-use ron::value::RawValue;
-use serde::Deserialize;
-
 use super::{
-    Budget, FEWEST_BY_UNKNOWN, MOST_RUNS, MOST_TARGETS, MOST_UNKNOWNS, Quantity, Seen, Target, Unknown,
-    Values,
+    Budget, FEWEST_BY_UNKNOWN, MOST_RUNS, MOST_STARTS, MOST_TARGETS, MOST_UNKNOWNS, Quantity, Seen, Target,
+    Unknown, Values,
 };
-use crate::document::File;
+use crate::document::{File, Written};
+use stribeck_scene::fields::group;
 use stribeck_scene::scene_file::{self, SceneError};
 
-/// Content of the file of an inference.
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename = "inference")]
-pub(super) struct Text {
-    pub(super) name: String,
-    #[serde(default)]
-    pub(super) scene: Option<PathBuf>,
-    #[serde(default)]
-    pub(super) set: Vec<String>,
-    #[serde(default = "one")]
-    pub(super) seed: u64,
-    #[serde(default = "two")]
-    pub(super) starts: usize,
-    pub(super) unknowns: Vec<UnknownText>,
-    pub(super) targets: Vec<TargetText>,
-    #[serde(default)]
-    pub(super) budget: BudgetText,
+group! {
+    /// Content of the file of an inference.
+    pub(super) struct Text {
+        /// Its name.
+        pub(super) name: String = String::new(), required();
+        /// The scene that all runs start from.
+        pub(super) scene: Option<String> = None;
+        /// Overrides of that scene.
+        pub(super) set: Vec<String> = Vec::new();
+        /// Seed of all draws.
+        pub(super) seed: u64 = 1;
+        /// Runs of each scene.
+        pub(super) starts: usize = 2, within(1.0, MOST_STARTS as f64);
+        /// What is not known.
+        pub(super) unknowns: Vec<UnknownText> = Vec::new(), required();
+        /// What was observed.
+        pub(super) targets: Vec<TargetText> = Vec::new(), required();
+        /// How many runs may be made.
+        pub(super) budget: BudgetText = BudgetText::default();
+    }
 }
 
-fn one() -> u64 {
-    1
+group! {
+    /// An unknown and its prior.
+    pub(super) struct UnknownText {
+        /// Path of the field.
+        field: String = String::new();
+        /// Name of a choice.
+        name: String = String::new();
+        /// Least value.
+        from: Option<f64> = None;
+        /// Greatest value.
+        to: Option<f64> = None;
+        /// Evenly over the logarithm.
+        log: bool = false;
+        /// Mean of a normal distribution.
+        mean: Option<f64> = None;
+        /// Its standard deviation.
+        sd: Option<f64> = None;
+        /// Values of the field.
+        values: Vec<Written> = Vec::new();
+        /// Choices of several overrides.
+        sets: Vec<Vec<String>> = Vec::new();
+        /// Choices of an item of the summary.
+        readings: Vec<String> = Vec::new();
+    }
 }
 
-fn two() -> usize {
-    2
+group! {
+    /// An observation.
+    pub(super) struct TargetText {
+        /// Its name.
+        name: String = String::new();
+        /// Path of the quantity.
+        of: String = String::new(), required();
+        /// A number.
+        value: Option<f64> = None;
+        /// A curve.
+        values: Vec<f64> = Vec::new();
+        /// There is none.
+        missing: bool = false;
+        /// Standard deviation of its error.
+        tolerance: f64 = 0.0;
+        /// Differences count by their ratio.
+        log: bool = false;
+    }
 }
 
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename = "unknown")]
-pub(super) struct UnknownText {
-    #[serde(default)]
-    field: String,
-    #[serde(default)]
-    name: String,
-    #[serde(default)]
-    from: Option<f64>,
-    #[serde(default)]
-    to: Option<f64>,
-    #[serde(default)]
-    log: bool,
-    #[serde(default)]
-    mean: Option<f64>,
-    #[serde(default)]
-    sd: Option<f64>,
-    #[serde(default)]
-    values: Vec<Box<RawValue>>,
-    #[serde(default)]
-    sets: Vec<Vec<String>>,
-    #[serde(default)]
-    readings: Vec<String>,
-}
-
-#[derive(Debug, Clone, Deserialize)]
-#[serde(deny_unknown_fields, rename = "target")]
-pub(super) struct TargetText {
-    #[serde(default)]
-    name: String,
-    of: String,
-    #[serde(default)]
-    value: Option<f64>,
-    #[serde(default)]
-    values: Vec<f64>,
-    #[serde(default)]
-    missing: bool,
-    #[serde(default)]
-    tolerance: f64,
-    #[serde(default)]
-    log: bool,
-}
-
-#[derive(Debug, Clone, Copy, Default, Deserialize)]
-#[serde(deny_unknown_fields, default, rename = "budget")]
-pub(super) struct BudgetText {
-    runs: Option<usize>,
-    first: Option<usize>,
-    round: Option<usize>,
-    check: Option<usize>,
+group! {
+    /// How many runs may be made.
+    pub(super) struct BudgetText: Copy {
+        /// Of all rounds together.
+        runs: Option<usize> = None;
+        /// Scenes of the first round.
+        first: Option<usize> = None;
+        /// Scenes of each further round.
+        round: Option<usize> = None;
+        /// Scenes that check the result.
+        check: Option<usize> = None;
+    }
 }
 
 pub(super) fn unknowns(texts: &[UnknownText], place: &File<'_>) -> Result<Vec<Unknown>, SceneError> {
@@ -113,15 +112,15 @@ pub(super) fn unknowns(texts: &[UnknownText], place: &File<'_>) -> Result<Vec<Un
         if unknowns.iter().any(|before| before.name == *name) {
             return Err(place.refuse(&at, format!("`{name}` is named twice: an unknown has one prior")));
         }
-        let values = text.prior().map_err(|why| place.refuse(&at, format!("`{name}` {why}")))?;
+        let values = text.prior(place).map_err(|why| place.refuse(&at, format!("`{name}` {why}")))?;
         unknowns.push(Unknown { name: name.clone(), values });
     }
     Ok(unknowns)
 }
 
 impl UnknownText {
-    fn prior(&self) -> Result<Values, String> {
-        let listed: Vec<String> = self.values.iter().map(|value| value.get_ron().trim().to_owned()).collect();
+    fn prior(&self, place: &File<'_>) -> Result<Values, String> {
+        let listed: Vec<String> = self.values.iter().map(|value| place.written(value)).collect();
         let choices = [listed.len(), self.sets.len(), self.readings.len()];
         let range = self.from.is_some() || self.to.is_some() || self.mean.is_some();
         if choices.iter().filter(|count| **count > 0).count() + usize::from(range) != 1 {

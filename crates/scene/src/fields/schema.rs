@@ -20,6 +20,7 @@ pub fn json_schema() -> Json {
 fn of(spot: Spot) -> Json {
     match spot.shape {
         Shape::Optional(inner) => json!({ "anyOf": [of(spot.with(*inner)), { "type": "null" }] }),
+        Shape::Any => json!({}),
         Shape::Number => within("number", spot),
         Shape::Count => within("integer", spot),
         Shape::Text => json!({ "type": "string" }),

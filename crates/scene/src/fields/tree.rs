@@ -78,11 +78,13 @@ pub(crate) fn steps(path: &str) -> impl Iterator<Item = Step<'_>> {
 }
 
 impl Node {
-    pub(crate) fn new(content: Content) -> Self {
+    /// A value that nobody wrote.
+    pub fn new(content: Content) -> Self {
         Self { content, span: 0..0, source: Source::Default }
     }
 
-    pub(crate) fn atom(text: impl Into<String>) -> Self {
+    /// A number, a word or a text that nobody wrote.
+    pub fn atom(text: impl Into<String>) -> Self {
         Self::new(Content::Atom(text.into()))
     }
 
@@ -93,12 +95,12 @@ impl Node {
     }
 
     /// `word( … )`.
-    pub(crate) fn behind(word: &str, inside: Self) -> Self {
+    pub fn behind(word: &str, inside: Self) -> Self {
         Self::new(Content::Behind(word.to_owned(), Box::new(inside)))
     }
 
     /// Whether it is `None`.
-    pub(crate) fn is_none(&self) -> bool {
+    pub fn is_none(&self) -> bool {
         matches!(&self.content, Content::Atom(text) if text == "None")
     }
 
@@ -279,12 +281,12 @@ pub struct Broken {
     /// Byte range where it did.
     pub range: Range<usize>,
     /// Why.
-    pub kind: Kind,
+    pub kind: Stop,
 }
 
 /// Why a text is no value.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Kind {
+pub enum Stop {
     /// There is nothing.
     Empty,
     /// It ends inside of brackets.
@@ -342,19 +344,19 @@ impl<'a> Parser<'a> {
     fn whole(&mut self, path: &str) -> Result<Node, Broken> {
         self.blank();
         if self.rest().is_empty() {
-            return Err(self.broken(path, self.at, Kind::Empty));
+            return Err(self.broken(path, self.at, Stop::Empty));
         }
         let node = self.value(path, 0)?;
         self.blank();
         if self.rest().is_empty() {
             Ok(node)
         } else {
-            Err(self.broken(path, self.at, Kind::Expected("the end of the text")))
+            Err(self.broken(path, self.at, Stop::Expected("the end of the text")))
         }
     }
 
-    fn broken(&self, path: &str, at: usize, kind: Kind) -> Broken {
-        let kind = if at >= self.text.len() && kind != Kind::Empty { Kind::Ends } else { kind };
+    fn broken(&self, path: &str, at: usize, kind: Stop) -> Broken {
+        let kind = if at >= self.text.len() && kind != Stop::Empty { Stop::Ends } else { kind };
         let end = self.text[at..].chars().next().map_or(at, |c| at + c.len_utf8());
         Broken { field: path.to_owned(), range: at..end, kind }
     }
@@ -410,7 +412,7 @@ impl<'a> Parser<'a> {
         self.blank();
         let start = self.at;
         if depth > MAX_DEPTH {
-            return Err(self.broken(path, start, Kind::Deep));
+            return Err(self.broken(path, start, Stop::Deep));
         }
         let content = match self.peek() {
             Some('[') => self.items(path, depth)?,
@@ -427,7 +429,7 @@ impl<'a> Parser<'a> {
         let rest = self.rest();
         let end = rest.find(|c: char| !(c.is_alphanumeric() || "_+-.".contains(c))).unwrap_or(rest.len());
         if end == 0 {
-            return Err(self.broken(path, self.at, Kind::NoValue));
+            return Err(self.broken(path, self.at, Stop::NoValue));
         }
         let word = rest[..end].to_owned();
         self.at += end;
@@ -463,7 +465,7 @@ impl<'a> Parser<'a> {
                 _ => {}
             }
         }
-        Err(self.broken(path, self.text.len(), Kind::Ends))
+        Err(self.broken(path, self.text.len(), Stop::Ends))
     }
 
     fn raw_string(&mut self, path: &str) -> Result<Content, Broken> {
@@ -471,11 +473,11 @@ impl<'a> Parser<'a> {
         let hashes = rest[1..].bytes().take_while(|b| *b == b'#').count();
         let body = 2 + hashes;
         if !rest[1 + hashes..].starts_with('"') {
-            return Err(self.broken(path, self.at, Kind::NoValue));
+            return Err(self.broken(path, self.at, Stop::NoValue));
         }
         let close = format!("\"{}", "#".repeat(hashes));
         let Some(end) = rest[body..].find(&close) else {
-            return Err(self.broken(path, self.text.len(), Kind::Ends));
+            return Err(self.broken(path, self.text.len(), Stop::Ends));
         };
         let length = body + end + close.len();
         self.at += length;
@@ -508,7 +510,7 @@ impl<'a> Parser<'a> {
             let start = self.at;
             if let Some(key) = self.key() {
                 if !values.is_empty() {
-                    return Err(self.broken(path, start, Kind::Expected("a value without a name")));
+                    return Err(self.broken(path, start, Stop::Expected("a value without a name")));
                 }
                 let field = if path.is_empty() { key.name.clone() } else { format!("{path}.{}", key.name) };
                 let value = self.value(&field, depth + 1)?;
@@ -519,18 +521,18 @@ impl<'a> Parser<'a> {
                     let field =
                         if path.is_empty() { key.name.clone() } else { format!("{path}.{}", key.name) };
                     let range = last.span.start..last.span.start + length;
-                    return Err(Broken { field, range, kind: Kind::DecimalComma });
+                    return Err(Broken { field, range, kind: Stop::DecimalComma });
                 }
-                return Err(self.broken(path, start, Kind::Expected("the name of a field")));
+                return Err(self.broken(path, start, Stop::Expected("the name of a field")));
             } else {
                 let value = self.value(path, depth + 1)?;
                 self.blank();
                 if self.peek() == Some(':') {
-                    return Err(self.broken(path, start, Kind::Expected("the name of a field")));
+                    return Err(self.broken(path, start, Stop::Expected("the name of a field")));
                 }
                 let is_word = matches!(&value.content, Content::Atom(_)) && !value.is_quoted();
                 if is_word && !matches!(self.peek(), None | Some(',' | ')')) {
-                    return Err(self.broken(path, self.at, Kind::Expected("a colon")));
+                    return Err(self.broken(path, self.at, Stop::Expected("a colon")));
                 }
                 values.push(value);
             }
@@ -558,7 +560,7 @@ impl<'a> Parser<'a> {
         if self.accept(',') || self.peek() == Some(close) {
             return Ok(());
         }
-        Err(self.broken(path, self.at, Kind::Expected(expected)))
+        Err(self.broken(path, self.at, Stop::Expected(expected)))
     }
 }
 

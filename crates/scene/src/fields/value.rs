@@ -1,10 +1,10 @@
 //! Values that a scene is made of: what is written for them, and how they are read and written.
 
-use super::Shape;
 use super::tree::{Content, Node};
+use super::{Shape, Word, Words};
 
 /// A value of a scene.
-pub(crate) trait Value: Sized {
+pub trait Value: Sized {
     /// What is written for it.
     const SHAPE: Shape;
     /// The same for a shape around it.
@@ -51,6 +51,24 @@ impl Value for usize {
 
 impl Value for u64 {
     const SHAPE: Shape = Shape::Count;
+
+    fn read(node: &Node) -> Option<Self> {
+        parsed(node)
+    }
+
+    fn write(&self) -> Node {
+        Node::atom(self.to_string())
+    }
+}
+
+impl Value for bool {
+    const SHAPE: Shape = Shape::Words(&Words {
+        about: &["Yes or no."],
+        words: &[
+            Word { word: "false", about: &["No."], inside: None },
+            Word { word: "true", about: &["Yes."], inside: None },
+        ],
+    });
 
     fn read(node: &Node) -> Option<Self> {
         parsed(node)

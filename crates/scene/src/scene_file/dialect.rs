@@ -1,18 +1,9 @@
 //! The text of a complete scene, and its identity.
 
-use ron::extensions::Extensions;
-
 use crate::fields::tree::{Content, Node};
 use crate::fields::value::Value;
 use crate::fields::{Field, Group};
 use crate::scene::Scene;
-
-/// `cage: (…)` means `cage: Some((…))`.
-pub fn dialect() -> ron::Options {
-    let extensions =
-        Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES | Extensions::UNWRAP_VARIANT_NEWTYPES;
-    ron::Options::default().with_default_extension(extensions)
-}
 
 impl Scene {
     /// The complete scene, every default included, as a scene file that reads back to an equal scene.

@@ -10,11 +10,11 @@ pub(crate) struct Habit {
 }
 
 /// The format of a text that is not RON, recognised by its first line.
-pub(crate) fn other_format(text: &str) -> Option<Habit> {
+pub(crate) fn other_format(text: &str, noun: &str) -> Option<Habit> {
     let (at, line) = first_line(text)?;
     let range = at..at + line.len();
     let habit = |format: &str, how: String| {
-        let message = format!("this is {format}; a scene is written in RON");
+        let message = format!("this is {format}; {noun} is written in RON");
         Some(Habit { range: range.clone(), message, suggestion: how })
     };
     if line.starts_with('{') {
@@ -116,10 +116,13 @@ mod tests {
             ("# a comment\n[bearing]\nrollers = 24\n", "TOML"),
             ("# a comment\n(name: \"x\")", "`#` is not a comment"),
         ] {
-            assert!(other_format(text).is_some_and(|habit| habit.message.contains(words)), "{text}");
+            assert!(
+                other_format(text, "a scene").is_some_and(|habit| habit.message.contains(words)),
+                "{text}"
+            );
         }
         for text in ["(name: 3)", "// x\n(", "", "#![enable(implicit_some)]\n(x", "hello", "\"x\""] {
-            assert!(other_format(text).is_none(), "{text}");
+            assert!(other_format(text, "a scene").is_none(), "{text}");
         }
     }
 

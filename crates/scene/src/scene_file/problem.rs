@@ -29,6 +29,8 @@ pub struct Problem {
     pub repair: Option<String>,
     /// Where the value was written.
     pub place: Place,
+    /// Whether the value is none of its field, whatever the others are: a misspelt word, a wrong type.
+    pub is_unreadable: bool,
 }
 
 /// Where a value was written.
@@ -110,7 +112,7 @@ impl Problem {
     pub fn new(message: impl Into<String>, place: Place) -> Self {
         let message = message.into();
         let (field, allowed, suggestion) = (String::new(), String::new(), String::new());
-        Self { field, message, allowed, suggestion, repair: None, place }
+        Self { field, message, allowed, suggestion, repair: None, place, is_unreadable: false }
     }
 
     /// Proposes `value` for `field`, written as it would be where the problem stands.

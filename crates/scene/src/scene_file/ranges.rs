@@ -14,9 +14,15 @@ const MAX_SENSORS: usize = 64;
 
 /// Everything outside its range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let mut found = Vec::new();
-    numbers(scene, &scene.write(), Spot::ROOT, "", &mut found);
+    let mut found = in_tree(scene, &scene.write(), Spot::ROOT);
     found.extend(names(scene));
+    found
+}
+
+/// Numbers of a tree outside their range.
+pub(crate) fn in_tree(scene: &Scene, tree: &Node, whole: Spot) -> Vec<Finding> {
+    let mut found = Vec::new();
+    numbers(scene, tree, whole, "", &mut found);
     found
 }
 

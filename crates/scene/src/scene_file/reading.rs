@@ -5,13 +5,13 @@ use std::ops::Range;
 
 use super::foreign;
 use super::problem::Problem;
-use super::sources::Sources;
+use super::sources::{Kind, Sources};
 use super::suggest;
 use super::wording::{list, number, shown};
 use crate::catalogue;
-use crate::fields::tree::{Broken, Content, Kind, Node};
+use crate::fields::tree::{Broken, Content, Node, Source, Stop};
 use crate::fields::value::Value;
-use crate::fields::{Group, Shape, Spot, Words, paths};
+use crate::fields::{Group, Shape, Spot, Words, paths, spot};
 
 /// Everything in `node` that its entry of the table does not allow.
 pub(crate) fn faults(node: &Node, spot: Spot, path: &str, sources: &Sources) -> Vec<Problem> {
@@ -27,7 +27,8 @@ struct Found<'a> {
 
 impl Found<'_> {
     fn add(&mut self, field: &str, message: String, node: &Node, span: Range<usize>) -> &mut Problem {
-        let mut problem = Problem::new(message, self.sources.place_at(node.source, span));
+        let place = self.sources.place_at(node.source, span);
+        let mut problem = Problem { is_unreadable: true, ..Problem::new(message, place) };
         field.clone_into(&mut problem.field);
         self.problems.push(problem);
         let last = self.problems.len() - 1;
@@ -39,6 +40,7 @@ impl Found<'_> {
             return;
         }
         match (spot.shape.there(), &node.content) {
+            (Shape::Any, _) => {}
             (Shape::Number, _) if f64::read(node).is_some() => {}
             (Shape::Count, _) if u64::read(node).is_some() => {}
             (Shape::Text, _) if String::read(node).is_some() => {}
@@ -56,12 +58,22 @@ impl Found<'_> {
             }
             (Shape::Group(_), Content::Behind(name, inside)) => {
                 let span = node.span.start..inside.span.start;
-                let problem = self.add(path, format!("`{}(` is no part of a scene", shown(name)), node, span);
+                let problem = self.add(
+                    path,
+                    format!("`{}(` is no part of {}", shown(name), self.sources.kind.noun),
+                    node,
+                    span,
+                );
                 "leave the name in front of the bracket out: `( … )`".clone_into(&mut problem.suggestion);
             }
             (Shape::Words(words), _) => self.word(node, spot, words, path),
             _ => self.mismatch(node, spot, path),
         }
+    }
+
+    /// The group at a path in words.
+    fn home(&self, path: &str) -> String {
+        if path.is_empty() { self.sources.kind.noun.to_owned() } else { format!("`{path}`") }
     }
 
     fn group(&mut self, node: &Node, spot: Spot, group: &'static Group, path: &str) {
@@ -77,23 +89,23 @@ impl Found<'_> {
                 }
                 Some(field) => self.check(value, spot.at(group, field), &at),
                 None => {
-                    let home = if path.is_empty() { "a scene".to_owned() } else { format!("`{path}`") };
                     let names: Vec<&str> = group
                         .fields
                         .iter()
                         .filter(|field| !field.is_internal)
                         .map(|field| field.name)
                         .collect();
-                    let message = format!("unknown field `{}` in {home}", shown(&key.name));
+                    let message = format!("unknown field `{}` in {}", shown(&key.name), self.home(path));
+                    let kind = self.sources.kind;
                     let problem = self.add(&at, message, node, key.span.clone());
                     problem.allowed = list(&names);
-                    problem.suggestion = suggest::field(&key.name, &names, paths()).unwrap_or_default();
+                    problem.suggestion = advice(&key.name, &names, kind);
                 }
             }
         }
         for field in group.fields.iter().filter(|field| field.is_required && node.field(field.name).is_none())
         {
-            let message = format!("`{path}` has no field `{}`, which has no default", field.name);
+            let message = format!("{} has no field `{}`, which has no default", self.home(path), field.name);
             let problem = self.add(&inside(field.name), message, node, node.span.clone());
             problem.suggestion = format!("add `{}: …` ({})", field.name, field.shape.words());
         }
@@ -166,6 +178,15 @@ impl Found<'_> {
     }
 }
 
+/// Remedy for a field that is not one of `names`.
+fn advice(found: &str, names: &[&str], kind: &Kind) -> String {
+    let Some(elsewhere) = kind.for_fields_of_scenes else {
+        return suggest::field(found, names, paths()).unwrap_or_default();
+    };
+    let of_scene = || spot(found, None).map(|_| elsewhere.replace("{}", found));
+    suggest::field(found, names, &[]).or_else(of_scene).unwrap_or_default()
+}
+
 /// Whether a word is meant for `None`.
 fn spot_is_none(spot: Spot, written: &str) -> bool {
     matches!(spot.shape, Shape::Optional(_)) && written.eq_ignore_ascii_case("none")
@@ -203,44 +224,40 @@ fn meant(value: &str, shape: Shape, path: &str) -> Option<(String, &'static str)
     }
 }
 
-/// The error on a text that is no tree, which `noun` it should be.
-pub(crate) fn broken(text: &str, broken: Broken, sources: &Sources) -> Problem {
-    let source = crate::fields::tree::Source::File;
-    if let Some(habit) = foreign::other_format(text) {
+/// The error on a text that is no tree.
+pub(crate) fn broken(broken: Broken, sources: &Sources) -> Problem {
+    let (source, text) = (Source::File, sources.text.as_str());
+    let noun = sources.kind.noun.trim_start_matches("a ").trim_start_matches("an ");
+    if let Some(habit) = foreign::other_format(text, sources.kind.noun) {
         let mut problem = Problem::new(habit.message, sources.place_at(source, habit.range));
         problem.suggestion = habit.suggestion;
         return problem;
     }
     let Broken { field, range, kind } = broken;
     let mut problem = Problem::new("", sources.place_at(source, range.clone()));
-    let [message, suggestion] = match kind {
-        Kind::Empty => ["the scene is empty", "`()` is the complete default scene; is the file cut off?"],
-        Kind::Ends => [
-            "the scene ends too early: a closing bracket or a value is missing",
+    let cannot = format!("the {noun} cannot be read");
+    let (message, suggestion) = match kind {
+        Stop::Empty => (format!("the {noun} is empty"), sources.kind.example),
+        Stop::Ends => (
+            format!("the {noun} ends too early: a closing bracket or a value is missing"),
             "is the file cut off? Every `(` needs its `)`",
-        ],
-        Kind::Deep => ["the scene cannot be read: no scene has so many brackets in each other", ""],
-        Kind::NoValue if text[range.start..].starts_with('{') => {
-            ["a group `( … )` is expected here", hint(text, range.start)]
+        ),
+        Stop::Deep => (format!("{cannot}: it has too many brackets in each other"), ""),
+        Stop::NoValue if text[range.start..].starts_with('{') => {
+            ("a group `( … )` is expected here".to_owned(), hint(text, range.start))
         }
-        Kind::NoValue => ["the scene cannot be read: a value is expected here", hint(text, range.start)],
-        Kind::Expected(what) => {
-            problem.message = format!("the scene cannot be read: {what} is expected here");
-            ["", hint(text, range.start)]
-        }
-        Kind::DecimalComma => {
+        Stop::NoValue => (format!("{cannot}: a value is expected here"), hint(text, range.start)),
+        Stop::Expected(what) => (format!("{cannot}: {what} is expected here"), hint(text, range.start)),
+        Stop::DecimalComma => {
             let written = &text[range];
             problem.message = format!("`{field}` is `{written}`, with a decimal comma");
             problem.field.clone_from(&field);
-            problem.allowed = crate::fields::spot(&field, None).map(Spot::allowed).unwrap_or_default();
+            problem.allowed = spot(&field, None).map(Spot::allowed).unwrap_or_default();
             problem.propose(&field, &foreign::with_point(written), foreign::comma_note(written));
             return problem;
         }
     };
-    if problem.message.is_empty() {
-        message.clone_into(&mut problem.message);
-    }
-    problem.field = field;
+    (problem.message, problem.field) = (message, field);
     suggestion.clone_into(&mut problem.suggestion);
     problem
 }

@@ -13,43 +13,49 @@ use crate::fields::value::Value;
 use crate::fields::{Shape, Spot, names_in, paths, spot};
 use crate::scene::Scene;
 
+/// A kind of file that is written in fields and values.
+#[derive(Debug)]
+pub struct Kind {
+    /// What such a file is: `a campaign`.
+    pub noun: &'static str,
+    /// Its fields, and an example.
+    pub example: &'static str,
+    /// Where the field of a scene stands in it, with `{}` for the field; `None` for a scene.
+    pub for_fields_of_scenes: Option<&'static str>,
+}
+
+/// The file of a scene.
+pub(crate) const SCENE: Kind = Kind {
+    noun: "a scene",
+    example: "`()` is the complete default scene; is the file cut off?",
+    for_fields_of_scenes: None,
+};
+
 /// A complete scene as a tree, and its sources.
 #[derive(Debug)]
 pub(crate) struct Sources {
+    pub(crate) kind: &'static Kind,
     file: String,
-    text: String,
+    pub(crate) text: String,
     arguments: Vec<String>,
     pub(crate) tree: Node,
-}
-
-/// An argument that cannot be applied.
-pub(crate) struct Refused {
-    pub(crate) problems: Vec<Problem>,
-    /// Its field is known: the value is to blame.
-    pub(crate) is_of_value: bool,
-}
-
-impl From<Problem> for Refused {
-    fn from(problem: Problem) -> Self {
-        Self { problems: vec![problem], is_of_value: false }
-    }
 }
 
 impl Sources {
     /// A scene in memory, which nobody wrote.
     pub(crate) fn of_scene(scene: &Scene) -> Self {
-        Self { file: String::new(), text: String::new(), arguments: Vec::new(), tree: scene.write() }
+        let (file, text, arguments) = (String::new(), String::new(), Vec::new());
+        Self { kind: &SCENE, file, text, arguments, tree: scene.write() }
     }
 
-    /// A scene from a file, its fields alone.
+    /// What a file of this kind says, its fields alone.
     ///
     /// # Errors
-    /// When the text is no tree of fields and values of a scene.
-    pub(crate) fn of_text(text: &str, file: &str) -> Result<Self, SceneError> {
-        let nothing = Node::group([]);
-        let mut sources =
-            Self { file: file.to_owned(), text: text.to_owned(), arguments: Vec::new(), tree: nothing };
-        sources.tree = tree::parse(text).map_err(|why| reading::broken(text, why, &sources))?;
+    /// When the text is no tree of fields and values.
+    pub(crate) fn of_text(text: &str, file: &str, kind: &'static Kind) -> Result<Self, SceneError> {
+        let (file, text, tree) = (file.to_owned(), text.to_owned(), Node::group([]));
+        let mut sources = Self { kind, file, text, arguments: Vec::new(), tree };
+        sources.tree = tree::parse(&sources.text).map_err(|why| reading::broken(why, &sources))?;
         Ok(sources)
     }
 
@@ -103,32 +109,19 @@ impl Sources {
     /// Applies arguments in order.
     ///
     /// # Errors
-    /// The first one that cannot be applied.
+    /// All that cannot be applied; the others are, as far as they go, so each meets the scene that it is written
+    /// for.
     pub(crate) fn set_all<S: AsRef<str>>(&mut self, arguments: &[S]) -> Result<(), SceneError> {
         let given = written_by(arguments);
-        arguments.iter().try_for_each(|argument| {
-            self.set(argument.as_ref(), &given).map_err(|refused| SceneError::new(refused.problems))
-        })
-    }
-
-    /// Those of `arguments` whose value no reading of their field takes: words that are not its words, numbers
-    /// of another type, names of no bearing. The others are applied as far as they go, so each value meets the
-    /// scene that it is written for. Ranges and relations to other fields are not checked.
-    pub(crate) fn unreadable_values<S: AsRef<str>>(&mut self, arguments: &[S]) -> Vec<(usize, Problem)> {
-        let given = written_by(arguments);
-        let mut unreadable = Vec::new();
-        for (index, argument) in arguments.iter().enumerate() {
-            if let Err(refused) = self.set(argument.as_ref(), &given)
-                && refused.is_of_value
-            {
-                unreadable.extend(refused.problems.into_iter().map(|problem| (index, problem)));
-            }
+        let mut problems = Vec::new();
+        for argument in arguments {
+            problems.extend(self.set(argument.as_ref(), &given).err().unwrap_or_default());
         }
-        unreadable
+        if problems.is_empty() { Ok(()) } else { Err(SceneError::new(problems)) }
     }
 
     /// Applies one argument; `given` has the paths of all fields that arguments set.
-    fn set(&mut self, argument: &str, given: &[String]) -> Result<(), Refused> {
+    fn set(&mut self, argument: &str, given: &[String]) -> Result<(), Vec<Problem>> {
         let number = self.arguments.len();
         self.arguments.push(argument.to_owned());
         let Some((written, value)) = argument.split_once('=') else {
@@ -136,19 +129,18 @@ impl Sources {
             let mut problem = Problem::new(message, command_line(argument, 0, argument.len()));
             "write `--set field=value`, for example `--set mesh.size_mm=1.0`"
                 .clone_into(&mut problem.suggestion);
-            return Err(problem.into());
+            return Err(vec![problem]);
         };
         let path = written.trim();
         let at = written.len() + 1;
-        let spot = self.known(path, argument)?;
-        let of_value = |problems: Vec<Problem>| Refused { problems, is_of_value: true };
+        let spot = self.known(path, argument).map_err(|problem| vec![problem])?;
         let place = command_line(argument, at, argument.len());
         if path == "bearing"
             && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
         {
-            let refuse = |why| Refused {
-                is_of_value: catalogue::parse(&name).is_err(),
-                ..of_value(vec![super::unknown_bearing(why, place.clone())])
+            let refuse = |why| {
+                let is_unreadable = catalogue::parse(&name).is_err();
+                vec![Problem { is_unreadable, ..super::unknown_bearing(why, place.clone()) }]
             };
             let mut scene = self.scene().unwrap_or_default();
             named::put(&mut scene, &name, given).map_err(refuse)?;
@@ -165,11 +157,11 @@ impl Sources {
             Node { content, span: at..argument.len(), source: Source::Argument(number) }
         } else {
             tree::parse_argument(argument, at, number, path)
-                .map_err(|_| of_value(vec![incomplete(path, value.trim(), spot, place)]))?
+                .map_err(|_| vec![incomplete(path, value.trim(), spot, place)])?
         };
         let found = reading::faults(&node, spot, path, self);
         if !found.is_empty() {
-            return Err(of_value(found));
+            return Err(found);
         }
         put(&mut self.tree, path, node);
         if let Some(mut scene) = self.scene() {
@@ -334,7 +326,7 @@ fn bare_designation(value: &str) -> Option<String> {
 
 /// Refuses a value that is not one value: a bracket is missing, or something follows.
 fn incomplete(path: &str, value: &str, spot: Spot, place: Place) -> Problem {
-    let mut problem = Problem::new("", place);
+    let mut problem = Problem { is_unreadable: true, ..Problem::new("", place) };
     path.clone_into(&mut problem.field);
     if foreign::comma_number(value) == Some(value.len()) {
         problem.message = format!("`{path}` is given `{}`, with a decimal comma", shown(value));

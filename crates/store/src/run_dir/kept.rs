@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use serde::Deserialize;
+use stribeck_scene::fields::words;
 
 use super::{CHECKPOINT, ENERGY, FRAMES, MESH, PARTIAL, RunDir, SIGNALS, TRACE, files};
 use crate::error::Error;
@@ -11,17 +11,16 @@ use crate::trace::TraceFile;
 /// Names of the channels of sensors begin with it.
 pub const SENSOR: &str = "sensor.";
 
-/// Files that are kept of a run once its summary exists. Scene, provenance and summary always are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename = "keep", rename_all = "snake_case")]
-pub enum Keep {
-    /// Everything.
-    #[default]
-    All,
-    /// Of its samples the channels of sensors.
-    Signals,
-    /// No sample.
-    Numbers,
+words! {
+    /// Files that are kept of a run once its summary exists. Scene, provenance and summary always are.
+    pub enum Keep: Copy, Eq {
+        /// Everything.
+        All = "all",
+        /// Of its samples the channels of sensors.
+        Signals = "signals",
+        /// No sample.
+        Numbers = "numbers",
+    }
 }
 
 impl RunDir {
