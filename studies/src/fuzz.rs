@@ -39,7 +39,7 @@ pub(crate) struct Options {
     kind: Option<String>,
     /// Compares our readings of files of signals and meshes, most of them damaged, with those of the programs
     /// that this Python has (numpy, scipy, h5py, npTDMS, asammdf, pandas, pyarrow, pyuff, soundfile, meshio),
-    /// and writes docs/results/readers.md
+    /// and writes docs/results/readers.csv and .md
     #[arg(long, value_name = "PYTHON", conflicts_with = "kind")]
     peers: Option<String>,
     /// With --peers: begins no further batch of files after this number of seconds

@@ -2,9 +2,6 @@
 //! no evidence: rollers without load rattle, and two starts that differ by a microsecond differ by a factor.
 //! Their distributions are compared.
 
-pub(crate) mod statistics;
-mod variants;
-
 use anyhow::Result;
 use stribeck_analysis::levels::impulse_span;
 use stribeck_analysis::noise;
@@ -12,282 +9,175 @@ use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::signal::{smoothed_peak, smoothed_rms};
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
-use stribeck_store::run_dir::Run;
 
-use self::statistics::{Sample, correlation_within, ratio};
-use self::variants::Family;
-use crate::table::number;
-use crate::{Answer, Finished, Flags, Host, Runner, Sheet};
+use crate::page::decimals;
+use crate::sample::{Sample, correlation_within, ratio};
+use crate::{Finished, Flags, Host, Plan, Rows, Runner, figure};
 
 /// Flags of `study impulse`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
     #[command(flatten)]
     flags: Flags,
-    /// Starts of each mesh, 0.01° of the cage apart; half as many in tight pockets
+    /// Starts of each mesh, 0.01° of the cage apart; half as many in tight pockets, where they scatter less
     #[arg(long, value_name = "N", default_value_t = 16, value_parser = clap::value_parser!(u16).range(2..=1000))]
     starts: u16,
 }
 
-/// A number of one start.
-#[derive(Clone, Copy)]
-struct Quantity {
-    name: &'static str,
-    decimals: usize,
-    of: fn(&Impulse) -> f64,
-}
-
 /// Widths of running means, which are low-pass filters at 8.9, 4.4 and 2.1 kHz (−3 dB) [s].
 const MEANS_S: [f64; 3] = [50e-6, 100e-6, 210e-6];
-
 /// The first blow: so long from the first contact behind the groove on. Then the load comes back, and the
 /// cage runs into the roller.
 const BLOW_S: f64 = 0.3e-3;
-
 /// Force of the outer raceway above which a roller counts as in contact with it [N].
 const MET_N: f64 = 20.0;
-
 /// The cage strikes within so long after the first contact [s].
 const STRIKES_S: f64 = 1e-3;
-
 /// The first contact is looked for from so long before the exit [s].
 const BEFORE_S: f64 = 0.8e-3;
 
-/// The impulse of one start at one sensor.
-struct Impulse {
-    whole: noise::Impulse,
-    /// Largest magnitude of each running mean.
-    means_g: [f64; 3],
-    /// RMS of the first blow, and of two of its running means.
-    blow_g: [f64; 3],
-    roller: Roller,
-}
+/// Numbers of one start at one sensor.
+type Impulse = [f64; 10];
 
-/// Roller 1 and its cage.
-#[derive(Clone, Copy)]
-struct Roller {
-    /// How far behind the middle of its pocket the roller is when it meets the raceway [µm].
-    behind_um: f64,
-    /// Largest force of the cage on it within the millisecond from then on [N].
-    cage_n: f64,
-}
-
-/// The peak below 2.1 kHz among them.
+/// Their names; the last two, of roller 1 and its cage, are the same at all sensors.
+const QUANTITIES: [&str; 10] = [
+    "peak g",
+    "peak below 8.9 kHz g",
+    "peak below 4.4 kHz g",
+    "peak below 2.1 kHz g",
+    "root of the energy, g √ms",
+    "first blow, RMS g",
+    "first blow below 8.9 kHz, RMS g",
+    "first blow below 2.1 kHz, RMS g",
+    "behind the middle of its pocket, µm",
+    "largest force of the cage, N",
+];
 const SLOW: usize = 3;
+const SLOW_BLOW: usize = 7;
+const OF_ROLLER: std::ops::Range<usize> = 8..10;
 
-const QUANTITIES: [Quantity; 8] = [
-    Quantity { name: "peak g", decimals: 0, of: |i| i.whole.peak_g },
-    Quantity { name: "peak below 8.9 kHz g", decimals: 1, of: |i| i.means_g[0] },
-    Quantity { name: "peak below 4.4 kHz g", decimals: 1, of: |i| i.means_g[1] },
-    Quantity { name: "peak below 2.1 kHz g", decimals: 1, of: |i| i.means_g[2] },
-    Quantity { name: "root of the energy, g √ms", decimals: 1, of: |i| i.whole.energy_g2_ms.sqrt() },
-    Quantity { name: "first blow, RMS g", decimals: 1, of: |i| i.blow_g[0] },
-    Quantity { name: "first blow below 8.9 kHz, RMS g", decimals: 1, of: |i| i.blow_g[1] },
-    Quantity { name: "first blow below 2.1 kHz, RMS g", decimals: 2, of: |i| i.blow_g[2] },
-];
+/// Starts of a mesh at one sensor.
+type Impulses<'a> = (&'a str, Vec<Impulse>);
 
-/// Quantities of the roller, the same at all sensors.
-const OF_ROLLER: [Quantity; 2] = [
-    Quantity { name: "behind the middle of its pocket, µm", decimals: 0, of: |i| i.roller.behind_um },
-    Quantity { name: "largest force of the cage, N", decimals: 0, of: |i| i.roller.cage_n },
-];
-
-/// A mesh and the results of its starts.
-struct Group {
-    name: &'static str,
-    runs: Vec<Finished>,
-}
-
-/// Impulses of a mesh at one sensor.
-type Impulses = (&'static str, Vec<Impulse>);
-
-pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
+pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result<()> {
     let runner = Runner::new("impulse", &options.flags, host);
-    let mut sheet = Sheet::new(host.root(), "impulse", "The impulse at the exit against finer meshes");
-    let (mut meshes, mut shown) = (Vec::new(), Vec::new());
-    for Family { name, id, meshes: list } in variants::families(options.starts) {
-        let mut groups = Vec::new();
-        for mesh in list {
-            let runs = runner.run(&mesh.starts)?;
-            let measured = runs.iter().filter(|run| impulse(run, 0).is_some()).count();
-            meshes.push(vec![mesh.name.to_owned(), mesh.shows.to_owned(), measured.to_string()]);
-            groups.push(Group { name: mesh.name, runs });
+    let plan = Plan::read("impulse")?;
+    for group in &plan.groups {
+        let starts = if group.table == "tight" { (options.starts / 2).max(2) } else { options.starts };
+        let mut meshes = Vec::new();
+        for variant in plan.variants(group) {
+            meshes.push((variant.name.clone(), runner.run(&Plan::starts(&variant, starts))?));
         }
-        shown.push((name, id, groups));
-    }
-    introduce(&mut sheet, &meshes, shown.iter().flat_map(|(.., groups)| groups));
-    for (family, id, groups) in &shown {
-        show(&mut sheet, family, id, groups)?;
-    }
-    Ok(Answer::on(sheet.write()?))
-}
-
-fn introduce<'a>(sheet: &mut Sheet, meshes: &[Vec<String>], groups: impl Iterator<Item = &'a Group>) {
-    sheet.say(
-        "The first impulse of the bearing: vertical acceleration within 1 ms of the exit of roller 1, from \
-         starts 0.01° of the \
-         cage (10 µs) apart. The impulse of a single start says little, for rollers without load rattle, and \
-         what each of \
-         them does in the exit's millisecond differs from start to start by more than meshes do. So means \
-         over the \
-         starts are compared, with their standard errors. Differences of more than \
-         two of their standard errors are bold; of the others one cannot say that there is any. A running \
-         mean over 50, 100 \
-         and 210 µs leaves what is slower than 8.9, 4.4 and 2.1 kHz. The first blow is the 0.3 ms from where \
-         the roller meets \
-         the raceway again.",
-    );
-    sheet.table(&["mesh", "what it is", "starts"], meshes);
-    for run in groups.flat_map(|group| &group.runs) {
-        if let Err(why) = &run.summary {
-            sheet.say(&format!("`{}`: no numbers. {why}", run.variant.name));
-        }
-    }
-}
-
-/// All sensors under one cage.
-fn show(sheet: &mut Sheet, family: &str, id: &str, groups: &[Group]) -> Result<()> {
-    let Some(scene) = groups.iter().flat_map(|group| &group.runs).map(|run| &run.scene).next() else {
-        return Ok(());
-    };
-    for (number, sensor) in scene.written.output.sensors.iter().map(|sensor| &sensor.name).enumerate() {
-        let impulses: Vec<Impulses> = groups
-            .iter()
-            .map(|group| (group.name, group.runs.iter().filter_map(|run| impulse(run, number)).collect()))
-            .filter(|(_, impulses): &Impulses| impulses.len() > 1)
-            .collect();
-        if impulses.is_empty() {
-            continue;
-        }
-        sheet.heading(&format!("Sensor {sensor}, {family}"));
-        compare(sheet, sensor, &impulses);
-        if number == 0 {
-            picture(sheet, id, sensor, family, &impulses)?;
-            sheet.heading(&format!("Roller 1 and its cage, {family}"));
-            of_roller(sheet, sensor, &impulses);
+        let Some(first) = meshes.iter().flat_map(|(_, runs)| runs).next() else { continue };
+        let sensors: Vec<String> = first.written.output.sensors.iter().map(|s| s.name.clone()).collect();
+        for (number, sensor) in sensors.iter().enumerate() {
+            let all: Vec<Impulses<'_>> = meshes
+                .iter()
+                .map(|(name, runs)| {
+                    (name.as_str(), runs.iter().filter_map(|run| impulse(run, number)).collect())
+                })
+                .filter(|(_, impulses): &Impulses<'_>| impulses.len() > 1)
+                .collect();
+            compare(rows, sensor, 0..OF_ROLLER.start, &all);
+            if number == 0 {
+                compare(rows, "roller 1", OF_ROLLER, &all);
+                for with in OF_ROLLER.chain([SLOW_BLOW]) {
+                    let pairs = |(_, of): &Impulses<'_>| of.iter().map(|i| [i[with], i[SLOW]]).collect();
+                    let value = correlation_within(&all.iter().map(pairs).collect::<Vec<_>>());
+                    rows.value("correlations", &group.table, QUANTITIES[with], value);
+                }
+                pictures(&runner, &group.table, sensor, &all)?;
+            }
         }
     }
     Ok(())
 }
 
-/// Means of each mesh, and how far each is off the last but for chance.
-fn compare(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
-    let Some((reference, others)) = groups.split_last() else { return };
-    let offs: Vec<String> = others.iter().map(|g| format!("{} − {} %", g.0, reference.0)).collect();
-    let mut rows = Vec::new();
-    for quantity in QUANTITIES {
-        let (mut row, samples) = means(sheet, sensor, quantity, groups);
-        let last = &samples[others.len()];
+/// Means of each mesh, and how far each is off the last.
+fn compare(rows: &mut Rows, table: &str, quantities: std::ops::Range<usize>, groups: &[Impulses<'_>]) {
+    for (at, name) in quantities.clone().zip(&QUANTITIES[quantities]) {
+        let sample = |impulses: &[Impulse]| Sample::of(&impulses.iter().map(|i| i[at]).collect::<Vec<_>>());
+        let samples: Vec<Sample> = groups.iter().map(|(_, impulses)| sample(impulses)).collect();
+        for ((group, impulses), sample) in groups.iter().zip(&samples) {
+            rows.value(table, group, "starts", impulses.len() as f64);
+            sample.put(rows, table, group, name);
+        }
+        let (Some(((reference, _), others)), Some(last)) = (groups.split_last(), samples.last()) else {
+            continue;
+        };
+        if at >= OF_ROLLER.start {
+            continue;
+        }
         for ((group, _), sample) in others.iter().zip(&samples) {
             let [off, error] = ratio(sample, last).map(|v| 100.0 * v);
-            let bold = if off.abs() > 2.0 * error { "**" } else { "" };
-            row.push(format!("{bold}{} ± {}{bold}", number(off, 1), number(error, 1)));
-            let name = format!("{}, off {} %", quantity.name, reference.0);
-            sheet.value(sensor, group, &name, Some(off));
-            sheet.value(sensor, group, &format!("{name}, standard error"), Some(error));
-        }
-        rows.push(row);
-    }
-    sheet.table(&heads(groups, &offs), &rows);
-}
-
-/// Position of the roller in its pocket, force of the cage on it, and correlation of the slow part of the
-/// impulse with both.
-fn of_roller(sheet: &mut Sheet, sensor: &str, groups: &[Impulses]) {
-    let rows: Vec<Vec<String>> =
-        OF_ROLLER.iter().map(|&quantity| means(sheet, "roller 1", quantity, groups).0).collect();
-    sheet.table(&heads(groups, &[]), &rows);
-    let slow = QUANTITIES[SLOW];
-    let correlation = |of: fn(&Impulse) -> f64| {
-        let pairs = |impulses: &Vec<Impulse>| impulses.iter().map(|i| [of(i), (slow.of)(i)]).collect();
-        correlation_within(&groups.iter().map(|(_, impulses)| pairs(impulses)).collect::<Vec<_>>())
-    };
-    let [behind, cage] = OF_ROLLER.map(|quantity| correlation(quantity.of));
-    let blow = correlation(|i| i.blow_g[2]);
-    let [behind, cage, blow] = [behind, cage, blow].map(|value| number(value, 2));
-    sheet.say(&format!(
-        "Correlations within meshes of the peak below 2.1 kHz at the sensor {sensor}: {behind} with the \
-         roller's place in its \
-         pocket, {cage} with the force of the cage, {blow} with the first blow below 2.1 kHz.",
-    ));
-}
-
-/// Names of the columns of a table of means, and more.
-fn heads<'a>(groups: &[Impulses], more: &'a [String]) -> Vec<&'a str> {
-    let names = groups.iter().map(|(name, _)| *name);
-    ["mean ± standard error (scatter)"]
-        .into_iter()
-        .chain(names)
-        .chain(more.iter().map(String::as_str))
-        .collect()
-}
-
-/// The row of means of a quantity.
-fn means(
-    sheet: &mut Sheet,
-    table: &str,
-    quantity: Quantity,
-    groups: &[Impulses],
-) -> (Vec<String>, Vec<Sample>) {
-    let Quantity { name, decimals, of } = quantity;
-    let sample = |impulses: &Vec<Impulse>| Sample::of(&impulses.iter().map(of).collect::<Vec<f64>>());
-    let samples: Vec<Sample> = groups.iter().map(|(_, impulses)| sample(impulses)).collect();
-    let mut row = vec![name.to_owned()];
-    for ((group, _), sample) in groups.iter().zip(&samples) {
-        let [mean, error, scatter] =
-            [sample.mean, sample.error(), sample.scatter].map(|v| number(v, decimals));
-        row.push(format!("{mean} ± {error} ({scatter})"));
-        let words = [("mean", sample.mean), ("standard error", sample.error()), ("scatter", sample.scatter)];
-        for (word, value) in words {
-            sheet.value(table, group, &format!("{name}, {word}"), Some(value));
+            let name = format!("{name}, off {} %", reference.trim_start_matches("tight-"));
+            rows.value(table, group, &name, off);
+            rows.value(table, group, &format!("{name}, standard error"), error);
         }
     }
-    (row, samples)
+}
+
+/// How far meshes are off the finest, bold where it is more than two standard errors.
+pub(crate) fn derive(rows: &mut Rows) {
+    for table in ["side", "shoulder", "seat", "bottom"] {
+        for variant in rows.variants(table) {
+            for name in &QUANTITIES[..OF_ROLLER.start] {
+                let number = |what: &str| rows.number(table, &variant, &format!("{name}, off fine %{what}"));
+                let Some((off, error)) = number("").zip(number(", standard error")) else { continue };
+                let bold = if off.abs() > 2.0 * error { "**" } else { "" };
+                let word = format!("{bold}{} ± {}{bold}", decimals(off, 0), decimals(error, 0));
+                rows.word(table, &variant, &format!("{name}, off"), &word);
+            }
+        }
+    }
 }
 
 /// The part of the starts whose peak is below a level.
-fn picture(sheet: &mut Sheet, prefix: &str, sensor: &str, family: &str, groups: &[Impulses]) -> Result<()> {
-    const COLOURS: [Colour; 4] = [Colour::Grey, Colour::Blue, Colour::Orange, Colour::Green];
-    for (id, title, of) in [
-        ("peaks", "Peak of the impulse", QUANTITIES[0].of),
-        ("slow-peaks", "Peak of the impulse below 8.9 kHz", QUANTITIES[1].of),
-    ] {
-        let mut figure = Figure::new(
-            &format!("{prefix}{id}"),
-            &format!("{title}, {sensor}, {family}"),
-            Axis::plain("Peak", "g"),
-            Axis::plain("Part of the starts below it", "%"),
-        );
-        for ((group, impulses), colour) in groups.iter().zip(COLOURS) {
-            let mut peaks: Vec<f64> = impulses.iter().map(of).collect();
+fn pictures(runner: &Runner<'_>, family: &str, sensor: &str, groups: &[Impulses<'_>]) -> Result<()> {
+    let (prefix, room) = if family == "tight" { ("tight-", "0.01") } else { ("", "0.1") };
+    for (at, id, title) in
+        [(0, "peaks", "Peak of the impulse"), (1, "slow-peaks", "Peak of the impulse below 8.9 kHz")]
+    {
+        let title = format!("{title}, {sensor}, pockets with {room} mm of room");
+        let (x, y) = (Axis::plain("Peak", "g"), Axis::plain("Part of the starts below it", "%"));
+        let mut figure = Figure::new(&format!("{prefix}{id}"), &title, x, y);
+        for ((group, impulses), colour) in groups.iter().zip(Colour::FOREGROUNDS) {
+            let mut peaks: Vec<f64> = impulses.iter().map(|i| i[at]).collect();
             peaks.sort_unstable_by(f64::total_cmp);
             let n = peaks.len() as f64;
             let below = (0..peaks.len()).map(|i| 100.0 * (i as f64 + 0.5) / n).collect();
             figure = figure.with(Series::listed(group, colour, peaks, below));
         }
-        sheet.picture(&figure)?;
+        figure::draw(runner.study, &figure)?;
     }
     Ok(())
 }
 
 /// The first impulse of a run at one of its sensors.
 fn impulse(run: &Finished, sensor: usize) -> Option<Impulse> {
-    run.numbers()?;
-    let read = Run::read(&run.folder).ok()?;
+    let read = run.trace()?;
     let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages().first()?.exit_s;
-    let (record, name) = (Record::whole(&read).ok()?, &read.scene.written.output.sensors.get(sensor)?.name);
+    let (record, name) = (Record::whole(&read).ok()?, &run.written.output.sensors.get(sensor)?.name);
     let interval = record.interval_s();
     let all = record.acceleration_g(name, "ay")?;
     let vertical = all.get(impulse_span(record.time_s(), exit_s))?;
     let mean = |width| smoothed_peak(vertical, interval, width);
     let met = meets(&record, exit_s)?;
     let blow = |width| smoothed_rms(&all, interval, met, BLOW_S, width);
-    Some(Impulse {
-        whole: noise::impulse(&record, name, exit_s)?,
-        means_g: [mean(MEANS_S[0])?, mean(MEANS_S[1])?, mean(MEANS_S[2])?],
-        blow_g: [blow(interval)?, blow(MEANS_S[0])?, blow(MEANS_S[2])?],
-        roller: roller(&record, met)?,
-    })
+    let whole = noise::impulse(&record, name, exit_s)?;
+    let [behind_um, cage_n] = roller(&record, met)?;
+    Some([
+        whole.peak_g,
+        mean(MEANS_S[0])?,
+        mean(MEANS_S[1])?,
+        mean(MEANS_S[2])?,
+        whole.energy_g2_ms.sqrt(),
+        blow(interval)?,
+        blow(MEANS_S[0])?,
+        blow(MEANS_S[2])?,
+        behind_um,
+        cage_n,
+    ])
 }
 
 /// Sample in which roller 1 meets the raceway behind the groove.
@@ -297,8 +187,9 @@ fn meets(record: &Record<'_>, exit_s: f64) -> Option<usize> {
     record.time_s().iter().zip(pushed).position(|(&time, force)| time >= from && force > MET_N)
 }
 
-/// Roller 1 in its pocket when it meets the raceway in sample `met`.
-fn roller(record: &Record<'_>, met: usize) -> Option<Roller> {
+/// Roller 1 when it meets the raceway in sample `met`: how far it is behind the middle of its pocket [µm],
+/// and the largest force of the cage on it within the millisecond from then on [N].
+fn roller(record: &Record<'_>, met: usize) -> Option<[f64; 2]> {
     let roller = record.roller(1)?;
     let [x, y, angle] = ["x_m", "y_m", "angle_rad"].map(|what| record.channel(&format!("cage.{what}")));
     let (x, y, angle) = (x?, y?, angle?);
@@ -306,7 +197,7 @@ fn roller(record: &Record<'_>, met: usize) -> Option<Roller> {
     let [fx, fy] = ["roller.1.cage_fx_n", "roller.1.cage_fy_n"].map(|name| record.channel(name));
     let within = met..met + (STRIKES_S / record.interval_s()).round() as usize;
     let forces = fx?.get(within.clone())?.iter().zip(fy?.get(within)?).map(|(x, y)| x.hypot(*y));
-    Some(Roller { behind_um: 1e6 * behind(seen(0), seen(met)), cage_n: forces.fold(0.0, f64::max) })
+    Some([1e6 * behind(seen(0), seen(met)), forces.fold(0.0, f64::max)])
 }
 
 /// How far a roller lies behind the middle of its pocket [m], where it was at the start, in a bearing that

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::{Answer, Host, Sheet};
+use crate::{Answer, Host, Rows};
 use stribeck_scene::dice::Dice;
 
 /// Flags of `study kills`.
@@ -24,7 +24,7 @@ pub struct Options {
     seed: u64,
     /// Writes no page
     #[arg(long)]
-    no_page: bool,
+    pub(crate) no_page: bool,
 }
 
 /// A process that does not end within this time counts as hanging [s].
@@ -42,41 +42,28 @@ struct Tally {
     finished: usize,
 }
 
-pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
+pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result<Answer> {
     let folder = std::env::temp_dir().join(format!("stribeck-kills-{}", std::process::id()));
     std::fs::create_dir_all(&folder).context("cannot make a folder for the runs")?;
     let done = Killer { options, host, folder: &folder }.kill_all();
     std::fs::remove_dir_all(&folder).ok();
     let tally = done?;
-    let said = format!(
-        "{} kills (`kill -9`) at random moments of a run of {} ms: {} of them while it was being continued \
-         from an earlier one, {} before \
-         its first checkpoint, so that it began anew. All {} runs came to their end with the bytes of an \
-         unbroken run, on one thread and \
-         on two by turns.",
-        tally.kills, options.duration_ms, tally.again, tally.too_early, tally.finished
-    );
-    let mut answer = Answer { said: Some(said), ..Answer::default() };
-    if !options.no_page {
-        let mut sheet = Sheet::new(host.root(), "kills", "Killed runs");
-        sheet.say(answer.said.as_deref().unwrap_or_default());
-        for (what, n) in [
-            ("kills", tally.kills),
-            ("while continued", tally.again),
-            ("before the first checkpoint", tally.too_early),
-            ("runs with equal bytes", tally.finished),
-        ] {
-            sheet.value("kills", "all", what, Some(n as f64));
-        }
-        answer.page = Some(sheet.write()?);
-    }
-    Ok(answer)
+    let values = [
+        ("kills", tally.kills),
+        ("while continued", tally.again),
+        ("before the first checkpoint", tally.too_early),
+        ("runs with equal bytes", tally.finished),
+    ];
+    rows.values("kills", "all", values.map(|(what, n)| (what, n as f64)));
+    rows.value("kills", "all", "ms of a run", options.duration_ms);
+    let said = format!("{} kills, {} runs with the bytes of an unbroken run", tally.kills, tally.finished);
+    Ok(Answer { said: Some(said), ..Answer::default() })
 }
 
 /// Starts runs and kills them.
 struct Killer<'a> {
     options: &'a Options,
-    host: &'a dyn Host,
+    host: &'a Host,
     folder: &'a Path,
 }
 

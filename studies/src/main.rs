@@ -4,7 +4,6 @@
 //! are compiled.
 
 mod fuzz;
-mod terminal;
 
 use std::process::ExitCode;
 
@@ -12,9 +11,7 @@ use anyhow::Result;
 use clap::{Parser, Subcommand};
 use stribeck::Place;
 use stribeck::place::shown;
-use stribeck_studies::Study;
-
-use terminal::Terminal;
+use stribeck_studies::{Host, Study};
 
 /// Answers a question by many runs: tables and pictures in docs/results
 #[derive(Debug, Parser)]
@@ -22,6 +19,9 @@ use terminal::Terminal;
 struct Cli {
     #[command(subcommand)]
     command: Command,
+    /// Measures nothing: writes the page of the study anew from its template and the kept table
+    #[arg(long, global = true)]
+    page_only: bool,
     #[command(flatten)]
     loudness: stribeck::Loudness,
 }
@@ -43,15 +43,17 @@ fn main() -> ExitCode {
     let cli = stribeck::command_line::parse::<Cli>();
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
-        Command::Study(study) => answer(&study),
+        Command::Study(study) => answer(&study, cli.page_only),
         Command::Fuzz(options) => fuzz::run(&options),
-        Command::Stribeck(command) => command.run(&Place::repository("cargo xtask", terminal::root())),
+        Command::Stribeck(command) => {
+            command.run(&Place::repository("cargo xtask", stribeck_studies::root()))
+        }
     })
 }
 
 /// Runs a study and says what it found.
-fn answer(study: &Study) -> Result<ExitCode> {
-    let answer = study.run(&Terminal::new()?)?;
+fn answer(study: &Study, page_only: bool) -> Result<ExitCode> {
+    let answer = study.run(&Host::new()?, page_only)?;
     if let Some(said) = answer.said {
         println!("{said}");
     }

@@ -3,6 +3,7 @@
 use anyhow::{Context, Result};
 use stribeck_contact::{Law, Method};
 use stribeck_mesh::{Part, Rectangle};
+use stribeck_scene::dice::Dice;
 use stribeck_solver::Elastic;
 use stribeck_system::{Finding, Pair, System};
 
@@ -37,13 +38,9 @@ pub(crate) fn touching(system: &System) -> bool {
 
 /// Adds a random velocity of up to `speed` [m/s] to every node: every mode is excited.
 pub(crate) fn stir(system: &mut System, speed: f64) {
-    let mut seed = 11_u64;
-    let mut noise = || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
+    let mut dice = Dice::new(11);
     for node in 0..system.node_count() as u32 {
-        let velocity = system.velocity(node).map(|v| v + speed * noise());
+        let velocity = system.velocity(node).map(|v| v + speed * (2.0 * dice.share() - 1.0));
         system.set_velocity(node, velocity);
     }
 }

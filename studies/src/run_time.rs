@@ -1,19 +1,13 @@
 //! `cargo xtask study run_time`: error against run time of the whole bearing.
 
-mod variants;
-
-use anyhow::Result;
+use anyhow::{Context, Result};
 use stribeck_analysis::noise;
 use stribeck_analysis::prediction::Prediction;
 use stribeck_analysis::record::Record;
-use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_scene::scene::ModelScene;
-use stribeck_store::run_dir::Run;
 
-use self::variants::{Choice, choices};
-use crate::impulse::statistics::{Sample, ratio};
-use crate::table::{figures, number};
-use crate::{Answer, Finished, Flags, Host, Runner, Sheet};
+use crate::sample::{Sample, ratio};
+use crate::{Finished, Flags, Host, Plan, Rows, Runner, figure};
 
 /// Flags of `study run_time`.
 #[derive(Debug, clap::Args)]
@@ -51,101 +45,97 @@ struct Measured {
     impulse_g: Option<f64>,
 }
 
-/// One of the relative errors of a choice.
-type Error = fn(&Row) -> Option<f64>;
-
-/// Results of all starts of a choice, beside the reference.
-struct Row {
-    choice: Choice,
-    starts: Vec<Measured>,
-    seconds: f64,
-    nanoseconds: Option<f64>,
-    /// Relative errors, means over the starts that the reference has too.
-    force: Option<f64>,
-    /// Of the time from entry to exit.
-    events: Option<f64>,
-    impulse: Option<Sample>,
-    /// Relative difference from the reference's mean, and its standard error.
-    impulse_off: Option<[f64; 2]>,
-}
-
-pub(crate) fn run(options: &Options, host: &dyn Host) -> Result<Answer> {
+pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result<()> {
     let runner = Runner::new("run_time", &options.flags, host);
-    let mut measured = Vec::new();
-    // The dear ones last, so that an interrupted study has a table.
-    let finest = options.finest_mm.parse()?;
-    for choice in choices(options.starts, options.reference_starts, finest) {
-        let runs = runner.run(&choice.starts)?;
-        let starts: Vec<Measured> = runs.iter().filter_map(|run| measure(&choice, run)).collect();
-        measured.push((choice, starts));
+    let plan = Plan::read("run_time")?;
+    let reference_name = format!("graded, {} mm", options.finest_mm);
+    let mut choices = Vec::new();
+    for group in &plan.groups {
+        for variant in plan.variants(group) {
+            let is_reference = variant.name == reference_name;
+            if variant.name == "graded, 0.125 mm" && !is_reference {
+                continue;
+            }
+            let count = if is_reference { options.reference_starts } else { options.starts };
+            let starts = Plan::starts(&variant, count);
+            let runs = runner.run(&starts)?;
+            let number = |run: &Finished| starts.iter().position(|s| s.name == run.variant.name);
+            let measured: Vec<Measured> =
+                runs.iter().filter_map(|run| measure_one(number(run)?, run)).collect();
+            choices.push((variant.name, group.table.clone(), measured));
+        }
     }
-    let mut sheet = Sheet::new(host.root(), "run_time", "Error against run time of the bearing");
-    let Some(reference) = measured.iter().find(|(choice, _)| choice.reference).map(|m| m.1.clone()) else {
-        anyhow::bail!("the reference is no choice");
-    };
-    let rows: Vec<Row> = measured
-        .into_iter()
-        .filter(|(_, starts)| !starts.is_empty())
-        .map(|(choice, starts)| Row::of(choice, starts, &reference))
-        .collect();
-    introduce(&mut sheet, &rows);
-    pictures(&mut sheet, &rows)?;
-    table(&mut sheet, &rows);
-    answers(&mut sheet, &rows, &reference);
-    Ok(Answer::on(sheet.write()?))
+    let reference = choices.iter().find(|(name, ..)| *name == reference_name);
+    let reference = reference.context("the reference is no choice")?.2.clone();
+    for (name, curve, starts) in choices.iter().filter(|(.., starts)| !starts.is_empty()) {
+        rows.word("choices", name, "curve", curve);
+        put(rows, name, starts, (*name != reference_name).then_some(&reference));
+    }
+    plan.figures.iter().try_for_each(|drawing| figure::draw("run_time", &drawing.of(rows)))
 }
 
 /// Reads the results of a complete run.
-fn measure(choice: &Choice, finished: &Finished) -> Option<Measured> {
+fn measure_one(start: usize, finished: &Finished) -> Option<Measured> {
     let (summary, info) = (finished.numbers()?, finished.info.as_ref()?);
-    let start = choice.starts.iter().position(|v| v.name == finished.variant.name)?;
-    let run = Run::read(&finished.folder).ok()?;
+    let run = finished.trace()?;
     let record = Record::whole(&run).ok()?;
     let roller = record.roller(2)?;
     let loaded = record.time_s().iter().position(|&t| t >= 1e-3 * FROM_MS)?;
     let pushed = roller.outer_fx.iter().zip(roller.outer_fy).skip(loaded).map(|(x, y)| x.hypot(*y));
     let force_n = Sample::of(&pushed.collect::<Vec<f64>>()).mean;
     let first = summary.events.iter().find(|event| event.roller == 1)?;
-    let events_ms = first.entry_ms.zip(first.exit_ms).map(|(entry, exit)| [entry, exit]);
     let exit_s = Prediction::of(&run.scene, &run.info.mesh).passages().first()?.exit_s;
-    let sensor = &run.scene.written.output.sensors.first()?.name;
+    let sensor = &finished.written.output.sensors.first()?.name;
     let elements = (info.mesh.quads + info.mesh.triangles) as f64;
     Some(Measured {
         start,
-        seconds: info.loop_cpu_s / run.scene.written.solver.duration_ms,
-        nanoseconds: (run.scene.written.model == ModelScene::Full)
+        seconds: info.loop_cpu_s / finished.written.solver.duration_ms,
+        nanoseconds: (finished.written.model == ModelScene::Full)
             .then(|| 1e9 * info.loop_cpu_s / (info.steps as f64 * elements)),
         force_n,
-        events_ms,
+        events_ms: first.entry_ms.zip(first.exit_ms).map(|(entry, exit)| [entry, exit]),
         impulse_g: noise::impulse(&record, sensor, exit_s).map(|i| i.peak_g),
     })
 }
 
-impl Row {
-    fn of(choice: Choice, starts: Vec<Measured>, reference: &[Measured]) -> Self {
-        let pairs = || {
-            let twin = |m: &Measured| reference.iter().find(|r| r.start == m.start).copied();
-            starts.iter().filter_map(move |m| Some((*m, twin(m)?)))
-        };
-        let force = mean(pairs().map(|(m, r)| (m.force_n / r.force_n - 1.0).abs()));
-        let events = mean(pairs().filter_map(|(m, r)| {
-            let ([entry, exit], [entry0, exit0]) = (m.events_ms?, r.events_ms?);
-            Some((entry - entry0).abs().max((exit - exit0).abs()) / (exit0 - entry0))
-        }));
-        let impulse = sample(&starts);
-        let own = choice.reference;
-        let impulse_off = impulse.zip(sample(reference)).filter(|_| !own).map(|(a, b)| ratio(&a, &b));
-        Self {
-            // Other work on the computer only ever adds to the time.
-            seconds: least(starts.iter().map(|m| m.seconds)),
-            nanoseconds: starts.iter().filter_map(|m| m.nanoseconds).reduce(f64::min),
-            force: force.filter(|_| !own),
-            events: events.filter(|_| !own),
-            impulse,
-            impulse_off,
-            choice,
-            starts,
-        }
+/// The numbers of all starts of a choice, beside those of the reference, which has none to be compared with:
+/// relative errors are means over the starts that the reference has too.
+fn put(rows: &mut Rows, name: &str, starts: &[Measured], reference: Option<&Vec<Measured>>) {
+    let pairs = || {
+        let twin = move |m: &Measured| reference?.iter().find(|r| r.start == m.start).copied();
+        starts.iter().filter_map(move |m| Some((*m, twin(m)?)))
+    };
+    let force = mean(pairs().map(|(m, r)| (m.force_n / r.force_n - 1.0).abs()));
+    let events = mean(pairs().filter_map(|(m, r)| {
+        let ([entry, exit], [entry0, exit0]) = (m.events_ms?, r.events_ms?);
+        Some((entry - entry0).abs().max((exit - exit0).abs()) / (exit0 - entry0))
+    }));
+    let impulse = sample(starts);
+    let off = impulse.zip(reference.and_then(|r| sample(r))).map(|(a, b)| ratio(&a, &b));
+    let least = |of: fn(&Measured) -> Option<f64>| starts.iter().filter_map(of).reduce(f64::min);
+    let values = [
+        // Other work on the computer only ever adds to the time.
+        ("seconds a millisecond", least(|m| Some(m.seconds))),
+        ("ns an element-step", least(|m| m.nanoseconds)),
+        ("force error", force),
+        ("events error", events),
+        ("impulse g", impulse.map(|s| s.mean)),
+        ("impulse g, standard error", impulse.map(|s| s.error())),
+        ("impulse g, scatter", impulse.map(|s| s.scatter)),
+        ("impulse off reference", off.map(|[off, _]| off)),
+        ("impulse off reference, standard error", off.map(|[_, error]| error)),
+    ];
+    rows.values("choices", name, values);
+    for m in starts {
+        let [entry, exit] = m.events_ms.map_or([None; 2], |e| e.map(Some));
+        let values = [
+            ("seconds a millisecond", Some(m.seconds)),
+            ("force N", Some(m.force_n)),
+            ("entry ms", entry),
+            ("exit ms", exit),
+            ("impulse g", m.impulse_g),
+        ];
+        rows.values("starts", &format!("{name}, start {}", m.start), values);
     }
 }
 
@@ -159,208 +149,35 @@ fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
     (count > 0.0).then(|| sum / count)
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut all: Vec<f64> = values.collect();
-    all.sort_unstable_by(f64::total_cmp);
-    all.get(all.len() / 2).copied().unwrap_or(f64::NAN)
-}
-
-fn least(values: impl Iterator<Item = f64>) -> f64 {
-    values.fold(f64::INFINITY, f64::min)
-}
-
-fn introduce(sheet: &mut Sheet, rows: &[Row]) {
-    let reference = rows.iter().find(|row| row.choice.reference);
-    let (finest, starts) =
-        reference.map_or(("no reference", 0), |row| (row.choice.name.as_str(), row.starts.len()));
-    sheet.say(&format!(
-        "What a simulated millisecond of the paper\u{2019}s bearing costs, and how far the result is from \
-         the finest mesh\u{2019}s \
-         ({finest} at the contacts and the defect, {starts} starts). Contact keeps its stiffness and its \
-         damping over an area on all meshes, so that \
-         only the mesh, the step and the way contact is evaluated differ. *Reduced* points have the modes of \
-         outer ring and \
-         adapter on such a mesh (THEORY §9), at one step or another, with more modes or fewer, on coarser \
-         facets or on arcs. *Seconds* are processor time of the time loop, \
-         the least over the starts, because other work on the machine only adds to it. *Force* is the mean \
-         of the outer raceway on roller 2 from {FROM_MS} to 6.5 ms; *events* are when roller 1 \
-         loses the raceway and meets it again, the larger error as a share of the time in between; both \
-         start by start. The \
-         *impulse* after the exit is chaotic: starts 0.01° of the cage apart differ more than meshes do, so \
-         its mean over \
-         the starts is compared, with one standard error.",
-    ));
-}
-
-/// The curves, in the order of their first points.
-fn curves(rows: &[Row]) -> Vec<(&'static str, Vec<&Row>)> {
-    let mut curves: Vec<(&'static str, Vec<&Row>)> = Vec::new();
-    for row in rows {
-        match curves.iter_mut().find(|(name, _)| *name == row.choice.curve) {
-            Some((_, points)) => points.push(row),
-            None => curves.push((row.choice.curve, vec![row])),
-        }
-    }
-    curves.iter_mut().for_each(|(_, points)| points.sort_by(|a, b| a.seconds.total_cmp(&b.seconds)));
-    curves
-}
-
-const COLOURS: [Colour; 10] = [
-    Colour::Grey,
-    Colour::Blue,
-    Colour::Purple,
-    Colour::Orange,
-    Colour::Teal,
-    Colour::Green,
-    Colour::Red,
-    Colour::Brown,
-    Colour::Pink,
-    Colour::Black,
-];
-
-fn pictures(sheet: &mut Sheet, rows: &[Row]) -> Result<()> {
-    let against = |id: &str, title: &str, quantity: &str, of: &dyn Fn(&Row) -> Option<f64>| {
-        let x = Axis::decades("Processor time of a simulated millisecond", "s");
-        let mut figure = Figure::new(id, title, x, Axis::decades(quantity, "%"));
-        for ((name, points), colour) in curves(rows).into_iter().zip(COLOURS) {
-            let found =
-                points.iter().filter_map(|row| Some((row.seconds.log10(), (100.0 * of(row)?).log10())));
-            let (x, y): (Vec<f64>, Vec<f64>) = found.unzip();
-            let joined = Series::listed(name, colour, x.clone(), y.clone());
-            figure.series.extend([joined, Series::listed("", colour, x, y).as_points()]);
-        }
-        figure
-    };
-    let force = against("force", "Force on a loaded roller", "Error of the force", &|row| row.force);
-    let events = against("events", "Entry and exit", "Error of the events", &|row| row.events);
-    sheet.picture(&force)?;
-    sheet.picture(&events)?;
-    let mut impulse = Figure::new(
-        "impulse",
-        "Impulse after the exit: means and standard errors",
-        Axis::decades("Processor time of a simulated millisecond", "s"),
-        Axis::plain("Peak at the first sensor", "g"),
-    );
-    for ((name, points), colour) in curves(rows).into_iter().zip(COLOURS) {
-        let found = points.iter().filter_map(|row| Some((row.seconds.log10(), row.impulse?)));
-        let found: Vec<(f64, Sample)> = found.collect();
-        let at = |x: f64| vec![x, x];
-        let bars = found
-            .iter()
-            .map(|(x, s)| Series::listed("", colour, at(*x), vec![s.mean - s.error(), s.mean + s.error()]));
-        impulse.series.extend(bars);
-        let (x, y) = found.iter().map(|(x, s)| (*x, s.mean)).unzip();
-        impulse.series.push(Series::listed(name, colour, x, y).as_points());
-    }
-    sheet.picture(&impulse)
-}
-
-fn table(sheet: &mut Sheet, rows: &[Row]) {
-    sheet.heading("All choices");
-    let percent =
-        |share: Option<f64>, decimals| share.map_or("–".to_owned(), |v| number(100.0 * v, decimals));
-    let cells = rows.iter().map(|row| {
-        let name = &row.choice.name;
-        let values = [
-            ("seconds a millisecond", Some(row.seconds)),
-            ("ns an element-step", row.nanoseconds),
-            ("force error", row.force),
-            ("events error", row.events),
-            ("impulse g", row.impulse.map(|s| s.mean)),
-            ("impulse g, standard error", row.impulse.map(|s| s.error())),
-            ("impulse g, scatter", row.impulse.map(|s| s.scatter)),
-            ("impulse off reference", row.impulse_off.map(|[off, _]| off)),
-        ];
-        values.into_iter().for_each(|(what, value)| sheet.value("choices", name, what, value));
-        for m in &row.starts {
-            let start = format!("{name}, start {}", m.start);
-            let [entry, exit] = m.events_ms.map_or([None; 2], |e| e.map(Some));
-            let of_start = [
-                ("seconds a millisecond", Some(m.seconds)),
-                ("force N", Some(m.force_n)),
-                ("entry ms", entry),
-                ("exit ms", exit),
-                ("impulse g", m.impulse_g),
-            ];
-            of_start.into_iter().for_each(|(what, value)| sheet.value("starts", &start, what, value));
-        }
-        let impulse = row.impulse.map_or("–".to_owned(), |s| {
-            format!("{} ± {} ({})", number(s.mean, 0), number(s.error(), 0), number(s.scatter, 0))
-        });
-        let off = row.impulse_off.map_or("–".to_owned(), |[off, error]| {
-            format!("{} ± {}", number(100.0 * off, 0), number(100.0 * error, 0))
-        });
-        vec![
-            name.clone(),
-            row.choice.shows.to_owned(),
-            row.starts.len().to_string(),
-            figures(row.seconds, 2),
-            row.nanoseconds.map_or("–".to_owned(), |ns| number(ns, 1)),
-            percent(row.force, 2),
-            percent(row.events, 2),
-            impulse,
-            off,
-        ]
-    });
-    let cells: Vec<Vec<String>> = cells.collect();
-    let names = [
-        "choice",
-        "what it is",
-        "starts",
-        "s per ms",
-        "ns per element-step",
-        "force, %",
-        "events, %",
-        "impulse g ± standard error (scatter)",
-        "off the reference, %",
-    ];
-    sheet.table(&names, &cells);
-}
-
-/// The user's question: the cheapest choice that is accurate enough and stays so when its mesh is refined.
-fn answers(sheet: &mut Sheet, rows: &[Row], reference: &[Measured]) {
-    sheet.heading("In short");
-    let all = curves(rows);
-    let holds = |row: &Row, of: Error, share: f64| {
-        let finer = all.iter().filter(|(name, _)| *name == row.choice.curve).flat_map(|(_, points)| points);
-        finer.filter(|r| r.seconds >= row.seconds).filter_map(|r| of(r)).all(|error| error <= share)
-    };
-    let mut cells = Vec::new();
-    let quantities: [(&str, Error); 2] = [("force", |row| row.force), ("events", |row| row.events)];
-    for (what, of) in quantities {
+/// The cheapest choice that is accurate enough and stays so along its curve when it is refined; and how many
+/// starts make a mean impulse known, by the median of what single starts scatter, which no mesh reduces.
+pub(crate) fn derive(rows: &mut Rows) {
+    for (what, quantity) in [("force", "force error"), ("events", "events error")] {
         for share in [0.05, 0.01] {
-            let good = rows.iter().filter(|row| of(row).is_some_and(|e| e <= share) && holds(row, of, share));
-            let best = good.min_by(|a, b| a.seconds.total_cmp(&b.seconds));
-            let asked = format!("{what} within {} %", number(100.0 * share, 0));
-            sheet.value("answers", &asked, "seconds a millisecond", best.map(|row| row.seconds));
-            cells.push(vec![
-                asked,
-                best.map_or("none of these".to_owned(), |row| {
-                    format!("{} s per ms", figures(row.seconds, 2))
-                }),
-                best.map_or("–".to_owned(), |row| row.choice.name.clone()),
-            ]);
+            let seconds =
+                |name: &str| rows.number("choices", name, "seconds a millisecond").unwrap_or(f64::INFINITY);
+            let all = rows.column("choices", quantity);
+            let curve = |name: &str| rows.get("choices", name, "curve").unwrap_or_default().to_owned();
+            let finer = |a: &str, b: &str| curve(a) == curve(b) && seconds(a) >= seconds(b);
+            let holds =
+                |name: &str| all.iter().filter(|(other, _)| finer(other, name)).all(|(_, e)| *e <= share);
+            let good = all.iter().map(|(name, _)| *name).filter(|name| holds(name));
+            let best = good.min_by(|a, b| seconds(a).total_cmp(&seconds(b)));
+            let best = best.map(|name| (name.to_owned(), seconds(name)));
+            let asked = format!("{what} within {} %", 100.0 * share);
+            rows.word("in short", &asked, "by", best.as_ref().map_or("", |b| b.0.as_str()));
+            rows.value("in short", &asked, "seconds", best.map(|b| b.1));
         }
     }
-    // Scatter of single starts, over all choices by its median: which no mesh reduces.
-    let scatter = median(rows.iter().filter_map(|row| row.impulse.map(|s| s.scatter / s.mean)));
+    let mean = |name: &str| rows.number("choices", name, "impulse g");
+    let of = rows.column("choices", "impulse g, scatter");
+    let mut scatter: Vec<f64> = of.into_iter().filter_map(|(name, s)| Some(s / mean(name)?)).collect();
+    scatter.sort_unstable_by(f64::total_cmp);
+    let median = scatter.get(scatter.len() / 2).copied();
+    rows.value("in short", "impulse", "scatter of a start", median);
     for wanted in [0.2, 0.1] {
-        let starts = (scatter / wanted).powi(2).ceil();
-        sheet.value("answers", &format!("impulse within {wanted}"), "starts", Some(starts));
-        cells.push(vec![
-            format!("mean impulse known to ± {} %", number(100.0 * wanted, 0)),
-            format!("{} start{}", number(starts, 0), if starts == 1.0 { "" } else { "s" }),
-            format!("a single start scatters by {} %", number(100.0 * scatter, 0)),
-        ]);
-    }
-    sheet.table(&["wanted", "takes", "by"], &cells);
-    let lacks = reference.len() < 10;
-    if lacks {
-        sheet.say(&format!(
-            "The reference itself has {} starts, so that its mean impulse is known to ± {} % only.",
-            reference.len(),
-            sample(reference).map_or("–".to_owned(), |s| number(100.0 * s.error() / s.mean, 0)),
-        ));
+        let starts = median.map(|scatter| (scatter / wanted).powi(2).ceil());
+        rows.value("in short", "impulse", &format!("starts for {} %", 100.0 * wanted), starts);
     }
 }
 
@@ -375,26 +192,34 @@ mod tests {
 
     #[test]
     fn by_hand_a_choice_is_held_against_the_same_starts_of_the_reference() {
-        let reference = [measured(0, 9.0, 100.0, 5.0, 50.0), measured(1, 9.0, 200.0, 6.0, 70.0)];
-        let choice = |name: &str, reference| Choice {
-            curve: "c",
-            name: name.into(),
-            shows: "",
-            reference,
-            starts: Vec::new(),
-        };
+        let reference = vec![measured(0, 9.0, 100.0, 5.0, 50.0), measured(1, 9.0, 200.0, 6.0, 70.0)];
         // The third start has no twin: its force is not compared.
-        let starts = vec![
+        let starts = [
             measured(0, 1.0, 101.0, 5.0, 30.0),
             measured(1, 3.0, 194.0, 6.5, 90.0),
             measured(2, 2.0, 1.0, 9.0, 60.0),
         ];
-        let row = Row::of(choice("coarse", false), starts, &reference);
-        assert_eq!(row.seconds, 1.0);
-        assert!((row.force.expect("two twins") - 0.02).abs() < 1e-12, "{:?}", row.force);
-        assert!((row.events.expect("two twins") - 0.05).abs() < 1e-12, "{:?}", row.events);
-        assert_eq!(row.impulse_off.expect("means")[0], 0.0);
-        let itself = Row::of(choice("fine", true), reference.to_vec(), &reference);
-        assert!(itself.force.is_none() && itself.impulse_off.is_none());
+        let mut rows = Rows::default();
+        put(&mut rows, "coarse", &starts, Some(&reference));
+        put(&mut rows, "fine", &reference, None);
+        let of = |name: &str, quantity: &str| rows.number("choices", name, quantity);
+        assert_eq!(of("coarse", "seconds a millisecond"), Some(1.0));
+        let [force, events] = ["force error", "events error"].map(|q| of("coarse", q).expect("two twins"));
+        assert!((force - 0.02).abs() < 1e-12 && (events - 0.05).abs() < 1e-12, "{force} {events}");
+        assert_eq!(of("coarse", "impulse off reference"), Some(0.0));
+        assert_eq!((of("fine", "force error"), of("fine", "impulse off reference")), (None, None));
+    }
+
+    #[test]
+    fn behaves_a_choice_that_does_not_stay_accurate_when_refined_is_not_advised() {
+        let mut rows = Rows::default();
+        for (name, curve, seconds, error) in
+            [("lucky", "a", 1.0, 0.001), ("its finer", "a", 2.0, 0.2), ("good", "b", 3.0, 0.01)]
+        {
+            rows.word("choices", name, "curve", curve);
+            rows.values("choices", name, [("seconds a millisecond", seconds), ("force error", error)]);
+        }
+        derive(&mut rows);
+        assert_eq!(rows.get("in short", "force within 5 %", "by"), Some("good"));
     }
 }

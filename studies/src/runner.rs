@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
+use serde_json::{Value, json};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
@@ -13,9 +13,10 @@ use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::{Run, RunDir};
 use stribeck_store::run_info::{RunInfo, Status, clock};
 
-use crate::{Host, Job};
+use crate::Host;
+use crate::host::Job;
 
-/// Flags of every study.
+/// Flags of every study that runs scenes.
 #[derive(Debug, Clone, clap::Args)]
 pub struct Flags {
     /// Worker threads [default: all cores]; the results do not depend on it
@@ -56,10 +57,10 @@ impl Flags {
 /// A scene with overrides.
 #[derive(Debug, Clone)]
 pub(crate) struct Variant {
-    /// Name of its folder: letters, digits, `-` and `_`.
+    /// Its name in the table; its folder is called alike.
     pub(crate) name: String,
     /// Scene file, below the repository's root.
-    pub(crate) scene: &'static str,
+    pub(crate) scene: String,
     /// Overrides, as `--set` takes them.
     pub(crate) set: Vec<String>,
 }
@@ -73,6 +74,8 @@ pub(crate) struct Finished {
     pub(crate) folder: PathBuf,
     /// The scene that it stands for, in SI.
     pub(crate) scene: ResolvedScene,
+    /// The same in the units of its file.
+    pub(crate) written: Scene,
     /// Its numbers, or why there are none.
     pub(crate) summary: Result<Summary, String>,
     /// `run.json` of its run.
@@ -81,15 +84,20 @@ pub(crate) struct Finished {
 
 /// Runs variants into `runs/study/STUDY`.
 pub(crate) struct Runner<'a> {
-    folder: PathBuf,
-    flags: Flags,
-    host: &'a dyn Host,
+    pub(crate) study: &'static str,
+    pub(crate) folder: PathBuf,
+    pub(crate) flags: Flags,
+    pub(crate) host: &'a Host,
 }
 
 impl Variant {
     /// A variant of `scene` under the overrides `set`.
-    pub(crate) fn new(name: impl Into<String>, scene: &'static str, set: &[&str]) -> Self {
-        Self { name: name.into(), scene, set: set.iter().map(|s| (*s).to_owned()).collect() }
+    pub(crate) fn new(name: impl Into<String>, scene: &str, set: &[&str]) -> Self {
+        Self {
+            name: name.into(),
+            scene: scene.to_owned(),
+            set: set.iter().map(|s| (*s).to_owned()).collect(),
+        }
     }
 
     /// The same with one override more.
@@ -98,14 +106,8 @@ impl Variant {
         self
     }
 
-    /// The same with more overrides.
-    pub(crate) fn with_all(mut self, set: &[&str]) -> Self {
-        self.set.extend(set.iter().map(|s| (*s).to_owned()));
-        self
-    }
-
     fn scene(&self, root: &Path) -> Result<Scene> {
-        let file = root.join(self.scene);
+        let file = root.join(&self.scene);
         let mut scene = Scene::read_with(&file, &self.set)
             .with_context(|| format!("variant `{}` is not a scene", self.name))?;
         scene.name.clone_from(&self.name);
@@ -118,12 +120,23 @@ impl Finished {
     pub(crate) fn numbers(&self) -> Option<&Summary> {
         self.summary.as_ref().ok()
     }
+
+    /// All of its samples.
+    pub(crate) fn trace(&self) -> Option<Run> {
+        self.numbers()?;
+        Run::read(&self.folder).ok()
+    }
+
+    /// Summary, `run.json` and scene as one tree.
+    pub(crate) fn tree(&self) -> Value {
+        json!({"summary": self.numbers(), "info": self.info, "scene": stribeck_scene::fields::to_json(&self.written)})
+    }
 }
 
 impl<'a> Runner<'a> {
     /// A runner for the study of this name.
-    pub(crate) fn new(study: &str, flags: &Flags, host: &'a dyn Host) -> Self {
-        Self { folder: host.root().join("runs/study").join(study), flags: flags.clone(), host }
+    pub(crate) fn new(study: &'static str, flags: &Flags, host: &'a Host) -> Self {
+        Self { study, folder: host.root().join("runs/study").join(study), flags: flags.clone(), host }
     }
 
     /// Runs every variant that has not been run and returns all that have been, in their order. A variant
@@ -132,71 +145,30 @@ impl<'a> Runner<'a> {
     /// # Errors
     /// When a variant is not a valid scene, or at Ctrl-C; finished runs are kept.
     pub(crate) fn run(&self, variants: &[Variant]) -> Result<Vec<Finished>> {
-        self.run_with(&self.flags, variants)
-    }
-
-    fn run_with(&self, flags: &Flags, variants: &[Variant]) -> Result<Vec<Finished>> {
         let planned: Vec<Planned> =
-            variants.iter().map(|variant| self.plan(flags, variant)).collect::<Result<_>>()?;
+            variants.iter().map(|variant| self.plan(variant)).collect::<Result<_>>()?;
+        let jobs = usize::from(self.flags.jobs);
         let due: Vec<(usize, &Planned)> = planned.iter().enumerate().filter(|(_, p)| p.due).collect();
-        self.each(flags, &due, |(number, planned)| {
+        self.host.each(&due, jobs, |(number, planned)| {
             self.host.say(&format!("{} of {}: {}", number + 1, variants.len(), planned.variant.name));
             if let Err(error) = self.run_one(planned) {
                 self.host.say(&format!("{}: {error:#}", planned.variant.name));
                 let _ = planned.failed.set(format!("{error:#}"));
             }
         })?;
-        let shown: Vec<(&Planned, OnceLock<Finished>)> = planned
-            .iter()
-            .filter(|p| p.due || p.state == State::Done)
-            .map(|planned| (planned, OnceLock::new()))
-            .collect();
-        self.each(flags, &shown, |(planned, slot)| _ = slot.set(finished(planned)))?;
-        Ok(shown.into_iter().filter_map(|(_, slot)| slot.into_inner()).collect())
-    }
-
-    /// Applies `work` to every item, as many at a time as the flags allow.
-    ///
-    /// # Errors
-    /// At Ctrl-C.
-    fn each<T: Sync>(&self, flags: &Flags, items: &[T], work: impl Fn(&T) + Sync) -> Result<()> {
-        let next = AtomicUsize::new(0);
-        let worker = || {
-            while let Some(item) = items.get(next.fetch_add(1, Ordering::Relaxed)) {
-                if self.host.is_interrupted() {
-                    return;
-                }
-                work(item);
-            }
-        };
-        std::thread::scope(|scope| {
-            (1..flags.jobs).for_each(|_| drop(scope.spawn(worker)));
-            worker();
-        });
-        if self.host.is_interrupted() {
-            bail!("interrupted; the same command goes on from here");
-        }
-        Ok(())
+        let shown: Vec<&Planned> = planned.iter().filter(|p| p.due || p.state == State::Done).collect();
+        self.host.each(&shown, jobs, |planned| finished(planned))
     }
 
     /// Work to be done for a variant.
-    fn plan(&self, flags: &Flags, variant: &Variant) -> Result<Planned> {
+    fn plan(&self, variant: &Variant) -> Result<Planned> {
+        let flags = &self.flags;
         let scene = variant.scene(self.host.root())?;
-        let folder = self.folder.join(&variant.name);
+        // Names are words of the table; folders have none of the signs that a file system may refuse.
+        let folder = self.folder.join(variant.name.replace(|c: char| !c.is_alphanumeric() && c != '_', "-"));
         let state = state_of(&folder, &scene);
         let due = state != State::Done && flags.wants(&variant.name) && !flags.tables_only;
         Ok(Planned { variant: variant.clone(), scene, folder, state, due, failed: OnceLock::new() })
-    }
-
-    /// As [`Runner::run`]; when not `wanted`, nothing is run and finished runs are returned.
-    ///
-    /// # Errors
-    /// As [`Runner::run`].
-    pub(crate) fn run_if(&self, wanted: bool, variants: &[Variant]) -> Result<Vec<Finished>> {
-        if wanted {
-            return self.run(variants);
-        }
-        self.run_with(&Flags { tables_only: true, ..self.flags.clone() }, variants)
     }
 
     fn run_one(&self, planned: &Planned) -> Result<()> {
@@ -266,5 +238,12 @@ fn finished(planned: &Planned) -> Finished {
         }
         _ => Err(run.info.stop_reason.unwrap_or_else(|| "did not complete".to_owned())),
     });
-    Finished { variant: variant.clone(), folder: folder.clone(), scene: scene.resolve(), summary, info }
+    Finished {
+        variant: variant.clone(),
+        folder: folder.clone(),
+        scene: scene.resolve(),
+        written: scene.clone(),
+        summary,
+        info,
+    }
 }

@@ -22,7 +22,7 @@ use self::environment::Environment;
 use self::measure::{Absent, Measured, measure};
 use self::peers::{ON_BLOCKS, ON_DISC, Peer};
 use crate::workspace;
-use stribeck::{host, place::shown};
+use stribeck::place::shown;
 
 /// Flags of `compare`.
 #[derive(Debug, clap::Args)]
@@ -50,7 +50,6 @@ const QUICK_ROUNDS: usize = 3;
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     check_names(&options.peers)?;
     let root = workspace::root();
-    let load_before = load_average();
     let environment = Environment::prepare(&root, &options.python)?;
     let rounds = if options.quick { QUICK_ROUNDS } else { usize::from(options.rounds) };
     let chosen = |peers: &'static [Peer]| -> Vec<&'static Peer> {
@@ -69,9 +68,7 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         measured.push(measure(problem, &on_disc, &environment, rounds, &mut absent)?);
     }
 
-    let (machine, commit) = (host::machine(), host::COMMIT.to_owned());
-    let setting = tables::Setting { machine, commit, loads: [load_before, load_average()], rounds };
-    let page = tables::page(&setting, &measured, &absent);
+    let page = tables::page(rounds, &measured, &absent);
     println!("{page}");
     if !options.quick {
         write(&root, "compare.md", &page)?;
@@ -100,11 +97,6 @@ fn write(root: &Path, name: &str, text: &str) -> Result<()> {
     std::fs::write(&file, text).with_context(|| format!("cannot write `{}`", file.display()))?;
     println!("written: {}", shown(&file));
     Ok(())
-}
-
-/// Load average over the last minute, where the system has it.
-fn load_average() -> Option<f64> {
-    std::fs::read_to_string("/proc/loadavg").ok()?.split_whitespace().next()?.parse().ok()
 }
 
 #[cfg(test)]

@@ -16,7 +16,6 @@ use stribeck_store::trace::Trace;
 use super::Answer;
 use super::damage::{bytes, text};
 use super::readers::{self, Shelf};
-use crate::terminal;
 use stribeck::host;
 use stribeck_scene::dice::Dice;
 
@@ -78,13 +77,13 @@ impl Inputs {
     /// Takes scenes from the repository and makes a run to damage, broken off after two samples.
     pub(crate) fn new(folder: &Path) -> Result<Self> {
         let scenes = ["singh2014", "oiled_steel", "lean", "quick", "ramp", "pitted"].map(|name| {
-            let path = terminal::root().join(format!("fixtures/scenes/{name}.ron"));
+            let path = stribeck_studies::root().join(format!("fixtures/scenes/{name}.ron"));
             std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))
         });
         let run = folder.join("run");
         let set =
             ["solver.start=sudden", "solver.duration_ms=0.1", "mesh.size_mm=4.0", "mesh.roller_facets=40"];
-        let file = terminal::root().join("fixtures/scenes/quick.ron");
+        let file = stribeck_studies::root().join("fixtures/scenes/quick.ron");
         let scene = Scene::read_with(&file, &set.map(String::from))?;
         let mut samples = 0;
         let dir = RunDir::create(&run)?;
@@ -178,7 +177,7 @@ fn set(inputs: &Inputs, dice: &mut Dice) -> Result<Answer> {
     };
     let set =
         if dice.one_in(10) { text(&format!("{field}={value}"), dice) } else { format!("{field}={value}") };
-    let file = terminal::root().join("fixtures/scenes/quick.ron");
+    let file = stribeck_studies::root().join("fixtures/scenes/quick.ron");
     let _ = inputs;
     Ok(answered(Scene::read_with(&file, &[set]))?.0)
 }

@@ -18,7 +18,6 @@ use stribeck_formats::Recording;
 use stribeck_mesh::decks::Deck;
 
 use super::{Answer, damage};
-use crate::terminal;
 use stribeck_scene::dice::Dice;
 
 pub(super) use peer::{Wanted, against};
@@ -78,7 +77,7 @@ pub(super) type Reading = std::result::Result<Vec<Held>, String>;
 impl Shelf {
     /// The files of `fixtures/signals/small`.
     pub(super) fn open() -> Result<Self> {
-        let folder = terminal::root().join("fixtures/signals/small");
+        let folder = stribeck_studies::root().join("fixtures/signals/small");
         let list = std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
         let mut files = Vec::new();
         for entry in list {

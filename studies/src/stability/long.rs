@@ -1,15 +1,13 @@
-//! Long runs: a free spinning roller, vibration without end, a thousand bounces, a long stick; loads that go
-//! away.
+//! Long runs: a free spinning roller, vibration without end, a thousand bounces, a long stick.
 
 use anyhow::Result;
-use stribeck_contact::Method;
 use stribeck_mesh::Disc;
 use stribeck_report::plot::{Axis, Colour, Figure, Series};
 use stribeck_solver::NodeMotion;
 use stribeck_system::{Plan, System};
 
-use super::limit::pressed;
-use super::{Case, Chapter};
+use super::Case;
+use super::bars::POINTS;
 use crate::rig::{THICKNESS, pair, penalty, rectangle, steel, stir, stop_reason, touching};
 
 /// Drift that is allowed without contact and dissipation [-].
@@ -107,7 +105,7 @@ fn bouncing() -> Result<Case> {
     let mut plan = Plan::new(THICKNESS);
     let disc = Disc { radius, facets: 48, size: 1.5e-3, rotation: 0.0 }.part()?;
     let ball = plan.add("ball", &disc, steel())?.body;
-    let (law, method) = (penalty(&steel(), 0.65e-3, 1.0)?, Method::Integrated { points: 4 });
+    let (law, method) = (penalty(&steel(), 0.65e-3, 1.0)?, POINTS);
     for (wall, y, side) in [("below", -radius - gap - 1e-3, "top"), ("above", radius + gap, "bottom")] {
         plan.add(wall, &rectangle([-4e-3, y], [8e-3, 1e-3], [12, 2])?, steel())?;
         plan.constrain(wall, NodeMotion::Held)?;
@@ -149,7 +147,12 @@ fn sticking() -> Result<Case> {
     // Soft enough for a long time in few steps; damped, so that the sudden weight comes to rest.
     let law =
         penalty(&steel(), 2e-3, 1e-3)?.with_friction(friction)?.with_damping(0.2, 0.5 * 7800.0 * 2e-3)?;
-    plan.contact(pair("block.bottom", "ground.top", law, Method::Integrated { points: 3 }))?;
+    plan.contact(pair(
+        "block.bottom",
+        "ground.top",
+        law,
+        stribeck_contact::Method::Integrated { points: 3 },
+    ))?;
     plan.constrain("ground", NodeMotion::Held)?;
     plan.model.gravity = [9.81 * slope.sin(), -9.81 * slope.cos()];
     let mut system = plan.build(1)?;
@@ -181,54 +184,9 @@ fn sticking() -> Result<Case> {
     ))
 }
 
-pub(super) fn chapter() -> Result<Chapter> {
-    let mut figure = Figure::new(
-        "spin",
-        "A free spinning roller over 10⁷ steps",
-        Axis::plain("Steps", "10⁶"),
-        Axis::plain("log₁₀ of the relative drift", ""),
-    )
-    .caption("What drifts is rounding.");
+pub(super) fn cases() -> Result<(Vec<Case>, Figure)> {
+    let (x, y) = (Axis::plain("Steps", "10⁶"), Axis::plain("log₁₀ of the relative drift", ""));
+    let mut figure = Figure::new("spin", "A free spinning roller over 10⁷ steps", x, y);
     let cases = vec![vibrating()?, spinning(&mut figure)?, bouncing()?, sticking()?];
-    Ok(Chapter {
-        title: "Long runs",
-        words: "Drift where nothing should drift: energy to 10⁻⁶, momenta to rounding.",
-        cases,
-        figures: vec![figure],
-    })
-}
-
-/// Loads that vanish or turn round while a block is pressed on another.
-pub(super) fn loads() -> Result<Chapter> {
-    let mut cases = Vec::new();
-    for (done, factor) in [("removed", 0.0), ("reversed", -1.0), ("ten times as large at once", 10.0)] {
-        let mut system = pressed(Method::Integrated { points: 4 }, 1.0)?;
-        system.set_time_step_factor(0.9)?;
-        let mut stop = stop_reason(system.run(500, 5, |_, _| ())?);
-        if stop.is_none() {
-            system.scale_load("upper.top", factor)?;
-            stop = stop_reason(system.run(1500, 5, |_, _| ())?);
-        }
-        let leaves = system.motion_of(system.body("upper")?).velocity[1];
-        let right =
-            if factor > 0.0 { system.resultants().all(|r| r.penetration < 1e-4) } else { leaves > 0.0 };
-        let seen = format!(
-            "the block {} at {leaves:.3} m/s, {}",
-            if leaves > 0.0 { "rises" } else { "sinks" },
-            if touching(&system) { "touching" } else { "free" }
-        );
-        cases.push(Case::of(
-            format!("100 MPa between two blocks, the load {done} in mid-run"),
-            system.balance().largest_error,
-            stop,
-            right,
-            seen,
-        ));
-    }
-    Ok(Chapter {
-        title: "Loads that change in mid-run",
-        words: "A block pressed on another in static equilibrium; after 500 steps the load changes at once.",
-        cases,
-        figures: Vec::new(),
-    })
+    Ok((cases, figure))
 }

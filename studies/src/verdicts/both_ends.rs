@@ -5,7 +5,7 @@ use stribeck_analysis::measured::{Analysis, Defect, Machine};
 use stribeck_formats::Channel;
 
 use super::records::{Labelled, Part};
-use crate::Sheet;
+use crate::Rows;
 
 /// A damaged record and the channel at the other end.
 pub(super) type Ends<'a> = (&'a Labelled, &'a Labelled);
@@ -55,40 +55,22 @@ pub(super) fn judge((damaged, other): &Ends<'_>) -> Option<JointVerdict> {
 }
 
 /// Both ends of a shaft together.
-pub(super) fn table(sheet: &mut Sheet, ends: &[Ends<'_>], told: &[Option<JointVerdict>]) {
-    sheet.heading("Both ends of a shaft");
-    sheet.say(
-        "The channels of both ends of a shaft, of which one has a damaged bearing, with the geometry of that \
-         bearing: the joint verdict of `analyse --together`, and whether it names the right end as the \
-         nearest. *Alone* counts the right claims of the channel at the damaged end by itself.",
-    );
-    let mut rows = Vec::new();
+pub(super) fn count(rows: &mut Rows, ends: &[Ends<'_>], judged: &[Option<JointVerdict>]) {
     for (part, what) in [(Part::Chosen, "damage at the drive end"), (Part::Quoted, "damage at the fan end")] {
-        let of: Vec<(&Ends<'_>, &JointVerdict)> = ends
-            .iter()
-            .zip(told)
-            .filter(|((r, _), _)| r.part == part)
-            .filter_map(|(r, t)| Some((r, t.as_ref()?)))
-            .collect();
-        let count =
-            |asked: &dyn Fn(&Ends<'_>, &JointVerdict) -> bool| of.iter().filter(|(r, t)| asked(r, t)).count();
-        let counts = [
-            of.len(),
-            count(&|_, t| t.alone),
-            count(&|(r, _), t| t.claimed.iter().any(|name| Some(*name) == r.truth)),
-            count(&|(r, _), t| !t.claimed.is_empty() && t.claimed.iter().all(|name| Some(*name) != r.truth)),
-            count(&|_, t| t.nearest_is_right == Some(true)),
-            count(&|_, t| t.nearest_is_right == Some(false)),
+        let of = ends.iter().zip(judged).filter(|((r, _), _)| r.part == part);
+        let of: Vec<_> = of.filter_map(|((r, _), verdict)| Some((r.truth, verdict.as_ref()?))).collect();
+        let is_right = |truth: Option<Defect>, v: &JointVerdict| v.claimed.iter().any(|d| Some(*d) == truth);
+        let count = |asked: &dyn Fn(Option<Defect>, &JointVerdict) -> bool| {
+            of.iter().filter(|(truth, verdict)| asked(*truth, verdict)).count() as f64
+        };
+        let values = [
+            ("n", of.len() as f64),
+            ("alone", count(&|_, v| v.alone)),
+            ("right", count(&is_right)),
+            ("wrong", count(&|truth, v| !v.claimed.is_empty() && !is_right(truth, v))),
+            ("nearest right", count(&|_, v| v.nearest_is_right == Some(true))),
+            ("nearest wrong", count(&|_, v| v.nearest_is_right == Some(false))),
         ];
-        for (name, value) in
-            ["n", "alone", "right", "wrong", "nearest right", "nearest wrong"].iter().zip(counts)
-        {
-            sheet.value("both ends", what, name, Some(value as f64));
-        }
-        rows.push([what.to_owned()].into_iter().chain(counts.map(|n| n.to_string())).collect());
+        rows.values("both ends", what, values);
     }
-    sheet.table(
-        &["records", "n", "alone", "together, right", "wrong", "the right end nearest", "the other end"],
-        &rows,
-    );
 }

@@ -75,9 +75,6 @@ pub(super) struct Outcome {
     /// The speed that was taken, or found [1/min].
     pub(super) speed_rpm: Option<f64>,
     pub(super) spall_mm: Option<Interval>,
-    /// Whether a single event bounds the length.
-    pub(super) is_bounded: bool,
-    pub(super) verdict: String,
 }
 
 /// How an outcome stands to the truth.
@@ -141,8 +138,6 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         p_values: of(|f| f.p_value, 1.0),
         speed_rpm: analysis.findings.speed_rpm,
         spall_mm: analysis.findings.spall_mm,
-        is_bounded: analysis.findings.spall_below_mm.is_some(),
-        verdict: analysis.findings.verdict,
     })
 }
 

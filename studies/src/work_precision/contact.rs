@@ -6,8 +6,8 @@ use stribeck_mesh::{Disc, Part};
 use stribeck_solver::{Behaviour, NodeMotion, rigid::RigidState};
 use stribeck_system::{Plan, Preload, System};
 
-use super::{Curve, Point, Problem, timed};
-use crate::Host;
+use super::Timer;
+use crate::Rows;
 use crate::rig::{THICKNESS, pair, penalty, rectangle, steel, touching};
 
 const G: f64 = 9.81;
@@ -40,38 +40,6 @@ fn bars(cells: usize, method: Method, scale: f64, factor: f64) -> Result<(f64, f
     }
     let touched = (last - first.context("the bars did not meet")?) as f64 * system.time_step();
     Ok((steps as f64 * elements, (touched * steel().dilatational_speed() / (2.0 * length) - 1.0).abs()))
-}
-
-pub(super) fn bar_impact(host: &dyn Host) -> Result<Problem> {
-    let mut curves = Vec::new();
-    let cells = [25, 50, 100, 200, 400];
-    let mut curve = |name: &str, method, scale, factor| -> Result<()> {
-        let points = cells.iter().map(|&n| timed(host, || bars(n, method, scale, factor), 0.05 / n as f64));
-        curves.push(Curve {
-            name: name.into(),
-            refined: "element size",
-            points: points.collect::<Result<_>>()?,
-        });
-        Ok(())
-    };
-    curve("integrated, 4 points", POINTS, 1.0, 0.9)?;
-    curve("collocated", Method::Collocated, 1.0, 0.9)?;
-    curve("integrated, Δt factor 0.4", POINTS, 1.0, 0.4)?;
-    curve("integrated, penalty × 0.1", POINTS, 0.1, 0.9)?;
-    curve("integrated, penalty × 4", POINTS, 4.0, 0.9)?;
-    Ok(Problem {
-        id: "impact",
-        title: "Impact of two bars",
-        words:
-            "Two equal bars with held sides meet at 2 m/s and stay in contact for 2L/c (Johnson, *Contact \
-            Mechanics*, 1985, §11.1). \
-                Error of the contact time: the penalty spring adds its own swing, and the front spreads with \
-                the third root of the way \
-                in cells, so that the order is below one."
-                .into(),
-        work: "element evaluations",
-        curves,
-    })
 }
 
 /// Radius of the curved block, half-width that the load is chosen for, height of each block [m].
@@ -119,40 +87,6 @@ fn pressed(columns: usize, method: Method, scale: f64, uniform: bool) -> Result<
     Ok((elements, (2.0 * (moment / sum).sqrt() / half_width - 1.0).abs()))
 }
 
-pub(super) fn hertz(host: &dyn Host) -> Result<Problem> {
-    let mut curves = Vec::new();
-    let mut curve = |name: &str, method, scale, uniform, columns: &[usize]| -> Result<()> {
-        let mut points: Vec<Point> = Vec::new();
-        for &n in columns {
-            // A choice that finds no equilibrium has no point there.
-            match timed(host, || pressed(n, method, scale, uniform), 2.0 * HERTZ[2] / n as f64) {
-                Ok(point) => points.push(point),
-                Err(error) => host.say(&format!("{name}, {n} columns: {error:#}")),
-            }
-        }
-        curves.push(Curve { name: name.into(), refined: "element size", points });
-        Ok(())
-    };
-    let columns = [20, 40, 80];
-    curve("integrated, 4 points, penalty × 20", POINTS, 20.0, false, &columns)?;
-    curve("integrated, 1 point, penalty × 20", Method::Integrated { points: 1 }, 20.0, false, &columns)?;
-    curve("collocated, penalty × 20", Method::Collocated, 20.0, false, &columns)?;
-    curve("integrated, 4 points, penalty × 1", POINTS, 1.0, false, &columns)?;
-    curve("uniform mesh, penalty × 20", POINTS, 20.0, true, &[40, 80, 120])?;
-    Ok(Problem {
-        id: "hertz",
-        title: "Hertz line contact",
-        words:
-            "A curved block (R = 0.2 m) is pressed on a flat one until the half-width is b = √(4wR/(πE*)) \
-            = 1.2 mm (Johnson 1985, §4.2); \
-                b from the second moment of the contact forces. Static; graded meshes are five times finer \
-                at the contact."
-                .into(),
-        work: "elements",
-        curves,
-    })
-}
-
 /// A rigid body on a fixed floor.
 fn on_floor(part: &Part, surface: &str, law: Law, method: Method) -> Result<(System, usize)> {
     let mut plan = Plan::new(THICKNESS);
@@ -193,36 +127,6 @@ fn roll(facets: usize, method: Method, friction: f64) -> Result<(f64, f64)> {
     Ok((55_000.0 * (facets * points) as f64, (rolled / (2.0 / 3.0 * speed) - 1.0).abs()))
 }
 
-pub(super) fn rolling(host: &dyn Host) -> Result<Problem> {
-    let mut curves = Vec::new();
-    for (name, method, friction) in [
-        ("integrated, 4 points", POINTS, 0.3),
-        ("integrated, 1 point", Method::Integrated { points: 1 }, 0.3),
-        ("collocated", Method::Collocated, 0.3),
-    ] {
-        let points = [32, 64, 128, 256].into_iter().map(|facets| {
-            timed(host, || roll(facets, method, friction), std::f64::consts::TAU * 0.02 / facets as f64)
-        });
-        curves.push(Curve {
-            name: name.into(),
-            refined: "facet length",
-            points: points.collect::<Result<_>>()?,
-        });
-    }
-    Ok(Problem {
-        id: "rolling",
-        title: "From sliding to rolling",
-        words:
-            "A rigid disc of 40 mm is set down at 0.15 m/s without spin and ends rolling at two thirds of \
-            that, whatever µ is: about the \
-                contact the angular momentum is kept. A polygon rolls over its corners, which lift it and \
-                slow it down."
-                .into(),
-        work: "contact points × steps",
-        curves,
-    })
-}
-
 /// A block slides to a stop; error of its way v²/(2µg).
 fn stop(stiffness: f64, dt: f64, method: Method) -> Result<(f64, f64)> {
     let (speed, friction) = (0.05, 0.2);
@@ -242,29 +146,43 @@ fn stop(stiffness: f64, dt: f64, method: Method) -> Result<(f64, f64)> {
     Ok(((steps + sliding) as f64, (way * 2.0 * friction * G / (speed * speed) - 1.0).abs()))
 }
 
-pub(super) fn sliding(host: &dyn Host) -> Result<Problem> {
-    let mut curves = Vec::new();
+pub(super) fn curves(timer: &Timer<'_>, rows: &mut Rows) -> Result<()> {
+    let one_point = Method::Integrated { points: 1 };
+    for (name, method, scale, factor) in [
+        ("integrated, 4 points", POINTS, 1.0, 0.9),
+        ("collocated", Method::Collocated, 1.0, 0.9),
+        ("integrated, Δt factor 0.4", POINTS, 1.0, 0.4),
+        ("integrated, penalty × 0.1", POINTS, 0.1, 0.9),
+        ("integrated, penalty × 4", POINTS, 4.0, 0.9),
+    ] {
+        let cells = [25, 50, 100, 200, 400].map(|n| (0.05 / n as f64, n));
+        timer.curve(rows, "Impact of two bars", name, cells, |n| bars(n, method, scale, factor))?;
+    }
+    for (name, method, scale, uniform, columns) in [
+        ("integrated, 4 points, penalty × 20", POINTS, 20.0, false, [20, 40, 80]),
+        ("integrated, 1 point, penalty × 20", one_point, 20.0, false, [20, 40, 80]),
+        ("collocated, penalty × 20", Method::Collocated, 20.0, false, [20, 40, 80]),
+        ("integrated, 4 points, penalty × 1", POINTS, 1.0, false, [20, 40, 80]),
+        ("uniform mesh, penalty × 20", POINTS, 20.0, true, [40, 80, 120]),
+    ] {
+        let columns = columns.map(|n| (2.0 * HERTZ[2] / n as f64, n));
+        timer.curve(rows, "Hertz line contact", name, columns, |n| pressed(n, method, scale, uniform))?;
+    }
+    for (name, method) in [
+        ("integrated, 4 points", POINTS),
+        ("integrated, 1 point", one_point),
+        ("collocated", Method::Collocated),
+    ] {
+        let facets = [32, 64, 128, 256].map(|n| (std::f64::consts::TAU * 0.02 / n as f64, n));
+        timer.curve(rows, "From sliding to rolling", name, facets, |n| roll(n, method, 0.3))?;
+    }
     for (name, stiffness, method) in [
         ("integrated, 10¹² Pa/m", 1e12, POINTS),
         ("collocated, 10¹² Pa/m", 1e12, Method::Collocated),
         ("integrated, 10¹¹ Pa/m", 1e11, POINTS),
     ] {
-        let points =
-            [4e-6, 2e-6, 1e-6, 0.5e-6].into_iter().map(|dt| timed(host, || stop(stiffness, dt, method), dt));
-        curves.push(Curve {
-            name: name.into(),
-            refined: "time step",
-            points: points.collect::<Result<_>>()?,
-        });
+        let steps = [4e-6, 2e-6, 1e-6, 0.5e-6].map(|dt| (dt, dt));
+        timer.curve(rows, "A block slides to a stop", name, steps, |dt| stop(stiffness, dt, method))?;
     }
-    Ok(Problem {
-        id: "sliding",
-        title: "A block slides to a stop",
-        words: "A rigid block starts at 50 mm/s on a floor with µ = 0.2 and stops after v²/(2µg) = 0.64 mm. \
-            Coulomb's law holds to \
-                rounding; what is left is the swing of the contact spring."
-            .into(),
-        work: "steps",
-        curves,
-    })
+    Ok(())
 }

@@ -3,16 +3,16 @@
 use std::f64::consts::TAU;
 
 use anyhow::{Context, Result};
-use stribeck_mesh::{Annulus, Circle, Grading};
+use stribeck_mesh::{Annulus, Circle, Grading, Part};
 use stribeck_solver::Elastic;
 
+use super::Timer;
 use super::waves::{Way, limit, model, ways};
-use super::{Curve, Problem, timed};
-use crate::Host;
+use crate::Rows;
 use crate::integrators::Trajectory;
 use crate::reference::{Reference, Rule};
 use crate::rig::steel;
-use crate::stability::{cylinder as bore, cylinder_of, split};
+use crate::stability::{cylinder, ring as bore_ring, split};
 
 /// Mean radius and thickness of the ring [m].
 const RING: [f64; 2] = [0.1, 0.004];
@@ -67,109 +67,39 @@ fn bending(way: &Way, layers: usize, factor: f64) -> Result<(f64, f64)> {
     Ok((plain.evaluations() as f64, (theory - 1.0).abs()))
 }
 
-pub(super) fn ring(host: &dyn Host) -> Result<Problem> {
-    let mut curves = Vec::new();
-    for way in ways() {
-        // The scheme and the precision matter little for so slow a motion; the comparison is of elements.
-        if way.2.bulk_viscosity > 0.0 || (way.2.rule == Rule::OnePoint && way.0.starts_with("Noh")) {
-            continue;
-        }
-        let layers = [1, 2, 4];
-        let points = layers.iter().map(|&n| timed(host, || bending(&way, n, 0.9), RING[1] / n as f64));
-        curves.push(Curve {
-            name: way.0.into(),
-            refined: "element size",
-            points: points.collect::<Result<_>>()?,
-        });
+pub(super) fn curves(timer: &Timer<'_>, rows: &mut Rows) -> Result<()> {
+    // The scheme and the precision matter little for so slow a motion; the comparison is of elements.
+    let is_left_out =
+        |way: &Way| way.2.bulk_viscosity > 0.0 || (way.2.rule == Rule::OnePoint && way.0.starts_with("Noh"));
+    for way in ways().iter().filter(|way| !is_left_out(way)) {
+        let layers = [1, 2, 4].map(|n| (RING[1] / n as f64, n));
+        timer.curve(rows, "Bending mode of a ring", way.0, layers, |n| bending(way, n, 0.9))?;
     }
-    Ok(Problem {
-        id: "ring",
-        title: "Bending mode of a ring",
-        words: "Two lobes of a free ring of radius 100 mm and thickness 4 mm, with 1, 2 and 4 layers of \
-            square cells: f = n(n² − 1)/(2πR²) \
-                √(E'I/(ρA(n² + 1))) (Love, *Mathematical Theory of Elasticity*, 1927, §293; the benchmark \
-                Code_Aster V2.03.109). Shear and \
-                rotary inertia, which the formula leaves out, lower the true value by some n²(h/R)²/3 = 0.2 \
-                %: that is where the good \
-                curves end. One layer of one-point quadrilaterals bends right because its hourglass \
-                stiffness is that of bending; full \
-                integration and triangles are too stiff."
-            .into(),
-        work: "element evaluations",
-        curves,
-    })
-}
-
-pub(super) fn cylinder(host: &dyn Host) -> Result<Problem> {
-    let mut curves = Vec::new();
-    let sizes = [(24, 3), (48, 6), (96, 12), (192, 24)];
-    for (name, poisson) in
-        [("one-point quadrilaterals", 0.3), ("one-point quadrilaterals, ν = 0.4999", 0.4999)]
-    {
+    let sizes = [(24, 3), (48, 6), (96, 12), (192, 24)].map(|of| (0.05 / of.1 as f64, of));
+    for (name, triangles, poisson) in [
+        ("one-point quadrilaterals", false, 0.3),
+        ("one-point quadrilaterals, ν = 0.4999", false, 0.4999),
+        ("triangles", true, 0.3),
+        ("triangles, ν = 0.4999", true, 0.4999),
+    ] {
         let steel = Elastic::new(208e9, poisson, 7800.0)?;
-        let points = sizes.iter().map(|&(facets, layers)| {
-            timed(
-                host,
-                || Ok(((facets * layers) as f64, (bore(steel, facets, layers)? - 1.0).abs())),
-                0.05 / layers as f64,
-            )
-        });
-        curves.push(Curve {
-            name: name.into(),
-            refined: "element size",
-            points: points.collect::<Result<_>>()?,
-        });
-    }
-    for (name, poisson) in [("triangles", 0.3), ("triangles, ν = 0.4999", 0.4999)] {
-        let steel = Elastic::new(208e9, poisson, 7800.0)?;
-        let points = sizes.iter().map(|&(facets, layers)| {
-            let ring = ring_of(facets, layers);
-            timed(
-                host,
-                || {
-                    let part = split(ring.part()?);
-                    let elements = part.triangles.len() as f64;
-                    Ok((elements, (cylinder_of(&part, steel, facets)? - 1.0).abs()))
-                },
-                0.05 / layers as f64,
-            )
-        });
-        curves.push(Curve {
-            name: name.into(),
-            refined: "element size",
-            points: points.collect::<Result<_>>()?,
-        });
+        timer.curve(rows, CYLINDER, name, sizes, |(facets, layers)| {
+            let part = bore_ring(facets, layers).part()?;
+            pressed(&if triangles { split(part) } else { part }, steel, facets)
+        })?;
     }
     // Three facets become one away from the bore.
-    let points = [(81, 10), (162, 20), (324, 40)].map(|(facets, layers)| {
-        let ring = ring_of(facets, layers);
+    let sizes = [(81, 10), (162, 20), (324, 40)].map(|of| (TAU * 0.05 / of.0 as f64, of));
+    timer.curve(rows, CYLINDER, "graded from the bore", sizes, |(facets, layers)| {
         let grading = Grading { fine: Circle::Inner, fine_layers: layers / 10 + 1, transitions: 1 };
-        timed(
-            host,
-            || {
-                let part = ring.graded_part(&grading)?;
-                let elements = (part.quads.len() + part.triangles.len()) as f64;
-                Ok((elements, (cylinder_of(&part, steel(), facets)? - 1.0).abs()))
-            },
-            TAU * 0.05 / facets as f64,
-        )
-    });
-    let points = points.into_iter().collect::<Result<_>>()?;
-    curves.push(Curve { name: "graded from the bore".into(), refined: "element size", points });
-    Ok(Problem {
-        id: "cylinder",
-        title: "Thick cylinder under pressure",
-        words:
-            "Bore of 50 mm, rim of 100 mm, displacement of the bore: u = (1 + ν) p a²/(E (b² − a²)) [(1 − \
-            2ν) a + b²/a] (Timoshenko and \
-             Goodier, *Theory of Elasticity*, 1970, §28). Static. Near ν = ½ triangles lock and one-point \
-             quadrilaterals do not."
-                .into(),
-        work: "elements",
-        curves,
+        pressed(&bore_ring(facets, layers).graded_part(&grading)?, steel(), facets)
     })
 }
 
-fn ring_of(facets: usize, layers: usize) -> Annulus {
-    Annulus { inner_radius: 0.05, outer_radius: 0.1, facets, layers, start_angle: 0.0, grooves: Vec::new() }
+const CYLINDER: &str = "Thick cylinder under pressure";
+
+/// Elements of a thick cylinder under pressure, and the error of its bore.
+fn pressed(part: &Part, material: Elastic, facets: usize) -> Result<(f64, f64)> {
+    let elements = (part.quads.len() + part.triangles.len()) as f64;
+    Ok((elements, (cylinder(part, material, facets)? - 1.0).abs()))
 }

@@ -6,8 +6,8 @@ use anyhow::Result;
 use stribeck_mesh::{Mesh, Part};
 use stribeck_solver::{Dynamics, Model, NodeMotion};
 
-use super::{Curve, Point, Problem, timed};
-use crate::Host;
+use super::Timer;
+use crate::Rows;
 use crate::integrators::{Scheme, Trajectory};
 use crate::reference::{Choice, Precision, Reference, Rule};
 use crate::rig::{THICKNESS, rectangle, steel};
@@ -105,40 +105,6 @@ fn pulse(way: &Way, columns: usize, factor: f64) -> Result<(f64, f64)> {
     Ok((work, off(&x, &rest, &|p| [at(p[0], time), 0.0])))
 }
 
-pub(super) fn pressure_wave(host: &dyn Host) -> Result<Problem> {
-    let cells = [100, 200, 400, 800];
-    let mut curves = Vec::new();
-    for way in ways() {
-        let points = cells.iter().map(|&n| timed(host, || pulse(&way, n, 0.8), 0.2 / n as f64));
-        curves.push(Curve {
-            name: way.0.into(),
-            refined: "element size",
-            points: points.collect::<Result<_>>()?,
-        });
-    }
-    let way = &ways()[0];
-    let points: Result<Vec<Point>> =
-        [0.99, 0.8, 0.5, 0.25].into_iter().map(|f| timed(host, || pulse(way, 400, f), f)).collect();
-    curves.push(Curve {
-        name: "400 cells, Δt factor 0.99 … 0.25".into(),
-        refined: "time step",
-        points: points?,
-    });
-    Ok(Problem {
-        id: "pressure",
-        title: "Pressure wave",
-        words:
-            "A Gaussian pulse of 10 mm runs 80 mm along a strip with held sides: u = f(x − ct), c² = (λ + \
-            2µ)/ρ (Achenbach, *Wave \
-                Propagation in Elastic Solids*, 1973, §1.3). Error of the displacement (root mean square), \
-                time step 0.8 of the limit. \
-                A *smaller* time step is no better here: the errors of space and time have opposite signs."
-                .into(),
-        work: "element evaluations",
-        curves,
-    })
-}
-
 /// A standing Rayleigh wave: half a wavelength between two lines of symmetry.
 struct Rayleigh {
     k: f64,
@@ -199,29 +165,21 @@ fn rayleigh(way: &Way, per_wave: usize, factor: f64) -> Result<(f64, f64)> {
     Ok((work, off(&x, &rest, &|p| wave.shape(p[0], -p[1]).map(|u| phase * u))))
 }
 
-pub(super) fn rayleigh_wave(host: &dyn Host) -> Result<Problem> {
-    let cells = [10, 20, 40];
-    let mut curves = Vec::new();
+pub(super) fn curves(timer: &Timer<'_>, rows: &mut Rows) -> Result<()> {
     for way in ways() {
-        let points = cells.iter().map(|&n| timed(host, || rayleigh(&way, n, 0.8), 0.01 / n as f64));
-        curves.push(Curve {
-            name: way.0.into(),
-            refined: "element size",
-            points: points.collect::<Result<_>>()?,
-        });
+        timer.curve(
+            rows,
+            "Pressure wave",
+            way.0,
+            [100, 200, 400, 800].map(|n| (0.2 / n as f64, n)),
+            |n| pulse(&way, n, 0.8),
+        )?;
+        timer.curve(rows, "Rayleigh wave", way.0, [10, 20, 40].map(|n| (0.01 / n as f64, n)), |n| {
+            rayleigh(&way, n, 0.8)
+        })?;
     }
-    Ok(Problem {
-        id: "rayleigh",
-        title: "Rayleigh wave",
-        words: format!(
-            "A standing wave of 10 mm on a half-plane four wavelengths deep, between two lines of symmetry; \
-             after 2.125 periods. Speed \
-             {:.1} m/s from (2 − c²/c_T²)² = 4 √(1 − c²/c_L²) √(1 − c²/c_T²), decay as in Achenbach (1973), \
-             §5.11. 10, 20 and 40 \
-             elements a wavelength; error of the displacement (root mean square).",
-            Rayleigh::new(0.01).speed
-        ),
-        work: "element evaluations",
-        curves,
+    let factors = [0.99, 0.8, 0.5, 0.25].map(|f| (f, f));
+    timer.curve(rows, "Pressure wave", "400 cells, Δt factor 0.99 … 0.25", factors, |f| {
+        pulse(&ways()[0], 400, f)
     })
 }

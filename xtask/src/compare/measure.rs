@@ -33,7 +33,6 @@ pub(super) struct Problem {
 /// How far one program's displacements are from another's.
 #[derive(Debug, Clone)]
 pub(super) struct Difference {
-    pub(super) steps: usize,
     /// The other program.
     pub(super) from: String,
     /// Norm of the difference over the norm.
@@ -99,7 +98,7 @@ struct Solved {
 }
 
 /// Name under which our solution is referred to.
-const OURS: &str = "ours";
+pub(super) const OURS: &str = "ours";
 
 /// Solves the problem in all programs, compares answers and takes times.
 pub(super) fn measure(
@@ -192,8 +191,7 @@ fn entry(
         let Some(reference) = solved.iter().find(|s| s.label == *label) else { continue };
         let Some((steps, u)) = found.last() else { continue };
         let Some((_, v)) = reference.solutions.iter().find(|(n, _)| n == steps) else { continue };
-        let (steps, from, limit) = (*steps, label.clone(), *limit);
-        differences.push(Difference { steps, from, found: distance(u, v), limit, reason });
+        differences.push(Difference { from: label.clone(), found: distance(u, v), limit: *limit, reason });
     }
     Entry { about: program.about().clone(), differences, rounds: Vec::new() }
 }
@@ -237,7 +235,7 @@ mod tests {
     fn behaves_an_answer_that_is_no_number_does_not_agree() {
         let word = String::new;
         let about = About { program: word(), version: word(), element: word() };
-        let difference = |found| Difference { steps: 1, from: OURS.into(), found, limit: 1.0, reason: "" };
+        let difference = |found| Difference { from: OURS.into(), found, limit: 1.0, reason: "" };
         let with = |differences| Entry { about: about.clone(), differences, rounds: Vec::new() };
         assert!(with(vec![difference(0.5)]).agrees());
         assert!(!with(vec![difference(0.5), difference(f64::NAN)]).agrees());

@@ -2,17 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::measure::{Absent, Entry, Measured, Pace};
-
-/// Where and when it was measured.
-#[derive(Debug)]
-pub(super) struct Setting {
-    pub(super) machine: String,
-    pub(super) commit: String,
-    /// Load averages over one minute, before and after.
-    pub(super) loads: [Option<f64>; 2],
-    pub(super) rounds: usize,
-}
+use super::measure::{Absent, Entry, Measured, OURS, Pace};
 
 /// Least and median.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,22 +22,24 @@ impl Spread {
 }
 
 /// The page. Writing to a string cannot fail, so results of `write!` are dropped.
-pub(super) fn page(setting: &Setting, measured: &[Measured], absent: &[Absent]) -> String {
+pub(super) fn page(rounds: usize, measured: &[Measured], absent: &[Absent]) -> String {
     let mut page = String::new();
-    let load = |l: Option<f64>| l.map_or_else(|| "unknown".to_owned(), |l| format!("{l:.2}"));
+    let others =
+        measured.iter().flat_map(|m| &m.entries).filter(|e| !e.about.program.starts_with("Stribeck"));
+    let ratios: Vec<f64> = others.map(|e| ratio(e).median).collect();
+    let [least, most] =
+        [f64::min, f64::max].map(|end| ratios.iter().copied().reduce(end).unwrap_or(f64::NAN));
     let _ = writeln!(
         page,
         "# The same work in other programs\n\n\
-         Written by `cargo xtask peers`, raw runs in [compare.csv](compare.csv). Commit {}. {}. Load average \
-         {} before, {} after. Every program on one thread, double precision.\n\n\
-         Timed is the step loop alone: forces, masses, motion; no output. Times are processor time in ns per \
-         element and step, least and median of {} runs. Ours was run again directly before each run of \
-         another program; the ratio is the median over these pairs. E 200 GPa, ν 0.3, ρ 7850 kg/m³.",
-        setting.commit,
-        setting.machine,
-        load(setting.loads[0]),
-        load(setting.loads[1]),
-        setting.rounds
+         The same work takes {} to {} times ours in other programs.\n\n\
+         Timed is the step loop alone, in ns of processor time per element and step on one thread in double \
+         precision, least and median of {} runs; ours ran again directly before each run of another program, \
+         and the ratio is the median over these pairs. E 200 GPa, ν 0.3, ρ 7850 kg/m³. Written by `cargo xtask \
+         peers`; all runs are in [compare.csv](compare.csv).",
+        digits(least),
+        digits(most),
+        rounds
     );
     measured.iter().for_each(|m| table(&mut page, m));
     if !absent.is_empty() {
@@ -78,18 +70,20 @@ fn table(page: &mut String, measured: &Measured) {
     measured.entries.iter().for_each(|e| row(page, e));
 }
 
+/// Their time over ours, of each pair of runs.
+fn ratio(entry: &Entry) -> Spread {
+    Spread::of(entry.rounds.iter().map(|r| r.theirs.cpu / r.ours.cpu))
+}
+
 fn row(page: &mut String, entry: &Entry) {
     let theirs = Spread::of(entry.rounds.iter().map(|r| r.theirs.cpu));
-    let ratio = Spread::of(entry.rounds.iter().map(|r| r.theirs.cpu / r.ours.cpu));
     let differences: Vec<String> = entry
         .differences
         .iter()
         .map(|d| {
+            let from = if d.from == OURS { String::new() } else { format!(" from {}", d.from) };
             let mark = if d.found <= d.limit { "" } else { " **too much**" };
-            format!(
-                "{:.1e} from {} after {} steps (limit {:.0e}, {}){mark}",
-                d.found, d.from, d.steps, d.limit, d.reason
-            )
+            format!("{:.1e}{from}, limit {:.0e} ({}){mark}", d.found, d.limit, d.reason)
         })
         .collect();
     let _ = writeln!(
@@ -100,7 +94,7 @@ fn row(page: &mut String, entry: &Entry) {
         entry.about.element,
         digits(theirs.least),
         digits(theirs.median),
-        digits(ratio.median),
+        digits(ratio(entry).median),
         differences.join("; ")
     );
 }

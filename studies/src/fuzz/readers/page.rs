@@ -1,8 +1,10 @@
-//! The page of how the readings compare: counts by format, and each kind of difference with its reason.
+//! What the readings of many files are counted to: by format, each kind of difference with its reason, and
+//! each of our reasons to refuse a file that the other program reads.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::time::Duration;
+
+use stribeck_studies::Rows;
 
 use super::judge::Verdict;
 use super::{Made, Reading};
@@ -15,21 +17,12 @@ pub(super) struct Seen {
     pub(super) verdict: Verdict,
 }
 
-/// Counts of one format.
-#[derive(Debug, Default, Clone, Copy)]
-struct Counts {
-    files: u64,
-    equal: u64,
-    ours_fewer: u64,
-    theirs_fewer: u64,
-    both_refuse: u64,
-    ours_refuses: u64,
-    theirs_refuses: u64,
-    differ: u64,
-}
+/// What becomes of a file, in the order of the table.
+const ENDS: [&str; 7] =
+    ["equal", "we have fewer", "they have fewer", "both refuse", "we refuse", "they refuse", "differ"];
 
-/// A kind of difference, with its smallest example.
-#[derive(Debug, Clone)]
+/// Files of one kind, with the smallest example.
+#[derive(Debug, Clone, Default)]
 struct Kind {
     count: u64,
     bytes: usize,
@@ -40,8 +33,8 @@ struct Kind {
 /// All that was seen.
 #[derive(Debug, Default)]
 pub(super) struct Tables {
-    counts: BTreeMap<&'static str, Counts>,
-    /// By format and kind of difference.
+    counts: BTreeMap<&'static str, [u64; 7]>,
+    /// By format, in what and by what damage they differ.
     kinds: BTreeMap<(&'static str, &'static str, &'static str), Kind>,
     /// By format and our reason to refuse a file that they read.
     refusals: BTreeMap<(&'static str, String), Kind>,
@@ -68,13 +61,7 @@ fn reader(kind: &str) -> &'static str {
 /// Differences of which examples were looked at and lie with the other program: format, in what (all where it
 /// is empty), by what damage (all where it is empty), and why.
 const EXPLAINED: [(&str, &str, &str, &str); 10] = [
-    (
-        "csv",
-        "",
-        "it is cut off",
-        "pandas keeps the row that breaks off, with what is left of its last number; we leave it out, \
-         with a note",
-    ),
+    ("csv", "", "it is cut off", "pandas keeps the row that breaks off; we leave it out, with a note"),
     ("csv", "samples", "", LINES),
     ("csv", "numbers among the samples", "", LINES),
     ("csv", "rms", "a bit is turned", LINES),
@@ -82,8 +69,8 @@ const EXPLAINED: [(&str, &str, &str, &str); 10] = [
         "wav",
         "samples",
         "a piece stands twice",
-        "in the head of an RF64 file the size of the data is another than the mark that sends to the 64-bit \
-         one: soundfile takes the latter, we take all to the end of the file, with a note",
+        "two sizes in the head of an RF64 file: soundfile takes the 64-bit one, we take all to the end of \
+         the file, with a note",
     ),
     ("inp", "samples", "", SAME_ELEMENT),
     ("msh", "samples", "", SAME_ELEMENT),
@@ -91,22 +78,16 @@ const EXPLAINED: [(&str, &str, &str, &str); 10] = [
         "tdms",
         "samples",
         "",
-        "npTDMS shares a chunk that is not whole among the channels in the midst of a file, too, where no \
-         recorder writes one; we leave it out, with a note",
+        "npTDMS shares an incomplete chunk among the channels in the midst of a file, too; we leave it \
+         out, with a note",
     ),
     (
         "uff",
         "samples",
         "",
-        "pyuff takes all numbers up to the delimiter, whatever the head promises; we take those that are \
-         promised, with a note",
+        "pyuff takes all numbers up to the delimiter; we take those that the head promises, with a note",
     ),
-    (
-        "uff",
-        "rms",
-        "",
-        "pyuff cuts numbers at the columns of the format where they are wider; we read them whole",
-    ),
+    ("uff", "rms", "", "pyuff cuts numbers that are wider than the format's columns; we read them whole"),
 ];
 
 const LINES: &str = "a quote or the end of a line is damaged: pandas lets a quoted field run over lines and \
@@ -121,106 +102,75 @@ impl Tables {
     }
 
     pub(super) fn take(&mut self, seen: Seen) {
-        let Seen { seed, made, ours, verdict, .. } = seen;
-        let of = self.counts.entry(made.kind).or_default();
-        of.files += 1;
-        match &verdict {
-            Verdict::Equal => of.equal += 1,
-            Verdict::BothRefuse => of.both_refuse += 1,
-            Verdict::OursRefuses => of.ours_refuses += 1,
-            Verdict::TheirsRefuses => of.theirs_refuses += 1,
-            Verdict::OursHasFewer => of.ours_fewer += 1,
-            Verdict::TheirsHasFewer => of.theirs_fewer += 1,
-            Verdict::Differ(..) => of.differ += 1,
-        }
-        let new = |example: String| Kind { count: 0, bytes: usize::MAX, seed, example };
+        let Seen { seed, made, ours, verdict } = seen;
+        let end = match &verdict {
+            Verdict::Equal => 0,
+            Verdict::OursHasFewer => 1,
+            Verdict::TheirsHasFewer => 2,
+            Verdict::BothRefuse => 3,
+            Verdict::OursRefuses => 4,
+            Verdict::TheirsRefuses => 5,
+            Verdict::Differ(..) => 6,
+        };
+        self.counts.entry(made.kind).or_default()[end] += 1;
         let (kind, example) = match (&verdict, &ours) {
             (Verdict::Differ(what, words), _) => {
-                (self.kinds.entry((made.kind, what, made.done)).or_insert(new(String::new())), words.clone())
+                (self.kinds.entry((made.kind, what, made.done)).or_default(), words.clone())
             }
             (Verdict::OursRefuses, Err(why)) => {
-                let key = (made.kind, gist(why));
-                (self.refusals.entry(key).or_insert(new(String::new())), why.clone())
+                (self.refusals.entry((made.kind, gist(why))).or_default(), why.clone())
             }
             _ => return,
         };
         kind.count += 1;
-        if made.bytes.len() < kind.bytes {
-            *kind = Kind { bytes: made.bytes.len(), seed, example, ..*kind };
+        if kind.count == 1 || made.bytes.len() < kind.bytes {
+            *kind = Kind { count: kind.count, bytes: made.bytes.len(), seed, example };
         }
     }
 
     pub(super) fn differing(&self) -> u64 {
-        self.counts.values().map(|of| of.differ).sum()
+        self.counts.values().map(|ends| ends[6]).sum()
     }
 
     /// Differences that no line of [`EXPLAINED`] covers.
     pub(super) fn unexplained(&self) -> u64 {
-        self.kinds
-            .iter()
-            .filter(|((kind, what, done), _)| explained(kind, what, done).is_none())
-            .map(|(_, k)| k.count)
-            .sum()
+        let open = self.kinds.iter().filter(|((kind, what, done), _)| explained(kind, what, done).is_none());
+        open.map(|(_, k)| k.count).sum()
     }
 
-    pub(super) fn page(&self, files: u64, first: u64, versions: &str) -> String {
-        let mut page = format!(
-            "# Readers\n\nWritten by `cargo xtask fuzz --peers python3`: {files} files of signals and meshes \
-             (seeds from {first}), made of the small ones in `fixtures/signals/small` and of tables in the \
-             dialects that programs write, most of them damaged: bits turned, numbers of heads changed, \
-             pieces missing or twice, cut off. Each is read here and by the program that its format belongs \
-             to ({versions}). Panics: {}. The slowest file took {:.2} s here.\n\n\
-             Equal is as many samples, as many of them numbers, the same rms to a part in a million and the \
-             same rate.\n\n\
-             | format | other reader | files | equal | equal, we have fewer channels | equal, they have fewer \
-             | both refuse | we refuse | they refuse | differ |\n|---|---|---|---|---|---|---|---|---|---|\n",
-            self.panics.len(),
-            self.slowest.as_secs_f64(),
-        );
-        for (kind, of) in &self.counts {
-            let _ = writeln!(
-                page,
-                "| {kind} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-                reader(kind),
-                of.files,
-                of.equal,
-                of.ours_fewer,
-                of.theirs_fewer,
-                of.both_refuse,
-                of.ours_refuses,
-                of.theirs_refuses,
-                of.differ
-            );
+    pub(super) fn rows(&self, files: u64, first: u64, versions: &str) -> Rows {
+        let mut rows = Rows::default();
+        let values =
+            [("files", files as f64), ("first seed", first as f64), ("panics", self.panics.len() as f64)];
+        rows.values("all", "all", values);
+        rows.value("all", "all", "slowest s", self.slowest.as_secs_f64());
+        rows.word("all", "all", "versions", versions);
+        for (kind, ends) in &self.counts {
+            rows.word("formats", kind, "other reader", reader(kind));
+            rows.value("formats", kind, "files", ends.iter().sum::<u64>() as f64);
+            rows.values("formats", kind, ENDS.into_iter().zip(ends.map(|n| n as f64)));
         }
-        page += "\n## Where both read and differ\n\n";
-        if self.kinds.is_empty() {
-            page += "Nowhere.\n";
-        } else {
-            page += "| format | in what | what was done | files | smallest: bytes, seed | ours; theirs | \
-             why |\n\
-                     |---|---|---|---|---|---|---|\n";
-        }
+        let mut put = |table: &str, name: &str, k: &Kind| {
+            let values = [("files", k.count as f64), ("bytes", k.bytes as f64), ("seed", k.seed as f64)];
+            rows.values(table, name, values);
+            rows.word(table, name, "example", &cell(&k.example));
+        };
         for ((kind, what, done), k) in &self.kinds {
-            let why = explained(kind, what, done).unwrap_or("**not explained**");
-            let _ = writeln!(
-                page,
-                "| {kind} | {what} | {done} | {} | {}, {} | {} | {why} |",
-                k.count,
-                k.bytes,
-                k.seed,
-                cell(&k.example)
-            );
+            put("differences", &format!("{kind}: {what}, {done}"), k);
         }
-        page += "\n## What we refuse and they read\n\n| format | files | why, with an example (bytes, \
-         seed) |\n\
-                 |---|---|---|\n";
-        let mut all: Vec<_> = self.refusals.iter().collect();
-        all.sort_by_key(|((kind, _), k)| (*kind, std::cmp::Reverse(k.count)));
-        for ((kind, _), k) in all {
-            let _ =
-                writeln!(page, "| {kind} | {} | {} ({}, {}) |", k.count, cell(&k.example), k.bytes, k.seed);
+        for ((kind, why), k) in &self.refusals {
+            put("refusals", &format!("{kind}: {why}"), k);
         }
-        page
+        let mut reasons: BTreeMap<(&str, &str), u64> = BTreeMap::new();
+        for ((kind, what, done), k) in &self.kinds {
+            *reasons
+                .entry((kind, explained(kind, what, done).unwrap_or("**not explained**")))
+                .or_default() += k.count;
+        }
+        for ((kind, why), count) in reasons {
+            rows.value("reasons", &format!("{kind}: {why}"), "files", count as f64);
+        }
+        rows
     }
 }
 
@@ -243,12 +193,12 @@ fn gist(why: &str) -> String {
     words.take(12).collect::<Vec<_>>().join(" ")
 }
 
-/// A text in a cell of a table, without the folder of its file.
+/// The beginning of a text, without the folder of its file.
 fn cell(text: &str) -> String {
     let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let text = match text.split_once("` ") {
         Some((path, rest)) if path.starts_with('`') && path.contains("stribeck-fuzz") => rest.to_owned(),
         _ => text,
     };
-    text.replace('|', "\\|").chars().take(150).collect()
+    text.chars().take(150).collect()
 }

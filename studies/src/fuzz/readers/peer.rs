@@ -12,7 +12,6 @@ use serde_json::{Value, json};
 use super::judge::{Verdict, judge};
 use super::page::{Seen, Tables};
 use super::{Held, Made, Reading, Shelf, code, ours, place};
-use crate::terminal;
 use stribeck_scene::dice::Dice;
 
 /// Files that are written, read by both and removed again.
@@ -28,7 +27,7 @@ struct Peer {
 
 impl Peer {
     fn start(python: &str) -> Result<Self> {
-        let script = terminal::root().join("fixtures/peers/read_damaged.py");
+        let script = stribeck_studies::root().join("fixtures/peers/read_damaged.py");
         let mut child = Command::new(python)
             .arg(&script)
             .stdin(Stdio::piped())
@@ -43,7 +42,7 @@ impl Peer {
         let versions: serde_json::Map<String, Value> = serde_json::from_str(&line).with_context(|| {
             format!(
                 "`{python}` lacks one of numpy, scipy, h5py, npTDMS, asammdf, pandas, pyarrow, pyuff, \
-                 soundfile,                  meshio"
+                 soundfile, meshio"
             )
         })?;
         let named = versions.iter().map(|(name, v)| format!("{name} {}", v.as_str().unwrap_or("?")));
@@ -137,10 +136,9 @@ pub(crate) fn against(wanted: &Wanted<'_>, folder: &Path) -> Result<ExitCode> {
     let _ = std::panic::take_hook();
     drop(peer.to);
     peer.child.wait()?;
-    let page = tables.page(from - wanted.first, wanted.first, &peer.versions);
-    println!("{page}");
-    let file = terminal::root().join("docs/results/readers.md");
-    std::fs::write(&file, &page).with_context(|| format!("cannot write `{}`", file.display()))?;
+    let rows = tables.rows(from - wanted.first, wanted.first, &peer.versions);
+    let file = stribeck_studies::publish("readers", &rows)?;
+    println!("{}", file.display());
     Ok(code(tables.unexplained() + tables.panics.len() as u64))
 }
 
