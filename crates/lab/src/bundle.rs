@@ -156,9 +156,7 @@ fn rates(scene: &Scene, modal: &stribeck_reduced::modal::ModalBearing) -> Result
         reference.operation.speed_rpm = duty.outer_speed_rpm(0.0) + 500.0;
     }
     let resolved = reference.resolve();
-    let Parameters { contact, oil, .. } = modal_bearing(&resolved, modal.reduction.clone())
-        .map_err(stribeck_simulation::Error::from)?
-        .parameters;
+    let Parameters { contact, oil, .. } = modal_bearing(&resolved, modal.reduction.clone())?.parameters;
     let films = resolved.loaded_films().map_err(stribeck_simulation::Error::from)?;
     let (Some(oil), Some(films)) = (oil, films) else {
         return Err(Error::Unsuited(

@@ -11,7 +11,6 @@
 //! ```
 
 pub mod assembly;
-pub mod error;
 mod grading;
 mod housing;
 pub mod own_mesh;

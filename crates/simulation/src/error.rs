@@ -1,10 +1,12 @@
 //! The error type of this crate.
 
+use std::path::PathBuf;
+
 /// Everything that can go wrong between a scene and a finished run.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The scene cannot be read.
+    /// The scene cannot be read, or is impossible.
     #[error(transparent)]
     Scene(#[from] stribeck_scene::scene_file::SceneError),
 
@@ -16,21 +18,58 @@ pub enum Error {
     #[error(transparent)]
     Store(stribeck_store::Error),
 
-    /// The bearing cannot be assembled or preloaded.
-    #[error(transparent)]
-    Bearing(crate::bearing::error::Error),
+    /// The bodies cannot be meshed.
+    #[error("mesh: {0}")]
+    Mesh(#[from] stribeck_mesh::Error),
 
-    /// The bearing cannot be reduced.
+    /// The file of a housing or a ring is not one that the bearing fits.
+    #[error("`{field}` `{file}`: {what}")]
+    MeshFile {
+        /// The field that names it.
+        field: String,
+        /// Its name in the scene.
+        file: String,
+        /// Problem, and the names that exist.
+        what: String,
+    },
+
+    /// The model cannot be solved, or its modes cannot be found.
+    #[error("solver: {0}")]
+    Solver(#[from] stribeck_solver::Error),
+
+    /// Contact cannot be set up.
+    #[error("contact: {0}")]
+    Contact(#[from] stribeck_contact::Error),
+
+    /// The bodies cannot be set in motion or take steps.
     #[error(transparent)]
-    Reduction(crate::reduction::error::Error),
+    System(stribeck_system::Error),
+
+    /// The operating system provides no threads.
+    #[error("cannot start {threads} worker threads: {source}. Try fewer with --threads")]
+    Threads {
+        /// Number of threads requested.
+        threads: usize,
+        /// The system's answer.
+        source: std::io::Error,
+    },
+
+    /// Modes cannot be turned into those of a seat that holds.
+    #[error("the modes of outer ring and housing cannot be found: their stiffness is no finite number")]
+    NoModes,
 
     /// The reduced bearing has no equilibrium.
     #[error(transparent)]
     Reduced(#[from] stribeck_reduced::error::Error),
 
-    /// The run cannot start, continue or be written.
-    #[error(transparent)]
-    Run(crate::run::error::Error),
+    /// A run cannot be continued.
+    #[error("the run in `{}` cannot be continued: {reason}", path.display())]
+    Resume {
+        /// The folder of the run.
+        path: PathBuf,
+        /// Why, and what to try.
+        reason: String,
+    },
 }
 
 impl From<stribeck_store::Error> for Error {
@@ -42,44 +81,11 @@ impl From<stribeck_store::Error> for Error {
     }
 }
 
-impl From<crate::bearing::error::Error> for Error {
-    fn from(error: crate::bearing::error::Error) -> Self {
-        match error {
-            crate::bearing::error::Error::Scene(error) => Self::Scene(error),
-            crate::bearing::error::Error::Theory(error) => Self::Theory(error),
-            other => Self::Bearing(other),
-        }
-    }
-}
-
-impl From<crate::reduction::error::Error> for Error {
-    fn from(error: crate::reduction::error::Error) -> Self {
-        match error {
-            crate::reduction::error::Error::Bearing(error) => error.into(),
-            other => Self::Reduction(other),
-        }
-    }
-}
-
-impl From<crate::run::error::Error> for Error {
-    fn from(error: crate::run::error::Error) -> Self {
-        match error {
-            crate::run::error::Error::Scene(error) => Self::Scene(error),
-            crate::run::error::Error::Theory(error) => Self::Theory(error),
-            crate::run::error::Error::Store(error) => error.into(),
-            other => Self::Run(other),
-        }
-    }
-}
-
 impl From<stribeck_system::Error> for Error {
     fn from(error: stribeck_system::Error) -> Self {
-        Self::Bearing(error.into())
-    }
-}
-
-impl From<stribeck_solver::Error> for Error {
-    fn from(error: stribeck_solver::Error) -> Self {
-        Self::Bearing(error.into())
+        match error {
+            stribeck_system::Error::Threads { threads, source } => Self::Threads { threads, source },
+            other => Self::System(other),
+        }
     }
 }

@@ -11,9 +11,7 @@ use crate::bearing::{
     own_mesh,
     start::{damp, launch, preload},
 };
-use crate::run::{
-    channels::Sample, error::Error as RunError, host::Progress, setup::Setup, time_loop::Motion,
-};
+use crate::run::{channels::Sample, host::Progress, setup::Setup, time_loop::Motion};
 use serde::{Deserialize, Serialize};
 use stribeck_scene::{resolved::ResolvedScene, scene::Start};
 use stribeck_store::run_info::RunInfo;
@@ -161,7 +159,7 @@ pub(crate) struct FullMotion {
 
 impl FullMotion {
     /// Speeds and load of the next step, where they change.
-    fn drive(&mut self) -> Result<(), RunError> {
+    fn drive(&mut self) -> Result<(), Error> {
         let Some((duty, load_n)) = &self.duty else { return Ok(()) };
         let system = &mut self.bearing.system;
         let now = system.time();
@@ -177,7 +175,7 @@ impl FullMotion {
 impl Motion for FullMotion {
     type Saved = Saved;
 
-    fn interval(&mut self, steps: usize) -> Result<Ledger, RunError> {
+    fn interval(&mut self, steps: usize) -> Result<Ledger, Error> {
         for _ in 1..steps {
             self.drive()?;
             self.bearing.system.step()?;
@@ -211,7 +209,7 @@ impl Motion for FullMotion {
         self.guards.look(info, &mut self.bearing)
     }
 
-    fn picture(&mut self, sample: usize) -> Result<(), RunError> {
+    fn picture(&mut self, sample: usize) -> Result<(), Error> {
         if let Some(frames) = self.frames.as_ref().filter(|f| f.is_due(sample)) {
             frames.write(sample, &self.assembly, &self.bearing)?;
         }

@@ -1,7 +1,8 @@
 //! `mesh.vtu`: the mesh at the start of a run, deformed by its preload, with the places of its nodes free of
 //! stress.
 
-use crate::bearing::{assembly::Assembly, error::Error};
+use crate::bearing::assembly::Assembly;
+use crate::error::Error;
 use stribeck_mesh::vtu;
 use stribeck_store::mesh_file::REFERENCE;
 

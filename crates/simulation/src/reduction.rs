@@ -50,8 +50,6 @@ pub mod cache;
 pub mod dense;
 mod parameters;
 
-pub mod error;
-
 pub use parameters::modal_bearing;
 pub use reduce::ReducedMesh;
 

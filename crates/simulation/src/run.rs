@@ -15,7 +15,6 @@
 
 pub mod channels;
 pub mod checkpoint;
-pub mod error;
 pub mod guards;
 pub mod host;
 pub mod resume;

@@ -4,7 +4,6 @@ use std::ops::ControlFlow;
 
 use crate::run::{
     checkpoint::Checkpoint,
-    error::Error as RunError,
     host::{Host, Progress},
     resume::{read_saved, take_over},
     time_loop::Run,
@@ -63,7 +62,7 @@ pub fn simulate(scene: &Scene, dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) 
 /// `watch` as for [`simulate`].
 ///
 /// # Errors
-/// [`RunError::Resume`] when there is nothing to continue or nothing to continue from; otherwise as
+/// [`Error::Resume`] when there is nothing to continue or nothing to continue from; otherwise as
 /// [`simulate`].
 pub fn resume(dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
     let scene = &Scene::read(dir.scene())?.resolve();
@@ -76,7 +75,7 @@ pub fn resume(dir: &RunDir, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo
 /// `watch` as for [`simulate`].
 ///
 /// # Errors
-/// [`RunError::Resume`] when the run is longer already; otherwise as [`resume`].
+/// [`Error::Resume`] when the run is longer already; otherwise as [`resume`].
 pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>) -> Result<RunInfo, Error> {
     let mut scene = Scene::read(dir.scene())?;
     scene.solver.duration_ms = duration_ms;
@@ -141,7 +140,7 @@ impl Task for Continue<'_> {
         with.enter("mesh", watch);
         let model = M::prepare_again(&mut with, &info)?;
         take_over(&mut info, scene, host);
-        let motion = model.go_on(&with, &info, saved).map_err(|Misfit(what)| RunError::Resume {
+        let motion = model.go_on(&with, &info, saved).map_err(|Misfit(what)| Error::Resume {
             path: dir.path().to_owned(),
             reason: format!("{what}. Continue it with the program that began it, or start it anew"),
         })?;

@@ -7,7 +7,7 @@ use anyhow::{Result, anyhow, bail};
 use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
-use stribeck_simulation::bearing::{error::Error, own_mesh};
+use stribeck_simulation::{Error, bearing::own_mesh};
 
 use crate::out::{caution, detail};
 

@@ -15,7 +15,8 @@ use stribeck_solver::{
 use stribeck_store::run_info::MeshInfo;
 use stribeck_theory::kinematics::{FacetCounts, Kinematics};
 
-use crate::bearing::{error::Error, housing::housing};
+use crate::bearing::housing::housing;
+use crate::error::Error;
 pub use parts::{CAGE_ELEMENT_MM, MeshedParts};
 use parts::{cage_part, facets_around, formed};
 pub use system::{BearingSystem, Pairs, Roller, load};

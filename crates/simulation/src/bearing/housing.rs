@@ -9,7 +9,8 @@ use stribeck_scene::{
     resolved::ResolvedScene,
 };
 
-use crate::bearing::{error::Error, grading, own_mesh};
+use crate::bearing::{grading, own_mesh};
+use crate::error::Error;
 
 /// Height of the flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is
 /// narrower would set the time step.

@@ -14,7 +14,7 @@ use stribeck_scene::{
     scene::{DefectRing, Scene},
 };
 
-use crate::bearing::error::Error;
+use crate::error::Error;
 
 /// Nodes along a fit lie within this part of its radius from the surface they fit.
 const LOOSE: f64 = 0.01;

@@ -3,7 +3,8 @@
 use stribeck_solver::damping::{Frame, MassDamping};
 use stribeck_system::{Preload, UndecidedMotion};
 
-use crate::bearing::{assembly::BearingSystem, error::Error};
+use crate::bearing::assembly::BearingSystem;
+use crate::error::Error;
 use stribeck_scene::{resolved::ResolvedScene, scene::DampingFrame};
 use stribeck_theory::kinematics::Kinematics;
 

@@ -9,7 +9,7 @@ use stribeck_solver::{
 };
 use stribeck_system::Plan;
 
-use crate::bearing::error::Error;
+use crate::error::Error;
 
 /// Ties every node of the ring's back to the frame, of which `held` is a node: each by its share of the
 /// circumference.

@@ -7,7 +7,7 @@ use stribeck_store::frames::{COLUMNS, Window};
 use stribeck_store::trace::TraceWriter;
 
 use crate::bearing::assembly::{Assembly, BearingSystem};
-use crate::run::error::Error;
+use crate::error::Error;
 
 /// Samples that become frames, and the nodes in them.
 #[derive(Debug)]

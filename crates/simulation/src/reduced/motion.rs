@@ -1,8 +1,8 @@
 //! The reduced bearing as the time loop drives it: its readings become samples, its energies a ledger.
 
+use crate::error::Error;
 use crate::run::{
     channels::{CageSample, RollerSample, Sample, SensorSample},
-    error::Error,
     time_loop::Motion,
 };
 use serde::{Deserialize, Serialize};

@@ -13,7 +13,8 @@ use stribeck_scene::{
 };
 use stribeck_store::run_dir::write_atomic;
 
-use crate::reduction::{error::Error, reduce::ReducedMesh, structure::modes_khz};
+use crate::error::Error;
+use crate::reduction::{reduce::ReducedMesh, structure::modes_khz};
 
 /// Folder of the reductions, in the parent of a run's folder.
 const FOLDER: &str = ".reduced";

@@ -7,9 +7,9 @@ use stribeck_reduced::modal::{OVERLOAD, compliance::Compliance};
 use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_solver::{Dynamics, statics::Modes, statics::SmallMotions};
 
+use crate::error::Error;
 use crate::reduction::{
     direction,
-    error::Error,
     extraction::Extraction,
     local_contact::LocalContact,
     structure::{SHIFT, Structure, flexibility},

@@ -10,7 +10,7 @@ use stribeck_solver::{
 };
 use stribeck_system::Parts;
 
-use crate::reduction::error::Error;
+use crate::error::Error;
 
 /// Node numbers, found by name while there is a system.
 pub(crate) struct Nodes {
@@ -203,7 +203,7 @@ impl Preload {
 impl Nodes {
     fn of(bearing: &BearingSystem, scene: &ResolvedScene) -> Result<Self, Error> {
         let system = &bearing.system;
-        let named = |name: &str| system.nodes(name).map_err(crate::bearing::error::Error::from);
+        let named = |name: &str| system.nodes(name).map_err(Error::from);
         // The mesh walks the outer raceway clockwise, with the solid on the left.
         let mut outer = named("outer raceway")?;
         outer.reverse();

@@ -18,7 +18,8 @@ use stribeck_solver::structural_damping::StructuralDamping;
 use stribeck_surface::Law;
 use stribeck_theory::kinematics::Kinematics;
 
-use crate::reduction::{error::Error, seat};
+use crate::error::Error;
+use crate::reduction::seat;
 
 /// The bearing of a scene whose mesh has been reduced.
 ///

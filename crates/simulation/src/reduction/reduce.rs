@@ -12,9 +12,9 @@ use stribeck_reduced::modal::{GROUP, Reduction, Seat};
 use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_system::Parts;
 
+use crate::error::Error;
 use crate::reduction::{
     compliances::Compliances,
-    error::Error,
     extraction::{Extraction, Preload},
     loads::{Loads, dampers, frame},
     raceway::{self, RacewayNode},

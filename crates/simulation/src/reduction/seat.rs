@@ -7,8 +7,8 @@ use faer::{Mat, Side, linalg::solvers::Solve};
 use stribeck_reduced::modal::{GROUP, STICKING, Seat};
 use stribeck_solver::{state::NodeForces, statics::Spring};
 
+use crate::error::Error;
 use crate::reduction::{
-    error::Error,
     raceway::RacewayNode,
     structure::{Structure, product},
 };

@@ -9,10 +9,8 @@ use stribeck_solver::{
     statics::{Modes, SmallMotions, Spring, modes_below},
 };
 
-use crate::reduction::{
-    error::Error,
-    extraction::{Extraction, Preload},
-};
+use crate::error::Error;
+use crate::reduction::extraction::{Extraction, Preload};
 
 /// Shift of the factorised matrix K + σM [rad²/s²]: (2π · 200 Hz)², far above rounding and far below the
 /// lowest mode that bends.

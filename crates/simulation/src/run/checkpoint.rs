@@ -14,7 +14,7 @@ use std::path::Path;
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
-use crate::run::error::Error;
+use crate::error::Error;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_info::RunInfo;
 

@@ -7,9 +7,9 @@ use stribeck_store::{
     run_info::{RunInfo, Status},
 };
 
+use crate::error::Error;
 use crate::run::{
     checkpoint::{Checkpoint, identity},
-    error::Error,
     host::Host,
 };
 

@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use serde::{Serialize, de::DeserializeOwned};
 use stribeck_system::{Ledger, Workers};
 
+use crate::error::Error;
 use crate::run::{
     channels::{self, Channels, Sample},
     checkpoint::{Checkpoint, identity},
-    error::Error,
     host::{Host, Progress},
 };
 use stribeck_scene::resolved::ResolvedScene;

@@ -10,7 +10,8 @@ use stribeck_scene::{
     scene::DefectRing,
 };
 
-use crate::bearing::{error::Error, grading, own_mesh};
+use crate::bearing::{grading, own_mesh};
+use crate::error::Error;
 
 /// Element size of the cage [mm]. It moves as one piece: its elements carry mass only and may be coarse.
 pub const CAGE_ELEMENT_MM: f64 = 2.0;

@@ -13,7 +13,8 @@ use stribeck_system::{Film, Pair, Plan, System};
 use stribeck_theory::duty::Duty;
 
 use super::{Assembly, surface};
-use crate::bearing::{error::Error, suspension::suspend};
+use crate::bearing::suspension::suspend;
+use crate::error::Error;
 
 /// Integration points on a facet of the outer ring's seat: two conforming surfaces need fewer than a line
 /// contact.
