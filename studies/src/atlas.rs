@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use anyhow::Result;
-use stribeck_analysis::defect::Defect;
 use stribeck_analysis::diagnosis::{DiagnosedFamily, DiagnosisFinding, analysis_in_noise};
 use stribeck_analysis::record::Record;
+use stribeck_diagnosis::Defect;
 use stribeck_scene::scene::Scene;
 
 use crate::{Finished, Host, Rows, Runner, Variant};

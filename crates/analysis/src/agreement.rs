@@ -18,10 +18,10 @@ use stribeck_store::run_dir::Run;
 use crate::Error;
 use crate::statistic::Statistic;
 use crate::summary::Event;
-use crate::words::significant;
 pub use octaves::Octaves;
 pub use row::{Row, Scale};
 use side::{LINES, PERIODS, Side};
+use stribeck_diagnosis::words::numbers::significant;
 pub use waveform::{Correlation, Peak};
 
 /// The record is compared from here on [s]: before, both models still settle.

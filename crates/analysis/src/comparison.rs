@@ -100,7 +100,7 @@ impl Comparison {
     /// family, else the band of the first side that knocks most.
     pub fn band_hz(&self) -> Option<(f64, f64)> {
         let claimed = self.sides.iter().flat_map(|side| side.members.first()).find_map(|member| {
-            let level = |f: &&crate::measured::Family| f.level_db.unwrap_or(f64::NEG_INFINITY);
+            let level = |f: &&stribeck_diagnosis::Family| f.level_db.unwrap_or(f64::NEG_INFINITY);
             member.claimed().max_by(|a, b| level(a).total_cmp(&level(b)))?.band_hz
         });
         claimed.or_else(|| {

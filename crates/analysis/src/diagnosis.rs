@@ -1,18 +1,30 @@
-//! Blind diagnosis from the leading sensor, without the scene: the verdict of [`measured`](crate::measured)
+//! Blind diagnosis from the leading sensor, without the scene: the verdict of [`stribeck_diagnosis`]
 //! on the record, beside the defects that the scene has.
 
 use serde::{Deserialize, Serialize};
+use stribeck_diagnosis::{AccelerationUnit, Analysis, Defect, Family, Machine, sidebands_seen};
 use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
 use stribeck_scene::catalogue;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::scene::Scene;
 use stribeck_theory::kinematics::Kinematics;
 
 use crate::Error;
+use crate::defect;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
-use crate::measured::{AccelerationUnit, Analysis, Defect, Family, Machine, sidebands_seen};
 use crate::record::Record;
+
+/// Speed of the outer ring of a scene, positive where it turns as the shaft does against it [1/min]; none where
+/// speeds change, and nothing has one frequency.
+pub fn outer_speed_rpm(scene: &Scene) -> f64 {
+    let operation = &scene.operation;
+    if operation.speed_varies() {
+        return 0.0;
+    }
+    operation.outer_speed_rpm * (operation.speed_rpm - operation.outer_speed_rpm).signum()
+}
 
 /// Verdict on a record, beside the truth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -112,8 +124,8 @@ fn judged(
         .in_unit(Some(AccelerationUnit::MetrePerSecondSquared.symbol().to_owned()));
     match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
         // A record that is too short, or a sensor that stands still.
-        Err(Error::NoSignal(_)) => Ok(None),
-        analysis => analysis.map(Some),
+        Err(stribeck_diagnosis::Error::NoSignal(_)) => Ok(None),
+        analysis => Ok(Some(analysis?)),
     }
 }
 
@@ -121,7 +133,7 @@ fn judged(
 pub(crate) fn machine(scene: &ResolvedScene, expected: &Kinematics) -> Machine {
     Machine {
         speed_rpm: Some(60.0 * relative_hz(expected)),
-        outer_speed_rpm: Machine::outer_speed_rpm(&scene.written),
+        outer_speed_rpm: outer_speed_rpm(&scene.written),
         bearing: Some(catalogue::of_scene(&scene.written)),
         speed_is_exact: true,
         ..Machine::default()
@@ -149,7 +161,7 @@ pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis
             level_db: family.level_db.filter(|level| level.is_finite()),
             in_passages: family.in_passages,
             claimed: family.claimed,
-            present: present.iter().any(|on| Defect::on(*on) == family.name),
+            present: present.iter().any(|on| defect::on(*on) == family.name),
             reason: family.reason.to_string(),
             sidebands,
         }
@@ -223,5 +235,18 @@ mod tests {
         assert_eq!(from_motion(Defect::Ftf, false, &motion, &[], false), Some(15.3));
         // Lines of a damaged roller stand at all that it turns.
         assert_eq!(of(Defect::Bsf, &[RollingSurface::Roller(2)]), Some(36.7));
+    }
+
+    #[test]
+    fn by_hand_an_outer_ring_turns_with_or_against_the_shaft() {
+        let scene = |speeds: &str| {
+            Scene::parse(
+                &format!("(housing: rigid(), film: None, defect: None, operation: ({speeds}))"),
+                "here",
+            )
+            .expect("sound")
+        };
+        assert_eq!(outer_speed_rpm(&scene("speed_rpm: 0, outer_speed_rpm: 1500")), -1500.0);
+        assert_eq!(outer_speed_rpm(&scene("speed_rpm: 1500, outer_speed_rpm: -900")), -900.0);
     }
 }

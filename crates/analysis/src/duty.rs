@@ -22,11 +22,12 @@ use stribeck_store::run_dir::Run;
 use stribeck_theory::kinematics::Kinematics;
 
 use crate::Error;
-use crate::defect::{Defect, Shocks};
+use crate::defect::Shocks;
 use crate::enveloping::band_hz;
 use crate::kinematics::{KinematicsFinding, mean};
 use crate::record::Record;
 use crate::tones;
+use stribeck_diagnosis::Defect;
 
 /// Steps of the angle that the envelope is averaged over, in a turn: a line at the last harmonic that is
 /// looked for loses less than 2 %.

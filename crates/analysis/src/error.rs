@@ -10,6 +10,9 @@ pub enum Error {
     /// The loads of the scene cannot be found.
     #[error(transparent)]
     Theory(#[from] stribeck_theory::Error),
+    /// The leading signal cannot be diagnosed.
+    #[error(transparent)]
+    Diagnosis(#[from] stribeck_diagnosis::Error),
     /// A signal cannot be processed.
     #[error("a recorded signal cannot be processed: {0}")]
     Signal(#[source] stribeck_dsp::Error),

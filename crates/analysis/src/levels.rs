@@ -15,8 +15,6 @@ use serde::{Deserialize, Serialize};
 
 use crate::events::span;
 
-/// Standard acceleration of gravity [m/s²] (CGPM 1901): the unit of every level.
-pub const STANDARD_GRAVITY: f64 = 9.806_65;
 /// Half width of the window about an exit in which its impulse is sought [s].
 pub const IMPULSE_HALF_WIDTH_S: f64 = 1e-3;
 /// Time before an entry that counts as part of the event [s].

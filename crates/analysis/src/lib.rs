@@ -1,6 +1,6 @@
 //! Analysis of a bearing's vibration: kinematics, events, loads, tones, levels and defect families.
 //!
-//! [`findings::Findings::of`] analyses a run directory; [`measured::Analysis::of`] a measured record. The
+//! [`findings::Findings::of`] analyses a run directory; the crate `stribeck-diagnosis` a measured record. The
 //! steps on the way are public and take plain slices. Nothing here meshes, simulates or draws: the crate
 //! `stribeck-report` makes pages of it.
 //!
@@ -28,7 +28,7 @@
 //! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What differs between runs or records, and is it more than scatter? | [`comparison`] |
-//! | Which defect families has a measured record, and may a defect be claimed? | [`measured`] |
+//! | What does the verdict on a record say of a run? | [`diagnosis`] |
 //! | Which numbers of a run survive in such a record, behind an unknown path and in noise? | [`records`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
 //!
@@ -87,7 +87,6 @@ pub mod tones;
 
 pub mod artefacts;
 pub mod diagnosis;
-pub mod measured;
 pub mod records;
 pub mod stiffness;
 pub mod stress;
@@ -98,8 +97,6 @@ pub mod ensemble;
 pub mod findings;
 pub mod paper;
 pub mod statistic;
-
-pub mod words;
 
 mod error;
 

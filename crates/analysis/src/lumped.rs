@@ -25,7 +25,7 @@ use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::RollerCopies;
 use stribeck_theory::Error;
 
-use crate::levels::STANDARD_GRAVITY;
+use stribeck_diagnosis::STANDARD_GRAVITY;
 
 /// Strips of the average over the contact.
 const STRIPS: usize = 400;

@@ -3,9 +3,10 @@
 
 use std::ops::Range;
 
-use crate::levels::{STANDARD_GRAVITY, Visit, gap_spans, impulse_span, level, phases};
+use crate::levels::{Visit, gap_spans, impulse_span, level, phases};
 use crate::record::Record;
 use crate::signal::{amplitude, band_rms, smoothed_peak};
+use stribeck_diagnosis::STANDARD_GRAVITY;
 
 /// Levels of one sensor, of the vector of both components. Quiet stretches are those without an event that
 /// are nearly as long as the longest; powers are averaged over them.

@@ -8,8 +8,9 @@ use stribeck_theory::kinematics::{Crossing, FacetCounts, Kinematics};
 use stribeck_theory::static_load::RigidRings;
 
 use crate::Error;
-use crate::defect::{Defect, Shocks};
+use crate::defect::Shocks;
 use crate::families::{Candidate, Source};
+use stribeck_diagnosis::Defect;
 
 /// Steps of the cage over one roller spacing in the static distribution.
 const CAGE_STEPS: usize = 30;

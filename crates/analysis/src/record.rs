@@ -8,8 +8,8 @@ use stribeck_store::run_dir::Run;
 use stribeck_store::trace::Trace;
 
 use crate::Error;
-use crate::levels::STANDARD_GRAVITY;
-use crate::words::significant;
+use stribeck_diagnosis::STANDARD_GRAVITY;
+use stribeck_diagnosis::words::numbers::significant;
 
 /// Channels of rollers that are in memory at once, at most [bytes]; one roller always is.
 const ROLLERS_AT_ONCE_BYTES: usize = 256 << 20;

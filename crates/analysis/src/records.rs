@@ -6,7 +6,7 @@ use stribeck_scene::dice::Dice;
 use stribeck_scene::scene::{DefectRing, Scene};
 
 use crate::Error;
-use crate::measured::SHORTEST_S;
+use stribeck_diagnosis::SHORTEST_S;
 
 /// Longest distance of two events over the time between passages, at which the correlation within one ends.
 const LONGEST: f64 = 0.45;

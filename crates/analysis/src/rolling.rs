@@ -9,7 +9,7 @@ use stribeck_theory::static_load::RigidRings;
 
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::StaticCurve;
-use crate::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 
 /// Loaded rollers or a cage that are slower than rolling by more than this slide; at full load they lose some
 /// tenths of a per cent.

@@ -3,7 +3,7 @@
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use stribeck_analysis::measured::{Analysis, Machine};
+use stribeck_diagnosis::{Analysis, Machine};
 use stribeck_formats::Channel;
 use stribeck_scene::catalogue;
 

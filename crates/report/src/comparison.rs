@@ -7,7 +7,7 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, html};
 use stribeck_analysis::comparison::{Comparison, Contrast, FieldDifference, Kind, Row, Side, Verdict};
 use stribeck_analysis::statistic::Statistic;
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use crate::plot::{Anchor, Picture, Scale, Sheet, shade_rgb, ticks};
-use stribeck_analysis::measured::Course;
+use stribeck_diagnosis::Course;
 
 /// Decibels from the darkest shade to the brightest.
 const RANGE_DB: f64 = 60.0;

@@ -9,6 +9,9 @@ pub enum Error {
     /// The run cannot be analysed.
     #[error(transparent)]
     Analysis(#[from] stribeck_analysis::Error),
+    /// A record cannot be diagnosed.
+    #[error(transparent)]
+    Diagnosis(#[from] stribeck_diagnosis::Error),
     /// The run cannot be read, or a file of its folder cannot be written.
     #[error(transparent)]
     Run(#[from] stribeck_store::Error),

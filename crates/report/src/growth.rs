@@ -6,7 +6,7 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, html};
 use serde::Serialize;
 use stribeck_analysis::growth::Remaining;
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;

@@ -9,9 +9,9 @@ use stribeck_store::run_dir::write_atomic;
 use crate::page::{self, charts, drawn, head, json, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
 use crate::{Error, course, kurtogram, sound};
-use stribeck_analysis::measured::evidence::{SynchronousMean, synchronous, what_would_change};
-use stribeck_analysis::measured::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::evidence::{SynchronousMean, synchronous, what_would_change};
+use stribeck_diagnosis::words::numbers::significant;
+use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
 
 /// Lowest cyclic frequency drawn [Hz].
 const LOWEST_CYCLIC_HZ: f64 = 2.0;

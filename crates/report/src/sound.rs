@@ -2,7 +2,7 @@
 
 use maud::{Markup, PreEscaped, html};
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 use stribeck_dsp::Sound;
 use stribeck_dsp::channel::wav::{Whole, pcm};
 

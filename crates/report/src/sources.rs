@@ -4,7 +4,7 @@ use std::path::Path;
 
 use maud::{DOCTYPE, html};
 use serde_json::json;
-use stribeck_analysis::measured::sources::{Component, Sources};
+use stribeck_diagnosis::sources::{Component, Sources};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;

@@ -9,10 +9,10 @@ use stribeck_store::run_dir::write_atomic;
 use crate::Error;
 use crate::page::{head, json};
 use crate::plot::{Axis, Colour, Figure, Level, Series};
-use stribeck_analysis::measured::alarm::{Judged, Limit, Quantity, State};
-use stribeck_analysis::measured::joint::Joint;
-use stribeck_analysis::measured::{Defect, Family, MeasuredFindings};
-use stribeck_analysis::words::chance;
+use stribeck_diagnosis::joint::Joint;
+use stribeck_diagnosis::record::alarm::{Judged, Limit, Quantity, State};
+use stribeck_diagnosis::words::numbers::chance;
+use stribeck_diagnosis::{Defect, Family, MeasuredFindings};
 
 /// One record of a trend.
 #[derive(Debug, Serialize)]

@@ -8,7 +8,7 @@ mod synthetic;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use stribeck_analysis::measured::{Analysis, Machine};
+use stribeck_diagnosis::{Analysis, Machine};
 use stribeck_dsp::channel::Channel;
 use stribeck_report as report;
 use stribeck_store::run_info::Status;

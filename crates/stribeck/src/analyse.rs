@@ -12,11 +12,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
-use stribeck_analysis::measured::Analysis;
-use stribeck_analysis::measured::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
-use stribeck_analysis::measured::sources::Component;
-use stribeck_analysis::measured::zone::{Foundation, Group, Zoned};
+use stribeck_diagnosis::Analysis;
+use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
+use stribeck_diagnosis::record::zone::{Foundation, Group, Zoned};
+use stribeck_diagnosis::sources::Component;
 use stribeck_report::{TrendEntry, write_measured, write_trend};
+use stribeck_scene::catalogue;
 use stribeck_store::run_dir::{check_folder, write_atomic};
 
 use crate::causes;
@@ -49,7 +50,7 @@ pub struct Options {
     simulate: Option<PathBuf>,
     /// A bearing or a gear of the machine and the speed of its shaft over that of --speed-rpm, "bearing=NU
     /// 205, ratio=2.5" or "gear=23, ratio=1"; may be repeated, and takes the place of --bearing
-    #[arg(long = "component", value_name = "COMPONENT", value_parser = Component::parse,
+    #[arg(long = "component", value_name = "COMPONENT", value_parser = component,
         conflicts_with_all = ["bearing", "alarms", "reference", "baseline", "together"])]
     components: Vec<Component>,
     /// Group of the machine by ISO 20816-3, for the zone of the velocity level: 1 above 300 kW, 2 from 15 to
@@ -88,6 +89,11 @@ enum Standing {
     Rigid,
     /// Everything else
     Flexible,
+}
+
+/// A component of the machine; its bearing may be one of the user's own.
+fn component(text: &str) -> Result<Component, String> {
+    Component::parse(text, catalogue::parse)
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::measured::AccelerationUnit;
+use stribeck_diagnosis::AccelerationUnit;
 use stribeck_dsp::{Mode, Response};
 use stribeck_formats::uff58::{Per, responses};
 use stribeck_formats::{Channel, Recording};

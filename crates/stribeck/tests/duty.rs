@@ -3,13 +3,13 @@
 use std::{f64::consts::TAU, path::Path, process::Command};
 
 use stribeck_analysis::{
-    defect::Defect,
     duty::{self, ShockOrder},
     enveloping,
     record::Record,
     summary::Summary,
     tones,
 };
+use stribeck_diagnosis::Defect;
 use stribeck_report as report;
 use stribeck_scene::{
     deviation::{DeviationScene, FormScene, RollingSurface, SpallScene},

@@ -1,6 +1,6 @@
 //! Baseline methods: the squared envelope spectrum of one band, and the family with the highest first lines.
 
-use stribeck_analysis::measured::Defect;
+use stribeck_diagnosis::Defect;
 use stribeck_dsp::{BandEnvelopes, Whitened, fast_kurtogram};
 
 use super::records::Labelled;

@@ -1,7 +1,7 @@
 //! Both ends of a shaft with a damaged bearing at one of them: the joint verdict, and which end it names.
 
-use stribeck_analysis::measured::joint::Joint;
-use stribeck_analysis::measured::{Analysis, Defect, Machine};
+use stribeck_diagnosis::joint::Joint;
+use stribeck_diagnosis::{Analysis, Defect, Machine};
 use stribeck_formats::Channel;
 
 use super::records::{Labelled, Part};

@@ -1,8 +1,8 @@
 //! What is counted over the records: right and wrong verdicts, scores without a threshold, false alarms,
 //! lengths, and all of that after changes.
 
-use stribeck_analysis::measured::Defect;
 use stribeck_analysis::statistic::Share;
+use stribeck_diagnosis::Defect;
 use stribeck_report::plot::{Axis, Colour, Figure, Level, Series, Ticks};
 
 use super::baseline::{self, Scores};

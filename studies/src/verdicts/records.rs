@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
 use serde::Deserialize;
-use stribeck_analysis::measured::Defect;
+use stribeck_diagnosis::Defect;
 use stribeck_formats::{Channel, Recording};
 use stribeck_scene::catalogue;
 use stribeck_theory::catalogue::CatalogueBearing;

@@ -1,6 +1,6 @@
 //! Changes to a record before it is judged, and the outcome.
 
-use stribeck_analysis::measured::{Analysis, Defect, Family, Interval, Machine};
+use stribeck_diagnosis::{Analysis, Defect, Family, Interval, Machine};
 use stribeck_dsp::resample_poly;
 use stribeck_formats::Channel;
 use stribeck_scene::dice::Dice;

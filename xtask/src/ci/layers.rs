@@ -11,7 +11,7 @@ const PROGRAM: &str = "stribeck";
 
 /// Every crate in `crates/`, and those of ours that it depends on. A new arrow is the one change that
 /// needs a paragraph in ARCHITECTURE.
-const LAYERS: [(&str, &[&str]); 22] = [
+const LAYERS: [(&str, &[&str]); 23] = [
     (TESTING, &[]),
     ("mesh", &[]),
     ("simd", &[]),
@@ -33,12 +33,14 @@ const LAYERS: [(&str, &[&str]); 22] = [
     ("fmu", &["reduced"]),
     ("dsp", &[]),
     ("formats", &["dsp"]),
-    ("analysis", &["dsp", "scene", "store", "theory"]),
-    ("report", &["analysis", "dsp", "scene", "store", "theory"]),
+    ("diagnosis", &["dsp", "theory"]),
+    ("analysis", &["diagnosis", "dsp", "scene", "store", "theory"]),
+    ("report", &["analysis", "diagnosis", "dsp", "scene", "store", "theory"]),
     (
         "stribeck",
         &[
             "analysis",
+            "diagnosis",
             "dsp",
             "formats",
             "infer",
@@ -54,13 +56,24 @@ const LAYERS: [(&str, &[&str]); 22] = [
     ),
     (
         "python",
-        &["analysis", "dsp", "formats", "report", "scene", "simulation", "store", "stribeck", "theory"],
+        &[
+            "analysis",
+            "diagnosis",
+            "dsp",
+            "formats",
+            "report",
+            "scene",
+            "simulation",
+            "store",
+            "stribeck",
+            "theory",
+        ],
     ),
 ];
 
 /// Arrows of tests alone, beside the layers: verdicts are tried on files of measured records, the lab on the
 /// folder of a run.
-const TESTS_ALONE: [(&str, &str); 2] = [("analysis", "formats"), ("lab", "store")];
+const TESTS_ALONE: [(&str, &str); 2] = [("diagnosis", "formats"), ("lab", "store")];
 
 /// Names of the folders in `crates/`, sorted.
 pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
@@ -153,8 +166,8 @@ mod tests {
         let formats = |name: &str, section: &str| {
             compare(name, &format!("[{section}]\nstribeck-formats.workspace = true\n"), &[])
         };
-        assert!(formats("analysis", "dev-dependencies").is_empty());
-        assert_eq!(formats("analysis", "dependencies").len(), 1);
+        assert!(formats("diagnosis", "dev-dependencies").is_empty());
+        assert_eq!(formats("diagnosis", "dependencies").len(), 1);
         assert_eq!(formats("report", "dev-dependencies").len(), 1);
     }
 }

@@ -7,7 +7,7 @@ use stribeck_dsp::{Detrend, Welch, WelchOptions};
 use super::over_starts;
 use super::side::{RECORDER_HZ, Side};
 use crate::statistic::Statistic;
-use crate::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 
 /// Waveforms are compared below these frequencies [Hz].
 pub(super) const BELOW_HZ: [f64; 2] = [500.0, 2000.0];

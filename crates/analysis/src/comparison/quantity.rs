@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::side::Member;
-use crate::defect::Defect;
+use stribeck_diagnosis::Defect;
 
 /// Unit of the signal itself.
 pub(super) const OF_SIGNAL: &str = "signal";

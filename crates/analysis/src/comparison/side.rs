@@ -12,15 +12,15 @@ use stribeck_store::run_dir::{Run, RunDir};
 use stribeck_store::run_info::Status;
 
 use crate::Error;
-use crate::defect::Defect;
 use crate::diagnosis;
 use crate::ensemble::{EnsembleFindings, Merged};
 use crate::findings::{Findings, SensorSignal};
-use crate::levels::STANDARD_GRAVITY;
 use crate::load::Distribution;
-use crate::measured::{AccelerationUnit, Analysis, Family, Machine};
 use crate::record::Record;
 use crate::summary::RecordLevels;
+use stribeck_diagnosis::Defect;
+use stribeck_diagnosis::STANDARD_GRAVITY;
+use stribeck_diagnosis::{AccelerationUnit, Analysis, Family, Machine};
 
 /// Samples that are kept of a trace, for a picture.
 const SHOWN: usize = 1 << 16;
@@ -199,8 +199,8 @@ fn judged(
     let channel = Channel::held(name.to_owned(), signal_g.to_vec()).in_unit(Some(unit));
     // The file's rounding of times moves the rate by far less than a tenth of a hertz.
     match Analysis::of(&channel, (10.0 * rate_hz).round() / 10.0, &machine) {
-        Err(Error::NoSignal(_)) => Ok(None),
-        analysis => analysis.map(Some),
+        Err(stribeck_diagnosis::Error::NoSignal(_)) => Ok(None),
+        analysis => Ok(Some(analysis?)),
     }
 }
 

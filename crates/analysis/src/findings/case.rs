@@ -20,7 +20,6 @@ use crate::families;
 use crate::filtering::Filter;
 use crate::kinematics::{KinematicsFinding, Turning};
 use crate::load::{Carried, LoadFinding};
-use crate::measured::Analysis;
 use crate::paper;
 use crate::prediction::Prediction;
 use crate::reading::CursorReading;
@@ -30,6 +29,7 @@ use crate::ring;
 use crate::rolling;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
 use crate::tones;
+use stribeck_diagnosis::Analysis;
 
 /// The facet line of the rollers.
 const ROLLER_VERTICES: &str = "roller_vertices";

@@ -8,9 +8,9 @@ use super::{GRID_HZ, SHORTEST_SPECTRUM, SensorSignal};
 use crate::Error;
 use crate::families::{self, Channel, RecordedMotion, RollerTrack};
 use crate::kinematics;
-use crate::levels::STANDARD_GRAVITY;
 use crate::prediction::Prediction;
 use crate::record::{Record, Roller};
+use stribeck_diagnosis::STANDARD_GRAVITY;
 
 /// Vertical acceleration of the first sensor that was recorded.
 pub(super) fn leading_channel(run: &Run) -> Option<String> {

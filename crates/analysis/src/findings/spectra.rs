@@ -13,10 +13,10 @@ use crate::enveloping;
 use crate::families::FamilyFinding;
 use crate::filtering::{Filter, PAPER_CENTRE_HZ};
 use crate::kinematics;
-use crate::levels::STANDARD_GRAVITY;
 use crate::prediction::Prediction;
 use crate::record::Record;
 use crate::tones::{self, Tone};
+use stribeck_diagnosis::STANDARD_GRAVITY;
 
 /// The spectrum of all of a signal, in which a family of `fundamental_hz` is looked for where the segments of
 /// its `density` do not show it and the whole does.

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use stribeck_analysis::comparison::{Comparison, Side, Verdict};
-use stribeck_analysis::levels::STANDARD_GRAVITY;
-use stribeck_analysis::measured::{Analysis, Machine};
+use stribeck_diagnosis::STANDARD_GRAVITY;
+use stribeck_diagnosis::{Analysis, Machine};
 use stribeck_dsp::channel::Channel;
 use stribeck_testing::Noise;
 use stribeck_theory::catalogue::CatalogueBearing;

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_analysis::defect::Defect;
 use stribeck_analysis::duty::{ShockOrder, over_angle};
 use stribeck_analysis::{enveloping, tones};
+use stribeck_diagnosis::Defect;
 
 /// Knocks 10.81 times a turn, of a shaft from 5 to 20 turns a second in a second, that ring at 12 kHz.
 fn knocks() -> (Vec<f64>, Vec<f64>) {

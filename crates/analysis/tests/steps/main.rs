@@ -1,6 +1,5 @@
 //! Steps of an analysis, a module each: signals and scenes that are known, and what is found in them.
 
-mod alarm;
 mod comparison;
 mod differences;
 mod duty;
@@ -14,7 +13,5 @@ mod loudest;
 mod noise;
 mod paper_figures;
 mod prediction;
-mod ridge;
 mod rolling;
 mod tones;
-mod varying;

@@ -1,7 +1,7 @@
 //! Ripple of a force, and amplitudes at given frequencies.
 
-use stribeck_analysis::levels::STANDARD_GRAVITY;
 use stribeck_analysis::noise::{force_ripple, spectrum_g};
+use stribeck_diagnosis::STANDARD_GRAVITY;
 
 #[test]
 fn planted_ripple_leaves_a_cubic_alone_and_finds_a_sine() {

@@ -1,7 +1,7 @@
 //! Curves of all sides over each other.
 
 use stribeck_analysis::comparison::{Comparison, Member, Sampled, Side};
-use stribeck_analysis::defect::Defect;
+use stribeck_diagnosis::Defect;
 
 use crate::plot::{Axis, Colour, Figure, Mark, Series};
 
@@ -125,7 +125,7 @@ fn levels(densities: &[(&Side, Colour, Sampled)]) -> String {
         density.values[..lines].iter().map(|p| p * density.step).sum::<f64>().sqrt()
     };
     let each = densities.iter().map(|(side, _, density)| {
-        let level = stribeck_analysis::words::significant(rms(density), 3);
+        let level = stribeck_diagnosis::words::numbers::significant(rms(density), 3);
         format!("{} {level} {}", side.label, side.unit).trim_end().to_owned()
     });
     format!("Root mean square below 10 kHz: {}.", each.collect::<Vec<_>>().join(", "))

@@ -7,7 +7,7 @@ use crate::run::spectrum::families::OFF;
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
 use stribeck_analysis::statistic::{CONFIDENCE, Statistic};
 use stribeck_analysis::summary::Event;
-use stribeck_analysis::words;
+use stribeck_diagnosis::words::numbers;
 
 /// Relative width of its interval up to which a mean is shown with fewer decimals.
 const WORTH: f64 = 0.1;
@@ -388,8 +388,8 @@ pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
                             (cell(start.first_roller_deg.map(|deg| shown(deg, 4))))
                             (cell(start.roller_phase_deg.map(|deg| shown(deg, 4))))
                             td { (ended(start.ended)) }
-                            (cell(start.exit_g.map(words::level)))
-                            (cell(start.gap_g.map(words::level)))
+                            (cell(start.exit_g.map(numbers::level)))
+                            (cell(start.gap_g.map(numbers::level)))
                             (cell(start.energy_error.map(|e| shown(100.0 * e, 3))))
                             (cell(start.wall_s.map(|s| shown(s, 1))))
                             td class="n" { (start.warnings.len()) }

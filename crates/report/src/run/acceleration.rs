@@ -6,7 +6,7 @@ use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::{Event, PhaseLevels, Summary};
-use stribeck_analysis::words::{gravities, level, significant};
+use stribeck_diagnosis::words::numbers::{gravities, level, significant};
 
 use super::Subject;
 use super::drawing::{sampled, transient};

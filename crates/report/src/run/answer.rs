@@ -14,7 +14,7 @@ use stribeck_analysis::families::FamilyFinding;
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::rolling;
 use stribeck_analysis::summary::{EnergyFinding, Event, PhaseLevels, Summary};
-use stribeck_analysis::words::{gravities, significant};
+use stribeck_diagnosis::words::numbers::{gravities, significant};
 
 use super::spectrum::{families, loudest_in_words};
 use crate::page::{sentence, with_code};

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 use stribeck_analysis::findings::{CrossingForce, Findings};
 use stribeck_analysis::floor::FloorContact;
 use stribeck_analysis::summary::Event;
-use stribeck_analysis::words::level;
+use stribeck_diagnosis::words::numbers::level;
 use stribeck_scene::scene::DefectScene;
 
 use super::Subject;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use stribeck_analysis::duty::DutyFinding;
-use stribeck_analysis::words::{kilonewtons, significant};
+use stribeck_diagnosis::words::numbers::{kilonewtons, significant};
 use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::summary::Summary;
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 
 use super::spectrum::families::no_lines;
 use crate::page::{Section, cell, grouped, pairs, said_once, spoken};

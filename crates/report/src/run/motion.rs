@@ -11,7 +11,7 @@ use serde::Serialize;
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::{Record, Roller};
 use stribeck_analysis::summary::Event;
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::resolved::{ResolvedScene, pocket_half_width};
 use stribeck_scene::scene::DefectRing;

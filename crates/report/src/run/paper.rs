@@ -9,7 +9,7 @@ use maud::{Markup, html};
 use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper::{self, Beside};
 use stribeck_analysis::summary::{SensorLevels, Summary};
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 use stribeck_scene::scene::Scene;
 
 use crate::page::{self, Section, cell, charts, grouped, wide_table};

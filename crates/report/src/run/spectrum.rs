@@ -16,7 +16,7 @@ use stribeck_analysis::families::{FamilyFinding, SIDEBANDS};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::loudest::loudest;
 use stribeck_analysis::tones;
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 use stribeck_dsp::Spectrum;
 
 use super::Subject;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
-use stribeck_analysis::measured::Analysis;
+use stribeck_diagnosis::Analysis;
 use stribeck_report::Baseline;
 
 use super::{Options, examine};

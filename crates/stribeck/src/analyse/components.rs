@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
-use stribeck_analysis::measured::sources;
+use stribeck_diagnosis::sources;
 use stribeck_report::write_sources;
 use stribeck_store::run_dir::check_folder;
 

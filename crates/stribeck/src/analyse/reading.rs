@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::measured::{Analysis, Machine, Pressed, over_angle, ridge, tacho};
 use stribeck_analysis::record;
+use stribeck_diagnosis::{
+    Analysis, Machine, Pressed, over_angle,
+    speed::{ridge, tacho},
+};
 use stribeck_formats::{Channel, Recording, says_time};
 use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
@@ -451,7 +454,7 @@ fn machine(
             }
         }
     };
-    let outer_speed_rpm = scene.map_or(0.0, Machine::outer_speed_rpm);
+    let outer_speed_rpm = scene.map_or(0.0, stribeck_analysis::diagnosis::outer_speed_rpm);
     // A measured speed, or that of a run, needs no correction.
     let nominal =
         matches!(options.speed_rpm, Some(Speed::Of(_))) || (options.speed_rpm.is_none() && said.len() == 1);

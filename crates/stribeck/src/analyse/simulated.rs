@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::measured::{Analysis, Defect, Pressed, usual_load_n};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Event;
+use stribeck_diagnosis::{Analysis, Defect, Pressed, usual_load_n};
 use stribeck_scene::catalogue;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::{Keep, Run};

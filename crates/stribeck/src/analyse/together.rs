@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
-use stribeck_analysis::measured::Analysis;
-use stribeck_analysis::measured::joint::Joint;
+use stribeck_diagnosis::Analysis;
+use stribeck_diagnosis::joint::Joint;
 use stribeck_formats::{Recording, says_time};
 use stribeck_report::{TrendEntry, write_joint, write_measured};
 use stribeck_store::run_dir::{check_folder, write_atomic};

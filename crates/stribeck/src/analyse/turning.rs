@@ -1,8 +1,8 @@
 //! Spectra over speed and angle of a record whose shaft changes its speed.
 
 use anyhow::Result;
-use stribeck_analysis::measured::varying::turns_between;
-use stribeck_analysis::measured::{Analysis, Varying};
+use stribeck_diagnosis::speed::varying::turns_between;
+use stribeck_diagnosis::{Analysis, Varying};
 use stribeck_formats::Channel;
 
 /// Spectra over speed and angle of a channel; `pulses` are the times of whole turns, in samples. `None`

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 use stribeck_analysis::growth::{Calibration, Known, Law, Record, remaining};
-use stribeck_analysis::measured::alarm::{LEAST_RECORDS, Limit, Quantity};
-use stribeck_analysis::measured::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_analysis::records::normal;
+use stribeck_diagnosis::record::alarm::{LEAST_RECORDS, Limit, Quantity};
+use stribeck_diagnosis::{Analysis, Defect, Machine, MeasuredFindings};
 use stribeck_formats::{Channel, Recording};
 use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_plans::growth::{Growth, Indicator};
@@ -119,7 +119,7 @@ fn findings(growth: &Growth, variant: &Variant, runs: &ManyRuns) -> Result<Measu
     let noisy = Channel::held(&channel.name, noisy).at_rate(Some(rate_hz)).in_unit(Some("m/s^2".to_owned()));
     let machine = Machine {
         speed_rpm: Some((scene.operation.speed_rpm - scene.operation.outer_speed_rpm).abs()),
-        outer_speed_rpm: Machine::outer_speed_rpm(scene),
+        outer_speed_rpm: stribeck_analysis::diagnosis::outer_speed_rpm(scene),
         bearing: Some(catalogue::of_scene(scene)),
         speed_is_exact: true,
         ..Machine::default()

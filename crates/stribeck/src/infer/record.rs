@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::load::support;
-use stribeck_analysis::measured::{Analysis, Defect, Family, usual_load_n};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::records::{PassageSignature, duration_s, normal, rhythm};
+use stribeck_diagnosis::{Analysis, Defect, Family, usual_load_n};
 use stribeck_dsp::{Rhythm, Signature, Sound, at_rate, coloured_like, statistics};
 use stribeck_formats::wav::{Whole, pcm};
 use stribeck_formats::{Channel, uff58};
@@ -363,7 +363,7 @@ mod tests {
             2.0 * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin()
         };
         let samples = (0..65_536).map(|n| knocks(n) + dice.share() - 0.5).collect();
-        let machine = stribeck_analysis::measured::Machine {
+        let machine = stribeck_diagnosis::Machine {
             speed_rpm: Some(1200.0),
             bearing: Some(CatalogueBearing::parse("6205").expect("in the catalogue")),
             ..Default::default()

@@ -5,7 +5,7 @@ use stribeck_scene::resolved::ResolvedScene;
 
 use crate::plot::{Anchor, Colour, Picture, Sheet};
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::words::kilonewtons;
+use stribeck_diagnosis::words::numbers::kilonewtons;
 
 const SIZE: f64 = 620.0;
 /// Radius of the raceway and of the largest force above it [px].

@@ -1,9 +1,10 @@
 //! The spectrum of the squared envelope, and the defect's family in it.
 
 use maud::{Markup, html};
-use stribeck_analysis::defect::{Defect, Shocks};
+use stribeck_analysis::defect::Shocks;
 use stribeck_analysis::enveloping::EnvelopeLine;
 use stribeck_analysis::findings::Findings;
+use stribeck_diagnosis::Defect;
 
 use super::{FAMILY, cursor, density, physics_marks, stated};
 use crate::page::{self, cell, minus};

@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 use stribeck_analysis::families::{FamilyFinding, FamilyLine};
 use stribeck_analysis::summary::Summary;
-use stribeck_analysis::words::{gravities, significant};
+use stribeck_diagnosis::words::numbers::{gravities, significant};
 
 use crate::page::{self, cell, minus, said_once, spoken, term, wide_table};
 

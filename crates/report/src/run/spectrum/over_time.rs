@@ -2,8 +2,8 @@
 
 use stribeck_analysis::duty::turns;
 use stribeck_analysis::findings::Findings;
-use stribeck_analysis::measured::{Course, Varying};
 use stribeck_analysis::record::Record;
+use stribeck_diagnosis::{Course, Varying};
 
 use crate::plot::Picture;
 use crate::{Error, course};

@@ -8,7 +8,7 @@ use stribeck_store::mesh_file::{Body, RunMesh};
 
 use super::{View, scale_bar};
 use crate::plot::{Anchor, Colour, Picture, Sheet};
-use stribeck_analysis::words::significant;
+use stribeck_diagnosis::words::numbers::significant;
 
 /// Width of the pictures [px].
 const WIDTH: f64 = 900.0;

@@ -13,7 +13,7 @@ use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::stress::{Cell, Lame, cells};
 use stribeck_analysis::summary::Event;
-use stribeck_analysis::words::{kilonewtons, pascals};
+use stribeck_diagnosis::words::numbers::{kilonewtons, pascals};
 
 /// Part of the cells whose stress the scale leaves above its end: single corners would take all colours.
 const ABOVE: f64 = 0.002;

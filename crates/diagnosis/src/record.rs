@@ -1,0 +1,10 @@
+//! The samples of a record: whether they are sound, how strong they are, and how they change with time.
+
+pub mod alarm;
+pub mod course;
+pub mod enhanced;
+pub(crate) mod pass;
+pub mod screening;
+pub mod unit;
+pub(crate) mod velocity;
+pub mod zone;

@@ -1,0 +1,164 @@
+//! One pass over the samples of a channel, segment by segment: a record of hours takes no more memory than
+//! one of seconds.
+
+use stribeck_dsp::channel::Channel;
+use stribeck_dsp::{BandEnvelopes, Welch, WelchOptions};
+
+use crate::Error;
+use crate::record::course::Tracing;
+use crate::record::screening::Screening;
+use crate::record::unit::AccelerationUnit;
+use crate::record::velocity::VelocityLevel;
+use crate::{HIGHEST_HZ, bands};
+
+/// Longest segment [samples]: its envelopes take some tens of megabytes.
+const LONGEST_SEGMENT: usize = 1 << 20;
+/// Segments of records that are longer.
+const SEGMENT: usize = 1 << 19;
+/// Segment of the density [samples].
+const DENSITY_SEGMENT: usize = 1 << 13;
+
+/// Everything that one pass over the samples yields.
+pub(crate) struct Pass {
+    /// Length of a segment [samples].
+    pub(crate) segment: usize,
+    pub(crate) envelopes: BandEnvelopes,
+    pub(crate) density: Density,
+    pub(crate) tracing: Tracing,
+    /// `None` where the channel is no acceleration, or too short.
+    pub(crate) velocity: Option<VelocityLevel>,
+    pub(crate) screening: Screening,
+    /// The first samples, as many as one segment may hold.
+    pub(crate) kept: Vec<f64>,
+    /// Samples that fill no segment yet.
+    buffer: Vec<f64>,
+    /// Segments with values that are not numbers.
+    refused: usize,
+}
+
+impl Pass {
+    /// Reads a channel of `len` samples.
+    pub(crate) fn over(channel: &Channel, rate_hz: f64, len: usize) -> Result<Self, Error> {
+        let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
+        let segment = if len > LONGEST_SEGMENT { SEGMENT } else { longest_kept };
+        let highest_hz = HIGHEST_HZ.min(0.5 * rate_hz);
+        let unit = channel.unit.as_deref().and_then(AccelerationUnit::parse);
+        let mut pass = Self {
+            segment,
+            envelopes: BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz)
+                .map_err(Error::Signal)?,
+            density: Density::new(rate_hz, segment)?,
+            tracing: Tracing::new(rate_hz, len)?,
+            velocity: VelocityLevel::new(rate_hz, segment, unit)?,
+            screening: Screening::default(),
+            kept: Vec::with_capacity(longest_kept),
+            buffer: Vec::with_capacity(segment),
+            refused: 0,
+        };
+        let mut failed = None;
+        channel.for_each_block(|block| {
+            pass.kept.extend(block.iter().take(longest_kept - pass.kept.len()));
+            failed = pass.add(block).err();
+            failed.is_none()
+        })?;
+        failed.map_or(Ok(pass), |why| Err(Error::Signal(why)))
+    }
+
+    /// Samples as they follow.
+    fn add(&mut self, mut block: &[f64]) -> Result<(), stribeck_dsp::Error> {
+        self.screening.add(block);
+        while !block.is_empty() {
+            let (now, later) = block.split_at((self.segment - self.buffer.len()).min(block.len()));
+            self.buffer.extend_from_slice(now);
+            block = later;
+            if self.buffer.len() == self.segment {
+                self.add_segment()?;
+                self.buffer.clear();
+            }
+        }
+        Ok(())
+    }
+
+    /// The segment that the buffer holds.
+    fn add_segment(&mut self) -> Result<(), stribeck_dsp::Error> {
+        let samples = &self.buffer;
+        if !samples.iter().all(|x| x.is_finite()) {
+            self.tracing.skip(samples.len());
+            self.refused += 1;
+            return Ok(());
+        }
+        self.envelopes.add(samples)?;
+        self.density.add(samples)?;
+        self.tracing.add(samples)?;
+        self.velocity.as_mut().map_or(Ok(()), |level| level.add(samples))
+    }
+
+    /// Faults of the samples.
+    pub(crate) fn notes(&self, rate_hz: f64) -> Vec<String> {
+        let mut notes = self.screening.notes(rate_hz);
+        if self.refused > 0 {
+            notes.push(format!(
+                "{} segments of {} samples hold values that are not numbers and are left out",
+                self.refused, self.segment
+            ));
+        }
+        notes
+    }
+
+    /// Refuses a channel without a whole segment of numbers, and one whose powers no number can hold.
+    pub(crate) fn refuse(&self, channel: &Channel, notes: &[String]) -> Result<(), Error> {
+        if self.envelopes.segments() == 0 {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` has no run of {} numbers: {}. Cut the record to its sound part",
+                channel.name,
+                self.segment,
+                notes.join("; ")
+            )));
+        }
+        if let Some(reach) = self.screening.out_of_range() {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` moves by {reach:.1e}, whose powers lie beyond the range of numbers: bring it \
+                 near 1 with `--scale`",
+                channel.name
+            )));
+        }
+        Ok(())
+    }
+
+    /// How much of a record of `len` samples fills no segment, where that is more than a twentieth.
+    pub(crate) fn remainder_note(&self, rate_hz: f64, len: usize) -> Option<String> {
+        let left = self.buffer.len();
+        (left * 20 > len).then(|| {
+            format!("the last {:.2} s fill no segment and are left out of the spectra", left as f64 / rate_hz)
+        })
+    }
+}
+
+/// Density averaged over everything that was added.
+pub(crate) struct Density {
+    welch: Welch,
+    segment: usize,
+    sum: Vec<f64>,
+    count: usize,
+}
+
+impl Density {
+    fn new(rate_hz: f64, segment: usize) -> Result<Self, Error> {
+        let options = WelchOptions::new(DENSITY_SEGMENT.min(segment));
+        let welch = Welch::new(rate_hz, segment, &options).map_err(Error::Signal)?;
+        Ok(Self { sum: vec![0.0; welch.blank().values().len()], welch, segment, count: 0 })
+    }
+
+    fn add(&mut self, samples: &[f64]) -> Result<(), stribeck_dsp::Error> {
+        debug_assert_eq!(samples.len(), self.segment);
+        let spectrum = self.welch.estimate(samples)?;
+        self.sum.iter_mut().zip(spectrum.values()).for_each(|(sum, v)| *sum += v);
+        self.count += 1;
+        Ok(())
+    }
+
+    pub(crate) fn finish(self) -> (Vec<f64>, Vec<f64>) {
+        let count = self.count.max(1) as f64;
+        (self.welch.blank().frequencies_hz().to_vec(), self.sum.iter().map(|s| s / count).collect())
+    }
+}

@@ -1,0 +1,74 @@
+//! A speed that was given twice as high as the shaft turns: the number of poles of a motor, or of marks of a
+//! tachometer, is easily taken for half of what it is.
+//!
+//! Where a comb stands at half the place of a raceway, what knocks comes half as often as elements pass, if
+//! the speed is right. Where lines of the shaft stand at half the speed too, and between its multiples, the
+//! speed is wrong and the comb is the raceway's (THEORY §7.9).
+
+use stribeck_dsp::BandEnvelope;
+
+use crate::families::unrelated::SLIP;
+use crate::families::verdict::{self, KnownSpeed, Verdicts};
+use crate::{
+    Defect, Machine, Sharp,
+    speed::{estimate, shaft},
+};
+
+/// Half of the speed given, where the comb of a raceway and the lines of the shaft agree on it.
+pub(crate) fn told(
+    judged: &Verdicts,
+    samples: &[f64],
+    rate_hz: f64,
+    bands: &[BandEnvelope],
+    machine: &Machine,
+) -> Option<Sharp> {
+    let asked = !machine.speed_is_exact && machine.outer_speed_rpm == 0.0;
+    let (rpm, bearing) = (machine.speed_rpm?, machine.bearing.as_ref().filter(|_| asked)?);
+    let comb_hz = judged.unexplained.as_ref()?.hz;
+    let is_half = |name: Defect| {
+        let family = judged.families.iter().find(|family| family.name == name);
+        family.is_some_and(|family| (2.0 * comb_hz / family.expected_hz - 1.0).abs() < SLIP)
+    };
+    (is_half(Defect::Bpfo) || is_half(Defect::Bpfi)).then_some(())?;
+    samples.iter().all(|x| x.is_finite()).then_some(())?;
+    let half_hz = rpm / 120.0;
+    let stands = |hz: f64| estimate::stands_at_half(samples, rate_hz, hz);
+    let by_shaft = shaft::near(samples, rate_hz, half_hz)
+        .filter(|shaft| shaft.is_distinct() && stands(shaft.hz))
+        .map(|shaft| Sharp {
+            hz: shaft.hz,
+            uncertainty_hz: shaft.uncertainty_hz,
+            by: "the lines of the shaft",
+        });
+    by_shaft.or_else(|| {
+        let found = estimate::without_any_given(samples, rate_hz, bands, bearing)?;
+        let agrees = found.is_accepted && (found.hz / half_hz - 1.0).abs() < SLIP && stands(found.hz);
+        let by = "the lines of the shaft and of the bearing together";
+        agrees.then_some(Sharp { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
+    })
+}
+
+/// The machine at that speed, and its verdict there, where this claims one raceway and nothing else.
+pub(crate) fn judge(
+    half: Sharp,
+    bands: &[BandEnvelope],
+    machine: &Machine,
+    (record_s, segment_s): (f64, f64),
+) -> Option<(Machine, Verdicts)> {
+    let slower = Machine { speed_rpm: Some(60.0 * half.hz), ..machine.clone() };
+    let known = KnownSpeed { sharp_hz: Some(half.hz), by_its_lines: true };
+    let again = verdict::judge(bands, &slower, &known, record_s, segment_s);
+    let claimed: Vec<Defect> = again.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
+    matches!(claimed.as_slice(), [Defect::Bpfo | Defect::Bpfi]).then_some((slower, again))
+}
+
+/// What the verdict says on it.
+pub(crate) fn sentence(half: Sharp, given_rpm: f64) -> String {
+    format!(
+        "The shaft turns at half of the {given_rpm:.1} rpm that were given: {} stand at {:.1} ± {:.1} rpm, \
+         and the comb of this raceway at half of its place.",
+        half.by,
+        60.0 * half.hz,
+        60.0 * half.uncertainty_hz
+    )
+}

@@ -1,0 +1,5 @@
+//! Conclusions, evidence and numbers in words.
+
+pub mod evidence;
+pub mod numbers;
+pub(crate) mod sentence;
