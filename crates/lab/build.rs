@@ -19,7 +19,7 @@ const FILE: &str = "stribeck_lab.wasm";
 const VARIABLE: &str = "STRIBECK_LAB_EMBED";
 
 /// Sources of the module, besides this crate, in the repository.
-const SOURCES: [&str; 7] = ["lab", "reduced", "modal", "duty", "surface", "film", "simd"];
+const SOURCES: [&str; 5] = ["lab", "reduced", "theory", "surface", "simd"];
 
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
