@@ -1,26 +1,42 @@
 //! The documents against the code.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use anyhow::{Context, Result};
 use clap::Parser;
 use stribeck_scene::scene::Scene;
 
-use super::{layers, markdown, sources};
+use super::{layers, markdown, sources, test_names};
 use crate::Cli;
 
 fn read(root: &Path, name: &str) -> Result<String> {
     std::fs::read_to_string(root.join(name)).with_context(|| format!("cannot read {name}"))
 }
 
-/// Every crate is in ARCHITECTURE, and every crate in ARCHITECTURE exists.
+/// Every crate is in ARCHITECTURE; crates, files and tests that it names exist.
 pub(crate) fn check_architecture(root: &Path) -> Result<Vec<String>> {
     let text = read(root, "docs/ARCHITECTURE.md")?;
-    let exist: BTreeSet<String> = layers::crates(root)?.into_iter().collect();
-    Ok(compare_crates(&text, &exist))
+    let mut complaints = compare_crates(&text, &layers::crates(root)?.into_iter().collect());
+    let mut files = Vec::new();
+    for folder in ["crates", "studies", "xtask", "fixtures"] {
+        files.extend(sources::rust_files(&root.join(folder))?);
+    }
+    let tests: BTreeSet<String> = test_names::all(root)?.into_iter().map(|test| test.name).collect();
+    for name in markdown::code(&text) {
+        let missing = if name.ends_with(".rs") && !name.contains([' ', '{']) {
+            !files.iter().any(|file| file.ends_with(name))
+        } else {
+            test_names::has_prefix(name) && !tests.contains(name)
+        };
+        if missing {
+            complaints.push(format!("ARCHITECTURE names `{name}`: there is none"));
+        }
+    }
+    Ok(complaints)
 }
 
+/// Names of crates in `text` against those that exist.
 fn compare_crates(text: &str, exist: &BTreeSet<String>) -> Vec<String> {
     let mut named = BTreeSet::new();
     for prefix in ["crates/", "stribeck-", "stribeck_"] {
@@ -55,31 +71,6 @@ pub(crate) fn check_citations(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// The terms of each section of GLOSSARY are in order, and none is there twice.
-pub(crate) fn check_glossary(root: &Path) -> Result<Vec<String>> {
-    Ok(compare_terms(&read(root, "docs/GLOSSARY.md")?))
-}
-
-fn compare_terms(text: &str) -> Vec<String> {
-    let sections = markdown::terms(text);
-    let mut complaints = Vec::new();
-    let mut count = BTreeMap::new();
-    for term in sections.iter().flatten() {
-        *count.entry(term.to_lowercase()).or_insert(0) += 1;
-    }
-    if count.is_empty() {
-        complaints.push("GLOSSARY has no terms (`**term**` at the start of a line)".to_owned());
-    }
-    for pair in sections.iter().flat_map(|terms| terms.windows(2)) {
-        if pair[0].to_lowercase() > pair[1].to_lowercase() {
-            complaints.push(format!("GLOSSARY: `{}` stands behind `{}`", pair[1], pair[0]));
-        }
-    }
-    let twice = count.iter().filter(|(_, count)| **count > 1);
-    complaints.extend(twice.map(|(term, _)| format!("GLOSSARY explains `{term}` twice")));
-    complaints
-}
-
 /// Every `cargo xtask …` and `stribeck …` in the documents is accepted by the command line, and every fixture
 /// it names exists.
 pub(crate) fn check_commands(root: &Path) -> Result<Vec<String>> {
@@ -103,50 +94,35 @@ pub(crate) fn check_scenes(root: &Path) -> Result<Vec<String>> {
     Ok(complaints)
 }
 
-/// Every file that a document links to exists.
+/// Every file that a document links to exists. In the book, whose pages `docs/SUMMARY.md` lists, it lies in
+/// `docs`, and a page is one of the book.
 pub(crate) fn check_links(root: &Path) -> Result<Vec<String>> {
-    let mut complaints = Vec::new();
-    for name in documents(root)? {
-        let text = read(root, &name)?;
-        let folder = root.join(&name).parent().map_or_else(|| root.to_owned(), Path::to_owned);
-        let missing = markdown::links(&text).into_iter().filter(|target| !folder.join(target).exists());
-        complaints.extend(missing.map(|target| format!("{name} links to `{target}`, which is not there")));
-    }
-    Ok(complaints)
-}
-
-/// The pages of the book of `docs` link to each other and to pictures and tables beside them: a page that
-/// SUMMARY does not list is not in the book, and files outside of `docs` are not in it.
-pub(crate) fn check_book(root: &Path) -> Result<Vec<String>> {
+    let docs = root.join("docs").canonicalize().context("cannot find docs")?;
     let summary = read(root, "docs/SUMMARY.md")?;
-    let pages = markdown::links(&summary).into_iter();
-    let pages = pages.map(|page| read(root, &format!("docs/{page}")).map(|text| (page, text)));
-    Ok(links_out_of_a_book(&pages.collect::<Result<Vec<_>>>()?))
-}
-
-/// Links that break in a book of these pages, each by its path with its text.
-fn links_out_of_a_book(pages: &[(&str, String)]) -> Vec<String> {
+    let pages: BTreeSet<_> = markdown::links(&summary)
+        .into_iter()
+        .filter_map(|page| docs.join(page).canonicalize().ok())
+        .collect();
+    let listed = markdown::links(&summary).into_iter().map(|page| format!("docs/{page}"));
+    let names: BTreeSet<String> = documents(root)?.into_iter().chain(listed).collect();
     let mut complaints = Vec::new();
-    for (page, text) in pages {
-        for link in markdown::links(text) {
-            let mut place: Vec<&str> = page.split('/').collect();
-            place.pop();
-            let inside = link.split('/').filter(|part| *part != ".").all(|part| match part {
-                ".." => place.pop().is_some(),
-                part => {
-                    place.push(part);
-                    true
+    for name in names {
+        let text = read(root, &name)?;
+        let document = root.join(&name).canonicalize().with_context(|| format!("cannot find {name}"))?;
+        for link in markdown::links(&text) {
+            let why = match document.with_file_name(link).canonicalize() {
+                Err(_) => "is not there",
+                Ok(_) if !pages.contains(&document) => continue,
+                Ok(target) if !target.starts_with(&docs) => "is outside of docs, and so of the book",
+                Ok(target) if target.extension().is_some_and(|e| e == "md") && !pages.contains(&target) => {
+                    "docs/SUMMARY.md does not list"
                 }
-            });
-            let target = place.join("/");
-            let listed = !target.ends_with(".md") || pages.iter().any(|(page, _)| *page == target);
-            if !(inside && listed) {
-                let why = if inside { "docs/SUMMARY.md does not list it" } else { "it is outside of docs" };
-                complaints.push(format!("docs/{page} links to `{link}`, which breaks in the book: {why}"));
-            }
+                Ok(_) => continue,
+            };
+            complaints.push(format!("{name} links to `{link}`, which {why}"));
         }
     }
-    complaints
+    Ok(complaints)
 }
 
 /// README, CONTRIBUTING, the documents in `docs/`, `docs/notes/` and `docs/guide/src/`, and the README of
@@ -227,32 +203,6 @@ mod tests {
         assert!(compare_crates("`crates/mesh`, stribeck-solver", &exist).is_empty());
         let complaints = compare_crates("crates/mesh and crates/mush", &exist);
         assert_eq!(complaints.len(), 2, "{complaints:?}");
-    }
-
-    #[test]
-    fn behaves_links_that_break_in_the_book_are_found() {
-        let pages = |a: &str, b: &str| [("guide/a.md", a.to_owned()), ("B.md", b.to_owned())];
-        let fine = pages(
-            "[b](../B.md#x), ![p](a/p.svg), [t](../t.csv), https://x.org",
-            "[a](guide/a.md), [a](./guide/a.md)",
-        );
-        assert_eq!(links_out_of_a_book(&fine), [""; 0]);
-        for (a, b, why) in [
-            ("[f](../../fixtures/x.ron)", "", "docs/guide/a.md links to `../../fixtures/x.ron`"),
-            ("", "[c](../CONTRIBUTING.md)", "outside of docs"),
-            ("[c](../guide/c.md)", "", "SUMMARY.md does not list"),
-        ] {
-            let found = links_out_of_a_book(&pages(a, b));
-            assert!(found.len() == 1 && found[0].contains(why), "{found:?}");
-        }
-    }
-
-    #[test]
-    fn behaves_glossaries_out_of_order_are_found() {
-        assert!(compare_terms("**Bore** x\n**cage** y").is_empty());
-        assert_eq!(compare_terms("**cage** x\n**Bore** y").len(), 1);
-        assert_eq!(compare_terms("**cage** x\n## More\n**Cage** y").len(), 1);
-        assert_eq!(compare_terms("no terms").len(), 1);
     }
 
     #[test]

@@ -71,22 +71,6 @@ pub(crate) fn citations(text: &str) -> Vec<&str> {
     found
 }
 
-/// Terms of a glossary, per section: bold text at the start of a line, a list item or a table row.
-pub(crate) fn terms(text: &str) -> Vec<Vec<&str>> {
-    let mut sections = vec![Vec::new()];
-    for line in text.lines() {
-        if line.starts_with('#') {
-            sections.push(Vec::new());
-        }
-        let start = line.trim_start_matches([' ', '-', '*', '|']);
-        let bold = line.trim_start_matches([' ', '-', '|']).starts_with("**");
-        if let (true, Some((term, _)), Some(section)) = (bold, start.split_once("**"), sections.last_mut()) {
-            section.push(term);
-        }
-    }
-    sections
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -116,12 +100,5 @@ mod tests {
         assert_eq!(section_number("4.1 Gap"), None);
         let text = "See THEORY §4.1. Also THEORY §2, §3.1 and §5; not THEORY §x.";
         assert_eq!(citations(text), ["4.1", "2", "3.1", "5"]);
-    }
-
-    #[test]
-    fn behaves_terms_of_a_glossary() {
-        let text =
-            "# Words\n**bore** a hole\n- **cage** a ring\n## More\n| **apex** | top |\nplain **bold** text";
-        assert_eq!(terms(text), [vec![], vec!["bore", "cage"], vec!["apex"]]);
     }
 }
