@@ -70,7 +70,6 @@ pub mod families;
 pub mod film;
 pub mod filtering;
 pub mod floor;
-pub mod growth;
 pub mod kinematics;
 pub mod levels;
 pub mod load;

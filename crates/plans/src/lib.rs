@@ -1,5 +1,5 @@
 //! Files that plan many runs: a campaign varies fields of a scene, an inference looks for unknown fields by
-//! targets of a record, a growth makes a spall longer with time.
+//! targets of a record.
 //!
 //! Mistakes in such a file are shown as those of a scene, with line, field, allowed values and remedy.
 //!
@@ -14,7 +14,6 @@
 //! ```
 
 pub mod campaign;
-pub mod growth;
 pub mod inference;
 
 mod document;

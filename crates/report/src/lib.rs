@@ -19,7 +19,6 @@
 //! | the reduced model beside the full one | [`write_agreement`] | `report.html`, `validation.json` |
 //! | runs, ensembles and records beside each other | [`write_comparison`] | `report.html`, `compare.json` |
 //! | a campaign | [`write_campaign`] | `index.html` |
-//! | spalls that grow | [`write_growth`] | `growth.html`, `growth.json` |
 //! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
@@ -46,7 +45,6 @@ mod agreement;
 mod campaign;
 mod comparison;
 mod ensemble;
-mod growth;
 pub mod inference;
 mod measured;
 mod sources;
@@ -61,7 +59,6 @@ pub use comparison::{
 };
 pub use ensemble::write_ensemble;
 pub use error::Error;
-pub use growth::{GrowthFindings, RecordFindings, UnitFindings, write_growth};
 pub use measured::{Baseline, write_measured};
 pub use run::{write, write_between};
 pub use sources::write_sources;

@@ -76,11 +76,8 @@ pub(crate) const SCENES: &str = "scenes.txt";
 const DATASHEET: &str = "DATASHEET.md";
 const INDEX: &str = "index.html";
 
-/// The first marks the folder of a campaign from the start of its first part on, the second when it is done;
-/// the third marks that of a growth.
-pub(crate) const MARKS: [&str; 3] = [TURN, tables::RUNS, GROWTH_TABLE];
-/// The table of the records of a growth.
-pub(crate) const GROWTH_TABLE: &str = "growth.csv";
+/// The first marks the folder of a campaign from the start of its first part on, the second when it is done.
+pub(crate) const MARKS: [&str; 2] = [TURN, tables::RUNS];
 
 /// Paths in the folder of a campaign.
 struct Folder(ManyRuns);

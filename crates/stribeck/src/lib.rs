@@ -23,8 +23,6 @@ mod emit;
 #[cfg(feature = "full")]
 mod export;
 #[cfg(feature = "full")]
-mod grow;
-#[cfg(feature = "full")]
 mod infer;
 pub mod lab;
 mod list;
@@ -55,8 +53,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
-    self as analyse, self as campaign, self as compare, self as export, self as grow, self as infer,
-    self as sweep,
+    self as analyse, self as campaign, self as compare, self as export, self as infer, self as sweep,
 };
 pub use out::Loudness;
 pub use place::Place;
@@ -105,10 +102,6 @@ pub enum Command {
     /// Runs many scenes made from one, and makes a data set of them; the same command starts and continues
     #[command(after_help = "Example: stribeck campaign starts.ron --out runs/starts")]
     Campaign(campaign::Options),
-    /// Lets spalls of several units grow by a law, records each at intervals, and estimates its remaining
-    /// life, with the truth beside; the same command starts and goes on
-    #[command(after_help = "Example: stribeck grow growth.ron")]
-    Grow(grow::Options),
     /// Runs a scene with several values of some fields, each with every other: a campaign in one line
     #[command(after_help = "Example: stribeck sweep mine.ron --set operation.load_n=1000,2000,4000")]
     Sweep(sweep::Options),
@@ -165,7 +158,6 @@ impl Command {
         matches!(
             self,
             Self::Campaign(_)
-                | Self::Grow(_)
                 | Self::Sweep(_)
                 | Self::Infer(_)
                 | Self::Analyse(_)
@@ -186,7 +178,6 @@ impl Command {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Campaign(options) => campaign::run(options, place),
-            Self::Grow(options) => grow::run(options, place),
             Self::Sweep(options) => sweep::run(options, place),
             Self::Infer(options) => infer::run(options, place),
             Self::Validate(options) => validate::run(options, place),
