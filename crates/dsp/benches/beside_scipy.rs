@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use stribeck_dsp::{
     Averaging, Detrend, Envelope, EnvelopeSpectrum, Notch, Welch, WelchOptions, Window,
-    cepstral_prewhitening, dpss, magnitude_spectrogram, multitaper, resample_poly, spectrogram, statistics,
+    magnitude_spectrogram, resample_poly, spectrogram, statistics,
 };
 
 const RATE_HZ: f64 = 25_600.0;
@@ -46,7 +46,7 @@ struct Case<'a> {
 }
 
 fn cases(x: &[f64]) -> Vec<Case<'_>> {
-    let (short, odd) = (&x[..4096], &x[..250_000]);
+    let odd = &x[..250_000];
     let notch = Notch::new(RATE_HZ, 4671.0, 15.0).expect("a notch below half the rate");
     let welch = |options: WelchOptions| {
         Box::new(move || {
@@ -99,16 +99,6 @@ fn cases(x: &[f64]) -> Vec<Case<'_>> {
                 magnitude_spectrogram(x, RATE_HZ, &magnitudes).expect("segments fit").values
             }),
         },
-        Case {
-            name: "dpss",
-            words: ["`dpss`", "`windows.dpss`", "7 of 4096 samples"],
-            work: Box::new(|| dpss(4096, 4.0, 7).expect("tapers").concat()),
-        },
-        Case {
-            name: "multitaper",
-            words: ["`multitaper`", "`windows.dpss`, `rfft`", "7 of 4096 samples"],
-            work: Box::new(move || multitaper(short, RATE_HZ, 4.0, 7).expect("tapers")),
-        },
         Case { name: "hilbert", words: ["`Envelope`", "`hilbert`", ""], work: Box::new(move || of_all(x)) },
         Case {
             name: "hilbert_odd",
@@ -124,11 +114,6 @@ fn cases(x: &[f64]) -> Vec<Case<'_>> {
                 plan.process(x, &mut out).expect("a finite signal");
                 out.values().to_vec()
             }),
-        },
-        Case {
-            name: "prewhitening",
-            words: ["`cepstral_prewhitening`", "`rfft`, `irfft`", ""],
-            work: Box::new(move || cepstral_prewhitening(x).expect("a finite signal")),
         },
         Case {
             name: "hann",

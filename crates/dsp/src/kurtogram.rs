@@ -57,7 +57,7 @@ pub fn fast_kurtogram(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Resul
 
 /// Passes the settled coefficients of every band to `take`, with the number of bands of its level and its
 /// ends [Hz].
-pub(crate) fn for_each_band(
+fn for_each_band(
     signal: &[f64],
     sample_rate_hz: f64,
     levels: u32,
@@ -90,7 +90,7 @@ pub(crate) fn for_each_band(
 }
 
 /// Refuses a signal that is too short for this many levels.
-pub(crate) fn check_levels(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Result<()> {
+fn check_levels(signal: &[f64], sample_rate_hz: f64, levels: u32) -> Result<()> {
     check_positive("sample_rate_hz", sample_rate_hz)?;
     let purpose = "a tree of bands of so many levels";
     let least = 1_usize.checked_shl(levels.saturating_add(7)).filter(|n| *n > 0).ok_or(Error::TooShort {

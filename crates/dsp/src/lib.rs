@@ -34,10 +34,9 @@
 //! | which frequencies can be resolved | [`Resolution`] |
 //! | a record without one tone | [`Notch`]: `filter` as an instrument does it, `filtfilt` without delay |
 //! | the repetition rate of impulses | [`EnvelopeSpectrum`], where [`PeriodCount`] finds the record long enough |
-//! | the band of impulses | [`fast_kurtogram`], [`infogram`], [`BandEnvelopes`] for records of any length, [`cepstral_prewhitening`] |
+//! | the band of impulses | [`fast_kurtogram`], [`BandEnvelopes`] for records of any length |
 //! | the rate at which a part of the spectrum is modulated | [`spectral_correlation`] |
 //! | components that repeat exactly, and the rest, which slips | [`separate`] |
-//! | the pulses behind a resonance | [`momeda`] |
 //! | how a record changes | [`spectrogram`], [`Spectrograph`] for records of any length, [`ridge`] |
 //! | whether there is a family of harmonics, with a false-alarm rate | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
@@ -46,7 +45,6 @@
 //! | the signal of a sensor behind a measured response or some modes, and the signal before them | [`Response`] |
 //! | numbers of repeated passages that do not depend on the path to the sensor | [`Signature`] |
 //! | components locked to a shaft | [`order_track`], [`OverAngle::average`] |
-//! | a smooth density of a short record | [`multitaper`] |
 //! | the record at another rate | [`resample_poly`] |
 //! | a computed signal as a sensor and its recorder would have recorded it | [`Sensor`] |
 //! | how a signal sounds | [`Sound`] |
@@ -110,12 +108,8 @@ mod comb;
 mod cycle;
 
 mod angle;
-mod cepstrum;
 mod cyclic;
-mod deconvolution;
-mod infogram;
 mod kurtogram;
-mod multitaper;
 mod path;
 mod prewhitened;
 mod resample;
@@ -135,15 +129,11 @@ pub mod statistics;
 pub use angle::{OverAngle, means_over_angle, order_track};
 pub use averages::{median, running_mean};
 pub use band_envelopes::{Autocorrelation, BandEnvelope, BandEnvelopes};
-pub use cepstrum::cepstral_prewhitening;
 pub use comb::{Comb, CombTest, Whitened};
 pub use cyclic::{Cyclic, SpectralCorrelation, spectral_correlation};
-pub use deconvolution::{Deconvolved, momeda};
 pub use envelope::{Envelope, EnvelopeSpectrum, PeriodCount, PeriodVerdict};
 pub use error::{Error, Result};
-pub use infogram::{InfogramBand, infogram};
 pub use kurtogram::{KurtogramBand, fast_kurtogram};
-pub use multitaper::{dpss, multitaper};
 pub use notch::Notch;
 pub use options::{Averaging, Detrend, WelchOptions};
 pub use path::{Path, at_rate, coloured_like};

@@ -6,8 +6,8 @@ use std::f64::consts::TAU;
 
 use serde_json::Value;
 use stribeck_dsp::{
-    Cyclic, Scaling, WelchOptions, cepstral_prewhitening, dpss, fast_kurtogram, infogram,
-    magnitude_spectrogram, momeda, multitaper, resample_poly, separate, spectral_correlation, spectrogram,
+    Cyclic, Scaling, WelchOptions, fast_kurtogram, magnitude_spectrogram, resample_poly, separate,
+    spectral_correlation, spectrogram,
 };
 
 /// Both sides round in a different order; tapers and filters are made on either side.
@@ -53,30 +53,6 @@ fn peer_the_input_is_the_same() {
 }
 
 #[test]
-fn peer_tapers_and_the_multitaper_density() {
-    let theirs = vectors();
-    for (k, (ours, theirs)) in
-        dpss(200, 3.5, 6).unwrap().iter().zip(theirs["dpss"].as_array().unwrap()).enumerate()
-    {
-        assert_equal(&format!("taper {k}"), ours, &numbers(theirs));
-    }
-    assert_equal(
-        "density",
-        &multitaper(&input(200), 1000.0, 3.5, 6).unwrap(),
-        &numbers(&theirs["multitaper"]),
-    );
-}
-
-#[test]
-fn peer_cepstral_prewhitening() {
-    assert_equal(
-        "whitened",
-        &cepstral_prewhitening(&input(200)).unwrap(),
-        &numbers(&vectors()["prewhitened"]),
-    );
-}
-
-#[test]
 fn peer_every_band_of_the_fast_kurtogram() {
     let ours = fast_kurtogram(&input(2500), 1000.0, 4).unwrap();
     for row in vectors()["kurtogram"].as_array().unwrap() {
@@ -111,17 +87,6 @@ fn peer_spectrograms_of_both_modes_and_scalings() {
 }
 
 #[test]
-fn peer_every_band_of_the_infogram() {
-    // Filters of PySDKit 0.5.0, negentropies by numpy.
-    let theirs: Vec<Vec<f64>> = vectors()["infogram"].as_array().unwrap().iter().map(numbers).collect();
-    let ours = infogram(&input(2500), 1000.0, 4).unwrap();
-    let column = |n: usize| theirs.iter().map(|row| row[n]).collect::<Vec<_>>();
-    assert_equal("bands", &ours.iter().map(|b| b.of as f64).collect::<Vec<_>>(), &column(0));
-    assert_equal("of envelope", &ours.iter().map(|b| b.of_envelope).collect::<Vec<_>>(), &column(1));
-    assert_equal("of spectrum", &ours.iter().map(|b| b.of_spectrum).collect::<Vec<_>>(), &column(2));
-}
-
-#[test]
 fn peer_spectral_correlation_and_coherence() {
     // Against the definition, summed term by term by numpy 2.4.6.
     let theirs = vectors();
@@ -153,19 +118,7 @@ fn peer_discrete_and_random_parts() {
 }
 
 #[test]
-fn peer_deconvolution_of_pulses() {
-    // Least squares of numpy 2.4.6 on the matrix itself, which squares nothing; ours goes through its square.
-    let theirs = &vectors()["momeda"];
-    let ours = momeda(&input(600), 40, &[61.7]).unwrap().remove(0);
-    assert_equal("filter", &ours.filter, &numbers(&theirs["filter"]));
-    assert_equal("kurtosis", &[ours.kurtosis], &[theirs["kurtosis"].as_f64().unwrap()]);
-}
-
-#[test]
 fn refuses_what_is_too_short_for_its_levels() {
     assert!(fast_kurtogram(&input(2000), 1000.0, 4).unwrap_err().to_string().contains("2048"));
     assert!(fast_kurtogram(&input(2000), 1000.0, 90).is_err());
-    assert!(dpss(8, 4.0, 1).is_err());
-    assert!(dpss(8, 2.0, 9).is_err());
-    assert!(cepstral_prewhitening(&[1.0]).is_err());
 }

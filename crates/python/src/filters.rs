@@ -69,15 +69,6 @@ pub(crate) fn envelope_spectrum<'py>(
     Ok((spectrum.frequencies_hz().to_vec().into_pyarray(py), spectrum.values().to_vec().into_pyarray(py)))
 }
 
-/// The signal with a flat spectrum.
-#[pyfunction]
-pub(crate) fn cepstral_prewhitening<'py>(
-    py: Python<'py>,
-    x: PyReadonlyArray1<'py, f64>,
-) -> PyResult<Array<'py>> {
-    Ok(stribeck_dsp::cepstral_prewhitening(x.as_slice()?).map_err(refused)?.into_pyarray(py))
-}
-
 /// The signal at another rate.
 #[pyfunction]
 pub(crate) fn resample_poly<'py>(
@@ -124,21 +115,6 @@ pub(crate) fn separate<'py>(
 ) -> PyResult<(Array<'py>, Array<'py>)> {
     let parts = stribeck_dsp::separate(x.as_slice()?, taps, delay).map_err(refused)?;
     Ok((parts.discrete.into_pyarray(py), parts.random.into_pyarray(py)))
-}
-
-/// For each period: itself, multipoint kurtosis, taps, output.
-#[pyfunction]
-pub(crate) fn momeda<'py>(
-    py: Python<'py>,
-    x: PyReadonlyArray1<'py, f64>,
-    taps: usize,
-    periods: Vec<f64>,
-) -> PyResult<Vec<(f64, f64, Array<'py>, Array<'py>)>> {
-    let found = stribeck_dsp::momeda(x.as_slice()?, taps, &periods).map_err(refused)?;
-    let tuple = |d: stribeck_dsp::Deconvolved| {
-        (d.period, d.kurtosis, d.filter.into_pyarray(py), d.output.into_pyarray(py))
-    };
-    Ok(found.into_iter().map(tuple).collect())
 }
 
 /// One number of a signal.

@@ -17,17 +17,6 @@ pub(crate) fn fast_kurtogram(
     Ok(bands.iter().map(|band| (band.low_hz, band.high_hz, band.kurtosis)).collect())
 }
 
-/// Bands of the infogram: lower end, upper end, negentropies of the squared envelope and of its spectrum.
-#[pyfunction]
-pub(crate) fn infogram(
-    x: PyReadonlyArray1<'_, f64>,
-    fs: f64,
-    levels: u32,
-) -> PyResult<Vec<(f64, f64, f64, f64)>> {
-    let bands = stribeck_dsp::infogram(x.as_slice()?, fs, levels).map_err(refused)?;
-    Ok(bands.iter().map(|b| (b.low_hz, b.high_hz, b.of_envelope, b.of_spectrum)).collect())
-}
-
 /// Distance and number of the cyclic frequencies, distance of the carriers, values by carrier.
 #[pyfunction]
 pub(crate) fn spectral_correlation<'py>(

@@ -40,10 +40,8 @@ fn _stribeck(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(signals::analyse, module)?)?;
     module.add_function(wrap_pyfunction!(signals::defect_orders, module)?)?;
     module.add_function(wrap_pyfunction!(spectra::get_window, module)?)?;
-    module.add_function(wrap_pyfunction!(spectra::dpss, module)?)?;
     module.add_function(wrap_pyfunction!(spectra::welch, module)?)?;
     module.add_function(wrap_pyfunction!(spectra::spectrogram, module)?)?;
-    module.add_function(wrap_pyfunction!(spectra::multitaper, module)?)?;
     module.add_function(wrap_pyfunction!(spectra::band_rms, module)?)?;
     module.add_function(wrap_pyfunction!(spectra::velocity_rms, module)?)?;
     module.add_function(wrap_pyfunction!(spectra::strongest_line, module)?)?;
@@ -53,14 +51,11 @@ fn _stribeck(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(filters::notch, module)?)?;
     module.add_function(wrap_pyfunction!(filters::envelope, module)?)?;
     module.add_function(wrap_pyfunction!(filters::envelope_spectrum, module)?)?;
-    module.add_function(wrap_pyfunction!(filters::cepstral_prewhitening, module)?)?;
     module.add_function(wrap_pyfunction!(filters::resample_poly, module)?)?;
     module.add_function(wrap_pyfunction!(filters::record, module)?)?;
     module.add_function(wrap_pyfunction!(filters::separate, module)?)?;
-    module.add_function(wrap_pyfunction!(filters::momeda, module)?)?;
     module.add_function(wrap_pyfunction!(filters::statistic, module)?)?;
     module.add_function(wrap_pyfunction!(knocks::fast_kurtogram, module)?)?;
-    module.add_function(wrap_pyfunction!(knocks::infogram, module)?)?;
     module.add_function(wrap_pyfunction!(knocks::spectral_correlation, module)?)?;
     module.add_function(wrap_pyfunction!(knocks::band_envelopes, module)?)?;
     module.add_function(wrap_pyfunction!(knocks::event_spacing, module)?)?;

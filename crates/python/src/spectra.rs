@@ -29,12 +29,6 @@ pub(crate) fn get_window<'py>(
     Ok(window(name, periodic)?.samples(count).map_err(refused)?.into_pyarray(py))
 }
 
-/// Prolate spheroidal tapers, one after the other.
-#[pyfunction]
-pub(crate) fn dpss<'py>(py: Python<'py>, len: usize, nw: f64, count: usize) -> PyResult<Array<'py>> {
-    Ok(stribeck_dsp::dpss(len, nw, count).map_err(refused)?.concat().into_pyarray(py))
-}
-
 /// The choices that Welch's estimate and the spectrogram have in common.
 fn options(
     name: &str,
@@ -108,18 +102,6 @@ pub(crate) fn spectrogram<'py>(
     };
     let all = all.map_err(refused)?;
     Ok((all.frequencies_hz.into_pyarray(py), all.times_s.into_pyarray(py), all.values.into_pyarray(py)))
-}
-
-/// Density over the frequencies of `rfft`.
-#[pyfunction]
-pub(crate) fn multitaper<'py>(
-    py: Python<'py>,
-    x: PyReadonlyArray1<'py, f64>,
-    fs: f64,
-    nw: f64,
-    count: usize,
-) -> PyResult<Array<'py>> {
-    Ok(stribeck_dsp::multitaper(x.as_slice()?, fs, nw, count).map_err(refused)?.into_pyarray(py))
 }
 
 /// Density with a Hann window; the whole record is one segment where nobody says otherwise.

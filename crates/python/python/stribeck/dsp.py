@@ -4,13 +4,13 @@ Signals are arrays of one dimension, real, evenly sampled ``fs`` times a second;
 come back are new. What cannot be done is a ``ValueError`` that says why and what to try.
 
 ================================================== ====================================================================
-how strong it is, and at which frequencies         `welch`, `periodogram`, `multitaper`, `band_rms`, `velocity_rms`,
+how strong it is, and at which frequencies         `welch`, `periodogram`, `band_rms`, `velocity_rms`,
                                                    `strongest_line`, `rms`, `peak`, `crest_factor`, `kurtosis`
 how it changes                                     `spectrogram`, `ridge`
 without one line, in one band, at another rate     `iirnotch`, `notch`, `envelope`, `resample_poly`, `record`
-where it knocks, and at what rate                  `fast_kurtogram`, `infogram`, `envelope_spectrum`, `band_envelopes`,
+where it knocks, and at what rate                  `fast_kurtogram`, `envelope_spectrum`, `band_envelopes`,
                                                    `spectral_correlation`, `whitened_spectrum`, `comb_search`
-what repeats and what does not                     `separate`, `cepstral_prewhitening`, `momeda`, `event_spacing`
+what repeats and what does not                     `separate`, `event_spacing`
 over the angle of the shaft                        `ridge_turns`, `order_track`, `means_over_angle`
 ================================================== ====================================================================
 """
@@ -29,28 +29,21 @@ from . import _stribeck
 __all__ = [
     "BandEnvelope",
     "Comb",
-    "Deconvolved",
     "EventSpacing",
-    "InfogramBand",
     "Line",
     "Ridge",
     "band_envelopes",
     "band_rms",
-    "cepstral_prewhitening",
     "comb_search",
     "crest_factor",
-    "dpss",
     "envelope",
     "envelope_spectrum",
     "event_spacing",
     "fast_kurtogram",
     "get_window",
     "iirnotch",
-    "infogram",
     "kurtosis",
     "means_over_angle",
-    "momeda",
-    "multitaper",
     "notch",
     "order_track",
     "peak",
@@ -83,17 +76,6 @@ class Line(NamedTuple):
     """True when the spectrum rises past the end of the band: this is the flank of something outside of it."""
 
 
-class InfogramBand(NamedTuple):
-    """A band of an infogram."""
-
-    low_hz: float
-    high_hz: float
-    of_envelope: float
-    """Negentropy of the squared envelope: how impulsive."""
-    of_spectrum: float
-    """Negentropy of the spectrum of the squared envelope: how much it repeats."""
-
-
 class BandEnvelope(NamedTuple):
     """What one band of a record shows."""
 
@@ -117,16 +99,6 @@ class Comb(NamedTuple):
     """Height of each harmonic, from the first."""
     p_value: float
     """Probability that noise reaches this height anywhere in the search."""
-
-
-class Deconvolved(NamedTuple):
-    """A record through the filter that makes it most like pulses of one period."""
-
-    period: float
-    kurtosis: float
-    """Multipoint kurtosis: 1 when all of the output stands at the pulses."""
-    filter: Samples
-    output: Samples
 
 
 class EventSpacing(NamedTuple):
@@ -207,14 +179,6 @@ def get_window(window: str, Nx: int, fftbins: bool = True) -> Samples:
     return _stribeck.get_window(window, _count("Nx", Nx), fftbins)
 
 
-def dpss(M: int, NW: float, Kmax: int) -> Samples:
-    """The first ``Kmax`` prolate spheroidal tapers of ``M`` samples and half-bandwidth ``NW``, each of unit energy,
-    as ``scipy.signal.windows.dpss(M, NW, Kmax)``. Shape ``(Kmax, M)``. Source: Slepian 1978."""
-    M, Kmax = _count("M", M), _count("Kmax", Kmax)
-    _fits("Kmax", M * Kmax)
-    return _stribeck.dpss(M, NW, Kmax).reshape(Kmax, M)
-
-
 def welch(
     x: ArrayLike,
     fs: float = 1.0,
@@ -272,18 +236,6 @@ def spectrogram(
     nperseg, noverlap, nfft = _count("nperseg", nperseg), _optional("noverlap", noverlap, 0), _optional("nfft", nfft)
     f, t, values = _stribeck.spectrogram(x, fs, window, nperseg, noverlap, nfft, _detrend(detrend), scaling, mode)
     return f, t, values.reshape(len(t), len(f)).T
-
-
-def multitaper(x: ArrayLike, fs: float = 1.0, NW: float = 4.0, Kmax: int | None = None) -> tuple[Samples, Samples]:
-    """Thomson's multitaper density of the whole record: frequencies [Hz] and one-sided values [unit²/Hz].
-
-    The mean of ``Kmax`` tapers, ``2 NW - 1`` without it; two lines closer than ``2 NW`` over the record's length are
-    one. Source: Thomson 1982.
-    """
-    x = _samples(x)
-    count = max(int(2 * NW) - 1, 1) if Kmax is None else _count("Kmax", Kmax)
-    values = _stribeck.multitaper(x, fs, NW, count)
-    return _steps(fs / len(x), len(values)), values
 
 
 def band_rms(x: ArrayLike, fs: float, low_hz: float, high_hz: float, nperseg: int | None = None) -> float:
@@ -389,12 +341,6 @@ def fast_kurtogram(x: ArrayLike, fs: float, levels: int = 5) -> list[tuple[float
     return _stribeck.fast_kurtogram(_samples(x), fs, _count("levels", levels, 0, 40))
 
 
-def infogram(x: ArrayLike, fs: float, levels: int = 5) -> list[InfogramBand]:
-    """The bands of `fast_kurtogram` with two negentropies: how impulsive, and how much it repeats. A single knock
-    raises the first alone; the mean of both is the band where knocks repeat. Source: Antoni 2016."""
-    return [InfogramBand(*band) for band in _stribeck.infogram(_samples(x), fs, _count("levels", levels, 0, 40))]
-
-
 def band_envelopes(
     x: ArrayLike, fs: float, bands_hz: Iterable[Band], highest_hz: float, nperseg: int = 65536
 ) -> list[BandEnvelope]:
@@ -458,21 +404,6 @@ def separate(x: ArrayLike, taps: int = 4096, delay: int = 512) -> tuple[Samples,
     filter of ``taps`` taps, such as gears and shafts, and the rest, such as bearings. ``delay`` [samples] exceeds the
     ringing of resonances. Source: Antoni and Randall 2004."""
     return _stribeck.separate(_samples(x), _count("taps", taps), _count("delay", delay))
-
-
-def cepstral_prewhitening(x: ArrayLike) -> Samples:
-    """The signal with all magnitudes of its spectrum made one: what is periodic loses its lead. Source: Sawalhi and
-    Randall 2011."""
-    return _stribeck.cepstral_prewhitening(_samples(x))
-
-
-def momeda(x: ArrayLike, taps: int, periods: ArrayLike) -> list[Deconvolved]:
-    """Multipoint optimal minimum entropy deconvolution: for each of ``periods`` [samples] the record through the
-    ``taps`` taps that make it most like pulses of that period. Value n of the output stands for sample ``n + taps -
-    1``. Source: McDonald and Zhao 2017."""
-    periods = np.atleast_1d(np.asarray(periods, dtype=np.float64))
-    found = _stribeck.momeda(_samples(x), _count("taps", taps, 1, 1 << 14), _samples(periods, "`periods`").tolist())
-    return [Deconvolved(*one) for one in found]
 
 
 def event_spacing(
