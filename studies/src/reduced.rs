@@ -143,7 +143,7 @@ pub(crate) fn derive(rows: &mut Rows) {
             let mut parts = what.split('_').skip(1);
             let (sensor, hz) = (parts.next()?, parts.next()?.parse::<f64>().ok()?);
             let [off, error] = [off, error].map(|db| decimals(*db, 1));
-            Some(format!("{sensor}, {:.1} kHz: {off} ± {error}", 1e-3 * hz))
+            Some(format!("{sensor}, {:.1} kHz: {off} ± {error}", hz / 1e3))
         });
         words.push(("outside".into(), outside.collect::<Vec<_>>().join("; ")));
         words.into_iter().for_each(|(what, word)| rows.word("shown", &name, &what, &word));

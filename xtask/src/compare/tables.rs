@@ -41,7 +41,10 @@ pub(super) fn page(rounds: usize, measured: &[Measured], absent: &[Absent]) -> S
         digits(most),
         rounds
     );
-    measured.iter().for_each(|m| table(&mut page, m));
+    // Of blocks of several sizes the first is shown; the others are in the file of all runs.
+    let kind = |m: &Measured| m.title.split(' ').next().map(str::to_owned);
+    let is_first = |(n, m): &(usize, &Measured)| measured[..*n].iter().all(|before| kind(before) != kind(m));
+    measured.iter().enumerate().filter(is_first).for_each(|(_, m)| table(&mut page, m));
     if !absent.is_empty() {
         let _ = writeln!(page, "\n## Left out\n");
         for a in absent {
