@@ -64,6 +64,8 @@ pub struct Findings {
     pub fine: Option<Spectrum>,
     /// Squared envelope spectrum of the leading sensor [g⁴]; `None` when the record is too short.
     pub envelope: Option<Spectrum>,
+    /// Why there is none.
+    pub no_envelope: Option<String>,
     /// Squared envelope spectrum of the leading sensor over the angle of the shaft [g⁴], its frequencies
     /// orders; `None` for a speed that does not change, or a record too short.
     pub orders: Option<Spectrum>,

@@ -14,7 +14,7 @@ use crate::bearing::{
 use crate::run::{channels::Sample, host::Progress, setup::Setup, time_loop::Motion};
 use serde::{Deserialize, Serialize};
 use stribeck_scene::{resolved::ResolvedScene, scene::Start};
-use stribeck_store::run_info::RunInfo;
+use stribeck_store::run_info::{RunInfo, Topic, Warning};
 use stribeck_system::{Ledger, Snapshot};
 use stribeck_theory::duty::Duty;
 
@@ -108,7 +108,7 @@ impl Model for Full {
             wall_s: (with.host.wall_s)() - started,
             carried_mass: full.carried_mass(),
             notes: own_mesh::notes(&scene.written),
-            warnings: Vec::from_iter(preloaded),
+            warnings: Vec::from_iter(preloaded.map(|words| Topic::Start.warning(words))),
         };
         Ok((full, setup))
     }
@@ -120,7 +120,7 @@ impl Model for Full {
         Ok(full)
     }
 
-    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<String> {
+    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<Warning> {
         Guards::before(scene, self.assembly.steel(), info)
     }
 

@@ -9,7 +9,10 @@ use crate::run::{
 };
 use serde::{Serialize, de::DeserializeOwned};
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_store::{run_dir::RunDir, run_info::RunInfo};
+use stribeck_store::{
+    run_dir::RunDir,
+    run_info::{RunInfo, Warning},
+};
 
 use crate::error::Error;
 
@@ -64,7 +67,7 @@ pub(crate) trait Model: Sized {
     fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error>;
 
     /// Warnings before the first step.
-    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<String>;
+    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<Warning>;
 
     /// Content of `mesh.vtu` at the start.
     ///

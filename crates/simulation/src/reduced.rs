@@ -16,7 +16,7 @@ use stribeck_scene::{
     resolved::ResolvedScene,
     scene::{ContactSurface, ModelScene, ReducedScene},
 };
-use stribeck_store::run_info::{ReducedInfo, RunInfo};
+use stribeck_store::run_info::{ReducedInfo, RunInfo, Topic, Warning};
 use stribeck_theory::kinematics::Kinematics;
 
 use crate::{
@@ -66,7 +66,7 @@ impl Model for Reduced {
         let (bearing, steps_per_sample) = in_steps(scene, &wanted, modal_bearing(scene, reduction)?)?;
         let state = bearing.at_start(&dense::solve)?;
         let (time_step, critical_time_step) = (bearing.time_step, bearing.critical_time_step());
-        let mut warnings = Vec::from_iter(warning);
+        let mut warnings = Vec::from_iter(warning.map(|words| Topic::Start.warning(words)));
         warnings.extend(too_few_modes(scene, &wanted, between_rollers));
         warnings.extend(shorter_steps(&wanted, time_step, critical_time_step));
         let setup = Setup {
@@ -90,7 +90,7 @@ impl Model for Reduced {
         Ok(Self { assembly, bearing, moved: mesh.moved, start: None })
     }
 
-    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<String> {
+    fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<Warning> {
         let mut warnings = Guards::before(scene, &self.bearing);
         warnings.extend(fast_facets(scene, &self.assembly, info.time_step_s));
         warnings
@@ -142,11 +142,11 @@ const LEFT_OUT: f64 = 0.15;
 
 /// A warning where the raceway bends between rollers in more than the modes, by some length [m] at the
 /// preload.
-fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: f64) -> Option<String> {
+fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: f64) -> Option<Warning> {
     let approach = scene.static_load().ok()?.max_approach_m();
     let share = between_rollers / approach;
     (share > LEFT_OUT).then(|| {
-        format!(
+        Topic::Modes.warning(format!(
             "the modes below {} kHz leave out {:.2} µm by which the outer ring bends between the rollers, \
              {:.0} % of the approach under the most loaded one: forces of rollers may be off by some per \
              cent. Take `model.modes_khz` of {:.0}, or as much more as it takes",
@@ -154,27 +154,27 @@ fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: 
             1e6 * between_rollers,
             1e2 * share,
             (2.0 * wanted.modes_khz).min(300.0)
-        )
+        ))
     })
 }
 
 /// A warning where the critical time step makes steps shorter than the scene's, with the cause.
-fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option<String> {
+fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option<Warning> {
     let longest = 1e-6 * wanted.step_us;
     (time_step < longest && critical < longest).then(|| {
-        format!(
+        Topic::TimeStep.warning(format!(
             "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} \
              µs. A smaller `model.modes_khz` or `contact.penalty_scale` allows longer ones",
             wanted.step_us,
             1e6 * time_step,
             1e6 * critical
-        )
+        ))
     })
 }
 
 /// A warning where facets pass their contacts in so few steps that the force between two of them is not
 /// resolved: the energy is then off by an error that grows with the square of the time step [s].
-fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Option<String> {
+fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Option<Warning> {
     if scene.written.contact.surface != ContactSurface::Facet {
         return None;
     }
@@ -189,14 +189,14 @@ fn fast_facets(scene: &ResolvedScene, assembly: &Assembly, time_step: f64) -> Op
     let hz = hz.fold(0.0, f64::max);
     let steps = 1.0 / (hz * time_step);
     (steps < STEPS_A_FACET).then(|| {
-        format!(
+        Topic::TimeStep.warning(format!(
             "at this speed a facet passes its contact in {steps:.1} steps of {:.2} µs ({:.1} kHz), and the \
              energy is off by an error that grows with the square of the step: take `model.step_us` below \
              {:.2}, fewer `mesh.roller_facets`, or `contact.surface: arc`",
             1e6 * time_step,
             1e-3 * hz,
             1e6 / (hz * STEPS_A_FACET)
-        )
+        ))
     })
 }
 

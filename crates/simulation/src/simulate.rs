@@ -112,7 +112,7 @@ impl Task for Begin<'_> {
         with.enter("mesh", watch);
         let (model, setup) = M::prepare(&mut with, watch)?;
         let mut info = setup.info(scene, host);
-        info.warnings.extend(model.warnings(scene, &info));
+        model.warnings(scene, &info).into_iter().for_each(|warning| info.warn(warning));
         dir.start(&scene.written, &info)?;
         write_atomic(&dir.mesh(), &model.mesh_file(scene)?)?;
         let motion = model.start(&with);

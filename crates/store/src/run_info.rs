@@ -64,6 +64,63 @@ pub struct RunInfo {
     pub notes: Vec<String>,
     /// Warnings, in the order in which they arose.
     pub warnings: Vec<String>,
+    /// What each of them is about.
+    #[serde(default)]
+    pub warned_of: Vec<Topic>,
+}
+
+/// A warning of a run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Warning {
+    /// What it is about.
+    pub topic: Topic,
+    /// Its words: what was seen and what to change.
+    pub words: String,
+}
+
+/// What a warning is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Topic {
+    /// Contact that sinks in: the first thing to know of a run.
+    Contact,
+    /// The balance of energy.
+    Energy,
+    /// The time step.
+    TimeStep,
+    /// Elements that bend too much or turn inside out.
+    Elements,
+    /// The modes of a reduced model.
+    Modes,
+    /// Where rollers and cage are, and what carries the load.
+    Motion,
+    /// The state from which the run starts.
+    Start,
+    /// Pictures that the page lacks.
+    Pictures,
+    /// The files of the run.
+    Files,
+}
+
+impl Topic {
+    /// A warning about it.
+    pub fn warning(self, words: impl Into<String>) -> Warning {
+        Warning { topic: self, words: words.into() }
+    }
+}
+
+impl RunInfo {
+    /// Adds a warning.
+    pub fn warn(&mut self, Warning { topic, words }: Warning) {
+        self.warnings.push(words);
+        self.warned_of.push(topic);
+    }
+
+    /// The warnings with what they are about; `None` in runs of earlier versions.
+    pub fn warned(&self) -> impl Iterator<Item = (Option<Topic>, &String)> {
+        let topics = self.warned_of.iter().copied().map(Some).chain(std::iter::repeat(None));
+        topics.zip(&self.warnings)
+    }
 }
 
 /// How a run ended.

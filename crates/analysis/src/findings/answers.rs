@@ -64,16 +64,20 @@ pub(super) struct LeadingSpectrum {
 pub(super) struct EnvelopeAnswer {
     pub(super) spectrum: Option<Spectrum>,
     pub(super) finding: Option<EnvelopeFinding>,
+    /// Why there is none.
+    pub(super) why_not: Option<String>,
 }
 
 impl EnvelopeAnswer {
     /// A note gives the reason where there is none.
     pub(super) fn with_note(enveloped: Option<Enveloped>, notes: &mut Vec<String>) -> Self {
         match enveloped {
-            Some(Ok((spectrum, finding))) => Self { spectrum: Some(spectrum), finding: Some(finding) },
+            Some(Ok((spectrum, finding))) => {
+                Self { spectrum: Some(spectrum), finding: Some(finding), why_not: None }
+            }
             Some(Err(why)) => {
-                notes.push(why);
-                Self::default()
+                notes.push(why.clone());
+                Self { why_not: Some(why), ..Self::default() }
             }
             None => Self::default(),
         }

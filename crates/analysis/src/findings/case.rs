@@ -353,6 +353,7 @@ impl<'a> Case<'a> {
             support_n: answers.carried.into_support(),
             fine: answers.spectrum.fine,
             envelope: answers.envelope.spectrum,
+            no_envelope: answers.envelope.why_not,
             orders: answers.orders.spectrum,
             static_curve: answers.at_rest.curve,
             family_signals: answers.mesh.signals,

@@ -6,7 +6,7 @@ use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::{DeviationScene, RollingSurface};
 use stribeck_scene::scene::{DefectRing, DefectScene};
 use stribeck_store::run_dir::Run;
-use stribeck_store::run_info::imbalance;
+use stribeck_store::run_info::{Topic, imbalance};
 
 use stribeck_analysis::artefacts::{Artefact, Origin};
 use stribeck_analysis::duty::DutyFinding;
@@ -61,17 +61,14 @@ fn caution(run: &Run, summary: &Summary) -> String {
 
 /// Warnings of the run and of its load, those of the contact first; that pictures are missing is a note.
 fn warnings(run: &Run, summary: &Summary) -> Vec<String> {
-    let of_run = run.info.warnings.iter().filter(|words| !is_of_pictures(words)).cloned();
+    let of_run = run.info.warned().filter(|(topic, _)| *topic != Some(Topic::Pictures));
+    let of_run = of_run.map(|(topic, words)| (topic, words.clone()));
     let motion = &summary.kinematics;
     let of_load = rolling::warnings(summary.load.expected_n, summary.load.least_rolling_n, motion);
-    let mut all: Vec<String> = of_run.chain(of_load).map(|words| sentence(&words)).collect();
-    all.sort_by_key(|words| !words.starts_with("Contact"));
-    all
-}
-
-/// Whether a warning of a run concerns only pictures that its page will lack.
-pub(super) fn is_of_pictures(warning: &str) -> bool {
-    warning.starts_with("no pictures")
+    let of_load = of_load.into_iter().map(|words| (Some(Topic::Motion), words));
+    let mut all: Vec<_> = of_run.chain(of_load).collect();
+    all.sort_by_key(|(topic, _)| *topic != Some(Topic::Contact));
+    all.iter().map(|(_, words)| sentence(words)).collect()
 }
 
 /// Which families of facet lines are there, in one sentence; where exactly stands at the spectrum.
@@ -285,7 +282,7 @@ fn physics(summary: &Summary) -> String {
     lines.unwrap_or_default().trim_start().to_owned()
 }
 
-/// Limits of the numbers, one paragraph a subject.
+/// Limits of the numbers, one paragraph a topic.
 fn trust(summary: &Summary) -> Vec<String> {
     let EnergyFinding { max_relative_error, share_of_heat, .. } = summary.energy;
     let load = summary

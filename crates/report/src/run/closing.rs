@@ -4,14 +4,15 @@ use std::fs;
 
 use maud::{Markup, html};
 use stribeck_analysis::summary::Summary;
-use stribeck_store::run_info::RunInfo;
+use stribeck_store::run_info::{RunInfo, Topic};
 
-use super::{Subject, answer};
+use super::Subject;
 use crate::page::{Section, sentence, with_code};
 
 /// Notes of the analysis, and warnings of the run that concern its pictures.
 pub(super) fn notes(of: &Subject<'_>) -> Section {
-    let of_pictures = of.run.info.warnings.iter().filter(|words| answer::is_of_pictures(words));
+    let of_pictures = of.run.info.warned().filter(|(topic, _)| *topic == Some(Topic::Pictures));
+    let of_pictures = of_pictures.map(|(_, words)| words);
     Section::new("notes", "Notes").after(html! {
         p class="hint" {
             "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a \

@@ -99,6 +99,7 @@ pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
         expected_support_n: SUPPORT_N,
         notes: Vec::new(),
         warnings: vec!["the sensor `seat` lies under the adapter".into()],
+        warned_of: Vec::new(),
     }
 }
 

@@ -17,8 +17,8 @@ use crate::bearing::assembly::{Assembly, BearingSystem};
 use crate::run::guards::{self, OUT_OF_PLACE, Placed, When};
 use stribeck_scene::{resolved::ResolvedScene, scene::GuardsScene};
 use stribeck_solver::Elastic;
-use stribeck_store::run_info::RunInfo;
-use stribeck_system::{Limits, Scale, System, Words};
+use stribeck_store::run_info::{RunInfo, Topic, Warning};
+use stribeck_system::{Limits, Scale, System, Watched, Words};
 
 /// A critical time step that is this share of that of a square cell of the scene's size is worth a warning.
 const SMALL_STEP: f64 = 0.25;
@@ -50,16 +50,16 @@ impl Guards {
     }
 
     /// Warnings before the first step.
-    pub(super) fn before(scene: &ResolvedScene, steel: &Elastic, info: &RunInfo) -> Vec<String> {
+    pub(super) fn before(scene: &ResolvedScene, steel: &Elastic, info: &RunInfo) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let (step, critical) = (info.time_step_s, info.critical_time_step_s);
         if step > critical {
-            warnings.push(format!(
+            warnings.push(Topic::TimeStep.warning(format!(
                 "the time step of {:.2} ns is {:.3} times the critical one: the run may diverge. Take a \
                  `solver.time_step_factor` below 1",
                 1e9 * step,
                 step / critical
-            ));
+            )));
         }
         let facet = std::f64::consts::PI * scene.written.bearing.roller_diameter_mm
             / scene.written.mesh.roller_facets as f64;
@@ -68,7 +68,7 @@ impl Guards {
         // row.
         let square = size / steel.dilatational_speed();
         if critical < SMALL_STEP * square {
-            warnings.push(format!(
+            warnings.push(Topic::TimeStep.warning(format!(
                 "the critical time step of {:.2} ns is {:.1} % of the {:.1} ns of square cells of {:.2} mm: \
                  some cell is very small, or the contact very stiff, or stiffness damping strong. Look at \
                  `defect.depth_mm`, `mesh.roller_facets`, `contact.penalty_scale` and \
@@ -78,7 +78,7 @@ impl Guards {
                 1e9 * square,
                 1e3 * size,
                 square / critical
-            ));
+            )));
         }
         warnings
     }
@@ -91,7 +91,13 @@ impl Guards {
                 // The first reason is reported.
                 stop.get_or_insert(finding.message);
             } else {
-                info.warnings.push(finding.message);
+                let topic = match finding.watched {
+                    Watched::Energy => Topic::Energy,
+                    Watched::Hourglass | Watched::Distortion => Topic::Elements,
+                    Watched::Penetration => Topic::Contact,
+                    Watched::TimeStep => Topic::TimeStep,
+                };
+                info.warn(topic.warning(finding.message));
             }
         }
         let (seen, guards) = (bearing.system.seen(), &mut info.guards);

@@ -3,7 +3,7 @@
 use crate::run::guards::{self, Placed, When};
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
 use stribeck_scene::{resolved::ResolvedScene, scene::GuardsScene};
-use stribeck_store::run_info::RunInfo;
+use stribeck_store::run_info::{RunInfo, Topic, Warning};
 use stribeck_system::Ledger;
 
 /// Imbalance of a run's ledger, and the energies that it is compared with.
@@ -90,22 +90,21 @@ impl Guards {
     }
 
     /// Warnings before the first step.
-    pub(super) fn before(scene: &ResolvedScene, bearing: &Bearing) -> Vec<String> {
+    pub(super) fn before(scene: &ResolvedScene, bearing: &Bearing) -> Vec<Warning> {
         let mut warnings = Vec::new();
         let modes = bearing.reduction.modes;
         if bearing.has_seat() && modes < FEW_MODES {
-            warnings.push(format!(
+            warnings.push(Topic::Modes.warning(format!(
                 "only {modes} modes of ring and housing lie below `model.modes_khz`, and the ring may bend \
                  in none of them: such runs find no start or gain energy with steps of any length. Take a \
                  larger `model.modes_khz`"
-            ));
+            )));
         }
         if scene.written.output.frames.is_some() {
-            warnings.push(
+            warnings.push(Topic::Pictures.warning(
                 "no pictures of the stress: the reduced model has no elements beside its modes. `model: \
-                 full` has them"
-                    .to_owned(),
-            );
+                 full` has them",
+            ));
         }
         warnings
     }
@@ -154,11 +153,11 @@ impl Guards {
         let of_larger = percent.min(100.0 * off.of_heat);
         if of_larger > limits.energy_warning_percent && !info.guards.energy_warned {
             info.guards.energy_warned = true;
-            info.warnings.push(format!(
+            info.warn(Topic::Energy.warning(format!(
                 "energy was off by {percent:.3} % of the most that rings and contacts have stored and {} \
                  {when}: take a smaller `model.step_us`",
                 off.share_of_heat()
-            ));
+            )));
         }
         None
     }
@@ -184,10 +183,10 @@ impl Guards {
         let [warning, stop] =
             [self.limits.penetration_warning_percent, self.limits.penetration_stop_percent].map(|p| 0.01 * p);
         if share > warning && before <= warning {
-            info.warnings.push(format!(
+            info.warn(Topic::Contact.warning(format!(
                 "contact has sunk in by {:.1} % of an element {when}: take a larger `contact.penalty_scale`",
                 100.0 * share
-            ));
+            )));
         }
         (share > stop).then(|| {
             format!(

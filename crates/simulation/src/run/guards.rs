@@ -18,7 +18,7 @@ mod softness;
 use std::fmt::{self, Display, Formatter};
 
 use stribeck_scene::{advice, resolved::ResolvedScene};
-use stribeck_store::run_info::RunInfo;
+use stribeck_store::run_info::{RunInfo, Topic};
 
 use softness::Softness;
 
@@ -122,7 +122,7 @@ impl Guards {
         info.guards.penetration_share = info.guards.penetration_share.max(share);
         let deepest = self.element_size * info.guards.penetration_share;
         if before <= self.soft.limit() && deepest > self.soft.limit() {
-            info.warnings.push(self.soft.warning(deepest, &When::of(info)));
+            info.warn(Topic::Contact.warning(self.soft.warning(deepest, &When::of(info))));
         }
     }
 
@@ -134,12 +134,13 @@ impl Guards {
         let is_new = time > self.unsupported && seen.longest_unsupported_s <= self.unsupported;
         seen.longest_unsupported_s = seen.longest_unsupported_s.max(time);
         if is_new {
-            info.warnings.push(format!(
+            let when = When::of(info);
+            info.warn(Topic::Motion.warning(format!(
                 "no roller has carried anything for {:.2} ms {}: the load hangs in the air. Start \
                  `preloaded`, or look at `bearing` for a clearance that the load cannot close",
                 1e3 * time,
-                When::of(info)
-            ));
+                when
+            )));
         }
     }
 
@@ -178,13 +179,13 @@ impl Guards {
             ));
         }
         if off > room.warning && before <= room.warning {
-            info.warnings.push(format!(
+            info.warn(Topic::Motion.warning(format!(
                 "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a \
                  real one would rub on a ring, which the model does not have. To hold it, take {}",
                 1e3 * off,
                 room.in_words(),
                 self.holds_cage
-            ));
+            )));
         }
         None
     }

@@ -4,7 +4,7 @@ use serde::{Serialize, de::DeserializeOwned};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_store::{
     run_dir::RunDir,
-    run_info::{RunInfo, Status},
+    run_info::{RunInfo, Status, Topic},
 };
 
 use crate::error::Error;
@@ -16,11 +16,11 @@ use crate::run::{
 /// Hands the run of a checkpoint over to this program.
 pub fn take_over(info: &mut RunInfo, scene: &ResolvedScene, host: &Host<'_>) {
     if (&info.version, &info.commit) != (&host.version, &host.commit) {
-        info.warnings.push(format!(
+        info.warn(Topic::Files.warning(format!(
             "version {} ({}) began this run and version {} ({}) continued it: its bits may differ from those \
              of an unbroken run",
             info.version, info.commit, host.version, host.commit
-        ));
+        )));
     }
     info.version.clone_from(&host.version);
     info.commit.clone_from(&host.commit);
@@ -43,7 +43,9 @@ pub fn read_saved<S: Serialize + DeserializeOwned>(
     let doubt = may_go_on(dir, scene)?;
     let mut saved = Checkpoint::read(&dir.checkpoint(), &identity(&scene.written))?;
     saved.info.steps_planned = check_counts(dir, scene, &saved.info)?;
-    saved.info.warnings.extend(doubt);
+    if let Some(doubt) = doubt {
+        saved.info.warn(Topic::Files.warning(doubt));
+    }
     Ok(saved)
 }
 

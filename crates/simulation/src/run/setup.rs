@@ -1,7 +1,7 @@
 //! The set-up of a run: everything known before its first step.
 
 use stribeck_scene::resolved::ResolvedScene;
-use stribeck_store::run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status};
+use stribeck_store::run_info::{EnergyInfo, GuardInfo, MeshInfo, ReducedInfo, RunInfo, Status, Warning};
 
 use crate::run::host::Host;
 
@@ -25,7 +25,7 @@ pub struct Setup {
     /// Parts of the scene's mesh files that were ignored.
     pub notes: Vec<String>,
     /// Warnings of the preload and of the model.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 impl Setup {
@@ -33,7 +33,7 @@ impl Setup {
     pub fn info(self, scene: &ResolvedScene, host: &Host<'_>) -> RunInfo {
         let &ResolvedScene { interval, duration, .. } = scene;
         let samples = (duration / interval).round().max(1.0) as usize;
-        RunInfo {
+        let mut info = RunInfo {
             version: host.version.clone(),
             commit: host.commit.clone(),
             scene_hash: scene.written.hash(),
@@ -59,8 +59,11 @@ impl Setup {
             guards: GuardInfo::default(),
             expected_support_n: expected_support(scene, self.carried_mass),
             notes: self.notes,
-            warnings: self.warnings,
-        }
+            warnings: Vec::new(),
+            warned_of: Vec::new(),
+        };
+        self.warnings.into_iter().for_each(|warning| info.warn(warning));
+        info
     }
 }
 

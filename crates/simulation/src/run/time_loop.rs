@@ -14,7 +14,7 @@ use crate::run::{
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_store::{
     run_dir::{RunDir, write_atomic},
-    run_info::{RunInfo, Status},
+    run_info::{RunInfo, Status, Topic},
     trace::TraceWriter,
 };
 
@@ -259,7 +259,8 @@ impl<M: Motion> Run<M> {
         {
             saved.failed = true;
             let at = 1e3 * self.motion.time();
-            self.info.warnings.push(format!("no checkpoint at {at:.3} ms, the run went on: {error}"));
+            let words = format!("no checkpoint at {at:.3} ms, the run went on: {error}");
+            self.info.warn(Topic::Files.warning(words));
         }
         saved.sample = self.info.samples;
         saved.wall_s = (host.wall_s)();

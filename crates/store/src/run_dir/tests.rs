@@ -41,6 +41,7 @@ fn info(status: Status) -> RunInfo {
         resumed_at_s: vec![1e-5],
         notes: Vec::new(),
         warnings: vec!["one".into()],
+        warned_of: Vec::new(),
     }
 }
 

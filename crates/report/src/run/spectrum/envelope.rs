@@ -53,8 +53,8 @@ pub(super) fn table(findings: &Findings) -> Markup {
         return html! {};
     }
     let Some(envelope) = &summary.envelope else {
-        let why = summary.notes.iter().find(|n| n.starts_with("no envelope spectrum"));
-        return html! { p class="hint" { (why.map_or("No envelope spectrum was made.", String::as_str)) "." } };
+        let why = findings.no_envelope.as_deref().unwrap_or("no envelope spectrum was made");
+        return html! { p class="hint" { (why) "." } };
     };
     let name = findings.prediction.shocks.map_or(Defect::Bpfo.name(), Shocks::name);
     let head = html! {
