@@ -39,6 +39,7 @@ const CHECKS: &[Check] = &[
     ("commands in the documents exist", documents::check_commands),
     ("scenes in the documents can be run", documents::check_scenes),
     ("the guide lists the fields that scenes have", crate::fields::check),
+    ("the guide lists the numbers that summaries have", crate::quantities::check),
     ("tests have a prefix, and a source where they need one", test_names::check),
     ("VALIDATION says what the tests say", validation::check),
 ];

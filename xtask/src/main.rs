@@ -10,6 +10,7 @@ mod fields;
 mod fmu;
 mod handed_on;
 mod lab;
+mod quantities;
 mod wheel;
 mod workspace;
 
@@ -49,6 +50,8 @@ enum Command {
     Fmu(fmu::Options),
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
+    /// Writes the guide's page of all numbers of a run from the summary's declarations
+    Quantities(quantities::Options),
     /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
     Fuzz(handed_on::Words),
     /// Checks format, lints, tests and documents
@@ -79,6 +82,7 @@ fn main() -> ExitCode {
         Command::Book => book::run(),
         Command::Fmu(options) => fmu::build(&options),
         Command::Fields(options) => fields::run(&options),
+        Command::Quantities(options) => quantities::run(&options),
         Command::Fuzz(words) => handed_on::study(Some("fuzz"), &words, cli.loudness),
         Command::Ci(options) => ci::run(&options),
     })

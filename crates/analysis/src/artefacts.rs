@@ -9,6 +9,7 @@ use crate::Error;
 use crate::families::FamilyFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::Prediction;
+use crate::quantity::{Part, quantities};
 use crate::ring;
 use crate::tones::{self, PredictedLine, Tone};
 
@@ -26,25 +27,29 @@ pub enum Origin {
     Ring,
 }
 
-/// One line of the ledger.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Artefact {
-    /// Its origin.
-    pub family: Origin,
-    /// Name in words.
-    pub name: String,
-    /// Multiple of the fundamental, from 1.
-    pub harmonic: usize,
-    /// Predicted frequency without slip [Hz].
-    pub predicted_hz: f64,
-    /// The same from the recorded motion [Hz].
-    pub from_motion_hz: Option<f64>,
-    /// Measured frequency [Hz].
-    pub measured_hz: Option<f64>,
-    /// Peak amplitude [g].
-    pub level_g: Option<f64>,
-    /// Interpretation in words.
-    pub verdict: String,
+impl Part for Origin {}
+
+quantities! {
+    /// One line of the ledger.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct Artefact {
+        /// Its origin.
+        pub family: Origin,
+        /// Name in words.
+        pub name: String,
+        /// Multiple of the fundamental, from 1.
+        pub harmonic: usize,
+        /// Predicted frequency without slip [Hz].
+        pub predicted_hz: f64,
+        /// The same from the recorded motion [Hz].
+        pub from_motion_hz: Option<f64>,
+        /// Measured frequency [Hz].
+        pub measured_hz: Option<f64>,
+        /// Peak amplitude [g].
+        pub level_g: Option<f64>,
+        /// Interpretation in words.
+        pub verdict: String,
+    }
 }
 
 /// Harmonics of the defect line that are looked for.

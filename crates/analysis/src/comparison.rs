@@ -6,17 +6,18 @@ mod fields;
 mod quantity;
 mod side;
 
-use std::collections::BTreeMap;
-
 use serde::Serialize;
 use stribeck_dsp::BandEnvelope;
 
 use crate::Error;
 use crate::ensemble::Merged;
+use crate::quantity::Quantity;
 use crate::statistic::{Statistic, band};
+use crate::summary::Summary;
 pub use contrast::{Contrast, Verdict};
 pub use fields::{FieldDifference, differences};
-pub use side::{Kind, Member, Sampled, Shape, Side};
+pub use quantity::{OF_SIGNAL, OfSignal};
+pub use side::{Kind, Member, Sampled, Side};
 
 /// Contents of `compare.json`.
 #[derive(Debug, Clone, Serialize)]
@@ -77,20 +78,25 @@ impl Comparison {
         let fields = differences(&scenes);
         let units: Vec<&str> = sides.iter().map(|side| side.unit.as_str()).collect();
         let one_unit = units.windows(2).all(|pair| pair[0] == pair[1]);
-        let rows = quantity::ALL.iter().filter_map(|q| {
-            let of_signal = q.unit == quantity::OF_SIGNAL;
-            // Volts and g have no difference.
-            if of_signal && !one_unit {
-                return None;
-            }
-            let unit = if of_signal { units.first().copied().unwrap_or("") } else { q.unit };
+        let row = |name: &str, words: &str, unit: &str, of: &dyn Fn(&Member) -> Option<f64>| {
             let values = sides.iter().map(|side| {
-                let values: Vec<f64> = side.members.iter().filter_map(|member| q.of(member)).collect();
-                Statistic::of(&values, side.members.len())
+                let values = side.members.iter().filter_map(|member| of(member).filter(|x| x.is_finite()));
+                Statistic::of(&values.collect::<Vec<_>>(), side.members.len())
             });
-            Row::of(q.name, q.words, unit, values.collect())
+            Row::of(name, words, unit, values.collect())
+        };
+        // Volts and g have no difference.
+        let of_signal = OF_SIGNAL.iter().filter(|q| one_unit || q.unit.is_some()).filter_map(|q| {
+            let unit = q.unit.unwrap_or(units.first().copied().unwrap_or(""));
+            row(q.name, q.words, unit, &q.of)
         });
-        let rows = rows.collect();
+        let of_run = Summary::main_quantities().into_iter().filter_map(|q| {
+            let of = |member: &Member| q.number(&member.summary);
+            // By itself `mean_n` does not say of what.
+            let name = if q.path == "load.mean_n" { "support_n" } else { q.name() };
+            row(name, q.words.unwrap_or(&q.path), q.unit(), &of)
+        });
+        let rows = of_signal.chain(of_run).collect();
         let numbers = numbers(&sides)?;
         let notes = notes(&sides, one_unit);
         Ok(Self { sides, fields, rows, numbers, notes })
@@ -177,32 +183,18 @@ fn mean(curves: &[&[f64]]) -> Vec<f64> {
 /// the runs' own pages.
 fn numbers(sides: &[Side]) -> Result<Vec<Row>, Error> {
     let merged: Vec<Merged> = sides.iter().map(Side::merged).collect::<Result<_, _>>()?;
-    let mut all: BTreeMap<String, Vec<Option<Statistic>>> = BTreeMap::new();
-    for (place, merged) in merged.iter().enumerate() {
-        flatten(merged, "", &mut |path, statistic| {
-            all.entry(path).or_insert_with(|| vec![None; sides.len()])[place] = Some(statistic);
-        });
-    }
-    let differs = |values: &[Option<Statistic>]| {
+    let mut all = Summary::quantities();
+    // The cost of a run depends on the computer.
+    all.retain(|quantity| !quantity.is_listed && !quantity.path.starts_with("run."));
+    all.sort_by(|a, b| a.path.cmp(&b.path));
+    let rows = all.iter().filter_map(|Quantity { path, .. }| {
+        let values: Vec<Option<Statistic>> =
+            merged.iter().map(|merged| merged.number(path).copied()).collect();
         let means: Vec<f64> = values.iter().flatten().map(|s| s.mean).collect();
-        means.windows(2).any(|pair| pair[0] != pair[1])
-    };
-    let rows = all.into_iter().filter(|(_, values)| differs(values));
-    Ok(rows.filter_map(|(path, values)| Row::of(&path, &path, "", values)).collect())
-}
-
-fn flatten(merged: &Merged, path: &str, take: &mut impl FnMut(String, Statistic)) {
-    match merged {
-        Merged::Number(statistic) => take(path.to_owned(), *statistic),
-        Merged::Group(fields) => {
-            // The cost of a run depends on the computer.
-            for (name, inner) in fields.iter().filter(|(name, _)| !(path.is_empty() && *name == "run")) {
-                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-                flatten(inner, &path, take);
-            }
-        }
-        _ => {}
-    }
+        let differ = means.windows(2).any(|pair| pair[0] != pair[1]);
+        differ.then(|| Row::of(path, path, "", values)).flatten()
+    });
+    Ok(rows.collect())
 }
 
 fn notes(sides: &[Side], one_unit: bool) -> Vec<String> {

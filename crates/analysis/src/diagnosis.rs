@@ -14,6 +14,7 @@ use stribeck_theory::kinematics::Kinematics;
 use crate::Error;
 use crate::defect;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
+use crate::quantity::quantities;
 use crate::record::Record;
 
 /// Speed of the outer ring of a scene, positive where it turns as the shaft does against it [1/min]; none where
@@ -26,55 +27,61 @@ pub fn outer_speed_rpm(scene: &Scene) -> f64 {
     operation.outer_speed_rpm * (operation.speed_rpm - operation.outer_speed_rpm).signum()
 }
 
-/// Verdict on a record, beside the truth.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct DiagnosisFinding {
-    /// The sensor and component, as the trace names it.
-    pub channel: String,
-    /// The conclusion in one sentence.
-    pub verdict: String,
-    /// One over the length of the segments behind the envelope spectra [Hz].
-    pub resolution_hz: f64,
-    /// Every family.
-    pub families: Vec<DiagnosedFamily>,
+quantities! {
+    /// Verdict on a record, beside the truth.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct DiagnosisFinding {
+        /// The sensor and component, as the trace names it.
+        pub channel: String,
+        /// The conclusion in one sentence.
+        pub verdict: String,
+        /// One over the length of the segments behind the envelope spectra [Hz].
+        pub resolution_hz: f64,
+        /// Every family.
+        pub families: Vec<DiagnosedFamily>,
+    }
 }
 
-/// One family of lines in the envelope spectra.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct DiagnosedFamily {
-    /// Whose family it is.
-    pub name: Defect,
-    /// Frequency of rolling without slip [Hz].
-    pub expected_hz: f64,
-    /// Frequency of the recorded motion [Hz].
-    pub from_motion_hz: Option<f64>,
-    /// Frequency at which the family stands [Hz]; `None` when it is not there.
-    pub measured_hz: Option<f64>,
-    /// Height of its first harmonic above the background [dB].
-    pub level_db: Option<f64>,
-    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
-    /// lines.
-    #[serde(default)]
-    pub in_passages: bool,
-    /// Whether the verdict claims such a defect.
-    pub claimed: bool,
-    /// Whether the scene has such a defect.
-    pub present: bool,
-    /// Why it is claimed, or not.
-    pub reason: String,
-    /// The sidebands that the load zone and the rotation of the defect make.
-    pub sidebands: Option<Sidebands>,
+quantities! {
+    /// One family of lines in the envelope spectra.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct DiagnosedFamily {
+        /// Whose family it is.
+        pub name: Defect,
+        /// Frequency of rolling without slip [Hz].
+        pub expected_hz: f64,
+        /// Frequency of the recorded motion [Hz].
+        pub from_motion_hz: Option<f64>,
+        /// Frequency at which the family stands [Hz]; `None` when it is not there.
+        pub measured_hz: Option<f64>,
+        /// Height of its first harmonic above the background [dB].
+        pub level_db: Option<f64>,
+        /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+        /// lines.
+        #[serde(default)]
+        pub in_passages: bool,
+        /// Whether the verdict claims such a defect.
+        pub claimed: bool,
+        /// Whether the scene has such a defect.
+        pub present: bool,
+        /// Why it is claimed, or not.
+        pub reason: String,
+        /// The sidebands that the load zone and the rotation of the defect make.
+        pub sidebands: Option<Sidebands>,
+    }
 }
 
-/// Sidebands of the first three harmonics of a family.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Sidebands {
-    /// Distance from the harmonic: `shaft` or `cage`.
-    pub of: String,
-    /// The same [Hz].
-    pub spacing_hz: f64,
-    /// Number of them above the noise, of six.
-    pub seen: usize,
+quantities! {
+    /// Sidebands of the first three harmonics of a family.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct Sidebands {
+        /// Distance from the harmonic: `shaft` or `cage`.
+        pub of: String,
+        /// The same [Hz].
+        pub spacing_hz: f64,
+        /// Number of them above the noise, of six.
+        pub seen: usize,
+    }
 }
 
 /// Diagnosis of channel `name` without the scene; `None` where it is too short or not recorded. The longest

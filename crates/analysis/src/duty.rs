@@ -25,6 +25,7 @@ use crate::Error;
 use crate::defect::Shocks;
 use crate::enveloping::band_hz;
 use crate::kinematics::{KinematicsFinding, mean};
+use crate::quantity::quantities;
 use crate::record::Record;
 use crate::tones;
 use stribeck_diagnosis::Defect;
@@ -43,56 +44,62 @@ const LEAST_STEPS: usize = 256;
 /// Load on the housing along its direction, recorded where it changes.
 pub const LOAD: &str = "adapter.load_n";
 
-/// Speed, load and orders of a run whose speed or load changes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct DutyFinding {
-    /// Least and largest speed on record, clockwise positive [1/min].
-    pub speed_rpm: (f64, f64),
-    /// The same of the outer ring.
-    #[serde(default)]
-    pub outer_speed_rpm: (f64, f64),
-    /// The same of the shaft against the outer ring.
-    #[serde(default)]
-    pub relative_speed_rpm: (f64, f64),
-    /// Least and largest load on record [N].
-    pub load_n: (f64, f64),
-    /// Turns of the shaft against the outer ring on record, both ways counted.
-    pub turns: f64,
-    /// Name and order of each family: periods in a turn of the shaft relative to the outer ring, without
-    /// slip.
-    pub orders: Vec<(String, f64)>,
-    /// The defect's family over the angle; `None` with the reason in `notes`.
-    pub envelope: Option<OrderEnvelope>,
+quantities! {
+    /// Speed, load and orders of a run whose speed or load changes.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct DutyFinding {
+        /// Least and largest speed on record, clockwise positive [1/min].
+        pub speed_rpm: (f64, f64),
+        /// The same of the outer ring.
+        #[serde(default)]
+        pub outer_speed_rpm: (f64, f64),
+        /// The same of the shaft against the outer ring.
+        #[serde(default)]
+        pub relative_speed_rpm: (f64, f64),
+        /// Least and largest load on record [N].
+        pub load_n: (f64, f64),
+        /// Turns of the shaft against the outer ring on record, both ways counted.
+        pub turns: f64,
+        /// Name and order of each family: periods in a turn of the shaft relative to the outer ring, without
+        /// slip.
+        pub orders: Vec<(String, f64)>,
+        /// The defect's family over the angle; `None` with the reason in `notes`.
+        pub envelope: Option<OrderEnvelope>,
+    }
 }
 
-/// Lines of the envelope spectrum at the defect's orders.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct OrderEnvelope {
-    /// Name of the family.
-    pub family: String,
-    /// Band whose envelope was taken [Hz].
-    pub band_hz: (f64, f64),
-    /// Periods of the defect in the record.
-    pub periods: f64,
-    /// Resolution of the spectrum: one over the turns on record.
-    pub resolution: f64,
-    /// Each line of the family.
-    pub lines: Vec<OrderLine>,
+quantities! {
+    /// Lines of the envelope spectrum at the defect's orders.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct OrderEnvelope {
+        /// Name of the family.
+        pub family: String,
+        /// Band whose envelope was taken [Hz].
+        pub band_hz: (f64, f64),
+        /// Periods of the defect in the record.
+        pub periods: f64,
+        /// Resolution of the spectrum: one over the turns on record.
+        pub resolution: f64,
+        /// Each line of the family.
+        pub lines: Vec<OrderLine>,
+    }
 }
 
-/// One line of a family.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct OrderLine {
-    /// Multiple of the family's order.
-    pub harmonic: usize,
-    /// Predicted order without slip.
-    pub predicted: f64,
-    /// The same from the recorded motion.
-    pub from_motion: Option<f64>,
-    /// Measured order; `None` when nothing stands out.
-    pub measured: Option<f64>,
-    /// Height above the surroundings [dB].
-    pub prominence_db: Option<f64>,
+quantities! {
+    /// One line of a family.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct OrderLine {
+        /// Multiple of the family's order.
+        pub harmonic: usize,
+        /// Predicted order without slip.
+        pub predicted: f64,
+        /// The same from the recorded motion.
+        pub from_motion: Option<f64>,
+        /// Measured order; `None` when nothing stands out.
+        pub measured: Option<f64>,
+        /// Height above the surroundings [dB].
+        pub prominence_db: Option<f64>,
+    }
 }
 
 impl DutyFinding {

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::{EnvelopeSpectrum, PeriodCount, PeriodVerdict, Spectrum};
 
 use crate::Error;
-use crate::tones::{self, PredictedLine};
+use crate::quantity::quantities;
+use crate::tones::{self, PredictedLine, Tone};
 
 /// Lower end of the band whose envelope is taken [Hz]: above the facet tone, so that its beats are not taken
 /// for knocks.
@@ -12,30 +13,34 @@ const BAND_FROM_HZ: f64 = 6_000.0;
 /// Upper end as a part of half the sample rate.
 const BAND_TO: f64 = 0.9;
 
-/// Lines of the envelope spectrum at the defect's frequencies.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct EnvelopeFinding {
-    /// Band whose envelope was taken [Hz].
-    pub band_hz: (f64, f64),
-    /// Periods of the defect in the record.
-    pub periods: f64,
-    /// Resolution of the spectrum [Hz].
-    pub resolution_hz: f64,
-    /// Each line of the family.
-    pub lines: Vec<EnvelopeLine>,
+quantities! {
+    /// Lines of the envelope spectrum at the defect's frequencies.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct EnvelopeFinding {
+        /// Band whose envelope was taken [Hz].
+        pub band_hz: (f64, f64),
+        /// Periods of the defect in the record.
+        pub periods: f64,
+        /// Resolution of the spectrum [Hz].
+        pub resolution_hz: f64,
+        /// Each line of the family.
+        pub lines: Vec<EnvelopeLine>,
+    }
 }
 
-/// One line of the family.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct EnvelopeLine {
-    /// Multiple of the defect's frequency.
-    pub harmonic: usize,
-    /// Predicted frequency without slip [Hz].
-    pub predicted_hz: f64,
-    /// Measured frequency [Hz]; `None` when nothing stands out.
-    pub measured_hz: Option<f64>,
-    /// Height above the surroundings [dB].
-    pub prominence_db: Option<f64>,
+quantities! {
+    /// One line of the family.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct EnvelopeLine = of(tone: &Tone) {
+        /// Multiple of the defect's frequency.
+        pub harmonic: usize = tone.harmonic,
+        /// Predicted frequency without slip [Hz].
+        pub predicted_hz: f64 = tone.predicted_hz,
+        /// Measured frequency [Hz]; `None` when nothing stands out.
+        pub measured_hz: Option<f64> = tone.measured_hz,
+        /// Height above the surroundings [dB].
+        pub prominence_db: Option<f64> = tone.prominence_db,
+    }
 }
 
 /// Envelope spectrum [g⁴] and finding; `None` with the reason when the record holds too few periods of
@@ -68,15 +73,7 @@ pub fn analyse(
         band_hz,
         periods: count.periods(),
         resolution_hz: spectrum.resolution().resolution_hz,
-        lines: tones
-            .iter()
-            .map(|t| EnvelopeLine {
-                harmonic: t.harmonic,
-                predicted_hz: t.predicted_hz,
-                measured_hz: t.measured_hz,
-                prominence_db: t.prominence_db,
-            })
-            .collect(),
+        lines: tones.iter().map(EnvelopeLine::of).collect(),
     };
     Ok(Ok((spectrum, finding)))
 }

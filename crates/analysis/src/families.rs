@@ -38,6 +38,7 @@ use serde::{Deserialize, Serialize};
 use self::comb::BasebandComb;
 use self::trial::{Channels, Trial};
 use crate::Error;
+use crate::quantity::quantities;
 
 /// The least lead of a score that counts: its residual is then 26 % smaller than that of any rival. On
 /// records that were not used to choose it, one false comb in some hundreds leads by it
@@ -113,56 +114,60 @@ pub struct Candidate {
     pub source: Source,
 }
 
-/// One family, predicted and measured.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FamilyFinding {
-    /// `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
-    pub name: String,
-    /// Carrier by the fit [Hz]; `None` when the family is absent or not judged.
-    pub carrier_hz: Option<f64>,
-    /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at
-    /// loaded contacts; `None` when no comb was made of it.
-    pub predicted_hz: Option<f64>,
-    /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is absent,
-    /// that of the best fit within 1.5 BPFO; `None` when it is not judged.
-    pub offset_resolutions: Option<f64>,
-    /// How far the single channels scatter about that offset (standard deviation), in resolutions.
-    pub offset_scatter_resolutions: Option<f64>,
-    /// True when the record holds this family and no other explains its lines as well.
-    pub found: bool,
-    /// Families that explain the same lines as well: at least one of them and this one is present, and the
-    /// record does not resolve which.
-    pub not_told_apart_from: Vec<String>,
-    /// How far the score leads that of the best rival; negative when a rival explains more.
-    pub lead: Option<f64>,
-    /// Share of the accelerations in the band that the comb explains, mean over sensors and components; of
-    /// their residual once families found earlier are in the fit.
-    pub explained: Option<f64>,
-    /// The same of the forces on the loaded rollers.
-    pub explained_forces: Option<f64>,
-    /// Largest peak amplitude of its lines [g]; `None` when there is no carrier or no line stands out.
-    pub level_g: Option<f64>,
-    /// The verdict in words.
-    pub verdict: String,
-    /// Carrier and sidebands at every sensor and component; empty without a carrier.
-    pub lines: Vec<FamilyLine>,
+quantities! {
+    /// One family, predicted and measured.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct FamilyFinding {
+        /// `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
+        pub name: String,
+        /// Carrier by the fit [Hz]; `None` when the family is absent or not judged.
+        pub carrier_hz: Option<f64>,
+        /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at
+        /// loaded contacts; `None` when no comb was made of it.
+        pub predicted_hz: Option<f64>,
+        /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is
+        /// absent, that of the best fit within 1.5 BPFO; `None` when it is not judged.
+        pub offset_resolutions: Option<f64>,
+        /// How far the single channels scatter about that offset (standard deviation), in resolutions.
+        pub offset_scatter_resolutions: Option<f64>,
+        /// True when the record holds this family and no other explains its lines as well.
+        pub found: bool,
+        /// Families that explain the same lines as well: at least one of them and this one is present, and
+        /// the record does not resolve which.
+        pub not_told_apart_from: Vec<String>,
+        /// How far the score leads that of the best rival; negative when a rival explains more.
+        pub lead: Option<f64>,
+        /// Share of the accelerations in the band that the comb explains, mean over sensors and components;
+        /// of their residual once families found earlier are in the fit.
+        pub explained: Option<f64>,
+        /// The same of the forces on the loaded rollers.
+        pub explained_forces: Option<f64>,
+        /// Largest peak amplitude of its lines [g]; `None` when there is no carrier or no line stands out.
+        pub level_g: Option<f64>,
+        /// The verdict in words.
+        pub verdict: String,
+        /// Carrier and sidebands at every sensor and component; empty without a carrier.
+        pub lines: Vec<FamilyLine>,
+    }
 }
 
-/// One line of a family.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FamilyLine {
-    /// Its distance from the carrier in BPFO.
-    pub sideband: i32,
-    /// Fitted carrier and sideband [Hz].
-    pub predicted_hz: f64,
-    /// Highest peak within half a resolution [Hz]; `None` when none stands 10 dB above its surroundings.
-    pub measured_hz: Option<f64>,
-    /// Its peak amplitude [g].
-    pub level_g: Option<f64>,
-    /// Sensor.
-    pub sensor: String,
-    /// Component, `ax` or `ay`.
-    pub component: String,
+quantities! {
+    /// One line of a family.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct FamilyLine {
+        /// Its distance from the carrier in BPFO.
+        pub sideband: i32,
+        /// Fitted carrier and sideband [Hz].
+        pub predicted_hz: f64,
+        /// Highest peak within half a resolution [Hz]; `None` when none stands 10 dB above its surroundings.
+        pub measured_hz: Option<f64>,
+        /// Its peak amplitude [g].
+        pub level_g: Option<f64>,
+        /// Sensor.
+        pub sensor: String,
+        /// Component, `ax` or `ay`.
+        pub component: String,
+    }
 }
 
 /// The sample before which a record holds more than [`MOST_PERIODS`].

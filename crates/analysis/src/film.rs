@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_store::run_dir::Run;
 
 use crate::Error;
+use crate::quantity::quantities;
 use crate::record::Record;
 
 /// A film that is no more than this much thicker than its least is that of a loaded contact [-].
@@ -14,20 +15,22 @@ const ROLLERS_AT_ONCE: usize = 4;
 
 const RINGS: [&str; 2] = ["outer", "inner"];
 
-/// Oil on the outer and on the inner raceway.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct FilmFinding {
-    /// Film thickness under the most loaded roller at rest by Dowson and Higginson [µm].
-    pub loaded_um: [f64; 2],
-    /// The same over the composite roughness [-].
-    pub lambda: [f64; 2],
-    /// Median thickness over all samples of all rollers that the raceway does not load [µm].
-    pub floating_um: [Option<f64>; 2],
-    /// Largest force through the film of a roller, mean over a sampling interval at whose ends the raceway
-    /// does not load it [N].
-    pub largest_n: [Option<f64>; 2],
-    /// Heat of all films over the record [J].
-    pub heat_j: Option<f64>,
+quantities! {
+    /// Oil on the outer and on the inner raceway.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct FilmFinding {
+        /// Film thickness under the most loaded roller at rest by Dowson and Higginson [µm].
+        pub loaded_um: [f64; 2],
+        /// The same over the composite roughness [-].
+        pub lambda: [f64; 2],
+        /// Median thickness over all samples of all rollers that the raceway does not load [µm].
+        pub floating_um: [Option<f64>; 2],
+        /// Largest force through the film of a roller, mean over a sampling interval at whose ends the
+        /// raceway does not load it [N].
+        pub largest_n: [Option<f64>; 2],
+        /// Heat of all films over the record [J].
+        pub heat_j: Option<f64>,
+    }
 }
 
 impl FilmFinding {

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Notch, Welch, WelchOptions, Window};
 
 use crate::Error;
+use crate::quantity::quantities;
 
 /// Quality factor of the paper's notch.
 pub const QUALITY: f64 = 15.0;
@@ -14,34 +15,38 @@ pub const PAPER_BEAT_HZ: f64 = 4545.0;
 /// The transient counts as over when the filter's ringing has fallen by this much [dB].
 const SETTLED_DB: f64 = 60.0;
 
-/// Attenuation of a tone by the notch, for the summary.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct NotchFinding {
-    /// Centre [Hz]: the measured dominant facet tone, or the predicted one when none is measured anywhere.
-    pub centre_hz: f64,
-    /// Centre of the paper's notch [Hz]; this and the numbers at 4545 Hz exist for the paper's scene only.
-    pub paper_centre_hz: Option<f64>,
-    /// Quality factor.
-    pub q: f64,
-    /// Full width at −3 dB [Hz].
-    pub width_hz: f64,
-    /// Time constant of the ringing [s].
-    pub time_constant_s: f64,
-    /// Time until the ringing has fallen by 60 dB [s]: earlier samples are partly the filter's own.
-    pub transient_s: f64,
-    /// Drop of the density at the centre [dB]: Hann window, whole record, transient included. The number to
-    /// set beside the paper's 25 dB.
-    pub attenuation_db: Option<f64>,
-    /// The same with the transient left out.
-    pub attenuation_settled_db: Option<f64>,
-    /// The same with a boxcar window, transient included.
-    pub attenuation_boxcar_db: Option<f64>,
-    /// The same with a boxcar window, transient left out.
-    pub attenuation_boxcar_settled_db: Option<f64>,
-    /// Attenuation of a steady 4545 Hz [dB], from the transfer function.
-    pub attenuation_4545_db: Option<f64>,
-    /// The same of the paper's own notch, centred at 4671 Hz: −20 log |H(4545 Hz)| from the coefficients.
-    pub paper_4545_db: Option<f64>,
+quantities! {
+    /// Attenuation of a tone by the notch, for the summary.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct NotchFinding {
+        /// Centre [Hz]: the measured dominant facet tone, or the predicted one when none
+        /// is measured anywhere.
+        pub centre_hz: f64,
+        /// Centre of the paper's notch [Hz]; this and the numbers at 4545 Hz exist for the
+        /// paper's scene only.
+        pub paper_centre_hz: Option<f64>,
+        /// Quality factor.
+        pub q: f64,
+        /// Full width at −3 dB [Hz].
+        pub width_hz: f64,
+        /// Time constant of the ringing [s].
+        pub time_constant_s: f64,
+        /// Time until the ringing has fallen by 60 dB [s]: earlier samples are partly the filter's own.
+        pub transient_s: f64,
+        /// Drop of the density at the centre [dB]: Hann window, whole record, transient included. The number
+        /// to set beside the paper's 25 dB.
+        pub attenuation_db: Option<f64>,
+        /// The same with the transient left out.
+        pub attenuation_settled_db: Option<f64>,
+        /// The same with a boxcar window, transient included.
+        pub attenuation_boxcar_db: Option<f64>,
+        /// The same with a boxcar window, transient left out.
+        pub attenuation_boxcar_settled_db: Option<f64>,
+        /// Attenuation of a steady 4545 Hz [dB], from the transfer function.
+        pub attenuation_4545_db: Option<f64>,
+        /// The same of the paper's own notch, centred at 4671 Hz: −20 log |H(4545 Hz)| from the coefficients.
+        pub paper_4545_db: Option<f64>,
+    }
 }
 
 /// A notch made for one record.

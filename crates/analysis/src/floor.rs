@@ -18,12 +18,15 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use crate::events::span;
+use crate::quantity::Part;
 
 /// Factor of the force of a roller at rest on the floor above which it must have had a speed of approach [-].
 const SUDDENLY_LAID: f64 = 2.0;
 
 /// A film that is no more than this much thicker than its least carries through the surfaces [-].
 const LEAST_FILM: f64 = 0.01;
+
+impl Part for FloorContact {}
 
 /// How a roller was stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

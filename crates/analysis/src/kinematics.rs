@@ -7,56 +7,61 @@ use serde::{Deserialize, Serialize};
 
 use stribeck_theory::kinematics::Kinematics;
 
+use crate::quantity::quantities;
 use crate::record::{Record, Roller};
 
 /// A roller counts as loaded when its mean force exceeds this fraction of the largest mean.
 const LOADED: f64 = 0.05;
 
-/// Measured frequencies [Hz], each beside the value for rolling without slip. All positive.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct KinematicsFinding {
-    /// Shaft.
-    pub shaft_hz: f64,
-    /// Outer ring; zero where it stands still.
-    #[serde(default)]
-    pub outer_ring_hz: f64,
-    /// The rings against each other.
-    #[serde(default)]
-    pub relative_hz: f64,
-    /// Cage; without one, the mean orbital frequency of the rollers.
-    pub cage_hz: Option<f64>,
-    /// Cage, no slip (fundamental train frequency).
-    pub expected_cage_hz: f64,
-    /// Cage as seen from the outer ring, measured and without slip.
-    #[serde(default)]
-    pub cage_on_outer_hz: [Option<f64>; 2],
-    /// Number of pockets times the measured frequency of the cage as seen from the outer ring.
-    pub bpfo_hz: Option<f64>,
-    /// Ball pass frequency of the outer raceway, no slip.
-    pub expected_bpfo_hz: f64,
-    /// Spin of a roller relative to the cage under load: mean over all rollers and samples, weighted by the
-    /// force of the outer raceway. Rollers without load, in the defect or outside the load zone, have no
-    /// weight.
-    pub roller_spin_hz: Option<f64>,
-    /// Spin of a roller relative to the cage, no slip.
-    pub expected_roller_spin_hz: f64,
-    /// Spin relative to the cage, mean of all rollers.
-    pub roller_spin_all_hz: Option<f64>,
-    /// Every roller.
-    pub rollers: Vec<RollerMotion>,
+quantities! {
+    /// Measured frequencies [Hz], each beside the value for rolling without slip. All positive.
+    #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+    pub struct KinematicsFinding {
+        /// Shaft.
+        pub shaft_hz: f64,
+        /// Outer ring; zero where it stands still.
+        #[serde(default)]
+        pub outer_ring_hz: f64,
+        /// The rings against each other.
+        #[serde(default)]
+        pub relative_hz: f64,
+        /// Cage; without one, the mean orbital frequency of the rollers.
+        pub cage_hz: Option<f64> => "cage" at 8,
+        /// Cage, no slip (fundamental train frequency).
+        pub expected_cage_hz: f64,
+        /// Cage as seen from the outer ring, measured and without slip.
+        #[serde(default)]
+        pub cage_on_outer_hz: [Option<f64>; 2],
+        /// Number of pockets times the measured frequency of the cage as seen from the outer ring.
+        pub bpfo_hz: Option<f64> => "BPFO of the recorded motion" at 7,
+        /// Ball pass frequency of the outer raceway, no slip.
+        pub expected_bpfo_hz: f64,
+        /// Spin of a roller relative to the cage under load: mean over all rollers and samples, weighted by
+        /// the force of the outer raceway. Rollers without load, in the defect or outside the load zone, have
+        /// no weight.
+        pub roller_spin_hz: Option<f64> => "spin of loaded rollers" at 9,
+        /// Spin of a roller relative to the cage, no slip.
+        pub expected_roller_spin_hz: f64,
+        /// Spin relative to the cage, mean of all rollers.
+        pub roller_spin_all_hz: Option<f64>,
+        /// Every roller.
+        pub rollers: Vec<RollerMotion>,
+    }
 }
 
-/// Measured motion of one roller.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RollerMotion {
-    /// Number, from 1.
-    pub roller: usize,
-    /// Orbital frequency [Hz], positive.
-    pub orbit_hz: f64,
-    /// Spin relative to the cage [Hz], positive.
-    pub spin_hz: f64,
-    /// True when it carries load on average.
-    pub loaded: bool,
+quantities! {
+    /// Measured motion of one roller.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct RollerMotion {
+        /// Number, from 1.
+        pub roller: usize,
+        /// Orbital frequency [Hz], positive.
+        pub orbit_hz: f64,
+        /// Spin relative to the cage [Hz], positive.
+        pub spin_hz: f64,
+        /// True when it carries load on average.
+        pub loaded: bool,
+    }
 }
 
 impl KinematicsFinding {

@@ -59,6 +59,8 @@
 
 pub mod summary;
 
+pub mod quantity;
+
 pub mod prediction;
 pub mod record;
 

@@ -5,39 +5,43 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::running_mean;
 
 use crate::kinematics::mean;
+use crate::quantity::quantities;
 use crate::record::{Record, Roller};
 
 /// Width of an angular bin of the distribution [°].
 const BIN_DEG: f64 = 1.0;
 
-/// Forces on the rollers.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct LoadFinding {
-    /// Mean over the record of the force between rollers and outer ring along the load [N], positive when it
-    /// supports the load.
-    pub mean_n: Option<f64>,
-    /// Expected value: the load, its mean over the record where it changes, plus the weight of housing and
-    /// outer ring along it [N].
-    pub expected_n: f64,
-    /// `mean_n / expected_n − 1`.
-    pub relative_error: Option<f64>,
-    /// The same sum at the inner ring [N]: larger by the weight of the rollers.
-    pub inner_mean_n: Option<f64>,
-    /// Mean force of the housing on the outer ring along the load [N], where the ring sits in one.
-    pub seat_mean_n: Option<f64>,
-    /// Largest outer-raceway force of any roller, averaged over one facet period [N], so that the facet tone
-    /// does not set it. Load compensation next to an unloaded roller and impacts at the exit are in it.
-    pub max_roller_n: Option<f64>,
-    /// Largest single sample of the same force [N].
-    pub max_roller_peak_n: Option<f64>,
-    /// Largest roller force between rigid rings at rest, sound raceway [N].
-    pub static_max_roller_n: Option<f64>,
-    /// The same with the rollers over the defect left out: their neighbours carry more [N].
-    pub static_max_roller_defect_n: Option<f64>,
-    /// Rollers loaded in the static distribution.
-    pub static_loaded_rollers: Option<usize>,
-    /// Below this support rollers that have lost their spin do not roll again [N].
-    pub least_rolling_n: Option<f64>,
+quantities! {
+    /// Forces on the rollers.
+    #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+    pub struct LoadFinding {
+        /// Mean over the record of the force between rollers and outer ring along the load [N], positive when
+        /// it supports the load.
+        pub mean_n: Option<f64> => "mean force of all rollers on the outer ring" at 5,
+        /// Expected value: the load, its mean over the record where it changes, plus the weight of housing
+        /// and outer ring along it [N].
+        pub expected_n: f64,
+        /// `mean_n / expected_n − 1`.
+        pub relative_error: Option<f64> => "mean load off the applied one",
+        /// The same sum at the inner ring [N]: larger by the weight of the rollers.
+        pub inner_mean_n: Option<f64>,
+        /// Mean force of the housing on the outer ring along the load [N], where the ring sits in one.
+        pub seat_mean_n: Option<f64>,
+        /// Largest outer-raceway force of any roller, averaged over one facet period [N], so that the facet
+        /// tone does not set it. Load compensation next to an unloaded roller and impacts at the exit
+        /// are in it.
+        pub max_roller_n: Option<f64> => "largest force on a roller" at 6,
+        /// Largest single sample of the same force [N].
+        pub max_roller_peak_n: Option<f64>,
+        /// Largest roller force between rigid rings at rest, sound raceway [N].
+        pub static_max_roller_n: Option<f64>,
+        /// The same with the rollers over the defect left out: their neighbours carry more [N].
+        pub static_max_roller_defect_n: Option<f64>,
+        /// Rollers loaded in the static distribution.
+        pub static_loaded_rollers: Option<usize>,
+        /// Below this support rollers that have lost their spin do not roll again [N].
+        pub least_rolling_n: Option<f64>,
+    }
 }
 
 /// Mean force by angle.

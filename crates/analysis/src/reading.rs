@@ -7,6 +7,8 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
+use crate::quantity::quantities;
+
 /// How often each distance between neighbouring peaks occurs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Gaps {
@@ -16,24 +18,26 @@ pub struct Gaps {
     pub mean_hz: f64,
 }
 
-/// Possible readings behind the paper's 4545 Hz.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CursorReading {
-    /// Distance of two samples that reads nearest to the paper's number.
-    pub samples: usize,
-    /// Frequency of that distance [Hz].
-    pub reads_hz: f64,
-    /// The neighbouring readings [Hz]: one sample more, one sample less.
-    pub neighbours_hz: (f64, f64),
-    /// Share of peaks of a pure tone at the roller line that are this far apart.
-    pub share_in_tone: f64,
-    /// The same in the paper's equation (3).
-    pub share_in_equation_3: f64,
-    /// The most common distance of its peaks [samples] and its share.
-    pub equation_3_common: (usize, f64),
-    /// Its carrier, the mean of its tones [Hz]: the rate of peaks within a swell. At each node of the beat
-    /// there is one more peak, so that peaks are as many as periods of the higher tone.
-    pub equation_3_carrier_hz: f64,
+quantities! {
+    /// Possible readings behind the paper's 4545 Hz.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct CursorReading {
+        /// Distance of two samples that reads nearest to the paper's number.
+        pub samples: usize,
+        /// Frequency of that distance [Hz].
+        pub reads_hz: f64,
+        /// The neighbouring readings [Hz]: one sample more, one sample less.
+        pub neighbours_hz: (f64, f64),
+        /// Share of peaks of a pure tone at the roller line that are this far apart.
+        pub share_in_tone: f64,
+        /// The same in the paper's equation (3).
+        pub share_in_equation_3: f64,
+        /// The most common distance of its peaks [samples] and its share.
+        pub equation_3_common: (usize, f64),
+        /// Its carrier, the mean of its tones [Hz]: the rate of peaks within a swell. At each node of the
+        /// beat there is one more peak, so that peaks are as many as periods of the higher tone.
+        pub equation_3_carrier_hz: f64,
+    }
 }
 
 /// The paper's equation (3): two unit cosines [Hz], sampled.

@@ -6,59 +6,48 @@ use stribeck_scene::dice::Dice;
 use stribeck_scene::scene::{DefectRing, Scene};
 
 use crate::Error;
+use crate::quantity::quantities;
 use stribeck_diagnosis::SHORTEST_S;
 
 /// Longest distance of two events over the time between passages, at which the correlation within one ends.
 const LONGEST: f64 = 0.45;
 
-/// One record: the signature of its passages, and the noise that was added.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RecordFinding {
-    /// Power of the noise over that of the rest [dB].
-    pub noise_db: f64,
-    /// Numbers that a path does not change.
-    #[serde(flatten)]
-    pub signature: PassageSignature,
+quantities! {
+    /// One record: the signature of its passages, and the noise that was added.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct RecordFinding {
+        /// Power of the noise over that of the rest [dB].
+        pub noise_db: f64,
+        /// Numbers that a path does not change.
+        #[serde(flatten)]
+        pub signature: PassageSignature,
+    }
 }
 
-/// Signature of passages over a spall, which does not depend on the path. Times are parts of the period of
-/// the passages.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PassageSignature {
-    /// Time between the two events of a passage; `None` where no second one shows.
-    pub spacing: Option<f64>,
-    /// Time from which on a second event would have shown; `None` where one shows, or nothing is known.
-    pub clear_from: Option<f64>,
-    /// Energy of the first event over that of the second [dB].
-    pub first_over_second_db: Option<f64>,
-    /// Correlation of the power within a passage, at 24 lags from 0.03 to 0.45 of its period: a second event
-    /// is a hump at its distance.
-    pub within: Vec<f64>,
-    /// Correlation of the power with that one passage later.
-    pub repeats: f64,
-    /// The same ten passages later.
-    pub repeats_later: f64,
-    /// Sidebands of the shaft beside the first line of the passages, over that line [dB].
-    pub by_shaft_db: f64,
-    /// The same of the cage [dB].
-    pub by_cage_db: f64,
-    /// How far the power swings with the passages, over its mean.
-    pub swing: f64,
-}
-
-impl From<Signature> for PassageSignature {
-    fn from(s: Signature) -> Self {
-        Self {
-            spacing: s.spacing,
-            clear_from: s.clear_from,
-            first_over_second_db: s.first_over_second_db,
-            within: s.within.to_vec(),
-            repeats: s.repeats,
-            repeats_later: s.repeats_later,
-            by_shaft_db: s.sidebands_db[0],
-            by_cage_db: s.sidebands_db[1],
-            swing: s.swing,
-        }
+quantities! {
+    /// Signature of passages over a spall, which does not depend on the path. Times are parts of the period
+    /// of the passages.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct PassageSignature = of(signature: &Signature) {
+        /// Time between the two events of a passage; `None` where no second one shows.
+        pub spacing: Option<f64> = signature.spacing,
+        /// Time from which on a second event would have shown; `None` where one shows, or nothing is known.
+        pub clear_from: Option<f64> = signature.clear_from,
+        /// Energy of the first event over that of the second [dB].
+        pub first_over_second_db: Option<f64> = signature.first_over_second_db,
+        /// Correlation of the power within a passage, at 24 lags from 0.03 to 0.45 of its period: a second
+        /// event is a hump at its distance.
+        pub within: Vec<f64> = signature.within.to_vec(),
+        /// Correlation of the power with that one passage later.
+        pub repeats: f64 = signature.repeats,
+        /// The same ten passages later.
+        pub repeats_later: f64 = signature.repeats_later,
+        /// Sidebands of the shaft beside the first line of the passages, over that line [dB].
+        pub by_shaft_db: f64 = signature.sidebands_db[0],
+        /// The same of the cage [dB].
+        pub by_cage_db: f64 = signature.sidebands_db[1],
+        /// How far the power swings with the passages, over its mean.
+        pub swing: f64 = signature.swing,
     }
 }
 
@@ -117,7 +106,7 @@ pub(crate) fn of(
         let noise = rms * 10_f64.powf(noise_db / 20.0);
         let record: Vec<f64> = plain.iter().map(|x| x + noise * normal(&mut dice)).collect();
         let signature = Signature::of(&record, asked.rate_hz, rhythm).map_err(Error::Signal)?;
-        Ok(RecordFinding { noise_db, signature: signature.into() })
+        Ok(RecordFinding { noise_db, signature: PassageSignature::of(&signature) })
     };
     asked.noise_db.iter().map(one).collect()
 }

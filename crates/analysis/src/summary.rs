@@ -15,129 +15,154 @@ use crate::film::FilmFinding;
 use crate::filtering::NotchFinding;
 use crate::floor::FloorContact;
 use crate::kinematics::KinematicsFinding;
+use crate::levels::SignalLevel;
 use crate::load::LoadFinding;
+use crate::quantity::{self, Quantity, quantities};
 use crate::reading::CursorReading;
 use crate::records::RecordFinding;
 use crate::tones::Tone;
 
-/// All numbers of a run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Summary {
-    /// Name of the scene.
-    pub scene: String,
-    /// How the run ended.
-    pub status: Status,
-    /// Sizes of the mesh.
-    pub mesh: MeshInfo,
-    /// Cost.
-    pub run: RunCost,
+quantities! {
+    /// All numbers of a run.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct Summary {
+        /// Name of the scene.
+        pub scene: String,
+        /// How the run ended.
+        pub status: Status,
+        /// Sizes of the mesh.
+        pub mesh: MeshInfo,
+        /// Cost.
+        pub run: RunCost,
+        /// Energy balance.
+        pub energy: EnergyFinding,
+        /// Measured motion.
+        pub kinematics: KinematicsFinding,
+        /// Speed and load where they change, with the families in orders of the shaft; `None` where neither
+        /// does. Frequencies of [`kinematics`](Self::kinematics) are then those at the mean speed.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub duty: Option<DutyFinding>,
+        /// Passages over the defect.
+        pub events: Vec<Event>,
+        /// Forces on the rollers.
+        pub load: LoadFinding,
+        /// Combs of lines that the recorded motion predicts, and whether the record holds them.
+        pub families: Vec<FamilyFinding>,
+        /// Oil between rollers and raceways; `None` for a dry bearing.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub film: Option<FilmFinding>,
+        /// Facet lines at every sensor: the leading sensor first, fundamentals first.
+        pub tones: Vec<Tone>,
+        /// Levels of the impulses and of the gaps between them, at the leading sensor.
+        pub levels: LevelsFinding,
+        /// The notch at the facet tone.
+        pub notch: Option<NotchFinding>,
+        /// Resolution of the spectra.
+        pub spectrum: Option<SpectrumFinding>,
+        /// Every line of the leading sensor's spectrum: mesh, beats, defect, ring.
+        pub artefacts: Vec<Artefact>,
+        /// The defect's family in the envelope; `None` when the record is too short.
+        pub envelope: Option<EnvelopeFinding>,
+        /// Blind diagnosis from the leading sensor; `None` when the record is too short.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub diagnosis: Option<DiagnosisFinding>,
+        /// Signatures of synthetic records of a machine's sensor, one for each level of noise in the scene.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        pub records: Vec<RecordFinding>,
+        /// Possible readings behind the paper's 4545 Hz at this sample rate.
+        pub cursor: Option<CursorReading>,
+        /// Every number of the paper beside ours.
+        pub paper: Vec<PaperRow>,
+        /// Reasons for missing numbers, and cautions.
+        pub notes: Vec<String>,
+    }
+}
+
+quantities! {
+    /// One number of the paper beside ours.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct PaperRow {
+        /// Part of the paper.
+        pub part: String,
+        /// The quantity.
+        pub quantity: String,
+        /// As the paper prints it.
+        pub paper: String,
+        /// Of this run; words when there is no number.
+        pub ours: String,
+        /// The paper's as a number, where it is one.
+        pub paper_value: Option<f64>,
+        /// Ours as a number, where there is one.
+        pub ours_value: Option<f64>,
+        /// Unit of both.
+        pub unit: String,
+        /// Ours against the paper's.
+        pub difference: String,
+        /// Reason or comment.
+        pub why: String,
+    }
+}
+
+quantities! {
+    /// Cost of the run.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct RunCost = of(info: &RunInfo, samples: usize, simulated_s: f64) {
+        /// Steps taken.
+        pub steps: u64 = info.steps,
+        /// Steps planned.
+        pub steps_planned: u64 = info.steps_planned,
+        /// Time step [ns].
+        pub time_step_ns: f64 = 1e9 * info.time_step_s,
+        /// Simulated time on record [ms].
+        pub simulated_ms: f64 = 1e3 * simulated_s,
+        /// Samples that can be used.
+        pub samples: usize = samples,
+        /// Wall-clock time of the time loop [s].
+        pub wall_s: f64 = info.wall_s => "wall-clock time, set-up left out",
+        /// Processor time of the whole run [s].
+        pub cpu_s: f64 = info.cpu_s,
+        /// Wall-clock time before the first step [s].
+        pub setup_s: f64 = info.setup_s => "set-up: mesh and preload",
+        /// Worker threads.
+        pub threads: usize = info.threads,
+        /// Wall-clock time of the time loop for one element and one step [ns].
+        pub ns_per_element_step: Option<f64> = ns_per_element_step(info),
+    }
+}
+
+quantities! {
     /// Energy balance.
-    pub energy: EnergyFinding,
-    /// Measured motion.
-    pub kinematics: KinematicsFinding,
-    /// Speed and load where they change, with the families in orders of the shaft; `None` where neither does.
-    /// Frequencies of [`kinematics`](Self::kinematics) are then those at the mean speed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub duty: Option<DutyFinding>,
-    /// Passages over the defect.
-    pub events: Vec<Event>,
-    /// Forces on the rollers.
-    pub load: LoadFinding,
-    /// Combs of lines that the recorded motion predicts, and whether the record holds them.
-    pub families: Vec<FamilyFinding>,
-    /// Oil between rollers and raceways; `None` for a dry bearing.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub film: Option<FilmFinding>,
-    /// Facet lines at every sensor: the leading sensor first, fundamentals first.
-    pub tones: Vec<Tone>,
-    /// Levels of the impulses and of the gaps between them, at the leading sensor.
-    pub levels: LevelsFinding,
-    /// The notch at the facet tone.
-    pub notch: Option<NotchFinding>,
-    /// Resolution of the spectra.
-    pub spectrum: Option<SpectrumFinding>,
-    /// Every line of the leading sensor's spectrum: mesh, beats, defect, ring.
-    pub artefacts: Vec<Artefact>,
-    /// The defect's family in the envelope; `None` when the record is too short.
-    pub envelope: Option<EnvelopeFinding>,
-    /// Blind diagnosis from the leading sensor; `None` when the record is too short.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub diagnosis: Option<DiagnosisFinding>,
-    /// Signatures of synthetic records of a machine's sensor, one for each level of noise in the scene.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub records: Vec<RecordFinding>,
-    /// Possible readings behind the paper's 4545 Hz at this sample rate.
-    pub cursor: Option<CursorReading>,
-    /// Every number of the paper beside ours.
-    pub paper: Vec<PaperRow>,
-    /// Reasons for missing numbers, and cautions.
-    pub notes: Vec<String>,
-}
-
-/// One number of the paper beside ours.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PaperRow {
-    /// Part of the paper.
-    pub part: String,
-    /// The quantity.
-    pub quantity: String,
-    /// As the paper prints it.
-    pub paper: String,
-    /// Of this run; words when there is no number.
-    pub ours: String,
-    /// The paper's as a number, where it is one.
-    pub paper_value: Option<f64>,
-    /// Ours as a number, where there is one.
-    pub ours_value: Option<f64>,
-    /// Unit of both.
-    pub unit: String,
-    /// Ours against the paper's.
-    pub difference: String,
-    /// Reason or comment.
-    pub why: String,
-}
-
-/// Cost of the run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct RunCost {
-    /// Steps taken.
-    pub steps: u64,
-    /// Steps planned.
-    pub steps_planned: u64,
-    /// Time step [ns].
-    pub time_step_ns: f64,
-    /// Simulated time on record [ms].
-    pub simulated_ms: f64,
-    /// Samples that can be used.
-    pub samples: usize,
-    /// Wall-clock time of the time loop [s].
-    pub wall_s: f64,
-    /// Processor time of the whole run [s].
-    pub cpu_s: f64,
-    /// Wall-clock time before the first step [s].
-    pub setup_s: f64,
-    /// Worker threads.
-    pub threads: usize,
-    /// Wall-clock time of the time loop for one element and one step [ns].
-    pub ns_per_element_step: Option<f64>,
-}
-
-/// Energy balance.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct EnergyFinding {
-    /// Largest |imbalance| divided by the peak strain energy.
-    pub max_relative_error: f64,
-    /// Peak strain energy [J].
-    pub peak_strain_j: f64,
-    /// Energy dissipated by friction, films and damping [J].
-    #[serde(default)]
-    pub heat_j: f64,
-    /// Largest |imbalance| over the heat [-], where that is more than the peak strain energy.
-    #[serde(default)]
-    pub share_of_heat: Option<f64>,
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct EnergyFinding = of(energy: &EnergyInfo) {
+        /// Largest |imbalance| divided by the peak strain energy.
+        pub max_relative_error: f64 = energy.max_relative_error => "imbalance of energy, of the peak strain energy",
+        /// Peak strain energy [J].
+        pub peak_strain_j: f64 = energy.peak_strain_j,
+        /// Energy dissipated by friction, films and damping [J].
+        #[serde(default)]
+        pub heat_j: f64 = energy.heat_j => "heat of friction and damping" at 11,
+        /// Largest |imbalance| over the heat [-], where that is more than the peak strain energy.
+        #[serde(default)]
+        pub share_of_heat: Option<f64> = energy.share_of_heat() => "imbalance of energy, of the heat",
+    }
 }
 
 impl Summary {
+    /// Every number that a summary may have.
+    pub fn quantities() -> Vec<Quantity> {
+        quantity::of::<Self>()
+    }
+
+    /// The main ones, in the order in which they are compared.
+    pub fn main_quantities() -> Vec<Quantity> {
+        let mut main = Self::quantities();
+        main.retain(|quantity| quantity.place.is_some());
+        main.sort_by_key(|quantity| quantity.place);
+        // Levels of the leading sensor come before those of each sensor.
+        main.dedup_by_key(|quantity| quantity.place);
+        main
+    }
+
     /// The duty of a run whose speed changes, so that no line has a frequency.
     pub fn unsteady(&self) -> Option<&DutyFinding> {
         self.duty.as_ref().filter(|duty| duty.is_unsteady())
@@ -155,53 +180,55 @@ impl Summary {
     }
 }
 
-/// One passage of a roller over the defect.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Event {
-    /// Roller, from 1.
-    pub roller: usize,
-    /// Which spall of a raceway, from 1: `defect` of the scene first, then those of its `defects`.
-    #[serde(default = "first")]
-    pub spall: usize,
-    /// Whose raceway the spall is on.
-    #[serde(default)]
-    pub ring: DefectRing,
-    /// Unloading read from the force [ms].
-    pub entry_ms: Option<f64>,
-    /// Re-stressing read from the force [ms].
-    pub exit_ms: Option<f64>,
-    /// Time between the two [ms].
-    #[serde(default)]
-    pub free_ms: Option<f64>,
-    /// Centre over the leading edge without slip [ms].
-    pub expected_entry_ms: f64,
-    /// Centre over the trailing edge without slip [ms].
-    pub expected_exit_ms: f64,
-    /// Recorded centre over the leading edge [ms].
-    pub path_entry_ms: Option<f64>,
-    /// Recorded centre over the trailing edge [ms].
-    pub path_exit_ms: Option<f64>,
-    /// Force before the defect [N].
-    pub level_n: Option<f64>,
-    /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or where the
-    /// roller never unloaded, of its recorded centre over the trailing edge.
-    pub impulse_g: Option<f64>,
-    /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not touch
-    /// it.
-    pub floor_ms: Option<f64>,
-    /// Its force then [N].
-    pub floor_n: Option<f64>,
-    /// Whether the surfaces touch or oil stops the roller before they do.
-    #[serde(default)]
-    pub floor_by: Option<FloorContact>,
-    /// When the roller carries most for a neighbour in the defect [ms] (event #3).
-    pub compensation_ms: Option<f64>,
-    /// Its force then [N], a running median as wide as that of the events.
-    pub compensation_n: Option<f64>,
-    /// Its force then over its force before that neighbour entered.
-    pub compensation_gain: Option<f64>,
-    /// Length of the defect estimated from both times and the speed without slip [mm].
-    pub spall_mm: Option<f64>,
+quantities! {
+    /// One passage of a roller over the defect.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct Event {
+        /// Roller, from 1.
+        pub roller: usize,
+        /// Which spall of a raceway, from 1: `defect` of the scene first, then those of its `defects`.
+        #[serde(default = "first")]
+        pub spall: usize,
+        /// Whose raceway the spall is on.
+        #[serde(default)]
+        pub ring: DefectRing,
+        /// Unloading read from the force [ms].
+        pub entry_ms: Option<f64>,
+        /// Re-stressing read from the force [ms].
+        pub exit_ms: Option<f64>,
+        /// Time between the two [ms].
+        #[serde(default)]
+        pub free_ms: Option<f64>,
+        /// Centre over the leading edge without slip [ms].
+        pub expected_entry_ms: f64,
+        /// Centre over the trailing edge without slip [ms].
+        pub expected_exit_ms: f64,
+        /// Recorded centre over the leading edge [ms].
+        pub path_entry_ms: Option<f64>,
+        /// Recorded centre over the trailing edge [ms].
+        pub path_exit_ms: Option<f64>,
+        /// Force before the defect [N].
+        pub level_n: Option<f64>,
+        /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or where the
+        /// roller never unloaded, of its recorded centre over the trailing edge.
+        pub impulse_g: Option<f64>,
+        /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not
+        /// touch it.
+        pub floor_ms: Option<f64>,
+        /// Its force then [N].
+        pub floor_n: Option<f64>,
+        /// Whether the surfaces touch or oil stops the roller before they do.
+        #[serde(default)]
+        pub floor_by: Option<FloorContact>,
+        /// When the roller carries most for a neighbour in the defect [ms] (event #3).
+        pub compensation_ms: Option<f64>,
+        /// Its force then [N], a running median as wide as that of the events.
+        pub compensation_n: Option<f64>,
+        /// Its force then over its force before that neighbour entered.
+        pub compensation_gain: Option<f64>,
+        /// Length of the defect estimated from both times and the speed without slip [mm].
+        pub spall_mm: Option<f64> => "length of the spall by its events" at 10,
+    }
 }
 
 /// Events that were written before there were several spalls are of the first.
@@ -209,173 +236,203 @@ fn first() -> usize {
     1
 }
 
-/// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]); `None`
-/// where the record has no such phase.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct PhaseLevels {
-    /// Largest magnitude in the start-up.
-    pub start_g: Option<f64>,
-    /// Root mean square in the start-up.
-    pub start_rms_g: Option<f64>,
-    /// Largest magnitude while rollers enter the defect.
-    pub entry_g: Option<f64>,
-    /// Root mean square while rollers enter.
-    pub entry_rms_g: Option<f64>,
-    /// Largest magnitude while a roller is in the defect.
-    pub defect_g: Option<f64>,
-    /// Root mean square while a roller is in the defect.
-    pub defect_rms_g: Option<f64>,
-    /// Largest magnitude while rollers leave the defect.
-    pub exit_g: Option<f64>,
-    /// Root mean square while rollers leave.
-    pub exit_rms_g: Option<f64>,
-    /// Largest magnitude in the gaps between the events.
-    pub gap_g: Option<f64>,
-    /// Root mean square in the gaps.
-    pub gap_rms_g: Option<f64>,
-}
-
-/// Levels of one component of a sensor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ComponentLevels {
-    /// `radial`, outwards at the sensor's angle, or `tangential`, counter-clockwise.
-    pub component: String,
-    /// By phase.
-    #[serde(flatten)]
-    pub phases: PhaseLevels,
-}
-
-/// Levels of a_y [g], mean over each sampling interval.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct LevelsFinding {
-    /// Sensor that the figures of this section belong to.
-    pub sensor: Option<String>,
-    /// By phase.
-    #[serde(flatten)]
-    pub phases: PhaseLevels,
-    /// Largest magnitude within 1 ms of any exit.
-    pub impulse_g: Option<f64>,
-    /// Largest magnitude in the gaps, as `gap_g`.
-    pub between_g: Option<f64>,
-    /// The same behind the notch, its transient left out.
-    pub between_filtered_g: Option<f64>,
-    /// Magnitude that 1 % of the samples in the gaps exceed.
-    pub between_p99_g: Option<f64>,
-    /// The same behind the notch.
-    pub between_filtered_p99_g: Option<f64>,
-    /// Root mean square in the gaps.
-    pub between_rms_g: Option<f64>,
-    /// The same behind the notch.
-    pub between_filtered_rms_g: Option<f64>,
-    /// Largest magnitude within 1 ms of any exit, behind the notch.
-    pub impulse_filtered_g: Option<f64>,
-    /// The whole record, start-up included; `None` where it is constant.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub record: Option<RecordLevels>,
-    /// Every sensor.
-    pub sensors: Vec<SensorLevels>,
-}
-
-/// Numbers of a whole record of the leading sensor about its mean.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct RecordLevels {
-    /// Root mean square [g].
-    pub rms_g: f64,
-    /// Largest distance from the mean [g].
-    pub peak_g: f64,
-    /// Peak over root mean square.
-    pub crest_factor: f64,
-    /// Fourth central moment over the square of the second; 3 for Gaussian noise.
-    pub kurtosis: f64,
-}
-
-impl RecordLevels {
-    /// Of a signal [g]; `None` where it is constant or not finite.
-    pub fn of(signal_g: &[f64]) -> Option<Self> {
-        let mean = statistics::mean(signal_g).ok()?;
-        let centred: Vec<f64> = signal_g.iter().map(|x| x - mean).collect();
-        let kurtosis = statistics::kurtosis(&centred).ok()?;
-        let (rms_g, peak_g) = (statistics::rms(&centred).ok()?, statistics::peak(&centred).ok()?);
-        Some(Self { rms_g, peak_g, crest_factor: peak_g / rms_g, kurtosis })
+quantities! {
+    /// Largest magnitude and root mean square [g] in each phase of a record ([`crate::levels::Phase`]);
+    /// `None` where the record has no such phase.
+    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+    pub struct PhaseLevels = of(
+        start: Option<SignalLevel>,
+        entry: Option<SignalLevel>,
+        defect: Option<SignalLevel>,
+        exit: Option<SignalLevel>,
+        gap: Option<SignalLevel>
+    ) {
+        /// Largest magnitude in the start-up.
+        pub start_g: Option<f64> = start.map(|l| l.peak) => "peak in the start-up",
+        /// Root mean square in the start-up.
+        pub start_rms_g: Option<f64> = start.map(|l| l.rms) => "root mean square in the start-up",
+        /// Largest magnitude while rollers enter the defect.
+        pub entry_g: Option<f64> = entry.map(|l| l.peak) => "peak at entries to the defect" at 2,
+        /// Root mean square while rollers enter.
+        pub entry_rms_g: Option<f64> = entry.map(|l| l.rms) => "root mean square at entries",
+        /// Largest magnitude while a roller is in the defect.
+        pub defect_g: Option<f64> = defect.map(|l| l.peak) => "peak in the defect",
+        /// Root mean square while a roller is in the defect.
+        pub defect_rms_g: Option<f64> = defect.map(|l| l.rms) => "root mean square in the defect",
+        /// Largest magnitude while rollers leave the defect.
+        pub exit_g: Option<f64> = exit.map(|l| l.peak) => "peak at exits from the defect" at 1,
+        /// Root mean square while rollers leave.
+        pub exit_rms_g: Option<f64> = exit.map(|l| l.rms) => "root mean square at exits",
+        /// Largest magnitude in the gaps between the events.
+        pub gap_g: Option<f64> = gap.map(|l| l.peak) => "peak between passages" at 3,
+        /// Root mean square in the gaps.
+        pub gap_rms_g: Option<f64> = gap.map(|l| l.rms) => "root mean square between passages" at 4,
     }
 }
 
-/// Levels at one sensor [g].
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct SensorLevels {
-    /// Sensor.
-    pub sensor: String,
-    /// Its angle, counter-clockwise from the x axis [°].
-    pub angle_deg: f64,
-    /// a_y by phase.
-    #[serde(flatten)]
-    pub phases: PhaseLevels,
-    /// The radial and the tangential component by phase; empty when a_x was not recorded.
-    pub components: Vec<ComponentLevels>,
-    /// Largest |a_y| within 1 ms of any exit.
-    pub impulse_g: Option<f64>,
-    /// Largest |a_y| in the gaps, as `gap_g`.
-    pub between_g: Option<f64>,
-    /// Root mean square in the gaps.
-    pub between_rms_g: Option<f64>,
-    /// Largest |a_y| in the gaps behind the sensor's notch, its transient left out.
-    pub between_filtered_g: Option<f64>,
-    /// Root mean square in the gaps behind the notch.
-    pub between_filtered_rms_g: Option<f64>,
-    /// Line of a_y that is nearest to the rollers' vertices times their recorded spin [Hz]; `None` where none
-    /// stands 10 dB above its surroundings within 0.5 % or the width of a line.
-    #[serde(default)]
-    pub tone_hz: Option<f64>,
-    /// Its peak amplitude [g].
-    #[serde(default)]
-    pub tone_g: Option<f64>,
-    /// How far it stands above the median of its surroundings [dB]; without a line, the highest peak there.
-    #[serde(default)]
-    pub tone_db: Option<f64>,
-    /// The line nearest to its fifth harmonic [Hz], as `tone_hz`.
-    #[serde(default)]
-    pub fifth_hz: Option<f64>,
-    /// Its peak amplitude [g].
-    #[serde(default)]
-    pub fifth_g: Option<f64>,
-    /// As `tone_db`.
-    #[serde(default)]
-    pub fifth_db: Option<f64>,
-    /// Centre of this sensor's notch [Hz]: its own dominant facet tone; without one, that of the record.
-    #[serde(default)]
-    pub notch_hz: Option<f64>,
-    /// Drop of the density there [dB]: Hann window, whole record, transient included.
-    #[serde(default)]
-    pub notch_db: Option<f64>,
+quantities! {
+    /// Levels of one component of a sensor.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct ComponentLevels {
+        /// `radial`, outwards at the sensor's angle, or `tangential`, counter-clockwise.
+        pub component: String,
+        /// By phase.
+        #[serde(flatten)]
+        pub phases: PhaseLevels,
+    }
 }
 
-/// Resolution of the spectra.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct SpectrumFinding {
-    /// Length of the record [s].
-    pub record_s: f64,
-    /// Length of a segment [s].
-    pub segment_s: f64,
-    /// Segments averaged.
-    pub segments: usize,
-    /// Window.
-    pub window: String,
-    /// One over the length of a segment [Hz].
-    pub resolution_hz: f64,
-    /// Width of a line at −3 dB [Hz].
-    pub width_3db_hz: f64,
-    /// Width of a line at −6 dB [Hz]: closer lines merge.
-    pub width_6db_hz: f64,
-    /// Equivalent noise bandwidth [Hz].
-    pub noise_bandwidth_hz: f64,
-    /// Distance between points of the drawn curve [Hz].
-    pub grid_hz: f64,
-    /// True when the grid is finer than the resolution.
-    pub zero_padded: bool,
-    /// Resolution of the spectrum of the whole record in which the defect's family is looked for [Hz], where
-    /// that is another one.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub fine_resolution_hz: Option<f64>,
+quantities! {
+    /// Levels of a_y [g], mean over each sampling interval.
+    #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+    pub struct LevelsFinding {
+        /// Sensor that the figures of this section belong to.
+        pub sensor: Option<String>,
+        /// By phase.
+        #[serde(flatten)]
+        pub phases: PhaseLevels,
+        /// Largest magnitude within 1 ms of any exit.
+        pub impulse_g: Option<f64>,
+        /// Largest magnitude in the gaps, as `gap_g`.
+        pub between_g: Option<f64>,
+        /// The same behind the notch, its transient left out.
+        pub between_filtered_g: Option<f64> => "peak between passages, behind the notch",
+        /// Magnitude that 1 % of the samples in the gaps exceed.
+        pub between_p99_g: Option<f64>,
+        /// The same behind the notch.
+        pub between_filtered_p99_g: Option<f64>,
+        /// Root mean square in the gaps.
+        pub between_rms_g: Option<f64>,
+        /// The same behind the notch.
+        pub between_filtered_rms_g: Option<f64>,
+        /// Largest magnitude within 1 ms of any exit, behind the notch.
+        pub impulse_filtered_g: Option<f64>,
+        /// The whole record, start-up included; `None` where it is constant.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub record: Option<RecordLevels>,
+        /// Every sensor.
+        pub sensors: Vec<SensorLevels>,
+    }
+}
+
+quantities! {
+    /// Numbers of a whole record of the leading sensor about its mean.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+    pub struct RecordLevels = of(signal: &Shape) {
+        /// Root mean square [g].
+        pub rms_g: f64 = signal.rms,
+        /// Largest distance from the mean [g].
+        pub peak_g: f64 = signal.peak,
+        /// Peak over root mean square.
+        pub crest_factor: f64 = signal.peak / signal.rms,
+        /// Fourth central moment over the square of the second; 3 for Gaussian noise.
+        pub kurtosis: f64 = signal.kurtosis,
+    }
+}
+
+/// Numbers of a signal about its mean, in its unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// Root mean square.
+    pub rms: f64,
+    /// Largest distance from the mean.
+    pub peak: f64,
+    /// Fourth central moment over the square of the second.
+    pub kurtosis: f64,
+}
+
+impl Shape {
+    /// Of a signal; `None` where it is constant or not finite.
+    pub fn of(signal: &[f64]) -> Option<Self> {
+        let mean = statistics::mean(signal).ok()?;
+        let values: Vec<f64> = signal.iter().map(|x| x - mean).collect();
+        let kurtosis = statistics::kurtosis(&values).ok()?;
+        let (rms, peak) = (statistics::rms(&values).ok()?, statistics::peak(&values).ok()?);
+        Some(Self { rms, peak, kurtosis })
+    }
+}
+
+quantities! {
+    /// Levels at one sensor [g].
+    #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+    pub struct SensorLevels {
+        /// Sensor.
+        pub sensor: String,
+        /// Its angle, counter-clockwise from the x axis [°].
+        pub angle_deg: f64,
+        /// a_y by phase.
+        #[serde(flatten)]
+        pub phases: PhaseLevels,
+        /// The radial and the tangential component by phase; empty when a_x was not recorded.
+        pub components: Vec<ComponentLevels>,
+        /// Largest |a_y| within 1 ms of any exit.
+        pub impulse_g: Option<f64>,
+        /// Largest |a_y| in the gaps, as `gap_g`.
+        pub between_g: Option<f64>,
+        /// Root mean square in the gaps.
+        pub between_rms_g: Option<f64>,
+        /// Largest |a_y| in the gaps behind the sensor's notch, its transient left out.
+        pub between_filtered_g: Option<f64>,
+        /// Root mean square in the gaps behind the notch.
+        pub between_filtered_rms_g: Option<f64>,
+        /// Line of a_y that is nearest to the rollers' vertices times their recorded spin [Hz]; `None` where
+        /// none stands 10 dB above its surroundings within 0.5 % or the width of a line.
+        #[serde(default)]
+        pub tone_hz: Option<f64>,
+        /// Its peak amplitude [g].
+        #[serde(default)]
+        pub tone_g: Option<f64>,
+        /// How far it stands above the median of its surroundings [dB]; without a line, the
+        /// highest peak there.
+        #[serde(default)]
+        pub tone_db: Option<f64>,
+        /// The line nearest to its fifth harmonic [Hz], as `tone_hz`.
+        #[serde(default)]
+        pub fifth_hz: Option<f64>,
+        /// Its peak amplitude [g].
+        #[serde(default)]
+        pub fifth_g: Option<f64>,
+        /// As `tone_db`.
+        #[serde(default)]
+        pub fifth_db: Option<f64>,
+        /// Centre of this sensor's notch [Hz]: its own dominant facet tone; without one, that of the record.
+        #[serde(default)]
+        pub notch_hz: Option<f64>,
+        /// Drop of the density there [dB]: Hann window, whole record, transient included.
+        #[serde(default)]
+        pub notch_db: Option<f64>,
+    }
+}
+
+quantities! {
+    /// Resolution of the spectra.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct SpectrumFinding = of(resolution: &Resolution) {
+        /// Length of the record [s].
+        pub record_s: f64 = resolution.record_s,
+        /// Length of a segment [s].
+        pub segment_s: f64 = resolution.segment_s,
+        /// Segments averaged.
+        pub segments: usize = resolution.segments,
+        /// Window.
+        pub window: String = resolution.window.to_string(),
+        /// One over the length of a segment [Hz].
+        pub resolution_hz: f64 = resolution.resolution_hz,
+        /// Width of a line at −3 dB [Hz].
+        pub width_3db_hz: f64 = resolution.width_3db_hz,
+        /// Width of a line at −6 dB [Hz]: closer lines merge.
+        pub width_6db_hz: f64 = resolution.width_6db_hz,
+        /// Equivalent noise bandwidth [Hz].
+        pub noise_bandwidth_hz: f64 = resolution.noise_bandwidth_hz,
+        /// Distance between points of the drawn curve [Hz].
+        pub grid_hz: f64 = resolution.grid_hz,
+        /// True when the grid is finer than the resolution.
+        pub zero_padded: bool = resolution.zero_padded,
+        /// Resolution of the spectrum of the whole record in which the defect's family is looked for [Hz],
+        /// where that is another one.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub fine_resolution_hz: Option<f64> = None,
+    }
 }
 
 impl Event {
@@ -395,53 +452,9 @@ impl Event {
     }
 }
 
-impl EnergyFinding {
-    /// From the run's own account.
-    pub fn of(energy: &EnergyInfo) -> Self {
-        Self {
-            max_relative_error: energy.max_relative_error,
-            peak_strain_j: energy.peak_strain_j,
-            heat_j: energy.heat_j,
-            share_of_heat: energy.share_of_heat(),
-        }
-    }
-}
-
-impl RunCost {
-    /// Cost by the run's own account, and the usable part of the run.
-    pub fn of(info: &RunInfo, samples: usize, simulated_s: f64) -> Self {
-        let elements = (info.mesh.quads + info.mesh.triangles) as f64;
-        let work = info.steps as f64 * elements;
-        Self {
-            steps: info.steps,
-            steps_planned: info.steps_planned,
-            time_step_ns: 1e9 * info.time_step_s,
-            simulated_ms: 1e3 * simulated_s,
-            samples,
-            wall_s: info.wall_s,
-            cpu_s: info.cpu_s,
-            setup_s: info.setup_s,
-            threads: info.threads,
-            ns_per_element_step: (work > 0.0).then(|| 1e9 * info.wall_s / work),
-        }
-    }
-}
-
-impl SpectrumFinding {
-    /// The statement of a spectrum as numbers.
-    pub fn of(resolution: &Resolution) -> Self {
-        Self {
-            record_s: resolution.record_s,
-            segment_s: resolution.segment_s,
-            segments: resolution.segments,
-            window: resolution.window.to_string(),
-            resolution_hz: resolution.resolution_hz,
-            width_3db_hz: resolution.width_3db_hz,
-            width_6db_hz: resolution.width_6db_hz,
-            noise_bandwidth_hz: resolution.noise_bandwidth_hz,
-            grid_hz: resolution.grid_hz,
-            zero_padded: resolution.zero_padded,
-            fine_resolution_hz: None,
-        }
-    }
+/// Wall-clock time of the time loop for one element and one step [ns].
+fn ns_per_element_step(info: &RunInfo) -> Option<f64> {
+    let elements = (info.mesh.quads + info.mesh.triangles) as f64;
+    let work = info.steps as f64 * elements;
+    (work > 0.0).then(|| 1e9 * info.wall_s / work)
 }

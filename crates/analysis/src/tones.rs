@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, Resolution, Spectrum};
 
 use crate::Error;
+use crate::quantity::quantities;
 
 /// A line that follows from the geometry.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -21,28 +22,31 @@ pub struct PredictedLine {
     pub from_motion_hz: Option<f64>,
 }
 
-/// A predicted line beside its measurement at one sensor.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Tone {
-    /// Sensor.
-    pub sensor: String,
-    /// Facets and the place that they pass, in words.
-    pub name: String,
-    /// Multiple of the fundamental, from 1.
-    pub harmonic: usize,
-    /// Predicted frequency without slip [Hz].
-    pub predicted_hz: f64,
-    /// The same from the recorded motion of cage and rollers [Hz].
-    pub from_motion_hz: Option<f64>,
-    /// Frequency of the highest line within reach of the prediction [Hz]; `None` when no peak there stands at
-    /// least [`LEAST_PROMINENCE_DB`] above its surroundings.
-    pub measured_hz: Option<f64>,
-    /// Peak amplitude of the measured line [g].
-    pub level_g: Option<f64>,
-    /// How far the highest peak within reach stands above the median of its surroundings [dB], line or not.
-    pub prominence_db: Option<f64>,
-    /// Other predicted lines that this spectrum does not resolve from this one.
-    pub unresolved_from: Vec<String>,
+quantities! {
+    /// A predicted line beside its measurement at one sensor.
+    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+    pub struct Tone {
+        /// Sensor.
+        pub sensor: String,
+        /// Facets and the place that they pass, in words.
+        pub name: String,
+        /// Multiple of the fundamental, from 1.
+        pub harmonic: usize,
+        /// Predicted frequency without slip [Hz].
+        pub predicted_hz: f64,
+        /// The same from the recorded motion of cage and rollers [Hz].
+        pub from_motion_hz: Option<f64>,
+        /// Frequency of the highest line within reach of the prediction [Hz]; `None` when no peak there
+        /// stands at least [`LEAST_PROMINENCE_DB`] above its surroundings.
+        pub measured_hz: Option<f64>,
+        /// Peak amplitude of the measured line [g].
+        pub level_g: Option<f64>,
+        /// How far the highest peak within reach stands above the median of its surroundings [dB],
+        /// line or not.
+        pub prominence_db: Option<f64>,
+        /// Other predicted lines that this spectrum does not resolve from this one.
+        pub unresolved_from: Vec<String>,
+    }
 }
 
 /// A prediction, without slip or from the recorded motion, holds for a measured line within this fraction of

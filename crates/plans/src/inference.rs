@@ -38,7 +38,7 @@ mod text;
 use std::path::{Path, PathBuf};
 
 use crate::document::{File, unreadable};
-pub use quantity::{Quantity, Take, names};
+pub use quantity::{Quantity, Take};
 use refusal::INFERENCE;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{self, Place, Problem, SceneError, without_mark};

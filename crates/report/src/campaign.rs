@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, html};
+use stribeck_analysis::comparison::OF_SIGNAL;
+use stribeck_analysis::summary::Summary;
 use stribeck_diagnosis::words::numbers::significant;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::field_words::FieldWords;
-use crate::page::head;
+use crate::page::{capital, head};
 use crate::plot::{Axis, Colour, Figure, Series};
 
 /// A campaign whose runs have come to their end.
@@ -46,23 +48,30 @@ pub struct CampaignRun {
     pub folder: Option<String>,
 }
 
-/// Quantities drawn and listed: path in the summary, words, unit.
-const QUANTITIES: [(&str, &str, &str); 12] = [
-    ("levels.record.rms_g", "Root mean square", "g"),
-    ("levels.record.peak_g", "Peak", "g"),
-    ("levels.record.kurtosis", "Kurtosis", ""),
-    ("diagnosis.bpfo_level_db", "Level of BPFO", "dB"),
-    ("diagnosis.bpfi_level_db", "Level of BPFI", "dB"),
-    ("diagnosis.bsf_level_db", "Level of BSF", "dB"),
-    ("diagnosis.ftf_level_db", "Level of FTF", "dB"),
-    ("levels.exit_g", "Peak at exits from the defect", "g"),
-    ("levels.gap_rms_g", "Root mean square between passages", "g"),
-    ("load.max_roller_n", "Largest force on a rolling element", "N"),
-    ("kinematics.cage_hz", "Cage", "Hz"),
-    ("energy.heat_j", "Heat of friction and damping", "J"),
-];
-/// Those that the table lists.
-const LISTED: usize = 7;
+/// A number that is drawn over the fields.
+struct Drawn {
+    path: String,
+    words: String,
+    unit: &'static str,
+    /// Whether the table lists it, too: numbers of the signal.
+    is_listed: bool,
+}
+
+/// Numbers of the leading sensor's signal, then the main ones of the run.
+fn drawn() -> Vec<Drawn> {
+    let of_signal = OF_SIGNAL.iter().filter_map(|q| {
+        let path = q.path?.to_owned();
+        Some(Drawn { unit: q.unit.unwrap_or("g"), path, words: capital(q.words), is_listed: true })
+    });
+    let of_run = Summary::main_quantities().into_iter().map(|q| Drawn {
+        words: capital(q.words.unwrap_or_default()),
+        unit: q.unit(),
+        path: q.path,
+        is_listed: false,
+    });
+    of_signal.chain(of_run).collect()
+}
+
 /// Fields that have figures; more are in the tables.
 const MOST_FIELDS: usize = 4;
 /// Rows of the table.
@@ -85,7 +94,7 @@ fn page(index: &CampaignIndex) -> Result<Markup, Error> {
     for (at, field) in index.fields.iter().enumerate().take(MOST_FIELDS) {
         let abscissa = Abscissa::of(index, at);
         let figures: Vec<Figure> =
-            QUANTITIES.iter().filter_map(|quantity| figure(index, at, &abscissa, quantity)).collect();
+            drawn().iter().filter_map(|drawn| figure(index, at, &abscissa, drawn)).collect();
         let drawn = figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
         sections.push((field, drawn));
     }
@@ -216,10 +225,10 @@ fn figure(
     index: &CampaignIndex,
     at: usize,
     abscissa: &Abscissa,
-    (path, words, unit): &(&str, &str, &str),
+    Drawn { path, words, unit, .. }: &Drawn,
 ) -> Option<Figure> {
     let known = index.runs.iter().zip(&abscissa.places).filter_map(|(run, place)| {
-        Some((run, *place, *run.numbers.get(*path)?)).filter(|(_, place, _)| place.is_finite())
+        Some((run, *place, *run.numbers.get(path)?)).filter(|(_, place, _)| place.is_finite())
     });
     let mut known: Vec<(&CampaignRun, f64, f64)> = known.collect();
     if known.is_empty() {
@@ -304,11 +313,8 @@ fn side_by_side(x: &[f64], width: f64) -> Vec<f64> {
 }
 
 fn table(index: &CampaignIndex) -> Markup {
-    let listed: Vec<&(&str, &str, &str)> = QUANTITIES
-        .iter()
-        .take(LISTED)
-        .filter(|(path, ..)| index.runs.iter().any(|run| run.numbers.contains_key(*path)))
-        .collect();
+    let has = |drawn: &Drawn| index.runs.iter().any(|run| run.numbers.contains_key(&drawn.path));
+    let listed: Vec<Drawn> = drawn().into_iter().filter(|drawn| drawn.is_listed && has(drawn)).collect();
     html! {
         div class="scroll" {
             table {
@@ -316,7 +322,7 @@ fn table(index: &CampaignIndex) -> Markup {
                     th { "Run" }
                     @for field in &index.fields { th title=(field) { (FieldWords::of(field).with_unit()) } }
                     th { "Ended" } th { "Claimed" }
-                    @for (_, words, unit) in &listed { th class="n" { (words) @if !unit.is_empty() { " (" (unit) ")" } } }
+                    @for Drawn { words, unit, .. } in &listed { th class="n" { (words) @if !unit.is_empty() { " (" (unit) ")" } } }
                 }
                 @for run in index.runs.iter().take(MOST_ROWS) {
                     tr {
@@ -329,8 +335,8 @@ fn table(index: &CampaignIndex) -> Markup {
                         @for value in &run.values { td { (value) } }
                         td { (run.status) @if let Some(why) = &run.reason { ": " (why.lines().next().unwrap_or_default()) } }
                         td { (run.claimed.as_deref().unwrap_or("–")) }
-                        @for (path, ..) in &listed {
-                            td class="n" { (run.numbers.get(*path).map_or("–".to_owned(), |x| significant(*x, 4))) }
+                        @for Drawn { path, .. } in &listed {
+                            td class="n" { (run.numbers.get(path).map_or("–".to_owned(), |x| significant(*x, 4))) }
                         }
                     }
                 }
@@ -370,13 +376,13 @@ mod tests {
     #[test]
     fn by_hand_the_line_goes_through_the_means_of_each_place() {
         let index = index(vec![run(1, "100", 1.0), run(2, "200", 4.0), run(3, "100", 3.0)]);
-        let figure = figure(&index, 0, &Abscissa::of(&index, 0), &QUANTITIES[0]).expect("a number");
+        let figure = figure(&index, 0, &Abscissa::of(&index, 0), &drawn()[0]).expect("a number");
         assert_eq!((figure.series[0].y.as_slice(), figure.series[1].y.len()), (&[2.0, 4.0][..], 3));
         // Charts join points of one abscissa, so these are drawn as dots.
         let x: Vec<f64> = (0..3).map(|n| figure.series[1].position(n)).collect();
         assert!(x[0] < x[1] && x[1] - x[0] < 2.0 && x[2] == 200.0, "{x:?}");
         assert!(index.runs.iter().all(|run| !run.numbers.contains_key("levels.record.kurtosis")));
-        assert!(super::figure(&index, 0, &Abscissa::of(&index, 0), &QUANTITIES[2]).is_none());
+        assert!(super::figure(&index, 0, &Abscissa::of(&index, 0), &drawn()[3]).is_none());
     }
 
     #[test]

@@ -1,5 +1,9 @@
 //! A field of a scene in words, with its unit: `operation.load_n` is a load in newtons.
 
+use stribeck_analysis::quantity::stem_and_unit;
+
+use crate::page::capital;
+
 /// Title of a field on an axis or in a heading.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct FieldWords {
@@ -8,35 +12,6 @@ pub(crate) struct FieldWords {
     /// Its unit; empty without one.
     pub(crate) unit: &'static str,
 }
-
-/// Units by the end of a field's name, longer ends first.
-const UNITS: [(&str, &str); 25] = [
-    ("_per_gpa", "1/GPa"),
-    ("_kg_m3", "kg/m³"),
-    ("_n_s_m", "N s/m"),
-    ("_m_s2", "m/s²"),
-    ("_n_um", "N/µm"),
-    ("_per_s", "1/s"),
-    ("_percent", "%"),
-    ("_pa_s", "Pa s"),
-    ("_gpa", "GPa"),
-    ("_khz", "kHz"),
-    ("_rpm", "rpm"),
-    ("_deg", "°"),
-    ("_mm", "mm"),
-    ("_um", "µm"),
-    ("_ms", "ms"),
-    ("_us", "µs"),
-    ("_ns", "ns"),
-    ("_kg", "kg"),
-    ("_hz", "Hz"),
-    ("_db", "dB"),
-    ("_n", "N"),
-    ("_s", "s"),
-    ("_g", "g"),
-    ("_j", "J"),
-    ("_m", "m"),
-];
 
 /// Words of the fields whose names alone say too little, by their path.
 const KNOWN: [(&str, &str); 20] = [
@@ -77,12 +52,7 @@ impl FieldWords {
     /// Of a field by its dotted path.
     pub(crate) fn of(field: &str) -> Self {
         let (group, name) = field.rsplit_once('.').unwrap_or(("", field));
-        let (stem, unit) = UNITS
-            .iter()
-            .find_map(|(end, unit)| {
-                Some((name.strip_suffix(end)?, *unit)).filter(|(stem, _)| !stem.is_empty())
-            })
-            .unwrap_or((name, ""));
+        let (stem, unit) = stem_and_unit(name);
         if let Some((_, words)) = KNOWN.iter().find(|(path, _)| *path == field) {
             return Self { words: (*words).to_owned(), unit };
         }
@@ -107,12 +77,6 @@ impl FieldWords {
     pub(crate) fn with_unit(&self) -> String {
         if self.unit.is_empty() { self.words.clone() } else { format!("{}, {}", self.words, self.unit) }
     }
-}
-
-fn capital(words: &str) -> String {
-    let mut letters = words.chars();
-    let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
-    first + letters.as_str()
 }
 
 #[cfg(test)]

@@ -205,10 +205,14 @@ pub(crate) fn spoken(name: &str) -> String {
 
 /// A note with a capital and a full stop.
 pub(crate) fn sentence(note: &str) -> String {
-    let mut letters = note.chars();
+    capital(note) + if note.ends_with('.') { "" } else { "." }
+}
+
+/// Words with a capital.
+pub(crate) fn capital(words: &str) -> String {
+    let mut letters = words.chars();
     let first: String = letters.next().map(|c| c.to_uppercase().collect()).unwrap_or_default();
-    let stop = if note.ends_with('.') { "" } else { "." };
-    format!("{first}{}{stop}", letters.as_str())
+    first + letters.as_str()
 }
 
 #[cfg(test)]

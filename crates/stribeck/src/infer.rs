@@ -22,7 +22,7 @@ use stribeck_store::run_dir::{Keep, check_folder, write_atomic};
 use crate::analyse::Reading;
 use crate::campaign::{Shard, shard};
 use crate::interrupt::{self, Interrupt};
-use crate::many_runs::{Share, Stage, summary_of};
+use crate::many_runs::{Share, Stage};
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
 use answer::Known;
@@ -180,6 +180,7 @@ impl Study<'_> {
     /// Runs the outstanding runs; `None` when Ctrl-C was pressed.
     fn carry_out(&self) -> Result<Option<Known<'_>>> {
         let Self { inference, rounds, .. } = self;
+        outputs::check(inference)?;
         let budget = inference.budget;
         let scenes = budget.runs / inference.starts;
         let (mut points, mut rows) = (Vec::<Point>::new(), Vec::<Row>::new());
@@ -194,18 +195,10 @@ impl Study<'_> {
                     rounds.plan(round, &self.following(&rows, number, count)?)?
                 }
             };
-            // A target that no run has is refused after the first scene, not after the first round.
-            let one = planned.iter().position(|point| point.scenes.is_ok()).map_or(0, |first| first + 1);
-            if number == 1 && self.options.shard.is_none() {
-                if !self.make(round, &planned[..one])? {
-                    return Ok(None);
-                }
-                self.knows_targets(&planned[..one])?;
-            }
             if !self.make(round, &planned)? {
                 return Ok(None);
             }
-            if number == 1 && !self.knows_targets(&planned)? {
+            if number == 1 && !self.has_run(&planned)? {
                 bail!("no scene of the first round could be run. The first: {}", self.why_not(&planned));
             }
             rows.extend(outputs::rows(inference, rounds, &planned)?);
@@ -302,12 +295,10 @@ impl Study<'_> {
         Ok(true)
     }
 
-    /// Whether one of these scenes has run; refuses targets that a run does not have.
-    fn knows_targets(&self, points: &[Point]) -> Result<bool> {
+    /// Whether one of these scenes has run.
+    fn has_run(&self, points: &[Point]) -> Result<bool> {
         for wanted in Rounds::wanted(points) {
-            if let (Ok(scene), Stage::Done) = (wanted.scene, self.rounds.runs().stage(Keep::Numbers, wanted)?)
-            {
-                outputs::check(self.inference, &summary_of(&self.rounds.runs().run(scene))?)?;
+            if let Stage::Done = self.rounds.runs().stage(Keep::Numbers, wanted)? {
                 return Ok(true);
             }
         }

@@ -1,69 +1,51 @@
-//! Compared quantities: of one signal, and of the run behind it.
-
-use serde_json::Value;
+//! Compared numbers: those of a signal, whether simulated or measured, and the main ones of the run behind it.
 
 use super::side::Member;
 use stribeck_diagnosis::Defect;
 
-/// Unit of the signal itself.
-pub(super) const OF_SIGNAL: &str = "signal";
-
-/// A number that a side may have.
-pub(super) struct Quantity {
+/// A number of a signal.
+#[derive(Debug)]
+pub struct OfSignal {
     /// Stable name, the unit at its end where it has one of its own.
-    pub(super) name: &'static str,
+    pub name: &'static str,
     /// In words.
-    pub(super) words: &'static str,
-    /// Its unit, [`OF_SIGNAL`] for that of the signal, empty for none.
-    pub(super) unit: &'static str,
-    of: Of,
+    pub words: &'static str,
+    /// Its unit, empty for none; `None` for that of the signal.
+    pub unit: Option<&'static str>,
+    /// Where a campaign has it of the leading sensor.
+    pub path: Option<&'static str>,
+    pub(super) of: fn(&Member) -> Option<f64>,
 }
 
-/// Where it is taken from.
-enum Of {
-    Member(fn(&Member) -> Option<f64>),
-    /// Level of a family that is there [dB].
-    Level(Defect),
-    /// Path in `summary.json` of a run.
-    Summary(&'static str),
-}
-
-impl Quantity {
-    /// Its value in one signal, where that has one.
-    pub(super) fn of(&self, member: &Member) -> Option<f64> {
-        let value = match self.of {
-            Of::Member(of) => of(member),
-            Of::Level(defect) => member.level_db(defect),
-            Of::Summary(path) => member.summary.pointer(path).and_then(Value::as_f64),
-        };
-        value.filter(|value| value.is_finite())
-    }
-}
-
-const fn quantity(name: &'static str, words: &'static str, unit: &'static str, of: Of) -> Quantity {
-    Quantity { name, words, unit, of }
-}
-
-/// All of them, in the order of the table.
-pub(super) const ALL: [Quantity; 20] = [
-    quantity("rms", "root mean square", OF_SIGNAL, Of::Member(|m| m.shape.map(|s| s.rms))),
-    quantity("peak", "peak", OF_SIGNAL, Of::Member(|m| m.shape.map(|s| s.peak))),
-    quantity("crest_factor", "crest factor", "", Of::Member(|m| m.shape.map(|s| s.peak / s.rms))),
-    quantity("kurtosis", "kurtosis", "", Of::Member(|m| m.shape.map(|s| s.kurtosis))),
-    quantity("velocity_mm_s", "velocity, 10 to 1000 Hz", "mm/s", Of::Member(|m| m.velocity_mm_s)),
-    quantity("bpfo_db", "BPFO in the envelope", "dB", Of::Level(Defect::Bpfo)),
-    quantity("bpfi_db", "BPFI in the envelope", "dB", Of::Level(Defect::Bpfi)),
-    quantity("bsf_db", "BSF in the envelope", "dB", Of::Level(Defect::Bsf)),
-    quantity("ftf_db", "FTF in the envelope", "dB", Of::Level(Defect::Ftf)),
-    quantity("exit_g", "peak at exits from the defect", "g", Of::Summary("/levels/exit_g")),
-    quantity("entry_g", "peak at entries to the defect", "g", Of::Summary("/levels/entry_g")),
-    quantity("gap_g", "peak between passages", "g", Of::Summary("/levels/gap_g")),
-    quantity("gap_rms_g", "root mean square between passages", "g", Of::Summary("/levels/gap_rms_g")),
-    quantity("support_n", "mean force of all rollers on the outer ring", "N", Of::Summary("/load/mean_n")),
-    quantity("max_roller_n", "largest force on a roller", "N", Of::Summary("/load/max_roller_n")),
-    quantity("bpfo_hz", "BPFO of the recorded motion", "Hz", Of::Summary("/kinematics/bpfo_hz")),
-    quantity("cage_hz", "cage", "Hz", Of::Summary("/kinematics/cage_hz")),
-    quantity("roller_spin_hz", "spin of loaded rollers", "Hz", Of::Summary("/kinematics/roller_spin_hz")),
-    quantity("spall_mm", "length of the spall by its events", "mm", Of::Member(Member::spall_mm)),
-    quantity("heat_j", "heat of friction and damping", "J", Of::Summary("/energy/heat_j")),
+/// All of them.
+pub const OF_SIGNAL: [OfSignal; 9] = [
+    level("rms", "root mean square", "levels.record.rms_g", |m| Some(m.shape?.rms)),
+    level("peak", "peak", "levels.record.peak_g", |m| Some(m.shape?.peak)),
+    shape("crest_factor", "crest factor", "levels.record.crest_factor", |m| m.shape.map(|s| s.peak / s.rms)),
+    shape("kurtosis", "kurtosis", "levels.record.kurtosis", |m| Some(m.shape?.kurtosis)),
+    OfSignal {
+        name: "velocity_mm_s",
+        words: "velocity, 10 to 1000 Hz",
+        unit: Some("mm/s"),
+        path: None,
+        of: |m| m.velocity_mm_s,
+    },
+    family("bpfo_db", "BPFO in the envelope", "diagnosis.bpfo_level_db", |m| m.level_db(Defect::Bpfo)),
+    family("bpfi_db", "BPFI in the envelope", "diagnosis.bpfi_level_db", |m| m.level_db(Defect::Bpfi)),
+    family("bsf_db", "BSF in the envelope", "diagnosis.bsf_level_db", |m| m.level_db(Defect::Bsf)),
+    family("ftf_db", "FTF in the envelope", "diagnosis.ftf_level_db", |m| m.level_db(Defect::Ftf)),
 ];
+
+type Of = fn(&Member) -> Option<f64>;
+
+const fn level(name: &'static str, words: &'static str, path: &'static str, of: Of) -> OfSignal {
+    OfSignal { name, words, unit: None, path: Some(path), of }
+}
+
+const fn shape(name: &'static str, words: &'static str, path: &'static str, of: Of) -> OfSignal {
+    OfSignal { name, words, unit: Some(""), path: Some(path), of }
+}
+
+const fn family(name: &'static str, words: &'static str, path: &'static str, of: Of) -> OfSignal {
+    OfSignal { name, words, unit: Some("dB"), path: Some(path), of }
+}

@@ -17,7 +17,7 @@ use crate::ensemble::{EnsembleFindings, Merged};
 use crate::findings::{Findings, SensorSignal};
 use crate::load::Distribution;
 use crate::record::Record;
-use crate::summary::RecordLevels;
+use crate::summary::Shape;
 use stribeck_diagnosis::Defect;
 use stribeck_diagnosis::STANDARD_GRAVITY;
 use stribeck_diagnosis::{AccelerationUnit, Analysis, Family, Machine};
@@ -109,23 +109,6 @@ pub struct Sampled {
     pub values: Vec<f64>,
 }
 
-/// Numbers of a signal about its mean, in its unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Shape {
-    /// Root mean square.
-    pub rms: f64,
-    /// Largest distance from the mean.
-    pub peak: f64,
-    /// Fourth central moment over the square of the second.
-    pub kurtosis: f64,
-}
-
-impl Shape {
-    fn of(levels: RecordLevels) -> Self {
-        Self { rms: levels.rms_g, peak: levels.peak_g, kurtosis: levels.kurtosis }
-    }
-}
-
 impl Member {
     /// Level of a family that is there [dB].
     pub fn level_db(&self, defect: Defect) -> Option<f64> {
@@ -137,17 +120,10 @@ impl Member {
         self.families.iter().filter(|family| family.claimed)
     }
 
-    /// Length of the spall [mm], mean of all passages that show one.
-    pub(super) fn spall_mm(&self) -> Option<f64> {
-        let events = self.summary.pointer("/events")?.as_array()?;
-        let found: Vec<f64> = events.iter().filter_map(|event| event.get("spall_mm")?.as_f64()).collect();
-        (!found.is_empty()).then(|| found.iter().sum::<f64>() / found.len() as f64)
-    }
-
     /// The signal of a run at its sensor number `sensor`, with the run's numbers.
     fn of_findings(scene: &ResolvedScene, findings: Findings, sensor: usize) -> Result<Self, Error> {
         let SensorSignal { name, raw_g, raw_density, .. } = &findings.sensors[sensor];
-        let shape = RecordLevels::of(raw_g).map(Shape::of);
+        let shape = Shape::of(raw_g);
         let (start, step) = (findings.start_s, findings.interval_s);
         let analysis = judged(scene, &channel_name(name), raw_g, 1.0 / step)?;
         let density = match (&analysis, raw_density) {

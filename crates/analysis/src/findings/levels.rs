@@ -7,7 +7,7 @@ use super::SensorSignal;
 use crate::Error;
 use crate::filtering::Filter;
 use crate::levels::{self, Phase, SignalLevel, Visit};
-use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, RecordLevels, SensorLevels};
+use crate::summary::{ComponentLevels, Event, LevelsFinding, PhaseLevels, RecordLevels, SensorLevels, Shape};
 use crate::tones::{self, NearestLine, PredictedLine};
 
 /// Multiple of the facet tone that the paper reports.
@@ -102,7 +102,7 @@ impl<'a> Spans<'a> {
             between_filtered_g: filtered.map(|l| l.peak),
             between_filtered_p99_g: filtered.map(|l| l.p99),
             between_filtered_rms_g: filtered.map(|l| l.rms),
-            record: RecordLevels::of(&sensor.raw_g),
+            record: Shape::of(&sensor.raw_g).as_ref().map(RecordLevels::of),
             sensors: Vec::new(),
         }
     }
@@ -155,23 +155,10 @@ pub(super) fn start_up_end_s(time: &[f64], events: &[Event]) -> f64 {
 
 /// Peak and root mean square of every phase.
 fn by_phase(signal: &[f64], phases: &[Phase]) -> PhaseLevels {
-    let of = |phase| {
-        levels::phase_level(signal, phases, phase).map_or((None, None), |l| (Some(l.peak), Some(l.rms)))
-    };
     let [start, entry, defect, exit, gap] =
-        [Phase::StartUp, Phase::Entry, Phase::Defect, Phase::Exit, Phase::Gap].map(of);
-    PhaseLevels {
-        start_g: start.0,
-        start_rms_g: start.1,
-        entry_g: entry.0,
-        entry_rms_g: entry.1,
-        defect_g: defect.0,
-        defect_rms_g: defect.1,
-        exit_g: exit.0,
-        exit_rms_g: exit.1,
-        gap_g: gap.0,
-        gap_rms_g: gap.1,
-    }
+        [Phase::StartUp, Phase::Entry, Phase::Defect, Phase::Exit, Phase::Gap]
+            .map(|phase| levels::phase_level(signal, phases, phase));
+    PhaseLevels::of(start, entry, defect, exit, gap)
 }
 
 /// Levels along and across the radius at the sensor's place.

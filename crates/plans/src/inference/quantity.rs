@@ -112,6 +112,11 @@ impl Quantity {
         Ok(Self { text: text.to_owned(), take, steps, bound })
     }
 
+    /// The path without items and bounds, as in `events.floor_n`.
+    pub fn path(&self) -> String {
+        self.steps.iter().map(|step| step.name.as_str()).collect::<Vec<_>>().join(".")
+    }
+
     /// Names in braces, which the readings of an unknown replace.
     pub fn placeholders(&self) -> Vec<&str> {
         let conditions = self.steps.iter().flat_map(|step| match &step.item {
@@ -147,7 +152,8 @@ impl Quantity {
         let all = || numbers.iter().copied();
         match self.take {
             Take::One => (numbers.len() == 1).then(|| numbers[0]),
-            Take::Count => (!found.is_empty() || self.is_known(summary)).then_some(numbers.len() as f64),
+            // Of a list that is not there nothing is known; of an empty one there are none.
+            Take::Count => summary.get(&self.steps[0].name).map(|_| numbers.len() as f64),
             Take::Share => (!found.is_empty()).then(|| numbers.len() as f64 / found.len() as f64),
             Take::Mean => (!numbers.is_empty()).then(|| all().sum::<f64>() / numbers.len() as f64),
             Take::Median => median(numbers),
@@ -162,49 +168,12 @@ impl Quantity {
         let found = follow(summary, &self.steps);
         (!found.is_empty()).then(|| found.iter().map(|value| number(value)).collect::<Option<_>>()).flatten()
     }
-
-    /// Whether the path could be one of this summary: its first name is there, and its last one stands in
-    /// some item.
-    pub fn is_known(&self, summary: &Value) -> bool {
-        let first = self.steps.first().map(|step| step.name.as_str()).unwrap_or_default();
-        let bare: Vec<&str> = self.steps.iter().map(|step| step.name.as_str()).collect();
-        match summary.get(first) {
-            None => false,
-            // A value that is `null` or an empty list may have that name in another run.
-            Some(Value::Null) => true,
-            Some(Value::Array(items)) if items.is_empty() => true,
-            Some(_) => names(summary).iter().any(|name| *name == bare.join(".")),
-        }
-    }
 }
 
 impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.text)
     }
-}
-
-/// Paths of all numbers of a summary, those of a list's items once, without their numbers.
-pub fn names(summary: &Value) -> Vec<String> {
-    fn walk(value: &Value, path: &str, to: &mut Vec<String>) {
-        match value {
-            Value::Object(fields) => {
-                for (name, inner) in fields {
-                    let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-                    walk(inner, &path, to);
-                }
-            }
-            Value::Array(items) => items.iter().for_each(|item| walk(item, path, to)),
-            // A number that this run has not may be there in another.
-            Value::Number(_) | Value::Bool(_) | Value::Null => to.push(path.to_owned()),
-            Value::String(_) => {}
-        }
-    }
-    let mut all = Vec::new();
-    walk(summary, "", &mut all);
-    all.sort();
-    all.dedup();
-    all
 }
 
 impl Bound {

@@ -6,7 +6,9 @@ use stribeck_scene::scene::ModelScene;
 
 use super::tables::{decimals, mean, shown};
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
+use stribeck_analysis::quantity::Quantity;
 use stribeck_analysis::statistic::Statistic;
+use stribeck_analysis::summary::Summary;
 
 /// The first paragraphs of the page.
 pub(super) fn paragraphs(findings: &EnsembleFindings) -> Markup {
@@ -108,12 +110,13 @@ fn scatter(summary: &EnsembleSummary) -> String {
     if complete < 2 {
         return "It takes two complete starts to tell.".into();
     }
-    let of = |path: &str, what: &str| {
-        let s = summary.number(path)?;
+    let of = |quantity: Quantity| {
+        let s = summary.number(&quantity.path)?;
         let needed = s.starts_for(0.1).map_or(String::new(), |n| format!("; {n} starts for ±10 %"));
         let decimals = decimals(s, 0);
         Some(format!(
-            "{what} {} g (one start: {} to {} g, {:.0} % scatter{needed})",
+            "{} {} g (one start: {} to {} g, {:.0} % scatter{needed})",
+            quantity.words?,
             mean(s, 1.0, decimals),
             shown(s.q10, decimals),
             shown(s.q90, decimals),
@@ -122,16 +125,13 @@ fn scatter(summary: &EnsembleSummary) -> String {
     };
     let sensor = summary.ensemble.text("levels.sensor").unwrap_or("none");
     let levels: Vec<String> =
-        [("levels.exit_g", "exits"), ("levels.entry_g", "entries"), ("levels.gap_g", "gaps")]
-            .iter()
-            .filter_map(|(path, what)| of(path, what))
-            .collect();
+        Summary::main_quantities().into_iter().filter(Quantity::scatters).filter_map(of).collect();
     let carrier = summary.ensemble.items("families").iter().find_map(|f| f.number("carrier_hz"));
     let line = carrier
         .and_then(|s| s.deviation)
         .map_or(String::new(), |d| format!(" The tone's frequency scatters by {} Hz.", shown(d, 1)));
     format!(
-        "Peaks of a_y at sensor “{sensor}”, mean of {complete} starts ± 95 %: {}.{line} What differs by less \
+        "Levels of a_y at sensor “{sensor}”, mean of {complete} starts ± 95 %: {}.{line} What differs by less \
          than the intervals is no difference.",
         levels.join("; ")
     )

@@ -2,11 +2,12 @@
 
 use maud::{Markup, html};
 
-use crate::page::{cell, spoken, term};
+use crate::page::{capital, cell, spoken, term};
 use crate::run::spectrum::families::OFF;
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
+use stribeck_analysis::quantity::Quantity;
 use stribeck_analysis::statistic::{CONFIDENCE, Statistic};
-use stribeck_analysis::summary::Event;
+use stribeck_analysis::summary::{Event, Summary};
 use stribeck_diagnosis::words::numbers;
 
 /// Relative width of its interval up to which a mean is shown with fewer decimals.
@@ -21,23 +22,15 @@ pub(super) const PHASES: [(&str, &str); 5] = [
     ("gap", "gaps"),
 ];
 
-/// A number of the summary and how it is shown.
-struct Row {
-    name: String,
-    path: String,
-    factor: f64,
-    decimals: usize,
-    /// Its scatter is worth setting beside its mean.
-    scatters: bool,
-}
-
-impl Row {
-    fn new(name: impl Into<String>, path: impl Into<String>, factor: f64, decimals: usize) -> Self {
-        Self { name: name.into(), path: path.into(), factor, decimals, scatters: false }
-    }
-
-    fn level(name: impl Into<String>, path: impl Into<String>, decimals: usize) -> Self {
-        Self { scatters: true, ..Self::new(name, path, 1.0, decimals) }
+/// How a number of a unit is shown: in which unit, times which factor, with how many decimals.
+fn scale(unit: &'static str) -> (&'static str, f64, usize) {
+    match unit {
+        "N" => ("kN", 1e-3, 2),
+        // Parts of one.
+        "" => ("%", 100.0, 3),
+        "s" => ("s", 1.0, 1),
+        "g" => ("g", 1.0, 0),
+        unit => (unit, 1.0, 3),
     }
 }
 
@@ -76,28 +69,13 @@ pub(super) fn main(summary: &EnsembleSummary) -> Markup {
         return html! {};
     }
     let sensor = summary.ensemble.text("levels.sensor").unwrap_or("none");
-    let peak =
-        PHASES.map(|(field, words)| Row::level(format!("Peak, {words} [g]"), format!("levels.{field}_g"), 0));
-    let rms = PHASES
-        .map(|(field, words)| Row::level(format!("RMS, {words} [g]"), format!("levels.{field}_rms_g"), 1));
-    let notched = [Row::level("Peak, gaps, behind the notch [g]", "levels.between_filtered_g", 0)];
-    let levels: Vec<Row> = peak.into_iter().chain(rms).chain(notched).collect();
-    let forces = [
-        Row::new("Largest roller force, without facet tone [kN]", "load.max_roller_n", 1e-3, 2),
-        Row::new("Mean load off the applied one [%]", "load.relative_error", 100.0, 3),
-    ];
-    let motion = [
-        Row::new("BPFO [Hz]", "kinematics.bpfo_hz", 1.0, 2),
-        Row::new("Spin of loaded rollers [Hz]", "kinematics.roller_spin_hz", 1.0, 3),
-    ];
-    let cost = [
-        match summary.number("energy.share_of_heat") {
-            Some(_) => Row::new("Energy off balance, of the heat [%]", "energy.share_of_heat", 100.0, 3),
-            None => Row::new("Energy off balance [%]", "energy.max_relative_error", 100.0, 3),
-        },
-        Row::new("Wall-clock time, set-up left out [s]", "run.wall_s", 1.0, 1),
-        Row::new("Set-up: mesh and preload [s]", "run.setup_s", 1.0, 1),
-    ];
+    // Energy is balanced against the heat where that is more than the strain energy.
+    let of_heat = summary.number("energy.share_of_heat").is_some();
+    let named = Summary::quantities().into_iter().filter(|quantity| {
+        let replaced = of_heat && quantity.path == "energy.max_relative_error";
+        quantity.words.is_some() && !quantity.is_listed && !replaced
+    });
+    let named: Vec<Quantity> = named.collect();
     html! {
         div class="scroll" {
             table class="numbers" {
@@ -109,10 +87,11 @@ pub(super) fn main(summary: &EnsembleSummary) -> Markup {
                     }
                 }
                 tbody {
-                    (group(&format!("Acceleration a_y at sensor “{sensor}”"), summary, &levels))
-                    (group("Forces", summary, &forces))
-                    (group("Motion", summary, &motion))
-                    (group("Balance and cost", summary, &cost))
+                    (group(&format!("Acceleration a_y at sensor “{sensor}”"), summary, &named, "levels."))
+                    (group("Forces", summary, &named, "load."))
+                    (group("Motion", summary, &named, "kinematics."))
+                    (group("Energy", summary, &named, "energy."))
+                    (group("Cost", summary, &named, "run."))
                 }
             }
         }
@@ -124,20 +103,24 @@ pub(super) fn main(summary: &EnsembleSummary) -> Markup {
     }
 }
 
-fn group(name: &str, summary: &EnsembleSummary, rows: &[Row]) -> Markup {
-    let known: Vec<(&Row, &Statistic)> =
-        rows.iter().filter_map(|row| Some((row, summary.number(&row.path)?))).collect();
+/// The named numbers of a section of the summary.
+fn group(name: &str, summary: &EnsembleSummary, named: &[Quantity], section: &str) -> Markup {
+    let of_section = named.iter().filter(|quantity| quantity.path.starts_with(section));
+    let known: Vec<(&Quantity, &Statistic)> =
+        of_section.filter_map(|quantity| Some((quantity, summary.number(&quantity.path)?))).collect();
     html! {
         @if !known.is_empty() { tr class="group" { td colspan="7" { (name) } } }
-        @for (row, s) in known {
-            @let decimals = if row.scatters { decimals(s, row.decimals) } else { row.decimals };
+        @for (quantity, s) in known {
+            @let scatters = quantity.scatters();
+            @let (unit, factor, least) = scale(quantity.unit());
+            @let decimals = if scatters { decimals(s, least) } else { least };
             tr {
-                td { (row.name) }
-                td class="n" { (mean(s, row.factor, decimals)) }
-                td class="n" { (span(s.q10, s.q90, row.factor, decimals)) }
-                td class="n" { (span(s.least, s.most, row.factor, decimals)) }
-                (cell(s.deviation.filter(|_| row.scatters).map(|d| format!("{:.0} %", 100.0 * d / s.mean.abs()))))
-                (cell(s.starts_for(WORTH).filter(|_| row.scatters).map(|n| n.to_string())))
+                td { (capital(quantity.words.unwrap_or_default())) " [" (unit) "]" }
+                td class="n" { (mean(s, factor, decimals)) }
+                td class="n" { (span(s.q10, s.q90, factor, decimals)) }
+                td class="n" { (span(s.least, s.most, factor, decimals)) }
+                (cell(s.deviation.filter(|_| scatters).map(|d| format!("{:.0} %", 100.0 * d / s.mean.abs()))))
+                (cell(s.starts_for(WORTH).filter(|_| scatters).map(|n| n.to_string())))
                 td class="n" { (s.count) "/" (s.of) }
             }
         }

@@ -97,82 +97,36 @@ fn planted_tone_levels_and_notch_of_the_synthetic_run() {
     assert!(summary.notes.iter().any(|n| n.contains("envelope")), "{:?}", summary.notes);
 }
 
+/// Paths of all numbers, those of a list's items without their places.
+fn numbers_below(value: &serde_json::Value, path: &str, each: &mut impl FnMut(&String)) {
+    match value {
+        serde_json::Value::Object(fields) => {
+            for (name, inner) in fields {
+                numbers_below(inner, format!("{path}.{name}").trim_start_matches('.'), each);
+            }
+        }
+        serde_json::Value::Array(items) => items.iter().for_each(|item| numbers_below(item, path, each)),
+        serde_json::Value::Number(_) | serde_json::Value::Bool(_) => each(&path.to_owned()),
+        serde_json::Value::Null | serde_json::Value::String(_) => {}
+    }
+}
+
 #[test]
 fn golden_the_summary_has_its_stable_names() {
     let (folder, summary) = whole("names");
     let text = read(&folder.0, "summary.json");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
-    for path in [
-        "/mesh/nodes",
-        "/mesh/quads",
-        "/mesh/triangles",
-        "/mesh/roller_facets",
-        "/mesh/outer_facets",
-        "/mesh/inner_facets",
-        "/run/steps",
-        "/run/time_step_ns",
-        "/run/wall_s",
-        "/run/cpu_s",
-        "/run/threads",
-        "/run/ns_per_element_step",
-        "/energy/max_relative_error",
-        "/kinematics/cage_hz",
-        "/kinematics/bpfo_hz",
-        "/kinematics/roller_spin_hz",
-        "/kinematics/expected_cage_hz",
-        "/kinematics/expected_bpfo_hz",
-        "/kinematics/expected_roller_spin_hz",
-        "/events/2/roller",
-        "/events/2/entry_ms",
-        "/events/2/exit_ms",
-        "/events/2/expected_entry_ms",
-        "/events/2/expected_exit_ms",
-        "/load/mean_n",
-        "/load/expected_n",
-        "/load/max_roller_n",
-        "/tones/0/name",
-        "/tones/0/predicted_hz",
-        "/tones/0/measured_hz",
-        "/tones/0/level_g",
-        "/events/2/compensation_n",
-        "/levels/impulse_g",
-        "/levels/start_g",
-        "/levels/start_rms_g",
-        "/levels/entry_g",
-        "/levels/entry_rms_g",
-        "/levels/defect_g",
-        "/levels/defect_rms_g",
-        "/levels/exit_g",
-        "/levels/exit_rms_g",
-        "/levels/gap_g",
-        "/levels/gap_rms_g",
-        "/levels/sensors/3/sensor",
-        "/levels/sensors/3/gap_rms_g",
-        "/levels/sensors/3/components/0/component",
-        "/levels/sensors/3/components/1/exit_g",
-        "/families/2/name",
-        "/families/2/predicted_hz",
-        "/families/0/carrier_hz",
-        "/families/0/offset_resolutions",
-        "/families/0/found",
-        "/families/0/level_g",
-        "/families/0/lines/0/sideband",
-        "/families/0/lines/0/predicted_hz",
-        "/families/0/lines/0/sensor",
-        "/families/0/lines/0/component",
-        "/levels/between_g",
-        "/levels/between_filtered_g",
-        "/notch/centre_hz",
-        "/notch/q",
-        "/notch/attenuation_db",
-        "/notch/attenuation_4545_db",
-        "/spectrum/record_s",
-        "/spectrum/resolution_hz",
-        "/spectrum/grid_hz",
-        "/spectrum/window",
-        "/spectrum/segments",
-    ] {
-        assert!(json.pointer(path).is_some_and(|v| !v.is_null()), "{path} is missing");
+    let declared: Vec<String> = Summary::quantities().into_iter().map(|quantity| quantity.path).collect();
+    let page = include_str!("../../../../docs/guide/src/quantities.md");
+    for path in &declared {
+        assert!(page.contains(&format!("`{path}`")), "the guide has no {path}: `cargo xtask quantities`");
+    }
+    numbers_below(&json, "", &mut |path| assert!(declared.contains(path), "{path} is declared nowhere"));
+    for path in ["mesh.nodes", "run.wall_s", "kinematics.bpfo_hz", "load.mean_n", "levels.exit_g", "notch.q"]
+    {
+        assert!(declared.iter().any(|declared| declared == path), "{path} had another name before");
+        let pointer = format!("/{}", path.replace('.', "/"));
+        assert!(json.pointer(&pointer).is_some_and(serde_json::Value::is_number), "{path} is missing");
     }
     // No roller of this run touches the floor: the names are there, without a value.
     for path in ["/events/0/floor_ms", "/events/0/floor_n"] {

@@ -2,42 +2,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use stribeck_analysis::quantity::stem_and_unit;
 use stribeck_plans::campaign::Campaign;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::Keep;
 
 use super::tables::{EVENTS, RUNS, Row, SIGNALS, Truth, Written, model, sampling_rate_hz};
-
-/// Units at the end of names, a longer one before those that it ends in.
-const UNITS: [(&str, &str); 27] = [
-    ("_kg_m3", "kg/m³"),
-    ("_m_s2", "m/s²"),
-    ("_per_gpa", "1/GPa"),
-    ("_per_s", "1/s"),
-    ("_pa_s", "Pa s"),
-    ("_n_s_m", "N s/m"),
-    ("_n_um", "N/µm"),
-    ("_gpa", "GPa"),
-    ("_mpa", "MPa"),
-    ("_khz", "kHz"),
-    ("_hz", "Hz"),
-    ("_rpm", "rpm"),
-    ("_deg", "°"),
-    ("_db", "dB"),
-    ("_kg", "kg"),
-    ("_mm", "mm"),
-    ("_um", "µm"),
-    ("_nm", "nm"),
-    ("_ms", "ms"),
-    ("_us", "µs"),
-    ("_ns", "ns"),
-    ("_rad", "rad"),
-    ("_j", "J"),
-    ("_w", "W"),
-    ("_n", "N"),
-    ("_g", "g"),
-    ("_s", "s"),
-];
 
 /// The page in Markdown.
 pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> String {
@@ -88,7 +58,7 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
             page += &format!("\n## Columns of `{table}`\n\n| column | unit |\n|---|---|\n");
         }
         for column in columns {
-            page += &format!("| `{column}` | {} |\n", unit(column));
+            page += &format!("| `{column}` | {} |\n", stem_and_unit(column).1);
         }
     }
     page += &format!("\n## The campaign\n\n```ron\n{}\n```\n", campaign.text.trim_end());
@@ -221,35 +191,9 @@ fn span(numbers: impl Iterator<Item = f64>, unit: &str) -> String {
     }
 }
 
-/// The unit of a column: it is the end of its name.
-fn unit(column: &str) -> &'static str {
-    UNITS.iter().find(|(end, _)| column.ends_with(end)).map_or("", |(_, unit)| unit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn behaves_units_are_read_from_names() {
-        for (column, expected) in [
-            ("sensor.side.ay_m_s2", "m/s²"),
-            ("summary.levels.gap_rms_g", "g"),
-            ("fault_size_mm", "mm"),
-            ("n_samples", ""),
-            ("bpfo_hz", "Hz"),
-            ("scene.model.reduced.modes_khz", "kHz"),
-        ] {
-            assert_eq!(unit(column), expected, "{column}");
-        }
-    }
-
-    #[test]
-    fn invariant_no_unit_hides_a_longer_one() {
-        for (at, (end, _)) in UNITS.iter().enumerate() {
-            assert!(UNITS[..at].iter().all(|(before, _)| !end.ends_with(before)), "{end}");
-        }
-    }
 
     #[test]
     fn behaves_limits_are_those_of_what_is_there() {

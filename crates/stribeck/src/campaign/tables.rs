@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use serde_json::Value;
+use stribeck_analysis::summary::Summary;
 use stribeck_formats::parquet::{Column, Values, write_table};
 use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_scene::scene::Scene;
@@ -66,6 +67,7 @@ pub(super) struct Written {
 
 /// Reads the results of the runs.
 pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Result<Vec<Row>> {
+    let quantities = Summary::quantities();
     let row = |(variant, stage): (&Variant, &Stage)| -> Result<Row> {
         let mut row = Row {
             number: variant.number,
@@ -91,7 +93,9 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                     (row.status, row.reason) = ("diverged", info.stop_reason);
                 }
                 let summary = summary_of(&path)?;
-                flatten(&summary, "", &mut row.numbers);
+                // Those outside of lists, without clocks.
+                let of_table = quantities.iter().filter(|q| !q.is_listed && !q.path.starts_with("run."));
+                row.numbers.extend(of_table.filter_map(|q| Some((q.path.clone(), q.number(&summary)?))));
                 row.claimed = diagnosed(&summary, &mut row.numbers);
                 row.numbers.insert("energy.max_relative_error".into(), info.energy.max_relative_error);
                 // An overflow is no number, and a column without numbers is none.
@@ -108,20 +112,6 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
         Ok(row)
     };
     campaign.runs.iter().zip(stages).map(row).collect()
-}
-
-/// All numbers of a summary outside of lists, by their path; without clocks.
-fn flatten(value: &Value, path: &str, to: &mut BTreeMap<String, f64>) {
-    match value {
-        Value::Object(fields) => {
-            for (name, inner) in fields.iter().filter(|(name, _)| !(path.is_empty() && *name == "run")) {
-                let path = if path.is_empty() { name.clone() } else { format!("{path}.{name}") };
-                flatten(inner, &path, to);
-            }
-        }
-        Value::Number(number) => drop(number.as_f64().map(|number| to.insert(path.to_owned(), number))),
-        _ => {}
-    }
 }
 
 /// The families that are claimed; the levels of all go to the numbers.

@@ -2,8 +2,9 @@
 
 use anyhow::{Result, bail};
 use serde_json::Value;
+use stribeck_analysis::summary::Summary;
 use stribeck_infer::{Curves, Output, Runs, Scale, Target};
-use stribeck_plans::inference::{Inference, Quantity, Seen, Values, names};
+use stribeck_plans::inference::{Inference, Quantity, Seen, Values};
 use stribeck_store::run_dir::Keep;
 
 use super::rounds::{Point, Rounds};
@@ -86,12 +87,14 @@ pub(super) fn rows_of_readings(
 }
 
 /// Refuses targets that no number of a summary has, with the nearest name.
-pub(super) fn check(inference: &Inference, summary: &Value) -> Result<()> {
+pub(super) fn check(inference: &Inference) -> Result<()> {
+    let all = Summary::quantities();
     for target in &inference.targets {
-        if !target.of.is_known(summary) {
+        let path = target.of.path();
+        if all.iter().all(|quantity| quantity.path != path) {
             let wanted = target.of.to_string();
-            let all = names(summary);
-            let near = all.iter().min_by_key(|name| distance(name, &wanted)).map_or("", String::as_str);
+            let near = all.iter().min_by_key(|quantity| distance(&quantity.path, &wanted));
+            let near = near.map_or("", |quantity| &quantity.path);
             bail!(
                 "target `{}`: `{wanted}` is no number of summary.json. The nearest is `{near}`; \
                  a finished run's summary.json has all {} of them",

@@ -92,7 +92,7 @@ pub(super) fn prepare(record: &Path, options: &Options, out: &Path, place: &Plac
         .with_context(|| format!("`{}` cannot be held against simulated records", record.display()))?;
     check_folder(out, &[FILE])?;
     let base = base(bearing, &known, &claim, rpm, rhythm, findings.rate_hz);
-    let told = Told { signature: signature.into(), free_ms: findings.event_spacing_ms };
+    let told = Told { signature: PassageSignature::of(&signature), free_ms: findings.event_spacing_ms };
     let text = text(record, &known, &claim, reading, &told, options.runs);
     std::fs::create_dir_all(out).with_context(|| format!("cannot make `{}`", shown(out)))?;
     write_once(&out.join(BASE), &base)?;
@@ -377,7 +377,8 @@ mod tests {
         let claim = claim(&analysis).expect("one raceway");
         assert_eq!(claim.ring, "outer");
         let rhythm = rhythm(claim.passing_hz, 20.0, 8.0);
-        let signature = Signature::of(&analysis.beginning, 12_800.0, rhythm).expect("long enough").into();
+        let signature = Signature::of(&analysis.beginning, 12_800.0, rhythm).expect("long enough");
+        let signature = PassageSignature::of(&signature);
         let told = Told { signature, free_ms: Some(1.5) };
         let known = CatalogueBearing::parse("6205").expect("in the catalogue");
         let line = Line::parse_from(["x", "--load-n", "50..150", "--clearance-um", "5"]);

@@ -1,0 +1,55 @@
+//! `docs/guide/src/quantities.md`: every number of a run, as the summary declares it.
+
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use stribeck_analysis::summary::Summary;
+
+use crate::workspace;
+
+/// The page.
+const PAGE: &str = "docs/guide/src/quantities.md";
+
+/// Flags of `quantities`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {}
+
+/// Writes the page.
+pub(crate) fn run(_: &Options) -> Result<ExitCode> {
+    let path = workspace::root().join(PAGE);
+    std::fs::write(path, page()?).with_context(|| format!("cannot write {PAGE}"))?;
+    println!("{PAGE} says what the summary declares");
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Whether the page agrees with the summary.
+pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
+    let text = std::fs::read_to_string(root.join(PAGE)).unwrap_or_default();
+    let complaint = || format!("{PAGE} is not what the summary declares; `cargo xtask quantities` writes it");
+    Ok((text != page()?).then(complaint).into_iter().collect())
+}
+
+fn page() -> Result<String> {
+    let mut text = String::from(
+        "# Every number of a run\n\nWritten by `cargo xtask quantities` from the summary's own declarations. \
+         A path leads to a number in `summary.json`, to its statistic in that of an ensemble, to the column \
+         `summary.PATH` of a campaign, and to a target of an inference. Of a number in a list an inference \
+         takes one item or combines all, as in `median(events.floor_n)`; campaigns have no column of it. \
+         `compare` sets the bold ones side by side, and the page of a campaign draws them over its fields.\n",
+    );
+    let mut section = String::new();
+    for quantity in Summary::quantities() {
+        let (first, _) = quantity.path.split_once('.').unwrap_or_default();
+        if section != first {
+            first.clone_into(&mut section);
+            write!(text, "\n## `{section}`\n\n| path | unit | |\n|---|---|---|\n")?;
+        }
+        let mark = if quantity.place.is_some() { "**" } else { "" };
+        let list = if quantity.is_listed { "In a list. " } else { "" };
+        let about = quantity.about_in_markdown();
+        writeln!(text, "| {mark}`{}`{mark} | {} | {list}{about} |", quantity.path, quantity.unit())?;
+    }
+    Ok(text)
+}
