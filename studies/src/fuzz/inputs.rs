@@ -41,21 +41,20 @@ pub(crate) const KINDS: [Kind; 10] = [
 ];
 
 /// A scene of everything that goes over time.
-const DUTY: &str = "(operation: (speed_rpm: -300, speed_profile: points([(0.0, 500.0), (20.5, -1e2), (30, \
-    0)]), \
-                    load_profile: harmonic(amplitude: 5000.0, hz: 25.0, phase_deg: 90.0), \
-                    rotating_load: (force_n: 1000.0, angle_deg: 30.0)))";
+const DUTY: &str = "(operation: (speed_rpm: -300, \
+    speed_profile: points([(0.0, 500.0), (20.5, -1e2), (30, 0)]), \
+    load_profile: harmonic(amplitude: 5000.0, hz: 25.0, phase_deg: 90.0), \
+    rotating_load: (force_n: 1000.0, angle_deg: 30.0)))";
 
 /// A table of a profile.
 const TABLE: &str = "time_ms, value # by hand\n0.0, 500.0\n10, 600\n20.25, 1e2\n30,-50.5\n";
 
 /// A campaign of everything, with the table above as that of its other kind.
 const CAMPAIGN: &str = "(name: \"x\", scene: \"table.ron\", set: [\"cage=None\", \"mesh.size_mm=4.0\"], \
-    seed: 3, starts: 2, \
-                        split: (train: 0.5, validation: 0.25, test: 0.25), keep: numbers, variants: \
-                        sobol(count: 4, over: [\
-                        (field: \"operation.load_n\", from: 5e3, to: 5e4, log: true), \
-                        (field: \"defects\", values: [[], [(on: roller(1), form: dent())]])]))";
+    seed: 3, starts: 2, split: (train: 0.5, validation: 0.25, test: 0.25), keep: numbers, \
+    variants: sobol(count: 4, over: [\
+    (field: \"operation.load_n\", from: 5e3, to: 5e4, log: true), \
+    (field: \"defects\", values: [[], [(on: roller(1), form: dent())]])]))";
 
 /// Bytes before the content of a checkpoint; length and checksum are the last twelve.
 const HEADER: usize = 52;

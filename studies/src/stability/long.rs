@@ -66,8 +66,7 @@ fn spinning(figure: &mut Figure) -> Result<Case> {
     let right = worst < DRIFT && spin_drift < 1e-9 && radius_drift < 1e-5 && centre_drift < 1e-6;
     let seen = format!(
         "{:.2} turns; angular momentum kept to {spin_drift:.0e}, its straight line to {centre_drift:.0e} \
-         radii, radius to {radius_drift:.0e} (it \
-         breathes)",
+         radii, radius to {radius_drift:.0e} (it breathes)",
         spin * system.time() / std::f64::consts::TAU
     );
     Ok(Case::of("10⁷ steps of a free spinning roller", worst, stop_reason(findings), right, seen))
