@@ -270,6 +270,7 @@ mod tests {
     #[test]
     fn refuses_a_spall_without_a_floor() {
         let steep = Spall { length: 1e-4, depth: 1e-3, ..spall(20.0) };
-        assert!(moved(&circle(1200), None, Some(&steep), 1.0).is_err());
+        let refused = moved(&circle(1200), None, Some(&steep), 1.0).expect_err("no room for a floor");
+        assert!(refused.to_string().contains("its walls leave no floor"), "{refused}");
     }
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_dsp::{means_over_angle, order_track};
+use stribeck_dsp::{Error, means_over_angle, order_track};
 
 #[test]
 fn planted_a_line_of_a_shaft_that_speeds_up_stands_still_over_the_angle() {
@@ -46,9 +46,12 @@ fn planted_means_over_the_angle_of_a_shaft_that_starts_from_rest() {
 #[test]
 fn refuses_angles_that_fall() {
     let signal = vec![1.0; 4];
-    assert!(means_over_angle(&signal, &[0.0, 1.0, 0.5, 2.0], 8).is_err());
-    assert!(means_over_angle(&signal, &[0.0, 1.0], 8).is_err());
-    assert!(means_over_angle(&signal, &[0.0, 0.01, 0.02, 0.03], 8).is_err());
+    assert!(matches!(means_over_angle(&signal, &[0.0, 1.0, 0.5, 2.0], 8), Err(Error::Undefined { .. })));
+    assert!(matches!(means_over_angle(&signal, &[0.0, 1.0], 8), Err(Error::WrongLength { .. })));
+    assert!(matches!(
+        means_over_angle(&signal, &[0.0, 0.01, 0.02, 0.03], 8),
+        Err(Error::TooShort { field: "turns", .. })
+    ));
     // A pause of the shaft changes nothing.
     assert_eq!(means_over_angle(&signal, &[0.0, 1.0, 1.0, 2.0], 2).unwrap(), [1.0; 4]);
 }
@@ -56,8 +59,11 @@ fn refuses_angles_that_fall() {
 #[test]
 fn refuses_pulses_that_are_none() {
     let signal = vec![1.0; 100];
-    assert!(order_track(&signal, &[5.0], 8).is_err());
-    assert!(order_track(&signal, &[5.0, 4.0], 8).is_err());
-    assert!(order_track(&signal, &[5.0, 400.0], 8).is_err());
-    assert!(order_track(&signal, &[5.0, 9.0], 0).is_err());
+    assert!(matches!(order_track(&signal, &[5.0], 8), Err(Error::TooShort { field: "pulses", .. })));
+    assert!(matches!(order_track(&signal, &[5.0, 4.0], 8), Err(Error::Undefined { .. })));
+    assert!(matches!(order_track(&signal, &[5.0, 400.0], 8), Err(Error::Undefined { .. })));
+    assert!(matches!(
+        order_track(&signal, &[5.0, 9.0], 0),
+        Err(Error::TooShort { field: "samples_per_turn", .. })
+    ));
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_dsp::{Cyclic, spectral_correlation};
+use stribeck_dsp::{Cyclic, Error, spectral_correlation};
 
 const RATE_HZ: f64 = 10_000.0;
 
@@ -63,9 +63,10 @@ fn analytic_the_correlation_at_zero_is_the_density() {
 #[test]
 fn refuses_cyclic_frequencies_beyond_the_record() {
     let signal = modulated(0.0, 1.0, 1_000);
-    assert!(spectral_correlation(&signal, RATE_HZ, 128, 6_000.0, Cyclic::Coherence).is_err());
-    assert!(spectral_correlation(&signal, RATE_HZ, 8, 100.0, Cyclic::Coherence).is_err());
-    assert!(spectral_correlation(&signal, RATE_HZ, 512, 100.0, Cyclic::Coherence).is_err());
-    let found = spectral_correlation(&signal, RATE_HZ, 128, 100.0, Cyclic::Coherence).unwrap();
-    assert!(found.envelope_spectrum(1.0, 2.0).is_err());
+    let of = |window, most_hz| spectral_correlation(&signal, RATE_HZ, window, most_hz, Cyclic::Coherence);
+    assert!(matches!(of(128, 6_000.0), Err(Error::Band { .. })));
+    assert!(matches!(of(8, 100.0), Err(Error::TooShort { .. })));
+    assert!(matches!(of(512, 100.0), Err(Error::TooShort { .. })));
+    let found = of(128, 100.0).unwrap();
+    assert!(matches!(found.envelope_spectrum(1.0, 2.0), Err(Error::BandTooNarrow { .. })));
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_dsp::{Ridge, Spectrogram, WelchOptions, order_track, ridge, spectrogram};
+use stribeck_dsp::{Error, Ridge, Spectrogram, WelchOptions, order_track, ridge, spectrogram};
 
 const RATE_HZ: f64 = 2_000.0;
 
@@ -75,7 +75,8 @@ fn planted_noise_has_no_high_ridge() {
 fn refuses_what_has_no_ridge() {
     let flat =
         Spectrogram { times_s: vec![0.0, 1.0], frequencies_hz: vec![1.0, 2.0, 3.0], values: vec![0.0; 6] };
-    assert!(ridge(&flat, 1.0).is_err());
-    assert!(ridge(&flat, 0.0).is_err());
-    assert!(ridge(&Spectrogram { frequencies_hz: vec![1.0], values: vec![1.0; 2], ..flat }, 1.0).is_err());
+    assert!(matches!(ridge(&flat, 1.0), Err(Error::Undefined { .. })));
+    assert!(matches!(ridge(&flat, 0.0), Err(Error::NotPositive { .. })));
+    let narrow = Spectrogram { frequencies_hz: vec![1.0], values: vec![1.0; 2], ..flat };
+    assert!(matches!(ridge(&narrow, 1.0), Err(Error::TooShort { field: "frequencies_hz", .. })));
 }

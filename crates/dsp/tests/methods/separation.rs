@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use stribeck_dsp::separate;
+use stribeck_dsp::{Error, separate};
 
 fn noise(count: usize) -> Vec<f64> {
     let mut state = 3_u64;
@@ -62,8 +62,8 @@ fn invariant_the_parts_add_up() {
 
 #[test]
 fn refuses_filters_that_do_not_fit() {
-    assert!(separate(&noise(100), 64, 10).is_err());
-    assert!(separate(&noise(1000), 4, 10).is_err());
-    assert!(separate(&noise(1000), 64, 0).is_err());
-    assert!(separate(&[0.0; 1000], 64, 10).is_err());
+    assert!(matches!(separate(&noise(100), 64, 10), Err(Error::TooShort { field: "signal", .. })));
+    assert!(matches!(separate(&noise(1000), 4, 10), Err(Error::TooShort { field: "filter", .. })));
+    assert!(matches!(separate(&noise(1000), 64, 0), Err(Error::TooShort { field: "delay", .. })));
+    assert!(matches!(separate(&[0.0; 1000], 64, 10), Err(Error::Undefined { .. })));
 }

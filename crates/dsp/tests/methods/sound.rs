@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_dsp::Sound;
+use stribeck_dsp::{Error, Sound};
 
 /// Largest sample over full scale: a decibel of headroom.
 const LOUDEST: f64 = 0.891;
@@ -35,9 +35,15 @@ fn planted_a_tone_keeps_its_pitch_and_slowed_it_sinks() {
 
 #[test]
 fn refuses_silence_and_what_is_far_too_slow() {
-    assert!(Sound::of(&[2.0; 100], 1_000.0, 48_000, 1.0).is_err());
-    assert!(Sound::of(&[], 1_000.0, 48_000, 1.0).is_err());
-    assert!(Sound::of(&[1.0, f64::NAN], 1_000.0, 48_000, 1.0).is_err());
-    assert!(Sound::of(&[1.0, 2.0], 1_000.0, 48_000, 0.0).is_err());
-    assert!(Sound::of(&[1.0, 2.0], 1_000.0, 48_000, 1_000.0).is_err());
+    assert!(matches!(Sound::of(&[2.0; 100], 1_000.0, 48_000, 1.0), Err(Error::Undefined { .. })));
+    assert!(matches!(Sound::of(&[], 1_000.0, 48_000, 1.0), Err(Error::TooShort { .. })));
+    assert!(matches!(
+        Sound::of(&[1.0, f64::NAN], 1_000.0, 48_000, 1.0),
+        Err(Error::NotFinite { index: 1, .. })
+    ));
+    assert!(matches!(
+        Sound::of(&[1.0, 2.0], 1_000.0, 48_000, 0.0),
+        Err(Error::NotPositive { field: "slow", .. })
+    ));
+    assert!(matches!(Sound::of(&[1.0, 2.0], 1_000.0, 48_000, 1_000.0), Err(Error::Undefined { .. })));
 }

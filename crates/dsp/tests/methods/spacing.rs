@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_dsp::{EventSpacing, event_spacing, passage_spacing};
+use stribeck_dsp::{Error, EventSpacing, event_spacing, passage_spacing};
 
 const RATE_HZ: f64 = 40_000.0;
 
@@ -120,7 +120,8 @@ fn planted_a_known_rhythm_makes_no_second_event() {
 
 #[test]
 fn refuses_a_distance_beyond_half_of_a_period() {
-    assert!(passage_spacing(&pairs(3e-3, 0.2e-3), RATE_HZ, 60.0, 0.5e-3, 9e-3).is_err());
+    let beyond = passage_spacing(&pairs(3e-3, 0.2e-3), RATE_HZ, 60.0, 0.5e-3, 9e-3);
+    assert!(matches!(beyond, Err(Error::Undefined { .. })));
 }
 
 #[test]
@@ -146,6 +147,6 @@ fn planted_noise_cannot_tell() {
 #[test]
 fn refuses_distances_that_are_not_ordered_and_short_records() {
     let ramp: Vec<f64> = (0..4000).map(|n| f64::from(n * n % 977)).collect();
-    assert!(event_spacing(&ramp, RATE_HZ, 0.5e-3, 0.4e-3).is_err());
-    assert!(event_spacing(&ramp[..100], RATE_HZ, 0.5e-3, 7e-3).is_err());
+    assert!(matches!(event_spacing(&ramp, RATE_HZ, 0.5e-3, 0.4e-3), Err(Error::Undefined { .. })));
+    assert!(matches!(event_spacing(&ramp[..100], RATE_HZ, 0.5e-3, 7e-3), Err(Error::TooShort { .. })));
 }
