@@ -1,11 +1,9 @@
 //! A run takes memory at its start, at searches and at samples, but not for its steps.
 
-mod common;
-
 use std::ops::ControlFlow;
 
-use common::host;
 use stribeck_scene::scene::{FilmScene, Scene, Start};
+use stribeck_simulation::run::host::Host;
 use stribeck_simulation::simulate;
 use stribeck_store::{run_dir::RunDir, run_info::RunInfo};
 use stribeck_testing::Scratch;
@@ -25,7 +23,15 @@ fn run(film: Option<FilmScene>, time_step_factor: f64) -> (RunInfo, u64) {
     scene.solver.time_step_factor = time_step_factor;
     let folder = Scratch::new("memory");
     let dir = RunDir::create(folder.path()).expect("the folder is new");
-    let (host, mut info) = (host(1), None);
+    let host = Host {
+        threads: 1,
+        version: "test".into(),
+        commit: "test".into(),
+        machine: "test".into(),
+        wall_s: &|| 0.0,
+        cpu_s: &|| 0.0,
+    };
+    let mut info = None;
     let taken = allocation_counter::measure(|| {
         info = simulate(&scene, &dir, &host, &mut |_| ControlFlow::Continue(())).ok();
     });

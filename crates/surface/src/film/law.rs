@@ -259,6 +259,23 @@ mod tests {
         close(layer.force, law.spring.force(4e-6));
     }
 
+    /// The same while it flows: nodes get what film and springs carry beyond dry contact, and its heat is the mean
+    /// force times the way that it has closed.
+    /// Source: THEORY §4.6, (4.24) and below it.
+    #[test]
+    fn analytic_a_flowing_film_adds_what_dry_contact_lacks() {
+        let law = law();
+        for gap in [5e-6, -0.05e-6] {
+            let (settled, _) = law.settled(gap, SPEED, 1.0);
+            let (mut layer, closer) = (settled, gap - 1e-8);
+            let pushed = law.flow(&mut layer, closer, SPEED, 1.0, 1e-7);
+            close(pushed.force + law.spring.force((-closer).max(0.0)), layer.force);
+            close(layer.force, law.spring.force(layer.above - closer));
+            close(pushed.heat, 0.5 * (settled.force + layer.force) * (settled.above - layer.above));
+            assert!(pushed.force > 0.0 && pushed.heat > 0.0, "{pushed:?}");
+        }
+    }
+
     /// Oil resists: a film that is closed carries more than in steady rolling, one that is opened less.
     #[test]
     fn invariant_a_film_acts_against_its_closing_and_its_opening() {

@@ -1,0 +1,104 @@
+//! The program in a folder of its own.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use stribeck_scene::scene::Scene;
+use stribeck_simulation::run::host::Host;
+use stribeck_simulation::simulate;
+use stribeck_store::run_dir::RunDir;
+use stribeck_store::run_info::{RunInfo, Status};
+use stribeck_testing::{Scratch, said, says};
+
+/// The program.
+pub(crate) const STRIBECK: &str = env!("CARGO_BIN_EXE_stribeck");
+
+/// A coarse scene.
+pub(crate) const QUICK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron");
+
+/// What makes it very coarse, and start from rest.
+pub(crate) const COARSE: [&str; 4] = [
+    "--set=mesh.size_mm=4.0",
+    "--set=mesh.roller_facets=40",
+    "--set=solver.start=sudden",
+    "--set=output.frames=None",
+];
+
+/// The program with these words, to be started in a folder.
+pub(crate) fn command(desk: &Scratch, words: &[&str]) -> Command {
+    let mut command = Command::new(STRIBECK);
+    command.current_dir(desk.path()).args(words).stdin(Stdio::null());
+    command
+}
+
+/// What the program says to these words in a folder.
+pub(crate) fn stribeck(desk: &Scratch, words: &[&str]) -> Output {
+    command(desk, words).output().expect("it starts")
+}
+
+/// Sends what Ctrl-C sends.
+pub(crate) fn ctrl_c(process: u32) {
+    let sent = Command::new("kill").args(["-INT", &process.to_string()]).status().expect("kill is there");
+    assert!(sent.success());
+}
+
+/// Runs a scene to its end without the program.
+pub(crate) fn complete(scene: &Scene, folder: &Path) -> RunInfo {
+    let host = Host {
+        threads: 1,
+        version: "test".into(),
+        commit: "test".into(),
+        machine: "test".into(),
+        wall_s: &|| 0.0,
+        cpu_s: &|| 0.0,
+    };
+    let dir = RunDir::create(folder).expect("the folder is new");
+    let info =
+        simulate(scene, &dir, &host, &mut |_| std::ops::ControlFlow::Continue(())).expect("a sound scene");
+    assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+    info
+}
+
+/// A folder of a user, and what is done there.
+pub(crate) struct Desk(pub(crate) Scratch);
+
+impl Desk {
+    /// An empty folder.
+    pub(crate) fn new(name: &str) -> Self {
+        Self(Scratch::create(name))
+    }
+
+    /// A folder with a scene in it.
+    pub(crate) fn with_scene(name: &str) -> Self {
+        let desk = Self::new(name);
+        fs::copy(QUICK, desk.0.join("quick.ron")).expect("a scene");
+        desk
+    }
+
+    pub(crate) fn run(&self, words: &[&str]) -> Output {
+        stribeck(&self.0, words)
+    }
+
+    #[track_caller]
+    pub(crate) fn succeeds(&self, words: &[&str]) -> Output {
+        let output = self.run(words);
+        assert!(output.status.success(), "{words:?}: {}", said(&output));
+        output
+    }
+
+    #[track_caller]
+    pub(crate) fn refuses(&self, words: &[&str], told: &[&str]) {
+        let output = self.run(words);
+        assert!(!output.status.success(), "{words:?}: {}", said(&output));
+        says(&output, told);
+    }
+
+    pub(crate) fn text(&self, name: &str) -> String {
+        fs::read_to_string(self.0.join(name)).unwrap_or_else(|why| panic!("{name}: {why}"))
+    }
+
+    pub(crate) fn json(&self, name: &str) -> serde_json::Value {
+        serde_json::from_str(&self.text(name)).expect(name)
+    }
+}

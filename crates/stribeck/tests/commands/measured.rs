@@ -1,0 +1,558 @@
+//! Measured signals and exported runs, as users meet them.
+
+use std::process::Command;
+
+use crate::common::stribeck;
+use stribeck_formats::{Channel, Recording, mat5};
+use stribeck_testing::{Noise, Scratch, peer::python_with, said, says};
+
+/// Knocks of an outer raceway of a 6205 at 1200 rpm.
+fn knocks(rate_hz: f64) -> Vec<f64> {
+    let mut noise = Noise::new(5);
+    (0..100_000)
+        .map(|n| {
+            let since = (f64::from(n) / rate_hz).rem_euclid(1.0 / 71.5);
+            noise.uniform() + 3.0 * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin()
+        })
+        .collect()
+}
+
+/// The first number whose name has `rpm` in it was the speed, `max_rpm` beside `rpm`, too, and 0 was one.
+#[test]
+fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
+    let desk = Scratch::create("measured-rpm");
+    for (numbers, says) in [
+        (&[("max_rpm", 6000.0), ("rpm", 1200.0)][..], "the speed of 1200 rpm is that of `rpm`"),
+        (&[("rpm_a", 1200.0), ("rpm_b", 0.0)], "the speed of 1200 rpm is that of `rpm_a`"),
+        (
+            &[("rpm_a", 1200.0), ("rpm_b", 900.0)],
+            "`rpm_a` is 1200 and `rpm_b` is 900: neither is taken for the speed; give `--speed-rpm`",
+        ),
+    ] {
+        let mut channels = vec![Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0))];
+        channels.extend(numbers.iter().map(|(name, rpm)| Channel::held(*name, vec![*rpm])));
+        mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
+        let words = ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing"];
+        let text = said(&stribeck(&desk, &words));
+        assert!(text.contains(says), "{text}");
+    }
+}
+
+#[test]
+fn planted_a_record_gives_a_verdict_findings_and_a_page() {
+    let desk = Scratch::create("measured");
+    let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
+    mat5::write(&desk.join("a.mat"), &[channel, Channel::held("shaft_rpm", vec![1200.0])], &[]).unwrap();
+    let output = stribeck(
+        &desk,
+        &["analyse", "a.mat", "--rate-hz", "12800", "--bearing", "6205", "--channel", "housing"],
+    );
+    let text = said(&output);
+    assert!(output.status.success(), "{text}");
+    assert!(text.contains("a defect of the outer raceway (BPFO at 71.50 Hz"), "{text}");
+    assert!(text.contains("the speed of 1200 rpm is that of `shaft_rpm`"), "{text}");
+    let findings = std::fs::read_to_string(desk.join("a-analysis/findings.json")).unwrap();
+    let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
+    assert_eq!(findings["families"][0]["name"], "BPFO");
+    assert_eq!(findings["families"][0]["claimed"], true);
+    // A passage has one knock, which is no length.
+    assert!(findings["spall_mm"].is_null() && findings["spall_below_mm"].as_f64().is_some_and(|mm| mm > 0.0));
+    assert!(text.contains("no second event follows each knock"), "{text}");
+    for key in ["rate_hz", "speed_rpm", "resolution_hz", "verdict"] {
+        assert!(!findings[key].is_null(), "{key}");
+    }
+    for key in ["expected_hz", "measured_hz", "harmonics", "level_db", "p_value"] {
+        assert!(findings["families"][0][key].is_number(), "{key}");
+    }
+    let page = std::fs::read_to_string(desk.join("a-analysis/report.html")).unwrap();
+    for shown in ["Squared envelope spectrum about BPFO", "Enhanced envelope spectrum", "id=\"spectrogram\""]
+    {
+        assert!(page.contains(shown), "{shown}");
+    }
+}
+
+#[test]
+fn refuses_a_record_with_what_to_give() {
+    let desk = Scratch::create("measured-refused");
+    let table: String = (0..2000).map(|n| format!("{},{}\n", f64::from(n).sin(), n % 7)).collect();
+    std::fs::write(desk.join("a.csv"), format!("x,y\n{table}")).unwrap();
+    std::fs::write(desk.join("b.csv"), "x,y\n1,2\n3,oops\n").unwrap();
+    let timed: String =
+        (0..2000).map(|n| format!("{},{}\n", f64::from(n) / 25_600.0, f64::from(n).sin())).collect();
+    std::fs::write(desk.join("t.csv"), format!("time_s,x\n{timed}")).unwrap();
+    let agrees = stribeck(&desk, &["analyse", "t.csv", "--rate-hz", "25600"]);
+    assert!(agrees.status.success(), "{}", said(&agrees));
+    for (words, says) in [
+        (
+            vec!["analyse", "t.csv", "--rate-hz", "12000"],
+            "was sampled at 25600 Hz, and `--rate-hz` says 12000 Hz",
+        ),
+        (vec!["analyse", "a.csv"], "give `--rate-hz`"),
+        (vec!["analyse", "a.csv", "--channel", "z"], "it has `x` (2000 samples), `y` (2000 samples)"),
+        (vec!["analyse", "a.csv", "--rate-hz", "100", "--bearing", "6999"], "no bearing `6999` is known"),
+        (vec!["analyse", "a.csv", "--rate-hz", "0"], "give one above 0"),
+        (vec!["analyse", "b.csv", "--rate-hz", "100", "--channel", "y"], "1024 are the least"),
+        (vec!["analyse", "c.csv"], "`c.csv` cannot be read"),
+    ] {
+        let output = stribeck(&desk, &words);
+        assert!(!output.status.success() && said(&output).contains(says), "{words:?}: {}", said(&output));
+    }
+}
+
+#[test]
+fn behaves_a_run_is_exported_and_read_back() {
+    let desk = Scratch::create("exported");
+    std::fs::copy(
+        concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron"),
+        desk.join("quick.ron"),
+    )
+    .unwrap();
+    let coarse = [
+        "simulate",
+        "quick.ron",
+        "--set=mesh.size_mm=4.0",
+        "--set=mesh.roller_facets=40",
+        "--set=solver.start=sudden",
+        "--threads=1",
+        "--no-report",
+        "--set=output.frames=(from_ms: 0.1, to_ms: 0.2, every_us: 50.0, half_width_mm: 12.0)",
+        "--set=solver.duration_ms=0.5",
+    ];
+    let output = stribeck(&desk, &coarse);
+    assert!(output.status.success(), "{}", said(&output));
+    let trace = Recording::open(desk.join("runs/quick/trace.npy")).unwrap();
+    let name = trace.channels.iter().map(|c| c.name.clone()).find(|n| n.ends_with("ay_m_s2")).unwrap();
+    for (format, end) in [("csv", "csv"), ("npz", "npz"), ("mat", "mat"), ("uff", "uff"), ("wav64", "wav")] {
+        let output = stribeck(&desk, &["export", "quick", "--to", format, "--channel", &name]);
+        assert!(output.status.success(), "{format}: {}", said(&output));
+        let path = desk.join(format!("runs/quick/trace.{end}"));
+        let found = Recording::open(&path).unwrap();
+        let read = found
+            .channels
+            .iter()
+            .find(|c| c.len == trace.channel(&name).unwrap().len && !c.name.starts_with("time"))
+            .unwrap();
+        let (ours, theirs) = (read.read().unwrap(), trace.channel(&name).unwrap().read().unwrap());
+        // A universal file has thirteen digits.
+        assert!(ours.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= 5e-13 * b.abs()), "{format}");
+    }
+    // The first sample is not at zero, whatever is chosen, and in a sensor's record neither.
+    let first = trace.channel("time_s").unwrap().read().unwrap()[0];
+    for more in
+        [&["--channel=roller.1"][..], &["--sensor=", "--channel=ay"], &["--sensor=rate_hz=20000"], &[]]
+    {
+        let words = [&["export", "quick", "--to=csv", "--out=tables/some.csv"], more].concat();
+        let output = stribeck(&desk, &words);
+        assert!(output.status.success(), "{more:?}: {}", said(&output));
+        let table = Recording::open(desk.join("tables/some.csv")).unwrap();
+        assert_eq!(table.channel("time_s").unwrap().read().unwrap()[0], first, "{more:?}");
+    }
+    // A file of another kind is not written over, and a run neither.
+    for out in ["runs/quick/scene.ron", "runs/quick/trace.npy", "runs", "quick.ron"] {
+        let before = std::fs::read(desk.join(out)).ok();
+        let output = stribeck(&desk, &["export", "quick", "--to=csv", "--out", out]);
+        assert!(!output.status.success(), "{out}");
+        says(&output, &["is there and is no `.csv` file"]);
+        assert_eq!(std::fs::read(desk.join(out)).ok(), before, "{out}");
+    }
+    let output = stribeck(&desk, &["export", "quick", "--to=pvd", "--out=runs/quick"]);
+    says(&output, &["is the folder of a run"]);
+    for word in ["pvd", "vtu"] {
+        let output = stribeck(&desk, &["export", "quick", "--to", word]);
+        assert!(output.status.success(), "{}", said(&output));
+        says(&output, &["runs/quick/paraview/frames.pvd"]);
+    }
+    let index = std::fs::read_to_string(desk.join("runs/quick/paraview/frames.pvd")).unwrap();
+    assert_eq!(index.matches("<DataSet").count(), 3, "{index}");
+    let grid = std::fs::read(desk.join("runs/quick/paraview/frame-00000.vtu")).unwrap();
+    assert!(String::from_utf8_lossy(&grid[..4000.min(grid.len())]).contains("von_mises_pa"));
+    vtkhdf_is_read_by_vtk(&desk);
+    let output = stribeck(
+        &desk,
+        &[
+            "export",
+            "quick",
+            "--to",
+            "npz",
+            "--out",
+            "s.npz",
+            "--sensor",
+            "rate_hz=50000, bits=16, range=5000",
+        ],
+    );
+    assert!(output.status.success(), "{}", said(&output));
+    assert_eq!(Recording::open(desk.join("s.npz")).unwrap().channels[0].rate_hz, Some(50_000.0));
+    let output = stribeck(&desk, &["export", "quick", "--to", "csv", "--channel", "nothing"]);
+    assert!(said(&output).contains("no channel contains `nothing`"), "{}", said(&output));
+}
+
+/// VTK 9.7.2 steps through the file, where the interpreter in STRIBECK_PYTHON (or python3) has it.
+fn vtkhdf_is_read_by_vtk(desk: &Scratch) {
+    let output = stribeck(desk, &["export", "quick", "--to", "vtkhdf"]);
+    assert!(output.status.success(), "{}", said(&output));
+    let file = desk.join("runs/quick/frames.vtkhdf");
+    assert!(std::fs::read(&file).unwrap().starts_with(b"\x89HDF"));
+    let Some(python) = python_with(&["vtkmodules.vtkIOHDF"]) else { return };
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/read_vtkhdf.py");
+    let frames = (0..3).map(|n| desk.join(format!("runs/quick/paraview/frame-{n:05}.vtu")));
+    let run = Command::new(&python).arg(script).arg(&file).args(frames).output().unwrap();
+    assert!(said(&run).contains("3 steps agree"), "{}", said(&run));
+}
+
+#[test]
+fn planted_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle() {
+    let desk = Scratch::create("ridge");
+    let mut noise = Noise::new(8);
+    let rate_hz = 12_800.0;
+    // From 1200 to 1500 rpm in 24 s, an outer raceway of a 6205 knocking, and a weak line of the shaft.
+    let samples = (0..300_000)
+        .map(|n| {
+            let t = f64::from(n) / rate_hz;
+            let turns = 20.0 * t + 0.5 * (5.0 / 24.0) * t * t;
+            let speed = 20.0 + 5.0 / 24.0 * t;
+            let since = (3.575 * turns).fract() / (3.575 * speed);
+            noise.uniform()
+                + 0.3 * (std::f64::consts::TAU * turns).sin()
+                + 3.0 * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin()
+        })
+        .collect();
+    let channel = Channel::held("housing", samples).at_rate(Some(rate_hz));
+    mat5::write(&desk.join("a.mat"), &[channel], &[]).unwrap();
+    let words = |speed: &'static str, out: &'static str| {
+        ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing", speed, out]
+    };
+    let output = stribeck(&desk, &words("--speed-rpm=1100..1700", "--out=followed"));
+    let text = said(&output);
+    assert!(output.status.success(), "{text}");
+    assert!(text.contains("a defect of the outer raceway"), "{text}");
+    assert!(text.contains("taken over the angle of the shaft"), "{text}");
+    // Held at its mean the speed smears the family.
+    let output = stribeck(&desk, &words("--speed-rpm=1350", "--out=held"));
+    let level = |folder: &str| {
+        let findings = std::fs::read(desk.join(folder).join("findings.json")).unwrap();
+        let findings: serde_json::Value = serde_json::from_slice(&findings).unwrap();
+        findings["families"][0]["level_db"].as_f64().unwrap()
+    };
+    assert!(level("followed") > level("held") + 10.0, "{} {}", level("followed"), level("held"));
+    assert!(output.status.success(), "{}", said(&output));
+    let output = stribeck(&desk, &words("--speed-rpm=2000..2400", "--out=none"));
+    assert!(said(&output).contains("no line stands out between 2000 and 2400 rpm"), "{}", said(&output));
+}
+
+#[test]
+fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
+    let desk = Scratch::create("measured-tacho");
+    let rate_hz = 12_800.0;
+    // 18 t + 0.3 t² turns: the record lasts 5.12 s, the tachometer 6.25 s.
+    let turns = |n: usize| 18.0 * n as f64 / rate_hz + 0.3 * (n as f64 / rate_hz).powi(2);
+    let acc = knocks(rate_hz)[..65_536].to_vec();
+    let tacho = (0..80_000).map(|n| f64::from(turns(n).fract() < 0.1)).collect();
+    let speed = (0..acc.len()).map(|n| 60.0 * (18.0 + 0.6 * n as f64 / rate_hz)).collect();
+    let channels = [("acc", acc), ("tacho", tacho), ("n_rpm", speed), ("fs", vec![rate_hz])];
+    let channels = channels.map(|(name, samples)| Channel::held(name, samples));
+    mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
+    for tacho in ["tacho", "n_rpm"] {
+        let output = stribeck(
+            &desk,
+            &["analyse", "a.mat", "--channel=acc", "--tacho", tacho, "--bearing=6205", "--out", tacho],
+        );
+        let text = said(&output);
+        assert!(output.status.success(), "{text}");
+        assert!(text.contains("the record was taken over the angle of the shaft"), "{text}");
+        let findings = std::fs::read_to_string(desk.join(format!("{tacho}/findings.json"))).unwrap();
+        let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
+        // The mean speed of the record: 18 + 0.3 · 5.12 turns a second, to a turn of 100.
+        let rpm = findings["speed_rpm"].as_f64().unwrap();
+        assert!((rpm / (60.0 * (18.0 + 0.3 * 5.12)) - 1.0).abs() < 0.01, "{tacho}: {rpm}");
+    }
+}
+
+#[test]
+fn behaves_limits_are_given_or_follow_from_sound_records() {
+    let desk = Scratch::create("alarm");
+    let mut noise = Noise::new(10);
+    let mut words = vec!["analyse".to_owned()];
+    for n in 0..6 {
+        let loud = if n == 5 { 2.0 } else { 1.0 + 0.01 * f64::from(n) };
+        let samples: Vec<f64> = (0..40_000).map(|_| loud * noise.uniform()).collect();
+        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
+        mat5::write(&desk.join(format!("{n}.mat")), &[channel], &[]).unwrap();
+        words.push(format!("{n}.mat"));
+    }
+    words.extend(["--rate-hz=12800", "--unit=m/s²", "--out=T", "--channel=housing"].map(str::to_owned));
+    let run = |more: &[&str]| {
+        let all: Vec<&str> = words.iter().map(String::as_str).chain(more.iter().copied()).collect();
+        stribeck(&desk, &all)
+    };
+    let output = run(&["--reference=4", "--alarm=kurtosis=1.5..9"]);
+    let text = said(&output);
+    assert!(output.status.success(), "{text}");
+    assert!(text.contains("5.mat: rms 1.1") && text.contains("ALARM"), "{text}");
+    assert!(!text.contains("4.mat: rms"), "{text}");
+    assert!(text.contains("4.mat: kurtosis 1.") && text.contains("WARNING, from 1.5000"), "{text}");
+    let trend: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let rms = |at: usize| {
+        trend[at]["alarms"].as_array().unwrap().iter().find(|a| a["quantity"] == "rms").unwrap().clone()
+    };
+    assert_eq!((rms(4)["state"].as_str(), rms(5)["state"].as_str()), (Some("good"), Some("alarm")));
+    assert!(trend[5]["findings"]["velocity_mm_s"].is_number());
+    let page = std::fs::read_to_string(desk.join("T/trend.html")).unwrap();
+    assert!(page.contains("Alarm bands"));
+    for (more, says) in [
+        ("--reference=2", "at least 3"),
+        ("--reference=6", "6 files were given"),
+        ("--alarm=rms=1", "NAME=WARNING..ALARM"),
+        ("--speed-rpm=1500..1400", "must ascend"),
+    ] {
+        let output = run(&[more]);
+        assert!(!output.status.success() && said(&output).contains(says), "{more}: {}", said(&output));
+    }
+}
+
+/// `--reference` gave no limits for families, because none stands out in a sound record.
+#[test]
+fn issue_sound_records_give_limits_for_each_family() {
+    let desk = Scratch::create("alarm-families");
+    let mut noise = Noise::new(11);
+    let mut words = vec!["analyse".to_owned()];
+    for n in 0..7 {
+        let samples = if n == 6 { knocks(12_800.0) } else { (0..100_000).map(|_| noise.uniform()).collect() };
+        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
+        mat5::write(&desk.join(format!("{n}.mat")), &[channel], &[]).unwrap();
+        words.push(format!("{n}.mat"));
+    }
+    words.extend(
+        ["--rate-hz=12800", "--bearing=6205", "--speed-rpm=1200", "--reference=6", "--out=T"]
+            .map(str::to_owned),
+    );
+    let words: Vec<&str> = words.iter().map(String::as_str).collect();
+    let output = stribeck(&desk, &words);
+    assert!(output.status.success(), "{}", said(&output));
+    let trend: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let state = |at: usize, name: &str| {
+        let alarms = trend[at]["alarms"].as_array().unwrap();
+        let judged =
+            alarms.iter().find(|a| a["quantity"] == name).unwrap_or_else(|| panic!("{name}: {alarms:?}"));
+        judged["state"].as_str().unwrap().to_owned()
+    };
+    for name in ["BPFO", "BPFI", "BSF", "FTF"] {
+        assert_eq!(state(0, name), "good", "a record of the reference");
+    }
+    assert_eq!(state(6, "BPFO"), "alarm");
+}
+
+#[test]
+fn behaves_several_records_are_set_side_by_side() {
+    let desk = Scratch::create("trend");
+    let mut noise = Noise::new(9);
+    let sound: Vec<f64> = (0..100_000).map(|_| noise.uniform()).collect();
+    for (name, samples) in [("before.mat", sound), ("after.mat", knocks(12_800.0))] {
+        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
+        mat5::write(&desk.join(name), &[channel, Channel::held("shaft_rpm", vec![1200.0])], &[]).unwrap();
+    }
+    let words =
+        ["analyse", "before.mat", "after.mat", "none.mat", "--rate-hz=12800", "--bearing=6205", "--out=T"];
+    // The others are analysed, and the missing one is reported once.
+    let output = stribeck(&desk, &words);
+    let text = said(&output);
+    assert!(!output.status.success() && text.contains("1 of 3 records could not be analysed"), "{text}");
+    assert_eq!((text.matches("No such file").count(), text.matches("none.mat").count()), (1, 2), "{text}");
+    let trend: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let claimed = |at: usize| {
+        let families = trend[at]["findings"]["families"].as_array().unwrap();
+        families
+            .iter()
+            .filter(|f| f["claimed"] == true)
+            .map(|f| f["name"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!((claimed(0), claimed(1)), (vec![], vec!["BPFO".to_owned()]));
+    assert!(trend[2]["findings"].is_null() && trend[2]["error"].as_str().unwrap().contains("none.mat"));
+    let page = std::fs::read_to_string(desk.join("T/trend.html")).unwrap();
+    assert!(page.contains("2-after/report.html"));
+    assert!(desk.join("T/1-before/findings.json").exists());
+}
+
+#[test]
+fn planted_channels_of_one_machine_make_one_verdict() {
+    let desk = Scratch::create("together");
+    let mut noise = Noise::new(9);
+    let knocks = knocks(12_800.0);
+    let far: Vec<f64> = knocks.iter().map(|x| 0.2 * x + 0.2 * noise.uniform()).collect();
+    let channels = [("drive_end", knocks), ("fan_end", far)];
+    let channels = channels.map(|(name, samples)| Channel::held(name, samples).at_rate(Some(12_800.0)));
+    mat5::write(&desk.join("both.mat"), &channels, &[]).unwrap();
+    mat5::write(&desk.join("one.mat"), &channels[..1], &[]).unwrap();
+    let of = |file: &str| {
+        let words = ["analyse", file, "--together", "--rate-hz=12800", "--bearing=6205", "--speed-rpm=1200"];
+        let output = stribeck(&desk, &[&words[..], &["--out=J"]].concat());
+        (output.status.success(), said(&output))
+    };
+    let (done, text) = of("both.mat");
+    assert!(done && text.contains("2 channels together show a defect of the outer raceway"), "{text}");
+    assert!(text.contains("drive_end is nearest"), "{text}");
+    let joint: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("J/joint.json")).unwrap()).unwrap();
+    assert_eq!(joint["families"][0]["nearest"], "drive_end");
+    assert!(desk.join("J/joint.html").exists() && desk.join("J/2-fan_end/findings.json").exists());
+    let (done, text) = of("one.mat");
+    assert!(!done && text.contains("takes two at least"), "{text}");
+}
+
+/// Knocks beside their times, as a table.
+fn table(head: &str, rate_hz: f64, time: impl Fn(f64) -> String) -> String {
+    let row = |(n, x): (usize, f64)| format!("{},{x:.6}\n", time(n as f64 / rate_hz));
+    head.to_owned() + &knocks(rate_hz).into_iter().enumerate().map(row).collect::<String>()
+}
+
+/// The time column was diagnosed, and showed no defect; one in milliseconds was read in seconds.
+#[test]
+fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
+    let desk = Scratch::create("measured-times");
+    let text = table("t,a\n[ms],[g]\n", 12_800.0, |t| format!("{:.7}", t * 1e3));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    for more in [&[][..], &["--rate-hz=12800"]] {
+        let words = [&["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"], more].concat();
+        let output = stribeck(&desk, &words);
+        assert!(output.status.success(), "{}", said(&output));
+        says(&output, &["a defect of the outer raceway (BPFO at 71.5"]);
+    }
+    let named = stribeck(&desk, &["analyse", "a.csv", "--channel", "t"]);
+    assert!(!named.status.success() && said(&named).contains("it is no signal"), "{}", said(&named));
+    // In milliseconds without a word of it no rate follows, and the one that is given decides.
+    std::fs::write(desk.join("b.csv"), table("", 12_800.0, |t| format!("{:.4}", 1e3 * t))).unwrap();
+    let words = ["analyse", "b.csv", "--bearing=6205", "--speed-rpm=1200"];
+    let output = stribeck(&desk, &words);
+    assert!(!output.status.success(), "{}", said(&output));
+    let either = "12.8 Hz if these are seconds, 12800 Hz if they are milliseconds: no rate follows";
+    says(&output, &["does not say how fast it was sampled: give `--rate-hz`", either]);
+    let output = stribeck(&desk, &[&words[..], &["--rate-hz=12800"]].concat());
+    says(&output, &["a defect of the outer raceway", either]);
+    // The message on a rate that is too low names a sufficient one.
+    let output = stribeck(&desk, &[&words[..], &["--rate-hz=12.8"]].concat());
+    says(
+        &output,
+        &["cannot tell whether there is a defect", "harmonics of 71.7 Hz: sample at 610 Hz or faster"],
+    );
+}
+
+#[test]
+fn issue_a_wrong_rate_in_a_file_can_be_overruled() {
+    let desk = Scratch::create("measured-force");
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{t:.7}"));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    // Twice the rate is twice the speed.
+    let words = ["analyse", "a.csv", "--bearing=6205", "--speed-rpm=2400", "--rate-hz=25600"];
+    let output = stribeck(&desk, &words);
+    assert!(!output.status.success() && said(&output).contains("`--force-rate`"), "{}", said(&output));
+    let output = stribeck(&desk, &[&words[..], &["--force-rate"]].concat());
+    says(&output, &["a defect of the outer raceway (BPFO at 142.9", "the file says 12800 Hz"]);
+}
+
+#[test]
+fn issue_a_gap_in_the_times_is_noted() {
+    let desk = Scratch::create("measured-gap");
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { t + 0.5 }));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    let output = stribeck(&desk, &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    says(
+        &output,
+        &["note: the times of `t [s]` have a gap after row 51200 (3.999922 s): missing samples: 6400"],
+    );
+    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { 2.0 * t - 4.0 }));
+    std::fs::write(desk.join("a.csv"), text).unwrap();
+    let output = stribeck(&desk, &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    assert!(!output.status.success());
+    says(
+        &output,
+        &["give `--rate-hz`; the times of `t [s]` are uneven, or their rate changes, from about row 51001"],
+    );
+}
+
+/// One sample of 1000 hid a defect that stands by 30 dB, without a word.
+#[test]
+fn issue_a_sample_that_hides_a_defect_is_reported() {
+    let desk = Scratch::create("measured-spurious");
+    let mut samples = knocks(12_800.0);
+    samples[33_333] = -1000.0;
+    mat5::write(&desk.join("a.mat"), &[Channel::held("x", samples).at_rate(Some(12_800.0))], &[]).unwrap();
+    let output = stribeck(&desk, &["analyse", "a.mat", "--channel=x", "--bearing=6205", "--speed-rpm=1200"]);
+    says(
+        &output,
+        &[
+            "shows no defect",
+            "note: sample 33333 (2.6041 s) is -1000.000000",
+            "Put the mean of its neighbours",
+        ],
+    );
+}
+
+/// What we export as `.mat` did not say its rate when it was analysed.
+#[test]
+fn roundtrip_an_exported_record_says_its_rate() {
+    let desk = Scratch::create("measured-export");
+    let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
+    mat5::write(&desk.join("ex.mat"), &[channel], &[]).unwrap();
+    let words = ["analyse", "ex.mat", "--channel=housing", "--bearing=6205", "--speed-rpm=1200"];
+    says(&stribeck(&desk, &words), &["a defect of the outer raceway"]);
+    // A limit of the velocity asks for the unit that it needs.
+    let limited = [&words[..], &["--alarm=velocity=2.8..7.1"]].concat();
+    says(
+        &stribeck(&desk, &limited),
+        &["velocity: the samples have no unit of an acceleration; give `--unit g`"],
+    );
+    for (scale, says) in
+        [("0", "`0`: must be a number above 0 or below 0"), ("nan", "`nan`: must be"), ("x", "`x`: must be")]
+    {
+        let output = stribeck(&desk, &[&words[..], &["--scale", scale]].concat());
+        assert!(!output.status.success() && said(&output).contains(says), "{scale}: {}", said(&output));
+    }
+    assert!(stribeck(&desk, &[&words[..], &["--scale", "-0.5"]].concat()).status.success());
+}
+
+/// Two knocks 2.5 ms apart each time an element of a 6205 at 1200 rpm passes, never quite on time.
+fn edges(rate_hz: f64) -> Vec<f64> {
+    let mut noise = Noise::new(7);
+    let mut signal: Vec<f64> = (0..150_000).map(|_| 0.5 * noise.uniform()).collect();
+    for k in 1..200 {
+        let at = (f64::from(k) + 0.02 * noise.uniform()) / 71.7;
+        for (start, strength) in [(at, 1.0), (at + 2.5e-3, 0.7)] {
+            let first = (start * rate_hz).ceil() as usize;
+            for (n, x) in signal.iter_mut().enumerate().skip(first).take(60) {
+                let since = n as f64 / rate_hz - start;
+                let rings = |hz: f64| (std::f64::consts::TAU * hz * since).sin();
+                *x += strength * (-since / 0.2e-3).exp() * (6.0 * rings(9_000.0) + 3.0 * rings(14_000.0));
+            }
+        }
+    }
+    signal
+}
+
+/// The bearing in its housing says how far it presses an element together: in a rigid one between half of
+/// what the formula says and one and a half times as much (THEORY §7.9), with less of an interval.
+#[test]
+fn planted_a_length_by_a_simulated_scene_of_the_bearing() {
+    let desk = Scratch::create("simulated-length");
+    let channel = Channel::held("housing", edges(51_200.0)).at_rate(Some(51_200.0));
+    mat5::write(&desk.join("a.mat"), &[channel], &[]).unwrap();
+    let scene = "(bearing: \"6205\", model: reduced(step_us: 5.0), housing: rigid(), film: None, mesh: \
+                 (size_mm: 0.5, roller_facets: 50), contact: (surface: arc, penalty_scale: 1))";
+    std::fs::write(desk.join("rigid.ron"), scene).unwrap();
+    let words = ["analyse", "a.mat", "--rate-hz=51200", "--bearing=6205", "--speed-rpm=1200", "--load-n=100"];
+    let spall = |more: &[&str], out: &str| {
+        let output = stribeck(&desk, &[&words[..], more, &["--out", out]].concat());
+        assert!(output.status.success(), "{}", said(&output));
+        let findings = std::fs::read_to_string(desk.join(out).join("findings.json")).unwrap();
+        let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
+        ["value", "low", "high"].map(|key| findings["spall_mm"][key].as_f64().expect("a length"))
+    };
+    let (computed, simulated) = (spall(&[], "computed"), spall(&["--simulate=rigid.ron"], "simulated"));
+    assert!(computed[1] < simulated[0] && simulated[0] < computed[2], "{simulated:?} {computed:?}");
+    assert!(simulated[1] < simulated[0] && simulated[0] < simulated[2], "{simulated:?}");
+    assert!(simulated[2] - simulated[1] < computed[2] - computed[1], "{simulated:?} {computed:?}");
+    let refused = stribeck(&desk, &[&words[..], &["--simulate=none.ron"]].concat());
+    assert!(!refused.status.success() && said(&refused).contains("none.ron"), "{}", said(&refused));
+}
