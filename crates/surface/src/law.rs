@@ -148,6 +148,60 @@ mod tests {
         2.0 * logarithm / f64::from(steps)
     }
 
+    /// k = 8, layers of 4 and half of critical damping: 2 · ½ √(8 · ½ · 4) = 4. Over a step of ½ it keeps
+    /// 4/(4 + 8 · ½) of its pressure and is as stiff as 8/(1 + ½ · 8 · ½/4) at most.
+    #[test]
+    fn by_hand_numbers_of_a_damped_contact() {
+        let plain = Law::penalty(8.0).expect("a law");
+        let law = plain.with_damping(0.5, 4.0).expect("a law");
+        assert_eq!((law.damping, law.damping_kept(0.5)), (4.0, 0.5));
+        assert!((law.damping_stiffness(0.5) - 8.0 / 1.5).abs() < 1e-14, "{}", law.damping_stiffness(0.5));
+        assert_eq!([plain.damping, plain.friction, plain.onset, plain.damping_kept(0.5)], [0.0; 4]);
+        assert_eq!(plain.damping_stiffness(0.5), 0.0);
+    }
+
+    #[test]
+    fn refuses_numbers_that_no_contact_has() {
+        let law = Law::penalty(8.0).expect("a law");
+        let refused = [
+            ("penalty stiffness [Pa/m]", Law::penalty(0.0)),
+            ("contact damping ratio", law.with_damping(-0.01, 1.0)),
+            ("contact damping ratio", law.with_damping(2.01, 1.0)),
+            ("surface mass [kg/m²]", law.with_damping(1.0, 0.0)),
+            ("contact onset [m]", law.with_onset(-1e-9)),
+            ("friction coefficient", law.with_friction(-0.01)),
+            ("friction coefficient", law.with_friction(10.01)),
+            ("friction coefficient", law.with_friction(f64::NAN)),
+        ];
+        for (which, law) in refused {
+            assert!(
+                matches!(law, Err(Error::OutOfRange { field, .. }) if field == which),
+                "{which}: {law:?}"
+            );
+        }
+        assert!(law.with_damping(2.0, 1.0).is_ok() && law.with_damping(0.0, 1.0).is_ok());
+        assert!(law.with_onset(0.0).is_ok() && law.with_friction(10.0).is_ok());
+    }
+
+    /// Pressure, its fall with the gap and its work over the stiffness.
+    /// Source: THEORY §4.2, (4.10).
+    #[test]
+    fn analytic_pressure_sets_in_as_a_parabola() {
+        let e = 2.0;
+        let onset = Onset::new(0.0_f64, e).expect("a rounded corner");
+        for gap in [2.0, 1.0, 0.0, -1.0, -1.9, -2.1, -5.0_f64] {
+            let t = e - gap;
+            let expected = if gap > -e {
+                [t * t / (4.0 * e), t / (2.0 * e), t.powi(3) / (12.0 * e)]
+            } else {
+                [-gap, 1.0, 0.5 * gap * gap + e * e / 6.0]
+            };
+            let off = onset.depth(gap).iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-14, "{gap}: {:?}, not {expected:?}", onset.depth(gap));
+        }
+        assert!(Onset::new(0.0_f64, 0.0).is_none());
+    }
+
     /// Whatever the damping, steps are stable up to the bound that the critical step takes, and no farther.
     #[test]
     fn analytic_damped_contacts_are_stable_to_their_bound() {

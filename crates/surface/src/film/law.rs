@@ -276,6 +276,41 @@ mod tests {
         }
     }
 
+    /// Rolling alone carries 4.895 η u R L/h.
+    /// Source: THEORY §4.6, (4.19); Martin 1916.
+    #[test]
+    fn analytic_rolling_alone_carries_the_load_of_martin() {
+        let law = law();
+        for gap in [20e-6, 100e-6] {
+            let (layer, _) = law.settled(gap, SPEED, 1.0);
+            let martin = 4.895 * 0.05 * SPEED * 9e-3 * LENGTH / law.thickness(&layer);
+            assert!((layer.force / martin - 1.0).abs() < 2e-4, "{} N, not {martin} N", layer.force);
+        }
+    }
+
+    /// What is left of a film beside the end of its land: nearly all at five widths √(2Rh), three quarters at
+    /// one, half at a half, 23 % at the end, and less where the land slopes away.
+    /// Source: THEORY §4.6, (4.25) and the fit below it.
+    #[test]
+    fn analytic_a_film_ends_with_its_land() {
+        let law = law();
+        let layer = Layer::at(10e-6);
+        let h = law.thickness(&layer);
+        let width = (2.0 * 9e-3 * h).sqrt();
+        for (widths, left) in [(5.0, 0.99), (2.45, 0.96), (1.0, 0.74), (0.5, 0.51), (0.0, 0.23)] {
+            let share = law.share([widths * width, 1.0], 0.0, &layer);
+            assert!((share - left).abs() < 0.006, "{share} at {widths} widths");
+            assert_eq!(law.share([1.0, widths * width], 0.0, &layer), share);
+        }
+        assert_eq!(law.share([1.0; 2], 0.3, &layer), 1.0);
+        let slope = 0.02 * (9e-3 / (2.0 * h)).sqrt();
+        let fit = 0.23 / (1.0 + 2.07 * slope + 1.12 * slope.powi(2) + 0.138 * slope.powi(3));
+        for tilt in [0.02, -0.02] {
+            let share = law.share([-1e-3, 1.0], tilt, &layer);
+            assert!((share / fit - 1.0).abs() < 2e-3, "{share}, not {fit}");
+        }
+    }
+
     /// Oil resists: a film that is closed carries more than in steady rolling, one that is opened less.
     #[test]
     fn invariant_a_film_acts_against_its_closing_and_its_opening() {

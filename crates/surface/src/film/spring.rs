@@ -100,3 +100,39 @@ impl Spring for Bed {
             + (self.bend + 0.5 * self.stiffest * rest) * rest
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A bed of springs under a cylinder, up to 2 µm and straight from there on; stiffness is the derivative of
+    /// the force, energy its integral, and depth its inverse.
+    /// Source: THEORY §4.6, (4.24).
+    #[test]
+    fn analytic_a_cylinder_in_a_bed_of_springs() {
+        const STEPS: u32 = 4000;
+        let (k, radius) = (6e11, 9e-3);
+        let bed = Bed::new(k, radius);
+        let parabola = |depth: f64| 4.0 / 3.0 * k * (2.0 * radius).sqrt() * depth.powf(1.5);
+        let steepest = 2.0 * k * (2.0 * radius * 2e-6).sqrt();
+        let close = |a: f64, b: f64, by: f64| assert!((a / b - 1.0).abs() < by, "{a:e}, not {b:e}");
+        for depth in [0.3e-6, 1.9e-6, 2.1e-6, 7e-6] {
+            let straight = parabola(2e-6) + steepest * (depth - 2e-6);
+            close(bed.force(depth), if depth < 2e-6 { parabola(depth) } else { straight }, 1e-12);
+            close(bed.force_near(depth, 0.0), bed.force(depth), 1e-15);
+            let slope = (bed.force(depth + 1e-11) - bed.force(depth - 1e-11)) / 2e-11;
+            close(bed.stiffness(depth), slope, 1e-4);
+            let (found, per_force) = bed.depth(bed.force(depth));
+            close(found, depth, 1e-12);
+            close(per_force, 1.0 / bed.stiffness(depth), 1e-12);
+            let middles = (0..STEPS).map(|n| (f64::from(n) + 0.5) / f64::from(STEPS) * depth);
+            close(
+                bed.energy(depth),
+                middles.map(|d| bed.force(d)).sum::<f64>() * depth / f64::from(STEPS),
+                1e-5,
+            );
+        }
+        close(bed.stiffest(), steepest, 1e-12);
+        assert_eq!((bed.force(0.0), bed.energy(0.0)), (0.0, 0.0));
+    }
+}
