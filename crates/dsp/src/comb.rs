@@ -213,4 +213,31 @@ mod tests {
         assert!((of(1).line_p_value(3.0) - (-3.0_f64).exp()).abs() < 1e-15);
         assert!((of(2).line_p_value(3.0) - (-6.0_f64).exp() * 7.0).abs() < 1e-15);
     }
+
+    /// One segment reaches ln 2 at one line in two, at either of two at three in four; of five harmonics four or
+    /// all do at 5 · ¾⁴ · ¼ + ¾⁵.
+    #[test]
+    fn by_hand_four_harmonics_of_five_by_chance() {
+        let noise = Whitened { grid_hz: 1.0, segments: 1, ratios: vec![0.0; 4] };
+        let p_value = CombTest::FOUR_OF_FIVE.p_value(&noise, 2.0_f64.ln());
+        assert!((p_value - 0.632_812_5).abs() < 1e-14, "{p_value}");
+        // Beyond the last line there is nothing.
+        assert_eq!((noise.at(2.5), noise.at(3.0), noise.at(1e9)), (0.0, 0.0, 0.0));
+    }
+
+    /// Lines of 1, 4 and 3 about 10 Hz have their centre at 10 + 2/8, lines of 1, 2 and 1 about 20 Hz at 20: the
+    /// first with the weight ln 9, the second, of half of it, with 4 ln 5.
+    #[test]
+    fn by_hand_the_fundamental_lies_between_the_centres_of_its_harmonics() {
+        let mut ratios = vec![0.0; 30];
+        ratios[9..12].copy_from_slice(&[1.0, 4.0, 3.0]);
+        ratios[19..22].copy_from_slice(&[1.0, 2.0, 1.0]);
+        let spectrum = Whitened { grid_hz: 1.0, segments: 1, ratios };
+        let (first, second) = (9.0_f64.ln(), 4.0 * 5.0_f64.ln());
+        let expected = (10.25 * first + 10.0 * second) / (first + second);
+        let found = CombTest { harmonics: 2, needed: 2 }.refined(&spectrum, 10.1);
+        assert!((found - expected).abs() < 1e-12, "{found} Hz, not {expected} Hz");
+        // Nothing stands there: the frequency stays.
+        assert_eq!(CombTest { harmonics: 2, needed: 2 }.refined(&spectrum, 3.0), 3.0);
+    }
 }

@@ -24,6 +24,19 @@ fn estimate(rate: f64, signal: &[f64], options: &WelchOptions) -> Spectrum {
 }
 
 #[test]
+fn by_hand_samples_of_windows() {
+    for (window, expected) in [
+        (Window::Boxcar, vec![1.0; 5]),
+        (Window::Hann, vec![0.0, 0.5, 1.0, 0.5]),
+        (Window::SymmetricHann, vec![0.0, 0.5, 1.0, 0.5, 0.0]),
+        (Window::SymmetricHamming, vec![0.08, 0.54, 1.0, 0.54, 0.08]),
+    ] {
+        let found = window.samples(expected.len()).unwrap();
+        assert!(found.iter().zip(&expected).all(|(a, b)| (a - b).abs() < 1e-15), "{window}: {found:?}");
+    }
+}
+
+#[test]
 fn analytic_window_widths() {
     // Harris (1978), table 1: equivalent noise bandwidth, width at −3 dB and at −6 dB in bins, to two
     // decimals.

@@ -251,4 +251,11 @@ mod tests {
         };
         assert_eq!((found(380), found(398), found(402)), (1, 1, 0));
     }
+
+    /// The parabola through 1, 4 and 3 has its top a quarter of a step behind the middle; a straight line has none.
+    #[test]
+    fn by_hand_the_top_of_a_parabola() {
+        assert_eq!(top(&[0.0, 1.0, 4.0, 3.0], 2), 2.25);
+        assert_eq!(top(&[1.0, 2.0, 3.0], 1), 1.0);
+    }
 }
