@@ -125,7 +125,8 @@ impl Reading {
 
 /// How many of which sort hold the truth.
 fn counts(rows: &mut Rows, prefix: &str, all: &[Reading]) {
-    let sorts: [(&str, fn(&&Reading) -> bool); 6] = [
+    type Sort = (&'static str, fn(&&Reading) -> bool);
+    let sorts: [Sort; 6] = [
         ("a second event; spall shorter than half of the distance of two elements", |r| {
             r.is_length() && r.is_short()
         }),
