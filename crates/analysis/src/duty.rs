@@ -164,10 +164,9 @@ pub fn expected_support_n(run: &Run, record: &Record<'_>) -> f64 {
 pub fn note(scene: &Scene) -> Option<String> {
     scene.operation.outer_turns().then(|| {
         "orders count turns of the shaft against the outer ring: BPFO, BPFI and BSF go with the difference \
-         of both speeds, and in turns \
-         of the shaft alone they have no order while the ratio of the speeds changes. What turns in space — \
-         the shaft, the outer ring, the \
-         cage, and the sidebands that they make — has none over this angle, and is not given"
+         of both speeds, and in turns of the shaft alone they have no order while the ratio of the speeds \
+         changes. What turns in space — the shaft, the outer ring, the cage, and the sidebands that they \
+         make — has none over this angle, and is not given"
             .into()
     })
 }

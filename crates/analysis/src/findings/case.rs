@@ -283,8 +283,8 @@ impl<'a> Case<'a> {
         }
         notes.push(
             "the speed changes: families have orders and no frequencies, and the tables and figures of lines \
-             at constant frequencies, \
-             the notch among them, are left out. Other frequencies are those at the mean speed"
+             at constant frequencies, the notch among them, are left out. Other frequencies are those at the \
+             mean speed"
                 .into(),
         );
         notes.extend(duty::note(&self.run.scene.written));

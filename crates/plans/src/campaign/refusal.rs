@@ -83,5 +83,4 @@ pub(super) fn varies(problem: &Problem, rows: &Rows, row: usize) -> Option<usize
 }
 
 const EXAMPLE: &str = "a campaign has `name` and `variants`, and may have `scene`, `set`, `seed`, `starts`, \
-    `split` and `keep`; \
-                       fixtures/campaigns/quick64.ron is one";
+    `split` and `keep`; fixtures/campaigns/quick64.ron is one";

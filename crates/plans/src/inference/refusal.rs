@@ -8,8 +8,7 @@ pub(super) const INFERENCE: Kind = Kind {
     example: "an inference has `name`, `unknowns` and `targets`, and may have `scene`, `set`, `seed`, \
         `starts` and `budget`; fixtures/infer/quick.ron is one",
     for_fields_of_scenes: Some(
-        "a field of the scene stands in `set: [\"{}=…\"]`, or in `unknowns` where it is \
-        not known",
+        "a field of the scene stands in `set: [\"{}=…\"]`, or in `unknowns` where it is not known",
     ),
 };
 

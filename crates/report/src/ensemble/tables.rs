@@ -97,8 +97,8 @@ pub(super) fn main(summary: &EnsembleSummary) -> Markup {
         }
         p class="hint" {
             "± is the 95 % interval of the mean by Student's t: it narrows with more starts. 10 % to 90 % is \
-             what a single start does. Scatter: \
-             standard deviation over mean. Every other number of the summary is in summary.json, likewise."
+             what a single start does. Scatter: standard deviation over mean. Every other number of the \
+             summary is in summary.json, likewise."
         }
     }
 }
@@ -255,8 +255,8 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
         }
         p class="hint" {
             "Starts that show the event, and means ± 95 % of those. Off: after the centre would stand over \
-             the edge without slip. #3: what the roller \
-             carries while a neighbour is in the defect, over what it carried before."
+             the edge without slip. #3: what the roller carries while a neighbour is in the defect, over \
+             what it carried before."
         }
     }
 }
@@ -287,10 +287,9 @@ pub(super) fn paper(summary: &EnsembleSummary) -> Markup {
     html! {
         p class="hint" {
             "Singh et al. (2014), Numerical noise generation in modelled bearing vibration signals. It \
-             prints neither thickness, cage pockets, \
-             damping nor the place of its sensor, so its levels are no test of this model. Where a number is \
-             the same in every start, the page of \
-             any of them says more."
+             prints neither thickness, cage pockets, damping nor the place of its sensor, so its levels are \
+             no test of this model. Where a number is the same in every start, the page of any of them says \
+             more."
         }
         div class="scroll" {
             table class="numbers" {
@@ -383,8 +382,8 @@ pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
         }
         p class="hint" {
             "A start is a run of its own: `stribeck report` in its folder makes its page, and `stribeck \
-             simulate` with its scene.ron gives the same \
-             samples again. Places in the pockets stand in its scene as `cage.roller_offsets_um`."
+             simulate` with its scene.ron gives the same samples again. Places in the pockets stand in its \
+             scene as `cage.roller_offsets_um`."
         }
     }
 }
