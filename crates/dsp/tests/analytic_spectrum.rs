@@ -3,20 +3,16 @@
 use std::f64::consts::TAU;
 
 use stribeck_dsp::{Averaging, Scaling, Sides, Spectrum, Welch, WelchOptions, Window, statistics};
+use stribeck_testing::Noise;
 
 fn sine(amplitude: f64, frequency_hz: f64, rate: f64, count: usize) -> Vec<f64> {
     (0..count).map(|n| amplitude * (TAU * frequency_hz * n as f64 / rate + 0.4).sin()).collect()
 }
 
-/// Noise that is uniform from −½ to ½ (variance 1/12) from a 64-bit congruential generator.
+/// Noise that is uniform from −½ to ½ (variance 1/12).
 fn noise(count: usize) -> Vec<f64> {
-    let mut state: u64 = 7;
-    (0..count)
-        .map(|_| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-        })
-        .collect()
+    let mut noise = Noise::new(7);
+    (0..count).map(|_| 0.5 * noise.uniform()).collect()
 }
 
 fn estimate(rate: f64, signal: &[f64], options: &WelchOptions) -> Spectrum {

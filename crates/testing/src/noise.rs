@@ -15,6 +15,11 @@ impl Noise {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
+
+    /// The next number, between 0 and 1.
+    pub fn share(&mut self) -> f64 {
+        0.5 * (self.uniform() + 1.0)
+    }
 }
 
 #[cfg(test)]

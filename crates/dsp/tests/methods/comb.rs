@@ -1,14 +1,14 @@
 //! Families of harmonics, and how often noise is taken for one.
 
 use stribeck_dsp::{CombTest, Error, Whitened};
+use stribeck_testing::Noise;
 
-/// Unit exponential numbers from a linear congruential generator.
-struct Noise(u64);
+/// Unit exponential numbers.
+struct Exponential(Noise);
 
-impl Noise {
+impl Exponential {
     fn exponential(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        -(((self.0 >> 11) as f64 + 1.0) / (1u64 << 53) as f64).ln()
+        -(self.0.share() + 0.5 * f64::EPSILON).ln()
     }
 
     /// A coloured spectrum of averaged segments.
@@ -25,7 +25,7 @@ impl Noise {
 #[test]
 fn invariant_false_alarms_are_no_more_frequent_than_stated() {
     const RECORDS: usize = 2_000;
-    let mut noise = Noise(17);
+    let mut noise = Exponential(Noise::new(17));
     for segments in [1, 8] {
         let mut alarms = [0_usize; 2];
         for _ in 0..RECORDS {
@@ -44,7 +44,7 @@ fn invariant_false_alarms_are_no_more_frequent_than_stated() {
 
 #[test]
 fn planted_four_harmonics_are_a_family_and_one_line_is_none() {
-    let mut noise = Noise(3);
+    let mut noise = Exponential(Noise::new(3));
     let mut values = noise.spectrum(2_000, 1);
     let plain = CombTest::FOUR_OF_FIVE.search(&Whitened::new(&values, 0.2, 1).unwrap(), 49.0, 51.0).unwrap();
     assert!(plain.p_value > 0.01, "{plain:?}");

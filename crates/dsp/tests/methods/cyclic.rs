@@ -3,16 +3,14 @@
 use std::f64::consts::TAU;
 
 use stribeck_dsp::{Cyclic, Error, spectral_correlation};
+use stribeck_testing::Noise;
 
 const RATE_HZ: f64 = 10_000.0;
 
 /// White noise whose amplitude goes as `1 + depth cos` at `hz`, below and above alike.
 fn modulated(depth: f64, hz: f64, count: usize) -> Vec<f64> {
-    let mut state = 5_u64;
-    let mut uniform = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        ((state >> 40) as f64 + 0.5) / f64::from(1 << 24)
-    };
+    let mut noise = Noise::new(5);
+    let mut uniform = || 1.0 - noise.share();
     (0..count)
         .map(|n| {
             let gaussian = (-2.0 * uniform().ln()).sqrt() * (TAU * uniform()).cos();

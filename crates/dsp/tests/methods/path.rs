@@ -3,13 +3,7 @@
 use std::f64::consts::PI;
 
 use stribeck_dsp::{Detrend, Path, Welch, WelchOptions, Window, coloured_like};
-
-fn uniform(mut seed: u64) -> impl FnMut() -> f64 {
-    move || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
+use stribeck_testing::Noise;
 
 /// Acceleration of a mode of unit mass at resonance: F/(2ζ). Meirovitch 2001, §3.2.
 #[test]
@@ -30,8 +24,8 @@ fn analytic_a_record_behind_one_mode_is_louder_by_half_over_its_damping() {
 fn invariant_a_coloured_signal_has_the_density_and_begins_when_it_does() {
     // A click takes on the path's ringing, which is causal; noise takes on the path's density.
     let density: Vec<f64> = (0..257).map(|n| 1.0 / (1e-3 + (f64::from(n) / 256.0 - 0.3).powi(2))).collect();
-    let mut share = uniform(5);
-    let noise: Vec<f64> = (0..65_536).map(|_| share() - 0.5).collect();
+    let mut noise = Noise::new(5);
+    let noise: Vec<f64> = (0..65_536).map(|_| noise.share() - 0.5).collect();
     let coloured = coloured_like(&noise, &density).unwrap();
     let whole = WelchOptions {
         window: Window::Boxcar,
@@ -56,7 +50,8 @@ fn invariant_a_coloured_signal_has_the_density_and_begins_when_it_does() {
 
 #[test]
 fn refuses_a_record_faster_than_its_force() {
-    let path = Path::drawn(1e4, uniform(1));
+    let mut noise = Noise::new(1);
+    let path = Path::drawn(1e4, || noise.share());
     let why = path.through(&[0.0; 32], 1e4, 2e4).expect_err("too fast").to_string();
     assert!(why.contains("sampled more slowly"), "{why}");
 }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use stribeck_dsp::{Error, Ridge, Spectrogram, WelchOptions, order_track, ridge, spectrogram};
+use stribeck_testing::Noise;
 
 const RATE_HZ: f64 = 2_000.0;
 
@@ -13,13 +14,11 @@ fn turned(t: f64) -> f64 {
 
 /// Lines at its speed and at three times that, in noise of twice their power.
 fn ramp() -> Vec<f64> {
-    let mut state = 7_u32;
+    let mut noise = Noise::new(7);
     (0..40_000)
         .map(|n| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            let noise = f64::from(state) / 4_294_967_296.0 - 0.5;
             let angle = TAU * turned(f64::from(n) / RATE_HZ);
-            angle.sin() + 0.5 * (3.0 * angle + 1.0).sin() + 4.0 * noise
+            angle.sin() + 0.5 * (3.0 * angle + 1.0).sin() + 2.0 * noise.uniform()
         })
         .collect()
 }
@@ -60,13 +59,8 @@ fn planted_a_ramp_is_followed_to_its_angle() {
 
 #[test]
 fn planted_noise_has_no_high_ridge() {
-    let mut state = 99_u64;
-    let signal: Vec<f64> = (0..40_000)
-        .map(|_| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 40) as f64 / f64::from(1 << 24) - 0.5
-        })
-        .collect();
+    let mut noise = Noise::new(99);
+    let signal: Vec<f64> = (0..40_000).map(|_| 0.5 * noise.uniform()).collect();
     let height = followed(&signal).height_db;
     assert!(height < 10.0, "{height}");
 }

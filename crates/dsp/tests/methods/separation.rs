@@ -3,15 +3,11 @@
 use std::f64::consts::{PI, TAU};
 
 use stribeck_dsp::{Error, separate};
+use stribeck_testing::Noise;
 
 fn noise(count: usize) -> Vec<f64> {
-    let mut state = 3_u64;
-    (0..count)
-        .map(|_| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (state >> 40) as f64 / f64::from(1 << 24) - 0.5
-        })
-        .collect()
+    let mut noise = Noise::new(3);
+    (0..count).map(|_| 0.5 * noise.uniform()).collect()
 }
 
 /// Amplitude of a line.

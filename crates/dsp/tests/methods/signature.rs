@@ -3,31 +3,24 @@
 use std::f64::consts::TAU;
 
 use stribeck_dsp::{Rhythm, Signature};
+use stribeck_testing::Noise;
 
 const RATE_HZ: f64 = 25_600.0;
 
 const RHYTHM: Rhythm =
     Rhythm { passing_hz: 80.0, modulating_hz: [15.0, 6.0], shortest_s: 0.4e-3, longest: 0.45 };
 
-/// Even numbers between 0 and 1.
-fn uniform(mut seed: u64) -> impl FnMut() -> f64 {
-    move || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 53) as f64
-    }
-}
-
 /// Pairs of clicks 3 ms apart, never quite on time, the second one `louder_db` above the first, through a
 /// resonance, in noise.
 fn record(hz: f64, louder_db: f64, slip: f64, depth: f64) -> Vec<f64> {
-    let mut share = uniform(3);
+    let mut noise = Noise::new(3);
     let mut force = vec![0.0; 2 * Signature::samples_of_piece(RATE_HZ, RHYTHM)];
     let mut at = 0.002;
     while ((at + 0.004) * RATE_HZ) < force.len() as f64 {
         let strength = 1.0 + depth * (TAU * RHYTHM.modulating_hz[0] * at).cos();
         force[(at * RATE_HZ) as usize] += strength;
         force[((at + 0.003) * RATE_HZ) as usize] += strength * 10_f64.powf(louder_db / 20.0);
-        at += (1.0 + slip * (share() - 0.5)) / RHYTHM.passing_hz;
+        at += (1.0 + slip * (noise.share() - 0.5)) / RHYTHM.passing_hz;
     }
     let (decay, turn) = ((-TAU * 0.03 * hz / RATE_HZ).exp(), TAU * hz / RATE_HZ);
     let (mut before, mut last) = (0.0, 0.0);
@@ -37,7 +30,7 @@ fn record(hz: f64, louder_db: f64, slip: f64, depth: f64) -> Vec<f64> {
         now + 0.3 * f
     };
     let sounds: Vec<f64> = force.into_iter().map(through).collect();
-    sounds.into_iter().map(|x| x + 0.01 * (share() - 0.5)).collect()
+    sounds.into_iter().map(|x| x + 0.01 * (noise.share() - 0.5)).collect()
 }
 
 fn of(record: &[f64]) -> Signature {

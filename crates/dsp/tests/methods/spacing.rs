@@ -3,16 +3,9 @@
 use std::f64::consts::TAU;
 
 use stribeck_dsp::{Error, EventSpacing, event_spacing, passage_spacing};
+use stribeck_testing::Noise;
 
 const RATE_HZ: f64 = 40_000.0;
-
-/// Even numbers between −1 and 1.
-fn uniform(mut seed: u64) -> impl FnMut() -> f64 {
-    move || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-}
 
 /// Pairs of bursts `apart_s` from one another that ring at two frequencies and die away with `decay_s`,
 /// 60 times a second and never quite on time, in noise.
@@ -22,10 +15,10 @@ fn pairs(apart_s: f64, decay_s: f64) -> Vec<f64> {
 
 /// The same, the second burst `louder` times the first.
 fn unequal(apart_s: f64, decay_s: f64, louder: f64) -> Vec<f64> {
-    let mut uniform = uniform(11);
-    let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * uniform()).collect();
+    let mut noise = Noise::new(11);
+    let mut signal: Vec<f64> = (0..120_000).map(|_| 0.2 * noise.uniform()).collect();
     for k in 1..170 {
-        let at = (f64::from(k) + 0.02 * uniform()) / 60.0;
+        let at = (f64::from(k) + 0.02 * noise.uniform()) / 60.0;
         let rings = [(at, 3.0, 9_000.0), (at, 2.0, 13_000.0)];
         let again = rings.map(|(at, strength, hz)| (at + apart_s, louder * strength, hz));
         for (start, strength, hz) in rings.into_iter().chain(again) {
@@ -110,9 +103,9 @@ fn planted_a_known_rhythm_makes_no_second_event() {
     let blind = event_spacing(&signal, RATE_HZ, 0.5e-3, 7e-3).unwrap();
     assert_eq!(passage_spacing(&signal, RATE_HZ, 60.0, 0.5e-3, 7e-3).unwrap(), blind);
     // Of noise alone nothing is made, whatever rhythm is looked for.
-    let mut uniform = uniform(5);
+    let mut source = Noise::new(5);
     for seed in 0..20 {
-        let noise: Vec<f64> = (0..40_000 + 977 * seed).map(|_| uniform()).collect();
+        let noise: Vec<f64> = (0..40_000 + 977 * seed).map(|_| source.uniform()).collect();
         let found = passage_spacing(&noise, RATE_HZ, 50.0 + seed as f64, 0.5e-3, 7e-3).unwrap();
         assert_eq!(found, EventSpacing::Unknown, "{seed}");
     }
@@ -139,8 +132,8 @@ fn planted_single_events_say_what_would_have_shown() {
 
 #[test]
 fn planted_noise_cannot_tell() {
-    let mut uniform = uniform(7);
-    let quiet: Vec<f64> = pairs(3e-3, 0.2e-3).iter().map(|x| 0.02 * x + uniform()).collect();
+    let mut noise = Noise::new(7);
+    let quiet: Vec<f64> = pairs(3e-3, 0.2e-3).iter().map(|x| 0.02 * x + noise.uniform()).collect();
     assert_eq!(event_spacing(&quiet, RATE_HZ, 0.5e-3, 7e-3).unwrap(), EventSpacing::Unknown);
 }
 
