@@ -1,5 +1,5 @@
-//! `docs/guide/src/fields.md`: every field of a scene, from the table by which scenes are read; and the same as a
-//! schema for editors.
+//! `docs/guide/src/fields.md`: every field of a scene, from the table by which scenes are read; and the same
+//! as a schema for editors.
 
 use std::path::Path;
 use std::process::ExitCode;

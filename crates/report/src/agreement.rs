@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, html};
-use serde_json::Value;
+use stribeck_scene::fields;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::write_atomic;
 
@@ -209,36 +209,22 @@ fn distance(differences: &[String], agreement: &Agreement) -> String {
 /// Fields in which two scenes differ, with this scene's value and the other's. Fields drawn for each start,
 /// names, durations and guards do not count: they leave the model the same.
 fn differences(scene: &Scene, other: &Scene) -> Vec<String> {
-    let plain = |scene: &Scene| {
-        let mut scene = scene.clone();
-        let default = Scene::default();
-        scene.name = default.name;
-        scene.bearing.first_roller_deg = default.bearing.first_roller_deg;
-        scene.mesh.roller_phase_deg = default.mesh.roller_phase_deg;
-        scene.solver.duration_ms = default.solver.duration_ms;
-        scene.guards = default.guards;
-        scene.output = default.output;
-        if let Some(cage) = &mut scene.cage {
-            cage.roller_offsets_um.clear();
-        }
-        stribeck_scene::fields::to_json(&scene)
-    };
-    let mut found = Vec::new();
-    compare("", &plain(scene), &plain(other), &mut found);
-    found
-}
-
-fn compare(path: &str, ours: &Value, theirs: &Value, found: &mut Vec<String>) {
-    match (ours, theirs) {
-        (Value::Object(a), Value::Object(b)) => {
-            for key in a.keys().chain(b.keys().filter(|key| !a.contains_key(*key))) {
-                let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-                compare(&path, a.get(key).unwrap_or(&Value::Null), b.get(key).unwrap_or(&Value::Null), found);
-            }
-        }
-        (a, b) if a == b => {}
-        (a, b) => found.push(format!("{path} ({a} here, {b} there)")),
-    }
+    const SAME_MODEL: [&str; 7] = [
+        "name",
+        "bearing.first_roller_deg",
+        "mesh.roller_phase_deg",
+        "cage.roller_offsets_um",
+        "solver.duration_ms",
+        "guards.",
+        "output.",
+    ];
+    let counts = |field: &str| !SAME_MODEL.iter().any(|same| field.starts_with(same));
+    let value = |value: Option<&Option<String>>| value.cloned().flatten().unwrap_or_default();
+    fields::differences(&[Some(scene), Some(other)])
+        .into_iter()
+        .filter(|(field, _)| counts(field))
+        .map(|(field, of)| format!("{field} ({} here, {} there)", value(of.first()), value(of.get(1))))
+        .collect()
 }
 
 #[cfg(test)]
@@ -254,7 +240,7 @@ mod tests {
         other.bearing.first_roller_deg += 0.1;
         assert!(differences(&scene, &other).is_empty());
         other.operation.load_n = 30_000.0;
-        assert_eq!(differences(&scene, &other), ["operation.load_n (50000.0 here, 30000.0 there)"]);
+        assert_eq!(differences(&scene, &other), ["operation.load_n (50000 here, 30000 there)"]);
         other.defect = None;
         assert_eq!(differences(&scene, &other).len(), 2);
     }

@@ -3,48 +3,56 @@
 
 use std::path::{Path, PathBuf};
 
-use ron::extensions::Extensions;
-use serde::Deserialize;
-
 use stribeck_theory::catalogue::{self, ADVICE, Boundary, CatalogueBearing, Element, plain};
 
+use crate::fields::{group, words};
 use crate::scene::{Assumed, BearingScene, Scene};
+use crate::scene_file::{self, without_mark};
 
 /// Name of the file in either folder.
 const NAME: &str = "bearings.ron";
 /// Folder of the program in that of the configuration.
 const FOLDER: &str = "stribeck";
 
-/// One bearing of such a file. Lengths in mm.
-#[derive(Debug, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Entry {
-    name: String,
-    #[serde(default)]
-    element: Kind,
-    #[serde(default)]
-    elements: Option<u32>,
-    diameter_mm: f64,
-    pitch_mm: f64,
-    #[serde(default)]
-    angle_deg: f64,
-    #[serde(default)]
-    bore_mm: Option<f64>,
-    #[serde(default)]
-    outside_mm: Option<f64>,
-    #[serde(default)]
-    width_mm: Option<f64>,
-    #[serde(default)]
-    source: String,
+group! {
+    /// One bearing of such a file. Lengths in mm.
+    struct Entry {
+        /// Its name.
+        name: String = String::new(), required();
+        /// Its rolling elements.
+        element: Kind = Kind::Roller;
+        /// How many there are.
+        elements: Option<u64> = None;
+        /// Their diameter [mm].
+        diameter_mm: f64 = 0.0, required();
+        /// Pitch diameter [mm].
+        pitch_mm: f64 = 0.0, required();
+        /// Contact angle [°].
+        angle_deg: f64 = 0.0;
+        /// Bore [mm].
+        bore_mm: Option<f64> = None;
+        /// Outside diameter [mm].
+        outside_mm: Option<f64> = None;
+        /// Width [mm].
+        width_mm: Option<f64> = None;
+        /// Where its numbers are from.
+        source: String = String::new();
+    }
 }
 
-#[derive(Debug, Default, Clone, Copy, Deserialize)]
-#[serde(rename_all = "snake_case")]
-enum Kind {
-    #[default]
-    Roller,
-    Ball,
+words! {
+    /// A rolling element.
+    enum Kind: Copy {
+        /// A cylinder.
+        Roller = "roller",
+        /// A ball.
+        Ball = "ball",
+    }
 }
+
+/// The file.
+const FILE: scene_file::Kind =
+    scene_file::Kind { noun: "a list of bearings", example: EXAMPLE, for_fields_of_scenes: None };
 
 /// Example of such a file.
 const EXAMPLE: &str = "[(name: \"mine\", element: roller, elements: 16, diameter_mm: 9.0, pitch_mm: 68.5, \
@@ -209,12 +217,9 @@ fn paths() -> Vec<PathBuf> {
 fn read(path: &Path) -> Result<Vec<CatalogueBearing>, String> {
     let shown = path.display();
     let text = std::fs::read_to_string(path).map_err(|why| format!("`{shown}` cannot be read: {why}"))?;
-    // Some editors write a byte order mark first.
-    let text = text.trim_start_matches('\u{feff}');
-    let dialect = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-    let entries: Vec<Entry> = dialect
-        .from_str(text)
-        .map_err(|why| format!("`{shown}` is no list of bearings: {why}. Such a list is `{EXAMPLE}`"))?;
+    let (entries, _): (Vec<Entry>, _) =
+        scene_file::read_as(without_mark(&text), &shown.to_string(), &FILE)
+            .map_err(|why| format!("`{shown}` is no list of bearings, such as `{EXAMPLE}`:\n{why}"))?;
     entries.into_iter().map(|entry| entry.bearing(path)).collect()
 }
 
@@ -241,7 +246,7 @@ impl Entry {
                 Kind::Roller => Element::Roller,
                 Kind::Ball => Element::Ball,
             },
-            elements: self.elements,
+            elements: self.elements.and_then(|count| u32::try_from(count).ok()),
             diameter_mm: self.diameter_mm,
             pitch_mm: self.pitch_mm,
             angle_deg: self.angle_deg,

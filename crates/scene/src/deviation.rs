@@ -20,7 +20,8 @@ group! {
     pub struct DeviationScene {
         /// The surface.
         pub on: RollingSurface = RollingSurface::Outer, up_to(1.0, rollers);
-        /// Angle of its middle at the start [°], counter-clockwise from the x axis, about the centre of the body.
+        /// Angle of its middle at the start [°], counter-clockwise from the x axis, about the centre of the
+        /// body.
         pub angle_deg: f64 = 90.0, within(-360.0, 360.0);
         /// Its form.
         pub form: FormScene = FormScene::Spall(SpallScene::default());
@@ -139,8 +140,9 @@ group! {
         pub shortest_mm: f64 = 2.5, positive(20_000.0);
         /// Seed of the phases.
         pub seed: u64 = 1, within(0.0, 1e9);
-        /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random walk,
-        /// 0 the same at all wavelengths of the band; a self-affine profile of the Hurst exponent H has 1 + 2H.
+        /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random
+        /// walk, 0 the same at all wavelengths of the band; a self-affine profile of the Hurst exponent H has
+        /// 1 + 2H.
         pub slope: f64 = RANDOM_WALK, within(0.0, 6.0), omitted();
     }
 }

@@ -1,5 +1,5 @@
-//! The table of all fields of a scene: each is declared once, by [`group!`] or [`words!`], with its name, type,
-//! default, range and a sentence that has its unit in brackets.
+//! The table of all fields of a scene: each is declared once, by [`group!`] or [`words!`], with its name,
+//! type, default, range and a sentence that has its unit in brackets.
 //!
 //! ```text
 //! group! {
@@ -14,6 +14,7 @@
 //! Reading, ranges, suggestions for misspelt names, `--set`, the axes of campaigns and the unknowns of
 //! inferences, the identity of a scene, the page of all fields and the schema for editors follow from it.
 
+mod difference;
 pub(crate) mod page;
 pub(crate) mod range;
 pub(crate) mod schema;
@@ -22,10 +23,11 @@ pub mod value;
 
 use std::sync::LazyLock;
 
+pub use difference::differences;
 pub use page::page;
 use range::{Limits, Range};
 pub use schema::{json_schema, to_json};
-use tree::{Content, Node, Step, steps};
+use tree::{Content, Node, Step, join, steps};
 use value::Value;
 
 use crate::scene::Scene;
@@ -382,7 +384,7 @@ pub(crate) fn names_in(section: &str) -> Vec<&'static str> {
 pub(crate) fn paths() -> &'static [String] {
     fn collect(shape: Shape, at: &str, into: &mut Vec<String>) {
         for field in shape.groups().iter().flat_map(|group| group.fields).filter(|field| !field.is_internal) {
-            let path = if at.is_empty() { field.name.to_owned() } else { format!("{at}.{}", field.name) };
+            let path = join(at, field.name);
             collect(field.shape, &path, into);
             if !into.contains(&path) {
                 into.push(path);
@@ -453,7 +455,8 @@ macro_rules! group {
 /// Declares words of which one is written: the enumeration and its part of the table.
 #[macro_export]
 macro_rules! words {
-    ($(#[doc = $about:literal])* $(#[serde($($serde:tt)*)])? $vis:vis enum $name:ident $(: $($also:ident),+)? {
+    ($(#[doc = $about:literal])* $(#[serde($($serde:tt)*)])?
+    $vis:vis enum $name:ident $(: $($also:ident),+)? {
         $($(#[doc = $doc:literal])* $variant:ident $(($of:ident: $type:ty))? = $word:literal,)*
     }) => {
         $(#[doc = $about])*
@@ -479,7 +482,9 @@ macro_rules! words {
 
             fn read(node: &$crate::fields::tree::Node) -> Option<Self> {
                 match node.word()? {
-                    $($word => Some(Self::$variant $((<$type as $crate::fields::value::Value>::read(node.inside())?))?),)*
+                    $($word => Some(Self::$variant $((
+                        <$type as $crate::fields::value::Value>::read(node.inside())?
+                    ))?),)*
                     _ => None,
                 }
             }

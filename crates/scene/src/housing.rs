@@ -65,8 +65,8 @@ group! {
 }
 
 group! {
-    /// Springs and dampers all around the ring, evenly spread, to a frame that does not deform or turn and takes
-    /// the load. Each spring holds its node of the ring in every direction.
+    /// Springs and dampers all around the ring, evenly spread, to a frame that does not deform or turn and
+    /// takes the load. Each spring holds its node of the ring in every direction.
     pub struct SpringHousingScene {
         /// Stiffness of all springs together against a shift of the ring [N/µm].
         pub stiffness_n_um: f64 = 1000.0, positive(1e6);

@@ -10,7 +10,8 @@ fn most_rate_hz(scene: &Scene) -> f64 {
 
 group! {
     /// Records of the force of all rolling elements on the outer ring, behind a path of resonances that the
-    /// scene's hash draws, in white noise: one for each level of the noise. `summary.json` has their signatures.
+    /// scene's hash draws, in white noise: one for each level of the noise. `summary.json` has their
+    /// signatures.
     pub struct RecordsScene {
         /// Samples a second of the record [Hz]; at most those of the run.
         pub rate_hz: f64 = 25_600.0, up_to(100.0, most_rate_hz);

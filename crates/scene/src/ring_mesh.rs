@@ -3,9 +3,9 @@
 use crate::fields::group;
 
 group! {
-    /// A ring from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the centre of the
-    /// bearing in the origin. Its material is that of the bearing, its raceway the circle of `bearing`, with the
-    /// cut-outs of the file.
+    /// A ring from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the centre of
+    /// the bearing in the origin. Its material is that of the bearing, its raceway the circle of `bearing`,
+    /// with the cut-outs of the file.
     pub struct RingMeshScene {
         /// The file, `.msh`, `.inp` or `.k`; its path counts from the folder of the scene.
         pub file: String = String::new();
@@ -15,8 +15,8 @@ group! {
         pub text: String = String::new(), internal(), omitted();
         /// Name of the set of nodes all along the raceway.
         pub raceway: String = "raceway".into();
-        /// Name of the set of nodes all along the other side: the outer ring's back, which sits in the housing,
-        /// or the inner ring's bore, which turns with the shaft.
+        /// Name of the set of nodes all along the other side: the outer ring's back, which sits in the
+        /// housing, or the inner ring's bore, which turns with the shaft.
         pub fit: String = "fit".into();
     }
 }

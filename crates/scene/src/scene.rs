@@ -73,8 +73,8 @@ words! {
     pub enum ModelScene {
         /// All bodies in finite elements.
         Full = "full",
-        /// Outer ring and housing in their modes below a frequency, rollers and cage rigid with local compliance:
-        /// a second in a few seconds.
+        /// Outer ring and housing in their modes below a frequency, rollers and cage rigid with local
+        /// compliance: a second in a few seconds.
         Reduced(of: ReducedScene) = "reduced",
     }
 }
@@ -88,8 +88,8 @@ impl Default for ModelScene {
 group! {
     /// The reduced model.
     pub struct ReducedScene {
-        /// Natural frequency up to which modes of outer ring and adapter are kept [kHz]. Of rings of another size
-        /// than the paper's 30 √(220 mm/outside diameter).
+        /// Natural frequency up to which modes of outer ring and adapter are kept [kHz]. Of rings of another
+        /// size than the paper's 30 √(220 mm/outside diameter).
         pub modes_khz: f64 = 30.0, within(2.0, 300.0);
         /// Longest time step [µs]; shortened so that a whole number of steps fits into a sampling interval.
         pub step_us: f64 = 2.0, within(0.05, 5.0);

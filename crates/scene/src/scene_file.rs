@@ -27,7 +27,7 @@ pub(crate) mod wording;
 
 use std::path::Path;
 
-use crate::fields::tree::{Content, Node};
+use crate::fields::tree::Node;
 use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
 use crate::scene::Scene;
@@ -125,18 +125,17 @@ pub fn replaced_by_bearing<S: AsRef<str>>(path: &Path, overrides: &[S]) -> Vec<R
     let others: Vec<&str> = all.iter().copied().filter(|text| !is_bearing(text)).collect();
     let Some(text) = load(path).ok().filter(|_| others.len() < all.len()) else { return Vec::new() };
     let (text, file) = (without_mark(&text), path.display().to_string());
-    let values = |overrides: &[&str]| Some(understand(text, &file, overrides).ok()?.scene.write());
-    let (Some(before), Some(after)) = (values(&others), values(&all)) else { return Vec::new() };
-    let value = |tree: &Node, field: &str| match &tree.get(field)?.content {
-        Content::Atom(text) => Some(text.clone()),
-        _ => None,
-    };
-    let written = crate::fields::tree::parse(text).map_or_else(|_| Vec::new(), |tree| paths_in(&tree));
-    let fields = written.into_iter().filter(|field| !field.starts_with("bearing"));
-    fields
-        .filter_map(|field| {
-            let (written, now) = (value(&before, &field)?, value(&after, &field)?);
-            (written != now).then_some(Replaced { field, written, now })
+    let scene = |overrides: &[&str]| Some(understand(text, &file, overrides).ok()?.scene);
+    let (Some(before), Some(after)) = (scene(&others), scene(&all)) else { return Vec::new() };
+    let in_file = crate::fields::tree::parse(text).map_or_else(|_| Vec::new(), |tree| paths_in(&tree));
+    crate::fields::differences(&[Some(&before), Some(&after)])
+        .into_iter()
+        .filter(|(field, _)| !field.starts_with("bearing") && in_file.contains(field))
+        .filter_map(|(field, values)| match values.as_slice() {
+            [Some(written), Some(now)] => {
+                Some(Replaced { field, written: written.clone(), now: now.clone() })
+            }
+            _ => None,
         })
         .collect()
 }
@@ -190,7 +189,7 @@ impl Understood {
     fn check(self, folder: &Path) -> Result<Scene, SceneError> {
         let Self { mut scene, sources, refusal, written } = self;
         table::read(&mut scene, folder, &sources)?;
-        if let Some(refusal) = refusal.as_ref().filter(|refusal| refusal.is_of_another()) {
+        if let Some(refusal) = refusal.as_ref().filter(|refusal| refusal.is_of_another) {
             return Err(refusal.problem(&sources).into());
         }
         match (check(&scene, &sources, written.as_ref()), refusal) {
@@ -214,11 +213,7 @@ impl Understood {
 fn complete(sources: Sources, given: Option<Vec<String>>) -> Result<Understood, SceneError> {
     let mut scene = scene_of(&sources)?;
     let written = given.map(|given| own::Written { scene: scene.clone(), given });
-    let own = written.as_ref().map(|written| own::complete(&mut scene, &written.given));
-    let refusal = match own {
-        Some(own::Own::Refused(refusal)) => Some(refusal),
-        _ => None,
-    };
+    let refusal = written.as_ref().and_then(|written| own::complete(&mut scene, &written.given).err());
     let written = written.filter(|_| refusal.is_none());
     Ok(Understood { scene, sources, refusal, written })
 }
@@ -269,7 +264,8 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
     complete(sources, (!has_name).then_some(given))
 }
 
-/// Reads the text of another file than a scene by the table of its fields: what it says, and where it says it.
+/// Reads the text of another file than a scene by the table of its fields: what it says, and where it says
+/// it.
 ///
 /// # Errors
 /// Unknown and missing fields, values of the wrong type and numbers outside their range, with their places.

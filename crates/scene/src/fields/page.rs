@@ -2,16 +2,17 @@
 
 use std::fmt::Write as _;
 
-use super::tree::Content;
+use super::tree::{Content, join};
 use super::{Group, Shape, Spot, Words};
 use crate::scene::Scene;
 
 /// Every field of a scene with its default, range and description.
 pub fn page() -> String {
     let mut text = String::from(
-        "# Every field of a scene\n\nWritten by `cargo xtask fields` from the table by which scenes are read; \
-         `cargo xtask fields --schema` prints the same as a JSON schema, for editors and other programs. What a \
-         scene does not say has its default; a number outside its range is refused with its line.\n",
+        "# Every field of a scene\n\nWritten by `cargo xtask fields` from the table by which scenes are \
+         read; `cargo xtask fields --schema` prints the same as a JSON schema, for editors and other \
+         programs. What a scene does not say has its default; a number outside its range is refused with its \
+         line.\n",
     );
     // Writing to a text cannot fail.
     let _ = section(&mut text, Spot::ROOT, "");
@@ -27,8 +28,7 @@ fn section(text: &mut String, spot: Spot, path: &str) -> std::fmt::Result {
             }
             rows(text, spot, group)?;
             for field in group.fields {
-                let at =
-                    if path.is_empty() { field.name.to_owned() } else { format!("{path}.{}", field.name) };
+                let at = join(path, field.name);
                 section(text, spot.at(group, field), &at)?;
             }
             Ok(())

@@ -8,8 +8,8 @@ use super::value::Value;
 use super::{Shape, Spot};
 use crate::scene::Scene;
 
-/// The schema of a scene (JSON Schema, 2020-12): fields, types, ranges, defaults and descriptions. A word with
-/// brackets is an object with the word as its only name.
+/// The schema of a scene (JSON Schema, 2020-12): fields, types, ranges, defaults and descriptions. A word
+/// with brackets is an object with the word as its only name.
 pub fn json_schema() -> Json {
     let mut schema = of(Spot::ROOT);
     schema["$schema"] = json!("https://json-schema.org/draft/2020-12/schema");
@@ -64,7 +64,7 @@ fn of(spot: Spot) -> Json {
     }
 }
 
-/// The values of a scene by their names, those left out that a written scene leaves out.
+/// The values of a scene by their names, without those that a written scene leaves out.
 pub fn to_json(scene: &Scene) -> Json {
     json(&scene.write(), Scene::SHAPE)
 }

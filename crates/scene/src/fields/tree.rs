@@ -77,6 +77,11 @@ pub(crate) fn steps(path: &str) -> impl Iterator<Item = Step<'_>> {
     })
 }
 
+/// The path of a field in a group at `path`.
+pub(crate) fn join(path: &str, name: &str) -> String {
+    if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") }
+}
+
 impl Node {
     /// A value that nobody wrote.
     pub fn new(content: Content) -> Self {
@@ -151,8 +156,7 @@ impl Node {
         match &self.inside().content {
             Content::Group(fields) => {
                 for (key, node) in fields {
-                    let path =
-                        if under.is_empty() { key.name.clone() } else { format!("{under}.{}", key.name) };
+                    let path = join(under, &key.name);
                     all.extend(node.entries(&path));
                     all.push((path, key.span.clone(), node));
                 }
@@ -512,14 +516,13 @@ impl<'a> Parser<'a> {
                 if !values.is_empty() {
                     return Err(self.broken(path, start, Stop::Expected("a value without a name")));
                 }
-                let field = if path.is_empty() { key.name.clone() } else { format!("{path}.{}", key.name) };
+                let field = join(path, &key.name);
                 let value = self.value(&field, depth + 1)?;
                 fields.push((key, value));
             } else if let Some((key, last)) = fields.last() {
                 let length = foreign::comma_number(&self.text[last.span.start..]).unwrap_or(0);
                 if start < last.span.start + length {
-                    let field =
-                        if path.is_empty() { key.name.clone() } else { format!("{path}.{}", key.name) };
+                    let field = join(path, &key.name);
                     let range = last.span.start..last.span.start + length;
                     return Err(Broken { field, range, kind: Stop::DecimalComma });
                 }

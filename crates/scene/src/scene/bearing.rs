@@ -31,8 +31,8 @@ group! {
         /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow
         /// counter-clockwise.
         pub first_roller_deg: f64 = 94.0, within(-360.0, 360.0);
-        /// Pitch diameter [mm], instead of a raceway: a bearing that is not of the catalogue may give this and
-        /// the next three, from which reading a scene completes the fields above; absent afterwards.
+        /// Pitch diameter [mm], instead of a raceway: a bearing that is not of the catalogue may give this
+        /// and the next three, from which reading a scene completes the fields above; absent afterwards.
         pub pitch_mm: Option<f64> = None, positive(20_000.0), omitted();
         /// Bore [mm], instead of the inner ring's thickness.
         pub bore_mm: Option<f64> = None, positive(20_000.0), omitted();
@@ -74,8 +74,8 @@ group! {
         pub pocket_clearance_um: f64 = 100.0, within(0.0, 10_000.0);
         /// Which part of a roller the walls of its pocket touch.
         pub pocket: PocketWalls = PocketWalls::Straight, before("corners");
-        /// How far each roller starts from the middle of its pocket along its path, counter-clockwise, roller 1
-        /// first [µm]; empty: all in the middle.
+        /// How far each roller starts from the middle of its pocket along its path, counter-clockwise, roller
+        /// 1 first [µm]; empty: all in the middle.
         pub roller_offsets_um: Vec<f64> = Vec::new(), within(-10_000.0, 10_000.0), before("[]");
     }
 }
@@ -83,11 +83,11 @@ group! {
 words! {
     /// Which part of a roller the walls of its pocket touch.
     pub enum PocketWalls: Copy, Eq {
-        /// The part between the cage's diameters. Off the pitch circle the corners touch rollers above or below
-        /// their centres, and push them radially, too.
+        /// The part between the cage's diameters. Off the pitch circle the corners touch rollers above or
+        /// below their centres, and push them radially, too.
         Corners = "corners",
-        /// The flanks: walls extend across the pitch circle, and push tangentially only. The mass of the cage is
-        /// that between its diameters.
+        /// The flanks: walls extend across the pitch circle, and push tangentially only. The mass of the cage
+        /// is that between its diameters.
         Straight = "straight",
     }
 }

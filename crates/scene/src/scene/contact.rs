@@ -37,19 +37,19 @@ words! {
     pub enum ContactFormula: Copy, Eq {
         /// `penalty_scale` × E / element size; critical damping of two equal surface layers on that spring.
         ElementLayer = "element_layer",
-        /// LS-DYNA's standard penalty: `penalty_scale` (`SLSFAC` × `SFS`, usually 0.1) × bulk modulus × area² /
-        /// volume of the element behind a segment, on each pass. `damping_ratio` is `VDC` / 100, whose critical
-        /// damping is 2 m ω.
+        /// LS-DYNA's standard penalty: `penalty_scale` (`SLSFAC` × `SFS`, usually 0.1) × bulk modulus × area²
+        /// / volume of the element behind a segment, on each pass. `damping_ratio` is `VDC` / 100, whose
+        /// critical damping is 2 m ω.
         LsdynaStandard = "lsdyna_standard",
-        /// LS-DYNA's segment-based penalty (`SOFT` = 2): `penalty_scale` (likewise) × ½ m₁m₂/(m₁ + m₂) / Δt², of
-        /// segments with half an element each. `damping_ratio` as in the standard penalty.
+        /// LS-DYNA's segment-based penalty (`SOFT` = 2): `penalty_scale` (likewise) × ½ m₁m₂/(m₁ + m₂) / Δt²,
+        /// of segments with half an element each. `damping_ratio` as in the standard penalty.
         LsdynaSegment = "lsdyna_segment",
     }
 }
 
 words! {
-    /// Curve that the facets of raceways and rollers represent. Corners (walls of the defect, cage) stay sharp in
-    /// any case.
+    /// Curve that the facets of raceways and rollers represent. Corners (walls of the defect, cage) stay
+    /// sharp in any case.
     pub enum ContactSurface: Copy, Eq {
         /// The chords themselves.
         Facet = "facet",
@@ -65,8 +65,8 @@ words! {
     pub enum ContactInterpolation: Copy, Eq {
         /// Every facet with its own two nodes.
         Linear = "linear",
-        /// As a cubic spline of smoothed nodes, six to a facet: a rolling load does not depend on its position
-        /// between nodes.
+        /// As a cubic spline of smoothed nodes, six to a facet: a rolling load does not depend on its
+        /// position between nodes.
         Spline = "spline",
     }
 }
@@ -76,8 +76,8 @@ words! {
     pub enum ContactPasses: Copy, Eq {
         /// Those of both bodies, each with half of the stiffness.
         Two = "two",
-        /// Those of the roller alone, with the whole stiffness: half the work, for points that stand closer than
-        /// the features of a raceway.
+        /// Those of the roller alone, with the whole stiffness: half the work, for points that stand closer
+        /// than the features of a raceway.
         One = "one",
     }
 }

@@ -25,9 +25,9 @@ group! {
 group! {
     /// Larger elements away from the raceways and the rims of the rollers.
     ///
-    /// Facets that roll on each other keep their length, so a graded mesh has the same facet-passing tone. In the
-    /// rings three facets become one, as often as `coarse_mm` and the thickness of the ring allow. The adapter
-    /// continues the columns of the outer ring, the rollers get a coarser core.
+    /// Facets that roll on each other keep their length, so a graded mesh has the same facet-passing tone. In
+    /// the rings three facets become one, as often as `coarse_mm` and the thickness of the ring allow. The
+    /// adapter continues the columns of the outer ring, the rollers get a coarser core.
     pub struct GradingScene {
         /// Element edge that is not exceeded in the rings and the rollers, and the height of the adapter's
         /// elements [mm].

@@ -12,21 +12,22 @@ group! {
     pub struct OperationScene {
         /// Load on the top edge of the adapter, downwards, or on another housing [N].
         pub load_n: f64 = 50_000.0, positive(MOST_LOAD_N);
-        /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; absent for 270,
-        /// downwards, with the load zone at the top. Pedestals and mesh housings also accept 90; rigid and
-        /// spring housings any angle.
+        /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; absent for
+        /// 270, downwards, with the load zone at the top. Pedestals and mesh housings also accept 90; rigid
+        /// and spring housings any angle.
         pub load_angle_deg: f64 = housing::DOWN_DEG, within(-360.0, 360.0), omitted();
         /// Speed of the inner ring [rpm]; positive clockwise, negative counter-clockwise.
         pub speed_rpm: f64 = 500.0, within(-MOST_SPEED_RPM, MOST_SPEED_RPM);
-        /// Speed of the outer ring with its housing, which must be rigid then [rpm], counted likewise; absent for
-        /// 0.
+        /// Speed of the outer ring with its housing, which must be rigid then [rpm], counted likewise; absent
+        /// for 0.
         pub outer_speed_rpm: f64 = 0.0, within(-MOST_SPEED_RPM, MOST_SPEED_RPM), omitted();
         /// Gravity, downwards [m/s²].
         pub gravity_m_s2: f64 = 9.81, within(0.0, 1_000.0);
         /// Course of the speed over time [rpm]; absent for a constant `speed_rpm`.
         pub speed_profile: Option<ProfileScene> = None, within(-MOST_SPEED_RPM, MOST_SPEED_RPM), omitted();
         /// Course of the outer ring's speed over time [rpm]; absent for a constant `outer_speed_rpm`.
-        pub outer_speed_profile: Option<ProfileScene> = None, within(-MOST_SPEED_RPM, MOST_SPEED_RPM), omitted();
+        pub outer_speed_profile: Option<ProfileScene> = None,
+            within(-MOST_SPEED_RPM, MOST_SPEED_RPM), omitted();
         /// Course of the load over time [N]; absent for a constant `load_n`.
         pub load_profile: Option<ProfileScene> = None, positive(MOST_LOAD_N), omitted();
         /// A force that turns with the inner ring, on top of the load; absent for none.
@@ -35,19 +36,19 @@ group! {
 }
 
 words! {
-    /// Course of a speed or load over time ([`duty`](crate::duty)). Values have the unit of the field that they
-    /// vary.
+    /// Course of a speed or load over time ([`duty`](crate::duty)). Values have the unit of the field that
+    /// they vary.
     pub enum ProfileScene {
         /// From the field's value along a straight line to another one, which stays.
         Ramp(of: RampScene) = "ramp",
         /// The field's value with a sine about it.
         Harmonic(of: HarmonicScene) = "harmonic",
-        /// Times [ms], ascending, and values: straight lines between them, the first and the last value before
-        /// and behind them. The field itself has no part in it.
+        /// Times [ms], ascending, and values: straight lines between them, the first and the last value
+        /// before and behind them. The field itself has no part in it.
         Points(of: Vec<(f64, f64)>) = "points",
-        /// The same from a CSV file, whose first line names its columns, `time_ms` and `value`. Its path counts
-        /// from the folder of the scene. When a scene is read its points take the place of the file, so a run
-        /// holds all of its scene.
+        /// The same from a CSV file, whose first line names its columns, `time_ms` and `value`. Its path
+        /// counts from the folder of the scene. When a scene is read its points take the place of the file,
+        /// so a run holds all of its scene.
         Table(of: String) = "table",
     }
 }
@@ -77,8 +78,8 @@ group! {
 }
 
 group! {
-    /// A force on the housing that turns with the inner ring, as that of an unbalanced shaft. Where the housing
-    /// is guided up and down it takes the vertical part; the horizontal one goes into the guide.
+    /// A force on the housing that turns with the inner ring, as that of an unbalanced shaft. Where the
+    /// housing is guided up and down it takes the vertical part; the horizontal one goes into the guide.
     pub struct RotatingLoadScene {
         /// Its magnitude [N].
         pub force_n: f64 = 1000.0, positive(MOST_LOAD_N);

@@ -27,7 +27,8 @@ group! {
 }
 
 group! {
-    /// Displacements of all nodes near the middle of the defect (the top of a sound bearing) at several times.
+    /// Displacements of all nodes near the middle of the defect (the top of a sound bearing) at several
+    /// times.
     pub struct FramesScene {
         /// Time of the first frame [ms].
         pub from_ms: f64 = 0.2, within(0.0, LONGEST_MS);
@@ -56,15 +57,15 @@ group! {
         /// Imbalance of energy above which the run carries a warning [%], over the larger of the peak strain
         /// energy (of a reduced run, of the most that rings and contacts have stored) and of the heat.
         pub energy_warning_percent: f64 = 0.5, positive(1e6);
-        /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its heat,
-        /// too.
+        /// … and above which it stops [%]; a reduced run does so only when it is off by a hundredth of its
+        /// heat, too.
         pub energy_stop_percent: f64 = 25.0, positive(1e6);
         /// Hourglass energy over strain energy above which the run carries a warning [%].
         pub hourglass_warning_percent: f64 = 10.0, positive(1e6);
         /// Penetration over the element size above which the run carries a warning [%].
         pub penetration_warning_percent: f64 = 10.0, positive(200.0);
-        /// … and above which it stops [%]; at 200 % contact takes a point as lying on the far side of the body,
-        /// and its force vanishes.
+        /// … and above which it stops [%]; at 200 % contact takes a point as lying on the far side of the
+        /// body, and its force vanishes.
         pub penetration_stop_percent: f64 = 100.0, positive(200.0);
         /// Area of an element over its area at rest below which the run stops [%].
         pub area_stop_percent: f64 = 20.0, within(0.0, 99.0);

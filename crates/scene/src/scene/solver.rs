@@ -19,11 +19,12 @@ group! {
         pub mass_damping_per_s: f64 = 0.0, within(0.0, 1e6);
         /// Motion relative to which the mass damping acts.
         pub damping_frame: DampingFrame = DampingFrame::Rolling;
-        /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs time
-        /// step.
+        /// Stiffness-proportional damping β [ns]; 2·ζ/ω for a damping ratio ζ at ω. Each nanosecond costs
+        /// time step.
         pub stiffness_damping_ns: f64 = 0.0, within(0.0, 1e4), before("0.0");
         /// Damping of chosen bodies at nearly one ratio over a band of frequencies.
-        pub structural_damping: Option<StructuralDampingScene> = Some(StructuralDampingScene::default()), before("None");
+        pub structural_damping: Option<StructuralDampingScene> =
+            Some(StructuralDampingScene::default()), before("None");
         /// How the run starts.
         pub start: Start = Start::Preloaded;
     }
@@ -39,8 +40,8 @@ group! {
         pub from_khz: f64 = 2.0, positive(1e4);
         /// Upper end of the band [kHz]; above it the ratio falls as one over the frequency.
         pub to_khz: f64 = 40.0, positive(1e5);
-        /// Maxwell branches beside every element, 1 to 3: over a factor of 20 in frequency the ratio is within
-        /// −49 and +25 % with one, −8 and +4 % with two, 1 % with three.
+        /// Maxwell branches beside every element, 1 to 3: over a factor of 20 in frequency the ratio is
+        /// within −49 and +25 % with one, −8 and +4 % with two, 1 % with three.
         pub branches: usize = 1, within(1.0, 3.0);
         /// Which bodies.
         pub bodies: Vec<DampedBody> = vec![DampedBody::OuterRing, DampedBody::InnerRing, DampedBody::Adapter];

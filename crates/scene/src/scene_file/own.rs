@@ -6,7 +6,7 @@
 //! ([`surround`](super::named::surround)).
 
 use super::named::{self, Surrounded, tidy};
-use super::problem::Problem;
+use super::problem::{Place, Problem};
 use super::sources::{self, Sources};
 use super::wording::number;
 use crate::scene::{Assumed, BearingScene, Scene};
@@ -25,50 +25,35 @@ const RING: f64 = 0.4;
 /// An assumed ring is at most this part of its raceway's radius thick.
 const OF_RADIUS: f64 = 0.8;
 
-/// Outcome for a scene's bearing.
-#[derive(Debug)]
-pub(super) enum Own {
-    /// It is the paper's, or one with other numbers beside its diameters.
-    Papers,
-    /// It is complete.
-    Complete,
-    /// It is none.
-    Refused(Box<Refusal>),
-}
-
 /// Why given fields do not define a bearing.
 #[derive(Debug)]
 pub(super) struct Refusal {
-    /// Dotted path of the field to blame.
-    field: String,
-    message: String,
-    allowed: String,
-    suggestion: String,
-    /// Change that makes it the paper's bearing again.
-    repair: Option<(String, String)>,
-    of_another: bool,
+    /// The problem, not yet at its place.
+    problem: Problem,
+    /// Whether a field is given that no scene of the paper's bearing has.
+    pub(super) is_of_another: bool,
 }
 
 impl Refusal {
-    pub(super) fn problem(&self, sources: &Sources) -> Problem {
-        let mut problem = Problem::new(self.message.clone(), sources.place(&self.field));
-        problem.field.clone_from(&self.field);
-        problem.allowed.clone_from(&self.allowed);
-        if let Some((field, value)) = &self.repair {
-            problem.propose(field, value, "");
-        }
-        problem.suggestion.clone_from(&self.suggestion);
-        problem
+    fn new(field: &str, message: String, allowed: String, suggestion: String) -> Self {
+        let problem = Problem::new(message, Place::Unwritten { file: String::new() });
+        let problem = Problem { field: format!("bearing.{field}"), allowed, suggestion, ..problem };
+        Self { problem, is_of_another: false }
     }
 
-    /// Whether a field is given that no scene of the paper's bearing has.
-    pub(super) fn is_of_another(&self) -> bool {
-        self.of_another
+    /// With a value of its field that makes it a bearing again.
+    fn repaired_by(mut self, value: Option<String>) -> Self {
+        self.problem.repair = value.map(|value| format!("{}={value}", self.problem.field));
+        self
+    }
+
+    pub(super) fn problem(&self, sources: &Sources) -> Problem {
+        Problem { place: sources.place(&self.problem.field), ..self.problem.clone() }
     }
 
     /// Addition to a message on the paper's bearing with a field that it cannot have.
     pub(super) fn hint(&self) -> String {
-        format!("; the other numbers are the paper's, because nobody gave them: {}", self.suggestion)
+        format!("; the other numbers are the paper's, because nobody gave them: {}", self.problem.suggestion)
     }
 }
 
@@ -85,7 +70,7 @@ impl Written {
     pub(super) fn is_refused_with(&self, field: &str, argument: &str) -> bool {
         let Some(mut scene) = sources::with(&self.scene, argument) else { return true };
         let given: Vec<String> = self.given.iter().cloned().chain([field.to_owned()]).collect();
-        matches!(complete(&mut scene, &given), Own::Refused(_))
+        complete(&mut scene, &given).is_err()
     }
 }
 
@@ -126,9 +111,9 @@ pub(super) fn is_papers(b: &BearingScene) -> bool {
     main(b) == main(&paper)
 }
 
-/// Completes the bearing of a scene and its surroundings. `given` has the paths of the written fields; all
-/// others are the paper's.
-pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
+/// Completes the bearing of a scene and its surroundings, unless it is the paper's. `given` has the paths of
+/// the written fields; all others are the paper's.
+pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Result<(), Box<Refusal>> {
     let written = |name: &str| given.iter().any(|path| path.strip_prefix("bearing.") == Some(name));
     let b = &scene.bearing;
     let main = Given {
@@ -141,28 +126,25 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Own {
         width: b.width_mm,
     };
     if main.may_be_the_papers() {
-        return Own::Papers;
+        return Ok(());
     }
     // Values out of range are refused elsewhere.
     let all = [main.outer, main.inner, main.roller, main.pitch, main.bore, main.outside, main.width];
     if all.into_iter().flatten().any(|mm| !(mm > 0.0 && mm < 20_000.0)) || b.rollers < 3 {
-        return Own::Papers;
+        return Ok(());
     }
-    match bearing(&scene.bearing, main, &written) {
-        Ok(bearing) => {
-            let pitch_mm = 0.5 * (bearing.outer_race_diameter_mm + bearing.inner_race_diameter_mm);
-            if !given.iter().any(|path| path == "name") {
-                scene.name = match named::plain_name(&bearing.designation) {
-                    name if name.is_empty() => "own".to_owned(),
-                    name => name,
-                };
-            }
-            named::surround(scene, Surrounded { bearing, pitch_mm }, given);
-            named::stiffness(scene, given);
-            Own::Complete
-        }
-        Err(refusal) => Own::Refused(Box::new(Refusal { of_another: main.describes_another(), ..*refusal })),
+    let bearing = bearing(&scene.bearing, main, &written)
+        .map_err(|refusal| Box::new(Refusal { is_of_another: main.describes_another(), ..*refusal }))?;
+    let pitch_mm = 0.5 * (bearing.outer_race_diameter_mm + bearing.inner_race_diameter_mm);
+    if !given.iter().any(|path| path == "name") {
+        scene.name = match named::plain_name(&bearing.designation) {
+            name if name.is_empty() => "own".to_owned(),
+            name => name,
+        };
     }
+    named::surround(scene, Surrounded { bearing, pitch_mm }, given);
+    named::stiffness(scene, given);
+    Ok(())
 }
 
 /// The completed bearing.
@@ -313,18 +295,16 @@ impl Given {
         if (found / pitch - 1.0).abs() <= AGREE {
             return Ok(());
         }
-        Err(Box::new(Refusal {
-            field: "bearing.pitch_mm".to_owned(),
-            message: format!(
+        Err(Box::new(Refusal::new(
+            "pitch_mm",
+            format!(
                 "`bearing.pitch_mm` is {}, and raceways and rollers make a pitch diameter of {} mm",
                 number(pitch),
                 number(tidy(found))
             ),
-            allowed: format!("{} mm, or nothing: the diameters say it", number(tidy(found))),
-            suggestion: "leave `pitch_mm` out, or a raceway".to_owned(),
-            repair: None,
-            of_another: true,
-        }))
+            format!("{} mm, or nothing: the diameters say it", number(tidy(found))),
+            "leave `pitch_mm` out, or a raceway".to_owned(),
+        )))
     }
 
     /// Thickness of a ring [mm] by the given dimensions; `None` without any.
@@ -360,20 +340,20 @@ impl Given {
                 } else {
                     String::new()
                 };
-                Err(Box::new(Refusal {
-                    field: format!("bearing.{name}"),
-                    message: format!(
+                let refusal = Refusal::new(
+                    name,
+                    format!(
                         "`bearing.{name}` is {}, which leaves the {name_of_ring} ring {} mm beside its \
                          raceway of {} mm{also}",
                         number(boundary.unwrap_or(0.0)),
                         number(tidy(left)),
                         number(tidy(race)),
                     ),
-                    allowed: format!("{than} than {} mm", number(tidy(race))),
-                    suggestion: format!("`{name}: {}`, or leave it out", number(limit)),
-                    repair: (!written && limit > 0.0).then(|| (format!("bearing.{name}"), number(limit))),
-                    of_another: true,
-                }))
+                    format!("{than} than {} mm", number(tidy(race))),
+                    format!("`{name}: {}`, or leave it out", number(limit)),
+                );
+                let is_alone = !written && limit > 0.0;
+                Err(Box::new(refusal.repaired_by(is_alone.then(|| number(limit)))))
             }
         }
     }
@@ -408,19 +388,18 @@ impl Given {
             _ => None,
         };
         let again = papers.map(|mm| format!("; `{first}: {}` is the paper's bearing", number(mm)));
-        Box::new(Refusal {
-            field: format!("bearing.{first}"),
-            message: format!(
+        let refusal = Refusal::new(
+            first,
+            format!(
                 "a bearing with {} is not the paper's, and of one's own it lacks {missing}",
                 names.join(" and ")
             ),
-            allowed: "a bearing by its `rollers` and two of `roller_diameter_mm`, `pitch_mm`, \
-                      `inner_race_diameter_mm` and `outer_race_diameter_mm`, or by its name"
+            "a bearing by its `rollers` and two of `roller_diameter_mm`, `pitch_mm`, \
+             `inner_race_diameter_mm` and `outer_race_diameter_mm`, or by its name"
                 .to_owned(),
-            suggestion: format!("give {instead}, too{}", again.unwrap_or_default()),
-            repair: papers.map(|mm| (format!("bearing.{first}"), number(mm))),
-            of_another: false,
-        })
+            format!("give {instead}, too{}", again.unwrap_or_default()),
+        );
+        Box::new(refusal.repaired_by(papers.map(number)))
     }
 
     /// Diameters that leave no room for rollers.
@@ -432,18 +411,16 @@ impl Given {
         } else {
             "inner_race_diameter_mm"
         };
-        Box::new(Refusal {
-            field: format!("bearing.{field}"),
-            message: format!(
+        Box::new(Refusal::new(
+            field,
+            format!(
                 "these diameters make no bearing: raceways of {} and {} mm, rollers of {} mm",
                 number(tidy(d.outer)),
                 number(tidy(d.inner)),
                 number(tidy(d.roller))
             ),
-            allowed: "an outer raceway beyond the inner one, with the rollers between them".to_owned(),
-            suggestion: "check the diameters, in mm".to_owned(),
-            repair: None,
-            of_another: true,
-        })
+            "an outer raceway beyond the inner one, with the rollers between them".to_owned(),
+            "check the diameters, in mm".to_owned(),
+        ))
     }
 }

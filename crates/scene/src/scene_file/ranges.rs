@@ -2,7 +2,7 @@
 
 use super::finding::{Finding, Remedy};
 use super::wording::{number, shown};
-use crate::fields::tree::{Content, Node};
+use crate::fields::tree::{Content, Node, join};
 use crate::fields::value::Value;
 use crate::fields::{Shape, Spot, spot};
 use crate::scene::Scene;
@@ -38,8 +38,7 @@ fn numbers(scene: &Scene, node: &Node, spot: Spot, path: &str, found: &mut Vec<F
     match (spot.shape.there(), &node.content) {
         (Shape::Group(group), Content::Group(_)) => {
             for field in group.fields {
-                let at =
-                    if path.is_empty() { field.name.to_owned() } else { format!("{path}.{}", field.name) };
+                let at = join(path, field.name);
                 if let Some(node) = node.field(field.name) {
                     numbers(scene, node, spot.at(group, field), &at, found);
                 }

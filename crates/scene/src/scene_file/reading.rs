@@ -9,7 +9,7 @@ use super::sources::{Kind, Sources};
 use super::suggest;
 use super::wording::{list, number, shown};
 use crate::catalogue;
-use crate::fields::tree::{Broken, Content, Node, Source, Stop};
+use crate::fields::tree::{Broken, Content, Node, Source, Stop, join};
 use crate::fields::value::Value;
 use crate::fields::{Group, Shape, Spot, Words, paths, spot};
 
@@ -78,9 +78,8 @@ impl Found<'_> {
 
     fn group(&mut self, node: &Node, spot: Spot, group: &'static Group, path: &str) {
         let Content::Group(fields) = &node.content else { return };
-        let inside = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
         for (i, (key, value)) in fields.iter().enumerate() {
-            let at = inside(&key.name);
+            let at = join(path, &key.name);
             match group.get(&key.name) {
                 _ if fields[..i].iter().any(|(before, _)| before.name == key.name) => {
                     let message = format!("field `{}` is given twice", key.name);
@@ -106,7 +105,7 @@ impl Found<'_> {
         for field in group.fields.iter().filter(|field| field.is_required && node.field(field.name).is_none())
         {
             let message = format!("{} has no field `{}`, which has no default", self.home(path), field.name);
-            let problem = self.add(&inside(field.name), message, node, node.span.clone());
+            let problem = self.add(&join(path, field.name), message, node, node.span.clone());
             problem.suggestion = format!("add `{}: …` ({})", field.name, field.shape.words());
         }
     }
@@ -207,7 +206,9 @@ fn meant(value: &str, shape: Shape, path: &str) -> Option<(String, &'static str)
             let count = bare.parse::<f64>().ok().filter(|count| (1.0..1e6).contains(count))?;
             Some((number(count.round()), "rounded"))
         }
-        Shape::Text if bare.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') && !bare.is_empty() => {
+        Shape::Text
+            if bare.chars().all(|c| c.is_ascii_alphanumeric() || "_.-/".contains(c)) && !bare.is_empty() =>
+        {
             Some((format!("\"{bare}\""), "in quotes"))
         }
         Shape::Words(words) => match words.get(bare)?.inside {

@@ -109,8 +109,8 @@ impl Sources {
     /// Applies arguments in order.
     ///
     /// # Errors
-    /// All that cannot be applied; the others are, as far as they go, so each meets the scene that it is written
-    /// for.
+    /// All that cannot be applied; the others are, as far as they go, so each meets the scene that it is
+    /// written for.
     pub(crate) fn set_all<S: AsRef<str>>(&mut self, arguments: &[S]) -> Result<(), SceneError> {
         let given = written_by(arguments);
         let mut problems = Vec::new();
@@ -398,8 +398,8 @@ fn find<'a>(tree: &'a mut Node, path: &str) -> Option<&'a mut Node> {
     steps(path).try_fold(tree, one)
 }
 
-/// Puts a value at a path. A group that is `None` is opened, and a word that has no such field becomes the first
-/// one that has it.
+/// Puts a value at a path. A group that is `None` is opened, and a word that has no such field becomes the
+/// first one that has it.
 fn put(tree: &mut Node, path: &str, value: Node) {
     if let Some(node) = find(tree, path) {
         *node = value;
