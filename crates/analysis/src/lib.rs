@@ -1,5 +1,7 @@
 //! Analysis of a bearing's vibration: kinematics, events, loads, tones, levels and defect families.
 //!
+//! It is a crate because programs that need the numbers of a run alone link no plotting library.
+//!
 //! [`findings::Findings::of`] analyses a run directory; the crate `stribeck-diagnosis` a measured record. The
 //! steps on the way are public and take plain slices. Nothing here meshes, simulates or draws: the crate
 //! `stribeck-report` makes pages of it.

@@ -1,6 +1,9 @@
 //! Contact between oriented surfaces in the plane: search, closest points, penalty, damping and Coulomb
 //! friction, for explicit dynamics.
 //!
+//! It is a crate because the solver knows nothing of contact, and models without it link neither search nor
+//! law.
+//!
 //! To the solver, contact is one more force on nodes: [`Contacts`] implements
 //! [`Force`](stribeck_solver::Force). Three things make it up, in this order:
 //!

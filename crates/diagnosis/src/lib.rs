@@ -1,5 +1,7 @@
 //! A measured signal: is it valid, which defect families does it hold, and what may be concluded?
 //!
+//! It is a crate because it serves any measured record: it knows neither scenes nor runs.
+//!
 //! [`Analysis::of`] passes once over the samples, block by block, so that a record of hours takes no more
 //! memory than one of seconds. Source: THEORY §7.9.
 //!

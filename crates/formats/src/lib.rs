@@ -1,5 +1,7 @@
 //! Sampled signals in and out of files.
 //!
+//! It is a crate because a program whose signals are in memory links no format of files.
+//!
 //! [`Recording::open`] looks at the first bytes of a file and lists its channels. Samples stay in the file
 //! and are read in blocks, packed ones of HDF5, MDF, FLAC and Parquet unpacked on the way; those of universal
 //! files and of deflated MATLAB 5 and `.npz` files are held in memory.

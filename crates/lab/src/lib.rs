@@ -1,5 +1,7 @@
 //! A rolling element bearing that runs in the browser.
 //!
+//! It is a crate because the module in the page and the program that makes the page share its types.
+//!
 //! The crate is compiled twice. For `wasm32-unknown-unknown` it is the module in the page: an [`Engine`]
 //! that steps the reduced bearing of [`stribeck_reduced`], with handles for load, speed, spall, facets and
 //! more, and `exports.rs`, the names that the page calls. For the machine that makes the page it is

@@ -1,9 +1,10 @@
 //! Plane finite element meshes made of quadrilaterals and triangles: annuli, discs, blocks, their oriented
 //! surfaces, their quality, and files that ParaView opens.
 //!
-//! The crate knows geometry only. A generator ([`Annulus`], [`Disc`], [`Rectangle`], [`SeatedBlock`],
-//! [`ArcBlock`]) describes one shape and makes a [`Part`]; parts are moved, turned and added to a [`Mesh`],
-//! which numbers the nodes of all bodies in one pair of coordinate arrays.
+//! The crate knows geometry only, so that programs that mesh, or read and write decks, link no solver. A
+//! generator ([`Annulus`], [`Disc`], [`Rectangle`], [`SeatedBlock`], [`ArcBlock`]) describes one shape and
+//! makes a [`Part`]; parts are moved, turned and added to a [`Mesh`], which numbers the nodes of all bodies
+//! in one pair of coordinate arrays.
 //!
 //! Three conventions hold everywhere. Lengths are metres and angles radians, counter-clockwise from the x
 //! axis. Elements are counter-clockwise. Along a [`Surface`] the solid lies on the left and the outward

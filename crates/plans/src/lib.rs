@@ -1,6 +1,8 @@
 //! Files that plan many runs: a campaign varies fields of a scene, an inference looks for unknown fields by
 //! targets of a record.
 //!
+//! It is a crate because a single run needs none of it.
+//!
 //! Mistakes in such a file are shown as those of a scene, with line, field, allowed values and remedy.
 //!
 //! ```

@@ -1,5 +1,7 @@
 //! The Python module `stribeck._stribeck`: thin functions that `python/stribeck/__init__.py` gives names,
 //! defaults and help.
+//!
+//! It is a crate because Python loads it as a library of its own.
 
 mod runs;
 mod signals;

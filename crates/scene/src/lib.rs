@@ -1,5 +1,8 @@
 //! Scenes of rolling element bearings: the input of a simulation, read strictly, and in SI.
 //!
+//! It is a crate because input is read in many places that neither mesh nor solve nor open the folder of a
+//! run.
+//!
 //! # A scene: its speeds and its load distribution
 //!
 //! A scene is a text in [RON](https://docs.rs/ron); fields that it omits have defaults. Numbers carry their

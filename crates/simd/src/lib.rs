@@ -1,6 +1,8 @@
 //! A small toolbox for numerical kernels: vectors of f64 for any instruction set, arrays aligned for them,
 //! and work shared out over threads.
 //!
+//! It is a crate because the kernels of several others are written over it.
+//!
 //! A kernel is written once, over a [`Number`](lanes::Number): a single `f64`, or a [`Vector`](lanes::Vector)
 //! of one (plain instructions), four (AVX2) or eight (AVX-512) of them. Which one, [`pulp`] decides when the
 //! program runs: the binary holds the kernel for each instruction set and takes the best that the processor

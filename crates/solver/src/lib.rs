@@ -1,5 +1,7 @@
 //! Explicit dynamics of plane-strain finite elements, and the static equilibrium to start from.
 //!
+//! It is a crate because bodies without contact need nothing else.
+//!
 //! The crate is about bodies, not machines: a [`Model`] is a mesh with materials, elastic or rigid bodies,
 //! and the motion of nodes. [`Dynamics`] lays it out in memory and takes steps; anything else that pushes on
 //! nodes (loads, contact) is a [`Force`], given to each step as a list. A model pays only for the forces in

@@ -1,6 +1,8 @@
 //! The folder of a run: its scene, provenance, sampled channels, mesh and frames, written as a run goes on and
 //! read again, also after a kill.
 //!
+//! It is a crate because analyses and pages read runs, and link nothing of what makes them.
+//!
 //! [`run_dir::Run::read`] reads scene, provenance and sampled channels of a run;
 //! [`mesh_file::RunMesh`] its mesh, [`frames`] the positions of nodes about the defect.
 //!

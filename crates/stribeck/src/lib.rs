@@ -1,5 +1,7 @@
 //! The program `stribeck`: its commands, for the binary and for `cargo xtask`, which has the same ones.
 //!
+//! It is a crate with a library because `xtask`, the studies and the Python module offer the same commands.
+//!
 //! Glue only: paths, flags, progress and exit codes. All computation is in the crates below.
 
 pub mod command_line;

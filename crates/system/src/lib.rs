@@ -1,5 +1,7 @@
 //! Bodies in motion with contact, loads and the ledger of their energy, in node numbers and surface names.
 //!
+//! It is a crate because it knows no machine: models of any bodies are built with it.
+//!
 //! A [`Plan`] has the bodies, materials, constraints, contact pairs and loads. [`Plan::build`] makes it a
 //! [`System`], which finds equilibrium, takes steps, balances its energy and says when something goes wrong.
 //! Where nodes lie in the solver's memory concerns this crate alone.
