@@ -60,7 +60,7 @@ fn build() -> Result<PathBuf> {
             "rustc",
             "--quiet",
             "--profile",
-            "lab",
+            "dist",
             "-p",
             "stribeck-lab",
             "--lib",
@@ -77,7 +77,7 @@ fn build() -> Result<PathBuf> {
         "the module of the lab cannot be built. Its target comes by `rustup target add {TARGET}`, or on \
          Debian with `apt-get install rustc-web lld`"
     );
-    let built = folder.join(TARGET).join("lab").join(MODULE);
+    let built = folder.join(TARGET).join("dist").join(MODULE);
     let module = root.join("target").join("lab").join(MODULE);
     let place = module.parent().unwrap_or(&root);
     std::fs::create_dir_all(place).with_context(|| format!("cannot make {}", place.display()))?;
