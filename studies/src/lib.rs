@@ -1,10 +1,11 @@
 //! Questions that are answered by many runs: one question, many runs, one table, one page.
 //!
-//! A study is data: `plans/STUDY.ron` has its scenes with their overrides, the numbers of its table and its
-//! pictures, and `pages/STUDY.md` its words, into which the numbers are put. What a summary of a run does not
-//! hold is measured by a function here. Runs are kept in `runs/study/STUDY/VARIANT`; those that are finished
-//! are not repeated, and one that was interrupted is continued. The answer goes to `docs/results/STUDY.csv`,
-//! `.md` and pictures beside them; `--page-only` writes the page from the kept table.
+//! A study is an entry of [`Study`] and a file here, which measures what a summary of a run does not hold.
+//! `plans/STUDY.ron` has its scenes with their overrides, the numbers of its table and its pictures, where it
+//! has a list of scenes; `pages/STUDY.md` its words, into which the numbers are put. Runs are kept in
+//! `runs/study/STUDY/VARIANT`; those that are finished are not repeated, and one that was interrupted is
+//! continued. The answer goes to `docs/results/STUDY.csv`, `.md` and pictures beside them; `--page-only`
+//! writes the page from the kept table.
 //!
 //! `cargo xtask study` is the command. Nothing that simulates depends on this crate; elements, precisions and
 //! integrators that no run uses live here ([`reference`], [`integrators`]).

@@ -25,7 +25,7 @@
 //! | Which channels has a run, and what does geometry predict? | [`record`], [`prediction`], [`plan`] |
 //! | How do speed and load change, and which orders has a defect? | [`duty`] |
 //! | Which lines are there, and from which source? | [`families`], [`tones`], [`artefacts`], [`enveloping`], [`lumped`], [`ring`] |
-//! | When does a roller unload and strike, how long is the defect? | [`events`], [`floor`], [`spall`] |
+//! | When does a roller unload and strike, how long is the defect? | [`events`], [`floor`], [`spall_length`] |
 //! | How large is a signal, before and behind the notch, and where in the spectrum? | [`levels`], [`loudest`], [`filtering`], [`signal`], [`noise`] |
 //! | How is the load shared, how fast do rollers and cage turn, do rollers slide? | [`load`], [`kinematics`], [`rolling`], [`stress`] |
 //! | How far is the reduced model from the full one? | [`agreement`] |
@@ -33,6 +33,7 @@
 //! | What does the verdict on a record say of a run? | [`diagnosis`] |
 //! | Which numbers of a run survive in such a record, behind an unknown path and in noise? | [`records`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
+//! | How is a number of a summary declared? | [`quantity`] |
 //!
 //! # A measured gearbox
 //!

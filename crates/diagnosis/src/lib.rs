@@ -3,7 +3,8 @@
 //! It is a crate because it serves any measured record: it knows neither scenes nor runs.
 //!
 //! [`Analysis::of`] passes once over the samples, block by block, so that a record of hours takes no more
-//! memory than one of seconds. Source: THEORY §7.9.
+//! memory than one of seconds. Whether a family is claimed is decided in `families/decision.rs`, after what
+//! `families/verdict.rs` has found; the sentence is made in `words/sentence.rs`. Source: THEORY §7.9.
 //!
 //! ```
 //! use stribeck_diagnosis::{Analysis, Defect, Machine};

@@ -73,6 +73,7 @@
 //! | How are bodies and surfaces stored? | `part.rs`, `mesh.rs` |
 //! | How is a ring divided? | `annulus.rs`, on the columns and rows of `polar_grid.rs`; with fine and coarse cells `grading.rs`; with a groove `groove.rs` |
 //! | How is a surface made not round? | `form.rs` |
+//! | How are the cells at the walls of both shaped? | `walls.rs` |
 //! | How is a disc divided? | `disc.rs`: squares inside (`core_grid.rs`), rows outside, triangles between them (`gap.rs`) |
 //! | How are blocks divided? | `rectangle.rs`, `seated_block.rs`, `bored_block.rs`, `arc_block.rs` |
 //! | Where is the boundary of a mesh from a file? | `outline.rs` |

@@ -37,7 +37,9 @@
 //!
 //! | question | module |
 //! |---|---|
-//! | Which fields has a scene, and what is checked? | [`scene`], [`scene_file`] |
+//! | Which fields has a scene, and how is one declared? | [`scene`], in the table of [`fields`] |
+//! | What is checked when a scene is read? | [`scene_file`] |
+//! | Which spalls are cut into the mesh? | [`Scene::grooves`] |
 //! | What is that in SI? | [`resolved`]; surfaces that are not round [`deviation`] |
 //! | Which speeds, tones and loads follow from it? | [`Scene::kinematics`], [`ResolvedScene::static_load`](resolved::ResolvedScene::static_load) |
 //! | How do speed and load vary over time? | [`duty`] |

@@ -3,8 +3,8 @@
 //!
 //! It is a crate because analyses and pages read runs, and link nothing of what makes them.
 //!
-//! [`run_dir::Run::read`] reads scene, provenance and sampled channels of a run;
-//! [`mesh_file::RunMesh`] its mesh, [`frames`] the positions of nodes about the defect.
+//! The head of [`run_dir`] lists all files. [`run_dir::Run::read`] reads scene, provenance and sampled
+//! channels of a run; [`mesh_file::RunMesh`] its mesh, [`frames`] the positions of nodes about the defect.
 //!
 //! ```no_run
 //! let run = stribeck_store::run_dir::Run::read("runs/singh2014")?;
