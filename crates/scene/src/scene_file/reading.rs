@@ -133,8 +133,10 @@ impl Found<'_> {
             }
             (_, None) if written.starts_with(|c: char| c.is_alphabetic()) && !spot_is_none(spot, written) => {
                 let message = format!("`{path}` is `{}`, which is not one of its words", shown(written));
-                let span = node.span.start..node.span.start + written.len();
-                let problem = self.add(path, message, node, span);
+                // In `Some( … )` it stands behind a bracket.
+                let is_first = self.sources.text_of(node).starts_with(written);
+                let end = if is_first { node.span.start + written.len() } else { node.span.end };
+                let problem = self.add(path, message, node, node.span.start..end);
                 let names = words.names();
                 problem.allowed = list(&names);
                 match (suggest::nearest(written, &names), spot.plain_default()) {

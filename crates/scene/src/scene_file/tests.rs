@@ -327,6 +327,12 @@ fn refuses_a_scene_cut_anywhere() {
     }
 }
 
+#[test]
+fn refuses_a_foreign_word_in_some_with_a_mark_between_its_letters() {
+    let why = Scene::default().with_overrides(&["contact.method=Some(ééé)"]).expect_err("no method");
+    assert!(why.to_string().contains("`contact.method` is `ééé`, which is not one of its words"), "{why}");
+}
+
 proptest! {
     #[test]
     fn survives_any_scene_text_with_an_answer(text in "[(){}\\[\\]:,\"a-z_0-9. \\n\\-é]{0,60}") {
