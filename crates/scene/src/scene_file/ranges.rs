@@ -36,7 +36,8 @@ pub(crate) fn refuses(path: &str, value: f64) -> Option<String> {
 /// Numbers outside their range in a value of a scene.
 fn numbers(scene: &Scene, node: &Node, spot: Spot, path: &str, found: &mut Vec<Finding>) {
     match (spot.shape.there(), &node.content) {
-        (Shape::Group(group), Content::Group(_)) => {
+        // Its name may stand before its brackets.
+        (Shape::Group(group), Content::Group(_) | Content::Behind(..)) => {
             for field in group.fields {
                 let at = join(path, field.name);
                 if let Some(node) = node.field(field.name) {

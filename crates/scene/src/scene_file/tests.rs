@@ -11,7 +11,8 @@ mod written;
 use proptest::prelude::*;
 use stribeck_testing::Scratch;
 
-use super::{Place, Problem, SceneError};
+use super::sources::SCENE;
+use super::{Place, Problem, SceneError, read_as};
 use crate::housing::{HousingScene, PedestalScene, RigidHousingScene};
 use crate::scene::{
     BearingScene, ContactMethod, DampingFrame, HarmonicScene, ModelScene, PocketWalls, ProfileScene,
@@ -324,6 +325,14 @@ fn refuses_a_scene_cut_anywhere() {
     for cut in (0..end).filter(|cut| text.is_char_boundary(*cut)) {
         let error = parse(&text[..cut]).expect_err("a part of a scene is no scene");
         assert!(!error.to_string().is_empty());
+    }
+}
+
+#[test]
+fn refuses_numbers_outside_their_range_behind_the_name_of_a_group() {
+    for text in ["(mesh: (size_mm: -1.0))", "Scene(mesh: MeshScene(size_mm: -1.0))"] {
+        let why = read_as::<Scene>(text, "x.ron", &SCENE).expect_err("no size");
+        assert_eq!(why.problems()[0].field, "mesh.size_mm", "{text}: {why}");
     }
 }
 
