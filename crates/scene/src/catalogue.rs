@@ -52,7 +52,7 @@ words! {
 
 /// The file.
 const FILE: scene_file::Kind =
-    scene_file::Kind { noun: "a list of bearings", example: EXAMPLE, for_fields_of_scenes: None };
+    scene_file::Kind { noun: "a list of bearings", example: EXAMPLE, for_fields_of_scenes: Some("") };
 
 /// Example of such a file.
 const EXAMPLE: &str = "[(name: \"mine\", element: roller, elements: 16, diameter_mm: 9.0, pitch_mm: 68.5, \
@@ -246,7 +246,8 @@ impl Entry {
                 Kind::Roller => Element::Roller,
                 Kind::Ball => Element::Ball,
             },
-            elements: self.elements.and_then(|count| u32::try_from(count).ok()),
+            // No bearing has room for that many.
+            elements: self.elements.map(|count| u32::try_from(count).unwrap_or(u32::MAX)),
             diameter_mm: self.diameter_mm,
             pitch_mm: self.pitch_mm,
             angle_deg: self.angle_deg,
@@ -297,7 +298,8 @@ mod tests {
     #[test]
     fn refuses_lists_that_are_none_and_bearings_that_cannot_be() {
         for (text, words) in [
-            ("(name: \"x\")", "is no list of bearings"),
+            ("(name: \"x\")", "a list `[ … ]` is expected here"),
+            ("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, elements: 5000000000)]", "is no bearing"),
             ("[(name: \"x\", diameter_mm: 9)]", "pitch_mm"),
             ("[(name: \"x\", diameter_mm: 9, pitch_mm: 8)]", "is no bearing"),
             ("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, elements: 99)]", "is no bearing"),
@@ -311,6 +313,8 @@ mod tests {
             let why = of(text).unwrap_err();
             assert!(why.contains(words) && why.contains(NAME), "{text}: {why}");
         }
+        let why = of("[(name: \"x\", diameter_mm: 9, pitch_mm: 68, rollers: 9)]").unwrap_err();
+        assert!(why.contains("unknown field `rollers`") && !why.contains("belongs in"), "{why}");
     }
 
     #[test]

@@ -155,18 +155,19 @@ impl Found<'_> {
         let too_large = spot.shape.counts() && !value.is_empty() && value.bytes().all(|b| b.is_ascii_digit());
         let not = if too_large { "too large".to_owned() } else { format!("not {}", spot.shape.words()) };
         let message = if path.is_empty() {
-            "a group `( … )` is expected here".to_owned()
+            format!("{} is expected here", spot.shape.words())
         } else {
             format!("`{path}` is `{}`, which is {not}", shown(&value))
         };
         let is_plain = matches!(node.content, Content::Atom(_));
+        let is_group = matches!(spot.shape.there(), Shape::Group(_));
         let proposal = meant(&value, spot.shape, path)
             .or_else(|| spot.plain_default().map(|default| (default, "the default")))
-            .filter(|_| is_plain || !matches!(spot.shape.there(), Shape::Group(_)));
-        let unnamed = matches!((spot.shape.there(), &node.content), (Shape::Group(_), Content::Tuple(_)));
+            .filter(|_| is_plain || !is_group);
+        let unnamed = is_group && (path.is_empty() || matches!(node.content, Content::Tuple(_)));
         let problem = self.add(path, message, node, node.span.clone());
         problem.allowed = spot.allowed();
-        if unnamed || path.is_empty() {
+        if unnamed {
             "fields stand with their names in round brackets: `(name: value, …)`"
                 .clone_into(&mut problem.suggestion);
         } else if let Some((value, note)) = proposal {

@@ -20,7 +20,8 @@ pub struct Kind {
     pub noun: &'static str,
     /// Its fields, and an example.
     pub example: &'static str,
-    /// Where the field of a scene stands in it, with `{}` for the field; `None` for a scene.
+    /// Where the field of a scene stands in it, with `{}` for the field; empty where none does, `None` for a
+    /// scene.
     pub for_fields_of_scenes: Option<&'static str>,
 }
 
