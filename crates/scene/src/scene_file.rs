@@ -33,6 +33,7 @@ use crate::fields::{Spot, spot};
 use crate::scene::Scene;
 use check::{check, numbers_are_in_range};
 use load::load;
+use problem::MOST_TOLD;
 pub use problem::{Place, Problem, SceneError, offset, place_in_file};
 pub use sources::Kind;
 use sources::{SCENE, Sources, written_by};
@@ -275,7 +276,7 @@ pub fn read_as<T: Value>(text: &str, file: &str, kind: &'static Kind) -> Result<
     let mut found = reading::faults(&sources.tree, whole, "", &sources);
     if found.is_empty() {
         let outside = ranges::in_tree(&Scene::default(), &sources.tree, whole);
-        found = outside.into_iter().map(|finding| sources.problem(finding)).collect();
+        found = outside.into_iter().take(MOST_TOLD).map(|finding| sources.problem(finding)).collect();
     }
     match T::read(&sources.tree).filter(|_| found.is_empty()) {
         Some(read) => Ok((read, sources.tree)),

@@ -2,7 +2,7 @@
 //! tried.
 
 use super::finding::{Finding, Proposal};
-use super::problem::SceneError;
+use super::problem::{MOST_TOLD, SceneError};
 use super::sources::{self, Sources};
 use super::{deviations, exclusions, extent, geometry, operation, own, ranges, ring_meshes};
 use crate::fields::{Shape, Spot, spot};
@@ -20,7 +20,7 @@ pub(crate) fn check(
         return Ok(());
     }
     let problem = |finding: &Finding| sources.problem(tried(finding, &found, scene, written));
-    Err(SceneError::new(found.iter().map(problem).collect()))
+    Err(SceneError::new(found.iter().take(MOST_TOLD).map(problem).collect()))
 }
 
 /// Whether every number lies in the range of its field.

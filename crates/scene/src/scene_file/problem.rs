@@ -7,6 +7,9 @@ use std::ops::Range;
 /// readable.
 const SHOWN_WIDTH: usize = 110;
 
+/// Problems of a file are told up to this many at once: each holds its line, which may be all of the file.
+pub(crate) const MOST_TOLD: usize = 100;
+
 /// Everything that is wrong with a scene. Displays as one underlined excerpt per problem.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct SceneError {

@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use super::foreign;
-use super::problem::Problem;
+use super::problem::{MOST_TOLD, Problem};
 use super::sources::{Kind, Sources};
 use super::suggest;
 use super::wording::{list, number, shown};
@@ -13,7 +13,7 @@ use crate::fields::tree::{Broken, Content, Node, Source, Stop, join};
 use crate::fields::value::Value;
 use crate::fields::{Group, Shape, Spot, Words, paths, spot};
 
-/// Everything in `node` that its entry of the table does not allow.
+/// What in `node` its entry of the table does not allow, [`MOST_TOLD`] at most.
 pub(crate) fn faults(node: &Node, spot: Spot, path: &str, sources: &Sources) -> Vec<Problem> {
     let mut found = Found { sources, problems: Vec::new() };
     found.check(node, spot, path);
@@ -36,7 +36,8 @@ impl Found<'_> {
     }
 
     fn check(&mut self, node: &Node, spot: Spot, path: &str) {
-        if node.is_none() && matches!(spot.shape, Shape::Optional(_)) {
+        let is_left_out = node.is_none() && matches!(spot.shape, Shape::Optional(_));
+        if is_left_out || self.problems.len() >= MOST_TOLD {
             return;
         }
         match (spot.shape.there(), &node.content) {
@@ -79,6 +80,9 @@ impl Found<'_> {
     fn group(&mut self, node: &Node, spot: Spot, group: &'static Group, path: &str) {
         let Content::Group(fields) = &node.content else { return };
         for (i, (key, value)) in fields.iter().enumerate() {
+            if self.problems.len() >= MOST_TOLD {
+                return;
+            }
             let at = join(path, &key.name);
             match group.get(&key.name) {
                 _ if fields[..i].iter().any(|(before, _)| before.name == key.name) => {

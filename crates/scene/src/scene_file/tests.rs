@@ -336,6 +336,16 @@ fn refuses_numbers_outside_their_range_behind_the_name_of_a_group() {
     }
 }
 
+/// Each problem holds its line: all of these would take gigabytes.
+#[test]
+fn survives_a_line_of_many_mistakes() {
+    let many = |item: &str| format!("(cage: (roller_offsets_um: [{}]))", item.repeat(100_000 / item.len()));
+    for text in [many("x,"), many("99999,"), format!("({})", "a:1,".repeat(25_000))] {
+        let why = parse(&text).expect_err("mistakes");
+        assert_eq!(why.problems().len(), super::problem::MOST_TOLD);
+    }
+}
+
 #[test]
 fn refuses_a_foreign_word_in_some_with_a_mark_between_its_letters() {
     let why = Scene::default().with_overrides(&["contact.method=Some(ééé)"]).expect_err("no method");
