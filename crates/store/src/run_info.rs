@@ -9,7 +9,7 @@ pub struct RunInfo {
     pub version: String,
     /// Commit it was built from, `unknown` outside a checkout.
     pub commit: String,
-    /// Hash of the resolved scene (FNV-1a 64 of `scene.ron`), hexadecimal.
+    /// Hash of the scene's values, as of `Scene::hash`, hexadecimal.
     pub scene_hash: String,
     /// Processor and operating system, in words.
     pub machine: String,
