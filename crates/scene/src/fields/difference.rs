@@ -44,7 +44,7 @@ fn in_words(node: &Node) -> String {
     match &node.content {
         Content::Atom(text) => match (f64::read(node), String::read(node)) {
             (Some(number), _) => number.to_string(),
-            (_, Some(name)) if name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') => name,
+            (_, Some(name)) if name.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c)) => name,
             _ => text.clone(),
         },
         Content::List(items) => format!("[{}]", all(items)),

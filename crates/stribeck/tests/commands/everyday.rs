@@ -283,7 +283,7 @@ fn behaves_a_reduced_run_from_its_plan_to_a_deck() {
         &[
             "warning: with another bearing than that of `mine.ron`",
             "instead of 3000",
-            "`name` \"nu-203\" instead of \"mine\"",
+            "`name` nu-203 instead of mine",
         ],
     );
     // A warning of the trial may name it, too.
