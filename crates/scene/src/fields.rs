@@ -457,13 +457,16 @@ macro_rules! group {
 macro_rules! words {
     ($(#[doc = $about:literal])* $(#[serde($($serde:tt)*)])?
     $vis:vis enum $name:ident $(: $($also:ident),+)? {
-        $($(#[doc = $doc:literal])* $variant:ident $(($of:ident: $type:ty))? = $word:literal,)*
+        $(
+            $(#[doc = $doc:literal])* $(#[default $($first:tt)*])?
+            $variant:ident $(($of:ident: $type:ty))? = $word:literal,
+        )*
     }) => {
         $(#[doc = $about])*
         #[derive(Debug, Clone, PartialEq $(, $($also),+)?)]
         $(#[serde($($serde)*)])?
         $vis enum $name {
-            $($(#[doc = $doc])* $variant $(($type))?,)*
+            $($(#[doc = $doc])* $(#[default $($first)*])? $variant $(($type))?,)*
         }
 
         impl $name {

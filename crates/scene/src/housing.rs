@@ -7,8 +7,9 @@ use crate::fields::{group, words};
 
 words! {
     /// The housing, which holds the outer ring and takes the load.
-    pub enum HousingScene {
+    pub enum HousingScene: Default {
         /// The block of `adapter` on top of the ring, loaded on its top edge.
+        #[default]
         Adapter = "adapter",
         /// A block with a bore for the ring, loaded on its base.
         Pedestal(of: PedestalScene) = "pedestal",
@@ -18,12 +19,6 @@ words! {
         Rigid(of: RigidHousingScene) = "rigid",
         /// Springs and dampers all around the ring, to a frame that does not deform and takes the load.
         Springs(of: SpringHousingScene) = "springs",
-    }
-}
-
-impl Default for HousingScene {
-    fn default() -> Self {
-        Self::Adapter
     }
 }
 

@@ -70,18 +70,13 @@ group! {
 
 words! {
     /// A model of the bearing.
-    pub enum ModelScene {
+    pub enum ModelScene: Default {
         /// All bodies in finite elements.
+        #[default]
         Full = "full",
         /// Outer ring and housing in their modes below a frequency, rollers and cage rigid with local
         /// compliance: a second in a few seconds.
         Reduced(of: ReducedScene) = "reduced",
-    }
-}
-
-impl Default for ModelScene {
-    fn default() -> Self {
-        Self::Full
     }
 }
 

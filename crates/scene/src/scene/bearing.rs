@@ -121,17 +121,12 @@ group! {
 words! {
     /// One of the two rings.
     #[serde(rename_all = "snake_case")]
-    pub enum DefectRing: Copy, Eq, Serialize, Deserialize {
+    pub enum DefectRing: Copy, Eq, Default, Serialize, Deserialize {
         /// The outer ring.
+        #[default]
         Outer = "outer",
         /// The inner ring, which turns with the shaft.
         Inner = "inner",
-    }
-}
-
-impl Default for DefectRing {
-    fn default() -> Self {
-        Self::Outer
     }
 }
 

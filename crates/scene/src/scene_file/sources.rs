@@ -134,7 +134,7 @@ impl Sources {
         };
         let path = written.trim();
         let at = written.len() + 1;
-        let spot = self.known(path, argument).map_err(|problem| vec![problem])?;
+        let spot = self.known(path, argument).map_err(|problem| vec![*problem])?;
         let place = command_line(argument, at, argument.len());
         if path == "bearing"
             && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
@@ -174,11 +174,11 @@ impl Sources {
     }
 
     /// The entry of the table at a path; refuses one that no scene has, or not this one.
-    fn known(&self, path: &str, argument: &str) -> Result<Spot, Problem> {
+    fn known(&self, path: &str, argument: &str) -> Result<Spot, Box<Problem>> {
         let mark = command_line(argument, 0, argument.find('=').unwrap_or(argument.len()));
-        let Some(found) = spot(path, Some(&self.tree)) else { return Err(unknown(path, mark)) };
+        let Some(found) = spot(path, Some(&self.tree)) else { return Err(Box::new(unknown(path, mark))) };
         let refuse = |message: String, allowed: String, suggestion: String| {
-            let mut problem = Problem::new(message, mark.clone());
+            let mut problem = Box::new(Problem::new(message, mark.clone()));
             path.clone_into(&mut problem.field);
             (problem.allowed, problem.suggestion) = (allowed, suggestion);
             Err(problem)
