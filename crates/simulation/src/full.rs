@@ -125,7 +125,7 @@ impl Model for Full {
     }
 
     fn mesh_file(&self, _scene: &ResolvedScene) -> Result<Vec<u8>, Error> {
-        Ok(mesh_file(&self.assembly, &|node| self.bearing.system.position(node))?)
+        mesh_file(&self.assembly, &|node| self.bearing.system.position(node))
     }
 
     fn start(mut self, with: &Preparation<'_>) -> FullMotion {

@@ -109,10 +109,10 @@ impl Model for Reduced {
             let (s, c) = scene.roller_angle(pocket - 1).sin_cos();
             moved[body.nodes.clone()].fill([x - path * c, y - path * s]);
         }
-        Ok(mesh_file(&self.assembly, &|node| {
+        mesh_file(&self.assembly, &|node| {
             let n = node as usize;
             [mesh.x[n] + moved[n][0], mesh.y[n] + moved[n][1]]
-        })?)
+        })
     }
 
     fn start(self, with: &Preparation<'_>) -> ReducedMotion {

@@ -116,7 +116,7 @@ impl Task for Begin<'_> {
         dir.start(&scene.written, &info)?;
         write_atomic(&dir.mesh(), &model.mesh_file(scene)?)?;
         let motion = model.start(&with);
-        Ok(Run::start(scene, motion, info, dir)?.finish(dir, working, with.progress, watch)?)
+        Run::start(scene, motion, info, dir)?.finish(dir, working, with.progress, watch)
     }
 }
 
@@ -147,7 +147,7 @@ impl Task for Continue<'_> {
         let mut run = Run::resume(scene, motion, info, dir)?;
         run.info.setup_s += (host.wall_s)() - started;
         dir.go_on(&scene.written, &run.info)?;
-        Ok(run.finish(dir, working, with.progress, watch)?)
+        run.finish(dir, working, with.progress, watch)
     }
 }
 

@@ -194,8 +194,8 @@ fn passages(events: &[Event]) -> Vec<Mark> {
         let full = events.len() <= NAMED || n == 0;
         let label = |what: &str| if full { format!("{what} {}", e.roller) } else { e.roller.to_string() };
         let visit = e.visit();
-        marks.push(Mark::new(visit.entry_s, &label("entry"), Colour::Orange, e.entry_ms.is_none()));
-        marks.push(Mark::new(visit.exit_s, &label("exit"), Colour::Green, e.exit_ms.is_none()));
+        marks.push(Mark::new(visit.entry_s, label("entry"), Colour::Orange, e.entry_ms.is_none()));
+        marks.push(Mark::new(visit.exit_s, label("exit"), Colour::Green, e.exit_ms.is_none()));
     }
     marks
 }
