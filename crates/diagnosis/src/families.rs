@@ -1,17 +1,17 @@
 //! The defect families: where each is looked for, how high it stands, and whether it is claimed.
 
+pub(crate) mod candidate;
 pub(crate) mod comb_at_half;
 pub(crate) mod controls;
-pub(crate) mod decision;
 pub mod defect;
 pub(crate) mod element_rhythm;
 pub mod family;
 pub(crate) mod halves;
 pub(crate) mod limits;
 pub(crate) mod machine_lines;
+pub(crate) mod rules;
 pub(crate) mod second;
 pub mod sidebands;
-pub(crate) mod standing;
 pub mod unexplained;
 pub(crate) mod unrelated;
 pub(crate) mod verdict;

@@ -1,6 +1,7 @@
 //! The samples of a record: whether they are sound, how strong they are, and how they change with time.
 
 pub mod alarm;
+pub(crate) mod bands;
 pub mod course;
 pub mod enhanced;
 pub(crate) mod pass;

@@ -4,6 +4,7 @@ pub mod angular;
 pub(crate) mod estimate;
 pub(crate) mod half_speed;
 pub mod ridge;
+pub(crate) mod settled;
 pub(crate) mod shaft;
 pub mod tacho;
 pub mod varying;

@@ -4,10 +4,11 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
+use crate::Defect;
 use crate::families::controls::MOST_AS_HIGH;
 use crate::families::limits::{ALPHA, KNOCK, decibel};
+use crate::families::unexplained::UnexplainedComb;
 use crate::words::numbers::chance;
-use crate::{Defect, families::unexplained};
 
 /// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
 /// same records.
@@ -117,6 +118,11 @@ impl Family {
         }
     }
 
+    /// The same without its claim.
+    pub(crate) fn refused(self, why: String) -> Self {
+        Self { claimed: false, not_told_apart_from: None, reason: Reason::Decided(why), ..self }
+    }
+
     /// Whether the family is there, defect or not.
     pub fn is_there(&self) -> bool {
         self.noise_p_value < ALPHA && self.rank.is_some_and(|rank| rank <= MOST_AS_HIGH)
@@ -138,28 +144,31 @@ impl Family {
         Some(self.height_db - heights[at]).filter(|db| db.is_finite())
     }
 
-    /// Takes a comb that stands farther from its place than slip of little load allows.
-    pub(crate) fn take(&mut self, found: &unexplained::Found, rank: Option<f64>, band_hz: (f64, f64)) {
+    /// The same at a comb that stands farther from its place than slip of little load allows.
+    pub(crate) fn at(self, found: &UnexplainedComb, rank: Option<f64>, band_hz: (f64, f64)) -> Self {
         let comb = &found.comb;
-        self.measured_hz = Some(comb.fundamental_hz / self.name.shocks_per_period());
-        self.noise_p_value = found.p_value();
-        self.height_db = decibel(comb.height);
-        self.level_db = Some(decibel(comb.ratios[0]));
-        self.harmonics = comb.ratios.iter().filter(|r| **r >= comb.height).count();
-        self.depth = Some(found.depth);
-        self.depth_band_hz = Some(band_hz);
-        self.band_hz = Some(band_hz);
-        self.rank = rank;
-        self.controls.clear();
-        self.not_told_apart_from = None;
-        self.reason = Reason::Undecided;
-        self.calibrate();
+        Self {
+            measured_hz: Some(comb.fundamental_hz / self.name.shocks_per_period()),
+            noise_p_value: found.p_value(),
+            height_db: decibel(comb.height),
+            level_db: Some(decibel(comb.ratios[0])),
+            harmonics: comb.ratios.iter().filter(|r| **r >= comb.height).count(),
+            depth: Some(found.depth),
+            depth_band_hz: Some(band_hz),
+            band_hz: Some(band_hz),
+            rank,
+            controls: Vec::new(),
+            not_told_apart_from: None,
+            reason: Reason::Undecided,
+            ..self
+        }
+        .calibrated()
     }
 
-    /// The probability of a false alarm on a sound bearing, from noise, unrelated combs and depth.
-    pub(crate) fn calibrate(&mut self) {
+    /// The same with its probability of a false alarm on a sound bearing, from noise, unrelated combs and depth.
+    pub(crate) fn calibrated(self) -> Self {
         let by_depth = self.depth.map_or(1.0, |depth| (-SOUND_DEPTHS * depth).exp());
-        self.p_value = by_depth.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0);
+        Self { p_value: by_depth.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0), ..self }
     }
 
     /// The probability of a false alarm in words.

@@ -6,11 +6,12 @@
 use stribeck_dsp::{BandEnvelopes, CombTest, Whitened};
 
 use crate::Error;
-use crate::HIGHEST_HZ;
+use crate::Family;
 use crate::families::limits::ALPHA;
+use crate::record::bands::HIGHEST_HZ;
 
 /// A family this far from noise stands in both halves, or in one so high that no chance makes it.
-pub(crate) const CERTAIN: f64 = 1e-9;
+const CERTAIN: f64 = 1e-9;
 /// Lines of a half about the frequency of the whole that are searched.
 const REACH: f64 = 1.0;
 
@@ -18,7 +19,7 @@ const REACH: f64 = 1.0;
 ///
 /// # Errors
 /// [`Error::Signal`] when the samples are not numbers.
-pub(crate) fn agree(samples: &[f64], rate_hz: f64, band_hz: (f64, f64), comb_hz: f64) -> Result<bool, Error> {
+fn agree(samples: &[f64], rate_hz: f64, band_hz: (f64, f64), comb_hz: f64) -> Result<bool, Error> {
     let half = BandEnvelopes::segment_of(samples.len() / 2, samples.len() / 2);
     let grid_hz = rate_hz / half as f64;
     for part in [&samples[..half], &samples[samples.len() - half..]] {
@@ -37,4 +38,35 @@ pub(crate) fn agree(samples: &[f64], rate_hz: f64, band_hz: (f64, f64), comb_hz:
         }
     }
     Ok(true)
+}
+
+/// Withdraws claims of families that stand in one half of the record only, but for those that no chance
+/// makes.
+///
+/// # Errors
+/// [`Error::Signal`] when the samples are not numbers.
+pub(crate) fn without_passing(
+    families: Vec<Family>,
+    samples: &[f64],
+    rate_hz: f64,
+) -> Result<Vec<Family>, Error> {
+    let finite = samples.iter().all(|x| x.is_finite());
+    let lasts = |family: &Family| {
+        let asked = family.claimed && family.over.is_none() && family.noise_p_value >= CERTAIN && finite;
+        let (Some(band_hz), Some(hz), true) = (family.band_hz, family.measured_hz, asked) else {
+            return Ok(true);
+        };
+        agree(samples, rate_hz, band_hz, family.name.shocks_per_period() * hz)
+    };
+    families
+        .into_iter()
+        .map(|family| {
+            let lasts = lasts(&family)?;
+            Ok(if lasts {
+                family
+            } else {
+                family.refused("it stands in one half of the record only".to_owned())
+            })
+        })
+        .collect()
 }

@@ -12,7 +12,7 @@ use crate::families::family::Family;
 use crate::families::limits::{ALPHA, KNOCK, decibel};
 use crate::families::sidebands::is_modulated;
 use crate::families::unrelated::SLIP;
-use crate::families::verdict::First;
+use crate::families::verdict::FirstDefect;
 use crate::{Defect, Reason};
 
 /// Where a family knocks most over the period of the first.
@@ -24,14 +24,14 @@ struct Beside {
     band_hz: (f64, f64),
 }
 
-/// Claims the family that stands highest in `bands`, those over the period of the first family, if it passes
-/// there; `whole` is the whole range as it is.
-pub(crate) fn tell(
-    families: &mut [Family],
-    first: &First,
+/// The families with a second claim: of the one that stands highest in `bands`, those over the period of the
+/// first family, if it passes there; `whole` is the whole range as it is.
+pub(crate) fn with_second(
+    families: Vec<Family>,
+    first: &FirstDefect,
     whole: Option<&BandEnvelope>,
     bands: &[BandEnvelope],
-) {
+) -> Vec<Family> {
     let whitened: Vec<(&BandEnvelope, Whitened)> = bands
         .iter()
         .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
@@ -43,25 +43,38 @@ pub(crate) fn tell(
             && family.band_hz.is_some()
             && family.not_told_apart_from.is_none()
     });
-    let told = asked.filter_map(|(at, family)| beside(at, family, first, whole, &whitened));
-    let Some(second) = told.max_by(|a, b| a.comb.height.total_cmp(&b.comb.height)) else { return };
-    let name = families[first.at].name;
-    let family = &mut families[second.at];
-    family.measured_hz = Some(second.comb.fundamental_hz / family.name.shocks_per_period());
-    family.level_db = Some(decibel(second.comb.ratios[0]));
-    family.noise_p_value = second.p_value;
-    family.rank = Some(0.0);
-    family.depth = Some(second.depth);
-    family.depth_band_hz = Some(second.band_hz);
-    family.band_hz = Some(second.band_hz);
-    family.over = Some(name);
-    family.calibrate();
-    family.claimed = true;
-    family.reason = Reason::Decided(format!(
-        "with the mean course in a period of {name} divided out of the power its lines stand, no unrelated \
-         comb stands as high, and the power swings by {:.0} %",
-        100.0 * second.depth
-    ));
+    let passing = asked.filter_map(|(at, family)| beside(at, family, first, whole, &whitened));
+    let Some(second) = passing.max_by(|a, b| a.comb.height.total_cmp(&b.comb.height)) else {
+        return families;
+    };
+    let over = families[first.at].name;
+    let claim =
+        |(at, family): (usize, Family)| if at == second.at { second.claim(family, over) } else { family };
+    families.into_iter().enumerate().map(claim).collect()
+}
+
+impl Beside {
+    /// The family as it stands beside the first one.
+    fn claim(&self, family: Family, over: Defect) -> Family {
+        Family {
+            measured_hz: Some(self.comb.fundamental_hz / family.name.shocks_per_period()),
+            level_db: Some(decibel(self.comb.ratios[0])),
+            noise_p_value: self.p_value,
+            rank: Some(0.0),
+            depth: Some(self.depth),
+            depth_band_hz: Some(self.band_hz),
+            band_hz: Some(self.band_hz),
+            over: Some(over),
+            claimed: true,
+            reason: Reason::Decided(format!(
+                "with the mean course in a period of {over} divided out of the power its lines stand, no \
+                 unrelated comb stands as high, and the power swings by {:.0} %",
+                100.0 * self.depth
+            )),
+            ..family
+        }
+        .calibrated()
+    }
 }
 
 /// A family that passes in the band in which its power is modulated most, of those in which it is more than
@@ -69,7 +82,7 @@ pub(crate) fn tell(
 fn beside(
     at: usize,
     family: &Family,
-    first: &First,
+    first: &FirstDefect,
     whole: Option<&BandEnvelope>,
     bands: &[(&BandEnvelope, Whitened)],
 ) -> Option<Beside> {
@@ -102,11 +115,11 @@ fn beside(
         }
         Defect::Bpfi | Defect::Ftf => !first.takes(comb.fundamental_hz),
     };
-    let told = depth >= KNOCK
+    let passes = depth >= KNOCK
         && own
         && remains < comb.height
         && rank(&comb, comb_hz, spectrum, Some(first.comb_hz), None) == Some(0.0);
-    told.then_some(Beside {
+    passes.then_some(Beside {
         at,
         p_value: comb.p_value * searched,
         comb,
@@ -120,7 +133,7 @@ const SAME_LINES: f64 = 2.0;
 /// Sidebands of the shaft that a first family may have, either way.
 const SIDEBANDS: i32 = 3;
 
-impl First {
+impl FirstDefect {
     /// Whether `hz` is a sideband of the first family at the distance of the shaft.
     fn has_sideband(&self, hz: f64) -> bool {
         let beside = |k: i32| {

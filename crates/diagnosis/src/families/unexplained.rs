@@ -21,7 +21,7 @@ pub struct Unexplained {
 }
 
 /// A comb and where it stands highest.
-pub(crate) struct Found {
+pub(crate) struct UnexplainedComb {
     pub(crate) band: usize,
     pub(crate) comb: Comb,
     pub(crate) depth: f64,
@@ -31,7 +31,7 @@ pub(crate) struct Found {
 
 /// A family that is there, and may account for lines beside its own.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Known {
+pub(crate) struct AboveNoise {
     /// Its comb [Hz].
     pub(crate) comb_hz: f64,
     /// Ends of the place in which it was looked for [Hz].
@@ -64,9 +64,9 @@ pub(crate) fn strongest(
     own: &OwnLines,
     cage_hz: f64,
     highest_hz: f64,
-    families: &[Known],
+    families: &[AboveNoise],
     of_others: &dyn Fn(f64) -> bool,
-) -> Option<Found> {
+) -> Option<UnexplainedComb> {
     let (low_hz, high_hz) = (FROM * own.shaft_hz, TO * highest_hz);
     let mut best: Option<(usize, Comb)> = None;
     let mut searched = 0.0;
@@ -86,11 +86,16 @@ pub(crate) fn strongest(
     }
     let (band, comb) = best?;
     let depth = bands[band].0.depth(comb.fundamental_hz);
-    (comb.p_value * searched < NAMED && depth >= KNOCK).then_some(Found { band, comb, depth, searched })
+    (comb.p_value * searched < NAMED && depth >= KNOCK).then_some(UnexplainedComb {
+        band,
+        comb,
+        depth,
+        searched,
+    })
 }
 
 /// Whether shaft, cage or a family that stands higher account for a comb.
-fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[Known]) -> bool {
+fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[AboveNoise]) -> bool {
     let hz = comb.fundamental_hz;
     let is = |other: f64| (hz - other).abs() < own.width_hz;
     // A comb that is half, a third or twice as wide shares lines with the shaft's.
@@ -121,7 +126,7 @@ fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[Known]) -
         })
 }
 
-impl Found {
+impl UnexplainedComb {
     /// As it is reported.
     pub(crate) fn report(&self, shaft_hz: f64) -> Unexplained {
         let hz = self.comb.fundamental_hz;

@@ -16,32 +16,46 @@
 use stribeck_dsp::{BandEnvelope, Whitened};
 use stribeck_theory::catalogue::DefectOrders;
 
+use crate::families::candidate::{Candidate, Standing, search};
 use crate::families::comb_at_half::comb_at_half;
 use crate::families::controls::{controls, part_as_high, rank};
-use crate::families::decision::{claimed_first, decide, first, name_the_element, share_out};
 use crate::families::family::{Family, Reason};
 use crate::families::limits::{ALPHA, decibel};
 use crate::families::machine_lines::OwnLines;
+use crate::families::rules::{claimed_first, decide, first, shared_out};
 use crate::families::sidebands::is_modulated_by_the_cage;
-use crate::families::standing::{Standing, deepen, look};
-use crate::families::unexplained::{self, Known, Unexplained};
+use crate::families::unexplained::{self, AboveNoise, Unexplained, UnexplainedComb};
 use crate::families::unrelated::SLIP;
-use crate::words::sentence::conclude;
+use crate::record::pass::Record;
 use crate::{Defect, Machine};
 
-/// Families and conclusion.
-pub(crate) struct Verdicts {
+/// The families as they stand in a record, before the rules.
+pub(crate) struct Candidates {
     pub(crate) families: Vec<Family>,
-    pub(crate) verdict: String,
+    /// A comb that is no family's and stands higher.
+    pub(crate) unexplained: Option<Unexplained>,
+    /// Whether the cage modulates the knocks of a rolling element.
+    modulated: bool,
+    notes: Vec<String>,
+    /// Turns of the shaft and of the cage [Hz].
+    shaft_hz: f64,
+    cage_hz: f64,
+    /// One over the length of a segment [Hz].
+    resolution_hz: f64,
+}
+
+/// The families after the rules, of which one at most is claimed.
+pub(crate) struct Decided {
+    pub(crate) families: Vec<Family>,
     pub(crate) notes: Vec<String>,
     /// The defect that stands highest, if there is one.
-    pub(crate) first: Option<First>,
+    pub(crate) first: Option<FirstDefect>,
     /// A comb that is no family's and stands higher.
     pub(crate) unexplained: Option<Unexplained>,
 }
 
 /// The first defect, as the search for a second one needs it.
-pub(crate) struct First {
+pub(crate) struct FirstDefect {
     /// Its place among the families.
     pub(crate) at: usize,
     /// Its comb [Hz].
@@ -59,83 +73,101 @@ const OWN_LINES: f64 = 1.5;
 /// Least and largest part by which a cage that skids is slower than rolling without slip.
 const SKID: (f64, f64) = (SLIP, 0.06);
 
-/// Knowledge of the speed beside the machine's.
-pub(crate) struct KnownSpeed {
-    /// The speed by the lines of the record, which places multiples of the shaft better than one that is
-    /// given [Hz].
-    pub(crate) sharp_hz: Option<f64>,
-    /// The lines of the shaft stand at the speed of the machine, so that only slip can move a family.
-    pub(crate) by_its_lines: bool,
+impl Candidates {
+    /// The families of a machine in a record. `lines_hz` is the speed by the lines of the record, which places
+    /// multiples of the shaft better than one that is given; `by_shaft`: the lines of the shaft stand at the
+    /// speed of the machine, so that only slip can move a family.
+    ///
+    /// # Errors
+    /// A note on what is missing for them.
+    pub(crate) fn of(
+        record: &Record,
+        machine: &Machine,
+        lines_hz: Option<f64>,
+        by_shaft: bool,
+    ) -> Result<Self, String> {
+        let (orders, shaft_hz) = orders_and_speed(machine)?;
+        let (record_s, segment_s) = (record.duration_s(), record.segment_s());
+        // A band without noise (a simulated record, a filter) has no background to stand above.
+        let whitened: Vec<(&BandEnvelope, Whitened)> = record
+            .bands
+            .iter()
+            .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
+            .collect();
+        // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
+        let place_of_cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
+        let places = [orders.bpfo, orders.bpfi, orders.bsf].map(|order| order * shaft_hz);
+        let shaft_lines = own_lines(machine, lines_hz.unwrap_or(shaft_hz), OWN_LINES / segment_s);
+        let look =
+            |name: Defect, hz: f64, own: &OwnLines| search(name, hz, &whitened, own, record_s, segment_s);
+        // Turns of another shaft may stand where the cage turns.
+        let cage = look(Defect::Ftf, place_of_cage_hz, &shaft_lines);
+        let standing_cage = cage.standing.as_ref().filter(|_| cage.family.noise_p_value < ALPHA);
+        let own = OwnLines { cage_hz: standing_cage.map(|cage| cage.comb.fundamental_hz), ..shaft_lines };
+        let cage_hz = own.cage_hz.unwrap_or(place_of_cage_hz);
+        let rolling = Defect::ALL[..3].iter().zip(places).map(|(name, hz)| look(*name, hz, &own));
+        let candidates: Vec<Candidate> = rolling
+            .collect::<Vec<_>>()
+            .into_iter()
+            .chain([cage])
+            .map(|candidate| candidate.at_its_deepest(&whitened, cage_hz))
+            .collect();
+        let highest_hz = places[..2].iter().fold(0.0_f64, |most, hz| most.max(*hz));
+        let there = above_noise(&candidates[..3]);
+        let of_others = |hz: f64| machine.around.may_be(hz / shaft_hz);
+        let unexplained_comb =
+            unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
+        let first = first(candidates.iter().map(|candidate| &candidate.family));
+        let first_db = first.map_or(f64::NEG_INFINITY, |at| candidates[at].family.height_db);
+        let first_hz = first.and_then(|at| Some(candidates[at].standing.as_ref()?.comb.fundamental_hz));
+        let halved = first.and_then(|at| Some((at, comb_at_half_of(&candidates[at], &whitened, &own)?)));
+        let measured: Vec<Family> = candidates
+            .into_iter()
+            .enumerate()
+            .map(|(at, candidate)| {
+                let half = halved.filter(|(first, _)| *first == at).map(|(_, half)| half);
+                beside_controls(candidate, half, &whitened, &own, first_hz)
+            })
+            .collect();
+        let modulated = is_modulated_by_the_cage(&measured, &whitened);
+        let resolution_hz = 1.0 / segment_s;
+        let shared = shared_out(measured, resolution_hz, modulated);
+        let at_half = halved.map(|(_, half)| half);
+        let found = unexplained_comb.filter(|found| decibel(found.comb.height) > first_db);
+        let skids = found.as_ref().filter(|_| by_shaft).and_then(|found| skidding(&shared, found));
+        let (families, unexplained, notes) = match (found, skids) {
+            (Some(found), Some(name)) => {
+                let families = with_skidding(shared, name, &found, &whitened, &own);
+                let note = skidding_note(families.iter().find(|f| f.name == name), &found);
+                (families, at_half, note.into_iter().collect())
+            }
+            (Some(found), None) => (shared, Some(found.report(shaft_hz)), Vec::new()),
+            (None, _) => (shared, at_half, Vec::new()),
+        };
+        Ok(Self { families, unexplained, modulated, notes, shaft_hz, cage_hz, resolution_hz })
+    }
+
+    /// What the rules say of them.
+    pub(crate) fn decide(self) -> Decided {
+        let Self { families, unexplained, modulated, notes, shaft_hz, cage_hz, resolution_hz } = self;
+        let decided = decide(families, unexplained.as_ref(), modulated);
+        let first = claimed_first(&decided).map(|(at, comb_hz)| FirstDefect {
+            at,
+            comb_hz,
+            shaft_hz,
+            cage_hz,
+            resolution_hz,
+        });
+        Decided { families: decided, notes, first, unexplained }
+    }
 }
 
-/// The families, of which one at most is claimed; [`Verdicts::conclude`] says the rest.
-pub(crate) fn judge(
-    bands: &[BandEnvelope],
-    machine: &Machine,
-    known: &KnownSpeed,
-    record_s: f64,
-    segment_s: f64,
-) -> Verdicts {
-    let (orders, shaft_hz) = match orders_and_speed(machine) {
-        Ok(both) => both,
-        Err(note) => return Verdicts::without_families(note),
-    };
-    // A band without noise (a simulated record, a filter) has no background to stand above.
-    let whitened: Vec<(&BandEnvelope, Whitened)> = bands
-        .iter()
-        .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
-        .collect();
-    // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
-    let cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
-    let mut own = own_lines(machine, known.sharp_hz.unwrap_or(shaft_hz), OWN_LINES / segment_s);
-    let places = [orders.bpfo * shaft_hz, orders.bpfi * shaft_hz, orders.bsf * shaft_hz, cage_hz];
-    // Turns of another shaft may stand where the cage turns.
-    let cage = look(Defect::Ftf, cage_hz, &whitened, &own, record_s, segment_s);
-    own.cage_hz = cage.1.as_ref().filter(|_| cage.0.noise_p_value < ALPHA).map(|s| s.comb.fundamental_hz);
-    let mut looked: Vec<Looked> = Defect::ALL[..3]
-        .iter()
-        .zip(places)
-        .map(|(name, hz)| look(*name, hz, &whitened, &own, record_s, segment_s))
-        .collect();
-    looked.push(cage);
-    let cage_hz = own.cage_hz.unwrap_or(cage_hz);
-    for (family, standing) in &mut looked {
-        if let Some(standing) = standing {
-            deepen(family, standing, &whitened, cage_hz);
-        }
+impl Decided {
+    /// No families, with a note on what is missing for them.
+    pub(crate) fn without_families(note: String) -> Self {
+        Self { families: Vec::new(), notes: vec![note], first: None, unexplained: None }
     }
-    let highest_hz = places[..2].iter().fold(0.0_f64, |most, hz| most.max(*hz));
-    let there = above_noise(&looked[..3]);
-    let of_others = |hz: f64| machine.around.may_be(hz / shaft_hz);
-    let stranger = unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
-    let first = first(looked.iter().map(|(family, _)| family));
-    let halved = first.and_then(|at| halve(&mut looked[at], &whitened, &own));
-    let first_db = first.map_or(f64::NEG_INFINITY, |at| looked[at].0.height_db);
-    let first_hz = first.and_then(|at| Some(looked[at].1.as_ref()?.comb.fundamental_hz));
-    let mut families: Vec<Family> =
-        looked.into_iter().map(|looked| beside_controls(looked, &whitened, &own, first_hz)).collect();
-    let modulated = is_modulated_by_the_cage(&families, &whitened);
-    share_out(&mut families, 1.0 / segment_s, modulated);
-    let (mut notes, mut unexplained) = (Vec::new(), halved);
-    if let Some(found) = stranger.filter(|s| decibel(s.comb.height) > first_db) {
-        match known.by_its_lines.then(|| skidding(&families, &found)).flatten() {
-            Some(at) => notes.push(take_skidding(&mut families[at], &found, &whitened, &own)),
-            None => unexplained = Some(found.report(shaft_hz)),
-        }
-    }
-    decide(&mut families, unexplained.as_ref(), modulated);
-    let first = claimed_first(&families).map(|(at, comb_hz)| First {
-        at,
-        comb_hz,
-        shaft_hz,
-        cage_hz,
-        resolution_hz: 1.0 / segment_s,
-    });
-    Verdicts { families, verdict: String::new(), notes, first, unexplained }
 }
-
-/// A family, and the band in which its comb is highest, if there is one.
-type Looked = (Family, Option<Standing>);
 
 /// Orders of the families, and the speed of the shaft [Hz]; a note on what is missing for them.
 fn orders_and_speed(machine: &Machine) -> Result<(DefectOrders, f64), String> {
@@ -161,101 +193,97 @@ fn own_lines(machine: &Machine, shaft_hz: f64, width_hz: f64) -> OwnLines {
 }
 
 /// The combs of families that are more than noise.
-fn above_noise(looked: &[Looked]) -> Vec<Known> {
-    looked
+fn above_noise(candidates: &[Candidate]) -> Vec<AboveNoise> {
+    candidates
         .iter()
-        .filter(|(family, _)| family.noise_p_value < ALPHA)
-        .filter_map(|(family, standing)| {
-            let turns = family.name == Defect::Bpfi;
-            let Standing { comb, comb_hz, .. } = standing.as_ref()?;
+        .filter(|candidate| candidate.family.noise_p_value < ALPHA)
+        .filter_map(|candidate| {
+            let turns = candidate.family.name == Defect::Bpfi;
+            let Standing { comb, comb_hz, .. } = candidate.standing.as_ref()?;
             let [low_hz, high_hz] = [1.0 - SLIP, 1.0 + SLIP].map(|part| part * comb_hz);
-            Some(Known { comb_hz: comb.fundamental_hz, low_hz, high_hz, turns, height: comb.height })
+            Some(AboveNoise { comb_hz: comb.fundamental_hz, low_hz, high_hz, turns, height: comb.height })
         })
         .collect()
 }
 
-/// Decides that a raceway is not what knocks where the comb stands at half its frequency, too; that comb.
-fn halve(
-    (family, standing): &mut Looked,
+/// The comb at half the frequency of a raceway, where one stands: then the raceway is not what knocks.
+fn comb_at_half_of(
+    candidate: &Candidate,
     whitened: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
 ) -> Option<Unexplained> {
-    let Standing { band, comb, .. } = standing.as_ref().filter(|_| family.name != Defect::Bsf)?;
-    let half = comb_at_half(comb, &whitened[*band].1, own)?;
-    family.reason = Reason::Decided(format!(
-        "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
-         pass",
-        half.hz
-    ));
-    Some(half)
+    let is_element = candidate.family.name == Defect::Bsf;
+    let Standing { band, comb, .. } = candidate.standing.as_ref().filter(|_| !is_element)?;
+    comb_at_half(comb, &whitened[*band].1, own)
 }
 
-/// Ranks a family among unrelated combs of its band, and gives it its probability of a false alarm.
+/// Ranks a family among unrelated combs of its band, and gives it its probability of a false alarm; `half` is
+/// a comb at half its frequency.
 fn beside_controls(
-    (mut family, standing): Looked,
+    candidate: Candidate,
+    half: Option<Unexplained>,
     whitened: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
     first_hz: Option<f64>,
 ) -> Family {
-    if let Some(Standing { band, comb, comb_hz, times, .. }) = standing {
-        let controls = controls(&comb, comb_hz, &whitened[band].1, first_hz, Some(own));
-        family.rank = part_as_high(&comb, &controls);
-        family.controls = controls.iter().map(|c| (c.fundamental_hz, decibel(c.height))).collect();
-        if family.is_there() {
-            family.measured_hz = Some(comb.fundamental_hz / times);
-        }
-    }
-    family.calibrate();
-    family
+    let Candidate { family, standing } = candidate;
+    let reason = half.map_or(family.reason.clone(), |half| {
+        Reason::Decided(format!(
+            "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
+             pass",
+            half.hz
+        ))
+    });
+    let judged = Family { reason, ..family };
+    let Some(Standing { band, comb, comb_hz, times, .. }) = standing else { return judged.calibrated() };
+    let controls = controls(&comb, comb_hz, &whitened[band].1, first_hz, Some(own));
+    let ranked = Family {
+        rank: part_as_high(&comb, &controls),
+        controls: controls.iter().map(|c| (c.fundamental_hz, decibel(c.height))).collect(),
+        ..judged
+    };
+    let measured_hz = ranked.is_there().then_some(comb.fundamental_hz / times);
+    Family { measured_hz, ..ranked }.calibrated()
 }
 
-/// Takes a comb for this family although it is farther from its place than slip allows; the note on it.
-fn take_skidding(
-    family: &mut Family,
-    found: &unexplained::Found,
+/// The families, of which one is at a comb that is farther from its place than slip allows.
+fn with_skidding(
+    families: Vec<Family>,
+    name: Defect,
+    found: &UnexplainedComb,
     whitened: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
-) -> String {
+) -> Vec<Family> {
     let (band, spectrum) = &whitened[found.band];
-    let comb_hz = found.comb.fundamental_hz;
-    let rank = rank(&found.comb, comb_hz, spectrum, None, Some(own));
-    family.take(found, rank, (band.low_hz, band.high_hz));
+    let rank = rank(&found.comb, found.comb.fundamental_hz, spectrum, None, Some(own));
+    let band_hz = (band.low_hz, band.high_hz);
+    let skid = |family: Family| if family.name == name { family.at(found, rank, band_hz) } else { family };
+    families.into_iter().map(skid).collect()
+}
+
+/// The note on such a family.
+fn skidding_note(family: Option<&Family>, found: &UnexplainedComb) -> Option<String> {
+    let family = family?;
     let place_hz = family.name.shocks_per_period() * family.expected_hz;
-    format!(
+    Some(format!(
         "{} stands {:+.1} % from its place, farther than rolling without slip allows: beside the speed that \
          the lines of the shaft give, the cage skids, as it does under little load",
         family.name,
-        100.0 * (comb_hz / place_hz - 1.0)
-    )
-}
-
-impl Verdicts {
-    /// No families, with a note on what is missing for them.
-    fn without_families(note: String) -> Self {
-        let verdict = "No verdict: speed and bearing are needed to say where a defect would show.".to_owned();
-        Self { families: Vec::new(), verdict, notes: vec![note], first: None, unexplained: None }
-    }
-
-    /// The verdict over all families; `bands` are those that were judged.
-    pub(crate) fn conclude(&mut self, bands: &[BandEnvelope]) {
-        if !self.families.is_empty() {
-            name_the_element(&mut self.families, bands);
-            self.verdict = conclude(&self.families, self.unexplained.as_ref());
-        }
-    }
+        100.0 * (found.comb.fundamental_hz / place_hz - 1.0)
+    ))
 }
 
 /// The raceway whose family a comb would be if the cage skids: slower, so that the outer raceway’s comes down
 /// and the inner one’s goes up by what that takes.
-fn skidding(families: &[Family], found: &unexplained::Found) -> Option<usize> {
+fn skidding(families: &[Family], found: &UnexplainedComb) -> Option<Defect> {
     let place = |name: Defect| families.iter().find(|f| f.name == name).map(|f| f.expected_hz);
     let (outer_hz, inner_hz) = (place(Defect::Bpfo)?, place(Defect::Bpfi)?);
     let hz = found.comb.fundamental_hz;
     let slower = |by_hz: f64| (SKID.0..=SKID.1).contains(&(by_hz / outer_hz));
     if slower(outer_hz - hz) {
-        families.iter().position(|f| f.name == Defect::Bpfo)
+        Some(Defect::Bpfo)
     } else if slower(hz - inner_hz) {
-        families.iter().position(|f| f.name == Defect::Bpfi)
+        Some(Defect::Bpfi)
     } else {
         None
     }

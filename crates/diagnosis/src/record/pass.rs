@@ -2,14 +2,14 @@
 //! one of seconds.
 
 use stribeck_dsp::channel::Channel;
-use stribeck_dsp::{BandEnvelopes, Welch, WelchOptions};
+use stribeck_dsp::{BandEnvelope, BandEnvelopes, Welch, WelchOptions};
 
 use crate::Error;
-use crate::record::course::Tracing;
-use crate::record::screening::Screening;
+use crate::record::bands::{HIGHEST_HZ, bands};
+use crate::record::course::{Course, Tracing};
+use crate::record::screening::{Health, Screening};
 use crate::record::unit::AccelerationUnit;
 use crate::record::velocity::VelocityLevel;
-use crate::{HIGHEST_HZ, bands};
 
 /// Longest segment [samples]: its envelopes take some tens of megabytes.
 const LONGEST_SEGMENT: usize = 1 << 20;
@@ -18,18 +18,100 @@ const SEGMENT: usize = 1 << 19;
 /// Segment of the density [samples].
 const DENSITY_SEGMENT: usize = 1 << 13;
 
-/// Everything that one pass over the samples yields.
-pub(crate) struct Pass {
-    /// Length of a segment [samples].
+/// Shortest record that is analysed [samples].
+const LEAST: usize = 1024;
+
+/// A sound record: everything that one pass over its samples yields.
+pub(crate) struct Record {
+    /// Samples a second [Hz].
+    pub(crate) rate_hz: f64,
+    /// Samples read.
+    pub(crate) count: u64,
+    /// Length of a segment of the envelope spectra [samples].
     pub(crate) segment: usize,
-    pub(crate) envelopes: BandEnvelopes,
-    pub(crate) density: Density,
-    pub(crate) tracing: Tracing,
-    /// `None` where the channel is no acceleration, or too short.
-    pub(crate) velocity: Option<VelocityLevel>,
-    pub(crate) screening: Screening,
+    /// Segments averaged.
+    pub(crate) segments: usize,
+    /// Squared envelope spectra of all bands.
+    pub(crate) bands: Vec<BandEnvelope>,
+    /// Power spectral density: frequencies [Hz] and values [unit²/Hz].
+    pub(crate) density: (Vec<f64>, Vec<f64>),
+    pub(crate) course: Course,
+    /// Root mean square of the velocity [mm/s], where the channel is an acceleration.
+    pub(crate) velocity_mm_s: Option<f64>,
+    pub(crate) health: Health,
     /// The first samples, as many as one segment may hold.
     pub(crate) kept: Vec<f64>,
+    /// Faults of the samples.
+    pub(crate) notes: Vec<String>,
+}
+
+impl Record {
+    /// Reads a channel sampled `rate_hz` times a second.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or
+    /// constant, [`Error::Signal`] when it cannot be processed.
+    pub(crate) fn read(channel: &Channel, rate_hz: f64) -> Result<Self, Error> {
+        if !rate_hz.is_finite() || rate_hz <= 0.0 {
+            return Err(Error::NoSignal(format!("a sample rate of {rate_hz} Hz; give one above 0")));
+        }
+        let len = usize::try_from(channel.len).unwrap_or(usize::MAX);
+        if len < LEAST {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` holds {len} samples; {LEAST} are the least",
+                channel.name
+            )));
+        }
+        let pass = Pass::over(channel, rate_hz, len)?;
+        let mut notes = pass.notes(rate_hz);
+        pass.refuse(channel, &notes)?;
+        notes.extend(pass.remainder_note(rate_hz, len));
+        let Pass { segment, envelopes, density, tracing, velocity, screening, kept, .. } = pass;
+        let density = density.finish();
+        let Some(health) = screening.health(&density.1) else {
+            return Err(Error::NoSignal(format!(
+                "channel `{}` is constant; is the sensor connected?",
+                channel.name
+            )));
+        };
+        Ok(Self {
+            rate_hz,
+            count: screening.count(),
+            segment,
+            segments: envelopes.segments(),
+            bands: envelopes.bands(),
+            density,
+            course: tracing.finish(),
+            velocity_mm_s: velocity.as_ref().and_then(VelocityLevel::finish),
+            health,
+            kept,
+            notes,
+        })
+    }
+
+    /// Length of the record [s].
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.count as f64 / self.rate_hz
+    }
+
+    /// Length of a segment [s].
+    pub(crate) fn segment_s(&self) -> f64 {
+        self.segment as f64 / self.rate_hz
+    }
+}
+
+/// A pass over the samples.
+struct Pass {
+    /// Length of a segment [samples].
+    segment: usize,
+    envelopes: BandEnvelopes,
+    density: Density,
+    tracing: Tracing,
+    /// `None` where the channel is no acceleration, or too short.
+    velocity: Option<VelocityLevel>,
+    screening: Screening,
+    /// The first samples, as many as one segment may hold.
+    kept: Vec<f64>,
     /// Samples that fill no segment yet.
     buffer: Vec<f64>,
     /// Segments with values that are not numbers.
@@ -38,7 +120,7 @@ pub(crate) struct Pass {
 
 impl Pass {
     /// Reads a channel of `len` samples.
-    pub(crate) fn over(channel: &Channel, rate_hz: f64, len: usize) -> Result<Self, Error> {
+    fn over(channel: &Channel, rate_hz: f64, len: usize) -> Result<Self, Error> {
         let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
         let segment = if len > LONGEST_SEGMENT { SEGMENT } else { longest_kept };
         let highest_hz = HIGHEST_HZ.min(0.5 * rate_hz);
@@ -94,7 +176,7 @@ impl Pass {
     }
 
     /// Faults of the samples.
-    pub(crate) fn notes(&self, rate_hz: f64) -> Vec<String> {
+    fn notes(&self, rate_hz: f64) -> Vec<String> {
         let mut notes = self.screening.notes(rate_hz);
         if self.refused > 0 {
             notes.push(format!(
@@ -106,7 +188,7 @@ impl Pass {
     }
 
     /// Refuses a channel without a whole segment of numbers, and one whose powers no number can hold.
-    pub(crate) fn refuse(&self, channel: &Channel, notes: &[String]) -> Result<(), Error> {
+    fn refuse(&self, channel: &Channel, notes: &[String]) -> Result<(), Error> {
         if self.envelopes.segments() == 0 {
             return Err(Error::NoSignal(format!(
                 "channel `{}` has no run of {} numbers: {}. Cut the record to its sound part",
@@ -126,7 +208,7 @@ impl Pass {
     }
 
     /// How much of a record of `len` samples fills no segment, where that is more than a twentieth.
-    pub(crate) fn remainder_note(&self, rate_hz: f64, len: usize) -> Option<String> {
+    fn remainder_note(&self, rate_hz: f64, len: usize) -> Option<String> {
         let left = self.buffer.len();
         (left * 20 > len).then(|| {
             format!("the last {:.2} s fill no segment and are left out of the spectra", left as f64 / rate_hz)
@@ -135,7 +217,7 @@ impl Pass {
 }
 
 /// Density averaged over everything that was added.
-pub(crate) struct Density {
+struct Density {
     welch: Welch,
     segment: usize,
     sum: Vec<f64>,
@@ -157,7 +239,7 @@ impl Density {
         Ok(())
     }
 
-    pub(crate) fn finish(self) -> (Vec<f64>, Vec<f64>) {
+    fn finish(self) -> (Vec<f64>, Vec<f64>) {
         let count = self.count.max(1) as f64;
         (self.welch.blank().frequencies_hz().to_vec(), self.sum.iter().map(|s| s / count).collect())
     }

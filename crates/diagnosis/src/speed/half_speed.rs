@@ -5,28 +5,26 @@
 //! the speed is right. Where lines of the shaft stand at half the speed too, and between its multiples, the
 //! speed is wrong and the comb is the raceway's (THEORY §7.9).
 
-use stribeck_dsp::BandEnvelope;
-
 use crate::families::unrelated::SLIP;
-use crate::families::verdict::{self, KnownSpeed, Verdicts};
-use crate::{
-    Defect, Machine, Sharp,
-    speed::{estimate, shaft},
-};
+use crate::families::verdict::{Candidates, Decided};
+use crate::record::pass::Record;
+use crate::speed::settled::SpeedByLines;
+use crate::speed::{estimate, shaft};
+use crate::{Defect, Machine};
 
-/// Half of the speed given, where the comb of a raceway and the lines of the shaft agree on it.
-pub(crate) fn told(
-    judged: &Verdicts,
-    samples: &[f64],
-    rate_hz: f64,
-    bands: &[BandEnvelope],
+/// Half the given speed, if both the raceway comb and the shaft lines support it.
+pub(crate) fn detect_half_speed(
+    candidates: &Candidates,
+    record: &Record,
     machine: &Machine,
-) -> Option<Sharp> {
+) -> Option<SpeedByLines> {
+    let Record { kept: samples, rate_hz, bands, .. } = record;
+    let rate_hz = *rate_hz;
     let asked = !machine.speed_is_exact && machine.outer_speed_rpm == 0.0;
     let (rpm, bearing) = (machine.speed_rpm?, machine.bearing.as_ref().filter(|_| asked)?);
-    let comb_hz = judged.unexplained.as_ref()?.hz;
+    let comb_hz = candidates.unexplained.as_ref()?.hz;
     let is_half = |name: Defect| {
-        let family = judged.families.iter().find(|family| family.name == name);
+        let family = candidates.families.iter().find(|family| family.name == name);
         family.is_some_and(|family| (2.0 * comb_hz / family.expected_hz - 1.0).abs() < SLIP)
     };
     (is_half(Defect::Bpfo) || is_half(Defect::Bpfi)).then_some(())?;
@@ -35,7 +33,7 @@ pub(crate) fn told(
     let stands = |hz: f64| estimate::stands_at_half(samples, rate_hz, hz);
     let by_shaft = shaft::near(samples, rate_hz, half_hz)
         .filter(|shaft| shaft.is_distinct() && stands(shaft.hz))
-        .map(|shaft| Sharp {
+        .map(|shaft| SpeedByLines {
             hz: shaft.hz,
             uncertainty_hz: shaft.uncertainty_hz,
             by: "the lines of the shaft",
@@ -44,26 +42,24 @@ pub(crate) fn told(
         let found = estimate::without_any_given(samples, rate_hz, bands, bearing)?;
         let agrees = found.is_accepted && (found.hz / half_hz - 1.0).abs() < SLIP && stands(found.hz);
         let by = "the lines of the shaft and of the bearing together";
-        agrees.then_some(Sharp { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
+        agrees.then_some(SpeedByLines { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
     })
 }
 
-/// The machine at that speed, and its verdict there, where this claims one raceway and nothing else.
-pub(crate) fn judge(
-    half: Sharp,
-    bands: &[BandEnvelope],
+/// The machine at that speed, and what the rules say there, where they claim one raceway and nothing else.
+pub(crate) fn decide_at_half(
+    half: SpeedByLines,
+    record: &Record,
     machine: &Machine,
-    (record_s, segment_s): (f64, f64),
-) -> Option<(Machine, Verdicts)> {
+) -> Option<(Machine, Decided)> {
     let slower = Machine { speed_rpm: Some(60.0 * half.hz), ..machine.clone() };
-    let known = KnownSpeed { sharp_hz: Some(half.hz), by_its_lines: true };
-    let again = verdict::judge(bands, &slower, &known, record_s, segment_s);
-    let claimed: Vec<Defect> = again.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
-    matches!(claimed.as_slice(), [Defect::Bpfo | Defect::Bpfi]).then_some((slower, again))
+    let decided = Candidates::of(record, &slower, Some(half.hz), true).ok()?.decide();
+    let claimed: Vec<Defect> = decided.families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
+    matches!(claimed.as_slice(), [Defect::Bpfo | Defect::Bpfi]).then_some((slower, decided))
 }
 
 /// What the verdict says on it.
-pub(crate) fn sentence(half: Sharp, given_rpm: f64) -> String {
+pub(crate) fn sentence(half: SpeedByLines, given_rpm: f64) -> String {
     format!(
         "The shaft turns at half of the {given_rpm:.1} rpm that were given: {} stand at {:.1} ± {:.1} rpm, \
          and the comb of this raceway at half of its place.",

@@ -2,11 +2,12 @@
 
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
+use crate::Defect;
 use crate::families::family::{Family, Reason};
 use crate::families::limits::{ALPHA, decibel};
 use crate::families::machine_lines::OwnLines;
 use crate::families::unrelated::SLIP;
-use crate::{Defect, HIGHEST_HZ, LOWEST};
+use crate::record::bands::{HIGHEST_HZ, LOWEST};
 
 /// Periods that a segment must hold.
 const PERIODS: f64 = 10.0;
@@ -24,43 +25,51 @@ pub(crate) struct Standing {
     pub(crate) searched: f64,
 }
 
+/// A family as it stands in the record, before the rules.
+pub(crate) struct Candidate {
+    pub(crate) family: Family,
+    /// The band in which its comb is highest, if there is one.
+    pub(crate) standing: Option<Standing>,
+}
+
 /// Looks for one family in all bands.
-pub(crate) fn look(
+pub(crate) fn search(
     name: Defect,
     expected_hz: f64,
     bands: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
     record_s: f64,
     segment_s: f64,
-) -> (Family, Option<Standing>) {
+) -> Candidate {
     let times = name.shocks_per_period();
     let comb_hz = times * expected_hz;
-    let mut family = Family::expected(name, expected_hz);
+    let expected = Family::expected(name, expected_hz);
+    let refused = |why: String| {
+        let family = Family { reason: Reason::Decided(why), ..Family::expected(name, expected_hz) };
+        Candidate { family, standing: None }
+    };
     if segment_s * comb_hz < PERIODS && record_s * comb_hz >= PERIODS {
-        family.reason = Reason::Decided(format!(
+        return refused(format!(
             "segments of {segment_s:.2} s, by which the record is judged, hold {:.2} periods, and \
              ten are needed",
             (100.0 * segment_s * comb_hz).floor() / 100.0
         ));
-        return (family, None);
     }
     if segment_s * comb_hz < PERIODS {
-        family.reason = Reason::Decided(format!(
+        return refused(format!(
             "the record of {record_s:.2} s holds {:.2} periods; {:.2} s would hold the ten that are needed",
             (100.0 * record_s * comb_hz).floor() / 100.0,
             (100.0 * PERIODS / comb_hz).ceil() / 100.0
         ));
-        return (family, None);
     }
     let (low, high) = ((1.0 - SLIP) * comb_hz, (1.0 + SLIP) * comb_hz);
     let ranges = own.ranges_without(low, high);
     if ranges.is_empty() {
-        family.reason = Reason::Decided(
+        return refused(
             "its place is within a resolution of a multiple of the shaft or the cage; a longer record would \
              tell them apart"
                 .to_owned(),
         );
-        return (family, None);
     }
     let found: Vec<(usize, Comb)> = bands
         .iter()
@@ -72,37 +81,41 @@ pub(crate) fn look(
         .collect();
     let searched = found.len() as f64;
     let Some((n, comb)) = found.into_iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)) else {
-        family.reason = Reason::Decided(too_narrow(comb_hz, !bands.is_empty()));
-        return (family, None);
+        return refused(too_narrow(comb_hz, !bands.is_empty()));
     };
     let (band, spectrum) = &bands[n];
-    family.noise_p_value = (comb.p_value * searched).min(1.0);
-    family.band_hz = Some((band.low_hz, band.high_hz));
-    family.height_db = decibel(comb.height);
-    family.level_db = Some(decibel(comb.ratios[0]));
-    family.harmonics = comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count();
-    family.depth = Some(band.depth(comb.fundamental_hz));
-    family.depth_band_hz = family.band_hz;
-    (family, Some(Standing { band: n, comb, comb_hz, times, searched }))
+    let band_hz = Some((band.low_hz, band.high_hz));
+    let family = Family {
+        noise_p_value: (comb.p_value * searched).min(1.0),
+        band_hz,
+        height_db: decibel(comb.height),
+        level_db: Some(decibel(comb.ratios[0])),
+        harmonics: comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count(),
+        depth: Some(band.depth(comb.fundamental_hz)),
+        depth_band_hz: band_hz,
+        ..expected
+    };
+    Candidate { family, standing: Some(Standing { band: n, comb, comb_hz, times, searched }) }
 }
 
-/// The depth of a family in the band where it is deepest, of those in which its comb stands; that of a
-/// rolling element with its sidebands of the cage.
-pub(crate) fn deepen(
-    family: &mut Family,
-    standing: &Standing,
-    bands: &[(&BandEnvelope, Whitened)],
-    cage_hz: f64,
-) {
-    let hz = standing.comb.fundamental_hz;
-    for (band, spectrum) in bands {
-        let near = CombTest::FOUR_OF_FIVE.search(spectrum, hz - 0.5 * band.grid_hz, hz + 0.5 * band.grid_hz);
-        let stands = near.is_ok_and(|comb| comb.p_value * standing.searched < ALPHA);
-        let depth = depth_of(family.name, band, hz, cage_hz);
-        if stands && family.depth.is_none_or(|deepest| depth > deepest) {
-            family.depth = Some(depth);
-            family.depth_band_hz = Some((band.low_hz, band.high_hz));
-        }
+impl Candidate {
+    /// The same with its depth in the band where it is deepest, of those in which its comb stands; that of a
+    /// rolling element with its sidebands of the cage.
+    pub(crate) fn at_its_deepest(self, bands: &[(&BandEnvelope, Whitened)], cage_hz: f64) -> Self {
+        let Self { family, standing: Some(standing) } = self else { return self };
+        let hz = standing.comb.fundamental_hz;
+        let stands = |(band, spectrum): &&(&BandEnvelope, Whitened)| {
+            let (low, high) = (hz - 0.5 * band.grid_hz, hz + 0.5 * band.grid_hz);
+            let near = CombTest::FOUR_OF_FIVE.search(spectrum, low, high);
+            near.is_ok_and(|comb| comb.p_value * standing.searched < ALPHA)
+        };
+        let start = (family.depth, family.depth_band_hz);
+        let (depth, depth_band_hz) = bands.iter().filter(stands).fold(start, |deepest, (band, _)| {
+            let depth = depth_of(family.name, band, hz, cage_hz);
+            let is_deeper = deepest.0.is_none_or(|deepest| depth > deepest);
+            if is_deeper { (Some(depth), Some((band.low_hz, band.high_hz))) } else { deepest }
+        });
+        Self { family: Family { depth, depth_band_hz, ..family }, standing: Some(standing) }
     }
 }
 

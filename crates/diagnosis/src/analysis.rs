@@ -1,0 +1,156 @@
+//! The stages of an analysis, from a channel to a verdict.
+
+use stribeck_dsp::BandEnvelope;
+use stribeck_dsp::channel::Channel;
+
+use crate::families::verdict::{Candidates, Decided, FirstDefect};
+use crate::families::{halves, rules, second};
+use crate::length::estimate;
+use crate::record::bands::over_period;
+use crate::record::enhanced::{self, Enhanced};
+use crate::record::pass::Record;
+use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
+use crate::speed::settled::Settled;
+use crate::words::sentence::conclude;
+use crate::{Course, Error, Family, Machine, MeasuredFindings, Varying};
+
+/// The numbers and the curves that a report draws.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// The numbers.
+    pub findings: MeasuredFindings,
+    /// The first samples, for a picture.
+    pub beginning: Vec<f64>,
+    /// Power spectral density: frequencies [Hz] and values [unit²/Hz].
+    pub density: (Vec<f64>, Vec<f64>),
+    /// Squared envelope spectra of all bands.
+    pub bands: Vec<BandEnvelope>,
+    /// The same over the period of the defect that stands highest; none without a defect.
+    pub over: Vec<BandEnvelope>,
+    /// Density over time.
+    pub course: Course,
+    /// Spectra over speed and angle where the speed varies; filled by the caller, which has the times of the
+    /// turns.
+    pub varying: Option<Varying>,
+    /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
+    pub enhanced: Option<Enhanced>,
+}
+
+/// Samples kept for the picture.
+const SHOWN: usize = 1 << 16;
+/// Harmonics of the fastest family in the enhanced envelope spectrum.
+const HARMONICS: f64 = 3.2;
+/// Its highest frequency when no family is known [Hz].
+const UNKNOWN_HZ: f64 = 500.0;
+
+/// Verdict where speed or bearing is missing.
+const NO_VERDICT: &str = "No verdict: speed and bearing are needed to say where a defect would show.";
+
+impl Analysis {
+    /// Analyses a channel sampled `rate_hz` times a second.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or
+    /// constant, [`Error::Signal`] when it cannot be processed.
+    pub fn of(channel: &Channel, rate_hz: f64, machine: &Machine) -> Result<Self, Error> {
+        let record = Record::read(channel, rate_hz)?;
+        let speed = Settled::of(&record, machine);
+        let candidates = Candidates::of(&record, &speed.machine, speed.lines_hz, speed.by_shaft);
+        let half = candidates.as_ref().ok().and_then(|candidates| {
+            let half = detect_half_speed(candidates, &record, &speed.machine)?;
+            let (slower, decided) = decide_at_half(half, &record, &speed.machine)?;
+            Some((half_speed::sentence(half, speed.given_rpm?), slower, decided))
+        });
+        let (said_of_half, taken, decided) = match half {
+            Some((said, slower, decided)) => (Some(said), slower, decided),
+            None => {
+                (None, speed.machine, candidates.map_or_else(Decided::without_families, Candidates::decide))
+            }
+        };
+        let is_corrected = speed.is_corrected || said_of_half.is_some();
+        let over = match &decided.first {
+            Some(first) => over_period(channel, rate_hz, record.segment, first.comb_hz)?,
+            None => Vec::new(),
+        };
+        let families = concluded(decided.families, decided.first.as_ref(), &record, &over)?;
+        let said = if families.is_empty() {
+            NO_VERDICT.to_owned()
+        } else {
+            conclude(&families, decided.unexplained.as_ref())
+        };
+        let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
+        let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families))?;
+        let duration_s = record.duration_s();
+        let notes = [record.notes, speed.notes, decided.notes, vec![spall.note]].concat();
+        Ok(Self {
+            findings: MeasuredFindings {
+                channel: channel.name.clone(),
+                unit: channel.unit.clone(),
+                rate_hz,
+                samples: record.count,
+                duration_s,
+                speed_rpm: taken.speed_rpm,
+                speed_given_rpm: speed.given_rpm.filter(|_| is_corrected),
+                speed_uncertainty_rpm: speed.uncertainty_rpm,
+                bearing: taken.bearing.as_ref().map(|b| format!("{}: {b}", b.name)),
+                resolution_hz: rate_hz / record.segment as f64,
+                segments: record.segments,
+                health: record.health,
+                velocity_mm_s: record.velocity_mm_s,
+                zone: None,
+                families,
+                unexplained: decided.unexplained,
+                verdict: std::iter::once(said).chain(said_of_half).collect::<Vec<_>>().join(" "),
+                spall_mm: spall.length_mm,
+                spall_otherwise_mm: spall.otherwise_mm,
+                event_spacing_ms: spall.spacing_ms,
+                spall_below_mm: spall.below_mm,
+                notes,
+            },
+            beginning: record.kept.into_iter().take(SHOWN).collect(),
+            density: record.density,
+            bands: record.bands,
+            over,
+            course: record.course,
+            varying: None,
+            enhanced,
+        })
+    }
+
+    /// The band of the family that stands highest; without one that knocks most [Hz].
+    pub fn leading_band_hz(&self) -> Option<(f64, f64)> {
+        let there = self.findings.families.iter().filter(|f| f.is_there() && f.band_hz.is_some());
+        let leading = there.min_by(|a, b| a.p_value.total_cmp(&b.p_value)).and_then(|f| f.band_hz);
+        let most = self.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
+        leading.or_else(|| most.map(|band| (band.low_hz, band.high_hz)))
+    }
+
+    /// The band in which a family stands highest.
+    pub fn band_of(&self, family: &Family) -> Option<&BandEnvelope> {
+        let (low_hz, high_hz) = family.band_hz?;
+        let bands = if family.over.is_some() { &self.over } else { &self.bands };
+        bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
+    }
+}
+
+/// The families after the last rules: a second defect beside the first, claims that stand in one half of the
+/// record alone, and the element that knocks once a turn of the cage.
+fn concluded(
+    decided: Vec<Family>,
+    first: Option<&FirstDefect>,
+    record: &Record,
+    over: &[BandEnvelope],
+) -> Result<Vec<Family>, Error> {
+    let with_second = match first {
+        Some(first) => second::with_second(decided, first, record.bands.first(), over),
+        None => decided,
+    };
+    let lasting = halves::without_passing(with_second, &record.kept, record.rate_hz)?;
+    Ok(rules::with_element(lasting, &record.bands))
+}
+
+/// Highest frequency of the enhanced envelope spectrum [Hz].
+fn enhanced_up_to_hz(families: &[Family]) -> f64 {
+    let fastest_hz = families.iter().map(|f| f.expected_hz).fold(0.0, f64::max);
+    if fastest_hz > 0.0 { HARMONICS * fastest_hz } else { UNKNOWN_HZ }
+}

@@ -1,0 +1,305 @@
+//! Which of the families that are there are called a defect.
+
+use stribeck_dsp::BandEnvelope;
+
+use crate::families::controls::MOST_AS_HIGH;
+use crate::families::family::{Family, Reason};
+use crate::families::limits::{ALPHA, KNOCK};
+use crate::families::unexplained::Unexplained;
+use crate::families::unrelated::is_the_same;
+use crate::words::sentence::probability;
+use crate::{Defect, families::element_rhythm};
+
+/// Lines that two families both take for theirs belong to the one that is nearer to its place; to no rolling
+/// element, unless the cage modulates them (`modulated`). Where both are expected within a resolution of each
+/// other, they are not distinguished.
+pub(crate) fn shared_out(families: Vec<Family>, resolution_hz: f64, modulated: bool) -> Vec<Family> {
+    let cannot_be = |family: &Family| family.name == Defect::Bsf && !modulated;
+    let shocks = |family: &Family| family.name.shocks_per_period();
+    let place = |at: usize| shocks(&families[at]) * families[at].expected_hz;
+    let comb = |at: usize| Some(shocks(&families[at]) * families[at].measured_hz?);
+    let off =
+        |at: usize| (families[at].measured_hz.unwrap_or(f64::NAN) / families[at].expected_hz - 1.0).abs();
+    let share = |a: usize, b: usize| {
+        a != b && comb(a).zip(comb(b)).is_some_and(|(a, b)| (b - a).abs() < resolution_hz)
+    };
+    let alike = |a: usize, b: usize| {
+        let excluded = cannot_be(&families[a]) || cannot_be(&families[b]);
+        share(a, b) && (place(b) - place(a)).abs() < resolution_hz && !excluded
+    };
+    let gives_way = |a: usize, b: usize| match [a, b].map(|n| cannot_be(&families[n])) {
+        [false, false] => off(b) < off(a),
+        [gives_way, _] => gives_way,
+    };
+    let mut heights: Vec<f64> = families.iter().map(|family| family.height_db).collect();
+    let mut out = Vec::new();
+    for (at, family) in families.iter().enumerate() {
+        let all = || 0..families.len();
+        if let Some(other) = all().find(|n| alike(at, *n)) {
+            heights[at] = heights[at].max(heights[other]);
+            let not_told_apart_from = Some(families[other].name);
+            out.push(Family { not_told_apart_from, height_db: heights[at], ..family.clone() });
+            continue;
+        }
+        let why = if cannot_be(family) {
+            "and they are not modulated by the cage, as it is where a spot on a rolling element comes \
+             under the load"
+        } else {
+            "which are nearer to their place"
+        };
+        let owner = all().find(|n| share(at, *n) && gives_way(at, *n));
+        let words = |n: usize| Reason::Decided(format!("its lines are those of {}, {why}", families[n].name));
+        out.push(Family { reason: owner.map_or(family.reason.clone(), words), ..family.clone() });
+    }
+    out
+}
+
+/// The defect that stands for itself, but for the cage: its place and its comb [Hz].
+pub(crate) fn claimed_first(families: &[Family]) -> Option<(usize, f64)> {
+    let at = families.iter().position(|f| f.claimed && f.name != Defect::Ftf)?;
+    Some((at, families[at].name.shocks_per_period() * families[at].measured_hz?))
+}
+
+/// The family that knocks and stands highest, but for the cage's and those whose lines are another's.
+pub(crate) fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<usize> {
+    let knocking = families
+        .enumerate()
+        .filter(|(_, f)| f.name != Defect::Ftf && f.reason == Reason::Undecided && f.knocks());
+    knocking.max_by(|a, b| a.1.height_db.total_cmp(&b.1.height_db)).map(|(at, _)| at)
+}
+
+/// What the rules ask beside a family.
+pub(crate) struct Case<'a> {
+    /// A comb that is no family's.
+    pub(crate) unexplained: Option<&'a Unexplained>,
+    /// Whether the cage modulates the knocks of a rolling element.
+    pub(crate) modulated: bool,
+    /// Height of the family that knocks and stands highest [dB]; −∞ without one.
+    first_db: f64,
+}
+
+/// Why a family is refused; `None` where this rule does not refuse it.
+type Rule = fn(&Family, &Case<'_>) -> Option<String>;
+
+/// The rules, in their order: the first that refuses a family decides. Every family of rolling defects is
+/// modulated by the cage, so the cage is suspected last.
+const RULES: [Rule; 9] = [
+    noise_makes_as_much,
+    unrelated_combs_stand_as_high,
+    swings_as_in_sound_bearings,
+    sound_bearings_show_as_much,
+    unexplained_comb_stands_higher,
+    cage_shares_in_unexplained_comb,
+    element_without_the_cage,
+    cage_shares_in_a_family,
+    another_family_stands_higher,
+];
+
+fn noise_makes_as_much(family: &Family, _: &Case<'_>) -> Option<String> {
+    let p = family.noise_p_value;
+    (p >= ALPHA)
+        .then(|| format!("noise of this colour makes as much with a probability of {}", probability(p)))
+}
+
+fn unrelated_combs_stand_as_high(family: &Family, _: &Case<'_>) -> Option<String> {
+    let rank = family.rank.unwrap_or(1.0);
+    (rank > MOST_AS_HIGH)
+        .then(|| format!("{:.0} % of unrelated combs in this record stand as high", 100.0 * rank))
+}
+
+fn swings_as_in_sound_bearings(family: &Family, _: &Case<'_>) -> Option<String> {
+    let depth = family.depth.unwrap_or(0.0);
+    (depth < KNOCK).then(|| {
+        format!(
+            "it is there, but the power of the band swings by {:.0} % only, as sound bearings do",
+            100.0 * depth
+        )
+    })
+}
+
+fn sound_bearings_show_as_much(family: &Family, _: &Case<'_>) -> Option<String> {
+    (family.p_value >= ALPHA).then(|| {
+        format!(
+            "it is there, but sound bearings show as much with a probability of {}",
+            probability(family.p_value)
+        )
+    })
+}
+
+fn unexplained_comb_stands_higher(family: &Family, case: &Case<'_>) -> Option<String> {
+    let other = case.unexplained.filter(|other| other.height_db > family.height_db)?;
+    Some(format!(
+        "it is there, but a comb at {:.3} times the shaft that is no family of this bearing stands higher",
+        other.order
+    ))
+}
+
+fn cage_shares_in_unexplained_comb(family: &Family, case: &Case<'_>) -> Option<String> {
+    let other = case.unexplained.filter(|_| family.name == Defect::Ftf)?;
+    Some(format!(
+        "it is there, as the cage's share in a comb at {:.3} times the shaft that is no family of this bearing",
+        other.order
+    ))
+}
+
+fn element_without_the_cage(family: &Family, case: &Case<'_>) -> Option<String> {
+    (family.name == Defect::Bsf && !case.modulated).then(|| {
+        "it is there, and no turn of the cage is in it, as it is where a spot on a rolling element comes under \
+         the load"
+            .to_owned()
+    })
+}
+
+fn cage_shares_in_a_family(family: &Family, case: &Case<'_>) -> Option<String> {
+    (case.first_db.is_finite() && family.name == Defect::Ftf)
+        .then(|| "it is there, as the cage's share in a family that stands for itself".to_owned())
+}
+
+/// A family that stands lower than another is not the first, even if the other one is not believed.
+fn another_family_stands_higher(family: &Family, case: &Case<'_>) -> Option<String> {
+    (family.height_db < case.first_db)
+        .then(|| "it is there, but another family stands higher, of which it may be sidebands".to_owned())
+}
+
+/// Which of the families that are there are defects.
+pub(crate) fn decide(
+    families: Vec<Family>,
+    unexplained: Option<&Unexplained>,
+    modulated: bool,
+) -> Vec<Family> {
+    let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
+    let case = Case { unexplained, modulated, first_db };
+    let decided = |family: Family| match &family.reason {
+        Reason::Decided(_) => family,
+        Reason::Undecided => match RULES.iter().find_map(|rule| rule(&family, &case)) {
+            Some(why) => Family { reason: Reason::Decided(why), ..family },
+            None => claimed(family),
+        },
+    };
+    families.into_iter().map(decided).collect()
+}
+
+/// A family that no rule refuses.
+fn claimed(family: Family) -> Family {
+    let is_cage = family.name == Defect::Ftf;
+    let other = family.not_told_apart_from.filter(|_| !is_cage).map_or(String::new(), |name| {
+        format!(
+            "; the lines of {name} have their places within a resolution of these, and the record does not \
+             tell which it is"
+        )
+    });
+    let depth = family.depth.unwrap_or(0.0);
+    let why =
+        format!("{} harmonics stand, the power swings by {:.0} %{other}", family.harmonics, 100.0 * depth);
+    // One element that is damaged comes under the load once a turn of the cage, too.
+    let not_told_apart_from = if is_cage { Some(Defect::Bsf) } else { family.not_told_apart_from };
+    Family { claimed: true, not_told_apart_from, reason: Reason::Decided(why), ..family }
+}
+
+/// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a
+/// rolling element that knocks twice a spin, by the whole range or by the band in which the cage stands
+/// highest.
+pub(crate) fn with_element(families: Vec<Family>, bands: &[BandEnvelope]) -> Vec<Family> {
+    let Some((band_hz, hz)) = element_by_the_cage(&families, bands) else { return families };
+    let named = |family: Family| match family.name {
+        Defect::Bsf => Family {
+            measured_hz: Some(0.5 * hz),
+            band_hz: Some(band_hz),
+            in_passages: true,
+            claimed: true,
+            reason: Reason::Decided(format!(
+                "something knocks once a turn of the cage, and as it passes at {hz:.1} Hz, twice the spin of an \
+                 element, which no unrelated rhythm does as much; from turn to turn it loses its phase, so that \
+                 it has no lines"
+            )),
+            ..family
+        },
+        Defect::Ftf => family.refused(
+            "it is there, as the rhythm in which one rolling element passes under the load".to_owned(),
+        ),
+        _ => family,
+    };
+    families.into_iter().map(named).collect()
+}
+
+/// The band [Hz] and the rhythm [Hz] of an element that knocks twice a spin, once a turn of the cage.
+fn element_by_the_cage(families: &[Family], bands: &[BandEnvelope]) -> Option<((f64, f64), f64)> {
+    let of = |name: Defect| families.iter().find(|family| family.name == name);
+    let (element, cage) = (of(Defect::Bsf)?, of(Defect::Ftf)?);
+    // A spot on a rolling element meets both raceways in a turn.
+    let knocks_hz = 2.0 * element.expected_hz;
+    let is_taken = families.iter().any(|f| f.is_there() && is_the_same(f.expected_hz, knocks_hz));
+    (cage.claimed && !is_taken).then_some(())?;
+    let loudest = |band: &&BandEnvelope| cage.band_hz == Some((band.low_hz, band.high_hz));
+    let asked = [bands.first(), bands.iter().find(loudest)];
+    asked.into_iter().flatten().find_map(|band| {
+        let hz = element_rhythm::repeating_hz(band, knocks_hz)?;
+        Some(((band.low_hz, band.high_hz), hz))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::words::sentence::conclude;
+
+    /// Found at `measured_hz`, far above noise and anything else.
+    fn found(name: Defect, expected_hz: f64, measured_hz: f64) -> Family {
+        Family {
+            measured_hz: Some(measured_hz),
+            harmonics: 5,
+            level_db: Some(25.0),
+            p_value: 1e-9,
+            noise_p_value: 1e-12,
+            rank: Some(0.0),
+            depth: Some(1.5),
+            height_db: 25.0,
+            ..Family::expected(name, expected_hz)
+        }
+    }
+
+    /// A NU 203 at 1500 rpm has BPFO at 106.3 Hz and twice BSF at 104.6 Hz, nearer than slip of 2 % may move
+    /// either.
+    #[test]
+    fn planted_one_line_is_claimed_for_one_family() {
+        let families = vec![found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];
+        let families = decide(shared_out(families, 1.25, true), None, true);
+        assert!(families[0].claimed && !families[1].claimed, "{families:?}");
+        assert!(
+            families[1].reason.to_string().contains("those of BPFO, which are nearer"),
+            "{}",
+            families[1].reason
+        );
+        // A cage that slips takes BPFO to where the element would be; only a turn of the cage makes it one.
+        for (modulated, claimed) in [(true, Defect::Bsf), (false, Defect::Bpfo)] {
+            let families = vec![found(Defect::Bpfo, 106.328, 105.153), found(Defect::Bsf, 52.304, 52.576)];
+            let families = decide(shared_out(families, 1.25, modulated), None, modulated);
+            let names: Vec<Defect> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
+            assert_eq!(names, [claimed], "{families:?}");
+        }
+        // Diameters of 1 to 5 put twice BSF on BPFO: whatever is measured, the record does not decide.
+        for measured_hz in [94.404, 96.3] {
+            let mut families = vec![
+                found(Defect::Bpfo, 96.0048, measured_hz),
+                found(Defect::Bsf, 48.0104, 0.5 * measured_hz + 0.02),
+            ];
+            families[0].height_db = 24.9;
+            let families = decide(shared_out(families, 1.0, true), None, true);
+            let verdict = conclude(&families, None);
+            assert!(families.iter().all(|family| family.claimed), "{families:?}");
+            assert!(verdict.contains("of the outer raceway or of a rolling element"), "{verdict}");
+            assert!(verdict.contains("2 times BSF") && !verdict.contains(" and a defect"), "{verdict}");
+            // Without the cage in them, they are the raceway's.
+            let families = vec![
+                found(Defect::Bpfo, 96.0048, measured_hz),
+                found(Defect::Bsf, 48.0104, 0.5 * measured_hz),
+            ];
+            let families = decide(shared_out(families, 1.0, false), None, false);
+            assert!(families[0].claimed && !families[1].claimed, "{families:?}");
+        }
+        // Lines of their own are not shared.
+        let apart = vec![found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 52.2)];
+        let apart = shared_out(apart, 1.25, true);
+        assert!(apart.iter().all(|family| family.reason == Reason::Undecided), "{apart:?}");
+    }
+}

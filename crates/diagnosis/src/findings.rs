@@ -1,0 +1,81 @@
+//! The numbers of an analysis, under stable names.
+
+use serde::Serialize;
+
+use crate::record::zone;
+use crate::{AccelerationUnit, Family, Health, Unexplained};
+
+/// Contents of `findings.json`. A number that the record cannot yield is `null`, with the reason in `notes`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeasuredFindings {
+    /// The channel.
+    pub channel: String,
+    /// Its unit, if known.
+    pub unit: Option<String>,
+    /// Sample rate [Hz].
+    pub rate_hz: f64,
+    /// Samples read.
+    pub samples: u64,
+    /// Length of the record [s].
+    pub duration_s: f64,
+    /// Speed of the shaft that was taken [1/min].
+    pub speed_rpm: Option<f64>,
+    /// The user's speed, where the lines of the shaft correct it [1/min].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_given_rpm: Option<f64>,
+    /// Uncertainty of a speed that was found in the record alone [1/min].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_uncertainty_rpm: Option<f64>,
+    /// The bearing, in words.
+    pub bearing: Option<String>,
+    /// Resolution of the envelope spectra: one over the length of a segment [Hz].
+    pub resolution_hz: f64,
+    /// Segments averaged.
+    pub segments: usize,
+    /// Numbers that describe the signal as a whole.
+    pub health: Health,
+    /// Root mean square of the velocity from 10 to 1000 Hz [mm/s], for accelerations in m/s² or g.
+    pub velocity_mm_s: Option<f64>,
+    /// Its zone by ISO 20816-3, where group and foundation of the machine are known.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub zone: Option<zone::Zoned>,
+    /// The defect families; none without speed and bearing.
+    pub families: Vec<Family>,
+    /// A comb that knocks, is no family's of this bearing, and stands higher than all that are.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unexplained: Option<Unexplained>,
+    /// The conclusion in one sentence.
+    pub verdict: String,
+    /// Length of a spall, from two events a passage [mm].
+    pub spall_mm: Option<Interval>,
+    /// Length of a spall longer than half of the distance of two elements, whose exit and the entry of the
+    /// next element are as far apart as these events [mm].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spall_otherwise_mm: Option<Interval>,
+    /// Time between these events [ms].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub event_spacing_ms: Option<f64>,
+    /// Where a passage has a single event: the spall is shorter than this, if entry and exit both knock [mm].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub spall_below_mm: Option<f64>,
+    /// Limits of the conclusion.
+    pub notes: Vec<String>,
+}
+
+impl MeasuredFindings {
+    /// The unit of the channel; `None` where it is unknown, or not an acceleration.
+    pub fn acceleration_unit(&self) -> Option<AccelerationUnit> {
+        self.unit.as_deref().and_then(AccelerationUnit::parse)
+    }
+}
+
+/// A value with its interval of 90 %.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Interval {
+    /// Best estimate.
+    pub value: f64,
+    /// Lower end.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+}

@@ -1,0 +1,142 @@
+//! The speed that an analysis takes: the one that was given, corrected by the lines of the record, or found in
+//! it.
+
+use stribeck_dsp::BandEnvelope;
+
+use crate::Machine;
+use crate::record::pass::Record;
+use crate::speed::{estimate, shaft};
+
+/// The speed, and where it is from.
+pub(crate) struct Settled {
+    /// The machine at this speed.
+    pub(crate) machine: Machine,
+    /// The speed before its correction [1/min].
+    pub(crate) given_rpm: Option<f64>,
+    /// The lines of the record correct the speed.
+    pub(crate) is_corrected: bool,
+    /// Uncertainty of a speed that was found in the record alone [1/min].
+    pub(crate) uncertainty_rpm: Option<f64>,
+    /// The speed by the lines of the record [Hz].
+    pub(crate) lines_hz: Option<f64>,
+    /// The lines of the shaft stand at this speed, so that only slip can move a family.
+    pub(crate) by_shaft: bool,
+    /// What the record says of the speed.
+    pub(crate) notes: Vec<String>,
+}
+
+impl Settled {
+    /// The speed of a machine, by a record.
+    pub(crate) fn of(record: &Record, machine: &Machine) -> Self {
+        let Record { kept, rate_hz, bands, .. } = record;
+        let (estimate, found_note) = found_speed(kept, *rate_hz, bands, machine).unzip();
+        let found = estimate.filter(|estimate| estimate.is_accepted);
+        let taken = Machine {
+            speed_rpm: machine.speed_rpm.or(found.map(|found| 60.0 * found.hz)),
+            speed_is_exact: machine.speed_is_exact || found.is_some(),
+            ..machine.clone()
+        };
+        let shaft = shaft_by_lines(kept, *rate_hz, &taken);
+        let lines = by_lines(shaft, kept, *rate_hz, bands, &taken);
+        let correction = lines.and_then(|lines| Some((lines.hz, lines.correction(&taken)?)));
+        let (corrected_hz, corrected_note) = correction.unzip();
+        Self {
+            given_rpm: taken.speed_rpm,
+            is_corrected: corrected_hz.is_some(),
+            uncertainty_rpm: found.map(|found| 60.0 * found.uncertainty_hz),
+            lines_hz: lines.map(|lines| lines.hz),
+            by_shaft: shaft.is_some_and(|shaft| shaft.is_distinct()),
+            notes: found_note.into_iter().chain(corrected_note).collect(),
+            machine: Machine {
+                speed_rpm: corrected_hz.map_or(taken.speed_rpm, |hz| Some(60.0 * hz)),
+                ..taken
+            },
+        }
+    }
+}
+
+/// A speed found by the lines of a record.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct SpeedByLines {
+    pub(crate) hz: f64,
+    pub(crate) uncertainty_hz: f64,
+    /// Which lines.
+    pub(crate) by: &'static str,
+}
+
+impl SpeedByLines {
+    /// The note on the speed where it corrects a given one.
+    fn correction(self, machine: &Machine) -> Option<String> {
+        let rpm = machine.speed_rpm?;
+        shaft::is_correction(self.hz, rpm / 60.0).then_some(())?;
+        Some(format!(
+            "{} stand at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were given, and are taken",
+            self.by,
+            60.0 * self.hz,
+            60.0 * self.uncertainty_hz,
+            100.0 * (60.0 * self.hz / rpm - 1.0)
+        ))
+    }
+}
+
+/// The speed by the lines of the shaft, or, where these do not decide, by those of shaft and bearing
+/// together. An exact one is only refined.
+fn by_lines(
+    shaft: Option<shaft::Shaft>,
+    samples: &[f64],
+    rate_hz: f64,
+    bands: &[BandEnvelope],
+    machine: &Machine,
+) -> Option<SpeedByLines> {
+    let given_hz = machine.speed_rpm.filter(|rpm| *rpm > 0.0)? / 60.0;
+    if let Some(shaft) = shaft.filter(|shaft| shaft.is_distinct()) {
+        let lines =
+            SpeedByLines { hz: shaft.hz, uncertainty_hz: shaft.uncertainty_hz, by: "the lines of the shaft" };
+        return Some(lines)
+            .filter(|lines| !(machine.speed_is_exact && shaft::is_correction(lines.hz, given_hz)));
+    }
+    let asked = !machine.speed_is_exact && machine.outer_speed_rpm == 0.0;
+    let bearing = machine.bearing.as_ref().filter(|_| asked)?;
+    samples.iter().all(|x| x.is_finite()).then_some(())?;
+    let found =
+        estimate::near(samples, rate_hz, bands, bearing, given_hz).filter(|found| found.is_accepted)?;
+    let by = "the lines of the shaft and of the bearing together";
+    Some(SpeedByLines { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
+}
+
+/// The speed by shaft and bearing together, where the user gives none; a note where it is not found.
+fn found_speed(
+    samples: &[f64],
+    rate_hz: f64,
+    bands: &[BandEnvelope],
+    machine: &Machine,
+) -> Option<(estimate::SpeedEstimate, String)> {
+    let bearing = machine.bearing.as_ref().filter(|_| machine.speed_rpm.is_none())?;
+    samples.iter().all(|x| x.is_finite()).then_some(())?;
+    let found = estimate::without_any_given(samples, rate_hz, bands, bearing)?;
+    let (rpm, next_rpm, lead) = (60.0 * found.hz, 60.0 * found.next_hz, found.lead);
+    let note = if found.is_accepted {
+        format!(
+            "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} \
+             rpm, of all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} \
+             behind in the logarithm of the likelihood, where {:.0} are asked",
+            60.0 * found.uncertainty_hz,
+            60.0 * estimate::FROM_HZ,
+            60.0 * estimate::TO_HZ,
+            estimate::LEAST_LEAD
+        )
+    } else {
+        format!(
+            "the record does not determine the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain \
+             about as much of it"
+        )
+    };
+    Some((found, note))
+}
+
+/// The shaft by its lines, where a speed is given and the outer ring stands still.
+fn shaft_by_lines(samples: &[f64], rate_hz: f64, machine: &Machine) -> Option<shaft::Shaft> {
+    let rpm = machine.speed_rpm.filter(|rpm| *rpm > 0.0 && machine.outer_speed_rpm == 0.0)?;
+    samples.iter().all(|x| x.is_finite()).then_some(())?;
+    shaft::near(samples, rate_hz, rpm / 60.0)
+}
