@@ -314,9 +314,13 @@ impl Film {
     /// Takes the film to this moment.
     fn evaluate(&mut self, surfaces: &[Surface], at: &Moment<'_>, preload: bool) {
         self.pushed.heat = 0.0;
-        let mut settle = preload;
+        let (mut settle, mut moved) = (preload, 0.0);
         if preload || at.step >= self.memory.next_look {
+            // The force does half of the work of the step up to here at the points that it leaves, and half at
+            // those that it comes to.
+            let left = self.gap_half_a_step_ago(at);
             settle |= self.look(surfaces, at);
+            moved = self.gap_half_a_step_ago(at) - left;
         } else if self.memory.fixed {
             return;
         }
@@ -327,6 +331,7 @@ impl Film {
             (*layer, *pushed) = law.settled(gap, memory.speed, memory.share);
         } else {
             *pushed = law.flow(layer, gap, memory.speed, memory.share, at.dt);
+            pushed.heat += pushed.force * moved;
         }
         memory.fixed = pushed.fixed;
     }
@@ -339,6 +344,13 @@ impl Film {
             gap += x * at.x[n as usize] + y * at.y[n as usize];
         }
         gap
+    }
+
+    /// The gap between the two points in the middle of the last step [m].
+    fn gap_half_a_step_ago(&self, at: &Moment<'_>) -> f64 {
+        let ends = self.nodes.iter().zip(&self.memory.shares);
+        let opens = ends.map(|(&n, [x, y])| x * at.vx[n as usize] + y * at.vy[n as usize]);
+        self.gap(at) - 0.5 * at.dt * opens.sum::<f64>()
     }
 }
 
