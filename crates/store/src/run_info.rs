@@ -200,12 +200,13 @@ impl EnergyInfo {
     }
 }
 
-/// An energy imbalance in words: relative to the heat where that exceeds the peak strain energy, because the
-/// error of the steps grows with the heat; else relative to the peak strain energy.
+/// An energy imbalance in words: relative to the peak strain energy, and before that to the heat where this is
+/// more, because the error of the steps grows with the heat.
 pub fn imbalance(of_strain: f64, of_heat: Option<f64>) -> String {
+    let of_strain = format!("{:.3} % of the peak strain energy", 100.0 * of_strain);
     match of_heat {
-        Some(share) => format!("{:.3} % of the heat", 100.0 * share),
-        None => format!("{:.3} % of the peak strain energy", 100.0 * of_strain),
+        Some(share) => format!("{:.3} % of the heat ({of_strain})", 100.0 * share),
+        None => of_strain,
     }
 }
 
@@ -234,6 +235,12 @@ pub struct GuardInfo {
     /// Farthest that the cage's centre has been from that of the outer ring [m].
     #[serde(default)]
     pub cage_offset_m: f64,
+    /// Largest force with which it has pushed a roller [N].
+    pub cage_push_n: f64,
+    /// Time, up to the last sample, in which it has turned at less than half its speed [s].
+    pub cage_slow_s: f64,
+    /// Longest such time [s].
+    pub longest_cage_slow_s: f64,
 }
 
 impl Default for GuardInfo {
@@ -248,6 +255,9 @@ impl Default for GuardInfo {
             unsupported_samples: 0,
             longest_unsupported_s: 0.0,
             cage_offset_m: 0.0,
+            cage_push_n: 0.0,
+            cage_slow_s: 0.0,
+            longest_cage_slow_s: 0.0,
         }
     }
 }
@@ -287,9 +297,13 @@ mod tests {
             heat_j,
         };
         assert_eq!(energy(2e-3, 0.5, 0.1).in_words(), "0.200 % of the peak strain energy");
-        assert_eq!(energy(2e-3, 0.5, 5.0).in_words(), "0.020 % of the heat");
+        assert_eq!(
+            energy(2e-3, 0.5, 5.0).in_words(),
+            "0.020 % of the heat (0.200 % of the peak strain energy)"
+        );
         assert_eq!(energy(2e-3, 0.5, 5.0).of_larger(), 2e-4);
-        assert_eq!(energy(440.0, 1e-3, 100.0).in_words(), "0.440 % of the heat");
+        let both = "0.440 % of the heat (44000.000 % of the peak strain energy)";
+        assert_eq!(energy(440.0, 1e-3, 100.0).in_words(), both);
     }
 
     #[test]

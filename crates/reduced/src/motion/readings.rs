@@ -134,6 +134,19 @@ impl BearingInMotion {
         self.bearing.cage.as_ref().map(|_| [x, y])
     }
 
+    /// Angular velocity of the cage in the last step [rad/s], counter-clockwise positive.
+    pub fn cage_rad_s(&self) -> f64 {
+        self.saved.state.cage_velocity[2]
+    }
+
+    /// Largest force of the cage on a roller [N], mean over the interval.
+    pub fn largest_cage_force(&self) -> f64 {
+        let square =
+            |[x, y]: &Rows| (0..LANES).map(|lane| x[lane].powi(2) + y[lane].powi(2)).fold(0.0, f64::max);
+        let most = self.scratch.blocks.iter().map(|block| square(&block.sums[2])).fold(0.0, f64::max);
+        most.sqrt() / self.scratch.summed as f64
+    }
+
     /// Force of the housing on the outer ring that sits in it [N].
     pub fn seat(&self) -> Option<[f64; 2]> {
         let at_rest = self.bearing.reduction.seat?;

@@ -14,7 +14,7 @@
 //! ([`arm`]).
 
 use crate::bearing::assembly::{Assembly, BearingSystem};
-use crate::run::guards::{self, OUT_OF_PLACE, Placed, When};
+use crate::run::guards::{self, OUT_OF_PLACE, Placed, PlacedCage, When, largest};
 use stribeck_scene::{resolved::ResolvedScene, scene::GuardsScene};
 use stribeck_solver::Elastic;
 use stribeck_store::run_info::{RunInfo, Topic, Warning};
@@ -118,12 +118,18 @@ impl Guards {
         for (place, roller) in self.placed.centres.iter_mut().zip(&bearing.rollers) {
             *place = from_ring(system.position(roller.centre));
         }
-        self.placed.cage = bearing.cage.map(|cage| from_ring(centre(system, cage)));
+        let pockets = bearing.pairs.cage(0).start..bearing.pairs.cage(bearing.rollers.len()).start;
+        let pushes = system.resultants().skip(pockets.start).take(pockets.len());
+        self.placed.cage = bearing.cage.map(|cage| PlacedCage {
+            offset: from_ring(centre(system, cage)),
+            spin: system.rigid(cage).map_or(0.0, |cage| cage.spin),
+            push: largest(pushes.map(|wall| wall.force)),
+        });
         let by_contact = system.resultants().skip(bearing.pairs.outer(0)).take(bearing.rollers.len());
         // Of each roller on the outer and on the inner raceway in turn.
         let by_oil = system.films().step_by(2);
         let forces = by_contact.map(|pair| pair.force).chain(by_oil.map(|film| film.force));
-        self.placed.carries = forces.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max);
+        self.placed.carries = largest(forces);
         self.placed.penetration_share = system.seen().penetration_share;
     }
 

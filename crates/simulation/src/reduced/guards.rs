@@ -1,6 +1,6 @@
 //! Guards of a reduced run besides [the guards of all models](crate::run::guards): energy and penetration.
 
-use crate::run::guards::{self, Placed, When};
+use crate::run::guards::{self, Placed, PlacedCage, When};
 use stribeck_reduced::{bearing::Bearing, motion::BearingInMotion};
 use stribeck_scene::{resolved::ResolvedScene, scene::GuardsScene};
 use stribeck_store::run_info::{RunInfo, Topic, Warning};
@@ -133,7 +133,11 @@ impl Guards {
         centres.clear();
         centres.extend(bearing.centres());
         *carries = bearing.largest_outer_force();
-        *cage = bearing.cage_offset();
+        *cage = bearing.cage_offset().map(|offset| PlacedCage {
+            offset,
+            spin: bearing.cage_rad_s(),
+            push: bearing.largest_cage_force(),
+        });
         *penetration_share = bearing.deepest() / self.element_size;
     }
 
@@ -164,7 +168,7 @@ impl Guards {
 
     /// Advice for a run that diverges.
     fn advice(&self) -> String {
-        let astray = self.placed.cage.map_or(0.0, |[x, y]| x.hypot(y));
+        let astray = self.placed.cage.map_or(0.0, |cage| cage.offset[0].hypot(cage.offset[1]));
         if astray > ASTRAY * self.roller_radius {
             return format!(
                 "The cage has strayed by {:.2} mm, and a wall of a pocket that goes past the middle of its \

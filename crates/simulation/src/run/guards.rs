@@ -7,6 +7,9 @@
 //! | time without a loaded roller | `unsupported_warning_ms` | |
 //! | rollers out of the space between the raceways | | [`OUT_OF_PLACE`] |
 //! | the cage's offset over its clearance to the raceways | above 1 | a cage's thickness beyond |
+//! | the cage's offset over the clearance of its pockets | above [`OUT_OF_POCKETS`] | |
+//! | the cage's force on a roller over the load | above 1 | |
+//! | time in which the cage turns at less than half its speed, over that from roller to roller | above 1 | |
 //!
 //! The fields are those of `guards` in the scene. Energy, penetration over element size and other limits that
 //! depend on the model are watched by the model. A warning is issued once, at the first sample above its
@@ -15,10 +18,14 @@
 
 mod softness;
 
-use std::fmt::{self, Display, Formatter};
+use std::{
+    f64::consts::TAU,
+    fmt::{self, Display, Formatter},
+};
 
 use stribeck_scene::{advice, resolved::ResolvedScene};
 use stribeck_store::run_info::{RunInfo, Topic};
+use stribeck_theory::duty::Duty;
 
 use softness::Softness;
 
@@ -29,6 +36,12 @@ pub const OUT_OF_PLACE: f64 = 0.5;
 /// A roller carries something above this share of the load.
 const CARRIES: f64 = 1e-3;
 
+/// A cage that is off its place by this many times the clearance of its pockets is guided by nothing.
+pub const OUT_OF_POCKETS: f64 = 10.0;
+
+/// A cage below this share of its speed without slip slides.
+const SLOW: f64 = 0.5;
+
 /// Positions of rollers and cage at a sample, and the largest load.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Placed {
@@ -36,10 +49,21 @@ pub struct Placed {
     pub centres: Vec<[f64; 2]>,
     /// Largest force of the outer raceway on a roller, by contact or oil [N].
     pub carries: f64,
-    /// Centre of the cage from that of the outer ring [m], if there is a cage.
-    pub cage: Option<[f64; 2]>,
+    /// The cage, if there is one.
+    pub cage: Option<PlacedCage>,
     /// Deepest penetration so far over the element size [-].
     pub penetration_share: f64,
+}
+
+/// Place, speed and largest force of a cage at a sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PlacedCage {
+    /// Its centre from that of the outer ring [m].
+    pub offset: [f64; 2],
+    /// Its angular velocity in space [rad/s], counter-clockwise positive.
+    pub spin: f64,
+    /// Its largest force on a roller [N].
+    pub push: f64,
 }
 
 /// The limits of one run.
@@ -54,19 +78,29 @@ pub struct Guards {
     /// Smallest and largest distance of a roller's centre from that of the outer ring [m].
     annulus: [f64; 2],
     cage: Option<CageRoom>,
+    duty: Duty,
+    /// Largest load of the run [N].
+    load: f64,
     /// What guides the cage in this scene, in words.
     holds_cage: String,
     /// The field that shortens the time step, as messages name it.
     step_field: &'static str,
 }
 
-/// How far a cage may move between the raceways, with which the models have no contact of it.
+/// How far a cage may move between the raceways, with which the models have no contact of it, and in its
+/// pockets.
 #[derive(Debug, Clone, Copy)]
 struct CageRoom {
     /// Until it touches a raceway [m]; infinite where its dimensions leave it no room from the start.
-    warning: f64,
+    touches: f64,
     /// Until its whole thickness lies in a ring [m]; the pitch radius at most.
     stop: f64,
+    /// Clearance of its pockets [m].
+    pockets: f64,
+    /// Its speed over that of the inner ring, both relative to the outer one, without slip [-].
+    share: f64,
+    /// Angle from roller to roller [rad].
+    spacing: f64,
 }
 
 impl CageRoom {
@@ -75,11 +109,19 @@ impl CageRoom {
         let inside = cage.outer_radius - cage.thickness - scene.inner_race_radius;
         let room = (scene.outer_race_radius - cage.outer_radius).min(inside);
         let pitch_radius = 0.5 * (scene.inner_race_radius + scene.outer_race_radius);
-        Some(if room > 0.0 {
-            Self { warning: room, stop: (room + cage.thickness).min(pitch_radius) }
+        let [touches, stop] = if room > 0.0 {
+            [room, (room + cage.thickness).min(pitch_radius)]
         } else {
-            Self { warning: f64::INFINITY, stop: pitch_radius }
-        })
+            [f64::INFINITY, pitch_radius]
+        };
+        let share = scene.inner_race_radius / (scene.inner_race_radius + scene.outer_race_radius);
+        let spacing = TAU / scene.written.bearing.rollers as f64;
+        Some(Self { touches, stop, pockets: cage.pocket_clearance, share, spacing })
+    }
+
+    /// Offset above which there is a warning [m].
+    fn warning(&self) -> f64 {
+        self.touches.min(OUT_OF_POCKETS * self.pockets)
     }
 }
 
@@ -99,6 +141,8 @@ impl Guards {
                 scene.outer_race_radius - radius + depth + slack,
             ],
             cage: CageRoom::of(scene),
+            load: scene.duty.load_range_n(scene.duration)[1],
+            duty: scene.duty.clone(),
             holds_cage: advice::holds_cage(&scene.written),
             step_field,
         }
@@ -164,9 +208,11 @@ impl Guards {
         None
     }
 
-    fn cage(&self, info: &mut RunInfo, [x, y]: [f64; 2], when: &When) -> Option<String> {
+    fn cage(&self, info: &mut RunInfo, cage: PlacedCage, when: &When) -> Option<String> {
         let room = self.cage?;
-        let off = x.hypot(y);
+        self.jam(info, cage.push, when);
+        self.slip(info, &room, cage.spin, when);
+        let off = cage.offset[0].hypot(cage.offset[1]);
         let before = info.guards.cage_offset_m;
         info.guards.cage_offset_m = before.max(off);
         if off > room.stop {
@@ -178,23 +224,68 @@ impl Guards {
                 self.holds_cage
             ));
         }
-        if off > room.warning && before <= room.warning {
+        if off > room.warning() && before <= room.warning() {
             info.warn(Topic::Motion.warning(format!(
-                "the cage has strayed by {:.2} mm {when}, and between the raceways it has {} mm of room: a \
-                 real one would rub on a ring, which the model does not have. To hold it, take {}",
+                "the cage has strayed by {:.2} mm {when}, with {:.0} µm of clearance in its pockets and {} mm \
+                 of room between the raceways: a real one would be stopped by its pockets or rub on a ring, \
+                 which the model does not have. To hold it, take {}",
                 1e3 * off,
+                1e6 * room.pockets,
                 room.in_words(),
                 self.holds_cage
             )));
         }
         None
     }
+
+    /// A cage that pushes a roller with more than the bearing's load has jammed it.
+    fn jam(&self, info: &mut RunInfo, push: f64, when: &When) {
+        let before = info.guards.cage_push_n;
+        info.guards.cage_push_n = before.max(push);
+        if push > self.load && before <= self.load {
+            info.warn(Topic::Motion.warning(format!(
+                "the cage pushes a roller with {:.1} kN {when}, more than the load of {:.1} kN: a roller has \
+                 jammed between its pocket and a raceway or the edge of a defect, and what follows is no \
+                 motion of a bearing. Take a larger `cage.pocket_clearance_um`, edges that slope, or `cage: \
+                 None`",
+                1e-3 * push,
+                1e-3 * self.load
+            )));
+        }
+    }
+
+    /// A cage that turns at less than half its speed for longer than it should take from roller to roller.
+    fn slip(&self, info: &mut RunInfo, room: &CageRoom, spin: f64, when: &When) {
+        let [from, to] = [when.time - info.interval_s, when.time];
+        let outer = self.duty.mean_outer_rad_s(from, to);
+        let expected = room.share * (self.duty.mean_shaft_rad_s(from, to) - outer);
+        let is_slow = (spin - outer) * expected < SLOW * expected * expected;
+        let seen = &mut info.guards;
+        seen.cage_slow_s = if is_slow { seen.cage_slow_s + info.interval_s } else { 0.0 };
+        let is_long = |time: f64| time * expected.abs() > room.spacing;
+        let is_new = is_long(seen.cage_slow_s) && !is_long(seen.longest_cage_slow_s);
+        seen.longest_cage_slow_s = seen.longest_cage_slow_s.max(seen.cage_slow_s);
+        if is_new {
+            info.warn(Topic::Motion.warning(format!(
+                "the cage turns at {:.0} % of its speed without slip {when}, and has been below half of it \
+                 for longer than from one roller to the next: rollers slide, and families of a defect lie \
+                 lower than predicted or nowhere. Take more `operation.load_n` or `contact.friction`, or look \
+                 for a roller that has jammed",
+                100.0 * (spin - outer) / expected
+            )));
+        }
+    }
 }
 
 impl CageRoom {
     fn in_words(&self) -> String {
-        if self.warning.is_finite() { format!("{:.2}", 1e3 * self.warning) } else { "no".to_owned() }
+        if self.touches.is_finite() { format!("{:.2}", 1e3 * self.touches) } else { "no".to_owned() }
     }
+}
+
+/// The largest of forces [N].
+pub fn largest(forces: impl Iterator<Item = [f64; 2]>) -> f64 {
+    forces.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max)
 }
 
 /// Time of an observation, formatted only for the few samples that need a message.
@@ -223,8 +314,59 @@ mod tests {
     use std::path::Path;
 
     use stribeck_scene::scene::Scene;
+    use stribeck_store::run_info::MeshInfo;
+
+    use crate::run::{host::Host, setup::Setup};
 
     use super::*;
+
+    /// `run.json` before the first step of a run with one step a sample.
+    fn started(scene: &ResolvedScene) -> RunInfo {
+        let setup = Setup {
+            time_step: scene.interval,
+            critical_time_step: scene.interval,
+            steps_per_sample: 1,
+            mesh: MeshInfo::default(),
+            reduced: None,
+            wall_s: 0.0,
+            carried_mass: 0.0,
+            notes: Vec::new(),
+            warnings: Vec::new(),
+        };
+        let [version, commit, machine] = [const { String::new() }; 3];
+        let clock = || 0.0;
+        setup.info(scene, &Host { threads: 1, version, commit, machine, wall_s: &clock, cpu_s: &clock })
+    }
+
+    /// A cage with 40 µm of clearance strayed by 0.75 mm in 30 ms, one that a roller had jammed pushed with 1 MN
+    /// and stood still, and no run said so.
+    #[test]
+    fn issue_a_cage_that_strays_jams_or_stops_is_warned_of_once() {
+        let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/scenes/singh2014.ron");
+        let scene = Scene::read(scene).expect("the paper's scene").resolve();
+        let guards = Guards::new(&scene, "`model.step_us`");
+        // Without slip it turns at 23.59 rad/s, clockwise, and from roller to roller in 11.1 ms.
+        let rolling = PlacedCage { offset: [0.2e-3, -0.2e-3], spin: -23.6, push: 40e3 };
+        let warned = |cage: PlacedCage, samples: u64| {
+            let mut info = started(&scene);
+            for step in 1..=samples {
+                info.steps = step;
+                let when = When::of(&info);
+                assert_eq!(guards.cage(&mut info, cage, &when), None);
+            }
+            info.warnings
+        };
+        assert_eq!(warned(rolling, 2000), [""; 0]);
+        for (cage, says) in [
+            (PlacedCage { offset: [0.3e-3, 0.3e-3], ..rolling }, "the cage has strayed by 0.42 mm"),
+            (PlacedCage { push: 1e6, ..rolling }, "the cage pushes a roller with 1000.0 kN"),
+            (PlacedCage { spin: -2.0, ..rolling }, "the cage turns at 8 % of its speed"),
+        ] {
+            let warnings = warned(cage, 2000);
+            assert!(warnings.len() == 1 && warnings[0].starts_with(says), "{warnings:?}");
+        }
+        assert_eq!(warned(PlacedCage { spin: 0.0, ..rolling }, 1000), [""; 0], "10 ms are no standstill");
+    }
 
     /// The paper's rollers between their raceways, and one just beyond either end of where they may be, or
     /// nowhere.
