@@ -88,7 +88,52 @@ fn least_thickness(
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
+    use crate::{
+        bearing::singh2014::{BEARING, DIMENSIONS},
+        line_contact::LineContacts,
+    };
+
+    /// The film at the paper's outer raceway under 12 kN, and the damper that its wedge is, as THEORY §4.6 prints
+    /// them for both thicknesses: the loss 12 η q²/h³ beside the Hertz contact, by the trapezoidal rule.
+    #[test]
+    fn analytic_numbers_of_theory_on_the_loaded_film() {
+        const ROUNDING: f64 = 0.02;
+        const FORCE: f64 = 12e3;
+        let oil = Oil { viscosity: 0.05, pressure_viscosity: 22e-9, roughness: 0.3e-6 };
+        for (thickness, film_um, steady_nm, stiffer, damper) in
+            [(0.03, 0.51, 14.3, 139.0, 141.0), (0.15, 0.63, 71.4, 27.0, 1640.0)]
+        {
+            let bearing = Bearing { thickness, ..BEARING };
+            let film = loaded_films(bearing, &oil, &Kinematics::new(DIMENSIONS, 500.0), 1.0, FORCE)[0];
+            let (h, w) = (film.thickness, FORCE / thickness);
+            let steady = 4.895 * oil.viscosity * film.speed * film.radius / w;
+            let k = thickness / LineContacts::of(bearing).approach_at(0, w).1;
+            let modulus = bearing.material.contact_modulus();
+            let b = (4.0 * w * film.radius / (PI * modulus)).sqrt();
+            // Over a = arccosh ξ, by which the gap closes.
+            let (step, mut flow, mut loss) = (1e-4, 0.0, 0.0);
+            for n in 0..90_000 {
+                let a = (f64::from(n) + 0.5) * step;
+                let way = b * a.sinh() * step;
+                flow += a * way;
+                let gap = h + b * b / (2.0 * film.radius) * (a.cosh() * a.sinh() - a);
+                loss += 12.0 * oil.viscosity * flow * flow / gap.powi(3) * way;
+            }
+            // ẇ is k over the thickness for each metre a second of approach.
+            let found = loss * (2.0 / (PI * modulus) * k).powi(2) / thickness;
+            for (ours, printed) in [
+                (1e6 * h, film_um),
+                (1e9 * steady, steady_nm),
+                (w * thickness / (0.13 * h) / k, stiffer),
+                (found, damper),
+            ] {
+                assert!((ours / printed - 1.0).abs() < ROUNDING, "{thickness} m: {ours}, not {printed}");
+            }
+        }
+    }
 
     /// B. J. Hamrock, S. R. Schmid, B. O. Jacobson, Fundamentals of Fluid Film Lubrication, 2nd ed. 2004, use
     /// the same groups. By hand, for η = 0.04 Pa s, α = 22/GPa, E′ = 228 GPa, R = 11.43 mm, u = 2 m/s and w =
