@@ -11,7 +11,7 @@
 //!
 //! The contact is metallic where the film is at its least, which the tips of the roughness or the stiffened
 //! oil of a loaded contact hold (THEORY §4.6), at any time while the roller presses with more than that, and
-//! in a dry bearing; otherwise the oil alone stops the roller.
+//! in a dry bearing; otherwise the oil alone stops the roller. The paper's impact is the metallic one.
 
 use std::ops::Range;
 
@@ -47,11 +47,11 @@ impl FloorContact {
         }
     }
 
-    /// In a sentence after the force.
+    /// What the roller does, in a sentence.
     pub fn in_words(self) -> &'static str {
         match self {
-            Self::Metal => "by metal",
-            Self::Film => "through the oil film",
+            Self::Metal => "strikes the floor",
+            Self::Film => "lands on the oil above the floor",
         }
     }
 }

@@ -212,8 +212,8 @@ quantities! {
         /// Largest |a_y| within 1 ms of the exit at the leading sensor [g]: of the re-stressing, or where the
         /// roller never unloaded, of its recorded centre over the trailing edge.
         pub impulse_g: Option<f64>,
-        /// When the roller presses most on the floor of the defect [ms] (event #2); `None` when it does not
-        /// touch it.
+        /// When the roller presses most on the floor of the defect [ms], through metal (event #2) or oil; `None`
+        /// when neither carries it.
         pub floor_ms: Option<f64>,
         /// Its force then [N].
         pub floor_n: Option<f64>,
@@ -439,6 +439,16 @@ impl Event {
     /// Unloading after the centre would stand over the leading edge without slip [ms].
     pub fn entry_off_ms(&self) -> Option<f64> {
         Some(self.entry_ms? - self.expected_entry_ms)
+    }
+
+    /// When its roller strikes the floor [ms], as in the paper: a landing on oil is no such impact.
+    pub fn impact_ms(&self) -> Option<f64> {
+        self.floor_ms.filter(|_| self.floor_by != Some(FloorContact::Film))
+    }
+
+    /// When its roller lands on the oil above the floor [ms].
+    pub fn landing_ms(&self) -> Option<f64> {
+        self.floor_ms.filter(|_| self.floor_by == Some(FloorContact::Film))
     }
 
     /// When its roller left the spall [ms]: by its force, or else by its path.

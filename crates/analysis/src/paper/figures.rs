@@ -119,7 +119,7 @@ pub fn shown(summary: &Summary, sensor: &SensorLevels) -> Vec<Shown> {
     };
     all.extend([
         happens("#1, the roller unloads", seen(|e| e.entry_ms.is_some())),
-        happens("#2, the roller strikes the floor", seen(|e| e.floor_ms.is_some())),
+        happens("#2, the roller strikes the floor", seen(|e| e.impact_ms().is_some())),
         happens("#3, it carries for a neighbour", seen(|e| e.compensation_ms.is_some())),
         happens("#4, it is loaded again", seen(|e| e.exit_ms.is_some())),
     ]);

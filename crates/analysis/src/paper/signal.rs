@@ -365,15 +365,19 @@ fn events(source: &RowInputs<'_>) -> Vec<PaperRow> {
         "",
         "those that enter within the record",
     )];
-    let struck = events.iter().filter(|event| event.floor_ms.is_some()).count();
+    let struck = events.iter().filter(|event| event.impact_ms().is_some()).count();
+    let on_oil = match events.iter().filter(|event| event.landing_ms().is_some()).count() {
+        0 => String::new(),
+        landings => format!("; {landings} land on oil"),
+    };
     rows.push(
         words(
             EVENTS,
             "Rollers that strike its floor, event #2",
             "indicated in Fig. 8",
-            format!("{struck} of {}", events.len()),
+            format!("{struck} of {}{on_oil}", events.len()),
             "–",
-            "with more than twice their centrifugal force and weight (THEORY §7.4)",
+            "by metal, with more than twice their centrifugal force and weight (THEORY §7.4)",
         )
         .telling(Some(struck as f64), ""),
     );
@@ -409,10 +413,10 @@ fn events(source: &RowInputs<'_>) -> Vec<PaperRow> {
     rows
 }
 
-/// When and how a roller strikes the floor.
+/// When a roller strikes the floor or lands on the oil above it.
 fn floor(event: &Event) -> String {
     let touch = event.floor_ms.zip(event.floor_n).zip(event.floor_by);
     touch.map_or("no touch of the floor".into(), |((at_ms, force_n), by)| {
-        format!("{at_ms:.2} ms ({force_n:.0} N {})", by.in_words())
+        format!("{} at {at_ms:.2} ms, {force_n:.0} N", by.in_words())
     })
 }

@@ -7,8 +7,7 @@ use stribeck_scene::scene::ModelScene;
 use super::tables::{decimals, mean, shown};
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
 use stribeck_analysis::quantity::Quantity;
-use stribeck_analysis::statistic::Statistic;
-use stribeck_analysis::summary::Summary;
+use stribeck_analysis::summary::{Event, Summary};
 
 /// The first paragraphs of the page.
 pub(super) fn paragraphs(findings: &EnsembleFindings) -> Markup {
@@ -19,7 +18,7 @@ pub(super) fn paragraphs(findings: &EnsembleFindings) -> Markup {
             p { strong { "Calibrated. " } (calibrated(&findings.scene, of_paper)) }
             p { strong { "Predicted. " } (predicted(summary)) }
             p { strong { "Scatter of starts. " } (scatter(summary)) }
-            p { strong { "Events. " } (events(summary)) }
+            p { strong { "Events. " } (events(findings)) }
         }
     }
 }
@@ -138,23 +137,26 @@ fn scatter(summary: &EnsembleSummary) -> String {
 }
 
 /// The share of starts that have each event, by roller.
-fn events(summary: &EnsembleSummary) -> String {
+fn events(findings: &EnsembleFindings) -> String {
+    let summary = &findings.summary;
     let events = summary.ensemble.items("events");
     if events.is_empty() {
         return "No roller crosses a defect.".into();
     }
     let complete = summary.count(Ended::Complete);
-    let kinds = [
-        ("entry_ms", "unloads (#1)"),
-        ("floor_ms", "touches the floor (#2)"),
-        ("compensation_ms", "carries for a neighbour (#3)"),
-        ("exit_ms", "is loaded again (#4)"),
+    let kinds: [(fn(&Event) -> Option<f64>, &str); 5] = [
+        (|e| e.entry_ms, "unloads (#1)"),
+        (Event::impact_ms, "strikes the floor (#2)"),
+        (Event::landing_ms, "lands on oil there"),
+        (|e| e.compensation_ms, "carries for a neighbour (#3)"),
+        (|e| e.exit_ms, "is loaded again (#4)"),
     ];
     let of_roller = |event: &Merged| {
-        let count = |path: &str| event.number(path).map_or(0, |s: &Statistic| s.count);
+        let roller = super::tables::roller(event);
+        let count = |of| findings.over_events(&roller, of).map_or(0, |s| s.count);
         let said: Vec<String> =
-            kinds.iter().map(|(path, words)| format!("{words} in {}", count(path))).collect();
-        format!("roller {} {}", super::tables::roller(event), said.join(", "))
+            kinds.iter().map(|(of, words)| format!("{words} in {}", count(*of))).collect();
+        format!("roller {roller} {}", said.join(", "))
     };
     let rollers: Vec<String> = events.iter().take(3).map(of_roller).collect();
     format!("Of {complete} starts: {}.", rollers.join("; "))

@@ -106,16 +106,17 @@ pub(super) fn levels(findings: &EnsembleFindings) -> Option<Picture> {
 /// A time of an event [ms].
 type Time = fn(&Event) -> Option<f64>;
 
-/// When each roller unloads, touches the floor and is loaded again.
+/// When each roller unloads, strikes the floor or lands on oil there, and is loaded again.
 pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
     const LEFT: f64 = 190.0;
     const RIGHT: f64 = 24.0;
     const TOP: f64 = 40.0;
     const BELOW: f64 = 50.0;
     const LANE: f64 = 34.0;
-    const KINDS: [(&str, Colour, Time); 3] = [
+    const KINDS: [(&str, Colour, Time); 4] = [
         ("#1 unloads", Colour::Orange, |e| e.entry_ms),
-        ("#2 touches the floor", Colour::Purple, |e| e.floor_ms),
+        ("#2 strikes the floor", Colour::Purple, Event::impact_ms),
+        ("lands on oil there", Colour::Blue, Event::landing_ms),
         ("#4 is loaded again", Colour::Green, |e| e.exit_ms),
     ];
     let (_, first) = findings.complete.first()?;
@@ -176,9 +177,11 @@ pub(super) fn story(findings: &EnsembleFindings, roller: usize) -> String {
         findings.over_events(&roller.to_string(), what).map_or(0, |s| s.count)
     };
     format!(
-        "It unloads in {} of {of} starts, touches the floor in {} and is loaded again in {}.",
+        "It unloads in {} of {of} starts, strikes the floor in {}, lands on oil there in {} and is loaded \
+         again in {}.",
         count(|e| e.entry_ms),
-        count(|e| e.floor_ms),
+        count(Event::impact_ms),
+        count(Event::landing_ms),
         count(|e| e.exit_ms)
     )
 }

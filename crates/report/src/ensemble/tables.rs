@@ -220,6 +220,9 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
         return html! {};
     }
     let count = |event: &Merged, path: &str| event.number(path).map_or(0, |s| s.count);
+    let first = |event: &Merged, of: fn(&Event) -> Option<f64>| {
+        findings.over_events(&roller(event), of).map_or(0, |s| s.count)
+    };
     let of = summary.count(Ended::Complete);
     let off = |event: &Merged, of: fn(&Event) -> Option<f64>| {
         findings.over_events(&roller(event), of).map(|s| mean(&s, 1.0, 3))
@@ -229,8 +232,8 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
             table {
                 thead {
                     tr {
-                        th { "Roller" } th class="n" { "#1 unloads" } th class="n" { "off ms" } th class="n" { "#2 floor" } th class="n" { "at ms" }
-                        th class="n" { "N" } th class="n" { "#3 neighbour" } th class="n" { "gain" } th class="n" { "#4 loaded" }
+                        th { "Roller" } th class="n" { "#1 unloads" } th class="n" { "off ms" } th class="n" { "#2 floor" } th class="n" { "on oil" }
+                        th class="n" { "at ms" } th class="n" { "N" } th class="n" { "#3 neighbour" } th class="n" { "gain" } th class="n" { "#4 loaded" }
                         th class="n" { "off ms" } th class="n" { "Impulse g" }
                     }
                 }
@@ -240,7 +243,8 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
                             td { (roller(event)) }
                             td class="n" { (count(event, "entry_ms")) "/" (of) }
                             (cell(off(event, Event::entry_off_ms)))
-                            td class="n" { (count(event, "floor_ms")) "/" (of) }
+                            td class="n" { (first(event, Event::impact_ms)) "/" (of) }
+                            td class="n" { (first(event, Event::landing_ms)) "/" (of) }
                             (cell(event.number("floor_ms").map(|s| mean(s, 1.0, 2))))
                             (cell(event.number("floor_n").map(|s| mean(s, 1.0, 0))))
                             td class="n" { (count(event, "compensation_ms")) "/" (of) }
@@ -254,9 +258,9 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
             }
         }
         p class="hint" {
-            "Starts that show the event, and means ± 95 % of those. Off: after the centre would stand over \
-             the edge without slip. #3: what the roller carries while a neighbour is in the defect, over \
-             what it carried before."
+            "Starts that show the event, and means ± 95 % of those. On oil: the film stops the roller before \
+             it reaches the floor. Off: after the centre would stand over the edge without slip. #3: what the \
+             roller carries while a neighbour is in the defect, over what it carried before."
         }
     }
 }

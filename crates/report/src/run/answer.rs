@@ -182,20 +182,29 @@ fn other_faults(faults: &[RollingSurface], spalls: &[DefectScene]) -> String {
     format!(" The scene has others, whose families are in the spectra: {}.", others.join("; "))
 }
 
-/// Which rollers touch the floor of a spall. Where no `edges` show in the record nevertheless, the floor
-/// carries the rollers.
+/// Which rollers strike the floor of a spall, and which land on the oil above it. Where no `edges` show in the
+/// record nevertheless, the floor carries the rollers.
 fn floor(events: &[Event], edges: usize) -> String {
-    let floors: Vec<String> =
-        events.iter().filter(|e| e.floor_ms.is_some()).map(|e| e.roller.to_string()).collect();
-    let floor = match floors.len() {
-        0 => "none touches the floor".to_owned(),
-        1 => format!("roller {} touches the floor", floors[0]),
-        many if many > NAMED => format!("{many} times one touches the floor"),
-        _ => format!("rollers {} touch the floor", floors.join(", ")),
+    let named = |at: fn(&Event) -> Option<f64>, [one, several]: [&str; 2]| {
+        let rollers: Vec<String> =
+            events.iter().filter(|e| at(e).is_some()).map(|e| e.roller.to_string()).collect();
+        match rollers.len() {
+            0 => None,
+            1 => Some(format!("roller {} {one}", rollers[0])),
+            many if many > NAMED => Some(format!("{many} times one {one}")),
+            _ => Some(format!("rollers {} {several}", rollers.join(", "))),
+        }
     };
-    match (edges, floors.len()) {
-        (0, 1..) => format!("{floor}: it carries them, and none comes free of half its load"),
-        _ => floor,
+    let struck = named(Event::impact_ms, ["strikes the floor", "strike the floor"]);
+    let landed =
+        named(Event::landing_ms, ["lands on the oil above the floor", "land on the oil above the floor"]);
+    match (&struck, landed) {
+        (None, None) => "none touches the floor".to_owned(),
+        (None, Some(landed)) => format!("none strikes the floor, {landed}"),
+        (Some(struck), _) if edges == 0 => {
+            format!("{struck}: it carries them, and none comes free of half its load")
+        }
+        (Some(struck), landed) => landed.map_or(struck.clone(), |landed| format!("{struck}, {landed}")),
     }
 }
 
@@ -313,4 +322,34 @@ fn trust(summary: &Summary) -> Vec<String> {
 
 fn sensor(summary: &Summary) -> &str {
     summary.levels.sensor.as_deref().unwrap_or("none")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn over(roller: usize, by: Option<&str>) -> Event {
+        let n = by.map(|_| 75.0);
+        let event = serde_json::json!({
+            "roller": roller, "ring": "outer", "expected_entry_ms": 0.8, "expected_exit_ms": 5.1,
+            "floor_ms": by.map(|_| 2.5), "floor_n": n, "floor_by": by,
+        });
+        serde_json::from_value(event).expect("an event")
+    }
+
+    /// A roller that landed on 14.7 µm of oil with 75 N was said to touch the floor, as in the paper.
+    #[test]
+    fn issue_a_landing_on_oil_is_no_strike_of_the_floor() {
+        let events = [over(1, Some("film")), over(24, None), over(23, Some("metal"))];
+        assert_eq!(floor(&events[1..2], 2), "none touches the floor");
+        assert_eq!(
+            floor(&events[..2], 2),
+            "none strikes the floor, roller 1 lands on the oil above the floor"
+        );
+        let both = "roller 23 strikes the floor, roller 1 lands on the oil above the floor";
+        assert_eq!(floor(&events, 2), both);
+        let carried = "roller 23 strikes the floor: it carries them, and none comes free of half its load";
+        assert_eq!(floor(&events, 0), carried);
+        assert_eq!(events.map(|event| event.impact_ms()), [None, None, Some(2.5)]);
+    }
 }

@@ -73,7 +73,8 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
     }
     let events = [
         (event.entry_ms, "#1 unloads"),
-        (event.floor_ms, "#2 strikes the floor"),
+        (event.impact_ms(), "#2 strikes the floor"),
+        (event.landing_ms(), "lands on oil"),
         (event.compensation_ms, "#3 carries for a neighbour"),
         (event.exit_ms, "#4 loaded again"),
     ];
@@ -85,7 +86,8 @@ fn force(findings: &Findings, crossing: &CrossingForce, event: &Event, at: usize
     let time = |ms: Option<f64>| ms.map_or("not at all".into(), |t| format!("at {t:.2} ms"));
     let touch = event.floor_ms.zip(event.floor_n).zip(event.floor_by);
     let floor = touch.map_or("does not touch the floor (#2)".into(), |((t, n), by)| {
-        format!("strikes the floor at {t:.2} ms with {n:.0} N {} (#2)", by.in_words())
+        let number = if by == FloorContact::Metal { " (#2)" } else { "" };
+        format!("{} at {t:.2} ms with {n:.0} N{number}", by.in_words())
     });
     let help = event.compensation_gain.zip(event.compensation_n).map_or(String::new(), |(gain, force_n)| {
         // A share of a force that is next to nothing has no meaning.

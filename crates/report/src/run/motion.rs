@@ -293,7 +293,8 @@ fn named(events: &[Event], time_s: Range<f64>) -> Vec<(f64, String)> {
         let at = |ms: Option<f64>, what: &str| ms.map(|ms| (1e-3 * ms, format!("roller {roller} {what}")));
         [
             at(event.entry_ms, "unloads at the spall"),
-            at(event.floor_ms, "presses on the floor of the spall"),
+            at(event.impact_ms(), "strikes the floor of the spall"),
+            at(event.landing_ms(), "lands on the oil above the floor of the spall"),
             at(event.exit_ms, "is loaded again behind the spall"),
         ]
     };
