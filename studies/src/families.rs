@@ -40,6 +40,7 @@ fn in_a_word(family: &FamilyFinding) -> String {
     match (family.found, family.not_told_apart_from.is_empty(), family.lead) {
         (true, _, _) => "found".into(),
         (_, false, _) => format!("or {}", family.not_told_apart_from.join(" or ").replace('_', " ")),
+        (_, _, Some(lead)) if family.is_open() => format!("open ({lead:.1})"),
         (_, _, Some(lead)) => format!("absent ({lead:.1})"),
         (_, _, None) => "not judged".into(),
     }

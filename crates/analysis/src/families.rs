@@ -23,6 +23,8 @@
 //! where it belongs. Families that lead all detuned combs but not each other are **not resolved**. One that
 //! was found stays in the fit while the others are tried on the residual; there a comb must also lead its own
 //! copies at neighbouring frequencies, because the residual of a fit concentrates about the fitted lines.
+//! A family that was not found is absent only if no line stands [`STANDING_DB`] above its surroundings where
+//! the recorded motion puts its carrier; otherwise the record leaves it open.
 //! Source of the limit, and how often noise reaches it: THEORY §7.7.
 
 mod comb;
@@ -36,6 +38,7 @@ mod trial;
 use serde::{Deserialize, Serialize};
 
 use self::comb::BasebandComb;
+use self::lines::Spectra;
 use self::trial::{Channels, Trial};
 use crate::Error;
 use crate::quantity::quantities;
@@ -44,6 +47,9 @@ use crate::quantity::quantities;
 /// records that were not used to choose it, one false comb in some hundreds leads by it
 /// (docs/results/families.md).
 pub const LEAST_LEAD: f64 = 0.3;
+/// A peak that stands this far above its surroundings [dB] at the place of a carrier is not said to be absent.
+/// At places where no family has lines, one of ten accelerations holds one in 4 % of the records.
+pub const STANDING_DB: f64 = 9.0;
 /// Periods of BPFO that a record must hold: with fewer, a comb cannot be distinguished from a single line.
 pub const LEAST_PERIODS: f64 = 2.0;
 /// Periods of BPFO in which families are sought, at the end of a longer record: the fit takes a time that
@@ -120,13 +126,13 @@ quantities! {
     pub struct FamilyFinding {
         /// `roller_vertices`, `outer_race_nodes` or `inner_race_nodes`.
         pub name: String,
-        /// Carrier by the fit [Hz]; `None` when the family is absent or not judged.
+        /// Carrier by the fit [Hz]; `None` when the family is not found or not judged.
         pub carrier_hz: Option<f64>,
         /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at
         /// loaded contacts; `None` when no comb was made of it.
         pub predicted_hz: Option<f64>,
         /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is
-        /// absent, that of the best fit within 1.5 BPFO; `None` when it is not judged.
+        /// not found, that of the best fit within 1.5 BPFO; `None` when it is not judged.
         pub offset_resolutions: Option<f64>,
         /// How far the single channels scatter about that offset (standard deviation), in resolutions.
         pub offset_scatter_resolutions: Option<f64>,
@@ -144,6 +150,11 @@ quantities! {
         pub explained_forces: Option<f64>,
         /// Largest peak amplitude of its lines [g]; `None` when there is no carrier or no line stands out.
         pub level_g: Option<f64>,
+        /// How far the highest peak within half a resolution of the predicted carrier stands above its
+        /// surroundings [dB], over all sensors and components, of a family that was not found; `None` without
+        /// one.
+        #[serde(default)]
+        pub standing_db: Option<f64>,
         /// The verdict in words.
         pub verdict: String,
         /// Carrier and sidebands at every sensor and component; empty without a carrier.
@@ -203,7 +214,10 @@ pub fn identify(
     {
         judge(motion, &Channels::of(motion, accelerations, &observed, slowest_hz), &mut cases);
     }
-    (0..cases.len()).map(|n| finding(motion, accelerations, &cases, n)).collect()
+    // A record that is too short to be judged may be too short for a spectrum.
+    let heard = if cases.iter().any(|case| case.trial.is_some()) { accelerations } else { &[] };
+    let spectra = Spectra::of(heard, 1.0 / motion.interval_s, motion.bpfo_hz)?;
+    Ok((0..cases.len()).map(|n| finding(motion, &spectra, &cases, n)).collect())
 }
 
 /// A candidate on trial.
@@ -287,12 +301,7 @@ fn confuse(cases: &mut [Case<'_>], accepted: usize, n: usize, alone: Trial) {
 }
 
 /// The finding of case `n`.
-fn finding(
-    motion: &RecordedMotion,
-    accelerations: &[Channel],
-    cases: &[Case<'_>],
-    n: usize,
-) -> Result<FamilyFinding, Error> {
+fn finding(motion: &RecordedMotion, spectra: &Spectra<'_>, cases: &[Case<'_>], n: usize) -> FamilyFinding {
     let case = &cases[n];
     let predicted_hz = case.comb.as_ref().map(|comb| comb.line_hz);
     let mut finding = FamilyFinding {
@@ -307,10 +316,11 @@ fn finding(
         explained: None,
         explained_forces: None,
         level_g: None,
+        standing_db: None,
         verdict: not_judged(motion, case),
         lines: Vec::new(),
     };
-    let Some((trial, lead)) = &case.trial else { return Ok(finding) };
+    let Some((trial, lead)) = &case.trial else { return finding };
     let resolution_hz = motion.resolution_hz();
     let there = case.verdict != Verdict::Open;
     let offset_hz = if there { trial.offset_hz } else { trial.highest_hz };
@@ -322,8 +332,10 @@ fn finding(
     if let Some(predicted_hz) = predicted_hz.filter(|_| there) {
         let carrier_hz = predicted_hz + offset_hz;
         finding.carrier_hz = Some(carrier_hz);
-        finding.lines = lines::read(accelerations, 1.0 / motion.interval_s, carrier_hz, motion.bpfo_hz)?;
+        finding.lines = spectra.lines(carrier_hz);
         finding.level_g = finding.lines.iter().filter_map(|l| l.level_g).max_by(f64::total_cmp);
+    } else {
+        finding.standing_db = predicted_hz.and_then(|hz| spectra.prominence_db(hz));
     }
     finding.verdict = match &case.verdict {
         Verdict::Found => format!(
@@ -353,15 +365,24 @@ fn finding(
             } else {
                 ", no more than a comb of any other place".to_owned()
             };
+            let verdict = if finding.is_open() {
+                let db = finding.standing_db.unwrap_or(f64::NAN);
+                let hz = predicted_hz.unwrap_or(f64::NAN);
+                format!(
+                    "open: a line stands {db:.0} dB above its surroundings at {hz:.0} Hz, its place, but its comb"
+                )
+            } else {
+                "absent: it".to_owned()
+            };
             format!(
-                "absent: it explains {:.0} % of the accelerations and {:.0} % of the roller \
+                "{verdict} explains {:.0} % of the accelerations and {:.0} % of the roller \
                  forces{beside}{why}",
                 100.0 * trial.explained,
                 100.0 * trial.explained_forces
             )
         }
     };
-    Ok(finding)
+    finding
 }
 
 /// Why a case has no verdict.
@@ -425,6 +446,11 @@ impl Source {
 }
 
 impl FamilyFinding {
+    /// Whether a line stands where a family that was not found would have its carrier.
+    pub fn is_open(&self) -> bool {
+        self.carrier_hz.is_none() && self.standing_db.is_some_and(|db| db >= STANDING_DB)
+    }
+
     /// Whether a family that is there has a line within `reach_hz` of `hz`, its sidebands at `bpfo_hz`
     /// included.
     pub fn claims(&self, hz: f64, bpfo_hz: Option<f64>, reach_hz: f64) -> bool {

@@ -238,12 +238,18 @@ fn planted_the_carrier_is_a_line_of_the_comb() {
 
 #[test]
 fn planted_ten_records_of_noise_hold_no_family() {
+    // White noise stands 9 dB above its median within half a resolution of a place in 0.8 % of channels, two
+    // independent values of 2^−7.9 each. One of these thirty verdicts on four channels is expected to stay
+    // open; more than three have odds of 2 % (Poisson).
+    let mut open = 0;
     for seed in 1..=10 {
         let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[], 8.0, seed * 7919));
         assert_eq!(found(&families), [""; 0], "{families:#?}");
         assert!(families.iter().all(|f| f.carrier_hz.is_none() && f.level_g.is_none() && f.lines.is_empty()));
-        assert!(families.iter().all(|f| f.verdict.starts_with("absent")), "{families:#?}");
+        assert!(families.iter().all(|f| f.is_open() || f.verdict.starts_with("absent")), "{families:#?}");
+        open += families.iter().filter(|f| f.is_open()).count();
     }
+    assert!(open <= 3, "{open}");
 }
 
 #[test]
@@ -254,6 +260,26 @@ fn planted_a_comb_in_the_wrong_place_has_no_name() {
     let families = judged(&CANDIDATES, &sounding(silent(SAMPLES, 0.0), &[sound], 1.0, 5));
     assert_eq!(found(&families), [""; 0], "{families:#?}");
     assert!(families.iter().all(|f| f.carrier_hz.is_none()), "{families:#?}");
+}
+
+/// A reduced bearing with 99 facets on its rollers had a line 16 dB above its surroundings where the nodes of
+/// its inner raceway have their carrier, and the family was called absent.
+#[test]
+fn issue_a_family_with_a_line_at_its_place_is_not_called_absent() {
+    let (motion, mut accelerations) = sounding(silent(SAMPLES, 0.0), &[], 8.0, 5);
+    let quiet = judged(&CANDIDATES, &(motion.clone(), accelerations.clone()));
+    assert!(quiet.iter().all(|f| !f.is_open()), "{quiet:#?}");
+    // At one sensor alone: too little for a comb.
+    let hz = quiet[2].predicted_hz.unwrap();
+    for (n, value) in accelerations[1].values.iter_mut().enumerate() {
+        *value += 1.5 * (TAU * hz * n as f64 * INTERVAL_S).sin();
+    }
+    let families = judged(&CANDIDATES, &(motion, accelerations));
+    assert_eq!(found(&families), [""; 0], "{families:#?}");
+    let open: Vec<bool> = families.iter().map(FamilyFinding::is_open).collect();
+    assert_eq!(open, [false, false, true], "{families:#?}");
+    assert!(families[2].standing_db > Some(12.0) && families[2].carrier_hz.is_none(), "{families:#?}");
+    assert!(families[2].verdict.starts_with("open: a line stands"), "{families:#?}");
 }
 
 #[test]

@@ -54,7 +54,7 @@ pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
 
 /// The legend of the colours that are drawn.
 fn legend(findings: &Findings) -> String {
-    let mesh = "families of facet lines that were found (full) and absent (dashed); green roller vertices, \
+    let mesh = "families of facet lines that were found (full), and absent or open (dashed); green roller vertices, \
         purple nodes of the outer and teal of the inner raceway";
     let kinds = [
         (findings.summary.unsteady().is_none(), mesh),
@@ -376,7 +376,8 @@ fn line_marks(findings: &Findings) -> Vec<Mark> {
     let families = findings.summary.families.iter().zip(&findings.prediction.facet_lines);
     for ((family, (_, geometry_hz)), colour) in families.zip([Colour::Green, Colour::Purple, Colour::Teal]) {
         let Some(carrier) = family.carrier_hz else {
-            let (hz, word) = family.predicted_hz.map_or((*geometry_hz, "by geometry"), |hz| (hz, "absent"));
+            let word = if family.is_open() { "open" } else { "absent" };
+            let (hz, word) = family.predicted_hz.map_or((*geometry_hz, "by geometry"), |hz| (hz, word));
             marks.push(Mark::new(hz, format!("{} {word}", spoken(&family.name)), colour, true));
             continue;
         };

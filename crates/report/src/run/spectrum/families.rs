@@ -56,14 +56,30 @@ pub(in super::super) fn in_words(summary: &Summary) -> String {
     if let Some(first) = families.iter().find(|f| !f.not_told_apart_from.is_empty()) {
         said.push(format!("The {} make {}; this record does not tell which.", first.spoken(), place(first)));
     }
+    let is_named = !said.is_empty();
+    for family in families.iter().filter(|f| f.is_open()) {
+        said.push(format!(
+            "Whether the {} make lines stays open: one stands {:.0} dB above its surroundings at {:.0} Hz, \
+             where they would, and their comb explains no more than others.",
+            family.spoken(),
+            family.standing_db.unwrap_or(f64::NAN),
+            family.predicted_hz.unwrap_or(f64::NAN)
+        ));
+    }
+    let absent: Vec<String> = families
+        .iter()
+        .filter(|f| f.carrier_hz.is_none() && !f.is_open())
+        .map(FamilyFinding::spoken)
+        .collect();
     if said.is_empty() {
         return "No family of facet lines is there, neither in the accelerations nor in the roller forces."
             .into();
     }
-    let absent: Vec<String> =
-        families.iter().filter(|f| f.carrier_hz.is_none()).map(FamilyFinding::spoken).collect();
     if !absent.is_empty() {
         said.push(format!("No lines of the {} are found.", absent.join(" or the ")));
+    }
+    if !is_named {
+        return said.join(" ");
     }
     format!(
         "{} Facet lines are artefacts: a real bearing has none, and another mesh moves them.",
