@@ -22,7 +22,8 @@ pub(crate) use counts::derive;
 /// Flags of `study verdicts`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Folder of the records: `hit-sm`, `cwru`, `cwru-more`, `uestc` and `mfpt`, those that are there
+    /// Folder of the records: `hit-sm`, `cwru`, `cwru-more`, `uestc`, `mfpt`, `paderborn` and `ims`, those that
+    /// are there
     #[arg(value_name = "FOLDER")]
     folder: Option<PathBuf>,
     /// The records as they are, without the changes of the table of robustness

@@ -43,9 +43,6 @@ const HARMONICS: f64 = 3.2;
 /// Its highest frequency when no family is known [Hz].
 const UNKNOWN_HZ: f64 = 500.0;
 
-/// Verdict where speed or bearing is missing.
-const NO_VERDICT: &str = "No verdict: speed and bearing are needed to say where a defect would show.";
-
 impl Analysis {
     /// Analyses a channel sampled `rate_hz` times a second.
     ///
@@ -74,7 +71,7 @@ impl Analysis {
         };
         let families = concluded(decided.families, decided.first.as_ref(), &record, &over)?;
         let said = if families.is_empty() {
-            NO_VERDICT.to_owned()
+            format!("No verdict: {}.", decided.notes.join("; "))
         } else {
             conclude(&families, decided.unexplained.as_ref())
         };

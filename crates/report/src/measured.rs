@@ -301,6 +301,7 @@ fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figu
         figures.extend(combs(family));
         figures.extend(synchronous(analysis, family)?.map(|means| period(family, &means)));
     }
+    figures.extend(foreign(analysis, baseline));
     if figures.is_empty() {
         let most = analysis.bands.iter().max_by(|a, b| a.kurtosis.total_cmp(&b.kurtosis));
         figures.extend(most.map(|band| {
@@ -310,6 +311,24 @@ fn evidence(analysis: &Analysis, baseline: Option<&Baseline>) -> Result<Vec<Figu
         }));
     }
     Ok(figures)
+}
+
+/// The envelope spectrum in which a comb stands that is no family's, with its harmonics.
+fn foreign(analysis: &Analysis, baseline: Option<&Baseline>) -> Option<Figure> {
+    let findings = &analysis.findings;
+    let other = findings.unexplained.as_ref()?;
+    let band = analysis.bands.iter().find(|band| (band.low_hz, band.high_hz) == other.band_hz)?;
+    let title = format!("Squared envelope spectrum about {:.2} Hz, no family's", other.hz);
+    let mut figure = spectrum_of(band, "envelope-unexplained", &title, 5.6 * other.hz).caption(format!(
+        "A comb at {:.3} times the shaft, {:.1} dB above its background, is no family of this bearing.",
+        other.order, other.height_db
+    ));
+    figure.marks.extend(
+        (1..=5).map(f64::from).map(|n| Mark::new(n * other.hz, format!("{n}×"), Colour::Purple, false)),
+    );
+    figure.cursor = Some(cursor(findings));
+    figure.note += " Purple: its harmonics.";
+    Some(behind(figure, band, findings, baseline))
 }
 
 /// An envelope spectrum over that of the same band of a baseline, at the speed of the record.

@@ -12,7 +12,7 @@ use stribeck_theory::catalogue::CatalogueBearing;
 /// Half of the records: thresholds are chosen on one, and the other is quoted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
-    /// Bearings 6205, of both rigs that have one.
+    /// Bearings 6205, of both rigs that have one, and half of the bearings of Paderborn.
     Chosen,
     /// All other bearings and rigs.
     Quoted,
@@ -61,8 +61,16 @@ struct Set {
 type Entry = (String, String, String, usize, Option<String>, bool, Option<f64>, Option<f64>);
 
 /// Names of the sets.
-pub(super) const SETS: [&str; 5] =
-    ["HIT-SM, 6205", "CWRU drive end, 6205", "CWRU fan end, 6203", "UESTC, UER204", "MFPT"];
+pub(super) const SETS: [&str; 8] = [
+    "HIT-SM, 6205",
+    "CWRU drive end, 6205",
+    "CWRU fan end, 6203",
+    "UESTC, UER204",
+    "MFPT",
+    "Paderborn K001, KA04, KI14, 6203",
+    "Paderborn K003, KA30, KI18, 6203",
+    "IMS, ZA-2115",
+];
 pub(super) const UESTC: &str = SETS[3];
 
 /// All records of the list that are below `folder`.
@@ -83,7 +91,7 @@ pub(super) fn read(folder: &Path) -> Result<Vec<Labelled>> {
     }
     ensure!(
         !records.is_empty(),
-        "`{}` holds no record: give a folder with `hit-sm`, `cwru`, `cwru-more`, `uestc` or `mfpt` in it",
+        "`{}` holds no record: give a folder with `hit-sm`, `cwru`, `cwru-more`, `uestc`, `mfpt`, `paderborn` or `ims` in it",
         folder.display()
     );
     Ok(records)

@@ -34,15 +34,16 @@ pub(super) enum Change {
 pub(super) const WITHOUT_SPEED: &str = "no speed";
 
 /// All changes, with their names and whether claims about them may be right.
-pub(super) const CHANGES: [(&str, Change); 14] = [
+pub(super) const CHANGES: [(&str, Change); 15] = [
     ("as it is", Change::None),
     ("speed −1.5 %", Change::Speed(0.985)),
     ("speed +1.5 %", Change::Speed(1.015)),
-    ("speed −4 %", Change::Speed(0.96)),
-    ("speed +4 %", Change::Speed(1.04)),
+    ("speed −3 %", Change::Speed(0.97)),
+    ("speed +3 %", Change::Speed(1.03)),
     ("speed × 2", Change::Speed(2.0)),
     (WITHOUT_SPEED, Change::NoSpeed),
-    ("another bearing", Change::Bearing("6305")),
+    ("6305 given", Change::Bearing("6305")),
+    ("6306 with 8 balls given", Change::Bearing("6306, elements=8")),
     ("first 1 s", Change::First(1.0)),
     ("first 0.5 s", Change::First(0.5)),
     ("half the sample rate", Change::HalfRate),

@@ -4,8 +4,9 @@ use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use crate::Defect;
 use crate::families::family::{Family, Reason};
-use crate::families::limits::{ALPHA, decibel};
+use crate::families::limits::{ALPHA, KNOCK, decibel};
 use crate::families::machine_lines::OwnLines;
+use crate::families::unexplained::UnexplainedComb;
 use crate::families::unrelated::SLIP;
 use crate::record::bands::{HIGHEST_HZ, LOWEST};
 
@@ -30,6 +31,8 @@ pub(crate) struct Candidate {
     pub(crate) family: Family,
     /// The band in which its comb is highest, if there is one.
     pub(crate) standing: Option<Standing>,
+    /// Its highest comb in each band.
+    found: Vec<(usize, Comb)>,
 }
 
 /// Looks for one family in all bands.
@@ -46,7 +49,7 @@ pub(crate) fn search(
     let expected = Family::expected(name, expected_hz);
     let refused = |why: String| {
         let family = Family { reason: Reason::Decided(why), ..Family::expected(name, expected_hz) };
-        Candidate { family, standing: None }
+        Candidate { family, standing: None, found: Vec::new() }
     };
     if segment_s * comb_hz < PERIODS && record_s * comb_hz >= PERIODS {
         return refused(format!(
@@ -64,12 +67,11 @@ pub(crate) fn search(
     }
     let (low, high) = ((1.0 - SLIP) * comb_hz, (1.0 + SLIP) * comb_hz);
     let ranges = own.ranges_without(low, high);
-    if ranges.is_empty() {
-        return refused(
-            "its place is within a resolution of a multiple of the shaft or the cage; a longer record would \
-             tell them apart"
-                .to_owned(),
-        );
+    if ranges.is_empty() || own.holds(comb_hz) {
+        let why = "undecided: its place is within a resolution of a multiple of the shaft or the cage; a longer \
+                   record would tell them apart";
+        let hidden = Family { undecided: true, ..expected };
+        return Candidate { family: hidden, standing: None, found: Vec::new() }.because(why.to_owned());
     }
     let found: Vec<(usize, Comb)> = bands
         .iter()
@@ -79,30 +81,96 @@ pub(crate) fn search(
             Some((n, CombTest::FOUR_OF_FIVE.search(spectrum, low, high).ok()?))
         })
         .collect();
-    let searched = found.len() as f64;
-    let Some((n, comb)) = found.into_iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)) else {
+    let Some((n, comb)) = found.iter().max_by(|a, b| a.1.height.total_cmp(&b.1.height)).cloned() else {
         return refused(too_narrow(comb_hz, !bands.is_empty()));
     };
-    let (band, spectrum) = &bands[n];
-    let band_hz = Some((band.low_hz, band.high_hz));
-    let family = Family {
-        noise_p_value: (comb.p_value * searched).min(1.0),
-        band_hz,
-        height_db: decibel(comb.height),
-        level_db: Some(decibel(comb.ratios[0])),
-        harmonics: comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count(),
-        depth: Some(band.depth(comb.fundamental_hz)),
-        depth_band_hz: band_hz,
-        ..expected
+    // What stands in the rest of the place, the flank of a family that is a little off the shaft's multiple
+    // among it, is judged as any other.
+    let searched = found.len() as f64;
+    let knocks = comb.p_value * searched < ALPHA && bands[n].0.depth(comb.fundamental_hz) >= KNOCK;
+    if let Some(hidden) = hidden(bands, own, (low, high), comb.height).filter(|_| !knocks) {
+        let family = Family { undecided: true, ..expected };
+        return Candidate { family, standing: None, found }.because(format!(
+            "undecided: something knocks at {:.2} Hz, {:.0} times the shaft, where its place is, too; a measured \
+             speed or a longer record would tell them apart",
+            hidden.fundamental_hz,
+            hidden.fundamental_hz / own.shaft_hz
+        ));
+    }
+    Candidate { family: expected, standing: None, found }.standing_in(n, comb, comb_hz, bands)
+}
+
+/// A comb of the shaft within the place of a family that knocks and stands higher than all that are not the
+/// machine's own there.
+fn hidden(
+    bands: &[(&BandEnvelope, Whitened)],
+    own: &OwnLines,
+    (low, high): (f64, f64),
+    height: f64,
+) -> Option<Comb> {
+    let of = |(band, spectrum): &(&BandEnvelope, Whitened)| {
+        let comb = CombTest::FOUR_OF_FIVE.search(spectrum, low, high).ok()?;
+        let knocks = band.depth(comb.fundamental_hz) >= KNOCK;
+        let is_its = own.is_of_shaft(comb.fundamental_hz) && comb.height > height;
+        (is_its && knocks && comb.p_value * (bands.len() as f64) < ALPHA).then_some(comb)
     };
-    Candidate { family, standing: Some(Standing { band: n, comb, comb_hz, times, searched }) }
+    bands.iter().filter_map(of).max_by(|a, b| a.height.total_cmp(&b.height))
 }
 
 impl Candidate {
+    /// The same, decided.
+    fn because(self, why: String) -> Self {
+        Self { family: Family { reason: Reason::Decided(why), ..self.family }, ..self }
+    }
+
+    /// The same with the numbers of its comb in one of the bands.
+    fn standing_in(self, n: usize, comb: Comb, comb_hz: f64, bands: &[(&BandEnvelope, Whitened)]) -> Self {
+        let searched = self.found.len() as f64;
+        let (band, spectrum) = &bands[n];
+        let band_hz = Some((band.low_hz, band.high_hz));
+        let family = Family {
+            noise_p_value: (comb.p_value * searched).min(1.0),
+            band_hz,
+            height_db: decibel(comb.height),
+            level_db: Some(decibel(comb.ratios[0])),
+            harmonics: comb.ratios.iter().filter(|r| spectrum.line_p_value(**r) < ALPHA).count(),
+            depth: Some(band.depth(comb.fundamental_hz)),
+            depth_band_hz: band_hz,
+            ..self.family
+        };
+        let times = family.name.shocks_per_period();
+        Self { family, standing: Some(Standing { band: n, comb, comb_hz, times, searched }), ..self }
+    }
+
+    /// The same in the band where its comb is highest of those in which it is more than noise and no foreign
+    /// comb that stands higher is: a machine has other sources, each in bands of its own. Where there is no such
+    /// band it stays.
+    pub(crate) fn beside_foreign(
+        self,
+        foreign: &[UnexplainedComb],
+        bands: &[(&BandEnvelope, Whitened)],
+    ) -> Self {
+        let is_higher = |n: usize, comb: &Comb| {
+            let band_hz = Some((bands[n].0.low_hz, bands[n].0.high_hz));
+            foreign.iter().any(|other| other.comb.height > comb.height && other.is_in(band_hz))
+        };
+        let Some(Standing { band, comb, comb_hz, searched, .. }) = &self.standing else { return self };
+        if !is_higher(*band, comb) {
+            return self;
+        }
+        let clear =
+            self.found.iter().filter(|(n, comb)| comb.p_value * searched < ALPHA && !is_higher(*n, comb));
+        let (highest, comb_hz) = (clear.max_by(|a, b| a.1.height.total_cmp(&b.1.height)).cloned(), *comb_hz);
+        match highest {
+            Some((n, comb)) => self.standing_in(n, comb, comb_hz, bands),
+            None => self,
+        }
+    }
+
     /// The same with its depth in the band where it is deepest, of those in which its comb stands; that of a
     /// rolling element with its sidebands of the cage.
     pub(crate) fn at_its_deepest(self, bands: &[(&BandEnvelope, Whitened)], cage_hz: f64) -> Self {
-        let Self { family, standing: Some(standing) } = self else { return self };
+        let Self { family, standing: Some(standing), found } = self else { return self };
         let hz = standing.comb.fundamental_hz;
         let stands = |(band, spectrum): &&(&BandEnvelope, Whitened)| {
             let (low, high) = (hz - 0.5 * band.grid_hz, hz + 0.5 * band.grid_hz);
@@ -115,7 +183,7 @@ impl Candidate {
             let is_deeper = deepest.0.is_none_or(|deepest| depth > deepest);
             if is_deeper { (Some(depth), Some((band.low_hz, band.high_hz))) } else { deepest }
         });
-        Self { family: Family { depth, depth_band_hz, ..family }, standing: Some(standing) }
+        Self { family: Family { depth, depth_band_hz, ..family }, standing: Some(standing), found }
     }
 }
 

@@ -1,7 +1,7 @@
 //! A comb at half the frequency of a raceway: the raceway's lines are its even ones, and the source knocks
 //! half as often as elements pass.
 
-use stribeck_dsp::{Comb, CombTest, Whitened};
+use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use crate::families::limits::decibel;
 use crate::families::machine_lines::OwnLines;
@@ -14,7 +14,11 @@ const AS_HIGH: f64 = 0.5;
 
 /// The comb at half the frequency of another one, where four of its first five odd lines are about as high as
 /// the even ones beside them. Lines of the machine itself (`own`) are no evidence of it.
-pub(crate) fn comb_at_half(comb: &Comb, spectrum: &Whitened, own: &OwnLines) -> Option<Unexplained> {
+pub(crate) fn comb_at_half(
+    comb: &Comb,
+    (band, spectrum): &(&BandEnvelope, Whitened),
+    own: &OwnLines,
+) -> Option<Unexplained> {
     let half_hz = 0.5 * comb.fundamental_hz;
     let stands = |n: &usize| {
         let hz = (2 * n + 1) as f64 * half_hz;
@@ -26,5 +30,6 @@ pub(crate) fn comb_at_half(comb: &Comb, spectrum: &Whitened, own: &OwnLines) -> 
         hz: half_hz,
         order: half_hz / own.shaft_hz,
         height_db: decibel(comb.height),
+        band_hz: (band.low_hz, band.high_hz),
     })
 }

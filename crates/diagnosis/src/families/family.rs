@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use crate::Defect;
 use crate::families::controls::MOST_AS_HIGH;
 use crate::families::limits::{ALPHA, KNOCK, decibel};
+use crate::families::sidebands::UNRELATED_SPACINGS;
 use crate::families::unexplained::UnexplainedComb;
 use crate::words::numbers::chance;
 
@@ -50,6 +51,8 @@ pub struct Family {
     /// The family whose lines stand at the same places, so that the record cannot distinguish them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub not_told_apart_from: Option<Defect>,
+    /// Whether the record leaves it open: the machine's own lines stand where the family's would.
+    pub undecided: bool,
     /// Whether this is called a defect.
     pub claimed: bool,
     /// Why, or why not.
@@ -111,6 +114,7 @@ impl Family {
             in_passages: false,
             over: None,
             not_told_apart_from: None,
+            undecided: false,
             claimed: false,
             reason: Reason::Undecided,
             height_db: f64::NEG_INFINITY,
@@ -145,8 +149,8 @@ impl Family {
     }
 
     /// The same at a comb that stands farther from its place than slip of little load allows.
-    pub(crate) fn at(self, found: &UnexplainedComb, rank: Option<f64>, band_hz: (f64, f64)) -> Self {
-        let comb = &found.comb;
+    pub(crate) fn at(self, found: &UnexplainedComb, rank: Option<f64>) -> Self {
+        let (comb, band_hz) = (&found.comb, found.band_hz);
         Self {
             measured_hz: Some(comb.fundamental_hz / self.name.shocks_per_period()),
             noise_p_value: found.p_value(),
@@ -169,6 +173,15 @@ impl Family {
     pub(crate) fn calibrated(self) -> Self {
         let by_depth = self.depth.map_or(1.0, |depth| (-SOUND_DEPTHS * depth).exp());
         Self { p_value: by_depth.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0), ..self }
+    }
+
+    /// The same where the cage modulates its knocks, as it does those of a spot on an element: of the families
+    /// of sound bearings that are as deep one in nine has more sidebands at the cage's spacing than at eight
+    /// unrelated ones.
+    pub(crate) fn beside_the_cage(self) -> Self {
+        let by_depth = self.depth.map_or(1.0, |depth| (-SOUND_DEPTHS * depth).exp());
+        let by_cage = by_depth / (UNRELATED_SPACINGS.len() + 1) as f64;
+        Self { p_value: by_cage.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0), ..self }
     }
 
     /// The probability of a false alarm in words.

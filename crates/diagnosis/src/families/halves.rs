@@ -5,10 +5,9 @@
 
 use stribeck_dsp::{BandEnvelopes, CombTest, Whitened};
 
-use crate::Error;
-use crate::Family;
 use crate::families::limits::ALPHA;
 use crate::record::bands::HIGHEST_HZ;
+use crate::{Defect, Error, Family};
 
 /// A family this far from noise stands in both halves, or in one so high that no chance makes it.
 const CERTAIN: f64 = 1e-9;
@@ -41,7 +40,8 @@ fn agree(samples: &[f64], rate_hz: f64, band_hz: (f64, f64), comb_hz: f64) -> Re
 }
 
 /// Withdraws claims of families that stand in one half of the record only, but for those that no chance
-/// makes.
+/// makes, and that of the cage: a spot on an element meets the raceways while it spins about the right axis,
+/// and comes and goes.
 ///
 /// # Errors
 /// [`Error::Signal`] when the samples are not numbers.
@@ -52,7 +52,8 @@ pub(crate) fn without_passing(
 ) -> Result<Vec<Family>, Error> {
     let finite = samples.iter().all(|x| x.is_finite());
     let lasts = |family: &Family| {
-        let asked = family.claimed && family.over.is_none() && family.noise_p_value >= CERTAIN && finite;
+        let comes_and_goes = family.over.is_some() || family.name == Defect::Ftf;
+        let asked = family.claimed && !comes_and_goes && family.noise_p_value >= CERTAIN && finite;
         let (Some(band_hz), Some(hz), true) = (family.band_hz, family.measured_hz, asked) else {
             return Ok(true);
         };

@@ -1,11 +1,12 @@
 //! Which of the families that are there are called a defect.
 
-use stribeck_dsp::BandEnvelope;
+use stribeck_dsp::{BandEnvelope, Whitened};
 
 use crate::families::controls::MOST_AS_HIGH;
 use crate::families::family::{Family, Reason};
-use crate::families::limits::{ALPHA, KNOCK};
-use crate::families::unexplained::Unexplained;
+use crate::families::limits::{ALPHA, KNOCK, KNOCK_OF_ELEMENT};
+use crate::families::sidebands::is_modulated;
+use crate::families::unexplained::{Unexplained, UnexplainedComb};
 use crate::families::unrelated::is_the_same;
 use crate::words::sentence::probability;
 use crate::{Defect, families::element_rhythm};
@@ -68,10 +69,96 @@ pub(crate) fn first<'a>(families: impl Iterator<Item = &'a Family>) -> Option<us
     knocking.max_by(|a, b| a.1.height_db.total_cmp(&b.1.height_db)).map(|(at, _)| at)
 }
 
+/// A family of the inner raceway and twice the spin of an element may be a turn of the shaft apart, and one is
+/// then the sideband of the other: twice BSF is the inner raceway's but where the cage modulates it and the
+/// shaft does not modulate the raceway.
+pub(crate) fn without_mirrored(
+    families: Vec<Family>,
+    shaft_hz: f64,
+    modulated: bool,
+    bands: &[(&BandEnvelope, Whitened)],
+) -> Vec<Family> {
+    let comb_of = |name: Defect| {
+        let family = families.iter().find(|family| family.name == name && family.knocks())?;
+        Some((family, name.shocks_per_period() * family.measured_hz?))
+    };
+    let (Some((inner, inner_hz)), Some((element, element_hz))) =
+        (comb_of(Defect::Bpfi), comb_of(Defect::Bsf))
+    else {
+        return families;
+    };
+    let band = bands.iter().find(|(band, _)| inner.band_hz == Some((band.low_hz, band.high_hz)));
+    let Some((_, spectrum)) = band else { return families };
+    let width_hz = SAME_LINES * spectrum.grid_hz();
+    if ((inner_hz - element_hz).abs() - shaft_hz).abs() >= width_hz {
+        return families;
+    }
+    let is_element = modulated && !is_modulated(spectrum, inner_hz, shaft_hz);
+    let (loser, winner) = if is_element { (inner, element) } else { (element, inner) };
+    let (loser, winner) = (loser.name, winner.name.shocks_name());
+    let why = format!("its lines are those of {winner}, a turn of the shaft away");
+    let of = |family: Family| {
+        if family.name == loser { Family { reason: Reason::Decided(why.clone()), ..family } } else { family }
+    };
+    families.into_iter().map(of).collect()
+}
+
+/// The combs of a record that are no family's, and what they may have for sidebands.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Around<'a> {
+    /// The highest of each band, of those that have one.
+    pub(crate) foreign: &'a [UnexplainedComb],
+    /// The one at half the frequency of the raceway that stands highest.
+    pub(crate) at_half: Option<&'a Unexplained>,
+    /// The farthest that rolling puts the outer raceway's family above its place, and the inner one's below,
+    /// as parts of it, where the lines of the shaft give the speed.
+    pub(crate) rolling: Option<(f64, f64)>,
+    /// Turns of the shaft [Hz].
+    pub(crate) shaft_hz: f64,
+    /// Frequencies nearer than this to one another are one [Hz].
+    pub(crate) width_hz: f64,
+}
+
+/// Largest probability of a false alarm at which a family is claimed while something else knocks louder.
+const BESIDE_OTHERS: f64 = 1e-4;
+/// Lines within which two combs, each by its own place, are one.
+const SAME_LINES: f64 = 2.0;
+/// Multiples and sidebands of the shaft by which a foreign comb may account for a family.
+const MULTIPLES: u32 = 3;
+const SIDEBANDS: i32 = 4;
+
+impl Around<'_> {
+    /// The comb that is no family's and may be what the family's lines are: a higher one that stands in the same
+    /// band, too, or accounts for them from another one. Elements and cages modulate whatever knocks, so for
+    /// their families any band counts.
+    fn instead_of(&self, family: &Family) -> Option<Unexplained> {
+        let is_raceway = matches!(family.name, Defect::Bpfo | Defect::Bpfi);
+        let comb_hz = family.name.shocks_per_period() * family.measured_hz.unwrap_or(family.expected_hz);
+        let counts = |other: &&UnexplainedComb| {
+            !is_raceway
+                || other.is_in(family.band_hz)
+                || self.accounts_for(comb_hz, other.comb.fundamental_hz)
+        };
+        let foreign = self.foreign.iter().filter(counts).map(|other| other.report(self.shaft_hz));
+        let higher = foreign.chain(self.at_half.copied()).filter(|other| other.height_db > family.height_db);
+        higher.max_by(|a, b| a.height_db.total_cmp(&b.height_db))
+    }
+
+    /// Whether lines of a comb at `hz` are multiples of another one's, or its sidebands by the shaft.
+    fn accounts_for(&self, hz: f64, other_hz: f64) -> bool {
+        (1..=MULTIPLES).any(|m| {
+            (-SIDEBANDS..=SIDEBANDS)
+                .any(|k| (hz - f64::from(m) * other_hz - f64::from(k) * self.shaft_hz).abs() < self.width_hz)
+        })
+    }
+}
+
 /// What the rules ask beside a family.
 pub(crate) struct Case<'a> {
     /// A comb that is no family's.
     pub(crate) unexplained: Option<&'a Unexplained>,
+    /// The same of each band.
+    around: Around<'a>,
     /// Whether the cage modulates the knocks of a rolling element.
     pub(crate) modulated: bool,
     /// Height of the family that knocks and stands highest [dB]; −∞ without one.
@@ -83,12 +170,14 @@ type Rule = fn(&Family, &Case<'_>) -> Option<String>;
 
 /// The rules, in their order: the first that refuses a family decides. Every family of rolling defects is
 /// modulated by the cage, so the cage is suspected last.
-const RULES: [Rule; 9] = [
+const RULES: [Rule; 11] = [
     noise_makes_as_much,
     unrelated_combs_stand_as_high,
     swings_as_in_sound_bearings,
     sound_bearings_show_as_much,
+    no_cage_rolls_so_fast,
     unexplained_comb_stands_higher,
+    something_else_knocks_louder,
     cage_shares_in_unexplained_comb,
     element_without_the_cage,
     cage_shares_in_a_family,
@@ -107,9 +196,10 @@ fn unrelated_combs_stand_as_high(family: &Family, _: &Case<'_>) -> Option<String
         .then(|| format!("{:.0} % of unrelated combs in this record stand as high", 100.0 * rank))
 }
 
-fn swings_as_in_sound_bearings(family: &Family, _: &Case<'_>) -> Option<String> {
+fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<String> {
     let depth = family.depth.unwrap_or(0.0);
-    (depth < KNOCK).then(|| {
+    let knock = if family.name == Defect::Bsf && case.modulated { KNOCK_OF_ELEMENT } else { KNOCK };
+    (depth < knock).then(|| {
         format!(
             "it is there, but the power of the band swings by {:.0} % only, as sound bearings do",
             100.0 * depth
@@ -126,12 +216,45 @@ fn sound_bearings_show_as_much(family: &Family, _: &Case<'_>) -> Option<String> 
     })
 }
 
+/// Slip makes the outer raceway's family slower and the inner one's faster; an axial load that steepens the
+/// contact, the other way, a little.
+fn no_cage_rolls_so_fast(family: &Family, case: &Case<'_>) -> Option<String> {
+    let (most_outer, least_inner) = case.around.rolling?;
+    let times = family.measured_hz? / family.expected_hz;
+    let is_beyond = match family.name {
+        Defect::Bpfo => times > most_outer,
+        Defect::Bpfi => times < least_inner,
+        Defect::Bsf | Defect::Ftf => false,
+    };
+    is_beyond.then(|| {
+        format!(
+            "it is there, {} % from its place by the lines of the shaft, where neither slip nor a load along \
+             the shaft puts it: another bearing's",
+            format!("{:+.1}", 100.0 * (times - 1.0)).replace('-', "−")
+        )
+    })
+}
+
 fn unexplained_comb_stands_higher(family: &Family, case: &Case<'_>) -> Option<String> {
-    let other = case.unexplained.filter(|other| other.height_db > family.height_db)?;
+    let other = case.around.instead_of(family)?;
     Some(format!(
         "it is there, but a comb at {:.3} times the shaft that is no family of this bearing stands higher",
         other.order
     ))
+}
+
+/// A record with a source of its own in other bands asks for more certainty in the family's.
+fn something_else_knocks_louder(family: &Family, case: &Case<'_>) -> Option<String> {
+    let mut louder = case.around.foreign.iter().map(|other| other.report(case.around.shaft_hz));
+    let other = louder.find(|other| other.height_db > family.height_db)?;
+    (family.p_value >= BESIDE_OTHERS).then(|| {
+        format!(
+            "it is there, but something that is no family of this bearing knocks louder in another band, at \
+             {:.3} times the shaft, and sound bearings show as much with a probability of {}",
+            other.order,
+            probability(family.p_value)
+        )
+    })
 }
 
 fn cage_shares_in_unexplained_comb(family: &Family, case: &Case<'_>) -> Option<String> {
@@ -165,10 +288,11 @@ fn another_family_stands_higher(family: &Family, case: &Case<'_>) -> Option<Stri
 pub(crate) fn decide(
     families: Vec<Family>,
     unexplained: Option<&Unexplained>,
+    around: Around<'_>,
     modulated: bool,
 ) -> Vec<Family> {
     let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
-    let case = Case { unexplained, modulated, first_db };
+    let case = Case { unexplained, around, modulated, first_db };
     let decided = |family: Family| match &family.reason {
         Reason::Decided(_) => family,
         Reason::Undecided => match RULES.iter().find_map(|rule| rule(&family, &case)) {
@@ -263,7 +387,7 @@ mod tests {
     #[test]
     fn planted_one_line_is_claimed_for_one_family() {
         let families = vec![found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];
-        let families = decide(shared_out(families, 1.25, true), None, true);
+        let families = decide(shared_out(families, 1.25, true), None, Around::default(), true);
         assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         assert!(
             families[1].reason.to_string().contains("those of BPFO, which are nearer"),
@@ -273,7 +397,7 @@ mod tests {
         // A cage that slips takes BPFO to where the element would be; only a turn of the cage makes it one.
         for (modulated, claimed) in [(true, Defect::Bsf), (false, Defect::Bpfo)] {
             let families = vec![found(Defect::Bpfo, 106.328, 105.153), found(Defect::Bsf, 52.304, 52.576)];
-            let families = decide(shared_out(families, 1.25, modulated), None, modulated);
+            let families = decide(shared_out(families, 1.25, modulated), None, Around::default(), modulated);
             let names: Vec<Defect> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
             assert_eq!(names, [claimed], "{families:?}");
         }
@@ -284,7 +408,7 @@ mod tests {
                 found(Defect::Bsf, 48.0104, 0.5 * measured_hz + 0.02),
             ];
             families[0].height_db = 24.9;
-            let families = decide(shared_out(families, 1.0, true), None, true);
+            let families = decide(shared_out(families, 1.0, true), None, Around::default(), true);
             let verdict = conclude(&families, None);
             assert!(families.iter().all(|family| family.claimed), "{families:?}");
             assert!(verdict.contains("of the outer raceway or of a rolling element"), "{verdict}");
@@ -294,7 +418,7 @@ mod tests {
                 found(Defect::Bpfo, 96.0048, measured_hz),
                 found(Defect::Bsf, 48.0104, 0.5 * measured_hz),
             ];
-            let families = decide(shared_out(families, 1.0, false), None, false);
+            let families = decide(shared_out(families, 1.0, false), None, Around::default(), false);
             assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         }
         // Lines of their own are not shared.

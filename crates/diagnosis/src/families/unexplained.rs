@@ -18,15 +18,21 @@ pub struct Unexplained {
     pub order: f64,
     /// Height of its fourth highest harmonic of five above the background [dB].
     pub height_db: f64,
+    /// Band in which it stands highest [Hz].
+    pub band_hz: (f64, f64),
 }
 
 /// A comb and where it stands highest.
+#[derive(Debug)]
 pub(crate) struct UnexplainedComb {
     pub(crate) band: usize,
+    pub(crate) band_hz: (f64, f64),
     pub(crate) comb: Comb,
     pub(crate) depth: f64,
     /// Bands and frequencies that were searched.
     pub(crate) searched: f64,
+    /// The bands in which it stands [Hz].
+    pub(crate) stands_in_hz: Vec<(f64, f64)>,
 }
 
 /// A family that is there, and may account for lines beside its own.
@@ -56,21 +62,22 @@ const FAR_HIGHER: f64 = 4.0;
 /// Probability of a false alarm at which such a comb is named.
 const NAMED: f64 = 1e-9;
 
-/// The highest comb that is no multiple of the shaft or the cage, no multiple or fraction of a
+/// The highest comb of each band that is no multiple of the shaft or the cage, no multiple or fraction of a
 /// family, no sideband of a higher one, is far beyond noise, and knocks. `of_others` says whether a frequency
 /// [Hz] is another bearing's.
-pub(crate) fn strongest(
+pub(crate) fn of_each_band(
     bands: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
     cage_hz: f64,
     highest_hz: f64,
     families: &[AboveNoise],
     of_others: &dyn Fn(f64) -> bool,
-) -> Option<UnexplainedComb> {
+) -> Vec<UnexplainedComb> {
     let (low_hz, high_hz) = (FROM * own.shaft_hz, TO * highest_hz);
-    let mut best: Option<(usize, Comb)> = None;
+    let mut highest: Vec<(usize, Comb)> = Vec::new();
     let mut searched = 0.0;
     for (n, (_, spectrum)) in bands.iter().enumerate() {
+        let mut best: Option<Comb> = None;
         let mut from = low_hz;
         while from < high_hz {
             let to = from * (1.0 + WINDOW);
@@ -78,20 +85,31 @@ pub(crate) fn strongest(
             from = to;
             let Ok(comb) = found else { break };
             searched += 1.0;
-            let leads = best.as_ref().is_none_or(|(_, best)| comb.height > best.height);
+            let leads = best.as_ref().is_none_or(|best| comb.height > best.height);
             if leads && !of_others(comb.fundamental_hz) && !is_explained(&comb, own, cage_hz, families) {
-                best = Some((n, comb));
+                best = Some(comb);
             }
         }
+        highest.extend(best.map(|comb| (n, comb)));
     }
-    let (band, comb) = best?;
-    let depth = bands[band].0.depth(comb.fundamental_hz);
-    (comb.p_value * searched < NAMED && depth >= KNOCK).then_some(UnexplainedComb {
-        band,
-        comb,
-        depth,
-        searched,
-    })
+    let knocking = highest.into_iter().map(|(band, comb)| {
+        let (of, _) = &bands[band];
+        let (depth, band_hz) = (of.depth(comb.fundamental_hz), (of.low_hz, of.high_hz));
+        UnexplainedComb { band, band_hz, comb, depth, searched, stands_in_hz: Vec::new() }
+    });
+    let named = knocking.filter(|found| found.comb.p_value * searched < NAMED && found.depth >= KNOCK);
+    named
+        .map(|found| UnexplainedComb { stands_in_hz: standing_in(found.comb.fundamental_hz, bands), ..found })
+        .collect()
+}
+
+/// The bands in which a comb at `hz` is more than noise [Hz].
+fn standing_in(hz: f64, bands: &[(&BandEnvelope, Whitened)]) -> Vec<(f64, f64)> {
+    let stands = |(_, spectrum): &&(&BandEnvelope, Whitened)| {
+        let (low, high) = (hz - spectrum.grid_hz(), hz + spectrum.grid_hz());
+        CombTest::FOUR_OF_FIVE.search(spectrum, low, high).is_ok_and(|comb| comb.p_value < ALPHA)
+    };
+    bands.iter().filter(stands).map(|(band, _)| (band.low_hz, band.high_hz)).collect()
 }
 
 /// Whether shaft, cage or a family that stands higher account for a comb.
@@ -127,10 +145,15 @@ fn is_explained(comb: &Comb, own: &OwnLines, cage_hz: f64, families: &[AboveNois
 }
 
 impl UnexplainedComb {
+    /// Whether it stands in a band.
+    pub(crate) fn is_in(&self, band_hz: Option<(f64, f64)>) -> bool {
+        self.stands_in_hz.iter().any(|stands_hz| Some(*stands_hz) == band_hz)
+    }
+
     /// As it is reported.
     pub(crate) fn report(&self, shaft_hz: f64) -> Unexplained {
         let hz = self.comb.fundamental_hz;
-        Unexplained { hz, order: hz / shaft_hz, height_db: decibel(self.comb.height) }
+        Unexplained { hz, order: hz / shaft_hz, height_db: decibel(self.comb.height), band_hz: self.band_hz }
     }
 
     /// Probability that noise makes such a comb anywhere in the search; an upper bound.

@@ -14,7 +14,7 @@
 //! stands higher than all that are, nothing weaker is claimed (`unexplained.rs`).
 
 use stribeck_dsp::{BandEnvelope, Whitened};
-use stribeck_theory::catalogue::DefectOrders;
+use stribeck_theory::catalogue::{CatalogueBearing, DefectOrders};
 
 use crate::families::candidate::{Candidate, Standing, search};
 use crate::families::comb_at_half::comb_at_half;
@@ -22,7 +22,7 @@ use crate::families::controls::{controls, part_as_high, rank};
 use crate::families::family::{Family, Reason};
 use crate::families::limits::{ALPHA, decibel};
 use crate::families::machine_lines::OwnLines;
-use crate::families::rules::{claimed_first, decide, first, shared_out};
+use crate::families::rules::{Around, claimed_first, decide, first, shared_out, without_mirrored};
 use crate::families::sidebands::is_modulated_by_the_cage;
 use crate::families::unexplained::{self, AboveNoise, Unexplained, UnexplainedComb};
 use crate::families::unrelated::SLIP;
@@ -34,6 +34,10 @@ pub(crate) struct Candidates {
     pub(crate) families: Vec<Family>,
     /// A comb that is no family's and stands higher.
     pub(crate) unexplained: Option<Unexplained>,
+    /// The combs of all bands that are no family's, and one at half the frequency of a raceway.
+    foreign: Vec<UnexplainedComb>,
+    at_half: Option<Unexplained>,
+    rolling: Option<(f64, f64)>,
     /// Whether the cage modulates the knocks of a rolling element.
     modulated: bool,
     notes: Vec<String>,
@@ -70,6 +74,12 @@ pub(crate) struct FirstDefect {
 
 /// Lines about a multiple of the shaft or the cage that are its own: half the width of a Hann window’s lobe.
 const OWN_LINES: f64 = 1.5;
+/// How far a load along the shaft steepens the contact of a deep-groove bearing [°], and what makers' sizes
+/// differ by in the families' places.
+const STEEPER_DEG: f64 = 15.0;
+const SIZES_DIFFER: f64 = 0.003;
+/// Numbers of elements of most bearings.
+const USUAL_COUNTS: std::ops::RangeInclusive<u32> = 7..=10;
 /// Least and largest part by which a cage that skids is slower than rolling without slip.
 const SKID: (f64, f64) = (SLIP, 0.06);
 
@@ -106,17 +116,20 @@ impl Candidates {
         let own = OwnLines { cage_hz: standing_cage.map(|cage| cage.comb.fundamental_hz), ..shaft_lines };
         let cage_hz = own.cage_hz.unwrap_or(place_of_cage_hz);
         let rolling = Defect::ALL[..3].iter().zip(places).map(|(name, hz)| look(*name, hz, &own));
-        let candidates: Vec<Candidate> = rolling
-            .collect::<Vec<_>>()
-            .into_iter()
-            .chain([cage])
-            .map(|candidate| candidate.at_its_deepest(&whitened, cage_hz))
-            .collect();
+        let looked: Vec<Candidate> = rolling.collect::<Vec<_>>().into_iter().chain([cage]).collect();
         let highest_hz = places[..2].iter().fold(0.0_f64, |most, hz| most.max(*hz));
-        let there = above_noise(&candidates[..3]);
+        let there = above_noise(&looked[..3]);
         let of_others = |hz: f64| machine.around.may_be(hz / shaft_hz);
-        let unexplained_comb =
-            unexplained::strongest(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
+        let combs = unexplained::of_each_band(&whitened, &own, cage_hz, highest_hz, &there, &of_others);
+        let in_its_band = |candidate: Candidate| match candidate.family.name {
+            Defect::Bpfo | Defect::Bpfi => candidate.beside_foreign(&combs, &whitened),
+            Defect::Bsf | Defect::Ftf => candidate,
+        };
+        let candidates: Vec<Candidate> = looked
+            .into_iter()
+            .map(|candidate| in_its_band(candidate).at_its_deepest(&whitened, cage_hz))
+            .collect();
+        let highest = combs.iter().max_by(|a, b| a.comb.height.total_cmp(&b.comb.height));
         let first = first(candidates.iter().map(|candidate| &candidate.family));
         let first_db = first.map_or(f64::NEG_INFINITY, |at| candidates[at].family.height_db);
         let first_hz = first.and_then(|at| Some(candidates[at].standing.as_ref()?.comb.fundamental_hz));
@@ -131,26 +144,55 @@ impl Candidates {
             .collect();
         let modulated = is_modulated_by_the_cage(&measured, &whitened);
         let resolution_hz = 1.0 / segment_s;
-        let shared = shared_out(measured, resolution_hz, modulated);
+        let measured: Vec<Family> = measured
+            .into_iter()
+            .map(|f| if f.name == Defect::Bsf && modulated { f.beside_the_cage() } else { f })
+            .collect();
+        let apart = without_mirrored(measured, shaft_hz, modulated, &whitened);
+        let shared = shared_out(apart, resolution_hz, modulated);
         let at_half = halved.map(|(_, half)| half);
-        let found = unexplained_comb.filter(|found| decibel(found.comb.height) > first_db);
-        let skids = found.as_ref().filter(|_| by_shaft).and_then(|found| skidding(&shared, found));
+        let found = highest.filter(|found| decibel(found.comb.height) > first_db);
+        let skids = found.filter(|_| by_shaft).and_then(|found| skidding(&shared, found));
         let (families, unexplained, notes) = match (found, skids) {
             (Some(found), Some(name)) => {
-                let families = with_skidding(shared, name, &found, &whitened, &own);
-                let note = skidding_note(families.iter().find(|f| f.name == name), &found);
+                let families = with_skidding(shared, name, found, &whitened, &own);
+                let note = skidding_note(families.iter().find(|f| f.name == name), found);
                 (families, at_half, note.into_iter().collect())
             }
             (Some(found), None) => (shared, Some(found.report(shaft_hz)), Vec::new()),
             (None, _) => (shared, at_half, Vec::new()),
         };
-        Ok(Self { families, unexplained, modulated, notes, shaft_hz, cage_hz, resolution_hz })
+        Ok(Self {
+            families,
+            unexplained,
+            foreign: if skids.is_some() { Vec::new() } else { combs },
+            at_half,
+            rolling: machine.bearing.as_ref().filter(|_| by_shaft).map(reach_of_rolling),
+            modulated,
+            notes,
+            shaft_hz,
+            cage_hz,
+            resolution_hz,
+        })
     }
 
     /// What the rules say of them.
     pub(crate) fn decide(self) -> Decided {
-        let Self { families, unexplained, modulated, notes, shaft_hz, cage_hz, resolution_hz } = self;
-        let decided = decide(families, unexplained.as_ref(), modulated);
+        let Self {
+            families,
+            unexplained,
+            foreign,
+            at_half,
+            rolling,
+            modulated,
+            notes,
+            shaft_hz,
+            cage_hz,
+            resolution_hz,
+        } = self;
+        let width_hz = OWN_LINES * resolution_hz;
+        let around = Around { foreign: &foreign, at_half: at_half.as_ref(), rolling, shaft_hz, width_hz };
+        let decided = decide(families, unexplained.as_ref(), around, modulated);
         let first = claimed_first(&decided).map(|(at, comb_hz)| FirstDefect {
             at,
             comb_hz,
@@ -176,7 +218,25 @@ fn orders_and_speed(machine: &Machine) -> Result<(DefectOrders, f64), String> {
     let shaft_hz = machine.speed_rpm.map(|rpm| rpm / 60.0).filter(|hz| *hz > 0.0 && hz.is_finite());
     let shaft_hz =
         shaft_hz.ok_or("no speed was given: `--speed-rpm`, or `--tacho` with the channel of a tachometer")?;
-    Ok((bearing.orders()?, shaft_hz))
+    let orders = bearing.orders().map_err(|why| {
+        let places = |elements: u32| {
+            let of = CatalogueBearing { elements: Some(elements), ..bearing.clone() };
+            let orders = of.orders().ok()?;
+            let [outer, inner] = [orders.bpfo, orders.bpfi].map(|order| order * shaft_hz);
+            Some(format!("{elements} make BPFO {outer:.1} Hz and BPFI {inner:.1} Hz"))
+        };
+        format!("{why}; {}", USUAL_COUNTS.filter_map(places).collect::<Vec<_>>().join(", "))
+    })?;
+    Ok((orders, shaft_hz))
+}
+
+/// The family of the outer raceway over its place in a bearing whose contact a load along the shaft steepens,
+/// and that of the inner one.
+fn reach_of_rolling(bearing: &CatalogueBearing) -> (f64, f64) {
+    let ratio = |angle_deg: f64| bearing.diameter_mm / bearing.pitch_mm * angle_deg.to_radians().cos();
+    let (least, most) = (ratio(bearing.angle_deg + STEEPER_DEG), ratio(bearing.angle_deg));
+    let off = SIZES_DIFFER;
+    ((1.0 - least) / (1.0 - most) + off, (1.0 + least) / (1.0 + most) - off)
 }
 
 /// Lines of the machine besides its defects, at this speed of the shaft; the cage is not known yet.
@@ -214,7 +274,7 @@ fn comb_at_half_of(
 ) -> Option<Unexplained> {
     let is_element = candidate.family.name == Defect::Bsf;
     let Standing { band, comb, .. } = candidate.standing.as_ref().filter(|_| !is_element)?;
-    comb_at_half(comb, &whitened[*band].1, own)
+    comb_at_half(comb, &whitened[*band], own)
 }
 
 /// Ranks a family among unrelated combs of its band, and gives it its probability of a false alarm; `half` is
@@ -226,7 +286,7 @@ fn beside_controls(
     own: &OwnLines,
     first_hz: Option<f64>,
 ) -> Family {
-    let Candidate { family, standing } = candidate;
+    let Candidate { family, standing, .. } = candidate;
     let reason = half.map_or(family.reason.clone(), |half| {
         Reason::Decided(format!(
             "its lines are every second one of a comb at {:.2} Hz: what knocks comes half as often as elements \
@@ -254,10 +314,9 @@ fn with_skidding(
     whitened: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
 ) -> Vec<Family> {
-    let (band, spectrum) = &whitened[found.band];
+    let (_, spectrum) = &whitened[found.band];
     let rank = rank(&found.comb, found.comb.fundamental_hz, spectrum, None, Some(own));
-    let band_hz = (band.low_hz, band.high_hz);
-    let skid = |family: Family| if family.name == name { family.at(found, rank, band_hz) } else { family };
+    let skid = |family: Family| if family.name == name { family.at(found, rank) } else { family };
     families.into_iter().map(skid).collect()
 }
 

@@ -28,6 +28,8 @@ const MISSING: f64 = 0.5;
 /// it does: many lines must agree.
 const MOST: f64 = 5.0;
 const MOST_FROM: f64 = 8.0;
+/// Multiples of a family that may be taken for one of the shaft's.
+pub(crate) const OF_FAMILY: u32 = 2;
 /// Slip of a family, either way, and steps in which it is tried.
 const SLIP: f64 = 0.02;
 const SLIP_STEPS: i32 = 20;
@@ -73,8 +75,14 @@ pub(crate) struct SpeedEstimate {
 }
 
 impl SpeedEstimate {
-    fn of(hz: f64, score: f64, next: (f64, f64), spectrum: &Evidence, least_lead: f64) -> Self {
-        let shaft_shows = spectrum.comb(hz, SHAFT) >= LEAST_OF_SHAFT;
+    fn of(
+        hz: f64,
+        score: f64,
+        next: (f64, f64),
+        (spectrum, clear): (&Evidence, &Clear),
+        least_lead: f64,
+    ) -> Self {
+        let shaft_shows = clear.comb(spectrum, hz, SHAFT) >= LEAST_OF_SHAFT;
         Self {
             hz,
             uncertainty_hz: 0.5 * spectrum.grid_hz / f64::from(SHAFT),
@@ -93,12 +101,13 @@ pub(crate) fn without_any_given(
     bearing: &CatalogueBearing,
 ) -> Option<SpeedEstimate> {
     let spectrum = Evidence::of_samples(samples, rate_hz)?;
-    let scored = Scored::between((FROM_HZ, TO_HZ), &spectrum, bands, bearing)?;
+    let clear = Clear::of(bearing, None)?;
+    let scored = Scored::between((FROM_HZ, TO_HZ), &spectrum, bands, bearing, &clear)?;
     let found = scored.highest(|_| true)?;
     let hz = scored.lowest_of(&spectrum, found);
     let next = scored.highest(|other| !is_simple(other / hz))?;
     let holds = samples.len() as f64 / rate_hz * hz >= TURNS;
-    holds.then(|| SpeedEstimate::of(hz, found.1, next, &spectrum, LEAST_LEAD))
+    holds.then(|| SpeedEstimate::of(hz, found.1, next, (&spectrum, &clear), LEAST_LEAD))
 }
 
 /// The speed near a given one with the largest evidence; `None` for a record too short to search.
@@ -112,10 +121,11 @@ pub(crate) fn near(
     (samples.len() as f64 / rate_hz * given_hz >= TURNS_NEAR).then_some(())?;
     let spectrum = Evidence::of_samples(samples, rate_hz)?;
     let reach = ((1.0 - REACH) * given_hz, (1.0 + REACH) * given_hz);
-    let scored = Scored::between(reach, &spectrum, bands, bearing)?;
+    let clear = Clear::of(bearing, Some(given_hz))?;
+    let scored = Scored::between(reach, &spectrum, bands, bearing, &clear)?;
     let (hz, score) = scored.highest(|_| true)?;
     let next = scored.highest(|other| (other / hz - 1.0).abs() > SAME_NEAR)?;
-    Some(SpeedEstimate::of(hz, score, next, &spectrum, LEAST_LEAD_NEAR))
+    Some(SpeedEstimate::of(hz, score, next, (&spectrum, &clear), LEAST_LEAD_NEAR))
 }
 
 /// Whether lines of the shaft stand at a speed and between its even multiples, which are all that twice the
@@ -136,6 +146,7 @@ impl Scored {
         spectrum: &Evidence,
         bands: &[BandEnvelope],
         bearing: &CatalogueBearing,
+        clear: &Clear,
     ) -> Option<Self> {
         let orders = bearing.orders().ok()?;
         let wide = bands.iter().filter(|band| band.high_hz - band.low_hz >= NARROWEST_HZ);
@@ -151,12 +162,14 @@ impl Scored {
         ];
         let mut best = vec![f64::NEG_INFINITY; speeds.len()];
         for envelope in &envelopes {
-            let shaft: Vec<f64> = speeds.iter().map(|hz| envelope.comb(*hz, SHAFT_OF_ENVELOPE)).collect();
+            let shaft: Vec<f64> =
+                speeds.iter().map(|hz| clear.comb(envelope, *hz, SHAFT_OF_ENVELOPE)).collect();
             for family in &families {
                 family.add(envelope, &speeds, &shaft, &mut best);
             }
         }
-        let scores = speeds.iter().zip(&best).map(|(hz, best)| best + spectrum.comb(*hz, SHAFT)).collect();
+        let scores =
+            speeds.iter().zip(&best).map(|(hz, best)| best + clear.comb(spectrum, *hz, SHAFT)).collect();
         Some(Self { speeds, scores })
     }
 
@@ -178,6 +191,35 @@ impl Scored {
             hz = lower;
         }
         hz
+    }
+}
+
+/// Multiples of the shaft at which no line of the bearing can be, by a speed or by the one that is given: in a
+/// 6203 BPFO is 3.05 times the shaft and BPFI 4.95 times.
+struct Clear {
+    orders: Vec<f64>,
+    given_hz: Option<f64>,
+}
+
+impl Clear {
+    fn of(bearing: &CatalogueBearing, given_hz: Option<f64>) -> Option<Self> {
+        let orders = bearing.orders().ok()?;
+        let combs = [orders.bpfo, orders.bpfi, 2.0 * orders.bsf];
+        Some(Self {
+            orders: (1..=OF_FAMILY).flat_map(|m| combs.map(|order| f64::from(m) * order)).collect(),
+            given_hz,
+        })
+    }
+
+    /// Evidence of the first multiples of a speed.
+    fn comb(&self, spectrum: &Evidence, hz: f64, multiples: u32) -> f64 {
+        let is_of_a_family = |line_hz: f64| {
+            [Some(hz), self.given_hz].into_iter().flatten().any(|shaft_hz| {
+                self.orders.iter().any(|order| (line_hz / (order * shaft_hz) - 1.0).abs() < SLIP)
+            })
+        };
+        let lines = (1..=multiples).map(|n| f64::from(n) * hz).filter(|line| !is_of_a_family(*line));
+        lines.map(|line| spectrum.at(line)).sum()
     }
 }
 

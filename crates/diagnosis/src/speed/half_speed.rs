@@ -31,18 +31,13 @@ pub(crate) fn detect_half_speed(
     samples.iter().all(|x| x.is_finite()).then_some(())?;
     let half_hz = rpm / 120.0;
     let stands = |hz: f64| estimate::stands_at_half(samples, rate_hz, hz);
-    let by_shaft = shaft::near(samples, rate_hz, half_hz)
+    let by_shaft = shaft::near(samples, rate_hz, half_hz, Some(bearing))
         .filter(|shaft| shaft.is_distinct() && stands(shaft.hz))
-        .map(|shaft| SpeedByLines {
-            hz: shaft.hz,
-            uncertainty_hz: shaft.uncertainty_hz,
-            by: "the lines of the shaft",
-        });
+        .map(SpeedByLines::of_shaft);
     by_shaft.or_else(|| {
         let found = estimate::without_any_given(samples, rate_hz, bands, bearing)?;
         let agrees = found.is_accepted && (found.hz / half_hz - 1.0).abs() < SLIP && stands(found.hz);
-        let by = "the lines of the shaft and of the bearing together";
-        agrees.then_some(SpeedByLines { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
+        agrees.then_some(SpeedByLines::of_both(found))
     })
 }
 

@@ -62,19 +62,36 @@ pub(crate) struct SpeedByLines {
     pub(crate) uncertainty_hz: f64,
     /// Which lines.
     pub(crate) by: &'static str,
+    /// How far they lead any other speed: decibels by the shaft, and by shaft and bearing together the
+    /// logarithm of the likelihood.
+    pub(crate) lead: f64,
 }
 
+const BY_SHAFT: &str = "the lines of the shaft";
+
 impl SpeedByLines {
+    pub(crate) fn of_shaft(shaft: shaft::Shaft) -> Self {
+        Self { hz: shaft.hz, uncertainty_hz: shaft.uncertainty_hz, by: BY_SHAFT, lead: shaft.lead_db }
+    }
+
+    pub(crate) fn of_both(found: estimate::SpeedEstimate) -> Self {
+        let by = "the lines of the shaft and of the bearing together";
+        Self { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by, lead: found.lead }
+    }
+
     /// The note on the speed where it corrects a given one.
     fn correction(self, machine: &Machine) -> Option<String> {
         let rpm = machine.speed_rpm?;
         shaft::is_correction(self.hz, rpm / 60.0).then_some(())?;
         Some(format!(
-            "{} stand at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were given, and are taken",
+            "{} stand at {:.1} ± {:.1} rpm, {:+.1} % from the {rpm:.1} rpm that were given, and are taken: no \
+             other speed within 7 % comes nearer than {:.0}{}, multiples at which the bearing has lines left aside",
             self.by,
             60.0 * self.hz,
             60.0 * self.uncertainty_hz,
-            100.0 * (60.0 * self.hz / rpm - 1.0)
+            100.0 * (60.0 * self.hz / rpm - 1.0),
+            self.lead,
+            if self.by == BY_SHAFT { " dB" } else { " in the logarithm of the likelihood" }
         ))
     }
 }
@@ -90,8 +107,7 @@ fn by_lines(
 ) -> Option<SpeedByLines> {
     let given_hz = machine.speed_rpm.filter(|rpm| *rpm > 0.0)? / 60.0;
     if let Some(shaft) = shaft.filter(|shaft| shaft.is_distinct()) {
-        let lines =
-            SpeedByLines { hz: shaft.hz, uncertainty_hz: shaft.uncertainty_hz, by: "the lines of the shaft" };
+        let lines = SpeedByLines::of_shaft(shaft);
         return Some(lines)
             .filter(|lines| !(machine.speed_is_exact && shaft::is_correction(lines.hz, given_hz)));
     }
@@ -100,8 +116,7 @@ fn by_lines(
     samples.iter().all(|x| x.is_finite()).then_some(())?;
     let found =
         estimate::near(samples, rate_hz, bands, bearing, given_hz).filter(|found| found.is_accepted)?;
-    let by = "the lines of the shaft and of the bearing together";
-    Some(SpeedByLines { hz: found.hz, uncertainty_hz: found.uncertainty_hz, by })
+    Some(SpeedByLines::of_both(found))
 }
 
 /// The speed by shaft and bearing together, where the user gives none; a note where it is not found.
@@ -138,5 +153,5 @@ fn found_speed(
 fn shaft_by_lines(samples: &[f64], rate_hz: f64, machine: &Machine) -> Option<shaft::Shaft> {
     let rpm = machine.speed_rpm.filter(|rpm| *rpm > 0.0 && machine.outer_speed_rpm == 0.0)?;
     samples.iter().all(|x| x.is_finite()).then_some(())?;
-    shaft::near(samples, rate_hz, rpm / 60.0)
+    shaft::near(samples, rate_hz, rpm / 60.0, machine.bearing.as_ref())
 }

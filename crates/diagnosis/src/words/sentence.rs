@@ -62,15 +62,25 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     }
     let weak: Vec<&str> = families.iter().filter(|f| f.is_there()).map(|f| f.name.name()).collect();
     let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name.name()).collect();
+    let hidden: Vec<&str> = families.iter().filter(|f| f.undecided).map(|f| f.name.name()).collect();
     if unheard.len() == families.len() {
         return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, \
             for every family. The reasons say which length or rate would do."
             .to_owned();
     }
-    let mut verdict = "The record shows no defect.".to_owned();
+    let mut verdict = if hidden.is_empty() {
+        "The record shows no defect.".to_owned()
+    } else {
+        format!(
+            "The record does not decide about {}, whose place is that of the machine's own lines, and shows no \
+             other defect.",
+            hidden.join(" and ")
+        )
+    };
     if !weak.is_empty() {
         verdict += &format!(" {} can be seen, without knocks: watch the trend.", weak.join(" and "));
     }
+    let unheard: Vec<&str> = unheard.into_iter().filter(|name| !hidden.contains(name)).collect();
     if !unheard.is_empty() {
         verdict += &format!(" It does not decide about {}.", unheard.join(" and "));
     }
