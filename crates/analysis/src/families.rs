@@ -248,6 +248,18 @@ impl<'a> Case<'a> {
     fn spoken(&self) -> String {
         self.name.replace('_', " ")
     }
+
+    /// Whether it is there and has its carrier or a sideband within `reach_hz` of a frequency.
+    fn has_line(&self, hz: f64, bpfo_hz: f64, reach_hz: f64) -> bool {
+        let (Some(comb), Some((trial, _))) = (&self.comb, &self.trial) else { return false };
+        let carrier_hz = comb.line_hz + trial.offset_hz;
+        self.verdict != Verdict::Open && is_line_of(carrier_hz, bpfo_hz, hz, reach_hz)
+    }
+}
+
+/// Whether a carrier or one of its sidebands lies within `reach_hz` of `hz`.
+fn is_line_of(carrier_hz: f64, bpfo_hz: f64, hz: f64, reach_hz: f64) -> bool {
+    (-SIDEBANDS..=SIDEBANDS).any(|m| (hz - carrier_hz - f64::from(m) * bpfo_hz).abs() <= reach_hz)
 }
 
 /// Tries all cases, accepts the best one that leads its rivals, and repeats on the residual until none does.
@@ -368,8 +380,14 @@ fn finding(motion: &RecordedMotion, spectra: &Spectra<'_>, cases: &[Case<'_>], n
             let verdict = if finding.is_open() {
                 let db = finding.standing_db.unwrap_or(f64::NAN);
                 let hz = predicted_hz.unwrap_or(f64::NAN);
+                let also: Vec<String> = cases
+                    .iter()
+                    .filter(|other| other.has_line(hz, motion.bpfo_hz, 0.5 * resolution_hz))
+                    .map(|other| format!(", where {} have one, too", other.spoken()))
+                    .collect();
                 format!(
-                    "open: a line stands {db:.0} dB above its surroundings at {hz:.0} Hz, its place, but its comb"
+                    "open: a line stands {db:.0} dB above its surroundings at {hz:.0} Hz, its place{}; its comb",
+                    also.concat()
                 )
             } else {
                 "absent: it".to_owned()
@@ -454,9 +472,7 @@ impl FamilyFinding {
     /// Whether a family that is there has a line within `reach_hz` of `hz`, its sidebands at `bpfo_hz`
     /// included.
     pub fn claims(&self, hz: f64, bpfo_hz: Option<f64>, reach_hz: f64) -> bool {
-        let Some(carrier_hz) = self.carrier_hz else { return false };
-        let off = hz - carrier_hz;
-        (-SIDEBANDS..=SIDEBANDS).any(|m| (off - f64::from(m) * bpfo_hz.unwrap_or(0.0)).abs() <= reach_hz)
+        self.carrier_hz.is_some_and(|carrier_hz| is_line_of(carrier_hz, bpfo_hz.unwrap_or(0.0), hz, reach_hz))
     }
 
     /// Its name in running text, with those that cannot be distinguished from it.

@@ -228,6 +228,10 @@ quantities! {
         pub compensation_gain: Option<f64>,
         /// Length of the defect estimated from both times and the speed without slip [mm].
         pub spall_mm: Option<f64> => "length of the spall by its events" at 10,
+        /// How far the length by a further passage over the same spall lies from their mean at most, at 95 %
+        /// [mm]; `None` of a single passage.
+        #[serde(default)]
+        pub spall_scatter_mm: Option<f64>,
     }
 }
 

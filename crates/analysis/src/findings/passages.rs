@@ -16,6 +16,7 @@ use crate::levels::Visit;
 use crate::prediction::{DefectEdges, Prediction, SpallCourse};
 use crate::record::{Record, Roller};
 use crate::spall_length::Edge;
+use crate::statistic::Statistic;
 use crate::summary::Event;
 
 /// Passages of rollers that carry less than this part of the largest load are left out: they lie outside the
@@ -27,6 +28,9 @@ const ABOUT: f64 = 3.0;
 
 /// Slip below which a passage is expected at its time without slip, as a part of a traverse.
 const UNMOVED: f64 = 0.1;
+
+/// Lengths of a spall that scatter by more than this part of their mean are worth a note.
+const WIDE: f64 = 0.2;
 
 /// Most notes of one kind that are written out; the others are counted.
 const NOTED: usize = 3;
@@ -125,6 +129,7 @@ impl<'a> Passages<'a> {
             let seen = std::mem::take(seen).into_values().collect();
             let mut of_spall = events_of(record, self.prediction, course, seen, least_n, notes)?;
             of_spall.iter_mut().for_each(|event| event.spall = number + 1);
+            scatter(&mut of_spall, notes);
             events.extend(of_spall);
         }
         events.sort_by(|a, b| a.expected_entry_ms.total_cmp(&b.expected_entry_ms));
@@ -325,6 +330,25 @@ fn events_of(
     Ok(of_spall)
 }
 
+/// How far lengths of one spall scatter from passage to passage: where few elements carry the load, the rings
+/// shift as one of them comes free, and its events are not where its contact passes the edges.
+fn scatter(events: &mut [Event], notes: &mut Vec<String>) {
+    let lengths: Vec<f64> = events.iter().filter_map(|event| event.spall_mm).collect();
+    let Some(all) = Statistic::of(&lengths, events.len()) else { return };
+    let Some(off_mm) = all.of_a_further_one() else { return };
+    events
+        .iter_mut()
+        .filter(|event| event.spall_mm.is_some())
+        .for_each(|e| e.spall_scatter_mm = Some(off_mm));
+    if off_mm > WIDE * all.mean {
+        notes.push(format!(
+            "lengths of spall {} by the events of its passages scatter by ±{off_mm:.1} mm about {:.1} mm (95 %): \
+             the force of an element does not show its edges",
+            events[0].spall, all.mean
+        ));
+    }
+}
+
 /// Event #3: the largest force that a roller carries while a neighbour is in the defect.
 fn compensate(record: &Record<'_>, prediction: &Prediction, events: &mut [Event]) -> Result<(), Error> {
     let time = record.time_s();
@@ -418,6 +442,7 @@ impl Event {
             compensation_n: None,
             compensation_gain: None,
             spall_mm: None,
+            spall_scatter_mm: None,
         }
     }
 

@@ -38,9 +38,11 @@ fn table_1(source: &RowInputs<'_>) -> Vec<PaperRow> {
     rows.push(given("Adapter width w_a", 160.0, a.width_mm, "mm"));
     rows.push(given("Adapter height H_a, central", 40.0, a.height_mm, "mm"));
     let defect = source.scene.written.defect.as_ref();
-    let estimated = source.summary.events.iter().find_map(|e| e.spall_mm);
-    let why = estimated
-        .map_or("given".to_owned(), |mm| format!("given; estimated back from the event times: {mm:.2} mm"));
+    let estimated = source.summary.events.iter().find_map(|e| Some((e.spall_mm?, e.spall_scatter_mm)));
+    let why = estimated.map_or("given".to_owned(), |(mm, scatter)| {
+        let scatter = scatter.map_or(String::new(), |scatter| format!(" ± {scatter:.2}"));
+        format!("given; estimated back from the event times: {mm:.2}{scatter} mm")
+    });
     rows.push(number(PART, "Defect length L_d", 10.0, defect.map(|d| d.length_mm), "mm", &why));
     let why = "given; nodes of the raceway are moved outwards instead of removing a layer of elements";
     rows.push(number(PART, "Defect depth H_d (one element)", 0.2, defect.map(|d| d.depth_mm), "mm", why));

@@ -156,6 +156,7 @@ fn lengths(events: &[Event], spalls: &[DefectScene]) -> Markup {
     }
     let truth = |event: &Event| Some(spalls.get(event.spall.checked_sub(1)?)?.length_mm);
     let several = spalls.len() > 1;
+    let scatter = |e: &Event| e.spall_scatter_mm.map_or(String::new(), |mm| format!(" ± {mm:.2}"));
     let off = |found: Option<f64>, truth: f64| cell(found.map(|t| minus(format!("{:+.3}", t - truth))));
     let head = html! {
         @if several { th { "Spall" } }
@@ -168,7 +169,7 @@ fn lengths(events: &[Event], spalls: &[DefectScene]) -> Markup {
             td { (e.roller) }
             (off(e.entry_ms, e.expected_entry_ms))
             (off(e.exit_ms, e.expected_exit_ms))
-            (cell(e.spall_mm.map(|mm| format!("{mm:.2}"))))
+            (cell(e.spall_mm.map(|mm| format!("{mm:.2}{}", scatter(e)))))
             (cell(truth(e).map(|mm| mm.to_string())))
             (cell(e.spall_mm.zip(truth(e)).map(|(mm, truth)| minus(format!("{:+.1} %", 100.0 * (mm / truth - 1.0))))))
         }
@@ -179,7 +180,8 @@ fn lengths(events: &[Event], spalls: &[DefectScene]) -> Markup {
         (folded(table, events.len(), "lengths, passage by passage"))
         p class="hint" {
             "Off: event against the roller's centre over the edge without slip. The estimate allows for the \
-             load that a roller still carries behind an edge (THEORY §7.5)."
+             load that a roller still carries behind an edge (THEORY §7.5); ±: how far that of a further \
+             passage over the spall lies from their mean at most, at 95 %, by their scatter."
         }
     }
 }

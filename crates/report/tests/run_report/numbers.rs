@@ -31,6 +31,10 @@ fn roundtrip_every_number_of_the_synthetic_run() {
         close(event.exit_ms, event.expected_exit_ms - 1e3 * EXIT_LEAD_S, EVENT_MS, "exit");
         // Slip delays the path: by 0.1 % of the time since the start.
         close(event.path_exit_ms, event.expected_exit_ms * (1.0 + SLIP), 0.01, "path");
+        // Three lengths whose times are those of the edges but for steps of the median, 0.07 mm each; t is
+        // 4.3 for two degrees of freedom (Student).
+        let mm = event.spall_scatter_mm.expect("three passages");
+        assert!(mm > 0.0 && mm < 4.31 * 0.07 * (4.0_f64 / 3.0).sqrt(), "{mm}");
     }
 
     // 30 ms hold 140.2 periods of the ripple of 10 %: the rest averages to less than 0.1/(2π·140).
