@@ -1,14 +1,15 @@
 //! Reduced meshes of earlier runs, kept beside their folders: one serves every start, speed and duration of
 //! the same mesh under the same load.
 
+use std::f64::consts::PI;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use stribeck_scene::{
     duty::LONGEST_RUN_S,
     scene::{
-        CageScene, ContactFormula, ContactScene, GuardsScene, ModelScene, OperationScene, OutputScene,
-        ReducedScene, Scene, SolverScene,
+        CageScene, ContactFormula, ContactScene, DefectRing, DefectScene, GuardsScene, ModelScene,
+        OperationScene, OutputScene, ReducedScene, Scene, SolverScene,
     },
 };
 use stribeck_store::run_dir::write_atomic;
@@ -23,7 +24,7 @@ const FOLDER: &str = ".reduced";
 const MAGIC: &[u8; 20] = b"stribeck reduced vF\n";
 
 /// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have
-/// their defaults. Rollers are half a spacing from their places, so that none is in the first groove.
+/// their defaults. Rollers lie symmetrically about the first groove, as few as may be in it.
 pub fn reference(scene: &Scene) -> Scene {
     let ContactScene {
         method,
@@ -41,9 +42,12 @@ pub fn reference(scene: &Scene) -> Scene {
         // Its penalty is that of the full model's step.
         solver.time_step_factor = scene.solver.time_step_factor;
     }
-    let middle = scene.grooves().first().map_or(scene.load_zone_deg(), |groove| groove.angle_deg);
+    let groove = scene.grooves().into_iter().next();
+    let middle = groove.as_ref().map_or(scene.load_zone_deg(), |groove| groove.angle_deg);
     let mut bearing = scene.bearing.clone();
-    bearing.first_roller_deg = middle + 180.0 / bearing.rollers as f64;
+    // With two of them as far from the middle as they can be, or with one in it.
+    let is_over_one = groove.is_some_and(|groove| spacings(scene, &groove) % 2.0 >= 1.0);
+    bearing.first_roller_deg = middle + if is_over_one { 0.0 } else { 180.0 / bearing.rollers as f64 };
     let mut mesh = scene.mesh.clone();
     mesh.roller_phase_deg = 0.0;
     Scene {
@@ -78,6 +82,16 @@ pub fn reference(scene: &Scene) -> Scene {
         output: OutputScene { sensors: scene.output.sensors.clone(), frames: None, ..OutputScene::default() },
         guards: GuardsScene::default(),
     }
+}
+
+/// Length of a groove in spacings of the rollers over its raceway.
+fn spacings(scene: &Scene, groove: &DefectScene) -> f64 {
+    let bearing = &scene.bearing;
+    let race_mm = match groove.ring {
+        DefectRing::Outer => bearing.outer_race_diameter_mm,
+        DefectRing::Inner => bearing.inner_race_diameter_mm,
+    };
+    groove.length_mm * bearing.rollers as f64 / (PI * race_mm)
 }
 
 /// At rest, half-way between the least and the largest load of a profile: linearised there, the reduction

@@ -123,6 +123,13 @@ fn peer_arrangements_are_felt_as_by_the_full_model() {
                  inner, angle_deg: 84, {steep})]"
             ),
         ),
+        // Two rollers over it at the preload made forces 14 % wrong: they are 11.2 mm apart.
+        (
+            "long spall",
+            "defects: [(on: outer, angle_deg: 90, form: spall(length_mm: 14, depth_mm: 0.2, edge: rectangular))], \
+             operation: (load_n: 3000, speed_rpm: 1500)"
+                .to_owned(),
+        ),
         ("pitted roller", format!("defects: [(on: roller(3), angle_deg: 95, {steep})]")),
     ];
     side_by_side(&cases, |(name, more)| {
