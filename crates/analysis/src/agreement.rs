@@ -12,7 +12,7 @@ mod thirds;
 mod waveform;
 
 use serde::{Deserialize, Serialize};
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{ContactSurface, Scene};
 use stribeck_store::run_dir::Run;
 
 use crate::Error;
@@ -89,6 +89,7 @@ impl Agreement {
         let lines: Vec<Row> = (0..LINES).filter_map(|n| line(n, &sides)).collect();
         let notes = [
             fold_down_note(pairs[0][0].info.interval_s),
+            (scene.contact.surface == ContactSurface::Arc).then(|| TONE_OF_ARCS.to_owned()),
             sides[0][0].centres_hz.is_empty().then(octaves_note),
             lines.is_empty().then(|| lines_note(sides[0][0].summary.kinematics.expected_bpfo_hz)),
         ];
@@ -152,6 +153,10 @@ impl Agreement {
         self.rows.iter().filter(|row| !row.decided)
     }
 }
+
+/// Where levels of a quiet bearing differ by the full model's mesh.
+const TONE_OF_ARCS: &str = "on arcs the nodes of the full model's raceways make a tone that the reduced model \
+    does not have (THEORY §9.6): in a bearing without impacts levels of the full model are its mesh's";
 
 /// A note where samples of the full model lie so far apart that aliases enter its third octaves; `None`
 /// elsewhere.
