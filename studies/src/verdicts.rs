@@ -47,6 +47,13 @@ pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result
         kurtogram: baseline::kurtogram_band(record),
     })?;
     counts::verdicts(rows, &records, &judged);
+    let beside = counts::sound_of_the_rig(&records, &judged);
+    counts::beside_sound(
+        rows,
+        &beside,
+        &host
+            .each(&beside, cores, |(record, sound_db)| trial::judge_beside(record, Change::None, sound_db))?,
+    );
     counts::choices(rows, &records, &judged);
     figure::draw("verdicts", &counts::false_alarms(rows, &records, &judged))?;
     let ends = both_ends::pairs(&records);

@@ -12,7 +12,7 @@ use crate::record::pass::Record;
 use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
 use crate::speed::settled::Settled;
 use crate::words::sentence::conclude;
-use crate::{Course, Error, Family, Machine, MeasuredFindings, Varying};
+use crate::{Course, Error, Family, Machine, MeasuredFindings, SoundAsHigh, Varying};
 
 /// The numbers and the curves that a report draws.
 #[derive(Debug, Clone)]
@@ -97,6 +97,10 @@ impl Analysis {
                 zone: None,
                 families,
                 unexplained: decided.unexplained,
+                score_db: decided.score_db,
+                sound_as_high: decided
+                    .sound
+                    .map(|sound| SoundAsHigh { as_high: sound.as_high, records: sound.records }),
                 verdict: std::iter::once(said).chain(said_of_half).collect::<Vec<_>>().join(" "),
                 spall_mm: spall.length_mm,
                 spall_otherwise_mm: spall.otherwise_mm,

@@ -12,6 +12,7 @@ pub(crate) mod machine_lines;
 pub(crate) mod rules;
 pub(crate) mod second;
 pub mod sidebands;
+pub mod sound;
 pub mod unexplained;
 pub(crate) mod unrelated;
 pub(crate) mod verdict;

@@ -44,6 +44,13 @@ pub struct MeasuredFindings {
     /// A comb that knocks, is no family's of this bearing, and stands higher than all that are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub unexplained: Option<Unexplained>,
+    /// How far the rolling family that stands farthest above unrelated combs does so [dB]: the scores of sound
+    /// records of a machine calibrate that of a further one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub score_db: Option<f64>,
+    /// Records of the sound machine with as high a score.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sound_as_high: Option<SoundAsHigh>,
     /// The conclusion in one sentence.
     pub verdict: String,
     /// Length of a spall, from two events a passage [mm].
@@ -67,6 +74,15 @@ impl MeasuredFindings {
     pub fn acceleration_unit(&self) -> Option<AccelerationUnit> {
         self.unit.as_deref().and_then(AccelerationUnit::parse)
     }
+}
+
+/// How many records of the sound machine have as high a score as a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct SoundAsHigh {
+    /// Those that have.
+    pub as_high: usize,
+    /// All of them.
+    pub records: usize,
 }
 
 /// A value with its interval of 90 %.

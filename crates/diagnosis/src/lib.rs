@@ -54,7 +54,7 @@ pub use families::defect::Defect;
 pub use families::family::{Family, Reason};
 pub use families::sidebands::sidebands_seen;
 pub use families::unexplained::Unexplained;
-pub use findings::{Interval, MeasuredFindings};
+pub use findings::{Interval, MeasuredFindings, SoundAsHigh};
 pub use length::estimate::SHORTEST_S;
 pub use length::pressed::{Pressed, usual_load_n};
 pub use machine::Machine;

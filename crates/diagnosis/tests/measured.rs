@@ -413,17 +413,34 @@ fn planted_a_shallow_modulation_is_seen_and_not_called_a_defect() {
     // What elements passing under the load do in a sound bearing: the noise swells by a fifth, not quite
     // evenly.
     let swell = |t: f64| 1.0 + 0.2 * (0..4).map(|h| (TAU * 71.7 * f64::from(h + 1) * t).cos()).sum::<f64>();
-    let signal = coloured(8, 4 * SAMPLES)
+    let signal: Vec<f64> = coloured(8, 4 * SAMPLES)
         .iter()
         .enumerate()
         .map(|(n, x)| x * swell(n as f64 / RATE_HZ).abs().sqrt())
         .collect();
-    let findings = analysed(signal, 1200.0);
+    let findings = analysed(signal.clone(), 1200.0);
     assert!(claimed(&findings).is_empty(), "{findings:#?}");
     assert!(
         findings.families[0].is_there() && findings.verdict.contains("BPFO can be seen"),
         "{findings:#?}"
     );
+    // Where this machine showed nothing of it when it was sound, it is a defect; with one sound record that
+    // shows as much, or with too few of them, it is not.
+    let score_db = findings.score_db.unwrap();
+    let beside = |sound_db: &[f64]| {
+        let machine = Machine { sound_db: sound_db.to_vec(), ..machine(1200.0) };
+        Analysis::of(&Channel::held("test", signal.clone()), RATE_HZ, &machine).unwrap().findings
+    };
+    let sound_db = [-1.0, 0.5, 0.2, -0.3, 0.8, -0.6, 0.1];
+    let found = beside(&sound_db);
+    assert!(score_db > 5.0 && claimed(&found) == ["BPFO"], "{found:#?}");
+    assert!(found.families[0].reason.to_string().contains("7 records of the sound machine"), "{found:#?}");
+    let one_as_high = beside(&[&sound_db[..], &[score_db]].concat());
+    assert!(claimed(&one_as_high).is_empty(), "{one_as_high:#?}");
+    assert_eq!(one_as_high.sound_as_high.map(|s| (s.as_high, s.records)), Some((1, 8)));
+    let too_few = beside(&sound_db[..3]);
+    assert!(claimed(&too_few).is_empty(), "{too_few:#?}");
+    assert!(too_few.notes.iter().any(|note| note.contains("at least 7")), "{:?}", too_few.notes);
 }
 
 #[test]

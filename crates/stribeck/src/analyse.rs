@@ -16,7 +16,7 @@ use stribeck_diagnosis::Analysis;
 use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
 use stribeck_diagnosis::record::zone::{Foundation, Group, Zoned};
 use stribeck_diagnosis::sources::Component;
-use stribeck_report::{TrendEntry, write_measured, write_trend};
+use stribeck_report::{Baseline, TrendEntry, write_measured, write_trend};
 use stribeck_scene::catalogue;
 use stribeck_store::run_dir::{check_folder, write_atomic};
 
@@ -36,10 +36,11 @@ pub struct Options {
     files: Vec<PathBuf>,
     #[command(flatten)]
     reading: Reading,
-    /// A record of the same machine when it was sound, or before: its spectra and levels are drawn behind. It
-    /// is read with the same flags and changes no verdict
+    /// A record of the same machine when it was sound, read with the same flags: its spectra and levels are
+    /// drawn behind. May be repeated, the first is drawn; seven or more, of several bearings where there are,
+    /// calibrate the verdict
     #[arg(long, value_name = "FILE")]
-    baseline: Option<PathBuf>,
+    baseline: Vec<PathBuf>,
     /// Its speed of the shaft [1/min] where that was another one
     #[arg(long, value_name = "RPM", requires = "baseline", value_parser = Speed::parse, allow_hyphen_values = true)]
     baseline_rpm: Option<Speed>,
@@ -65,7 +66,7 @@ pub struct Options {
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
     alarms: Vec<Limit>,
     /// The first N files are of the sound machine: limits of all levels follow from their scatter, but for
-    /// those given
+    /// those given, and seven or more calibrate the verdict on the others
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
     /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
@@ -116,10 +117,13 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if !options.components.is_empty() {
         return components::run(options, place);
     }
+    let sound = baseline::read(options, place)?;
+    let mut reading = Reading { sound_db: baseline::scores(&sound), ..options.reading.clone() };
+    let asked = Asked { options, sound: sound.first(), simulation: simulation.as_ref() };
     if let [file] = &options.files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
-        let analysis = analyse(file, &out, options, simulation.as_ref(), place)?;
+        let analysis = analyse(file, &out, &asked, &reading, place)?;
         if options.json {
             say!("{}", serde_json::to_string_pretty(&analysis.findings)?);
             return Ok(ExitCode::SUCCESS);
@@ -142,11 +146,16 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
         write_atomic(&out.join(TREND), b"[]")?;
     }
-    let mut entries = Vec::new();
-    for (file, folder) in options.files.iter().zip(folders) {
-        let done = analyse(file, &out.join(&folder), options, simulation.as_ref(), place);
+    let (mut entries, mut of_reference) = (Vec::new(), Vec::new());
+    for (at, (file, folder)) in options.files.iter().zip(folders).enumerate() {
+        let done = analyse(file, &out.join(&folder), &asked, &reading, place);
         let (findings, error) = match done {
-            Ok(analysis) => (Some(analysis.findings), None),
+            Ok(analysis) => {
+                if options.reference.is_some_and(|count| at < count) {
+                    of_reference.extend(analysis.findings.score_db);
+                }
+                (Some(analysis.findings), None)
+            }
             Err(why) if why.is::<Interrupted>() => return Err(why),
             Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
         };
@@ -156,6 +165,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             say!("{file}: {verdict}");
         }
         entries.push(TrendEntry { file, folder, findings, error, alarms: Vec::new() });
+        // Not by one another: what they scatter by is what the others are judged by.
+        if options.reference == Some(at + 1) {
+            reading.sound_db.append(&mut of_reference);
+        }
     }
     let limits = limits(options, &entries);
     for limit in &limits {
@@ -223,25 +236,29 @@ fn passed(judged: &Judged) -> String {
 /// The levels of several records side by side.
 const TREND: &str = "trend.json";
 
+/// What is asked of every record.
+struct Asked<'a> {
+    options: &'a Options,
+    /// The record of the sound machine that is drawn behind.
+    sound: Option<&'a Baseline>,
+    simulation: Option<&'a Simulation>,
+}
+
 /// Analyses one record and writes its findings and its page into `out`.
-fn analyse(
-    asked: &Path,
-    out: &Path,
-    options: &Options,
-    simulation: Option<&Simulation>,
-    place: &Place,
-) -> Result<Analysis> {
-    let mut analysis = examine(asked, &options.reading, place)?;
+fn analyse(asked: &Path, out: &Path, of: &Asked<'_>, reading: &Reading, place: &Place) -> Result<Analysis> {
+    let Asked { options, sound, simulation } = *of;
+    let mut analysis = examine(asked, reading, place)?;
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
     if let Some(simulation) = simulation {
         // What is known without it stays when the simulation is interrupted.
         write_measured(out, &name, &analysis, None)?;
-        analysis = simulation.again(analysis, asked, &options.reading, out, place)?;
+        analysis = simulation.again(analysis, asked, reading, out, place)?;
     }
     analysis.findings.zone = zoned(options, &analysis);
-    let baseline = options.baseline.as_deref().map(|file| baseline::of(file, options, &mut analysis, place));
-    let baseline = baseline.transpose()?;
-    write_measured(out, &name, &analysis, baseline.as_ref())?;
+    if let Some(first) = sound {
+        baseline::beside(&mut analysis, first)?;
+    }
+    write_measured(out, &name, &analysis, sound)?;
     Ok(analysis)
 }
 

@@ -3,6 +3,7 @@
 
 use stribeck_analysis::statistic::Share;
 use stribeck_diagnosis::Defect;
+use stribeck_diagnosis::families::sound::LEAST_SOUND;
 use stribeck_report::plot::{Axis, Colour, Figure, Level, Series, Ticks};
 
 use super::baseline::{self, Scores};
@@ -106,6 +107,49 @@ pub(super) fn verdicts(rows: &mut Rows, records: &[Labelled], judged: &[Judged])
         let element = |r: &Labelled| r.truth == Some(Defect::Bsf);
         put(&format!("**all of the {name}, rolling elements**"), &|r| r.part == part && element(r));
         put(&format!("**all of the {name}, sound**"), &|r| r.part == part && r.truth.is_none());
+    }
+}
+
+/// The records of rigs of which enough sound ones are there, each with the scores of all others that are sound
+/// [dB].
+pub(super) fn sound_of_the_rig<'a>(
+    records: &'a [Labelled],
+    judged: &[Judged],
+) -> Vec<(&'a Labelled, Vec<f64>)> {
+    let rig = |record: &Labelled| record.set.split([' ', ',']).next().unwrap_or_default().to_owned();
+    let is_sound = |record: &Labelled| record.truth.is_none() && !record.beside;
+    let others = |record: &Labelled| -> Vec<f64> {
+        let of_rig = pairs(records, judged).filter(|(other, _)| is_sound(other) && rig(other) == rig(record));
+        of_rig
+            .filter(|(other, _)| other.name != record.name)
+            .filter_map(|(_, judged)| judged.outcome.as_ref()?.score_db)
+            .collect()
+    };
+    let with_others = records.iter().map(|record| (record, others(record)));
+    with_others.filter(|(_, sound_db)| sound_db.len() >= LEAST_SOUND).collect()
+}
+
+/// Right, wrong and undecided beside sound records of the same rig.
+pub(super) fn beside_sound(rows: &mut Rows, records: &[(&Labelled, Vec<f64>)], outcomes: &[Option<Outcome>]) {
+    for (set, what) in SETS.into_iter().flat_map(|set| CLASSES.map(|class| (set, class))) {
+        let (mut counts, mut fewest) = (Counts::default(), usize::MAX);
+        for ((record, sound_db), outcome) in records.iter().zip(outcomes) {
+            if record.set == set && class(record) == what {
+                counts.add(outcome.as_ref().map_or(Standing::Silent, |o| o.standing(record.truth)));
+                fewest = fewest.min(sound_db.len());
+            }
+        }
+        if counts.of > 0 {
+            let values = [
+                ("n", counts.of),
+                ("sound records", fewest),
+                ("right", counts.right),
+                ("wrong", counts.wrong),
+                ("silent", counts.silent),
+            ];
+            let values = values.map(|(what, n)| (what, n as f64));
+            rows.values("beside sound", &format!("{set}, {what}"), values);
+        }
     }
 }
 

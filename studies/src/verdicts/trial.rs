@@ -73,6 +73,8 @@ pub(super) struct Outcome {
     /// The part that is named where one must be ([`choice`]).
     pub(super) choice: Defect,
     pub(super) p_values: [f64; 4],
+    /// How far the family that stands farthest above unrelated combs does so [dB].
+    pub(super) score_db: Option<f64>,
     /// The speed that was taken, or found [1/min].
     pub(super) speed_rpm: Option<f64>,
     pub(super) spall_mm: Option<Interval>,
@@ -102,6 +104,11 @@ impl Outcome {
 
 /// Judges a record after a change; `None` where it is refused.
 pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
+    judge_beside(record, change, &[])
+}
+
+/// The same with the scores of records of the sound machine [dB].
+pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) -> Option<Outcome> {
     let (mut rate_hz, mut speed_rpm, mut bearing) =
         (record.rate_hz, record.speed_rpm, record.bearing.clone());
     let mut samples = record.samples.clone();
@@ -122,6 +129,7 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         speed_rpm: (change != Change::NoSpeed).then_some(speed_rpm),
         bearing: Some(bearing),
         load_n: record.load_n,
+        sound_db: sound_db.to_vec(),
         ..Machine::default()
     };
     let analysis = Analysis::of(&Channel::held(record.name.clone(), samples), rate_hz, &machine).ok()?;
@@ -137,6 +145,7 @@ pub(super) fn judge(record: &Labelled, change: Change) -> Option<Outcome> {
         scores,
         choice: choice(&scores),
         p_values: of(|f| f.p_value, 1.0),
+        score_db: analysis.findings.score_db,
         speed_rpm: analysis.findings.speed_rpm,
         spall_mm: analysis.findings.spall_mm,
     })

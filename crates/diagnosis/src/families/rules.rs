@@ -6,8 +6,10 @@ use crate::families::controls::MOST_AS_HIGH;
 use crate::families::family::{Family, Reason};
 use crate::families::limits::{ALPHA, KNOCK, KNOCK_OF_ELEMENT};
 use crate::families::sidebands::is_modulated;
+use crate::families::sound::BesideSound;
 use crate::families::unexplained::{Unexplained, UnexplainedComb};
 use crate::families::unrelated::is_the_same;
+use crate::words::numbers::chance;
 use crate::words::sentence::probability;
 use crate::{Defect, families::element_rhythm};
 
@@ -159,6 +161,8 @@ pub(crate) struct Case<'a> {
     pub(crate) unexplained: Option<&'a Unexplained>,
     /// The same of each band.
     around: Around<'a>,
+    /// The family that stands farthest above unrelated combs, beside sound records of the machine.
+    sound: Option<BesideSound>,
     /// Whether the cage modulates the knocks of a rolling element.
     pub(crate) modulated: bool,
     /// Height of the family that knocks and stands highest [dB]; −∞ without one.
@@ -199,7 +203,7 @@ fn unrelated_combs_stand_as_high(family: &Family, _: &Case<'_>) -> Option<String
 fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<String> {
     let depth = family.depth.unwrap_or(0.0);
     let knock = if family.name == Defect::Bsf && case.modulated { KNOCK_OF_ELEMENT } else { KNOCK };
-    (depth < knock).then(|| {
+    (depth < knock && case.beyond_sound(family).is_none()).then(|| {
         format!(
             "it is there, but the power of the band swings by {:.0} % only, as sound bearings do",
             100.0 * depth
@@ -207,8 +211,8 @@ fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<Strin
     })
 }
 
-fn sound_bearings_show_as_much(family: &Family, _: &Case<'_>) -> Option<String> {
-    (family.p_value >= ALPHA).then(|| {
+fn sound_bearings_show_as_much(family: &Family, case: &Case<'_>) -> Option<String> {
+    (family.p_value >= ALPHA && case.beyond_sound(family).is_none()).then(|| {
         format!(
             "it is there, but sound bearings show as much with a probability of {}",
             probability(family.p_value)
@@ -247,7 +251,7 @@ fn unexplained_comb_stands_higher(family: &Family, case: &Case<'_>) -> Option<St
 fn something_else_knocks_louder(family: &Family, case: &Case<'_>) -> Option<String> {
     let mut louder = case.around.foreign.iter().map(|other| other.report(case.around.shaft_hz));
     let other = louder.find(|other| other.height_db > family.height_db)?;
-    (family.p_value >= BESIDE_OTHERS).then(|| {
+    (family.p_value >= BESIDE_OTHERS && case.beyond_sound(family).is_none()).then(|| {
         format!(
             "it is there, but something that is no family of this bearing knocks louder in another band, at \
              {:.3} times the shaft, and sound bearings show as much with a probability of {}",
@@ -289,22 +293,34 @@ pub(crate) fn decide(
     families: Vec<Family>,
     unexplained: Option<&Unexplained>,
     around: Around<'_>,
+    sound: Option<BesideSound>,
     modulated: bool,
 ) -> Vec<Family> {
     let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
-    let case = Case { unexplained, around, modulated, first_db };
+    let case = Case { unexplained, around, sound, modulated, first_db };
     let decided = |family: Family| match &family.reason {
         Reason::Decided(_) => family,
         Reason::Undecided => match RULES.iter().find_map(|rule| rule(&family, &case)) {
             Some(why) => Family { reason: Reason::Decided(why), ..family },
-            None => claimed(family),
+            None => claimed(family, &case),
         },
     };
     families.into_iter().map(decided).collect()
 }
 
+impl Case<'_> {
+    /// What sound records of the machine say of a family, where it stands beyond them: they know this machine,
+    /// and take the place of what sound bearings of other rigs show.
+    fn beyond_sound(&self, family: &Family) -> Option<BesideSound> {
+        self.sound.filter(|sound| sound.name == family.name && sound.is_beyond())
+    }
+}
+
 /// A family that no rule refuses.
-fn claimed(family: Family) -> Family {
+fn claimed(family: Family, case: &Case<'_>) -> Family {
+    if let Some(sound) = case.beyond_sound(&family).filter(|_| family.p_value >= ALPHA || !family.knocks()) {
+        return beyond_sound_records(family, &sound);
+    }
     let is_cage = family.name == Defect::Ftf;
     let other = family.not_told_apart_from.filter(|_| !is_cage).map_or(String::new(), |name| {
         format!(
@@ -318,6 +334,21 @@ fn claimed(family: Family) -> Family {
     // One element that is damaged comes under the load once a turn of the cage, too.
     let not_told_apart_from = if is_cage { Some(Defect::Bsf) } else { family.not_told_apart_from };
     Family { claimed: true, not_told_apart_from, reason: Reason::Decided(why), ..family }
+}
+
+/// A family that is claimed by what the machine showed when it was sound.
+fn beyond_sound_records(family: Family, sound: &BesideSound) -> Family {
+    let why = format!(
+        "{} harmonics stand, {:.1} dB above unrelated combs, where the highest of {} records of the sound machine \
+         has {:.1} dB; by their scatter such a record has as much with a probability of {}",
+        family.harmonics,
+        sound.score_db,
+        sound.records,
+        sound.highest_db,
+        chance(sound.p_value)
+    );
+    let p_value = sound.p_value.max(family.noise_p_value);
+    Family { claimed: true, p_value, reason: Reason::Decided(why), ..family }
 }
 
 /// Where something knocks once a turn of the cage and no family of a raceway stands at its place, names a
@@ -387,7 +418,7 @@ mod tests {
     #[test]
     fn planted_one_line_is_claimed_for_one_family() {
         let families = vec![found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];
-        let families = decide(shared_out(families, 1.25, true), None, Around::default(), true);
+        let families = decide(shared_out(families, 1.25, true), None, Around::default(), None, true);
         assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         assert!(
             families[1].reason.to_string().contains("those of BPFO, which are nearer"),
@@ -397,7 +428,8 @@ mod tests {
         // A cage that slips takes BPFO to where the element would be; only a turn of the cage makes it one.
         for (modulated, claimed) in [(true, Defect::Bsf), (false, Defect::Bpfo)] {
             let families = vec![found(Defect::Bpfo, 106.328, 105.153), found(Defect::Bsf, 52.304, 52.576)];
-            let families = decide(shared_out(families, 1.25, modulated), None, Around::default(), modulated);
+            let families =
+                decide(shared_out(families, 1.25, modulated), None, Around::default(), None, modulated);
             let names: Vec<Defect> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
             assert_eq!(names, [claimed], "{families:?}");
         }
@@ -408,7 +440,7 @@ mod tests {
                 found(Defect::Bsf, 48.0104, 0.5 * measured_hz + 0.02),
             ];
             families[0].height_db = 24.9;
-            let families = decide(shared_out(families, 1.0, true), None, Around::default(), true);
+            let families = decide(shared_out(families, 1.0, true), None, Around::default(), None, true);
             let verdict = conclude(&families, None);
             assert!(families.iter().all(|family| family.claimed), "{families:?}");
             assert!(verdict.contains("of the outer raceway or of a rolling element"), "{verdict}");
@@ -418,7 +450,7 @@ mod tests {
                 found(Defect::Bpfo, 96.0048, measured_hz),
                 found(Defect::Bsf, 48.0104, 0.5 * measured_hz),
             ];
-            let families = decide(shared_out(families, 1.0, false), None, Around::default(), false);
+            let families = decide(shared_out(families, 1.0, false), None, Around::default(), None, false);
             assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         }
         // Lines of their own are not shared.

@@ -24,6 +24,7 @@ use crate::families::limits::{ALPHA, decibel};
 use crate::families::machine_lines::OwnLines;
 use crate::families::rules::{Around, claimed_first, decide, first, shared_out, without_mirrored};
 use crate::families::sidebands::is_modulated_by_the_cage;
+use crate::families::sound::{BesideSound, farthest};
 use crate::families::unexplained::{self, AboveNoise, Unexplained, UnexplainedComb};
 use crate::families::unrelated::SLIP;
 use crate::record::pass::Record;
@@ -38,6 +39,10 @@ pub(crate) struct Candidates {
     foreign: Vec<UnexplainedComb>,
     at_half: Option<Unexplained>,
     rolling: Option<(f64, f64)>,
+    /// How far the family that stands farthest above unrelated combs does so [dB].
+    score_db: Option<f64>,
+    /// The same beside sound records of the machine.
+    sound: Option<BesideSound>,
     /// Whether the cage modulates the knocks of a rolling element.
     modulated: bool,
     notes: Vec<String>,
@@ -54,6 +59,10 @@ pub(crate) struct Decided {
     pub(crate) notes: Vec<String>,
     /// The defect that stands highest, if there is one.
     pub(crate) first: Option<FirstDefect>,
+    /// How far the family that stands farthest above unrelated combs does so [dB].
+    pub(crate) score_db: Option<f64>,
+    /// The same beside sound records of the machine.
+    pub(crate) sound: Option<BesideSound>,
     /// A comb that is no family's and stands higher.
     pub(crate) unexplained: Option<Unexplained>,
 }
@@ -150,6 +159,9 @@ impl Candidates {
             .collect();
         let apart = without_mirrored(measured, shaft_hz, modulated, &whitened);
         let shared = shared_out(apart, resolution_hz, modulated);
+        let score_db = farthest(&shared).map(|(_, score_db)| score_db);
+        let sound = BesideSound::of(&shared, &machine.sound_db);
+        let of_sound = sound.as_ref().map(BesideSound::note);
         let at_half = halved.map(|(_, half)| half);
         let found = highest.filter(|found| decibel(found.comb.height) > first_db);
         let skids = found.filter(|_| by_shaft).and_then(|found| skidding(&shared, found));
@@ -157,16 +169,19 @@ impl Candidates {
             (Some(found), Some(name)) => {
                 let families = with_skidding(shared, name, found, &whitened, &own);
                 let note = skidding_note(families.iter().find(|f| f.name == name), found);
-                (families, at_half, note.into_iter().collect())
+                (families, at_half, note.into_iter().collect::<Vec<_>>())
             }
             (Some(found), None) => (shared, Some(found.report(shaft_hz)), Vec::new()),
             (None, _) => (shared, at_half, Vec::new()),
         };
+        let notes = of_sound.into_iter().chain(notes).collect();
         Ok(Self {
             families,
             unexplained,
             foreign: if skids.is_some() { Vec::new() } else { combs },
             at_half,
+            score_db,
+            sound,
             rolling: machine.bearing.as_ref().filter(|_| by_shaft).map(reach_of_rolling),
             modulated,
             notes,
@@ -184,6 +199,8 @@ impl Candidates {
             foreign,
             at_half,
             rolling,
+            score_db,
+            sound,
             modulated,
             notes,
             shaft_hz,
@@ -192,7 +209,7 @@ impl Candidates {
         } = self;
         let width_hz = OWN_LINES * resolution_hz;
         let around = Around { foreign: &foreign, at_half: at_half.as_ref(), rolling, shaft_hz, width_hz };
-        let decided = decide(families, unexplained.as_ref(), around, modulated);
+        let decided = decide(families, unexplained.as_ref(), around, sound, modulated);
         let first = claimed_first(&decided).map(|(at, comb_hz)| FirstDefect {
             at,
             comb_hz,
@@ -200,14 +217,15 @@ impl Candidates {
             cage_hz,
             resolution_hz,
         });
-        Decided { families: decided, notes, first, unexplained }
+        Decided { families: decided, notes, first, score_db, sound, unexplained }
     }
 }
 
 impl Decided {
     /// No families, with a note on what is missing for them.
     pub(crate) fn without_families(note: String) -> Self {
-        Self { families: Vec::new(), notes: vec![note], first: None, unexplained: None }
+        let (families, notes) = (Vec::new(), vec![note]);
+        Self { families, notes, first: None, score_db: None, sound: None, unexplained: None }
     }
 }
 

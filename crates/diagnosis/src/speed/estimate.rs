@@ -48,7 +48,7 @@ const ABOUT: f64 = 1e-3;
 const ABOUT_STEPS: i32 = 5;
 
 /// How far a given speed may be off, either way, and speeds that are one about it.
-const REACH: f64 = 0.07;
+pub(crate) const REACH: f64 = 0.07;
 const SAME_NEAR: f64 = 0.006;
 /// The lead over all others within reach from which a given speed is corrected [nats].
 const LEAST_LEAD_NEAR: f64 = 20.0;

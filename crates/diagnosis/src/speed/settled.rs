@@ -114,9 +114,13 @@ fn by_lines(
     let asked = !machine.speed_is_exact && machine.outer_speed_rpm == 0.0;
     let bearing = machine.bearing.as_ref().filter(|_| asked)?;
     samples.iter().all(|x| x.is_finite()).then_some(())?;
-    let found =
-        estimate::near(samples, rate_hz, bands, bearing, given_hz).filter(|found| found.is_accepted)?;
-    Some(SpeedByLines::of_both(found))
+    let near = estimate::near(samples, rate_hz, bands, bearing, given_hz).filter(|found| found.is_accepted);
+    // What is found among all speeds, and lies near the given one, needs no lead over its nearest neighbours.
+    let of_all = || {
+        let found = estimate::without_any_given(samples, rate_hz, bands, bearing)?;
+        (found.is_accepted && (found.hz / given_hz - 1.0).abs() < estimate::REACH).then_some(found)
+    };
+    near.or_else(of_all).map(SpeedByLines::of_both)
 }
 
 /// The speed by shaft and bearing together, where the user gives none; a note where it is not found.

@@ -1,6 +1,6 @@
-//! A reference record of the sound machine, drawn behind another one.
+//! Records of the sound machine: the first is drawn behind another one, and all calibrate its verdict.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, ensure};
 use stribeck_diagnosis::Analysis;
@@ -9,19 +9,34 @@ use stribeck_report::Baseline;
 use super::{Options, examine};
 use crate::place::{Place, shown};
 
-/// Reads and analyses the reference record; remarks on both go to the notes of the other one.
-pub(super) fn of(file: &Path, options: &Options, analysis: &mut Analysis, place: &Place) -> Result<Baseline> {
+/// Reads and analyses the records of the sound machine.
+pub(super) fn read(options: &Options, place: &Place) -> Result<Vec<Baseline>> {
     let mut reading = options.reading.clone();
     if options.baseline_rpm.is_some() {
         (reading.speed_rpm, reading.tacho) = (options.baseline_rpm, None);
     }
-    let name = file.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy()).into_owned();
-    let sound = examine(file, &reading, place).with_context(|| format!("--baseline {}", shown(file)))?;
+    let of = |file: &PathBuf| {
+        let analysis =
+            examine(file, &reading, place).with_context(|| format!("--baseline {}", shown(file)))?;
+        let name = file.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy()).into_owned();
+        Ok(Baseline { name, analysis })
+    };
+    options.baseline.iter().map(of).collect()
+}
+
+/// The scores by which they calibrate the verdict on another record [dB].
+pub(super) fn scores(sound: &[Baseline]) -> Vec<f64> {
+    sound.iter().filter_map(|baseline| baseline.analysis.findings.score_db).collect()
+}
+
+/// Remarks on a record and the sound one behind it, in the notes of the first.
+pub(super) fn beside(analysis: &mut Analysis, sound: &Baseline) -> Result<()> {
+    let name = &sound.name;
+    let sound = &sound.analysis;
     let (here, there) = (&analysis.findings, &sound.findings);
     ensure!(
         here.unit == there.unit,
-        "--baseline {}: its samples are in {}, those of the record in {}: give both the same `--unit`",
-        shown(file),
+        "--baseline {name}: its samples are in {}, those of the record in {}: give both the same `--unit`",
         there.unit.as_deref().unwrap_or("no unit"),
         here.unit.as_deref().unwrap_or("no unit")
     );
@@ -48,7 +63,7 @@ pub(super) fn of(file: &Path, options: &Options, analysis: &mut Analysis, place:
         ));
     }
     analysis.findings.notes.extend(notes);
-    Ok(Baseline { name, analysis: sound })
+    Ok(())
 }
 
 /// Speeds that differ by less than this part leave levels alone.

@@ -61,6 +61,9 @@ pub(crate) struct Reading {
     /// How far an element is pressed together over a spall, as a scene of `--simulate` says.
     #[arg(skip)]
     pub(super) pressed: Option<Pressed>,
+    /// Scores of records of the sound machine [dB].
+    #[arg(skip)]
+    pub(super) sound_db: Vec<f64>,
     /// Factor of every sample, for example 1/sensitivity
     #[arg(long, default_value_t = 1.0, value_parser = scale, allow_hyphen_values = true)]
     pub(super) scale: f64,
@@ -467,6 +470,7 @@ fn machine(
         load_n: options.load_n,
         clearance_um: options.clearance_um,
         housing_um_per_kn: options.housing_um_per_kn,
+        sound_db: options.sound_db.clone(),
         pressed: options.pressed,
         ..Machine::default()
     };
