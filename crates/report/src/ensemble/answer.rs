@@ -4,6 +4,7 @@ use maud::{Markup, html};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::ModelScene;
 
+use super::strips::Time;
 use super::tables::{decimals, mean, shown};
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
 use stribeck_analysis::quantity::Quantity;
@@ -144,7 +145,7 @@ fn events(findings: &EnsembleFindings) -> String {
         return "No roller crosses a defect.".into();
     }
     let complete = summary.count(Ended::Complete);
-    let kinds: [(fn(&Event) -> Option<f64>, &str); 5] = [
+    let kinds: [(Time, &str); 5] = [
         (|e| e.entry_ms, "unloads (#1)"),
         (Event::impact_ms, "strikes the floor (#2)"),
         (Event::landing_ms, "lands on oil there"),

@@ -104,7 +104,7 @@ pub(super) fn levels(findings: &EnsembleFindings) -> Option<Picture> {
 }
 
 /// A time of an event [ms].
-type Time = fn(&Event) -> Option<f64>;
+pub(super) type Time = fn(&Event) -> Option<f64>;
 
 /// When each roller unloads, strikes the floor or lands on oil there, and is loaded again.
 pub(super) fn events(findings: &EnsembleFindings) -> Option<Picture> {
