@@ -7,7 +7,12 @@ use crate::modal::{
 
 use crate::{
     cage::Cage,
-    contact::{outline::Outline, penetration::Sides, raceway::Raceway},
+    contact::{
+        outline::Outline,
+        penetration::Sides,
+        raceway::Raceway,
+        round::{Relief, circle_of},
+    },
     drive::Operation,
     error::Error,
     housing::Housing,
@@ -237,10 +242,20 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
     let [kr, ko, ki] = [1.0 / radii.roller, 1.0 / radii.outer, 1.0 / radii.inner];
     let [outer, inner] = [&outlines.outer, &outlines.inner].map(|vertices| Outline::new(vertices));
     let sag_of_outer = sag(parameters, radii.outer, outer.len() as f64);
-    let nearest = outer.radii().fold(f64::INFINITY, f64::min) - sag_of_outer;
+    // The load of the preload has moved the circle that arcs lie on.
+    let (centre, radius) = if outlines.arcs && !parameters.outer_turns {
+        circle_of(&outer, radii.outer)
+    } else {
+        ([0.0; 2], radii.outer)
+    };
+    let about = outer.about(centre);
+    let nearest = about.radii().fold(f64::INFINITY, f64::min) - sag_of_outer;
     let farthest = inner.radii().fold(0.0, f64::max);
-    let bounds = nearest_about(&outer, BESIDE * radii.roller, 1.0 / (kr - ko));
+    let bounds = nearest_about(&about, BESIDE * radii.roller, 1.0 / (kr - ko));
     let bounds = bounds.into_iter().map(|near| near - sag_of_outer).collect();
+    let relief = |outline: &Outline, radius: f64, along: bool| {
+        outlines.arcs.then(|| Relief::new(outline, radius, radii.roller, along))
+    };
     let sides = |along: bool, relative: f64| Sides {
         along,
         bulge: if outlines.arcs { 0.5 * relative } else { 0.0 },
@@ -249,6 +264,8 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
     [
         Raceway {
             sides: sides(true, kr - ko),
+            relief: relief(&about, radius, true),
+            centre,
             angle: per_angle(&outlines.outer),
             outline: outer,
             curve: reduction.outer_compliance.curve(),
@@ -259,6 +276,8 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
         },
         Raceway {
             sides: sides(false, kr + ki),
+            relief: relief(&inner, radii.inner, false),
+            centre: [0.0; 2],
             angle: per_angle(&outlines.inner),
             outline: inner,
             curve: reduction.inner_compliance.curve(),

@@ -7,3 +7,4 @@ pub mod penetration;
 pub(crate) mod segments;
 
 pub(crate) mod raceway;
+pub(crate) mod round;

@@ -72,6 +72,8 @@ pub(crate) struct Structure {
     groups: usize,
     /// Shapes at the vertices of the outer raceway, in rows; the first vertex again after the last one.
     shapes: Vec<Single>,
+    /// Whether all of them move alike: the ring is rigid.
+    is_rigid: bool,
     /// Largest displacement of any of these vertices by a unit of each mode [1/√kg].
     pub(crate) farthest: Vec<Row>,
     /// Dampers of the housing, in rows: forces on every mode by a unit velocity of each; empty without
@@ -89,6 +91,7 @@ impl Structure {
         Self {
             groups: reduction.padded / LANES,
             shapes: closed_in_single(&reduction.shapes, 2 * reduction.padded / LANES),
+            is_rigid: reduction.shapes.chunks_exact(2 * reduction.padded).is_sorted_by(|a, b| a == b),
             farthest: largest_of::<2>(&reduction.shapes, reduction.padded),
             dampers: reduction.dampers.as_chunks::<LANES>().0.iter().copied().map(Row).collect(),
             mass_damping: damping.mass_of_modes,
@@ -103,6 +106,16 @@ impl Structure {
         let groups = self.groups;
         let (first, second) = self.shapes[2 * groups * facet..][..4 * groups].split_at(2 * groups);
         RacewayPoint { share, shapes: [first.split_at(groups).into(), second.split_at(groups).into()] }
+    }
+
+    /// How the raceway of a rigid ring moves with the modes: as [`Self::moved`], summed.
+    #[inline(always)]
+    pub(crate) fn rigidly_moved<S: Simd>(&self, simd: S, modes: &Modes) -> Option<[f64; 6]> {
+        if !self.is_rigid {
+            return None;
+        }
+        let [x, y, vx, vy, ..] = self.moved(simd, &self.raceway_point(0, 0.0), modes);
+        Some([x.sum(), y.sum(), vx.sum(), vy.sum(), 0.0, 0.0])
     }
 
     /// How the raceway moves with the modes at a place, in parts to be summed: displacement [m], velocity

@@ -42,6 +42,8 @@ pub(crate) struct Rim {
     pub(crate) outline: Outline,
     /// Radius of the circle around it [m].
     pub(crate) top: f64,
+    /// Whether it is round.
+    pub(crate) is_round: bool,
 }
 
 impl Rollers {
@@ -74,6 +76,6 @@ impl Rim {
     fn new(vertices: &[[f64; 2]], round: bool) -> Self {
         let outline = Outline::new(vertices);
         let top = if round { outline.x[0] } else { outline.radii().fold(0.0, f64::max) };
-        Self { outline, top }
+        Self { outline, top, is_round: round }
     }
 }

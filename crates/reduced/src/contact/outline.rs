@@ -59,6 +59,12 @@ impl Outline {
         [&self.back[0], &self.back[1]]
     }
 
+    /// The same about another origin [m].
+    pub(crate) fn about(&self, [x, y]: [f64; 2]) -> Self {
+        let moved: Vec<_> = self.x.iter().zip(&self.y).map(|(vx, vy)| [vx - x, vy - y]).collect();
+        Self::new(&moved)
+    }
+
     /// Distances of the vertices from the origin [m].
     pub(crate) fn radii(&self) -> impl Iterator<Item = f64> {
         self.x.iter().zip(&self.y).map(|(x, y)| x.hypot(*y))

@@ -177,6 +177,26 @@ impl Penetration<Row> {
 }
 
 impl<S: Simd> Penetration<Vector<S>> {
+    /// These where `these` is one, and the others elsewhere.
+    #[inline(always)]
+    pub(crate) fn chosen(self, these: Vector<S>, others: Self) -> Self {
+        let half = these.constant(0.5);
+        Self {
+            area: half.choose_below(these, self.area, others.area),
+            across: half.choose_below(these, self.across, others.across),
+            moment: half.choose_below(these, self.moment, others.moment),
+            square: half.choose_below(these, self.square, others.square),
+            length: half.choose_below(these, self.length, others.length),
+            first: half.choose_below(these, self.first, others.first),
+            second: half.choose_below(these, self.second, others.second),
+            slope: half.choose_below(these, self.slope, others.slope),
+            arm: half.choose_below(these, self.arm, others.arm),
+            skew: half.choose_below(these, self.skew, others.skew),
+            ends: half.choose_below(these, self.ends, others.ends),
+            deepest: half.choose_below(these, self.deepest, others.deepest),
+        }
+    }
+
     /// Writes them to the lanes from `at` on.
     #[inline(always)]
     pub(crate) fn store(self, to: &mut Penetration<Row>, at: usize) {

@@ -3,7 +3,7 @@
 use crate::modal::compliance::{Compliance, Curve};
 use stribeck_simd::lanes::Number;
 
-use super::{outline::Outline, penetration::Sides};
+use super::{outline::Outline, penetration::Sides, round::Relief};
 
 /// One raceway.
 #[derive(Debug, Clone)]
@@ -12,10 +12,14 @@ pub(crate) struct Raceway {
     /// One over the angle that each facet takes [1/rad]; 0 for walls.
     pub(crate) angle: Vec<f64>,
     pub(crate) sides: Sides,
+    /// Of arcs: the circle that round rollers see, with its relief.
+    pub(crate) relief: Option<Relief>,
+    /// Centre of the circle [m]; the origin of chords, and of a ring that turns.
+    pub(crate) centre: [f64; 2],
     pub(crate) compliance: Compliance,
     pub(crate) curve: Curve,
-    /// Radius of the circle that touches the raceway from the side of the rollers [m]: inscribed for the
-    /// outer one, circumscribed for the inner one.
+    /// Radius of the circle about its centre that touches the raceway from the side of the rollers [m]:
+    /// inscribed for the outer one, circumscribed for the inner one.
     pub(crate) bound: f64,
     /// The same of the outline near each facet [m]; of the outer one, which is bent by its load. Empty for
     /// the inner one.

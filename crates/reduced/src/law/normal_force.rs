@@ -10,9 +10,13 @@ use crate::{
     contact::outline::View,
     contact::penetration::{Pair, Penetration},
     contact::raceway::Raceway,
+    contact::round::Contacts,
     contact::segments::Pose,
     law::ContactLaw,
-    rollers::{Rim, Rollers, block::RacewayContacts},
+    rollers::{
+        Rim, Rollers,
+        block::{Block, RacewayContacts},
+    },
     row::{Row, lanes, load, of_one, store},
 };
 
@@ -25,6 +29,11 @@ const NEWTON: usize = 2;
 /// was integrated, its series leaves an error of the third power.
 const ENOUGH: f64 = 3e-2;
 const LITTLE: f64 = 1e-2;
+
+/// Most steps of Newton's method for round rollers, whose overlaps are known at any force; and the last one,
+/// as a share of the force and in [N], whose square is what it leaves.
+const STEPS: usize = 8;
+const STILL: f64 = 5e-3;
 
 /// One contact of a roller with a raceway in the present step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -54,23 +63,67 @@ pub(crate) struct RollerOnRaceway<'a> {
 }
 
 impl ContactLaw {
-    /// Finds the normal forces between rollers, the first of which is number `first`, and a raceway, when
-    /// centres and directions of vertex 0 are known in its frame. `parts` is scratch.
+    /// Finds the normal forces between all rollers and both raceways, when centres and directions of vertex
+    /// 0 are known in their frames. Every stage is taken for all groups of contacts before the next one:
+    /// each waits for divisions and roots, and the processor computes others meanwhile. `parts` is scratch.
     #[inline(always)]
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "one search, with all that it reads and room to compute in"
-    )]
     pub(crate) fn normal_forces<S: Simd>(
         &self,
         simd: S,
         rollers: &Rollers,
-        raceway: &Raceway,
-        first: usize,
-        top: &Row,
-        present: u64,
-        contacts: &mut RacewayContacts,
+        raceways: &[Raceway; 2],
+        blocks: &mut [Block],
         parts: &mut [Penetration<Row>; LANES],
+    ) {
+        for block in &mut *blocks {
+            let Block { top, bits, round, contacts, .. } = block;
+            for (raceway, contacts) in raceways.iter().zip(contacts) {
+                Self::approach(simd, raceway, top, [*bits, *round], contacts);
+            }
+        }
+        for block in &mut *blocks {
+            for (raceway, contacts) in raceways.iter().zip(&mut block.contacts) {
+                if contacts.near != 0 {
+                    Self::predict(simd, raceway, contacts);
+                }
+            }
+        }
+        for block in &mut *blocks {
+            for (raceway, contacts) in raceways.iter().zip(&mut block.contacts) {
+                if contacts.near != contacts.near_round {
+                    self.search_others(simd, rollers, raceway, block.first, contacts, parts);
+                }
+                Self::look_at_round(simd, raceway, contacts);
+            }
+        }
+        for block in &mut *blocks {
+            for (raceway, contacts) in raceways.iter().zip(&mut block.contacts) {
+                if contacts.near_round != 0 {
+                    self.search_round(simd, raceway, contacts);
+                }
+            }
+        }
+        for block in &mut *blocks {
+            for (raceway, contacts) in raceways.iter().zip(&mut block.contacts) {
+                Self::integrate_round(simd, raceway, contacts);
+                for at in vector_starts(simd) {
+                    let normal = Vector::load(simd, &contacts.normal, at);
+                    (normal - Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
+                    normal.store(&mut contacts.force, at);
+                }
+            }
+        }
+    }
+
+    /// Directions to the contacts of eight rollers, of which those `present` are there and those `round` have
+    /// round rims, and those that may touch.
+    #[inline(always)]
+    fn approach<S: Simd>(
+        simd: S,
+        raceway: &Raceway,
+        top: &Row,
+        [present, round]: [u64; 2],
+        contacts: &mut RacewayContacts,
     ) {
         let all = |value: f64| Vector::all(simd, value);
         let zero = all(0.0);
@@ -78,6 +131,7 @@ impl ContactLaw {
         let mut deep = 0;
         for at in vector_starts(simd) {
             let [x, y] = load(simd, &contacts.centre, at);
+            let (x, y) = (x - all(raceway.centre[0]), y - all(raceway.centre[1]));
             let distance = x.times_plus(x, y * y).sqrt();
             let per = outwards / distance;
             let bound = Vector::load(simd, &contacts.bound, at);
@@ -87,24 +141,33 @@ impl ContactLaw {
             store(d, &mut contacts.d, at);
             store(turned_back(load(simd, &contacts.spin, at), d), &mut contacts.own, at);
             most.store(&mut contacts.most, at);
+            let start = Vector::load(simd, &contacts.force, at) + Vector::load(simd, &contacts.growth, at);
+            start.max(zero).store(&mut contacts.start, at);
+            zero.store(&mut contacts.normal, at);
             deep |= zero.bits_below(most) << at;
         }
         contacts.near = deep & present;
-        if contacts.near == 0 {
-            for at in vector_starts(simd) {
-                (-Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
-                zero.store(&mut contacts.force, at);
-                zero.store(&mut contacts.normal, at);
-            }
-            return;
-        }
-        Self::predict(simd, raceway, contacts);
+        contacts.near_round = if raceway.relief.is_some() { contacts.near & round } else { 0 };
+    }
+
+    /// Forces of rollers on chords, and of those whose rims are not round: by the parts of each, and one by
+    /// one where that does not do. `parts` is scratch.
+    #[inline(always)]
+    fn search_others<S: Simd>(
+        &self,
+        simd: S,
+        rollers: &Rollers,
+        raceway: &Raceway,
+        first: usize,
+        contacts: &mut RacewayContacts,
+        parts: &mut [Penetration<Row>; LANES],
+    ) {
         let alone = Self::integrate(simd, rollers, raceway, first, contacts, parts);
         let again = self.search(simd, contacts);
         for lane in lanes(alone) {
             contacts.normal[lane] = contacts.start[lane];
         }
-        for lane in lanes(again | alone) {
+        for lane in lanes((again | alone) & !contacts.near_round) {
             let rim = rollers.rim(first + lane);
             let before = contacts.normal[lane];
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
@@ -115,33 +178,87 @@ impl ContactLaw {
             contacts.shift[lane] = found.deflection;
             contacts.overlap.set(lane, &found.overlap);
         }
+    }
+
+    /// Forces of round rollers whose pieces are known, by Newton's method.
+    #[inline(always)]
+    fn search_round<S: Simd>(&self, simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
+        let all = |value: f64| Vector::all(simd, value);
+        let (zero, one, half, penalty) = (all(0.0), all(1.0), all(0.5), all(self.penalty));
+        let round = contacts.near_round;
         for at in vector_starts(simd) {
-            let normal = Vector::load(simd, &contacts.normal, at);
-            (normal - Vector::load(simd, &contacts.force, at)).store(&mut contacts.growth, at);
-            normal.store(&mut contacts.force, at);
+            let mut force = Vector::load(simd, &contacts.start, at);
+            let mut shift = Vector::load(simd, &contacts.shift, at);
+            let mut flexibility = Vector::load(simd, &contacts.flexibility, at);
+            for _ in 0..STEPS {
+                let [area, length] = contacts.pieces.area(simd, at, shift);
+                let left = penalty.times_plus(area, -force);
+                let by = left / (penalty * length).times_plus(flexibility, one);
+                force = (force + by).max(zero);
+                let root = force.sqrt();
+                let (knot, next) =
+                    (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.next, at));
+                let on_piece = root.bits_below(next) & !root.bits_below(knot);
+                let off = (round >> at) & ((1 << Vector::<S>::LEN) - 1) & !on_piece;
+                if off != 0 {
+                    root.store(&mut contacts.root, at);
+                    contacts.look_up(raceway, off << at);
+                }
+                let knot = Vector::load(simd, &contacts.knot, at);
+                let (first, slope) =
+                    (Vector::load(simd, &contacts.first, at), Vector::load(simd, &contacts.slope, at));
+                let g = slope.times_plus(root - knot, first);
+                shift = force * g;
+                flexibility = (half * root).times_plus(slope, g);
+                let still = all(STILL).times_plus(force, all(STILL));
+                if still.bits_below(by.max(-by)) & (round >> at) == 0 {
+                    break;
+                }
+            }
+            let these = Vector::ones(simd, round >> at);
+            let rows = [
+                (force, &mut contacts.normal),
+                (shift, &mut contacts.shift),
+                (flexibility, &mut contacts.flexibility),
+            ];
+            for (found, row) in rows {
+                half.choose_below(these, found, Vector::load(simd, row, at)).store(row, at);
+            }
         }
     }
 
-    /// Deflection of the bodies at the expected forces, and how far from their middles contacts may then
+    /// Overlaps of round rollers at the forces that have been found.
+    #[inline(always)]
+    fn integrate_round<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
+        let (Some(relief), true) = (&raceway.relief, contacts.near_round != 0) else { return };
+        for at in vector_starts(simd) {
+            let RacewayContacts { d, distance, reach, .. } = &*contacts;
+            let seen = Contacts { d, distance, reach, these: contacts.near_round };
+            let shift = Vector::load(simd, &contacts.shift, at);
+            let mut found = relief.overlaps(simd, at, &seen, &contacts.pieces, shift);
+            // The whole of what the turning direction adds is in `across`.
+            found.skew = -(shift + shift) * found.across;
+            let these = Vector::ones(simd, contacts.near_round >> at);
+            found.chosen(these, contacts.overlap.load(simd, at)).store(&mut contacts.overlap, at);
+        }
+    }
+
+    /// Deflection of the bodies at the forces to start from, and how far from their middles contacts may then
     /// reach.
     #[inline(always)]
     fn predict<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
         let all = |value: f64| Vector::all(simd, value);
         let (zero, half) = (all(0.0), all(0.5));
+        let mut on_piece = 0;
         for at in vector_starts(simd) {
-            let (force, growth) =
-                (Vector::load(simd, &contacts.force, at), Vector::load(simd, &contacts.growth, at));
-            let start = (force + growth).max(zero);
-            start.store(&mut contacts.start, at);
-            start.sqrt().store(&mut contacts.root, at);
+            let root = Vector::load(simd, &contacts.start, at).sqrt();
+            root.store(&mut contacts.root, at);
+            let (knot, next) =
+                (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.next, at));
+            on_piece |= (root.bits_below(next) & !root.bits_below(knot)) << at;
         }
-        for lane in lanes(contacts.near) {
-            let [knot, first, slope, next] = raceway.curve.piece_at(contacts.root[lane]);
-            contacts.knot[lane] = knot;
-            contacts.first[lane] = first;
-            contacts.slope[lane] = slope;
-            contacts.next[lane] = next;
-        }
+        // Mostly it is the piece of the step before.
+        contacts.look_up(raceway, contacts.near & !on_piece);
         let mut reaches = 0;
         for at in vector_starts(simd) {
             let (start, root) =
@@ -167,8 +284,23 @@ impl ContactLaw {
         }
     }
 
-    /// Integrates over all overlaps at the predicted forces, as far as they may reach then; `parts` is
-    /// scratch. Returns those that need the general integration, because a wall is near.
+    /// Finds what round rollers are over, as far as they may reach.
+    #[inline(always)]
+    fn look_at_round<S: Simd>(simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
+        let (Some(relief), true) = (&raceway.relief, contacts.near_round != 0) else { return };
+        let RacewayContacts { centre, d, distance, reach, hints, pieces, near_round, .. } = contacts;
+        let seen = Contacts { d, distance, reach, these: *near_round };
+        let facet = |lane: usize| {
+            let under = Self::under(raceway, of_one(centre, lane), of_one(d, lane), hints[lane][1]);
+            hints[lane][1] = under as u32;
+            under
+        };
+        relief.look(simd, &seen, pieces, facet);
+    }
+
+    /// Integrates over all overlaps but those of round rollers at the predicted forces, as far as they may
+    /// reach then; `parts` is scratch. Returns those that need the general integration, because a wall is
+    /// near.
     #[inline(always)]
     fn integrate<S: Simd>(
         simd: S,
@@ -179,7 +311,7 @@ impl ContactLaw {
         parts: &mut [Penetration<Row>; LANES],
     ) -> u64 {
         let mut alone = 0;
-        for lane in lanes(contacts.near) {
+        for lane in lanes(contacts.near & !contacts.near_round) {
             let (centre, d) = (of_one(&contacts.centre, lane), of_one(&contacts.d, lane));
             let (shift, reach) = (contacts.shift[lane], contacts.reach[lane]);
             let segments = &mut contacts.segments[lane];
@@ -264,15 +396,18 @@ impl ContactLaw {
         hints: &mut [u32; 2],
     ) -> NormalForce {
         let RollerOnRaceway { raceway, rim, centre, bound, before, .. } = near;
-        let distance = (centre[0] * centre[0] + centre[1] * centre[1]).sqrt();
+        let [x, y] = [centre[0] - raceway.centre[0], centre[1] - raceway.centre[1]];
+        let distance = (x * x + y * y).sqrt();
         let outwards = raceway.outwards();
-        let d = [outwards * centre[0] / distance, outwards * centre[1] / distance];
+        let d = [outwards * x / distance, outwards * y / distance];
         let most = outwards * (distance - bound) + rim.top;
         if most <= 0.0 {
             return NormalForce::default();
         }
         let mut eights = [EightFacets::default(); 2];
         let [of_roller, of_raceway] = Self::views(&near, d, hints);
+        let under = of_raceway.facet;
+        let relief = raceway.relief.as_ref().filter(|_| rim.is_round);
         let pair = Pair::new(simd, of_roller, of_raceway, raceway.sides, &mut eights);
         let mut force = before;
         let mut found = Penetration::default();
@@ -285,7 +420,11 @@ impl ContactLaw {
                 (found, force) = (Penetration::default(), 0.0);
                 continue;
             }
-            found = pair.penetration(shift, raceway.reach(depth));
+            let reach = raceway.reach(depth);
+            found = match relief {
+                Some(relief) => relief.overlap(under, d, distance, shift, reach),
+                None => pair.penetration(shift, reach),
+            };
             // Newton's method with the penetration after a further shift.
             let start = force;
             let (mut more, mut now) = (0.0, [found.area, found.length]);
@@ -303,7 +442,16 @@ impl ContactLaw {
                 break;
             }
         }
+        if relief.is_some() {
+            found.skew = -2.0 * deflection * found.across;
+        }
         NormalForce { normal: force, flexibility, deflection, overlap: found }
+    }
+
+    /// The facet of a raceway that a roller is over, near that of a hint.
+    #[inline(always)]
+    fn under(raceway: &Raceway, centre: [f64; 2], d: [f64; 2], hint: u32) -> usize {
+        raceway.outline.facet_along(centre, d, hint as usize, raceway.outwards())
     }
 
     /// Roller and raceway near their contact, in the direction `d`, with the facets that it goes through.
@@ -312,7 +460,7 @@ impl ContactLaw {
         let RollerOnRaceway { raceway, rim, centre, spin, .. } = *near;
         let own = turned_back(spin, d);
         let facet = rim.outline.facet_along([0.0; 2], own, hints[0] as usize, 1.0);
-        let under = raceway.outline.facet_along(centre, d, hints[1] as usize, raceway.outwards());
+        let under = Self::under(raceway, centre, d, hints[1]);
         *hints = [facet as u32, under as u32];
         let roller = View { outline: &rim.outline, from: [0.0; 2], d: own, facet };
         let raceway = View { outline: &raceway.outline, from: centre, d, facet: under };

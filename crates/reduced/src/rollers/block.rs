@@ -7,6 +7,7 @@ use super::Rollers;
 use crate::{
     contact::penetration::Penetration,
     contact::raceway::Raceway,
+    contact::round::RoundParts,
     contact::segments::Segments,
     oil::{BlockFilms, Lubrication},
     row::{Row, Rows, lanes, of_one},
@@ -23,6 +24,8 @@ pub(crate) struct Block {
     pub(crate) count: usize,
     pub(crate) bits: u64,
     pub(crate) present: Row,
+    /// Those whose rims are round, a bit for each.
+    pub(crate) round: u64,
     /// Centres [m], their velocities [m/s], angles [rad] and angular velocities [rad/s].
     pub(crate) centre: Rows,
     pub(crate) velocity: Rows,
@@ -91,9 +94,11 @@ pub(crate) struct RacewayContacts {
     /// both.
     pub(crate) bound: Row,
     pub(crate) most: Row,
-    /// Those that may touch.
+    /// Those that may touch, and on arcs those of them that are round.
     pub(crate) near: u64,
+    pub(crate) near_round: u64,
     pub(crate) segments: [Segments; LANES],
+    pub(crate) pieces: RoundParts,
     /// Start of the search for the force: a force [N] and its root, the deflection of the bodies at it [m],
     /// the derivative of that [m/N], and how far from its middle the contact may reach [m].
     pub(crate) start: Row,
@@ -112,6 +117,16 @@ pub(crate) struct RacewayContacts {
 }
 
 impl RacewayContacts {
+    /// Looks up the pieces of the compliance on which the roots of the forces of some contacts lie.
+    #[inline(always)]
+    pub(crate) fn look_up(&mut self, raceway: &Raceway, these: u64) {
+        for lane in lanes(these) {
+            let [knot, first, slope, next] = raceway.curve.piece_at(self.root[lane]);
+            (self.knot[lane], self.first[lane]) = (knot, first);
+            (self.slope[lane], self.next[lane]) = (slope, next);
+        }
+    }
+
     /// Stiffness of one contact as the raceway recedes and the roller stays [N/m].
     #[inline(always)]
     pub(crate) fn stiffness(&self, penalty: f64, lane: usize) -> f64 {
@@ -140,7 +155,9 @@ impl Block {
         }
         for lane in 0..count {
             block.present[lane] = 1.0;
-            block.top[lane] = rollers.rim(first + lane).top;
+            let rim = rollers.rim(first + lane);
+            block.top[lane] = rim.top;
+            block.round |= u64::from(rim.is_round) << lane;
         }
         block
     }

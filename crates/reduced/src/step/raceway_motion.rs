@@ -1,7 +1,7 @@
 //! Positions of rollers relative to both raceways, the outer one displaced by the modes (THEORY §9.3).
 
 use pulp::Simd;
-use stribeck_simd::lanes::{Number, Vector, vector_starts};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     bearing::Bearing,
@@ -25,7 +25,7 @@ impl Bearing {
 
     /// How far a vertex of the outer raceway moves at most in a step [m].
     #[inline(always)]
-    pub(crate) fn farthest<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&SeatState>) -> f64 {
+    fn farthest<S: Simd>(&self, simd: S, modes: &Modes, hold: Option<&SeatState>) -> f64 {
         let with_modes = self.time_step * largest_sum(simd, &self.structure.farthest, &modes.v);
         match (&self.seat, hold) {
             (Some(seat), Some(hold)) => with_modes + seat.farthest(simd, hold),
@@ -33,17 +33,43 @@ impl Bearing {
         }
     }
 
-    /// Finds the places of eight rollers, whose facets are known, by raceways that may turn. No vertex of the
-    /// outer one has moved by more than `farthest` [m] in this step.
+    /// Finds the places of all rollers, whose facets are known, by raceways that may turn.
     #[inline(always)]
     pub(crate) fn locate_on_raceways<S: Simd>(
         &self,
         simd: S,
         modes: &Modes,
         hold: Option<&SeatState>,
+        blocks: &mut [Block],
+        turning: [Option<RingRotation>; 2],
+    ) {
+        let rigid = self.structure.rigidly_moved(simd, modes).filter(|_| hold.is_none());
+        let farthest = self.farthest(simd, modes, hold);
+        for block in blocks {
+            match rigid {
+                Some(moved) => {
+                    for (row, moved) in block.moved.iter_mut().zip(moved) {
+                        *row = Row([moved; LANES]);
+                    }
+                }
+                None => self.look_under(simd, modes, hold, farthest, block, turning[0]),
+            }
+            self.raceway_motion(simd, block);
+            Self::see(simd, block, turning);
+        }
+    }
+
+    /// Looks up how the outer raceway, which may turn, moves under eight rollers. None of its vertices has
+    /// moved by more than `farthest` [m] in this step.
+    #[inline(always)]
+    fn look_under<S: Simd>(
+        &self,
+        simd: S,
+        modes: &Modes,
+        hold: Option<&SeatState>,
         farthest: f64,
         block: &mut Block,
-        [outer, inner]: [Option<RingRotation>; 2],
+        outer: Option<RingRotation>,
     ) {
         let clear = self.clear_of_raceway(simd, farthest, block, outer);
         for lane in lanes(block.bits & !clear) {
@@ -60,8 +86,11 @@ impl Bearing {
             }
         }
         block.sum_motion(simd);
-        self.raceway_motion(simd, block);
-        // Where a raceway turns, everything is turned back.
+    }
+
+    /// Eight rollers in the frames of the raceways: where one turns, everything is turned back.
+    #[inline(always)]
+    fn see<S: Simd>(simd: S, block: &mut Block, [outer, inner]: [Option<RingRotation>; 2]) {
         let [on_outer, on_inner] = &mut block.contacts;
         for at in vector_starts(simd) {
             let (centre, spin) = (load(simd, &block.centre, at), load(simd, &block.turned, at));

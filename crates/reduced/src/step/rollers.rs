@@ -38,27 +38,14 @@ impl Bearing {
         });
         let mut on_cage = [0.0; 3];
         let mut sums = Sums::<S>::new(simd);
-        let farthest = self.farthest(simd, &scratch.modes, state.seat.as_ref());
-        for b in 0..scratch.blocks.len() {
-            let block = &mut scratch.blocks[b];
-            let seat = state.seat.as_ref();
-            self.locate_on_raceways(simd, &scratch.modes, seat, farthest, block, drive.rings());
-            let Block { first, top, bits, contacts, .. } = block;
-            // One code for both raceways: the step's instructions fill the first cache anyway.
-            for (raceway, contacts) in self.raceways.iter().zip(contacts) {
-                self.law.normal_forces(
-                    simd,
-                    &self.rollers,
-                    raceway,
-                    *first,
-                    top,
-                    *bits,
-                    contacts,
-                    &mut scratch.parts,
-                );
-            }
+        let Scratch { blocks, parts, modes, .. } = &mut *scratch;
+        self.locate_on_raceways(simd, modes, state.seat.as_ref(), blocks, drive.rings());
+        self.law.normal_forces(simd, &self.rollers, &self.raceways, blocks, parts);
+        for block in &mut scratch.blocks {
             self.law.push_rollers(simd, &self.raceways, block, drive, &mut sums);
-            let by_film = self.push_by_oil(simd, state, block, drive, tally);
+        }
+        for b in 0..scratch.blocks.len() {
+            let by_film = self.push_by_oil(simd, state, &mut scratch.blocks[b], drive, tally);
             self.push_modes(simd, scratch, b, by_film);
             let block = &mut scratch.blocks[b];
             for (raceway, contacts) in self.raceways.iter().zip(&block.contacts) {
@@ -74,6 +61,8 @@ impl Bearing {
                     *sum += part;
                 }
             }
+        }
+        for block in &mut scratch.blocks {
             let before = scratch.frame.as_ref().map(|frame| frame.pull(&self.rollers, block));
             self.rollers.advance(simd, self.time_step, block, tally.last, &mut sums);
             if let (Some(frame), Some(before)) = (&scratch.frame, before) {
