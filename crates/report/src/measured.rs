@@ -186,17 +186,14 @@ fn cursor(findings: &MeasuredFindings) -> Cursor {
     Cursor { known }
 }
 
-/// The length of a spall with its interval, or its bound.
+/// The length of a spall with its interval. One event a passage bounds no length: it may be the only one.
 fn spall_in_words(findings: &MeasuredFindings) -> Option<String> {
-    let length = findings.spall_mm.map(|spall| {
+    findings.spall_mm.map(|spall| {
         format!(
             "Length of the spall: {:.2} mm, 90 % between {:.2} and {:.2} mm.",
             spall.value, spall.low, spall.high
         )
-    });
-    let bound =
-        |below_mm| format!("The spall is shorter than {below_mm:.2} mm if entry and exit both knock.");
-    length.or_else(|| findings.spall_below_mm.map(bound))
+    })
 }
 
 fn families(families: &[Family]) -> Markup {

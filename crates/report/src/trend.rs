@@ -155,7 +155,7 @@ fn table(entries: &[TrendEntry]) -> Markup {
                         }
                         td {
                             @if let Some(spall) = findings.spall_mm { (format!("{:.2} ({:.2}–{:.2})", spall.value, spall.low, spall.high)) }
-                            @else if let Some(below_mm) = findings.spall_below_mm { (format!("< {below_mm:.2} or one knock")) }
+                            @else if findings.spall_below_mm.is_some() { "one event" }
                             @else { "–" }
                         }
                         td { (findings.verdict) }

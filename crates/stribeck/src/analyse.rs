@@ -291,9 +291,6 @@ fn print(analysis: &Analysis) {
     if let Some(spall) = findings.spall_mm {
         say!("  spall: {:.2} mm long, 90 % between {:.2} and {:.2} mm", spall.value, spall.low, spall.high);
     }
-    if let Some(below_mm) = findings.spall_below_mm {
-        say!("  spall: shorter than {below_mm:.2} mm if entry and exit both knock");
-    }
     for note in &findings.notes {
         say!("  note: {note}");
     }

@@ -7,8 +7,8 @@ use serde::{Serialize, Serializer};
 use crate::Defect;
 use crate::families::controls::MOST_AS_HIGH;
 use crate::families::limits::{ALPHA, KNOCK, decibel};
-use crate::families::sidebands::UNRELATED_SPACINGS;
 use crate::families::unexplained::UnexplainedComb;
+use crate::families::unrelated::UNRELATED_SPACINGS;
 use crate::words::numbers::chance;
 
 /// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
@@ -184,9 +184,15 @@ impl Family {
         Self { p_value: by_cage.max(self.noise_p_value).max(self.rank.unwrap_or(1.0)).min(1.0), ..self }
     }
 
-    /// The probability of a false alarm in words.
+    /// The probability of a false alarm in words: that of noise and of sound bearings, beside which a family that
+    /// is not claimed may still be another source's.
     pub fn false_alarm(&self) -> String {
-        chance(self.p_value)
+        let of_sound = chance(self.p_value);
+        if self.claimed || self.p_value >= ALPHA {
+            of_sound
+        } else {
+            format!("{of_sound} but for other sources")
+        }
     }
 
     /// Whether it is more than noise and modulated as deeply as by knocks, whatever their cause.

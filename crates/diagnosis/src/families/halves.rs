@@ -11,6 +11,8 @@ use crate::{Defect, Error, Family};
 
 /// A family this far from noise stands in both halves, or in one so high that no chance makes it.
 const CERTAIN: f64 = 1e-9;
+/// The same for that of the cage, by its probability of a false alarm.
+const COMES_AND_GOES: f64 = 1e-5;
 /// Lines of a half about the frequency of the whole that are searched.
 const REACH: f64 = 1.0;
 
@@ -40,7 +42,7 @@ fn agree(samples: &[f64], rate_hz: f64, band_hz: (f64, f64), comb_hz: f64) -> Re
 }
 
 /// Withdraws claims of families that stand in one half of the record only, but for those that no chance
-/// makes, and that of the cage: a spot on an element meets the raceways while it spins about the right axis,
+/// makes, and a sure one of the cage: a spot on an element meets the raceways while it spins about the right axis,
 /// and comes and goes.
 ///
 /// # Errors
@@ -52,8 +54,9 @@ pub(crate) fn without_passing(
 ) -> Result<Vec<Family>, Error> {
     let finite = samples.iter().all(|x| x.is_finite());
     let lasts = |family: &Family| {
-        let comes_and_goes = family.over.is_some() || family.name == Defect::Ftf;
-        let asked = family.claimed && !comes_and_goes && family.noise_p_value >= CERTAIN && finite;
+        let comes_and_goes = family.name == Defect::Ftf && family.p_value < COMES_AND_GOES;
+        let certain = family.over.is_some() || comes_and_goes || family.noise_p_value < CERTAIN;
+        let asked = family.claimed && !certain && finite;
         let (Some(band_hz), Some(hz), true) = (family.band_hz, family.measured_hz, asked) else {
             return Ok(true);
         };

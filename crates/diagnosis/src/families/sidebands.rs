@@ -6,13 +6,12 @@ use stribeck_dsp::{BandEnvelope, Whitened};
 use crate::Defect;
 use crate::families::family::Family;
 use crate::families::limits::ALPHA;
+use crate::families::unrelated::UNRELATED_SPACINGS;
 
 /// Harmonics whose sidebands are looked for, and how many of both sides of all make a family modulated.
 const HARMONICS: usize = 3;
 const MODULATED: usize = 3;
 
-/// Spacings of sidebands over that of the cage at which no part of a bearing has any.
-pub(crate) const UNRELATED_SPACINGS: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.1, 1.2, 1.3, 1.4];
 /// Lines by which sidebands of two spacings must differ to be others.
 const OTHER_LINES: f64 = 2.0;
 

@@ -7,6 +7,9 @@ const CONTROLS: usize = 160;
 /// Two frequencies are one when they differ by less than this part: both may slip.
 const SAME: f64 = 2.25 * SLIP;
 
+/// Spacings of sidebands over that of the cage at which no part of a bearing has any.
+pub(crate) const UNRELATED_SPACINGS: [f64; 8] = [0.6, 0.7, 0.8, 0.9, 1.1, 1.2, 1.3, 1.4];
+
 /// Fundamentals [Hz] that share no line with `hz`, with slip.
 pub(crate) fn unrelated_hz(hz: f64) -> impl Iterator<Item = f64> {
     let ratios = (0..CONTROLS).map(|n| 0.4 * 6.25_f64.powf(n as f64 / (CONTROLS - 1) as f64));

@@ -110,10 +110,10 @@ fn of_two_events(
 /// A single event bounds a length and does not determine it.
 fn of_one_event(below_mm: f64, apart_mm: f64) -> SpallLength {
     let note = format!(
-        "no second event follows each knock: if entry and exit both knock, the spall is shorter than \
-         {below_mm:.2} mm. One that is shallow, or crossed under so heavy a load that no element comes \
-         free, or whose entry is soft, knocks once whatever its length, up to the {apart_mm:.1} mm between \
-         two elements, and the record does not say which"
+        "no second event follows each knock: one of entry and exit is heard, the record does not say which, \
+         and it gives no length. A spall that is shallow, or crossed under so heavy a load that no element \
+         comes free, or whose entry is soft, knocks once whatever its length, up to the {apart_mm:.1} mm \
+         between two elements"
     );
     SpallLength { below_mm: Some(below_mm), note, ..SpallLength::default() }
 }

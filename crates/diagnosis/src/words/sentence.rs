@@ -78,7 +78,13 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
         )
     };
     if !weak.is_empty() {
-        verdict += &format!(" {} can be seen, without knocks: watch the trend.", weak.join(" and "));
+        let above_db = families.iter().filter(|f| f.is_there()).filter_map(Family::above_unrelated_db);
+        verdict += &format!(
+            " {} can be seen, up to {:.0} dB above unrelated combs, without deep knocks: records of the sound \
+             machine (`--baseline`) decide, or the trend.",
+            weak.join(" and "),
+            above_db.fold(0.0, f64::max)
+        );
     }
     let unheard: Vec<&str> = unheard.into_iter().filter(|name| !hidden.contains(name)).collect();
     if !unheard.is_empty() {
