@@ -21,7 +21,7 @@ pub fn bending_mode_hz(n: u32, radius: f64, thickness: f64, modulus: f64, poisso
 /// Modes n = 2 … `last` of the scene's outer ring, free of everything else [Hz]; empty for a rigid
 /// ring.
 pub fn outer_ring_modes(scene: &ResolvedScene, last: u32) -> Vec<(u32, f64)> {
-    if scene.outer_ring_rigid {
+    if scene.written.housing.is_rigid() {
         return Vec::new();
     }
     let (thickness, m) = (scene.outer_ring_thickness, &scene.material);

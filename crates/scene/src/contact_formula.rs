@@ -1,7 +1,11 @@
 //! Stiffness and damping of contact by the formula that a scene names, as numbers of one law (THEORY §4.2).
 
+use stribeck_theory::bearing::Bearing;
+use stribeck_theory::line_contact::LineContacts;
 use stribeck_theory::material::Material;
+use stribeck_theory::static_load::RigidRings;
 
+use crate::resolved::ResolvedScene;
 use crate::scene::{ContactFormula, ContactPasses, Scene};
 
 /// Parameters of a contact law.
@@ -20,7 +24,8 @@ impl ContactNumbers {
         // Half an element deep: the mass of a surface's nodes.
         let layer = 0.5 * material.density * size;
         match c.formula {
-            ContactFormula::ElementLayer => {
+            // [`as_hertz`] needs the resolved scene and comes last.
+            ContactFormula::Hertz | ContactFormula::ElementLayer => {
                 Self { stiffness: scale * material.youngs_modulus / size, layer_mass: layer }
             }
             ContactFormula::LsdynaStandard => {
@@ -41,6 +46,38 @@ impl ContactNumbers {
         }
     }
 }
+
+/// Penalty stiffness [Pa/m] with which contacts give way as Hertz's do under `REFERENCE` times the force of the
+/// most loaded roller, at the largest load of the run: the mesh gives way by the rest. At most `STIFFEST` layers of elements.
+pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
+    let [_, load_n] = scene.duty.load_range_n(scene.duration);
+    let bearing = Bearing::from(scene);
+    let static_load = RigidRings::new(bearing).distribute(load_n, &scene.written.angles_to_load_deg());
+    let largest_n = static_load.map_or(load_n, |load| load.max_roller_n());
+    let w = REFERENCE * largest_n / scene.thickness;
+    let wanted = LineContacts::of(bearing).approach(w).0;
+    let meshed = scene.meshed_contacts();
+    let on_mesh =
+        |side: usize, stiffness: f64| meshed.approach_on_mesh(side, w, scene.element_size, stiffness);
+    let layer = scene.material.youngs_modulus / scene.element_size;
+    let (mut soft, mut stiff) = (1e-4_f64, STIFFEST);
+    for _ in 0..60 {
+        let middle = (soft * stiff).sqrt();
+        if on_mesh(0, middle * layer) + on_mesh(1, middle * layer) > wanted {
+            soft = middle;
+        } else {
+            stiff = middle;
+        }
+    }
+    soft * layer
+}
+
+/// The law of a penalty bends more than Hertz's: equal approaches under this multiple of the largest force make
+/// the distribution over the rollers equal.
+const REFERENCE: f64 = 1.5;
+
+/// Stiffest penalty of the formula, in layers of elements.
+const STIFFEST: f64 = 10.0;
 
 #[cfg(test)]
 mod tests {

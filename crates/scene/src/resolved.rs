@@ -9,15 +9,16 @@
 
 use std::f64::consts::{PI, TAU};
 
+use stribeck_theory::contact_law::ContactLawKind;
 use stribeck_theory::duty::Duty;
 use stribeck_theory::lubrication::Oil;
 use stribeck_theory::material::Material;
 
-use crate::contact_formula::ContactNumbers;
+use crate::contact_formula::{ContactNumbers, as_hertz};
 use crate::deviation::{Relief, RollingSurface};
 use crate::faults::rolling_circle;
 use crate::scene::{
-    CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
+    CageScene, ContactFormula, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
 };
 
 /// A scene in SI: dimensions, material, mesh, contact, load and times, and the scene as written, for fields
@@ -38,8 +39,8 @@ pub struct ResolvedScene {
     pub outer_race_radius: f64,
     /// Radial thickness of the outer ring [m].
     pub outer_ring_thickness: f64,
-    /// Whether the outer ring does not deform.
-    pub outer_ring_rigid: bool,
+    /// Law of the contacts of rolling elements and raceways.
+    pub contact_law: ContactLawKind,
     /// Radius of the inner raceway [m].
     pub inner_race_radius: f64,
     /// Radial thickness of the inner ring [m].
@@ -182,6 +183,14 @@ impl ResolvedScene {
     }
 
     fn of(scene: &Scene) -> Self {
+        let mut resolved = Self::with_stated_contact(scene);
+        if scene.contact.formula == ContactFormula::Hertz {
+            resolved.penalty_stiffness = scene.contact.penalty_scale * as_hertz(&resolved);
+        }
+        resolved
+    }
+
+    fn with_stated_contact(scene: &Scene) -> Self {
         let b = &scene.bearing;
         let material = Material::from(&scene.material);
         let element_size = 1e-3 * scene.mesh.size_mm;
@@ -197,7 +206,7 @@ impl ResolvedScene {
             duty: scene.duty(),
             outer_race_radius: 0.5e-3 * b.outer_race_diameter_mm,
             outer_ring_thickness: 1e-3 * b.outer_ring_thickness_mm,
-            outer_ring_rigid: scene.housing.is_rigid(),
+            contact_law: scene.contact_law(),
             inner_race_radius: 0.5e-3 * b.inner_race_diameter_mm - 0.5e-6 * b.clearance_change_um,
             inner_ring_thickness: 1e-3 * b.inner_ring_thickness_mm,
             rollers: b.rollers,

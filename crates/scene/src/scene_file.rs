@@ -256,6 +256,7 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
         return Err(SceneError::new(found));
     }
     let mut scene = scene_of(&sources)?;
+    named::as_stiff_as_hertz(&mut scene, &given);
     if let Some(name) = &name {
         named::put(&mut scene, name, &given).map_err(|why| unknown_bearing(why, sources.place("bearing")))?;
     }

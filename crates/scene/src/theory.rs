@@ -3,6 +3,7 @@
 use stribeck_theory::bearing::{Bearing, Dimensions, Ring};
 use stribeck_theory::catalogue::{self, Element};
 use stribeck_theory::kinematics::{Kinematics, Stretch};
+use stribeck_theory::line_contact::LineContacts;
 use stribeck_theory::lubrication::{self, LoadedFilm};
 use stribeck_theory::material::Material;
 use stribeck_theory::ring_stiffness::TurningRings;
@@ -11,7 +12,7 @@ use stribeck_theory::{Error, contact_law::ContactLawKind, load_rating};
 
 use crate::duty::LONGEST_RUN_S;
 use crate::resolved::ResolvedScene;
-use crate::scene::{BearingScene, DefectRing, DefectScene, MaterialScene, Scene};
+use crate::scene::{BearingScene, ContactFormula, DefectRing, DefectScene, MaterialScene, ModelScene, Scene};
 
 impl From<&BearingScene> for Dimensions {
     fn from(bearing: &BearingScene) -> Self {
@@ -29,12 +30,13 @@ impl From<&ResolvedScene> for Bearing {
         Self {
             outer_race_radius: scene.outer_race_radius,
             inner_race_radius: scene.inner_race_radius,
-            outer_ring_thickness: Some(scene.outer_ring_thickness).filter(|_| !scene.outer_ring_rigid),
+            outer_ring_thickness: scene.outer_gives_way().then_some(scene.outer_ring_thickness),
             inner_ring_thickness: scene.inner_ring_thickness,
             roller_radius: scene.roller_radius,
             rollers: scene.rollers,
             clearance: scene.clearance,
             thickness: scene.thickness,
+            law: scene.contact_law,
             material: scene.material,
         }
     }
@@ -105,6 +107,17 @@ impl Scene {
         if is_ball { Element::Ball } else { Element::Roller }
     }
 
+    /// Law of the contacts of rolling elements in its model: balls touch in points where the model has no
+    /// mesh and contact is as in steel; anything else is plane.
+    pub(crate) fn contact_law(&self) -> ContactLawKind {
+        let in_steel = self.contact.formula == ContactFormula::Hertz;
+        if in_steel && self.model != ModelScene::Full && self.element() == Element::Ball {
+            ContactLawKind::Ball
+        } else {
+            ContactLawKind::Line
+        }
+    }
+
     /// Basic static radial load rating by ISO 76 [N]; rollers are as long as the model is thick.
     pub fn static_rating_n(&self) -> f64 {
         load_rating::static_rating_n(&self.bearing, self.element(), self.bearing.thickness_mm)
@@ -112,6 +125,20 @@ impl Scene {
 }
 
 impl ResolvedScene {
+    /// Whether contact with the outer raceway has the compliance of the ring: not where the ring moves as one
+    /// piece, unless the penalty stands for it.
+    pub fn outer_gives_way(&self) -> bool {
+        !self.written.housing.is_rigid() || self.written.contact.formula == ContactFormula::Hertz
+    }
+
+    /// Line contacts of what is meshed: a ring that moves as one piece does not give way.
+    pub fn meshed_contacts(&self) -> LineContacts {
+        let bearing = Bearing::from(self);
+        let is_rigid = self.written.housing.is_rigid();
+        let outer_ring_thickness = bearing.outer_ring_thickness.filter(|_| !is_rigid);
+        LineContacts::of(Bearing { outer_ring_thickness, ..bearing })
+    }
+
     /// Load distribution at the start, under the load alone (no weights).
     ///
     /// # Errors

@@ -323,6 +323,16 @@ fn spall_of_an_element_mm(answers: &Answers) -> f64 {
     f64::max(2.0, (10.0 * least).ceil() / 10.0)
 }
 
+/// Mass [kg] that usually moves with the outer ring of a bearing of this size: 10 kg about a 6205, growing with
+/// the square of the outside diameter.
+fn housing_kg(bearing: &str) -> f64 {
+    let scene = Scene::parse(&format!("(bearing: {bearing:?})"), bearing).unwrap_or_default();
+    let outside_mm = scene.bearing.outer_race_diameter_mm + 2.0 * scene.bearing.outer_ring_thickness_mm;
+    let kg = 10.0 * (outside_mm / 52.0).powi(2);
+    let digits = 10_f64.powf(kg.log10().floor() - 1.0);
+    (kg / digits).round() * digits
+}
+
 /// The scene with its comments.
 fn text(name: &str, answers: &Answers) -> String {
     let Answers { bearing, load_n, speed_rpm, defect, duration_s } = answers;
@@ -358,6 +368,7 @@ fn text(name: &str, answers: &Answers) -> String {
         .replace("<load>", &format!("{load_n:?}"))
         .replace("<speed>", &format!("{speed_rpm:?}"))
         .replace("<duration>", &format!("{:?}", 1e3 * duration_s))
+        .replace("<mass>", &format!("{:?}", housing_kg(bearing)))
 }
 
 #[cfg(test)]

@@ -153,7 +153,7 @@ fn left_out(scene: &ResolvedScene) -> Vec<String> {
     if written.defect.is_some() || !written.defects.is_empty() {
         left.push("the defects of this scene are left out: stiffness is that of a sound bearing".to_owned());
     }
-    if !scene.outer_ring_rigid {
+    if !written.housing.is_rigid() {
         left.push(
             "rings count as rigid here; the ring and housing of this scene deform and spread the load by 10 \
              to 20 % otherwise"

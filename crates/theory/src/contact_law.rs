@@ -95,6 +95,26 @@ impl ContactLaw {
         }
     }
 
+    /// Approach of both raceways [m] under a force [N] through both contacts.
+    pub fn both(&self, force: f64) -> f64 {
+        self.approach(0, force).0 + self.approach(1, force).0
+    }
+
+    /// Force [N] through both contacts at the approach `delta` > 0 of the raceways [m], its derivative [N/m],
+    /// and the energy of the contacts [J]; `None` where the law ends.
+    pub(crate) fn between(&self, delta: f64) -> Option<(f64, f64, f64)> {
+        match &self.0 {
+            Law::Line { contacts, length } => {
+                let (w, slope) = contacts.load(delta)?;
+                Some((w * length, slope * length, length * contacts.energy(w, delta)))
+            }
+            Law::Power { factors: [outer, inner], power } => {
+                let force = (delta / (outer + inner)).powf(power.recip());
+                Some((force, force / (power * delta), power / (1.0 + power) * force * delta))
+            }
+        }
+    }
+
     /// Force at the inner contact [N] and its derivative [N/m], where the raceways have come `approach` [m]
     /// nearer than the element is thick and `outwards` [N] presses it to the outer raceway besides; `None`
     /// where the law ends. Nothing as long as the inner raceway is not touched.

@@ -1,12 +1,11 @@
 //! Static load distribution over the rollers between two rigid rings, THEORY §6.
 //!
-//! After Stribeck and Sjövall, with a radial clearance and the compliance of a plane-strain line contact: the
-//! roller's half by Johnson (*Contact Mechanics*, 1985, §5.6), the ring's side as a half-plane down to the
-//! ring's thickness (ibid., equation 5.57). An elastic outer ring spreads the load differently by 10–20 %.
+//! After Stribeck and Sjövall, with a radial clearance and the bearing's law of contact. An elastic outer ring
+//! spreads the load differently by 10–20 %.
 
 use crate::bearing::Bearing;
+use crate::contact_law::ContactLaw;
 use crate::error::Error;
-use crate::line_contact::LineContacts;
 
 /// Unbalanced force, as a part of the load, at which the search ends.
 const TOLERANCE: f64 = 1e-10;
@@ -46,14 +45,12 @@ impl StaticLoad {
     }
 }
 
-/// Two rigid rings with elastic line contacts between them.
+/// Two rigid rings with elastic contacts between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RigidRings {
     /// Radial clearance at each roller when the rings are concentric [m]: half the diametral one.
     clearance_m: f64,
-    /// Length of the line contacts, the out-of-plane thickness [m].
-    length_m: f64,
-    compliance: LineContacts,
+    law: ContactLaw,
 }
 
 impl RigidRings {
@@ -62,15 +59,14 @@ impl RigidRings {
         let b = bearing.into();
         Self {
             clearance_m: b.outer_race_radius - b.inner_race_radius - 2.0 * b.roller_radius,
-            length_m: b.thickness,
-            compliance: LineContacts::of(b),
+            law: ContactLaw::of(b, b.law),
         }
     }
 
     /// Approach of the two raceways at a roller [m] under the force `load_n` [N] through it: both its
     /// contacts.
     pub fn approach_m(&self, load_n: f64) -> f64 {
-        if load_n > 0.0 { self.compliance.approach(load_n / self.length_m).0 } else { 0.0 }
+        self.law.both(load_n)
     }
 
     /// Equilibrium of the outer ring under `load_n`, downwards, over rollers at `angles_deg` (90° is the
@@ -158,24 +154,24 @@ impl RigidRings {
             if approach <= 0.0 {
                 continue;
             }
-            let Some((w, slope)) = self.compliance.load(approach) else {
+            let Some((force, k, energy)) = self.law.between(approach) else {
                 return Residual { energy: f64::INFINITY, ..out };
             };
-            let (force, k) = (w * self.length_m, slope * self.length_m);
             out.unbalanced[0] += force * n[0];
             out.unbalanced[1] += force * n[1];
             out.stiffness[0] += k * n[0] * n[0];
             out.stiffness[1] += k * n[0] * n[1];
             out.stiffness[2] += k * n[1] * n[1];
-            out.energy += self.length_m * self.compliance.energy(w, approach);
+            out.energy += energy;
         }
         out
     }
 
     fn solution(&self, shift_m: [f64; 2], directions: &[[f64; 2]]) -> StaticLoad {
         let approach_m: Vec<f64> = directions.iter().map(|n| self.approach(shift_m, *n)).collect();
-        let line_load = |delta: f64| self.compliance.load(delta).map_or(0.0, |(w, _)| w);
-        let load = |delta: &f64| if *delta > 0.0 { line_load(*delta) * self.length_m } else { 0.0 };
+        let load = |delta: &f64| {
+            if *delta > 0.0 { self.law.between(*delta).map_or(0.0, |(force, ..)| force) } else { 0.0 }
+        };
         StaticLoad { shift_m, roller_n: approach_m.iter().map(load).collect(), approach_m }
     }
 }

@@ -35,6 +35,10 @@ group! {
 words! {
     /// Formula of the stiffness and the critical damping of contact, for squares of the mesh's size.
     pub enum ContactFormula: Copy, Eq {
+        /// As soft as the raceways of a steel bearing: penalty and mesh together give way under the largest
+        /// static force as Hertz's contacts do with the layers of the rings (THEORY §6.2), times
+        /// 1/`penalty_scale`, which is 1 here. That of every bearing but the paper's. Damping as below.
+        Hertz = "hertz",
         /// `penalty_scale` × E / element size; critical damping of two equal surface layers on that spring.
         ElementLayer = "element_layer",
         /// LS-DYNA's standard penalty: `penalty_scale` (`SLSFAC` × `SFS`, usually 0.1) × bulk modulus × area²

@@ -11,8 +11,8 @@ use stribeck_theory::point_contact;
 use crate::catalogue;
 use crate::housing::{HousingScene, PedestalScene};
 use crate::scene::{
-    BearingScene, CageScene, DefectScene, FramesScene, GradingScene, ModelScene, PocketWalls, ReducedScene,
-    Scene,
+    BearingScene, CageScene, ContactFormula, ContactSurface, DefectScene, FramesScene, GradingScene,
+    ModelScene, PocketWalls, ReducedScene, Scene,
 };
 
 /// Cylinders that stand for balls are no shorter [mm].
@@ -101,10 +101,10 @@ pub(super) struct Surrounded {
 }
 
 /// Sets the bearing of a scene and, in proportion to the paper's, all surroundings that the user did not
-/// give: cage, housing, defect, elements, friction, load and pictures.
-pub(super) fn surround(scene: &mut Scene, of: Surrounded, given: &[String]) {
+/// give: cage, housing, defect, elements, contact, load and pictures.
+pub(super) fn surround(scene: &mut Scene, of: Surrounded, all: &[String]) {
     let Surrounded { bearing, pitch_mm } = of;
-    let given = |path: &str| given.iter().any(|written| written == path);
+    let given = |path: &str| all.iter().any(|written| written == path);
     let paper = Scene::default();
     let facets = paper.mesh.roller_facets as f64 / scene.mesh.roller_facets as f64;
     let size = bearing.roller_diameter_mm / paper.bearing.roller_diameter_mm;
@@ -173,6 +173,7 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, given: &[String]) {
     scene.bearing = bearing;
     house(scene, &given);
     modes(scene, &given);
+    contact(scene, all);
 }
 
 /// Outside diameter of a scene's bearing over that of the paper's.
@@ -183,11 +184,16 @@ fn across(scene: &Scene) -> f64 {
 
 /// What follows from the bearing in a field that an argument has replaced as a whole:
 /// `--set housing=pedestal()` is a pedestal of that bearing's size.
-pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, given: &[String]) {
-    let given = |path: &str| given.iter().any(|written| written == path);
+pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, all: &[String]) {
+    let given = |path: &str| all.iter().any(|written| written == path);
+    let is_hertz = scene.contact.formula == ContactFormula::Hertz;
     match replaced {
         "housing" => house(scene, &given),
         "model" => modes(scene, &given),
+        "contact.formula" => as_stiff_as_hertz(scene, all),
+        "contact.penalty_scale" if !given("contact.formula") && is_hertz => {
+            scene.contact.formula = ContactFormula::ElementLayer;
+        }
         _ => {}
     }
 }
@@ -220,36 +226,24 @@ fn modes(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
     }
 }
 
-/// Ratio of the penetration limit of the guards to the penetration under the largest static force, so that
-/// impacts of rollers stay below that limit: where some ten rollers share the load, each takes its part at
-/// once and sinks in 2.1 times as deep (docs/results/own.md).
-const KNOCKS: f64 = 2.5;
-
-/// The same of so few rollers that one carries all at times: the ring falls from each onto the next.
-const KNOCKS_OF_FEW: f64 = 6.0;
-const FEW: usize = 6;
-
-/// Share of the load that the most loaded of many rollers carries between raceways with clearance, times
-/// their number: Stribeck's 5, and a fifth more for a clearance as wide as the approach of the rollers.
-const WITH_CLEARANCE: f64 = 6.0;
-
-/// Contact stiffness, where the user gave none, with a penetration below the radial clearance and a tenth of
-/// an element: the paper's, in proportion, is too soft where few rollers carry.
-pub(super) fn stiffness(scene: &mut Scene, given: &[String]) {
+/// Contact of any bearing but the paper's, where the user stated none: round, and as soft as steel. A penalty
+/// scale alone is that of an element layer.
+pub(super) fn contact(scene: &mut Scene, given: &[String]) {
     let written = |path: &str| given.iter().any(|written| written == path);
-    if written("contact.penalty_scale") || written("contact.formula") {
-        return;
+    if !written("contact.surface") {
+        scene.contact.surface = ContactSurface::Arc;
     }
-    let g = scene.resolve();
-    let largest = g.load * (WITH_CLEARANCE / g.rollers as f64).min(1.0);
-    let w = largest / g.thickness;
-    let depth = (0.75 * w / (g.penalty_stiffness * (2.0 * g.inner_contact_radius()).sqrt())).powf(2.0 / 3.0);
-    let hertz = 0.5 * LineContacts::of(&g).approach(w).0;
-    let warned = (0.5 * g.clearance).max(hertz).min(0.1 * g.element_size);
-    let knocks = if g.rollers <= FEW { KNOCKS_OF_FEW } else { KNOCKS };
-    let stiffer = (knocks * depth / warned).powf(1.5);
-    if stiffer > 1.0 && stiffer.is_finite() {
-        scene.contact.penalty_scale = to_digits(2, (stiffer * scene.contact.penalty_scale).min(3.0));
+    if !written("contact.formula") && !written("contact.penalty_scale") {
+        scene.contact.formula = ContactFormula::Hertz;
+    }
+    as_stiff_as_hertz(scene, given);
+}
+
+/// Once the stiffness of Hertz, where the user asked for it and gave no multiple.
+pub(super) fn as_stiff_as_hertz(scene: &mut Scene, given: &[String]) {
+    let is_given = given.iter().any(|written| written == "contact.penalty_scale");
+    if scene.contact.formula == ContactFormula::Hertz && !is_given {
+        scene.contact.penalty_scale = 1.0;
     }
 }
 

@@ -143,7 +143,6 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Result<(), Box<Re
         };
     }
     named::surround(scene, Surrounded { bearing, pitch_mm }, given);
-    named::stiffness(scene, given);
     Ok(())
 }
 

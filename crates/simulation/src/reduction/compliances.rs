@@ -6,6 +6,7 @@ use std::f64::consts::{PI, TAU};
 use stribeck_reduced::modal::{OVERLOAD, compliance::Compliance};
 use stribeck_scene::resolved::{DefectGeometry, ResolvedScene};
 use stribeck_solver::{Dynamics, statics::Modes, statics::SmallMotions};
+use stribeck_theory::contact_law::{ContactLaw, ContactLawKind};
 
 use crate::error::Error;
 use crate::reduction::{
@@ -69,18 +70,34 @@ impl Compliances {
         let inner = inner_patch(&size, extraction, dynamics, beside)?;
         let (roller, across) = roller_patch(&size, extraction, dynamics)?;
         let penalty = scene.penalty_stiffness * scene.thickness;
-        let compliance = |on: &[Vec<f64>], spacing: f64, radius: f64, across: f64| {
-            let flexibility = [on, &roller.flexibility[..]];
-            let pressed = LocalContact { spacing: [spacing, roller.spacing], flexibility, radius, penalty };
-            curve(&pressed, size.most, across)
-        };
+        let compliance =
+            |on: &[Vec<f64>], spacing: f64, radius: f64, across: f64, more: &dyn Fn(f64) -> f64| {
+                let flexibility = [on, &roller.flexibility[..]];
+                let pressed =
+                    LocalContact { spacing: [spacing, roller.spacing], flexibility, radius, penalty };
+                curve(&pressed, size.most, across, more)
+            };
+        let beyond = beyond_lines(scene);
         let rigid = vec![vec![0.0; roller.flexibility.len()]; roller.flexibility.len()];
         Ok(Self {
-            outer: compliance(&outer.flexibility, outer.spacing, ro, across),
-            inner: compliance(&inner.flexibility, inner.spacing, ri, across),
+            outer: compliance(&outer.flexibility, outer.spacing, ro, across, &|force| beyond(0, force)),
+            inner: compliance(&inner.flexibility, inner.spacing, ri, across, &|force| beyond(1, force)),
             // Only its inertia holds the roller on its other side.
-            wall: compliance(&rigid, roller.spacing, scene.roller_radius, 0.0),
+            wall: compliance(&rigid, roller.spacing, scene.roller_radius, 0.0, &|_| 0.0),
         })
+    }
+}
+
+/// Approach by which balls, touching in points, give way more than the lines that are meshed [m], at the outer
+/// and the inner contact, over the force [N]; nothing for rollers.
+fn beyond_lines(scene: &ResolvedScene) -> impl Fn(usize, f64) -> f64 {
+    let points =
+        (scene.contact_law == ContactLawKind::Ball).then(|| ContactLaw::of(scene, ContactLawKind::Ball));
+    let (meshed, facet, stiffness) = (scene.meshed_contacts(), scene.element_size, scene.penalty_stiffness);
+    let thickness = scene.thickness;
+    move |side, force| {
+        let on_mesh = || meshed.approach_on_mesh(side, force / thickness, facet, stiffness);
+        points.map_or(0.0, |points| points.approach(side, force).0 - on_mesh())
     }
 }
 
@@ -210,8 +227,8 @@ fn rigid_modes(d: &Dynamics, motions: &SmallMotions, slots: &[u32]) -> Modes {
 }
 
 /// Solves the local contact problem at several loads up to `most` [N]; `across` is the deflection of a roller
-/// by an equal force on its other side [m/N].
-fn curve(pressed: &LocalContact<'_>, most: f64, across: f64) -> Compliance {
+/// by an equal force on its other side [m/N], `more` what the contact gives way beside [m].
+fn curve(pressed: &LocalContact<'_>, most: f64, across: f64, more: &dyn Fn(f64) -> f64) -> Compliance {
     // Nodes of both surfaces lie anyhow to each other under a contact; a few cases stand for all.
     let phases = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
     let mean = |delta: f64| {
@@ -230,7 +247,7 @@ fn curve(pressed: &LocalContact<'_>, most: f64, across: f64) -> Compliance {
         let delta = deepest * (i as f64 / LOADS as f64).powi(2);
         let force = mean(delta);
         loads.push(force);
-        approaches.push(delta - pressed.rigid(force) + across * force);
+        approaches.push(delta - pressed.rigid(force) + across * force + more(force));
     }
     Compliance::through(&loads, &approaches, KNOTS)
 }
