@@ -158,10 +158,12 @@ fn too_few_modes(scene: &ResolvedScene, wanted: &ReducedScene, between_rollers: 
     })
 }
 
-/// A warning where the critical time step makes steps shorter than the scene's, with the cause.
+/// A warning where the critical time step makes steps shorter than those that a scene asks for, with the cause;
+/// the default is no wish.
 fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option<Warning> {
     let longest = 1e-6 * wanted.step_us;
-    (time_step < longest && critical < longest).then(|| {
+    let is_asked = wanted.step_us != ReducedScene::default().step_us;
+    (is_asked && time_step < longest && critical < longest).then(|| {
         Topic::TimeStep.warning(format!(
             "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} \
              µs. A smaller `model.modes_khz` or `contact.penalty_scale` allows longer ones",

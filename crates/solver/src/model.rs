@@ -22,6 +22,8 @@ pub enum Behaviour {
     Turning {
         /// Angular velocity [rad/s], counter-clockwise positive.
         rate: f64,
+        /// Rate at which its centre is braked [1/s]: a damper to the ground, over the mass.
+        braking: f64,
     },
 }
 
@@ -207,8 +209,9 @@ impl Model {
             }
         }
         for behaviour in &self.behaviour {
-            if let Behaviour::Turning { rate } = behaviour {
+            if let Behaviour::Turning { rate, braking } = behaviour {
                 check_rate(*rate)?;
+                check("braking of a body [1/s]", *braking, *braking >= 0.0, "zero or positive")?;
             }
         }
         Ok(())

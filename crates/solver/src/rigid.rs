@@ -28,6 +28,8 @@ pub(crate) struct RigidBody {
     pub(crate) body: usize,
     /// Angular velocity that it keeps whatever pushes on it [rad/s]; `None` for one that turns freely.
     turning: Option<f64>,
+    /// Rate at which its centre is braked [1/s].
+    braking: f64,
     pub(crate) slots: Range<usize>,
     /// Node positions relative to the centre of mass at angle zero [m].
     arm: Vec<[f64; 2]>,
@@ -51,12 +53,12 @@ impl RigidBody {
         let arm: Vec<[f64; 2]> = slots.clone().map(|n| [x[n] - centre[0], y[n] - centre[1]]).collect();
         let inertia =
             slots.clone().zip(&arm).map(|(n, a)| mass[n] * (a[0] * a[0] + a[1] * a[1])).sum::<f64>();
-        let turning = match behaviour {
-            Behaviour::Turning { rate } => Some(rate),
-            Behaviour::Elastic | Behaviour::Rigid => None,
+        let (turning, braking) = match behaviour {
+            Behaviour::Turning { rate, braking } => (Some(rate), braking),
+            Behaviour::Elastic | Behaviour::Rigid => (None, 0.0),
         };
         let state = RigidState { centre, spin: turning.unwrap_or(0.0), ..RigidState::default() };
-        (Self { body, turning, slots, arm, mass: total, inertia }, state)
+        (Self { body, turning, braking, slots, arm, mass: total, inertia }, state)
     }
 
     /// Another rate [rad/s] for a body that turns at a prescribed one.
@@ -69,8 +71,8 @@ impl RigidBody {
         self.turning.is_some()
     }
 
-    /// One step under the forces on its nodes and gravity; moves the nodes. Returns the work of its drive
-    /// [J].
+    /// One step under the forces on its nodes and gravity; moves the nodes. Returns the work of its drive, less
+    /// what its damper takes [J].
     pub(crate) fn advance(
         &self,
         at: &mut RigidState,
@@ -90,8 +92,7 @@ impl RigidBody {
                 forces.fy[n] = 0.0;
             }
         }
-        at.velocity[0] += dt * (fx / self.mass + gravity[0]);
-        at.velocity[1] += dt * (fy / self.mass + gravity[1]);
+        let taken = self.accelerate(at, [fx / self.mass + gravity[0], fy / self.mass + gravity[1]], dt);
         let driven = match self.turning {
             Some(rate) => {
                 let before = std::mem::replace(&mut at.spin, rate);
@@ -107,7 +108,20 @@ impl RigidBody {
         at.centre[1] += dt * at.velocity[1];
         at.angle += dt * at.spin;
         self.place(at, state, dt);
-        driven
+        driven - taken
+    }
+
+    /// Accelerates and brakes the centre over a step. Returns what the damper takes [J].
+    fn accelerate(&self, at: &mut RigidState, acceleration: [f64; 2], dt: f64) -> f64 {
+        // By the mean velocity over the step, so that no rate is unstable.
+        let h = 0.5 * self.braking * dt;
+        let mut squares = 0.0;
+        for (v, a) in at.velocity.iter_mut().zip(acceleration) {
+            let new = if self.braking == 0.0 { *v + dt * a } else { ((1.0 - h) * *v + dt * a) / (1.0 + h) };
+            squares += (0.5 * (*v + new)).powi(2);
+            *v = new;
+        }
+        dt * self.braking * self.mass * squares
     }
 
     /// Puts the body where its nodes are, which have been moved without turning.

@@ -10,7 +10,7 @@ use stribeck_scene::catalogue;
 use stribeck_scene::deviation::HOLLOW_FACETS;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
-use stribeck_theory::catalogue::CatalogueBearing;
+use stribeck_theory::catalogue::{CatalogueBearing, Element};
 
 use crate::out::say;
 use crate::place::{Place, shown};
@@ -323,6 +323,14 @@ fn spall_of_an_element_mm(answers: &Answers) -> f64 {
     f64::max(2.0, (10.0 * least).ceil() / 10.0)
 }
 
+/// Root mean square roughness [µm] of honed raceways, as they usually are.
+fn roughness_um(bearing: &str) -> &'static str {
+    match catalogue::parse(bearing).map(|known| known.element) {
+        Ok(Element::Ball) => "0.1",
+        _ => "0.2",
+    }
+}
+
 /// Mass [kg] that usually moves with the outer ring of a bearing of this size: 10 kg about a 6205, growing with
 /// the square of the outside diameter.
 fn housing_kg(bearing: &str) -> f64 {
@@ -336,19 +344,16 @@ fn housing_kg(bearing: &str) -> f64 {
 /// The scene with its comments.
 fn text(name: &str, answers: &Answers) -> String {
     let Answers { bearing, load_n, speed_rpm, defect, duration_s } = answers;
-    let (state, comment, fields) = match defect {
+    let (state, comment, spall) = match defect {
         Where::None => (
             "sound",
             "A sound bearing. A spall would be: (ring: outer, length_mm: 2, depth_mm: 0.1).",
-            "defect: None,".to_owned(),
+            "None".to_owned(),
         ),
         Where::Roller => (
             "with a spall on a rolling element",
-            "How long the spall is along the surface, and how deep.",
-            format!(
-                "defect: None,\n    defects: [(on: roller(1), form: spall(length_mm: {}, depth_mm: 0.05))],",
-                spall_of_an_element_mm(answers)
-            ),
+            "How long the spall is along the surface, and how deep, stands among `defects`.",
+            "None".to_owned(),
         ),
         Where::Outer | Where::Inner => (
             if *defect == Where::Outer {
@@ -357,11 +362,21 @@ fn text(name: &str, answers: &Answers) -> String {
                 "with a spall on the inner raceway"
             },
             "How long the spall is along the raceway, and how deep.",
-            format!("defect: (ring: {}, length_mm: 2, depth_mm: 0.1),", defect.word()),
+            format!("(ring: {}, length_mm: 2, depth_mm: 0.1)", defect.word()),
         ),
     };
+    let of_an_element = if *defect == Where::Roller {
+        format!(
+            "\n        (on: roller(1), form: spall(length_mm: {}, depth_mm: 0.05)),",
+            spall_of_an_element_mm(answers)
+        )
+    } else {
+        String::new()
+    };
     SCENE
-        .replace("<defect>", &format!("    // {comment}\n    {fields}"))
+        .replace("<defect>", &format!("    // {comment}\n    defect: {spall},"))
+        .replace("<roughness>", roughness_um(bearing))
+        .replace("<of an element>", &of_an_element)
         .replace("<state>", state)
         .replace("<file>", name)
         .replace("<bearing>", bearing)
@@ -386,7 +401,11 @@ mod tests {
                 let of = answers(bearing, defect);
                 let scene = Scene::parse(&text(&name(&of), &of), "new.ron").expect(bearing);
                 assert_eq!((scene.operation.load_n, scene.solver.duration_ms), (1000.0, 500.0));
-                assert_eq!(scene.faults().len(), usize::from(defect != Where::None), "{bearing} {defect:?}");
+                assert_eq!(
+                    scene.faults().len(),
+                    2 + usize::from(defect != Where::None),
+                    "{bearing} {defect:?}"
+                );
             }
         }
     }

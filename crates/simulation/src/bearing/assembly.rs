@@ -100,10 +100,14 @@ impl Assembly {
         match (&scene.written.housing, &housing) {
             (HousingScene::Rigid(rigid), _) => {
                 let heavier = 1.0 + rigid.mass_kg / (outer_area * scene.thickness * scene.material.density);
-                bodies.rigid(outer.body, Behaviour::Turning { rate: kinematics.outer_rad_s }, heavier)?;
+                bodies.rigid(
+                    outer.body,
+                    Behaviour::Turning { rate: kinematics.outer_rad_s, braking: rigid.damping_per_s },
+                    heavier,
+                )?;
             }
             (HousingScene::Springs(_), Some(frame)) => {
-                bodies.rigid(frame.body, Behaviour::Turning { rate: 0.0 }, housing_density)?;
+                bodies.rigid(frame.body, Behaviour::Turning { rate: 0.0, braking: 0.0 }, housing_density)?;
             }
             (_, Some(housing)) => bodies.constrain(&housing.loaded, NodeMotion::HeldX),
             (_, None) => {}

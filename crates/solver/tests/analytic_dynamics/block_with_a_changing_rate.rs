@@ -46,7 +46,7 @@ const WORK: f64 = 1e-3;
 #[test]
 fn analytic_a_block_whose_prescribed_rate_changes() {
     let mut model = body(&rectangle(0.04, 0.02, 4, 2));
-    model.behaviour[0] = Behaviour::Turning { rate: 0.0 };
+    model.behaviour[0] = Behaviour::Turning { rate: 0.0, braking: 0.0 };
     let mut d = lay_out(&model);
     d.set_time_step(1e-6).expect("a positive time step");
     let (left, right) = (slot(&d, 5) as u32, slot(&d, 9) as u32);

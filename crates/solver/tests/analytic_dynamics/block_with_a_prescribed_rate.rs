@@ -52,7 +52,7 @@ const WORK: f64 = 1e-3;
 fn analytic_block_that_turns_at_a_prescribed_rate() {
     let mut model = body(&rectangle(0.04, 0.02, 4, 2));
     let rate = 50.0;
-    model.behaviour[0] = Behaviour::Turning { rate };
+    model.behaviour[0] = Behaviour::Turning { rate, braking: 0.0 };
     let mut d = lay_out(&model);
     d.set_time_step(1e-6).expect("a positive time step");
     let (left, right) = (slot(&d, 5) as u32, slot(&d, 9) as u32);

@@ -91,7 +91,10 @@ fn behaves_housings_are_written_in_files_and_behind_set() {
     assert_eq!(parse(&turning.to_ron()).expect("valid"), turning);
     assert_eq!(turning.load_zone_deg(), 190.0);
     assert!(turning.housing.is_rigid() && turning.operation.outer_speed_rpm == -200.0);
-    assert_eq!(set(&["housing.mass_kg=3"]).housing, HousingScene::Rigid(RigidHousingScene { mass_kg: 3.0 }));
+    assert_eq!(
+        set(&["housing.mass_kg=3"]).housing,
+        HousingScene::Rigid(RigidHousingScene { mass_kg: 3.0, ..Default::default() })
+    );
     // Either speed over time beside the other.
     let ramps = set(&[
         "housing=rigid()",
