@@ -1,6 +1,6 @@
 //! Contact that is softer than the bearing itself.
 
-use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::{resolved::ResolvedScene, scene::ContactFormula};
 use stribeck_theory::static_load::RigidRings;
 
 use super::When;
@@ -17,6 +17,8 @@ pub(super) struct Softness {
     hertz: f64,
     /// Depth of the shallowest spall; infinite without one.
     depth: f64,
+    /// Whether contact gives way as Hertz's does, or less.
+    is_steel: bool,
 }
 
 impl Softness {
@@ -26,12 +28,15 @@ impl Softness {
         let load = RigidRings::new(scene).distribute(most, &scene.written.angles_to_load_deg());
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
         let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
-        Self { radial_clearance: 0.5 * scene.clearance, hertz, depth }
+        let contact = &scene.written.contact;
+        let is_steel = contact.formula == ContactFormula::Hertz && contact.penalty_scale >= 1.0;
+        Self { radial_clearance: 0.5 * scene.clearance, hertz, depth, is_steel }
     }
 
     /// Penetration above which there is a warning [m].
     pub(super) fn limit(&self) -> f64 {
-        self.radial_clearance.max(self.hertz).min(OF_DEPTH * self.depth)
+        let soft = if self.is_steel { f64::INFINITY } else { self.radial_clearance.max(self.hertz) };
+        soft.min(OF_DEPTH * self.depth)
     }
 
     pub(super) fn warning(&self, penetration: f64, when: &When) -> String {
@@ -44,7 +49,7 @@ impl Softness {
         format!(
             "contact has sunk in by {} {when}: it is softer than the bearing, which has {} of radial \
              clearance and by Hertz gives way by {} at a contact{depth}. Load zone, times and impulses are \
-             those of a softer bearing; a larger `contact.penalty_scale` is nearer to steel",
+             those of a softer bearing; `contact.formula: hertz` is as stiff as steel",
             um(penetration),
             um(self.radial_clearance),
             um(self.hertz),
