@@ -42,7 +42,10 @@ fn planted_components_of_a_record_are_distinguished() {
         &output,
         &["6205 at 1 times the shaft: The record shows a defect of the outer raceway", "velocity: zone"],
     );
-    says(&output, &["NU 205 at 2.5 times the shaft: The record does not decide about BSF and FTF", "shows no other"]);
+    says(
+        &output,
+        &["NU 205 at 2.5 times the shaft: The record does not decide about BSF and FTF", "shows no other"],
+    );
     let text = fs::read_to_string(desk.join("record-analysis/findings.json")).expect("findings");
     let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(found["bearings"].as_array().map(Vec::len), Some(2));
