@@ -194,7 +194,7 @@ impl Prediction {
     /// # Errors
     /// [`Error::Run`] when the rings find no equilibrium.
     pub fn static_curve(&self, scene: &ResolvedScene, support_n: f64) -> Result<StaticCurve, Error> {
-        let rings = RigidRings::new(scene);
+        let rings = RigidRings::new(scene, scene.contact_law);
         // The rings see the load from above.
         let turned_by = scene.written.load_zone_deg() - 90.0;
         let start = scene.written.angles_to_load_deg();

@@ -39,7 +39,7 @@ const STOPPED: f64 = 0.5;
 /// the spall.
 pub fn friction_over_edge(scene: &ResolvedScene, spall: &SpallScene, force_n: f64) -> f64 {
     let radius = scene.roller_radius;
-    let lifted = RigidRings::new(scene).approach_m(force_n).min(1e-3 * spall.depth_mm);
+    let lifted = RigidRings::new(scene, scene.contact_law).approach_m(force_n).min(1e-3 * spall.depth_mm);
     let half_angle = 0.5e-3 * spall.length_mm / radius;
     0.5 * (2.0 * lifted / radius).sqrt().min(half_angle)
 }

@@ -44,7 +44,7 @@ impl Edge {
     pub fn of(scene: &ResolvedScene, ring: DefectRing) -> Self {
         let (outer, inner) = (scene.outer_contact_radius(), scene.inner_contact_radius());
         Self {
-            rings: RigidRings::new(scene),
+            rings: RigidRings::new(scene, scene.contact_law),
             radius: match ring {
                 DefectRing::Outer => [outer, inner],
                 DefectRing::Inner => [inner, outer],

@@ -52,7 +52,8 @@ impl ContactNumbers {
 pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
     let [_, load_n] = scene.duty.load_range_n(scene.duration);
     let bearing = Bearing::from(scene);
-    let static_load = RigidRings::new(bearing).distribute(load_n, &scene.written.angles_to_load_deg());
+    let static_load =
+        RigidRings::new(bearing, scene.contact_law).distribute(load_n, &scene.written.angles_to_load_deg());
     let largest_n = static_load.map_or(load_n, |load| load.max_roller_n());
     let w = REFERENCE * largest_n / scene.thickness;
     let wanted = LineContacts::of(bearing).approach(w).0;

@@ -36,7 +36,6 @@ impl From<&ResolvedScene> for Bearing {
             rollers: scene.rollers,
             clearance: scene.clearance,
             thickness: scene.thickness,
-            law: scene.contact_law,
             material: scene.material,
         }
     }
@@ -145,7 +144,8 @@ impl ResolvedScene {
     ///
     /// As [`RigidRings::distribute`].
     pub fn static_load(&self) -> Result<StaticLoad, Error> {
-        RigidRings::new(self).distribute(self.duty.load_n(0.0), &self.written.angles_to_load_deg())
+        RigidRings::new(self, self.contact_law)
+            .distribute(self.duty.load_n(0.0), &self.written.angles_to_load_deg())
     }
 
     /// Films of the most loaded roller on the outer and on the inner raceway; `None` for a scene without oil.

@@ -1,7 +1,6 @@
 //! A bearing as plain numbers: circles in millimetres, from which its speeds follow, and rings, rolling elements
 //! and material in SI, which give way under load.
 
-use crate::contact_law::ContactLawKind;
 use crate::material::Material;
 
 /// One of the two rings.
@@ -46,8 +45,6 @@ pub struct Bearing {
     pub clearance: f64,
     /// Length of the line contacts, out of plane [m].
     pub thickness: f64,
-    /// Law of contact of rolling elements and raceways.
-    pub law: ContactLawKind,
     /// Material of rings and rolling elements.
     pub material: Material,
 }
@@ -74,7 +71,7 @@ impl Bearing {
 /// The bearing of Singh et al. 2014, table 1, on which tests try the theory.
 #[cfg(test)]
 pub(crate) mod singh2014 {
-    use super::{Bearing, ContactLawKind, Dimensions, Material};
+    use super::{Bearing, Dimensions, Material};
 
     pub(crate) const DIMENSIONS: Dimensions =
         Dimensions { outer_race_mm: 200.0, inner_race_mm: 163.96, roller_mm: 18.0, rollers: 24 };
@@ -88,7 +85,6 @@ pub(crate) mod singh2014 {
         rollers: 24,
         clearance: 40e-6,
         thickness: 30e-3,
-        law: ContactLawKind::Line,
         material: Material { youngs_modulus: 200e9, poissons_ratio: 0.3, density: 7850.0 },
     };
 }

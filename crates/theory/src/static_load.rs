@@ -4,7 +4,7 @@
 //! spreads the load differently by 10–20 %.
 
 use crate::bearing::Bearing;
-use crate::contact_law::ContactLaw;
+use crate::contact_law::{ContactLaw, ContactLawKind};
 use crate::error::Error;
 
 /// Unbalanced force, as a part of the load, at which the search ends.
@@ -54,12 +54,12 @@ pub struct RigidRings {
 }
 
 impl RigidRings {
-    /// Rings, rollers and material of a bearing.
-    pub fn new(bearing: impl Into<Bearing>) -> Self {
+    /// Rings, rolling elements and material of a bearing, with a law of contact.
+    pub fn new(bearing: impl Into<Bearing>, law: ContactLawKind) -> Self {
         let b = bearing.into();
         Self {
             clearance_m: b.outer_race_radius - b.inner_race_radius - 2.0 * b.roller_radius,
-            law: ContactLaw::of(b, b.law),
+            law: ContactLaw::of(b, law),
         }
     }
 
@@ -228,7 +228,8 @@ mod tests {
         for at in without {
             angles.remove(*at);
         }
-        let rings = RigidRings::new(Bearing { thickness: 1e-3 * thickness_mm, ..BEARING });
+        let rings =
+            RigidRings::new(Bearing { thickness: 1e-3 * thickness_mm, ..BEARING }, ContactLawKind::Line);
         rings.distribute(50_000.0, &angles).expect("equilibrium")
     }
 
@@ -256,7 +257,7 @@ mod tests {
     #[test]
     fn analytic_stribeck_number_without_clearance() {
         // Without clearance and with Q ∝ δ, Q_max = 4 W/Z; line contact stiffens a little: Stribeck's 4.08.
-        let rings = RigidRings::new(Bearing { inner_race_radius: 82e-3, ..BEARING });
+        let rings = RigidRings::new(Bearing { inner_race_radius: 82e-3, ..BEARING }, ContactLawKind::Line);
         let load = rings.distribute(50_000.0, &angles_deg(24, 90.0)).expect("equilibrium");
         let stribeck = load.max_roller_n() * 24.0 / 50_000.0;
         assert!((stribeck - 4.08).abs() < 0.06, "{stribeck}");
@@ -265,7 +266,9 @@ mod tests {
     #[test]
     fn conserves_the_load_in_both_directions() {
         let angles = angles_deg(24, 94.0);
-        let load = RigidRings::new(BEARING).distribute(50_000.0, &angles).expect("equilibrium");
+        let load = RigidRings::new(BEARING, ContactLawKind::Line)
+            .distribute(50_000.0, &angles)
+            .expect("equilibrium");
         let mut sum = [0.0, 0.0];
         for (force, angle) in load.roller_n.iter().zip(angles) {
             sum[0] += force * angle.to_radians().cos();
@@ -285,8 +288,10 @@ mod tests {
                 let angles = angles_deg(rollers, first);
                 for inner_race_radius in [81.9e-3, 81.95e-3, 81.975e-3, 82e-3] {
                     let outer_ring_thickness = BEARING.outer_ring_thickness.filter(|_| turned % 2 == 0);
-                    let rings =
-                        RigidRings::new(Bearing { inner_race_radius, outer_ring_thickness, ..BEARING });
+                    let rings = RigidRings::new(
+                        Bearing { inner_race_radius, outer_ring_thickness, ..BEARING },
+                        ContactLawKind::Line,
+                    );
                     for load_n in (-6..12).map(|power| 10.0_f64.powf(0.5 * f64::from(power))) {
                         let load = rings
                             .distribute(load_n, &angles)
@@ -305,7 +310,7 @@ mod tests {
 
     #[test]
     fn refuses_bad_loads_and_positions() {
-        let rings = RigidRings::new(BEARING);
+        let rings = RigidRings::new(BEARING, ContactLawKind::Line);
         assert!(rings.distribute(0.0, &[60.0, 90.0, 120.0]).is_err());
         assert!(rings.distribute(f64::NAN, &[60.0, 90.0, 120.0]).is_err());
         for fallen in [&[270.0][..], &[30.0, 60.0], &[80.0, 260.1], &[]] {

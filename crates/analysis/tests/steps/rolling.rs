@@ -16,7 +16,7 @@ use stribeck_theory::static_load::RigidRings;
 fn by_hand_friction_that_turns_a_roller_over_an_edge() {
     let scene = Scene::default();
     let geometry = ResolvedScene { roller_radius: 6e-3, ..scene.resolve() };
-    let rings = RigidRings::new(&geometry);
+    let rings = RigidRings::new(&geometry, geometry.contact_law);
     let (mut low, mut high): (f64, f64) = (0.0, 1e6);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);

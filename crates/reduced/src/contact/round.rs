@@ -633,7 +633,7 @@ mod tests {
     /// Beside the general integration, which sees the roller as arcs on 112 facets of its own: parabolas on
     /// these and about the nearest places of pieces are both some nanometres from the circle.
     #[test]
-    fn compare_round_rollers_with_arcs_on_facets() {
+    fn behaves_round_rollers_press_as_arcs_on_facets_do() {
         let rim = outline(ROLLER, 112, |_| 0.0, 0.0);
         for (radius, along) in [(OUTER, true), (INNER, false)] {
             let outwards = if along { 1.0 } else { -1.0 };

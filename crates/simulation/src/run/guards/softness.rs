@@ -25,7 +25,8 @@ impl Softness {
     pub(super) fn of(scene: &ResolvedScene) -> Self {
         // Rollers that carry nothing in equilibrium leave the clearance alone.
         let [_, most] = scene.duty.load_range_n(scene.duration);
-        let load = RigidRings::new(scene).distribute(most, &scene.written.angles_to_load_deg());
+        let load =
+            RigidRings::new(scene, scene.contact_law).distribute(most, &scene.written.angles_to_load_deg());
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
         let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
         let contact = &scene.written.contact;
