@@ -7,7 +7,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue;
-use stribeck_scene::deviation::HOLLOW_FACETS;
+use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
 use stribeck_theory::catalogue::{CatalogueBearing, Element};
@@ -323,18 +323,31 @@ fn spall_of_an_element_mm(answers: &Answers) -> f64 {
     f64::max(2.0, (10.0 * least).ceil() / 10.0)
 }
 
-/// Root mean square roughness [µm] of honed raceways, as they usually are.
-fn roughness_um(bearing: &str) -> &'static str {
-    match catalogue::parse(bearing).map(|known| known.element) {
-        Ok(Element::Ball) => "0.1",
-        _ => "0.2",
-    }
+/// Roughness of honed raceways, as they usually are: its root mean square [µm], and its shortest waves as far as
+/// the mesh of a large bearing has them.
+fn roughness(bearing: &str) -> String {
+    let known = catalogue::parse(bearing).map(|known| known.element);
+    let rq_um = if known == Ok(Element::Ball) { 0.1 } else { 0.2 };
+    let size_mm = of_bearing(bearing).mesh.size_mm;
+    let shortest_mm = (10.0 * WAVE_ELEMENTS * size_mm).ceil() / 10.0;
+    let usual_mm = RoughnessScene::default().shortest_mm;
+    let waves =
+        if shortest_mm > usual_mm { format!(", shortest_mm: {shortest_mm:?}") } else { String::new() };
+    format!("rq_um: {rq_um:?}{waves}")
+}
+
+/// Elements in the shortest wave of a raceway's roughness.
+const WAVE_ELEMENTS: f64 = 4.5;
+
+/// A scene of a bearing in the catalogue, with all else by default.
+fn of_bearing(bearing: &str) -> Scene {
+    Scene::parse(&format!("(bearing: {bearing:?})"), bearing).unwrap_or_default()
 }
 
 /// Mass [kg] that usually moves with the outer ring of a bearing of this size: 10 kg about a 6205, growing with
 /// the square of the outside diameter.
 fn housing_kg(bearing: &str) -> f64 {
-    let scene = Scene::parse(&format!("(bearing: {bearing:?})"), bearing).unwrap_or_default();
+    let scene = of_bearing(bearing);
     let outside_mm = scene.bearing.outer_race_diameter_mm + 2.0 * scene.bearing.outer_ring_thickness_mm;
     let kg = 10.0 * (outside_mm / 52.0).powi(2);
     let digits = 10_f64.powf(kg.log10().floor() - 1.0);
@@ -375,7 +388,7 @@ fn text(name: &str, answers: &Answers) -> String {
     };
     SCENE
         .replace("<defect>", &format!("    // {comment}\n    defect: {spall},"))
-        .replace("<roughness>", roughness_um(bearing))
+        .replace("<roughness>", &roughness(bearing))
         .replace("<of an element>", &of_an_element)
         .replace("<state>", state)
         .replace("<file>", name)

@@ -297,7 +297,7 @@ fn peer_loads_in_a_pedestal_are_those_of_the_full_model() {
 #[test]
 fn behaves_a_run_says_that_its_modes_are_too_few() {
     let folder = Scratch::create("reduced-few");
-    for (model, warns) in [("reduced(modes_khz: 30)", true), ("reduced()", false)] {
+    for (model, warns) in [("reduced(modes_khz: 20)", true), ("reduced()", false)] {
         let text = format!(
             "(bearing: \"6205\", model: {model}, film: None, defect: None, output: (frames: None),
               operation: (load_n: 1500, speed_rpm: 900), solver: (duration_ms: 0.05))"

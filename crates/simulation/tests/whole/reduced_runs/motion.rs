@@ -200,7 +200,7 @@ fn behaves_light_loads() {
               cage: (outer_diameter_mm: 44.85, thickness_mm: 1.65, pocket: corners), \
              mesh: (roller_facets: 56), output: (frames: None),
               contact: (surface: arc, friction: 0.05), \
-             solver: (duration_ms: 2, mass_damping_per_s: 5000, structural_damping: None))"
+             solver: (duration_ms: 20, mass_damping_per_s: 5000, structural_damping: None))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
         let folder = Scratch::create("reduced-light");
@@ -208,9 +208,11 @@ fn behaves_light_loads() {
         assert_eq!(info.status, Status::Complete, "{load_n} N: {:?}", info.stop_reason);
         assert!(info.guards.penetration_share < 0.1, "{load_n} N: {}", info.guards.penetration_share);
         let trace = trace(&folder, "run");
-        let at_start: f64 = (1..=13).map(|i| -channel(&trace, &format!("roller.{i}.outer_fy_n"))[0]).sum();
+        // Under three newtons contacts as stiff as steel ring by some per cent from the first step on.
+        let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len() as f64;
+        let carried: f64 = (1..=13).map(|i| -mean(channel(&trace, &format!("roller.{i}.outer_fy_n")))).sum();
         // Rollers press outwards with what their way around weighs, all around.
-        assert!((at_start / info.expected_support_n - 1.0).abs() < 0.01, "{load_n} N: {at_start} N");
+        assert!((carried / info.expected_support_n - 1.0).abs() < 0.01, "{load_n} N: {carried} N");
     }
 }
 
@@ -273,9 +275,10 @@ fn analytic_bearings_by_name_carry_as_hertz_says() {
              solver: (duration_ms: 0.05, structural_damping: None))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
-        let info = run(&scene, &folder, "rest", 1);
+        let at = format!("{}-{load_n}", scene.name);
+        let info = run(&scene, &folder, &at, 1);
         assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
-        let trace = Trace::read(folder.join("rest").join("trace.npy")).expect("a trace");
+        let trace = Trace::read(folder.join(&at).join("trace.npy")).expect("a trace");
         let expected = scene.resolve().static_load().expect("an equilibrium");
         let largest = expected.max_roller_n();
         for (i, expected) in expected.roller_n.iter().enumerate() {
