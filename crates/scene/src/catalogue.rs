@@ -146,9 +146,9 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
              maker's"
         )),
         Element::Ball => notes.push(format!(
-            "the balls of {name} run as cylinders {length} mm long, between which raceways approach each \
-             other as with balls at the load that the scene was made for; pressures and stresses are those \
-             of lines, not of points, and clearance and cage are usual ones"
+            "the balls of {name} are cylinders {length} mm long, between which raceways approach each other \
+             as with balls at the load that the scene was made for, and in the reduced model at any load; \
+             pressures and stresses are those of lines, not of points, and clearance and cage are usual ones"
         )),
     }
     notes

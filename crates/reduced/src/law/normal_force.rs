@@ -33,7 +33,7 @@ const LITTLE: f64 = 1e-2;
 /// Most steps of Newton's method for round rollers, whose overlaps are known at any force; and the last one,
 /// as a share of the force and in [N], whose square is what it leaves.
 const STEPS: usize = 8;
-const STILL: f64 = 5e-3;
+const STILL: f64 = 1e-5;
 
 /// One contact of a roller with a raceway in the present step.
 #[derive(Debug, Clone, Copy, Default)]
@@ -180,7 +180,8 @@ impl ContactLaw {
         }
     }
 
-    /// Forces of round rollers whose pieces are known, by Newton's method.
+    /// Forces of round rollers whose pieces are known, by Newton's method: each goes on until it is still itself,
+    /// whichever others are beside it in a vector, so that vectors of any width give the same.
     #[inline(always)]
     fn search_round<S: Simd>(&self, simd: S, raceway: &Raceway, contacts: &mut RacewayContacts) {
         let all = |value: f64| Vector::all(simd, value);
@@ -190,11 +191,13 @@ impl ContactLaw {
             let mut force = Vector::load(simd, &contacts.start, at);
             let mut shift = Vector::load(simd, &contacts.shift, at);
             let mut flexibility = Vector::load(simd, &contacts.flexibility, at);
+            let mut moving = (round >> at) & ((1 << Vector::<S>::LEN) - 1);
             for _ in 0..STEPS {
                 let [area, length] = contacts.pieces.area(simd, at, shift);
                 let left = penalty.times_plus(area, -force);
                 let by = left / (penalty * length).times_plus(flexibility, one);
-                force = (force + by).max(zero);
+                let these = Vector::ones(simd, moving);
+                force = half.choose_below(these, (force + by).max(zero), force);
                 let root = force.sqrt();
                 let (knot, next) =
                     (Vector::load(simd, &contacts.knot, at), Vector::load(simd, &contacts.next, at));
@@ -211,7 +214,8 @@ impl ContactLaw {
                 shift = force * g;
                 flexibility = (half * root).times_plus(slope, g);
                 let still = all(STILL).times_plus(force, all(STILL));
-                if still.bits_below(by.max(-by)) & (round >> at) == 0 {
+                moving &= still.bits_below(by.max(-by));
+                if moving == 0 {
                     break;
                 }
             }
