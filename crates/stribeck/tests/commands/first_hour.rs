@@ -273,6 +273,26 @@ fn behaves_a_scene_of_ones_own_is_written_once() {
     assert_eq!(fs::read_dir(desk.0.path()).expect("readable").count(), 1);
 }
 
+/// Sound bearings made tens of g by their facets, and were called damaged.
+#[test]
+fn issue_a_sound_bearing_of_ones_own_is_judged_sound() {
+    const MOST_G: f64 = 2.0;
+    let desk = Desk::new("sound");
+    for (bearing, load_n) in [("6205", "300"), ("6305", "1000"), ("6309", "3000")] {
+        let name = format!("sound-{bearing}");
+        let file = format!("{name}.ron");
+        let words = ["--defect=none", "--yes", "--bearing", bearing, "--load-n", load_n];
+        desk.succeeds(&[&["new", file.as_str()][..], &words].concat());
+        desk.succeeds(&["simulate", &file, "-q"]);
+        let summary: serde_json::Value =
+            serde_json::from_str(&desk.text(&format!("runs/{name}/summary.json"))).expect("JSON");
+        let verdict = summary["diagnosis"]["verdict"].as_str().expect("a verdict");
+        assert!(!verdict.contains("shows a defect"), "{bearing}: {verdict}");
+        let rms_g = summary["levels"]["record"]["rms_g"].as_f64().expect("a level");
+        assert!(rms_g > 1e-3 && rms_g < MOST_G, "{bearing}: {rms_g} g");
+    }
+}
+
 #[test]
 fn behaves_runs_are_listed_opened_and_removed_after_asking() {
     let desk = Desk::with_scene("shelf");
