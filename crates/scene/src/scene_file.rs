@@ -257,6 +257,7 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
     }
     let mut scene = scene_of(&sources)?;
     named::as_stiff_as_hertz(&mut scene, &given);
+    let name = name.or_else(|| named::alone(&scene.bearing, &given));
     if let Some(name) = &name {
         named::put(&mut scene, name, &given).map_err(|why| unknown_bearing(why, sources.place("bearing")))?;
     }

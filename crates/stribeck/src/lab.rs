@@ -14,8 +14,8 @@ use crate::place::{Place, shown};
 /// Flags of `lab`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Scene files, each a bearing in the page [default: the run of the paper]; a full model runs in its
-    /// modes
+    /// Scene files, each a bearing in the page [default: the run of the paper, on round surfaces; its chords
+    /// are a preset]; a full model runs in its modes
     scenes: Vec<PathBuf>,
     /// The page
     #[arg(long, value_name = "FILE", default_value = "lab.html")]
@@ -38,6 +38,9 @@ const VARIABLE: &str = "STRIBECK_LAB_MODULE";
 /// Its name beside the program, and below the folder of builds in a repository.
 pub const MODULE: &str = "stribeck_lab.wasm";
 
+/// How the paper's bearing opens.
+const ROUND: &str = "contact.surface=arc";
+
 /// More in one page is slow to open.
 const MOST_SCENES: usize = 12;
 
@@ -59,9 +62,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         options.scenes.len()
     );
     let files = options.scenes.iter().map(|file| Some(file.as_path()));
-    let files: Vec<Option<&Path>> = if options.scenes.is_empty() { vec![None] } else { files.collect() };
-    let scenes: Vec<Scene> =
-        files.iter().map(|file| place.scene(*file, &options.set)).collect::<Result<_>>()?;
+    let scenes: Vec<Scene> = if options.scenes.is_empty() {
+        let set: Vec<String> = [ROUND.to_owned()].into_iter().chain(options.set.iter().cloned()).collect();
+        vec![place.scene(None, &set)?]
+    } else {
+        files.map(|file| place.scene(file, &options.set)).collect::<Result<_>>()?
+    };
     let module = module(options.module.as_deref(), place)?;
     write(&scenes, &module, &place.runs(), &again(options, place), &options.out)?;
     if options.open {

@@ -10,7 +10,8 @@ use stribeck_scene::catalogue;
 use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
-use stribeck_theory::catalogue::{CatalogueBearing, Element};
+use stribeck_theory::catalogue::CatalogueBearing;
+use stribeck_theory::fits::mounted_clearance_change_um;
 
 use crate::out::say;
 use crate::place::{Place, shown};
@@ -323,17 +324,14 @@ fn spall_of_an_element_mm(answers: &Answers) -> f64 {
     f64::max(2.0, (10.0 * least).ceil() / 10.0)
 }
 
-/// Roughness of honed raceways, as they usually are: its root mean square [µm], and its shortest waves as far as
-/// the mesh of a large bearing has them.
+/// Roughness of honed raceways, as it usually is over the width of a contact and more [µm]: its root mean square,
+/// and its shortest waves as far as the mesh of a large bearing has them.
 fn roughness(bearing: &str) -> String {
-    let known = catalogue::parse(bearing).map(|known| known.element);
-    let rq_um = if known == Ok(Element::Ball) { 0.1 } else { 0.2 };
-    let size_mm = of_bearing(bearing).mesh.size_mm;
-    let shortest_mm = (10.0 * WAVE_ELEMENTS * size_mm).ceil() / 10.0;
+    let shortest_mm = (10.0 * WAVE_ELEMENTS * of_bearing(bearing).mesh.size_mm).ceil() / 10.0;
     let usual_mm = RoughnessScene::default().shortest_mm;
     let waves =
         if shortest_mm > usual_mm { format!(", shortest_mm: {shortest_mm:?}") } else { String::new() };
-    format!("rq_um: {rq_um:?}{waves}")
+    format!("rq_um: 0.1{waves}")
 }
 
 /// Elements in the shortest wave of a raceway's roughness.
@@ -352,6 +350,14 @@ fn housing_kg(bearing: &str) -> f64 {
     let kg = 10.0 * (outside_mm / 52.0).powi(2);
     let digits = 10_f64.powf(kg.log10().floor() - 1.0);
     (kg / digits).round() * digits
+}
+
+/// What fit and warmth usually take of a bearing's clearance [µm].
+fn clearance_change_um(bearing: &str) -> f64 {
+    let b = of_bearing(bearing).bearing;
+    let inner_mm = b.inner_race_diameter_mm;
+    let pitch_mm = 0.5 * (b.outer_race_diameter_mm + inner_mm);
+    mounted_clearance_change_um(inner_mm - 2.0 * b.inner_ring_thickness_mm, inner_mm, pitch_mm).round()
 }
 
 /// The scene with its comments.
@@ -393,6 +399,7 @@ fn text(name: &str, answers: &Answers) -> String {
         .replace("<state>", state)
         .replace("<file>", name)
         .replace("<bearing>", bearing)
+        .replace("<change>", &format!("{:?}", clearance_change_um(bearing)))
         .replace("<load>", &format!("{load_n:?}"))
         .replace("<speed>", &format!("{speed_rpm:?}"))
         .replace("<duration>", &format!("{:?}", 1e3 * duration_s))

@@ -23,6 +23,7 @@
 //! | Which bearings are there, and which frequencies have their defects? | [`catalogue`] |
 //! | How fast do rollers and cage turn, and when do rollers cross a spall? | [`kinematics`] |
 //! | How do speed and load vary over time? | [`duty`] |
+//! | What does a fit take of the clearance? | [`fits`] |
 //! | How is the load shared, and how stiff is the bearing? | [`static_load`], [`ring_stiffness`] |
 //! | How far do raceways approach each other? | [`contact_law`], [`line_contact`], [`point_contact`] |
 //! | How thick is the oil, how much may a bearing carry? | [`lubrication`], [`load_rating`] |
@@ -30,6 +31,7 @@
 pub mod bearing;
 pub mod catalogue;
 pub mod duty;
+pub mod fits;
 pub mod kinematics;
 pub mod material;
 

@@ -60,7 +60,7 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         scene.bearing.rollers = known.elements.map_or(paper.bearing.rollers, |n| n as usize);
         return Ok(());
     }
-    let bearing = of(&known)?;
+    let bearing = beside_the_name(&scene.bearing, of(&known)?, given);
     if !given.iter().any(|path| path == "name") {
         scene.name = plain_name(&known.name);
     }
@@ -87,6 +87,34 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
         scene.bearing.thickness_mm = thickness_mm;
     }
     Ok(())
+}
+
+/// The designation of a group of fields that gives no dimension: `bearing: (designation: "NU 205",
+/// clearance_change_um: -10)` is that bearing of the catalogue.
+pub(super) fn alone(bearing: &BearingScene, given: &[String]) -> Option<String> {
+    let of_bearing = |path: &String| path.strip_prefix("bearing.").map(str::to_owned);
+    let is_named = catalogue::parse(&bearing.designation).is_ok_and(|known| known.name != PAPER);
+    let says_no_more = || given.iter().filter_map(of_bearing).all(|field| BESIDE_A_NAME.contains(&&*field));
+    (is_named && says_no_more()).then(|| bearing.designation.clone())
+}
+
+/// Fields of a bearing that a scene may give beside its name.
+const BESIDE_A_NAME: [&str; 4] = ["designation", "rollers", "first_roller_deg", "clearance_change_um"];
+
+/// A bearing of the catalogue with what a scene says beside its name.
+fn beside_the_name(said: &BearingScene, of_name: BearingScene, given: &[String]) -> BearingScene {
+    let written = |field: &str| given.iter().any(|path| path.strip_prefix("bearing.") == Some(field));
+    let rollers = if written("rollers") { said.rollers } else { of_name.rollers };
+    BearingScene {
+        rollers,
+        first_roller_deg: if written("first_roller_deg") {
+            said.first_roller_deg
+        } else {
+            first_roller(rollers)
+        },
+        clearance_change_um: if written("clearance_change_um") { said.clearance_change_um } else { 0.0 },
+        ..of_name
+    }
 }
 
 /// A designation as the name of a folder.

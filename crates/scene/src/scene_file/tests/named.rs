@@ -102,6 +102,25 @@ fn invariant_balls_are_cylinders_of_their_own_stiffness() {
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
 }
 
+/// It was the paper's bearing by that name, without a word.
+#[test]
+fn issue_a_name_among_the_fields_is_that_bearing() {
+    let by_name = Scene::parse("(bearing: \"NU 205\")", "a.ron").expect("a scene");
+    let beside = Scene::parse("(bearing: (designation: \"NU 205\", clearance_change_um: -10))", "a.ron")
+        .expect("a scene");
+    let mut expected = by_name.clone();
+    expected.bearing.clearance_change_um = -10.0;
+    assert_eq!(beside, expected);
+    let fewer = Scene::parse("(bearing: (designation: \"NU 205\", rollers: 12))", "a.ron").expect("a scene");
+    assert_eq!(
+        (fewer.bearing.rollers, fewer.bearing.roller_diameter_mm),
+        (12, by_name.bearing.roller_diameter_mm)
+    );
+    // One with a dimension of its own is no bearing of the catalogue.
+    let own = "(bearing: (designation: \"NU 205\", rollers: 12, roller_diameter_mm: 9, pitch_mm: 50))";
+    assert_eq!(Scene::parse(own, "a.ron").expect("a scene").bearing.roller_diameter_mm, 9.0);
+}
+
 #[test]
 fn refuses_a_bearing_that_nobody_knows() {
     for set in ["bearing=NU 999", "bearing=\"NU 999\""] {
