@@ -224,6 +224,7 @@
       padding: [14 + ROW * (rowLimit + 1), 22, 0, 4],
       cursor: { drag: { x: true, y: false }, focus: { prox: 24 }, sync: spec.sync ? { key: spec.sync } : undefined },
       legend: { live: true },
+      hooks: { setCursor: [(u) => figure.classList.toggle("read", u.cursor.left >= 0)] },
       scales: { x: { time: false, ...(spec.x.range ? { range: (u, a, b) => (a == null ? spec.x.range : [a, b]) } : {}) }, y: fixed(spec.y.range) },
       axes: [{ ...axisStyle(spec.x, 34), space: 80 }, { ...axisStyle(spec.y, 74), space: 36 }],
       series: [
@@ -292,11 +293,14 @@
     choose(0);
   };
 
-  // A link to a figure behind a tab opens it.
+  // A link to what is folded up, or behind a tab, opens it.
   const follow = () => {
     const wanted = location.hash.length > 1 && document.getElementById(decodeURIComponent(location.hash.slice(1)));
-    const group = wanted && wanted.closest(".tabs");
-    if (group) { group.chooseOf(wanted); wanted.scrollIntoView(); }
+    if (!wanted) return;
+    for (let fold = wanted.closest("details"); fold; fold = fold.parentElement.closest("details")) fold.open = true;
+    const group = wanted.closest(".tabs");
+    if (group) group.chooseOf(wanted);
+    wanted.scrollIntoView();
   };
 
   const save = (name, address) => {
@@ -351,7 +355,13 @@
     document.querySelectorAll("figure").forEach(saving);
     addEventListener("hashchange", follow);
     follow();
-    const charts = [...document.querySelectorAll("figure.plot")].map(build);
+    // Charts that are folded up have no width yet: they are built when they are first seen.
+    const charts = [];
+    const buildSeen = () => document.querySelectorAll("figure.plot:not(.live)").forEach((figure) => {
+      if (!figure.closest("details:not([open])")) charts.push(build(figure));
+    });
+    buildSeen();
+    document.querySelectorAll("details").forEach((fold) => fold.addEventListener("toggle", buildSeen));
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => charts.forEach((c) => c.redraw()));
   });
 })();

@@ -181,7 +181,7 @@ pub(super) fn section(scene: &Scene, run_dir: &Path) -> Option<Section> {
         Some((differences(scene, &other), agreement))
     });
     let nearest = found.min_by_key(|(differences, agreement)| (differences.len(), agreement.scene.clone()));
-    Some(Section::new("model", "Beside the full model").linked("The full model").after(html! {
+    Some(Section::new("model", "Beside the full model").linked("The full model").folded("Do its forces agree with the full model?").after(html! {
         @match nearest {
             None => p {
                 "This is a reduced model, and no validation of a scene like it lies beside the run. "

@@ -73,6 +73,8 @@ pub(crate) struct Section {
     heading: &'static str,
     /// Name in the contents; empty where they leave it out.
     link: &'static str,
+    /// The question that it answers, behind which it is folded up; empty where it is open.
+    question: &'static str,
     before: Markup,
     pub(crate) figures: Vec<Item>,
     /// Text where there are no figures.
@@ -96,6 +98,11 @@ impl Section {
         Self { link, ..self }
     }
 
+    /// Folded up behind the question that it answers.
+    pub(crate) fn folded(self, question: &'static str) -> Self {
+        Self { question, ..self }
+    }
+
     /// With text in front of the figures.
     pub(crate) fn before(self, before: Markup) -> Self {
         Self { before, ..self }
@@ -114,12 +121,19 @@ impl Section {
     /// For the page.
     pub(crate) fn markup(&self) -> Result<Markup, Error> {
         let drawn = figures(&self.figures)?;
-        Ok(html! {
-            @if !self.id.is_empty() { h2 id=(self.id) { (self.heading) } }
+        let heading = html! { @if !self.id.is_empty() { h2 id=(self.id) { (self.heading) } } };
+        let inside = html! {
             (self.before)
             @if self.figures.is_empty() && !self.otherwise.is_empty() { p { (self.otherwise) } }
             (drawn)
             (self.after)
+        };
+        Ok(html! {
+            @if self.question.is_empty() {
+                (heading) (inside)
+            } @else {
+                details class="section" { summary { (heading) (self.question) } (inside) }
+            }
         })
     }
 }

@@ -64,7 +64,12 @@ pub struct Figure {
     pub cursor: Option<Cursor>,
     /// Where it is one of several that stand behind tabs.
     pub tab: Option<Tab>,
+    /// Width of its static form [px].
+    pub width_px: u32,
 }
+
+/// Width of a static figure, unless it says otherwise [px].
+const WIDTH_PX: u32 = 960;
 
 /// Cursors of a spectrum, for the reader: lines at multiples of a frequency, or about one at equal distances.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -242,6 +247,7 @@ impl Figure {
             run_time: false,
             wide: None,
             cursor: None,
+            width_px: WIDTH_PX,
             tab: None,
         }
     }

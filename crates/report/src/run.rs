@@ -125,7 +125,7 @@ fn page(of: &Subject<'_>, sections: &[Section]) -> Result<Markup, Error> {
                 h1 { (summary.scene) }
                 p class="lead" { (lead::lead(&of.run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
                 (banner(of.run))
-                (answer::paragraphs(of.run, of.findings))
+                (answer::first_screen(of, sections)?)
                 (contents(sections))
                 @for section in drawn { (section) }
             }

@@ -22,9 +22,10 @@ const BUDGET_MS: u32 = 20_000;
 /// Names under which Chromium is installed.
 const NAMES: [&str; 4] = ["chromium", "chromium-browser", "google-chrome", "chrome"];
 
-/// Appended to the page: counts the drawn elements and writes their number into the title, where
+/// Appended to the page: opens what is folded up, counts the drawn elements and writes their number into the title, where
 /// `--dump-dom` shows it.
 const PROBE: &str = r#"<script>
+addEventListener("load", () => document.querySelectorAll("details").forEach((fold) => { fold.open = true; }));
 addEventListener("load", () => setTimeout(() => {
   const undrawn = [];
   for (const figure of document.querySelectorAll("figure")) {

@@ -5,6 +5,9 @@ use maud::Markup;
 use crate::Error;
 use crate::plot::{Figure, Picture, Tab};
 
+/// Width of half a page [px].
+const HALF_PAGE_PX: u32 = 540;
+
 /// A chart or a picture.
 #[derive(Debug)]
 pub(crate) enum Item {
@@ -24,6 +27,14 @@ impl Item {
         match self {
             Self::Chart(figure) => figure.to_svg(),
             Self::Picture(picture) => Ok(picture.sheet.to_svg()),
+        }
+    }
+
+    /// As wide as half a page, with letters as large as those of a whole one.
+    pub(crate) fn to_narrow_svg(&self) -> Result<String, Error> {
+        match self {
+            Self::Chart(figure) => Figure { width_px: HALF_PAGE_PX, ..(**figure).clone() }.to_svg(),
+            Self::Picture(_) => self.to_svg(),
         }
     }
 

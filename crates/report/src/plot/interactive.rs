@@ -87,7 +87,7 @@ impl Figure {
                 @if !self.note.is_empty() || shortened {
                     p class="note" {
                         (self.note)
-                        @if shortened { " Drawn with the extremes of each bucket kept." }
+                        @if shortened { " Of the samples of each pixel the highest and the lowest are drawn." }
                     }
                 }
                 script type="application/json" { (PreEscaped(data)) }

@@ -11,8 +11,8 @@ use crate::Error;
 /// Drawing units a pixel: the library rounds coordinates to whole units, which would turn gentle slopes into
 /// stairs.
 const FINE: u32 = 4;
-/// Size of every picture [units].
-const SIZE: (u32, u32) = (960 * FINE, 400 * FINE);
+/// Height of every picture, without rows of labels [units].
+const HEIGHT: u32 = 400 * FINE;
 /// Points drawn of one series: two a pixel of the widest chart.
 const POINTS: usize = 1800;
 /// Height of a text row above the chart [units].
@@ -41,9 +41,14 @@ impl Figure {
         let height = self
             .draw(&mut text)
             .map_err(|why| Error::Drawing { figure: self.id.clone(), why: why.to_string() })?;
-        let drawn = format!("width=\"{}\" height=\"{height}\"", SIZE.0);
-        let shown = format!("width=\"{}\" height=\"{}\"", SIZE.0 / FINE, height / FINE);
+        let drawn = format!("width=\"{}\" height=\"{height}\"", self.width());
+        let shown = format!("width=\"{}\" height=\"{}\"", self.width_px, height / FINE);
         Ok(text.replacen(&drawn, &shown, 1))
+    }
+
+    /// Width [units].
+    fn width(&self) -> u32 {
+        self.width_px * FINE
     }
 
     /// Draws into `into` and returns the height [units].
@@ -52,9 +57,9 @@ impl Figure {
         let placed = self.place_labels(x);
         let label_rows = placed.iter().map(|l| l.1 + 1).max().unwrap_or(0) as u32;
         let top = 34 * FINE + ROW * (1 + label_rows);
-        let height = SIZE.1 + ROW * label_rows;
+        let height = HEIGHT + ROW * label_rows;
 
-        let root = SVGBackend::with_string(into, (SIZE.0, height)).into_drawing_area();
+        let root = SVGBackend::with_string(into, (self.width(), height)).into_drawing_area();
         root.fill(&WHITE)?;
         text(&root, &self.title, (LEFT as i32, px(10)), 17, HPos::Left, &BLACK)?;
         let mut chart = ChartBuilder::on(&root)
@@ -76,7 +81,7 @@ impl Figure {
 
     /// Index, row and pixel position of every mark inside the horizontal range `x`.
     fn place_labels(&self, x: (f64, f64)) -> Vec<(usize, usize, f64)> {
-        let width = f64::from(SIZE.0 - LEFT - RIGHT);
+        let width = f64::from(self.width() - LEFT - RIGHT);
         let inside: Vec<usize> =
             (0..self.marks.len()).filter(|&i| (x.0..=x.1).contains(&self.marks[i].x)).collect();
         let boxes: Vec<(f64, f64)> = inside
@@ -131,7 +136,7 @@ impl Figure {
             let mark = &self.marks[i];
             let (_, top) = chart.backend_coord(&(mark.x, y.1));
             let half = (0.5 * CHARACTER * mark.label.chars().count() as f64) as i32;
-            let at = (centre as i32).clamp(half + px(4), SIZE.0 as i32 - half - px(4));
+            let at = (centre as i32).clamp(half + px(4), self.width() as i32 - half - px(4));
             let above = label_y(row, top) - px(14);
             let ground = [(at - half, above), (at + half, above + px(14))];
             root.draw(&Rectangle::new(ground, WHITE.filled()))?;
@@ -201,7 +206,13 @@ impl Figure {
             }
         }
         let width = |name: &str| (CHARACTER * name.chars().count() as f64) as i32 + px(34);
-        let mut left = (SIZE.0 - RIGHT) as i32 - entries.iter().map(|e| width(e.0)).sum::<i32>();
+        let right = (self.width() - RIGHT) as i32;
+        let sum = |entries: &[(&str, RGBColor, bool)]| entries.iter().map(|e| width(e.0)).sum::<i32>();
+        // The page names below the figure what has no room.
+        while sum(&entries) > right {
+            entries.pop();
+        }
+        let mut left = right - sum(&entries);
         for (name, colour, dashed) in entries {
             // A level's key is dashed and fine, as its line.
             let (parts, upper, lower) = if dashed { (2, 39, 41) } else { (1, 38, 42) };

@@ -69,14 +69,14 @@ fn notched(findings: &Findings) -> Option<Figure> {
         .caption(match (levels.between_g, levels.between_filtered_g) {
             (None, _) => "No gap between passages is long enough for a level.".to_owned(),
             (Some(raw), Some(filtered)) if filtered < raw => format!(
-                "In the gaps the peak falls from {} to {}{}.",
+                "Between passages the peak falls from {} to {}{}.",
                 gravities(raw),
                 gravities(filtered),
                 if levels.impulse_g.is_some() { "; the impulses stay" } else { "" }
             ),
             (Some(raw), filtered) => {
                 format!(
-                    "In the gaps the peak is {} before the notch and {} behind it.",
+                    "Between passages the peak is {} before the notch and {} behind it.",
                     gravities(raw),
                     known(filtered)
                 )
@@ -166,12 +166,15 @@ fn levels(summary: &Summary) -> Markup {
         std::iter::once(row(&sensor.sensor, "a_y", &sensor.phases)).chain(others)
     });
     html! {
-        h3 { "Levels by phase, peak / RMS in g" }
-        (wide_table(None, &head, rows))
-        p class="hint" {
-            "Mean acceleration of each sampling interval. Start-up: to the first entry, 2 ms at most. Entry: \
-             from 0.5 ms before the edge to 1 ms after unloading. Exit: from 1 ms before loading to 2 ms \
-             after the edge."
+        details {
+            summary { "Levels of every sensor at entries, at exits and between passages" }
+            h3 { "Peak / RMS in g" }
+            (wide_table(None, &head, rows))
+            p class="hint" {
+                "Mean acceleration of each sampling interval. Start-up: to the first entry, 2 ms at most. \
+                 Entry: from 0.5 ms before the edge to 1 ms after unloading. Exit: from 1 ms before loading \
+                 to 2 ms after the edge. Gap: between passages."
+            }
         }
     }
 }
@@ -241,7 +244,7 @@ fn peaks(phases: Option<&PhaseLevels>) -> String {
     if exit.or(entry).is_none() && gap.is_some() {
         return known(gap);
     }
-    format!("{} at exits, {} at entries, {} in the gaps", known(exit), known(entry), known(gap))
+    format!("{} at exits, {} at entries, {} between passages", known(exit), known(entry), known(gap))
 }
 
 fn known(level: Option<f64>) -> String {

@@ -1,61 +1,126 @@
 //! The summary at the head of a page: was the defect detected, which lines come from the mesh and which from
 //! the bearing, how reliable is that.
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 use stribeck_dsp::PeriodCount;
 use stribeck_scene::deviation::{DeviationScene, RollingSurface};
-use stribeck_scene::scene::{DefectRing, DefectScene};
+use stribeck_scene::scene::{ContactSurface, DefectRing, DefectScene};
 use stribeck_store::run_dir::Run;
 use stribeck_store::run_info::{Topic, imbalance};
 
 use stribeck_analysis::artefacts::{Artefact, Origin};
+use stribeck_analysis::diagnosis::DiagnosedFamily;
 use stribeck_analysis::duty::DutyFinding;
 use stribeck_analysis::families::FamilyFinding;
-use stribeck_analysis::findings::Findings;
 use stribeck_analysis::rolling;
 use stribeck_analysis::summary::{EnergyFinding, Event, PhaseLevels, Summary};
 use stribeck_diagnosis::words::numbers::{gravities, significant};
 
-use super::spectrum::{families, loudest_in_words};
-use crate::page::{sentence, with_code};
+use super::Subject;
+use super::spectrum::{families, loudest_sentences};
+use crate::Error;
+use crate::page::{Section, sentence, with_code};
 
 /// Rollers that are named one by one, at most.
 const NAMED: usize = 6;
 
-/// The first paragraphs of the page, with the limits of their numbers beside them.
-pub(super) fn paragraphs(run: &Run, findings: &Findings) -> Markup {
-    let summary = &findings.summary;
-    html! {
+/// The first screen: the answer in one sentence, a picture beside it, and the limits of both below.
+pub(super) fn first_screen(of: &Subject<'_>, sections: &[Section]) -> Result<Markup, Error> {
+    let (run, summary) = (of.run, &of.findings.summary);
+    let warnings = warnings(run, summary);
+    Ok(html! {
         div #summary class="top" {
+            p class="headline" { (with_code(&headline(of))) }
+            (picture(sections)?)
             div class="answer" {
+                @if let Some(paper) = &of.paper { p { (paper.not_met()) } }
                 p { strong { "The defect. " } (defect(run, summary)) }
                 p {
                     strong { "The signal. " }
                     (physics(summary))
-                    @if let Some(words) = loudest_in_words(findings) { " " (words) }
+                    @if let Some(words) = loudest_sentences(of.findings) { " " (words[0]) }
                 }
-                p { strong { "The mesh. " } (mesh_in_short(summary)) }
-                @if let Some(diagnosis) = &summary.diagnosis {
-                    p { strong { "Without the scene. " } (diagnosis.verdict) " " a href="#diagnosis" { "Why" } "." }
-                }
-            }
-            aside class="caveat" aria-label="How far to trust it" {
-                p { strong { "How far to trust it. " } (caution(run, summary)) }
-                ul {
-                    @for warning in warnings(run, summary) { li { (with_code(&warning)) } }
-                    @for words in trust(summary) { li { (words) } }
+                @if run.scene.written.contact.surface == ContactSurface::Facet || has_facet_lines(summary) {
+                    p { strong { "The mesh. " } (mesh_in_short(summary)) }
                 }
             }
         }
+        @if !warnings.is_empty() {
+            aside class="caveat" aria-label="Warnings" {
+                ul { @for warning in &warnings { li { (with_code(warning)) } } }
+            }
+        }
+        aside class="limits" aria-label="How far to trust it" {
+            p { strong { "How far to trust it. " } @for words in trust(summary) { (words) " " } }
+        }
+    })
+}
+
+/// Figures that answer, the best first.
+const ANSWERS: [&str; 3] = ["paper-2", "envelope", "acceleration"];
+
+/// The figure of the page that answers, which leads to it.
+fn picture(sections: &[Section]) -> Result<Markup, Error> {
+    let figures = || sections.iter().flat_map(|section| &section.figures);
+    let found = ANSWERS.iter().find_map(|id| figures().find(|figure| figure.id() == *id));
+    let Some(figure) = found else { return Ok(html! {}) };
+    Ok(html! { a class="picture" href={ "#" (figure.id()) } { (PreEscaped(figure.to_narrow_svg()?)) } })
+}
+
+/// What the run shows, in one sentence.
+fn headline(of: &Subject<'_>) -> String {
+    if let Some(paper) = &of.paper {
+        return paper.headline();
+    }
+    let summary = &of.findings.summary;
+    let faults = of.run.scene.written.faults();
+    let level = summary.levels.record.as_ref().map_or(String::new(), |level| {
+        format!("; {} RMS at sensor “{}”", gravities(level.rms_g), sensor(summary))
+    });
+    let Some(diagnosis) = &summary.diagnosis else {
+        let state = if faults.is_empty() { "A sound bearing" } else { "A damaged bearing" };
+        return format!("{state}{level}. The record is too short for a verdict on the signal alone.");
+    };
+    let named = |wanted: fn(&DiagnosedFamily) -> bool| {
+        let families: Vec<String> = diagnosis
+            .families
+            .iter()
+            .filter(|family| wanted(family))
+            .map(|family| match family.measured_hz {
+                Some(hz) => format!("knocks of {} at {hz:.1} Hz ({})", family.name.part(), family.name),
+                None => format!("knocks of {} ({})", family.name.part(), family.name),
+            })
+            .collect();
+        (!families.is_empty()).then(|| families.join(" and "))
+    };
+    let found = named(|family| family.claimed && family.present);
+    let wrong = named(|family| family.claimed && !family.present);
+    match (faults.is_empty(), found, wrong) {
+        (true, _, None) => format!("A sound bearing, and its signal shows no defect{level}."),
+        (true, _, Some(wrong)) => format!(
+            "A sound bearing whose signal alone would be called damaged ({wrong}): {}{level}.",
+            likely_cause(summary)
+        ),
+        (false, Some(found), _) => format!("The signal alone shows the defect: {found}{level}."),
+        (false, None, Some(wrong)) => {
+            format!("The signal alone does not show the defect, but {wrong}{level}.")
+        }
+        (false, None, None) => format!("The signal alone does not show the defect{level}."),
     }
 }
 
-/// The main caveat: warnings of the run, or else that the contact's stiffness is chosen, as in every scene.
-fn caution(run: &Run, summary: &Summary) -> String {
-    match warnings(run, summary).len() {
-        0 => "The run gave no warning; levels in g still depend on choices of the scene.".to_owned(),
-        1 => "The run gave a warning:".to_owned(),
-        more => format!("The run gave {more} warnings:"),
+/// Whether lines of the mesh stand.
+fn has_facet_lines(summary: &Summary) -> bool {
+    summary.families.iter().any(|family| family.found)
+}
+
+/// What makes the lines of a sound bearing look like those of a defect.
+fn likely_cause(summary: &Summary) -> &'static str {
+    if has_facet_lines(summary) {
+        "its surfaces are chords, whose corners knock; `contact.surface: arc` has none"
+    } else {
+        "rolling elements come under the load and leave it at that rate, and the run has no other noise of a \
+         machine that would cover them"
     }
 }
 
@@ -222,7 +287,7 @@ fn levels(run: &Run, summary: &Summary) -> String {
 fn reads(levels: &PhaseLevels) -> Option<String> {
     let (exit, gap) = levels.exit_g.zip(levels.gap_g)?;
     let entry = levels.entry_g.map_or(String::new(), |g| format!(", {} at entries", gravities(g)));
-    Some(format!("{} at exits{entry} and {} in the gaps", gravities(exit), gravities(gap)))
+    Some(format!("{} at exits{entry} and {} between passages", gravities(exit), gravities(gap)))
 }
 
 /// Whether the load acts more along x than along y, so that a_y has little of it.
@@ -302,7 +367,7 @@ fn trust(summary: &Summary) -> Vec<String> {
         "Peaks are those of one start: another start angle moves them by tens of per cent. They also \
          depend on contact stiffness, damping and pocket clearance, which are choices of the scene."
             .to_owned(),
-        format!("Energy balances to {}{load}.", imbalance(max_relative_error, share_of_heat)),
+        format!("Energy is conserved to {}{load}.", imbalance(max_relative_error, share_of_heat)),
     ];
     said.extend(summary.spectrum.as_ref().map(|s| {
         let good = format!("Frequencies are good to {} Hz, one over", significant(s.resolution_hz, 2));

@@ -13,7 +13,7 @@ use crate::page::{Section, sentence, with_code};
 pub(super) fn notes(of: &Subject<'_>) -> Section {
     let of_pictures = of.run.info.warned().filter(|(topic, _)| *topic == Some(Topic::Pictures));
     let of_pictures = of_pictures.map(|(_, words)| words);
-    Section::new("notes", "Notes").after(html! {
+    Section::new("notes", "Notes").folded("What else was noted on the way, and how to use the figures").after(html! {
         p class="hint" {
             "Figures: drag to zoom, double-click to reset; the wheel zooms with Ctrl or Shift. A click on a \
              name in a legend hides its curve."
@@ -29,13 +29,15 @@ pub(super) fn notes(of: &Subject<'_>) -> Section {
 pub(super) fn provenance(of: &Subject<'_>) -> Section {
     // The scene as written, comments and all; a run without it has no report.
     let scene = fs::read_to_string(of.folder.join("scene.ron")).unwrap_or_default();
-    Section::new("provenance", "Provenance").after(html! {
-        (table(&of.run.info, &of.findings.summary))
-        details {
-            summary { "The scene, with every default" }
-            pre { (scene) }
-        }
-    })
+    Section::new("provenance", "Provenance")
+        .folded("With which scene, program and machine was it made?")
+        .after(html! {
+            (table(&of.run.info, &of.findings.summary))
+            details {
+                summary { "The scene, with every default" }
+                pre { (scene) }
+            }
+        })
 }
 
 /// Origin of the run, and its computing time.

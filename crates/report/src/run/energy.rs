@@ -11,7 +11,9 @@ const LEDGER_ROWS: usize = 1 << 21;
 
 /// The section.
 pub(super) fn section(run: &Run) -> Result<Section, Error> {
-    Ok(Section::new("energy", "Energy").figures(charts(figures(run)?), "No energy was recorded."))
+    Ok(Section::new("energy", "Energy")
+        .folded("Is it conserved, and what takes it?")
+        .figures(charts(figures(run)?), "No energy was recorded."))
 }
 
 fn figures(run: &Run) -> Result<Vec<Figure>, Error> {

@@ -32,6 +32,7 @@ pub(super) fn section(of: &Subject<'_>) -> Section {
     };
     Section::new("forces", "Contact forces and events")
         .linked("Forces")
+        .folded("When does each roller lose and take its load, and how long is the spall by that?")
         .before(passages(events))
         .figures(charts(drawn), otherwise)
         .after(lengths(events, &of.run.scene.written.spalls()))

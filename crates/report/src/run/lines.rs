@@ -10,13 +10,13 @@ use crate::page::{Section, cell, grouped, pairs, said_once, spoken};
 
 /// The section.
 pub(super) fn section(summary: &Summary) -> Section {
-    Section::new("artefacts", "All lines of the leading sensor").linked("All lines").after(html! {
-        details {
-            summary { "Each line, and what makes it" }
+    Section::new("artefacts", "All lines of the leading sensor")
+        .linked("All lines")
+        .folded("Which lines are predicted, and which of them stand in the spectrum?")
+        .after(html! {
             (table(summary))
             (notch(summary))
-        }
-    })
+        })
 }
 
 /// Every line of the leading sensor's spectrum.

@@ -21,6 +21,7 @@ pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
     let charts = charts(distribution(scene, findings).into_iter().chain(sums(of)).chain(slip::figures(of)?));
     let over_spall = findings.prediction.standing_spalls().next().is_some();
     Ok(Section::new("bearing", "Load and slip")
+        .folded("How is the load shared, and do rolling elements and cage slip?")
         .before(kinematics(&findings.summary))
         .figures(drawn(polar::picture(scene, findings)).chain(charts), "No roller was recorded.")
         .after(loads(&findings.summary, over_spall)))

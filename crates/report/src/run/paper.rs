@@ -93,6 +93,28 @@ impl<'a> PaperCase<'a> {
             .after(after)
     }
 
+    /// The numbers whose event is on record.
+    fn on_record(&self) -> impl Iterator<Item = &Beside> {
+        self.beside.iter().filter(|b| !self.is_behind_the_end(b))
+    }
+
+    /// How many numbers of the paper's figures are met.
+    pub(crate) fn headline(&self) -> String {
+        let [all, met] = [self.on_record().count(), self.on_record().filter(|b| !b.differs()).count()];
+        let scatter = if self.starts.len() > 1 { "starts scatter" } else { "one start may scatter" };
+        format!("{met} of {all} numbers that the paper prints are met within what {scatter}.")
+    }
+
+    /// Which of them are not; empty where all are.
+    pub(crate) fn not_met(&self) -> String {
+        let off: Vec<String> = self
+            .on_record()
+            .filter(|b| b.differs())
+            .map(|b| format!("{} (Fig. {})", told(b), b.shown.figure))
+            .collect();
+        if off.is_empty() { String::new() } else { format!("Not met: {}.", off.join("; ")) }
+    }
+
     /// Quantities that differ by more than the scatter, the largest difference first, then the others.
     fn verdict(&self) -> String {
         let missing = self.beside.iter().filter(|b| self.is_behind_the_end(b)).count();
@@ -111,8 +133,7 @@ impl<'a> PaperCase<'a> {
         } else {
             String::new()
         };
-        let scatter =
-            if self.starts.len() > 1 { "starts scatter" } else { "one start is granted to scatter" };
+        let scatter = if self.starts.len() > 1 { "starts scatter" } else { "one start may scatter" };
         if differing.is_empty() {
             return format!(
                 "None of {all} numbers of its figures differs from ours by more than {scatter}.{short}"
@@ -200,9 +221,14 @@ fn ours(b: &Beside) -> Option<String> {
     Some(format!("{}{interval} {unit}{missing}", number(ours.mean)))
 }
 
+/// A quantity within a sentence.
+fn lower_case(quantity: &str) -> String {
+    quantity[..1].to_lowercase() + &quantity[1..]
+}
+
 /// A difference in a sentence.
 fn told(b: &Beside) -> String {
-    let quantity = b.shown.quantity[..1].to_lowercase() + &b.shown.quantity[1..];
+    let quantity = lower_case(&b.shown.quantity);
     match ours(b) {
         Some(ours) if b.shown.at_least => format!("{quantity}: {ours}"),
         Some(ours) => format!("{quantity} {ours} instead of {}", printed(b).trim_start_matches("≈ ")),

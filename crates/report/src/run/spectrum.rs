@@ -21,7 +21,7 @@ use stribeck_dsp::Spectrum;
 
 use super::Subject;
 use crate::Error;
-use crate::page::{Section, charts, drawn, minus, spoken};
+use crate::page::{Section, charts, drawn, minus, sentence, spoken};
 use crate::plot::{Axis, Colour, Cursor, Figure, Mark, Series};
 
 /// How far below its highest value a spectrum is drawn [dB]; rounding noise lies lower.
@@ -45,7 +45,7 @@ pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
         (diagnosis::table(summary))
         h3 { "Lines of the mesh" }
         p { (families::in_words(summary)) }
-        (families::table(summary))
+        details { summary { "Where its lines were sought" } (families::table(summary)) }
     };
     Ok(Section::new("spectra", "Spectrum")
         .figures(figures, "The record is too short for a spectrum.")
@@ -264,8 +264,13 @@ fn whole_band(id: &str, title: &str, spectrum: &Spectrum) -> Figure {
     figure
 }
 
-/// Where most of the signal lies, beside the strongest facet tone, in words.
+/// Where most of the signal lies, and what makes it, in words.
 pub(crate) fn loudest_in_words(findings: &Findings) -> Option<String> {
+    Some(loudest_sentences(findings)?.join(" "))
+}
+
+/// Where most of the signal lies, beside the strongest facet tone, and what is predicted there.
+pub(crate) fn loudest_sentences(findings: &Findings) -> Option<[String; 2]> {
     let leading = findings.sensors.first()?;
     let found = loudest(leading.raw_density.as_ref()?)?;
     let (low, high) = found.band_hz;
@@ -275,7 +280,10 @@ pub(crate) fn loudest_in_words(findings: &Findings) -> Option<String> {
     let tone = tones::dominant(&findings.summary.tones, &leading.name);
     let tone = tone.and_then(|tone| {
         let (hz, level_g) = (tone.measured_hz?, tone.level_g? / SQRT_2);
-        Some(format!("; the strongest facet tone, {hz:.0} Hz, holds {} g", significant(level_g, 3)))
+        Some(format!(
+            "; the strongest tone of corners of the mesh, {hz:.0} Hz, has {} g",
+            significant(level_g, 3)
+        ))
     });
     let mut there: Vec<String> = Vec::new();
     let harmonics: Vec<String> = findings
@@ -286,7 +294,7 @@ pub(crate) fn loudest_in_words(findings: &Findings) -> Option<String> {
         .map(|line| format!("×{}", line.harmonic))
         .collect();
     if !harmonics.is_empty() {
-        there.push(format!("{} of the facet tone", harmonics.join(", ")));
+        there.push(format!("{} of the tone of the mesh\u{2019}s corners", harmonics.join(", ")));
     }
     let modes: Vec<String> =
         findings.modes.iter().filter(|m| inside(m.1)).map(|(n, _)| format!("n = {n}")).collect();
@@ -303,15 +311,15 @@ pub(crate) fn loudest_in_words(findings: &Findings) -> Option<String> {
             there.join("; ")
         )
     };
-    Some(format!(
-        "{} to {} kHz holds {} of {} g RMS ({share:.0} % of the power){}. {}.",
-        kilo(low),
-        kilo(high),
+    let place = format!(
+        "{share:.0} % of its power ({} of {} g RMS) lie between {} and {} kHz{}.",
         significant(found.rms, 3),
         significant(found.total_rms, 3),
+        kilo(low),
+        kilo(high),
         tone.unwrap_or_default(),
-        why[..1].to_uppercase() + &why[1..]
-    ))
+    );
+    Some([place, sentence(&why)])
 }
 
 fn over_frequency(id: &str, title: &str, (from, to): (f64, f64)) -> Figure {

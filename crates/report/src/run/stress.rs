@@ -25,7 +25,8 @@ pub(super) fn section(
     folder: &Path,
 ) -> Result<(Section, Vec<String>), Error> {
     let run = record.run();
-    let section = Section::new("stress", "Mesh and stress");
+    let section =
+        Section::new("stress", "Mesh and stress").folded("How is it meshed, and where is it stressed?");
     let otherwise = "No frames were kept: see the notes.";
     let dir = RunDir::open(folder)?;
     let mesh = match mesh_of(run, &dir) {

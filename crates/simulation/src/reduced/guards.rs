@@ -135,12 +135,6 @@ impl Guards {
             )));
         }
         warnings.extend(apart(scene).map(|words| Topic::Modes.warning(words)));
-        if scene.written.output.frames.is_some() {
-            warnings.push(Topic::Pictures.warning(
-                "no pictures of the stress: the reduced model has no elements beside its modes. `model: \
-                 full` has them",
-            ));
-        }
         warnings
     }
 
