@@ -1,9 +1,11 @@
 //! The index of a campaign: its main numbers over the fields that vary, and a row for each run.
 
+mod change;
+
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 use stribeck_analysis::comparison::OF_SIGNAL;
 use stribeck_analysis::summary::Summary;
 use stribeck_diagnosis::words::numbers::significant;
@@ -11,8 +13,9 @@ use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::field_words::FieldWords;
-use crate::page::{capital, head};
+use crate::page::{HALF_PAGE_PX, capital, head};
 use crate::plot::{Axis, Colour, Figure, Series};
+use change::Change;
 
 /// A campaign whose runs have come to their end.
 #[derive(Debug)]
@@ -89,16 +92,56 @@ pub fn write_campaign(folder: &Path, index: &CampaignIndex) -> Result<(), Error>
     Ok(())
 }
 
-fn page(index: &CampaignIndex) -> Result<Markup, Error> {
-    let mut sections = Vec::new();
-    for (at, field) in index.fields.iter().enumerate().take(MOST_FIELDS) {
-        let abscissa = Abscissa::of(index, at);
-        let figures: Vec<Figure> =
-            drawn().iter().filter_map(|drawn| figure(index, at, &abscissa, drawn)).collect();
-        let drawn = figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
-        sections.push((field, drawn));
+/// What a field does: figures and sentences of the numbers that change, the most first, and the words of
+/// those that do not.
+struct Over<'a> {
+    field: &'a str,
+    changes: Vec<(String, Figure)>,
+    same: Vec<String>,
+}
+
+impl<'a> Over<'a> {
+    fn of(index: &'a CampaignIndex, at: usize) -> Self {
+        let (field, abscissa) = (index.fields[at].as_str(), Abscissa::of(index, at));
+        let mut changes = Vec::new();
+        let mut same = Vec::new();
+        for drawn in drawn() {
+            let Some(figure) = figure(index, at, &abscissa, &drawn) else { continue };
+            match Change::of(index, &abscissa, &drawn.path) {
+                Some(change) if change.size(drawn.unit) >= 1.0 => {
+                    let words = change.words(&drawn, field);
+                    let caption = format!("{words}.");
+                    let rank = (!change.is_monotone(), -change.size(drawn.unit));
+                    changes.push((rank, (words, figure.caption(caption))));
+                }
+                _ => same.push(drawn.words),
+            }
+        }
+        // What comes and goes may be scatter.
+        changes.sort_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        Self { field, changes: changes.into_iter().map(|(_, change)| change).collect(), same }
     }
+
+    fn markup(&self, is_first: bool) -> Result<Markup, Error> {
+        let drawn = self.changes.iter().map(|(_, figure)| figure.to_html()).collect::<Result<Vec<_>, _>>()?;
+        let figures = html! { div class="pairs-of-figures" { @for figure in &drawn { (figure) } } };
+        Ok(html! {
+            h2 { "Over the " (FieldWords::of(self.field).inside()) " " small { code { (self.field) } } }
+            @if self.changes.is_empty() && self.same.is_empty() { p { "No run has a number that could be drawn." } }
+            // One field at a time; the others are a click away.
+            @if is_first || drawn.is_empty() { (figures) }
+            @else { details { summary { (format!("{} figures", drawn.len())) } (figures) } }
+            @if !self.same.is_empty() { p class="hint" { "No change beyond the scatter: " (self.same.join(", ")) "." } }
+        })
+    }
+}
+
+fn page(index: &CampaignIndex) -> Result<Markup, Error> {
+    let over: Vec<Over<'_>> =
+        (0..index.fields.len().min(MOST_FIELDS)).map(|at| Over::of(index, at)).collect();
     let complete = index.runs.iter().filter(|run| run.status == "complete").count();
+    let sections = over.iter().enumerate().map(|(place, over)| over.markup(place == 0));
+    let sections = sections.collect::<Result<Vec<_>, _>>()?;
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
@@ -107,24 +150,46 @@ fn page(index: &CampaignIndex) -> Result<Markup, Error> {
                 h1 { (index.name) }
                 p class="lead" { (lead(index)) }
                 @if complete < index.runs.len() { (banner(index, complete)) }
-                @for (place, (field, figures)) in sections.iter().enumerate() {
-                    h2 { "Over the " (FieldWords::of(field).inside()) " " small { code { (field) } } }
-                    @if figures.is_empty() { p { "No run has a number that could be drawn." } }
-                    // One field at a time; the others are a click away.
-                    @if place == 0 { div class="pairs-of-figures" { @for figure in figures { (figure) } } }
-                    @else if !figures.is_empty() {
-                        details {
-                            summary { (format!("{} figures", figures.len())) }
-                            div class="pairs-of-figures" { @for figure in figures { (figure) } }
-                        }
-                    }
-                }
+                (first_screen(index, &over)?)
+                @for section in sections { (section) }
                 h2 #runs { "Runs" }
                 (table(index))
                 h2 #files { "Files" }
                 ul class="notes" {
                     @for (file, what) in &index.files { li { a href=(file) { (file) } ": " (what) } }
                 }
+            }
+        }
+    })
+}
+
+/// Sentences of a field on the first screen.
+const FIRST: usize = 4;
+
+/// What changes most over the first field that changes anything, beside its figure.
+fn first_screen(index: &CampaignIndex, over: &[Over<'_>]) -> Result<Markup, Error> {
+    let Some((first, figure)) = over.iter().find_map(|over| over.changes.first()) else {
+        return Ok(html! { p class="headline" { "Nothing changes beyond the scatter of the runs." } });
+    };
+    let picture = Figure { width_px: HALF_PAGE_PX, ..figure.clone() }.to_svg()?;
+    let others = |over: &Over<'_>| {
+        let words = over.changes.iter().map(|(words, _)| words).filter(|words| *words != first);
+        words.take(FIRST).map(|words| format!("{words}.")).collect::<Vec<String>>()
+    };
+    let several = index.runs.iter().any(|run| run.start > 1);
+    Ok(html! {
+        div class="top" {
+            p class="headline" { (first) "." }
+            a class="picture" href={ "#" (figure.id) } { (PreEscaped(picture)) }
+            div class="answer" { @for words in over.iter().flat_map(others) { p { (words) } } }
+        }
+        aside class="limits" {
+            p {
+                strong { "How far to trust it. " }
+                @if several { "A change counts from three standard deviations of the starts on." }
+                @else { "Each value has one start, whose scatter is unknown: a change counts from a tenth or 3 dB \
+                         on. Several starts (" code { "starts" } ") measure it." }
+                " Means of all runs of a value."
             }
         }
     })
@@ -356,7 +421,7 @@ fn table(index: &CampaignIndex) -> Markup {
 mod tests {
     use super::*;
 
-    fn run(number: usize, value: &str, rms_g: f64) -> CampaignRun {
+    pub(super) fn run(number: usize, value: &str, rms_g: f64) -> CampaignRun {
         CampaignRun {
             number,
             start: 1,
@@ -369,7 +434,7 @@ mod tests {
         }
     }
 
-    fn index(runs: Vec<CampaignRun>) -> CampaignIndex {
+    pub(super) fn index(runs: Vec<CampaignRun>) -> CampaignIndex {
         CampaignIndex { name: "x".into(), fields: vec!["operation.load_n".into()], runs, files: Vec::new() }
     }
 

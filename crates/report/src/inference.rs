@@ -63,6 +63,22 @@ pub struct Answer {
     pub calibration: Option<Vec<FieldCalibrated>>,
 }
 
+/// Below so many scenes in the first round the 90 % intervals of made truths held 76 to 81 of 100; with 48 they
+/// held 90 to 96.
+const ENOUGH_SCENES: usize = 40;
+
+impl Answer {
+    /// A word on intervals that few scenes make too narrow.
+    pub fn too_narrow(&self) -> Option<String> {
+        (self.own_runs < ENOUGH_SCENES).then(|| {
+            format!(
+                "Fewer than {ENOUGH_SCENES} scenes of the first round test the intervals: those of 90 % then \
+                 hold about 80 % of the truths. A larger `budget` makes them right"
+            )
+        })
+    }
+}
+
 /// Posterior of one unknown.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FieldFound {

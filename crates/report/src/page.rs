@@ -15,7 +15,7 @@ use crate::{Error, plot};
 mod item;
 mod table;
 
-pub(crate) use item::{Item, charts, drawn};
+pub(crate) use item::{HALF_PAGE_PX, Item, charts, drawn};
 pub(crate) use table::{cell, folded, grouped, minus, pairs, said_once, table, wide_table};
 
 /// Writes every figure, on all cores.

@@ -1,6 +1,7 @@
 //! The pictures: distributions of unknowns, pairs of them, targets, pulls, ranks.
 
 use super::{Answer, FieldCalibrated, FieldFound, TargetFound, short};
+use crate::field_words::FieldWords;
 use crate::plot::{Anchor, Colour, Picture, Sheet};
 
 const TEXT: &str = "#333";
@@ -8,7 +9,7 @@ const GREY: &str = "#999";
 
 /// Size of a panel of the distributions, and how many stand in a row.
 const PANEL: [f64; 2] = [260.0, 150.0];
-const IN_A_ROW: usize = 3;
+const IN_A_ROW: usize = 2;
 
 /// The marginal posterior of every unknown: bars, with the prior as a grey line.
 pub(super) fn marginals(answer: &Answer) -> Picture {
@@ -25,7 +26,9 @@ pub(super) fn marginals(answer: &Answer) -> Picture {
 }
 
 fn panel(sheet: &mut Sheet, field: &FieldFound, [x, y]: [f64; 2], [width, height]: [f64; 2]) {
-    sheet.text([x, y - 10.0], 12.0, Anchor::Start, TEXT, &field.name);
+    let FieldWords { words, unit } = FieldWords::of(&field.name);
+    let title = if unit.is_empty() { words } else { format!("{words} [{unit}]") };
+    sheet.text([x, y - 10.0], 12.0, Anchor::Start, TEXT, &cut(&title, 40));
     let count = field.bars.len();
     let top = field.bars.iter().copied().fold(1.0 / count as f64, f64::max);
     let bar = width / count as f64;

@@ -4,7 +4,8 @@ use maud::{DOCTYPE, Markup, html};
 
 use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, TargetFound, figures, short};
 use crate::Error;
-use crate::page::head;
+use crate::field_words::FieldWords;
+use crate::page::{head, with_code};
 
 pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
     let [priors, pairs, targets, pulls] = [
@@ -20,10 +21,19 @@ pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
             (head(&answer.name))
             body {
                 h1 { (answer.name) }
-                p class="lead" { (lead(answer)) }
+                div class="top" {
+                    p class="headline" { (headline(answer)) }
+                    div class="picture" { (priors?) }
+                    div class="answer" {
+                        @for field in by_width(answer).into_iter().skip(1) { p { (found(field)) } }
+                    }
+                }
+                aside class="limits" { p {
+                    strong { "How far to trust it. " } (lead(answer))
+                    @if let Some(words) = answer.too_narrow() { " " (with_code(&words)) "." }
+                } }
                 h2 #unknowns { "Unknowns" }
                 div class="scroll" { (unknowns(&answer.fields)) }
-                (priors?)
                 (pairs?)
                 h2 #targets { "Targets, and what such scenes make" }
                 div class="scroll" { (targets_table(answer)) }
@@ -40,13 +50,53 @@ pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
     })
 }
 
+/// The unknowns, those first of which the targets say most.
+fn by_width(answer: &Answer) -> Vec<&FieldFound> {
+    let mut fields: Vec<&FieldFound> = answer.fields.iter().collect();
+    fields.sort_by(|a, b| a.width_of_prior.total_cmp(&b.width_of_prior));
+    fields
+}
+
+/// Wider than this part of its prior, an unknown stays unknown.
+const UNKNOWN: f64 = 0.8;
+
+/// What was found of the unknown of which the targets say most.
+fn headline(answer: &Answer) -> String {
+    let Some(field) = by_width(answer).first().copied() else {
+        return "Nothing was unknown.".to_owned();
+    };
+    match field.width_of_prior {
+        width if width > UNKNOWN => format!("The targets hardly tell. {}", found(field)),
+        _ => found(field),
+    }
+}
+
+/// What was found of one unknown, in words.
+fn found(field: &FieldFound) -> String {
+    let FieldWords { words, unit } = FieldWords::of(&field.name);
+    let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
+    match (field.median, field.interval_90) {
+        (Some(median), Some([low, high])) => {
+            format!(
+                "{words}: {}{unit}, 90 % between {} and {}{unit}.",
+                short(median),
+                short(low),
+                short(high)
+            )
+        }
+        _ => format!("{words}: {}.", likeliest(field).join(", ")),
+    }
+}
+
 fn lead(answer: &Answer) -> String {
     let Answer { scenes, starts, rounds, fields, targets, .. } = answer;
     let lost = answer.out_of_reach().count();
     let reach = match (lost, answer.excluded.len()) {
-        (0, 0) => "Some scene of the prior makes every target.".to_owned(),
-        (0, pairs) => format!("Each target is made by some scene, {pairs} pairs of them not by one."),
-        (lost, _) => format!("{lost} of the targets are made by no scene of the prior."),
+        (0, 0) => "Each observed number lies within what some scene makes.".to_owned(),
+        (0, pairs) => {
+            format!("Each observed number is made by some scene, {pairs} pairs of them not by one.")
+        }
+        (lost, _) => format!("{lost} of the observed numbers are made by no scene."),
     };
     let told = fields.iter().filter(|field| field.width_of_prior < 0.5).count();
     format!(
@@ -86,10 +136,10 @@ fn likeliest(field: &FieldFound) -> Vec<String> {
 fn unknowns(fields: &[FieldFound]) -> Markup {
     html! {
         table {
-            tr { th { "Unknown" } th { "Prior" } th { "Median, or choices" } th { "50 %" } th { "90 %" } th { "Width, of the prior" } th { "After one more round" } th { "After any number" } }
+            tr { th { "Unknown" } th { "Prior" } th { "Median, or choices" } th { "50 %" } th { "90 %" } th { "Width, of the prior" } th { "Expected width after one more round" } th { "After any number of rounds" } }
             @for field in fields {
                 tr {
-                    td { (field.name) }
+                    td title=(field.name) { (FieldWords::of(&field.name).words) }
                     td { (field.prior) }
                     @match field.median {
                         Some(median) => td { (short(median)) },

@@ -6,7 +6,7 @@ use crate::Error;
 use crate::plot::{Figure, Picture, Tab};
 
 /// Width of half a page [px].
-const HALF_PAGE_PX: u32 = 540;
+pub(crate) const HALF_PAGE_PX: u32 = 540;
 
 /// A chart or a picture.
 #[derive(Debug)]

@@ -98,7 +98,7 @@ fn headline(of: &Subject<'_>) -> String {
     match (faults.is_empty(), found, wrong) {
         (true, _, None) => format!("A sound bearing, and its signal shows no defect{level}."),
         (true, _, Some(wrong)) => format!(
-            "A sound bearing whose signal alone would be called damaged ({wrong}): {}{level}.",
+            "A sound bearing whose signal alone would be called damaged, by {wrong}: {}{level}.",
             likely_cause(summary)
         ),
         (false, Some(found), _) => format!("The signal alone shows the defect: {found}{level}."),

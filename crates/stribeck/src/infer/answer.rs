@@ -304,6 +304,9 @@ pub(super) fn tell(answer: &Answer) {
             }
         }
     }
+    if let Some(words) = answer.too_narrow() {
+        eprintln!("warning: {words}");
+    }
     for target in answer.out_of_reach() {
         say!(
             "no scene of the prior makes `{}`: the nearest is {:+.1} standard deviations off",
