@@ -18,6 +18,8 @@ mod board;
 mod campaign;
 #[cfg(feature = "full")]
 mod compare;
+#[cfg(feature = "full")]
+mod demo;
 #[cfg(not(feature = "full"))]
 mod elsewhere;
 #[cfg(feature = "full")]
@@ -55,7 +57,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
-    self as analyse, self as campaign, self as compare, self as export, self as infer, self as sweep,
+    self as analyse, self as campaign, self as compare, self as demo, self as export, self as infer,
+    self as sweep,
 };
 pub use out::Loudness;
 pub use place::Place;
@@ -90,6 +93,10 @@ impl Cli {
 /// Commands of the program.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
+    /// Shows what it does, in ten seconds: a bearing with a spall, its page and sound, and the verdict on its
+    /// record
+    #[command(after_help = "Example: stribeck demo")]
+    Demo(demo::Options),
     /// Writes a scene of your own, by five questions or by flags, that runs as it is
     #[command(
         after_help = "Example: stribeck new mine.ron --bearing \"NU 205\" --load-n 3000 --defect inner"
@@ -128,7 +135,10 @@ pub enum Command {
     #[command(after_help = "Example: stribeck bearings \"NU 205\"")]
     Bearings(bearings::Options),
     /// Analyses a measured record: which defects, how certain, and what it does not decide
-    #[command(after_help = "Example: stribeck analyse record.mat --bearing 6205 --speed-rpm 1797")]
+    #[command(
+        visible_alias = "analyze",
+        after_help = "Example: stribeck analyse record.mat --bearing 6205 --speed-rpm 1797"
+    )]
     Analyse(analyse::Options),
     /// Compares runs, ensembles and measured records: changed fields, and changed results
     #[command(after_help = "Example: stribeck compare mine other record.mat")]
@@ -159,7 +169,8 @@ impl Command {
     pub fn needs_full(&self) -> bool {
         matches!(
             self,
-            Self::Campaign(_)
+            Self::Demo(_)
+                | Self::Campaign(_)
                 | Self::Sweep(_)
                 | Self::Infer(_)
                 | Self::Analyse(_)
@@ -176,6 +187,7 @@ impl Command {
     /// The message for the user.
     pub fn run(&self, place: &Place) -> Result<ExitCode> {
         match self {
+            Self::Demo(options) => demo::run(options, place),
             Self::New(options) => new::run(options, place),
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),

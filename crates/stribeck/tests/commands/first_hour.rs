@@ -346,3 +346,14 @@ fn behaves_shells_readers_and_scripts_get_what_they_take() {
     assert_eq!(json(&desk.succeeds(&["bearings", "NU 205, elements=13", "--json"]))["elements"], 13);
     desk.refuses(&["bearings", "6999", "--json"], &["no bearing `6999`"]);
 }
+
+#[test]
+fn behaves_the_demonstration_leaves_pages_sound_and_a_verdict() {
+    let desk = Desk::new("demo");
+    let shown = desk.succeeds(&["demo"]);
+    says(&shown, &["$ stribeck simulate stribeck-demo/bearing.ron", "shows a defect of the outer raceway"]);
+    for file in ["run/report.html", "verdict/report.html", "sound.wav", "record.csv"] {
+        assert!(desk.join("stribeck-demo").join(file).is_file(), "{file}");
+    }
+    desk.refuses(&["demo"], &["is there already and is kept"]);
+}
