@@ -60,6 +60,9 @@ quantities! {
         /// lines.
         #[serde(default)]
         pub in_passages: bool,
+        /// Whether the record leaves it open: the machine's own lines stand where the family's would.
+        #[serde(default)]
+        pub undecided: bool,
         /// Whether the verdict claims such a defect.
         pub claimed: bool,
         /// Whether the scene has such a defect.
@@ -167,6 +170,7 @@ pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis
             measured_hz: family.measured_hz,
             level_db: family.level_db.filter(|level| level.is_finite()),
             in_passages: family.in_passages,
+            undecided: family.undecided,
             claimed: family.claimed,
             present: present.iter().any(|on| defect::on(*on) == family.name),
             reason: family.reason.to_string(),

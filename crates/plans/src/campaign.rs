@@ -19,13 +19,13 @@
 
 mod design;
 mod refusal;
+mod split;
 
 use std::path::Path;
 
 use crate::document::unreadable;
 use design::{Rows, Variants};
 use refusal::{CAMPAIGN, File, varies};
-use stribeck_scene::dice::Dice;
 use stribeck_scene::ensemble::start;
 use stribeck_scene::fields::group;
 use stribeck_scene::scene::Scene;
@@ -68,7 +68,8 @@ group! {
 }
 
 group! {
-    /// Shares of the variants that a model learns from, is tuned with and is tested with.
+    /// Shares of the variants that a model learns from, is tuned with and is tested with, in each fault of each
+    /// bearing.
     pub struct Split: Copy {
         /// To learn from.
         pub train: f64 = 0.7, required();
@@ -195,6 +196,7 @@ fn variants(
     place: &File<'_>,
 ) -> Result<Vec<Variant>, SceneError> {
     let mut runs = Vec::with_capacity(rows.values.len() * file.starts);
+    let mut numbers: Vec<split::Drawn> = Vec::with_capacity(runs.capacity());
     let mut unreadable: Vec<Problem> = Vec::new();
     let mut rows_to_look_at = MOST_LOOKED_AT;
     // Findings that every variant so far has, in fields that do not vary.
@@ -230,17 +232,17 @@ fn variants(
         // starts, others have not.
         let drawn = scene.as_ref().map_or_else(|_| fold(values), nameless);
         let scene = scene.map_err(|why| place.of_variant(&why, rows, row).to_string());
-        let split = split_of(&file.split, file.seed, drawn);
         for number in 1..=file.starts {
             let started = |scene: &Scene| {
                 if file.starts == 1 { scene.clone() } else { start(scene, file.seed ^ drawn, number) }
             };
+            numbers.push(drawn);
             runs.push(Variant {
                 number: runs.len() + 1,
                 variant: row + 1,
                 start: number,
                 values: values.clone(),
-                split,
+                split: "",
                 scene: scene.as_ref().map(started).map_err(Clone::clone),
             });
         }
@@ -252,6 +254,7 @@ fn variants(
     if let Some(common) = common.filter(|common| !common.is_empty()) {
         return Err(place.of_base(SceneError::new(common)));
     }
+    split::assign(&mut runs, &numbers, &file.split, file.seed);
     Ok(runs)
 }
 
@@ -267,18 +270,6 @@ fn fold(values: &[String]) -> u64 {
     const PRIME: u64 = 0x0000_0100_0000_01b3;
     let bytes = values.iter().flat_map(|value| value.bytes().chain([0]));
     bytes.fold(OFFSET_BASIS, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(PRIME))
-}
-
-/// Which part of the data belongs to this number.
-fn split_of(split: &Split, seed: u64, number: u64) -> &'static str {
-    let share = Dice::stream(seed, number).share();
-    if share < split.train {
-        "train"
-    } else if share < split.train + split.validation {
-        "validation"
-    } else {
-        "test"
-    }
 }
 
 #[cfg(test)]

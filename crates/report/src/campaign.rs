@@ -310,6 +310,7 @@ fn figure(
         }
         None => run.claimed.as_ref().map_or("not judged".to_owned(), |claimed| match claimed.as_str() {
             "none" => "nothing claimed".to_owned(),
+            "undecided" => "undecided".to_owned(),
             claimed => format!("{claimed} claimed"),
         }),
     };

@@ -85,6 +85,25 @@ fn invariant_equal_scenes_are_in_one_part_however_they_are_written() {
     }
 }
 
+/// All runs with a spall on the inner raceway were in one part.
+#[test]
+fn issue_each_fault_of_each_bearing_is_in_every_part() {
+    let text = "(name: \"x\", starts: 2, variants: grid([
+        (field: \"defect.ring\", values: [inner, outer]),
+        (field: \"bearing\", values: [\"NU 205\", \"6205\"]),
+        (field: \"operation.load_n\", values: [1000, 1100, 1200, 1300, 1400, 1500, 1600, 1700, 1800, 1900]),
+    ]))";
+    let campaign = parse(text).unwrap();
+    for ring in ["inner", "outer"] {
+        for bearing in ["NU 205", "6205"] {
+            let of = |run: &&Variant| run.values[0].contains(ring) && run.values[1].contains(bearing);
+            let count = |part: &str| campaign.runs.iter().filter(of).filter(|run| run.split == part).count();
+            // 0.7, 0.15 and 0.15 of ten, two starts each.
+            assert_eq!(["train", "validation", "test"].map(count), [14, 4, 2], "{ring} {bearing}");
+        }
+    }
+}
+
 #[test]
 fn invariant_variants_share_no_start() {
     let text = "(name: \"x\", starts: 3, variants: grid([(field: \"operation.load_n\", values: [10000, \

@@ -32,7 +32,8 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
          `{RUNS}` has a row for each run, also for those that failed: `status` and `reason` say why, and \
          `warnings` what the guards of a run have warned of, a line each. `{EVENTS}` has a row for each \
          passage of a roller over a spall of a raceway{}; `run` joins them. The split is drawn by the scene \
-         of a variant, so no scene and no start of it stands in two parts.\n\n\
+         of a variant, in each fault of each bearing, so no scene and no start of it stands in two parts; \
+         further values may move a scene to another part.\n\n\
          Ground truth: `model`, `fault_*`, `deviation_type`, `shaft_speed_rpm` and `load_n`, which a profile \
          may vary. A fault strikes once a passage; waves, roughness and other diameters are deviations. \
          Size, depth and angle at the start are those of the first fault of the scene that has a length. \

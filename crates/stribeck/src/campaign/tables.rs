@@ -114,10 +114,14 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
     campaign.runs.iter().zip(stages).map(row).collect()
 }
 
-/// The families that are claimed; the levels of all go to the numbers.
+/// Families without a verdict on which a record has none.
+const RACEWAYS: [&str; 2] = ["BPFO", "BPFI"];
+
+/// The families that are claimed, `none`, or `undecided` where the machine's own lines hide a raceway's; the
+/// levels of all go to the numbers.
 fn diagnosed(summary: &Value, to: &mut BTreeMap<String, f64>) -> Option<String> {
     let families = summary.pointer("/diagnosis/families")?.as_array()?;
-    let mut claimed = Vec::new();
+    let (mut claimed, mut is_open) = (Vec::new(), false);
     for family in families {
         let name = family.get("name")?.as_str()?;
         if let Some(level_db) = family.get("level_db").and_then(Value::as_f64) {
@@ -126,8 +130,14 @@ fn diagnosed(summary: &Value, to: &mut BTreeMap<String, f64>) -> Option<String> 
         if family.get("claimed").and_then(Value::as_bool) == Some(true) {
             claimed.push(name);
         }
+        let is_undecided = family.get("undecided").and_then(Value::as_bool) == Some(true);
+        is_open |= is_undecided && RACEWAYS.contains(&name);
     }
-    Some(if claimed.is_empty() { "none".to_owned() } else { claimed.join("+") })
+    Some(match (claimed.as_slice(), is_open) {
+        ([], true) => "undecided".to_owned(),
+        ([], false) => "none".to_owned(),
+        (claimed, _) => claimed.join("+"),
+    })
 }
 
 /// Writes the tables, each whole or not at all. That of the signals needs those of the runs.
