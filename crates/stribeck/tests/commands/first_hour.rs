@@ -353,7 +353,7 @@ fn behaves_the_demonstration_leaves_pages_sound_and_a_verdict() {
     let shown = desk.succeeds(&["demo"]);
     says(&shown, &["$ stribeck simulate stribeck-demo/bearing.ron", "shows a defect of the outer raceway"]);
     for file in ["run/report.html", "verdict/report.html", "sound.wav", "record.csv"] {
-        assert!(desk.join("stribeck-demo").join(file).is_file(), "{file}");
+        assert!(desk.0.join("stribeck-demo").join(file).is_file(), "{file}");
     }
     desk.refuses(&["demo"], &["is there already and is kept"]);
 }
