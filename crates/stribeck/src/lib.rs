@@ -97,7 +97,7 @@ pub enum Command {
     /// record
     #[command(after_help = "Example: stribeck demo")]
     Demo(demo::Options),
-    /// Writes a scene of your own, by five questions or by flags, that runs as it is
+    /// Writes a scene of your own, by six questions or by flags, that runs as it is
     #[command(
         after_help = "Example: stribeck new mine.ron --bearing \"NU 205\" --load-n 3000 --defect inner"
     )]

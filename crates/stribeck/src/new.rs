@@ -1,4 +1,4 @@
-//! `stribeck new`: a scene of one's own, by five answers or by flags, with comments, that runs as it is.
+//! `stribeck new`: a scene of one's own, by six answers or by flags, with comments, that runs as it is.
 
 use std::fmt::Display;
 use std::io::{BufRead, IsTerminal, Write};
@@ -33,12 +33,30 @@ pub struct Options {
     /// Where a spall is, or none [default: outer]
     #[arg(long, value_enum)]
     defect: Option<Where>,
+    /// Length of the spall along its surface [mm] [default: 2, more on a large rolling element]
+    #[arg(long, value_name = "MM", value_parser = positive, allow_hyphen_values = true)]
+    length_mm: Option<f64>,
     /// Length of the record [s] [default: 1, longer where twenty passages over a defect take longer]
     #[arg(long, value_name = "S", value_parser = positive, allow_hyphen_values = true)]
     duration_s: Option<f64>,
     /// Asks nothing: missing flags have their defaults
     #[arg(long, short = 'y')]
     yes: bool,
+}
+
+impl Options {
+    /// Whether missing answers are asked for: on a terminal, and of lines that are led into a command without a
+    /// flag.
+    fn asks(&self) -> bool {
+        let is_bare = self.bearing.is_none()
+            && self.load_n.is_none()
+            && self.speed_rpm.is_none()
+            && self.defect.is_none()
+            && self.length_mm.is_none()
+            && self.duration_s.is_none();
+        let is_terminal = std::io::stdin().is_terminal();
+        !self.yes && (is_terminal && std::io::stderr().is_terminal() || !is_terminal && is_bare)
+    }
 }
 
 /// Where a spall lies.
@@ -86,17 +104,19 @@ fn bearing(text: &str) -> Result<CatalogueBearing, String> {
     catalogue::parse_or_advise(text, advice)
 }
 
-/// The five answers.
+/// The six answers.
 struct Answers {
     bearing: String,
     load_n: f64,
     speed_rpm: f64,
     defect: Where,
+    /// Length of its spall [mm]; `None` for the usual one.
+    length_mm: Option<f64>,
     duration_s: f64,
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
-    let asks = !options.yes && std::io::stdin().is_terminal() && std::io::stderr().is_terminal();
+    let asks = options.asks();
     if let Some(file) = &options.file {
         ensure!(
             file.extension().is_some_and(|end| end == "ron"),
@@ -251,15 +271,24 @@ fn answers(options: &Options, asks: bool) -> Result<Answers> {
     let speed_rpm = number("--speed-rpm", options.speed_rpm, "Speed of the shaft [1/min]", 1500.0, &|rpm| {
         limits.speed(rpm)
     })?;
+    let defect = match options.defect {
+        Some(given) => given,
+        None if asks => ask("Spall: outer, inner, roller or none", &"outer", &Where::parse)?,
+        None => Where::Outer,
+    };
+    let length_mm = match options.length_mm {
+        Some(given) => Some(given),
+        None if asks && defect != Where::None => {
+            Some(ask("Length of the spall [mm]", &USUAL_SPALL_MM, &positive)?)
+        }
+        None => None,
+    };
     Ok(Answers {
         bearing,
         load_n,
         speed_rpm,
-        defect: match options.defect {
-            Some(given) => given,
-            None if asks => ask("Spall: outer, inner, roller or none", &"outer", &Where::parse)?,
-            None => Where::Outer,
-        },
+        defect,
+        length_mm,
         duration_s: number(
             "--duration-s",
             options.duration_s,
@@ -287,7 +316,11 @@ fn ask<T>(question: &str, default: &dyn Display, parse: &dyn Fn(&str) -> Result<
         stderr.flush()?;
         let mut line = String::new();
         if stdin.lock().read_line(&mut line)? == 0 {
-            bail!("no more answers: nothing was written. `--yes` takes the defaults");
+            if stdin.is_terminal() {
+                bail!("no more answers: nothing was written. `--yes` takes the defaults");
+            }
+            // Lines that are led into the command may end before its questions.
+            writeln!(stderr)?;
         }
         let answer = match line.trim() {
             "" => default.to_string(),
@@ -313,15 +346,21 @@ fn name(answers: &Answers) -> String {
 /// A scene with comments, and marks where the answers go.
 const SCENE: &str = include_str!("new/scene.ron");
 
-/// Length of a spall on a rolling element [mm]: 2, or as many facets as make a hollow in a large one.
+/// Usual length of a spall [mm].
+const USUAL_SPALL_MM: f64 = 2.0;
+
+/// Length of a spall on a rolling element [mm]: the usual one, or as many facets as make a hollow in a large one.
 fn spall_of_an_element_mm(answers: &Answers) -> f64 {
+    if let Some(given) = answers.length_mm {
+        return given;
+    }
     let sound = Answers { bearing: answers.bearing.clone(), defect: Where::None, ..*answers };
     let least = Scene::parse(&text("sound", &sound), "sound.ron").map_or(0.0, |scene| {
         let facet_mm =
             std::f64::consts::PI * scene.bearing.roller_diameter_mm / scene.mesh.roller_facets as f64;
         HOLLOW_FACETS * facet_mm
     });
-    f64::max(2.0, (10.0 * least).ceil() / 10.0)
+    f64::max(USUAL_SPALL_MM, (10.0 * least).ceil() / 10.0)
 }
 
 /// Roughness of honed raceways, as it usually is over the width of a contact and more [µm]: its root mean square,
@@ -362,7 +401,8 @@ fn clearance_change_um(bearing: &str) -> f64 {
 
 /// The scene with its comments.
 fn text(name: &str, answers: &Answers) -> String {
-    let Answers { bearing, load_n, speed_rpm, defect, duration_s } = answers;
+    let Answers { bearing, load_n, speed_rpm, defect, length_mm, duration_s } = answers;
+    let length_mm = length_mm.unwrap_or(USUAL_SPALL_MM);
     let (state, comment, spall) = match defect {
         Where::None => (
             "sound",
@@ -381,7 +421,7 @@ fn text(name: &str, answers: &Answers) -> String {
                 "with a spall on the inner raceway"
             },
             "How long the spall is along the raceway, and how deep.",
-            format!("(ring: {}, length_mm: 2, depth_mm: 0.1)", defect.word()),
+            format!("(ring: {}, length_mm: {length_mm:?}, depth_mm: 0.1)", defect.word()),
         ),
     };
     let of_an_element = if *defect == Where::Roller {
@@ -411,7 +451,14 @@ mod tests {
     use super::*;
 
     fn answers(bearing: &str, defect: Where) -> Answers {
-        Answers { bearing: bearing.to_owned(), load_n: 1000.0, speed_rpm: 1500.0, defect, duration_s: 0.5 }
+        Answers {
+            bearing: bearing.to_owned(),
+            load_n: 1000.0,
+            speed_rpm: 1500.0,
+            defect,
+            length_mm: None,
+            duration_s: 0.5,
+        }
     }
 
     #[test]

@@ -14,8 +14,30 @@ const OUTER_SPEED: &str = "operation.outer_speed_rpm";
 /// Everything that is wrong with speeds and loads, in a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     let groups =
-        [load_direction, outer_speed, speed_profile, outer_speed_profile, load_profile, rotating_load];
+        [load, load_direction, outer_speed, speed_profile, outer_speed_profile, load_profile, rotating_load];
     groups.iter().filter_map(|group| group(scene)).collect()
+}
+
+/// A load of more than so many static ratings is no load of that bearing: at one of them steel yields.
+const MOST_RATINGS: f64 = 10.0;
+
+/// A load that steel can carry.
+fn load(scene: &Scene) -> Option<Finding> {
+    const LOAD: &str = "operation.load_n";
+    let [_, most] = scene.duty().load_range_n(1e-3 * scene.solver.duration_ms);
+    let rating_n = scene.static_rating_n();
+    if most <= MOST_RATINGS * rating_n {
+        return None;
+    }
+    let message = format!(
+        "`{LOAD}` comes to {} N, {} times the static rating of this bearing by ISO 76, {} N, at which steel \
+         yields: is the unit right?",
+        number(most),
+        number(round_down(most / rating_n, 2)),
+        number(round_down(rating_n, 3))
+    );
+    let less = Remedy::new(LOAD, format!("at most {} N", number(round_down(MOST_RATINGS * rating_n, 2))));
+    Some(Finding::new(message, vec![less.number(round_down(0.1 * rating_n, 2), "a tenth of the rating")]))
 }
 
 /// A load that the guide of its housing lets through.

@@ -44,6 +44,23 @@ const UNITS: &[(&str, &str, f64)] = &[
     ("per_ms", "rate", 1e3),
 ];
 
+/// What catalogues and other programs call a field, and its name here.
+const SYNONYMS: [(&str, &str); 13] = [
+    ("balls", "rollers"),
+    ("elements", "rollers"),
+    ("rolling_elements", "rollers"),
+    ("number_of_balls", "rollers"),
+    ("number_of_rollers", "rollers"),
+    ("ball_diameter_mm", "roller_diameter_mm"),
+    ("element_diameter_mm", "roller_diameter_mm"),
+    ("outer_diameter_mm", "outside_mm"),
+    ("outside_diameter_mm", "outside_mm"),
+    ("inner_diameter_mm", "bore_mm"),
+    ("bore_diameter_mm", "bore_mm"),
+    ("pitch_diameter_mm", "pitch_mm"),
+    ("clearance_um", "clearance_change_um"),
+];
+
 /// A name without its unit, and the unit.
 fn split_unit(name: &str) -> (&str, Option<&'static (&'static str, &'static str, f64)>) {
     let longest = UNITS
@@ -77,6 +94,10 @@ pub fn nearest<'a, S: AsRef<str>>(found: &str, valid: &'a [S]) -> Option<&'a str
 ///
 /// `siblings` are the names valid in that place, `all` the dotted paths of every field there is.
 pub(crate) fn field(found: &str, siblings: &[&str], all: &[String]) -> Option<String> {
+    let synonym = SYNONYMS.iter().find(|(other, name)| *other == found && siblings.contains(name));
+    if let Some((_, name)) = synonym {
+        return Some(format!("did you mean `{name}`?"));
+    }
     let (stem, unit) = split_unit(found);
     if let Some(name) = siblings.iter().find(|name| split_unit(name).0 == stem) {
         return Some(match (unit, split_unit(name).1) {
@@ -123,6 +144,22 @@ mod tests {
     #[test]
     fn refuses_a_missing_unit_and_proposes_it() {
         assert!(said("load").contains("`load_n`"));
+    }
+
+    #[test]
+    fn refuses_the_words_of_catalogues_and_names_ours() {
+        let siblings = ["rollers", "roller_diameter_mm", "outer_race_diameter_mm", "outside_mm"];
+        for (found, ours) in [
+            ("balls", "rollers"),
+            ("ball_diameter_mm", "roller_diameter_mm"),
+            ("outer_diameter_mm", "outside_mm"),
+        ] {
+            assert_eq!(field(found, &siblings, &[]), Some(format!("did you mean `{ours}`?")));
+        }
+        // Where there is no such field, the nearest name.
+        assert!(
+            field("outer_diameter_mm", &["outer_race_diameter_mm"], &[]).is_some_and(|s| s.contains("race"))
+        );
     }
 
     #[test]

@@ -375,7 +375,7 @@ proptest! {
     }
 
     #[test]
-    fn roundtrip_every_number_of_a_scene(load in 1e-3_f64..1e9, angle in -360.0_f64..360.0) {
+    fn roundtrip_every_number_of_a_scene(load in 1e-3_f64..5e6, angle in -360.0_f64..360.0) {
         let mut scene = Scene::default();
         scene.operation.load_n = load;
         scene.bearing.first_roller_deg = angle;

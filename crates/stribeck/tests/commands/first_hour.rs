@@ -2,9 +2,10 @@
 //! sound, and what lies below `runs/`; each with the mistakes that are made most often.
 
 use std::fs;
-use std::process::Output;
+use std::io::Write;
+use std::process::{Output, Stdio};
 
-use crate::common::{COARSE, Desk};
+use crate::common::{COARSE, Desk, command};
 use stribeck_formats::{Channel, Recording, mat5};
 use stribeck_testing::{Noise, said, says};
 
@@ -273,6 +274,28 @@ fn behaves_a_scene_of_ones_own_is_written_once() {
     desk.refuses(&["new", "--duration-s=0.001"], &["--duration-s", "0.112 to 100 s"]);
     assert_eq!(desk.text("nu205-inner.ron"), text);
     assert_eq!(fs::read_dir(desk.0.path()).expect("readable").count(), 1);
+}
+
+/// Answers that were led into the command were not read.
+#[test]
+fn issue_answers_from_a_pipe_are_read() {
+    let desk = Desk::new("piped");
+    let mut command = command(&desk.0, &["new", "piped.ron"]);
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
+    let answers = b"NU 205\n3000\n1200\ninner\n1.5\n";
+    child.stdin.take().expect("a pipe").write_all(answers).expect("written");
+    assert!(child.wait().expect("it ends").success());
+    let text = desk.text("piped.ron");
+    for line in [
+        "\"NU 205\"",
+        "load_n: 3000.0",
+        "speed_rpm: 1200.0",
+        "ring: inner, length_mm: 1.5",
+        "duration_ms: 1000.0",
+    ] {
+        assert!(text.contains(line), "{line}: {text}");
+    }
 }
 
 /// Sound bearings made tens of g by their facets, and were called damaged.

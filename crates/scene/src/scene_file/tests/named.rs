@@ -121,6 +121,16 @@ fn issue_a_name_among_the_fields_is_that_bearing() {
     assert_eq!(Scene::parse(own, "a.ron").expect("a scene").bearing.roller_diameter_mm, 9.0);
 }
 
+/// The preload did not converge, and said no more.
+#[test]
+fn refuses_a_load_far_beyond_the_static_rating() {
+    let why =
+        Scene::parse("(bearing: \"NU 205\", operation: (load_n: 1000000))", "a.ron").unwrap_err().to_string();
+    for words in ["times the static rating", "is the unit right?", "a tenth of the rating", "a.ron:1:"] {
+        assert!(why.contains(words), "{words} is not in {why}");
+    }
+}
+
 #[test]
 fn refuses_a_bearing_that_nobody_knows() {
     for set in ["bearing=NU 999", "bearing=\"NU 999\""] {

@@ -39,7 +39,7 @@ fn behaves_the_quick_scene_holds_the_exit_of_roller_1() {
 fn roundtrip_the_resolved_scene_reads_back_equal() {
     let mut scene = Scene { defect: None, ..Scene::default() };
     scene.mesh.outer_facets = Some(1257);
-    scene.bearing.thickness_mm = 0.1 + 0.2;
+    scene.bearing.thickness_mm = 30.1 + 0.2;
     scene.operation.load_n = 1.234_567_890_123_456_7e5;
     scene.contact.method = ContactMethod::Collocated;
     scene.solver.start = Start::Sudden;
