@@ -155,9 +155,24 @@ fn whitened(values: &[f64], stretches: usize) -> Vec<f64> {
     lines.iter().map(|z| z.re / (count as f64).sqrt()).collect()
 }
 
-/// The causal filter of least delay whose power response is `density`. Source: A. V. Oppenheim and R. W.
-/// Schafer, Discrete-Time Signal Processing, 3rd ed., Pearson 2010, §13.5: the folded cepstrum.
+/// The causal filter of least delay whose power response is `density`.
 fn minimum_phase(density: &[f64]) -> Vec<f64> {
+    let mut lines = folded(density);
+    let count = lines.len();
+    FftPlanner::new().plan_fft_inverse(count).process(&mut lines);
+    lines.iter().map(|z| z.re / count as f64).collect()
+}
+
+/// The response of this filter at as many frequencies as there are densities.
+pub(crate) fn least_delay(density: &[f64]) -> Vec<Complex<f64>> {
+    let mut lines = folded(density);
+    lines.truncate(density.len());
+    lines
+}
+
+/// Its response at all frequencies, positive and negative. Source: A. V. Oppenheim and R. W. Schafer,
+/// Discrete-Time Signal Processing, 3rd ed., Pearson 2010, §13.5: the folded cepstrum.
+fn folded(density: &[f64]) -> Vec<Complex<f64>> {
     let count = 2 * (density.len() - 1);
     let most = density.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
     let mut lines: Vec<Complex<f64>> = (0..count)
@@ -178,8 +193,7 @@ fn minimum_phase(density: &[f64]) -> Vec<f64> {
     }
     forward.process(&mut lines);
     lines.iter_mut().for_each(|line| *line = line.exp());
-    inverse.process(&mut lines);
-    lines.iter().map(|z| z.re / count as f64).collect()
+    lines
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::error::{check_positive, check_signal};
+use crate::path::least_delay;
 use crate::{Error, Result};
 
 /// A ringing has ended when it has fallen to this part.
@@ -21,6 +22,8 @@ const ENDED: f64 = 1e-3;
 const FADED: f64 = 0.05;
 /// What regularises a division, over the median magnitude of the response in its band.
 const REGULARISED: f64 = 0.05;
+/// Lines of a causal response: those of 12.8 kHz are 3 Hz apart.
+const CAUSAL_LINES: usize = 4096;
 /// A line is given back where at least this part of it is.
 const GIVEN_BACK: f64 = 0.9;
 
@@ -76,6 +79,9 @@ pub struct Response(Form);
 enum Form {
     Modes(Vec<Mode>),
     Lines { hz: Vec<f64>, values: Vec<Complex<f64>> },
+    /// At even steps of the frequency from 0 on.
+    Causal { grid_hz: f64, values: Vec<Complex<f64>> },
+    Sum(Vec<Response>),
 }
 
 /// A signal out of which a response was divided.
@@ -124,10 +130,41 @@ impl Response {
         Ok(Self(Form::Lines { hz, values }))
     }
 
-    /// Where it is known [Hz]; `None` for modes, which are known everywhere.
+    /// The causal response of least delay that has these gains at these frequencies [Hz], which ascend: straight
+    /// between them in logarithms, the same beyond the first and the last one, up to `highest_hz`.
+    ///
+    /// # Errors
+    /// [`Error::TooShort`] without a gain, [`Error::WrongLength`], [`Error::NotPositive`], [`Error::NotAscending`].
+    pub fn of_gains(hz: &[f64], gains: &[f64], highest_hz: f64) -> Result<Self> {
+        check_positive("highest_hz", highest_hz)?;
+        check_signal(hz, 1, "a response by gains")?;
+        if gains.len() != hz.len() {
+            return Err(Error::WrongLength { field: "gains", len: gains.len(), planned: hz.len() });
+        }
+        for (hz, gain) in hz.iter().zip(gains) {
+            check_positive("frequency of a gain", *hz)?;
+            check_positive("gain", *gain)?;
+        }
+        if let Some(n) = (1..hz.len()).find(|n| hz[*n] <= hz[*n - 1]) {
+            return Err(Error::NotAscending { line: n + 1, hz: hz[n], before_hz: hz[n - 1] });
+        }
+        let grid_hz = highest_hz / CAUSAL_LINES as f64;
+        let points: Vec<(f64, f64)> = hz.iter().zip(gains).map(|(hz, gain)| (hz.ln(), gain.ln())).collect();
+        let density: Vec<f64> = (0..=CAUSAL_LINES)
+            .map(|n| (2.0 * between(&points, (n as f64).max(0.5).ln() + grid_hz.ln())).exp())
+            .collect();
+        Ok(Self(Form::Causal { grid_hz, values: least_delay(&density) }))
+    }
+
+    /// The sum of several: paths side by side.
+    pub fn sum(of: Vec<Self>) -> Self {
+        Self(Form::Sum(of))
+    }
+
+    /// Where it is known [Hz]; `None` for one that is known everywhere.
     pub fn band_hz(&self) -> Option<(f64, f64)> {
         match &self.0 {
-            Form::Modes(_) => None,
+            Form::Modes(_) | Form::Causal { .. } | Form::Sum(_) => None,
             Form::Lines { hz, .. } => Some((hz[0], hz[hz.len() - 1])),
         }
     }
@@ -136,6 +173,12 @@ impl Response {
     pub fn at(&self, hz: f64) -> Complex<f64> {
         match &self.0 {
             Form::Modes(modes) => modes.iter().map(|mode| mode.accelerance(hz)).sum(),
+            Form::Sum(all) => all.iter().map(|one| one.at(hz)).sum(),
+            Form::Causal { grid_hz, values } => {
+                let at = (hz / grid_hz).clamp(0.0, (values.len() - 1) as f64);
+                let n = (at as usize).min(values.len() - 2);
+                values[n] * (n as f64 + 1.0 - at) + values[n + 1] * (at - n as f64)
+            }
             Form::Lines { hz: lines, values } => {
                 let (low, high) = (lines[0], lines[lines.len() - 1]);
                 if !(low..=high).contains(&hz) {
@@ -152,6 +195,8 @@ impl Response {
     fn rings_s(&self) -> f64 {
         match &self.0 {
             Form::Modes(modes) => modes.iter().map(Mode::rings_s).fold(0.0, f64::max),
+            Form::Causal { grid_hz, .. } => 0.5 / grid_hz,
+            Form::Sum(all) => all.iter().map(Self::rings_s).fold(0.0, f64::max),
             Form::Lines { hz, .. } => {
                 hz.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min).recip()
             }
@@ -254,4 +299,47 @@ impl Response {
 fn faded(hz: f64, low: f64, high: f64) -> f64 {
     let near = (hz - low).min(high - hz) / (FADED * (high - low));
     if near < 1.0 { 0.5 - 0.5 * (PI * near).cos() } else { 1.0 }
+}
+
+/// The value of a line through ascending points, level beyond them.
+fn between(points: &[(f64, f64)], x: f64) -> f64 {
+    let after = points.partition_point(|(at, _)| *at <= x);
+    match (after.checked_sub(1).map(|n| points[n]), points.get(after)) {
+        (Some((a, from)), Some((b, to))) => from + (to - from) * (x - a) / (b - a),
+        (Some((_, last)), None) => last,
+        (None, Some((_, first))) => *first,
+        (None, None) => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The magnitudes are those given, and what the response does begins with its cause: of a blow in the middle
+    /// of a record nothing stands before it.
+    #[test]
+    fn invariant_a_response_by_gains_has_them_and_is_causal() {
+        let (hz, gains) = ([200.0, 1000.0, 4000.0], [0.01, 1.0, 0.2]);
+        let response = Response::of_gains(&hz, &gains, 10_000.0).expect("gains");
+        for (hz, gain) in hz.iter().zip(gains) {
+            // Aliasing of the cepstrum.
+            assert!((response.at(*hz).norm() / gain - 1.0).abs() < 0.02, "{hz} Hz: {}", response.at(*hz).norm());
+        }
+        let half_way = (1.0_f64 * 0.2).sqrt();
+        assert!((response.at(2000.0).norm() / half_way - 1.0).abs() < 0.01);
+        let mut blow = vec![0.0; 20_000];
+        blow[10_000] = 1.0;
+        let rung = response.through(&blow, 20_000.0).expect("long enough");
+        let energy = |of: &[f64]| of.iter().map(|x| x * x).sum::<f64>();
+        assert!(energy(&rung[..9_999]) < 1e-3 * energy(&rung));
+    }
+
+    #[test]
+    fn refuses_gains_that_are_none() {
+        assert!(Response::of_gains(&[], &[], 1e4).is_err());
+        assert!(Response::of_gains(&[1.0, 2.0], &[1.0], 1e4).is_err());
+        assert!(Response::of_gains(&[1.0, 2.0], &[1.0, 0.0], 1e4).is_err());
+        assert!(Response::of_gains(&[2.0, 1.0], &[1.0, 1.0], 1e4).is_err());
+    }
 }

@@ -275,7 +275,7 @@ fn facts(
             "kind": "pedestal", "width": 1e-3 * p.width_mm, "base": 1e-3 * p.base_mm, "top": 1e-3 * p.top_mm,
         }),
         HousingScene::Mesh(_) => json!({ "kind": "mesh" }),
-        HousingScene::Rigid(_) => json!({ "kind": "rigid" }),
+        HousingScene::Rigid(_) | HousingScene::Machine(_) => json!({ "kind": "rigid" }),
         HousingScene::Springs(_) => json!({ "kind": "springs" }),
     };
     json!({
@@ -314,6 +314,7 @@ fn fixed(scene: &Scene) -> Value {
         HousingScene::Pedestal(_) => "pedestal",
         HousingScene::Mesh(_) => "from a mesh",
         HousingScene::Rigid(_) => "rigid",
+        HousingScene::Machine(_) => "of a machine",
         HousingScene::Springs(_) => "springs",
     };
     let highest = match &scene.model {

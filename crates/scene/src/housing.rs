@@ -4,6 +4,8 @@
 //! under the paper's adapter. A load on the shaft in a stationary housing is the same seen from the shaft.
 
 use crate::fields::{group, words};
+use crate::machine::MachineScene;
+use crate::scene::BearingScene;
 
 words! {
     /// The housing, which holds the outer ring and takes the load.
@@ -19,6 +21,8 @@ words! {
         Rigid(of: RigidHousingScene) = "rigid",
         /// Springs and dampers all around the ring, to a frame that does not deform and takes the load.
         Springs(of: SpringHousingScene) = "springs",
+        /// A heavy housing of a machine with a sensor: as `rigid`, and a path from the force on it to the sensor.
+        Machine(of: MachineScene) = "machine",
     }
 }
 
@@ -83,7 +87,24 @@ impl HousingScene {
 
     /// Whether the outer ring does not deform.
     pub fn is_rigid(&self) -> bool {
-        matches!(self, Self::Rigid(_))
+        matches!(self, Self::Rigid(_) | Self::Machine(_))
+    }
+
+    /// The mass about a ring that does not deform; `None` where it does.
+    pub fn mass(&self, bearing: &BearingScene) -> Option<RigidHousingScene> {
+        match self {
+            Self::Rigid(rigid) => Some(rigid.clone()),
+            Self::Machine(machine) => Some(machine.mass(bearing)),
+            _ => None,
+        }
+    }
+
+    /// The machine, where there is one.
+    pub fn machine(&self) -> Option<&MachineScene> {
+        match self {
+            Self::Machine(machine) => Some(machine),
+            _ => None,
+        }
     }
 
     /// Whether the outer ring sits in it, and may slip.
@@ -93,7 +114,7 @@ impl HousingScene {
 
     /// Whether the load may come from any direction. Edges of elastic housings are guided up and down.
     pub fn takes_any_direction(&self) -> bool {
-        matches!(self, Self::Rigid(_) | Self::Springs(_))
+        self.is_rigid() || matches!(self, Self::Springs(_))
     }
 }
 

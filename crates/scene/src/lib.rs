@@ -55,6 +55,7 @@ pub mod ensemble;
 mod faults;
 pub mod fields;
 pub mod housing;
+pub mod machine;
 pub mod mesh_text;
 pub mod paper;
 pub mod records;

@@ -32,7 +32,7 @@ use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
 use crate::scene::Scene;
 use check::{check, numbers_are_in_range};
-use load::load;
+pub(crate) use load::load;
 use problem::MOST_TOLD;
 pub use problem::{Place, Problem, SceneError, offset, place_in_file};
 pub use sources::Kind;

@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue;
 use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
+use stribeck_scene::machine::usual_mass_kg;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
 use stribeck_theory::catalogue::CatalogueBearing;
@@ -381,16 +382,6 @@ fn of_bearing(bearing: &str) -> Scene {
     Scene::parse(&format!("(bearing: {bearing:?})"), bearing).unwrap_or_default()
 }
 
-/// Mass [kg] that usually moves with the outer ring of a bearing of this size: 10 kg about a 6205, growing with
-/// the square of the outside diameter.
-fn housing_kg(bearing: &str) -> f64 {
-    let scene = of_bearing(bearing);
-    let outside_mm = scene.bearing.outer_race_diameter_mm + 2.0 * scene.bearing.outer_ring_thickness_mm;
-    let kg = 10.0 * (outside_mm / 52.0).powi(2);
-    let digits = 10_f64.powf(kg.log10().floor() - 1.0);
-    (kg / digits).round() * digits
-}
-
 /// What fit and warmth usually take of a bearing's clearance [µm].
 fn clearance_change_um(bearing: &str) -> f64 {
     let b = of_bearing(bearing).bearing;
@@ -443,7 +434,7 @@ fn text(name: &str, answers: &Answers) -> String {
         .replace("<load>", &format!("{load_n:?}"))
         .replace("<speed>", &format!("{speed_rpm:?}"))
         .replace("<duration>", &format!("{:?}", 1e3 * duration_s))
-        .replace("<mass>", &format!("{:?}", housing_kg(bearing)))
+        .replace("<mass>", &format!("{:?}", usual_mass_kg(&of_bearing(bearing).bearing)))
 }
 
 #[cfg(test)]

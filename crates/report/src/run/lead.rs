@@ -62,6 +62,7 @@ fn housing(scene: &ResolvedScene) -> String {
             format!(" in a housing ({})", Path::new(&housing.file).file_stem().unwrap_or_default().display())
         }
         HousingScene::Rigid(_) => " in a rigid housing".to_owned(),
+        HousingScene::Machine(_) => " in a machine".to_owned(),
         HousingScene::Springs(springs) => {
             format!(" in a housing on springs of {} N/µm", springs.stiffness_n_um)
         }

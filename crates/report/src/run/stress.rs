@@ -81,7 +81,7 @@ fn mesh_of(run: &Run, dir: &RunDir) -> Result<RunMesh, String> {
         HousingScene::Adapter => 2.0 * (ring + run.scene.adapter_width + run.scene.adapter_height),
         HousingScene::Pedestal(p) => 2e-3 * (p.width_mm + p.base_mm + p.top_mm),
         HousingScene::Mesh(_) => LARGEST_HOUSING * ring,
-        HousingScene::Rigid(_) | HousingScene::Springs(_) => 2.0 * ring,
+        HousingScene::Rigid(_) | HousingScene::Springs(_) | HousingScene::Machine(_) => 2.0 * ring,
     };
     let fits = [0, 1].into_iter().all(|axis| {
         let [low, high] = mesh::range(mesh.reference.iter().map(|at| at[axis]));

@@ -51,7 +51,7 @@ fn load_direction(scene: &Scene) -> Option<Finding> {
         HousingScene::Pedestal(_) | HousingScene::Mesh(_) => {
             "270 or 90: what takes the load is guided up and down"
         }
-        HousingScene::Rigid(_) | HousingScene::Springs(_) => return None,
+        HousingScene::Rigid(_) | HousingScene::Springs(_) | HousingScene::Machine(_) => return None,
     };
     let message =
         format!("`{LOAD_ANGLE}` is {}, and the housing does not take a load from there", number(angle));

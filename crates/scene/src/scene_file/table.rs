@@ -20,6 +20,7 @@ use super::wording::{number, shown};
 use super::{INNER_RING_MESH, LOAD_PROFILE, OUTER_RING_MESH, OUTER_SPEED_PROFILE, SPEED_PROFILE, ranges};
 use crate::deviation::{FormScene, PointScene};
 use crate::housing::HousingScene;
+use crate::machine::MachineScene;
 use crate::mesh_text;
 use crate::scene::{ProfileScene, Scene};
 
@@ -55,6 +56,11 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, sources: &Sources) -> Resul
     if let HousingScene::Mesh(housing) = &mut scene.housing {
         read_mesh("housing", &housing.file, &mut housing.text, folder, sources)?;
     }
+    if let HousingScene::Machine(machine) = &mut scene.housing
+        && !machine.file.is_empty()
+    {
+        read_machine(machine, folder, sources)?;
+    }
     for (path, mesh) in
         [(OUTER_RING_MESH, &mut scene.outer_ring_mesh), (INNER_RING_MESH, &mut scene.inner_ring_mesh)]
     {
@@ -73,6 +79,22 @@ pub(crate) fn read(scene: &mut Scene, folder: &Path, sources: &Sources) -> Resul
         let points = table.read(folder, &profile.file, sources)?;
         profile.points = points.into_iter().map(|(at_mm, depth_um)| PointScene { at_mm, depth_um }).collect();
     }
+    Ok(())
+}
+
+/// Completes a machine by its file, which the scene of a run does not need any more.
+fn read_machine(machine: &mut MachineScene, folder: &Path, sources: &Sources) -> Result<(), SceneError> {
+    let file = folder.join(&machine.file);
+    if !file.is_file() {
+        let field = "housing.file";
+        let message = format!("cannot read the machine `{}`: there is no such file", shown(&machine.file));
+        let mut problem = Problem::new(message, sources.place(field));
+        field.clone_into(&mut problem.field);
+        "a file that `stribeck machine` wrote".clone_into(&mut problem.allowed);
+        "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
+        return Err(problem.into());
+    }
+    *machine = std::mem::take(machine).before(MachineScene::read(&file)?);
     Ok(())
 }
 

@@ -97,8 +97,9 @@ impl Assembly {
             }
             None => None,
         };
-        match (&scene.written.housing, &housing) {
-            (HousingScene::Rigid(rigid), _) => {
+        let mass = scene.written.housing.mass(&scene.written.bearing);
+        match (mass, &scene.written.housing, &housing) {
+            (Some(rigid), ..) => {
                 let heavier = 1.0 + rigid.mass_kg / (outer_area * scene.thickness * scene.material.density);
                 bodies.rigid(
                     outer.body,
@@ -106,11 +107,11 @@ impl Assembly {
                     heavier,
                 )?;
             }
-            (HousingScene::Springs(_), Some(frame)) => {
+            (None, HousingScene::Springs(_), Some(frame)) => {
                 bodies.rigid(frame.body, Behaviour::Turning { rate: 0.0, braking: 0.0 }, housing_density)?;
             }
-            (_, Some(housing)) => bodies.constrain(&housing.loaded, NodeMotion::HeldX),
-            (_, None) => {}
+            (None, _, Some(housing)) => bodies.constrain(&housing.loaded, NodeMotion::HeldX),
+            (None, _, None) => {}
         }
         let bore = surface(&inner, "inner");
         bodies.constrain(bore, NodeMotion::Rotating { centre: [0.0; 2], rate: kinematics.shaft_rad_s });

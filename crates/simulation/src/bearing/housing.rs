@@ -64,7 +64,7 @@ pub(crate) fn housing(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Res
             density: 1.0,
         },
         HousingScene::Springs(springs) => frame(springs, scene, back)?,
-        HousingScene::Rigid(_) => return Ok(None),
+        HousingScene::Rigid(_) | HousingScene::Machine(_) => return Ok(None),
     };
     Ok(Some(made))
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use stribeck_scene::{
     duty::LONGEST_RUN_S,
     scene::{
-        CageScene, ContactFormula, ContactScene, DefectRing, DefectScene, GuardsScene, ModelScene,
+        CageScene, ContactFormula, ContactScene, DefectRing, DefectScene, GuardsScene, HousingScene, ModelScene,
         OperationScene, OutputScene, ReducedScene, Scene, SolverScene,
     },
 };
@@ -56,7 +56,11 @@ pub fn reference(scene: &Scene) -> Scene {
         bearing,
         cage: scene.cage.clone().map(|cage| CageScene { roller_offsets_um: Vec::new(), ..cage }),
         adapter: scene.adapter.clone(),
-        housing: scene.housing.clone(),
+        // The path of a machine changes nothing of the bearing.
+        housing: match scene.housing.machine() {
+            Some(machine) => HousingScene::Rigid(machine.mass(&scene.bearing)),
+            None => scene.housing.clone(),
+        },
         outer_ring_mesh: scene.outer_ring_mesh.clone(),
         inner_ring_mesh: scene.inner_ring_mesh.clone(),
         defect: scene.defect.clone(),

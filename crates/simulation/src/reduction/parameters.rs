@@ -11,7 +11,6 @@ use stribeck_reduced::modal::{
 };
 use stribeck_scene::{
     deviation::Relief,
-    housing::HousingScene,
     resolved::{ResolvedScene, pocket_half_width},
     scene::{ContactMethod, ContactSurface, DampingFrame as SceneFrame, RollerCopies},
 };
@@ -170,10 +169,10 @@ fn damping(scene: &ResolvedScene) -> Result<Damping, Error> {
     };
     let mass = scene.written.solver.mass_damping_per_s;
     // As in the full model, mass damping does not act on bodies that move as one piece.
-    let mass_of_modes = match &scene.written.housing {
-        HousingScene::Rigid(rigid) => rigid.damping_per_s,
-        _ if frame == DampingFrame::RigidMotion => 0.0,
-        _ => mass,
+    let mass_of_modes = match scene.written.housing.mass(&scene.written.bearing) {
+        Some(rigid) => rigid.damping_per_s,
+        None if frame == DampingFrame::RigidMotion => 0.0,
+        None => mass,
     };
     Ok(Damping { mass, mass_of_modes, frame, stiffness: scene.stiffness_damping, branches })
 }

@@ -68,7 +68,7 @@ fn model<'a>(scene: &ResolvedScene, mesh: &'a Mesh) -> Model<'a> {
         let seat = named(block).map(|block| (block, side));
         touch([outer.map(|ring| (ring, Side::Outside)), seat], scene.written.contact.seat_friction);
     }
-    let held = matches!(scene.written.housing, HousingScene::Rigid(_));
+    let held = scene.written.housing.is_rigid();
     Model {
         mesh,
         youngs_modulus: 1e9 * youngs_modulus_gpa,
@@ -157,7 +157,7 @@ fn left_out(scene: &ResolvedScene) -> Vec<String> {
             "the springs and dampers of the housing, which hold the ring",
         ),
         (
-            matches!(scene.written.housing, HousingScene::Rigid(_)),
+            scene.written.housing.is_rigid(),
             "the mass of the housing beyond that of the ring",
         ),
     ];

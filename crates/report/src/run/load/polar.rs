@@ -42,7 +42,7 @@ pub(super) fn picture(scene: &ResolvedScene, findings: &Findings) -> Option<Pict
         at_rest.map_or("–".into(), kilonewtons)
     );
     let elastic = match &scene.written.housing {
-        HousingScene::Rigid(_) => "",
+        HousingScene::Rigid(_) | HousingScene::Machine(_) => "",
         HousingScene::Adapter => {
             "; an elastic ring, which bears on the edges of an adapter, spreads the load otherwise"
         }

@@ -1,0 +1,232 @@
+//! A machine about the bearing: the path from the force on its housing to a sensor, the sensor, and what else
+//! the sensor records.
+//!
+//! The outer ring does not deform and sits in a mass. Path, background and sensor are linear and act one way:
+//! what they add does not act back on the bearing, so that the record of the sensor follows from the force on
+//! the housing after the run (`analysis::machine`).
+
+use std::path::Path;
+
+use crate::fields::group;
+use crate::fields::value::Value;
+use crate::housing::RigidHousingScene;
+use crate::scene::{BearingScene, Scene};
+use crate::scene_file::{self, Kind, SceneError, without_mark};
+
+/// As many samples a second as the run has [Hz].
+fn most_rate_hz(scene: &Scene) -> f64 {
+    1e6 / scene.output.interval_us
+}
+
+group! {
+    /// A machine about the bearing: a heavy housing that holds a ring that does not deform, a linear path from
+    /// the force on it to a sensor, and a background. Everything that is left out has a value that is usual for
+    /// the size of the bearing, not that of any machine.
+    pub struct MachineScene {
+        /// File that `stribeck machine` wrote, beside the scene. What the scene says itself stands before it.
+        pub file: String = String::new(), omitted();
+        /// Mass that moves with the outer ring [kg]; 10 (outside diameter/52 mm)² where it is left out.
+        pub mass_kg: Option<f64> = None, within(0.0, 1e6), omitted();
+        /// Damping of its motion by what it stands on, over the mass [1/s].
+        pub damping_per_s: f64 = 1000.0, within(0.0, 1e5), omitted();
+        /// Direction in which the sensor measures [°], counter-clockwise from the x axis.
+        pub direction_deg: f64 = 90.0, within(-360.0, 360.0), omitted();
+        /// Path as the gain from force to acceleration at some frequencies, straight between them in
+        /// logarithms, with the least delay that such gains can have.
+        pub gains: Vec<GainScene> = Vec::new(), omitted();
+        /// Path as the sum of some modes, beside `gains`; four usual ones where there are no `gains` either.
+        pub modes: Vec<PathModeScene> = Vec::new(), omitted();
+        /// Noise of the rest of the machine, by third octaves; a usual one where it is left out.
+        pub background: Vec<BackgroundScene> = Vec::new(), omitted();
+        /// Steady tones of the rest of the machine.
+        pub lines: Vec<MachineLineScene> = Vec::new(), omitted();
+        /// Sensor and recorder.
+        pub sensor: MachineSensorScene = MachineSensorScene::default(), omitted();
+        /// Seed of background and noise.
+        pub seed: u64 = 1, within(0.0, 1e9), omitted();
+    }
+}
+
+group! {
+    /// Gain of a path at one frequency.
+    pub struct GainScene: Copy {
+        /// Frequency [Hz].
+        pub hz: f64 = 1000.0, within(1.0, 1e6), required();
+        /// Acceleration over force [m/s²/N].
+        pub gain: f64 = 0.1, within(1e-9, 1e6), required();
+    }
+}
+
+group! {
+    /// A mode of the path: −gain f² / (hz² − f² + 2i damping hz f).
+    pub struct PathModeScene: Copy {
+        /// Natural frequency [Hz].
+        pub hz: f64 = 1000.0, within(1.0, 1e6), required();
+        /// Damping ratio [-].
+        pub damping: f64 = 0.03, within(1e-4, 0.99);
+        /// Acceleration over force far above it [1/kg]: the inverse of its mass.
+        pub gain: f64 = 0.1, positive(1e6), required();
+    }
+}
+
+group! {
+    /// Background in one third octave.
+    pub struct BackgroundScene: Copy {
+        /// Its middle [Hz].
+        pub hz: f64 = 1000.0, within(1.0, 1e6), required();
+        /// Root mean square of the acceleration in it [m/s²].
+        pub rms_m_s2: f64 = 0.03, within(0.0, 1e6), required();
+    }
+}
+
+group! {
+    /// A steady tone.
+    pub struct MachineLineScene: Copy {
+        /// Frequency [Hz].
+        pub hz: f64 = 100.0, within(0.1, 1e6), required();
+        /// Amplitude [m/s²].
+        pub amplitude_m_s2: f64 = 0.1, within(0.0, 1e6), required();
+    }
+}
+
+group! {
+    /// A mounted accelerometer and its recorder. By default one of 100 mV/g on a stud at 24 bits.
+    pub struct MachineSensorScene {
+        /// Samples a second of the record [Hz]; at most those of the run.
+        pub rate_hz: f64 = 25_600.0, up_to(100.0, most_rate_hz);
+        /// Resonance of the mounted sensor [Hz].
+        pub resonance_hz: f64 = 25_000.0, within(100.0, 1e6);
+        /// Quality factor of the resonance [-].
+        pub quality: f64 = 30.0, within(0.5, 1000.0);
+        /// Density of its noise [m/s²/√Hz].
+        pub noise_density: f64 = 5e-4, within(0.0, 1e3);
+        /// Largest acceleration that is recorded [m/s²].
+        pub range_m_s2: f64 = 490.0, positive(1e7);
+        /// Bits of the converter.
+        pub bits: usize = 24, within(2.0, 32.0);
+    }
+}
+
+/// The file of a machine.
+const FILE: Kind =
+    Kind { noun: "a machine", example: "`(mass_kg: 10, sensor: (rate_hz: 25600))`", for_fields_of_scenes: Some("") };
+
+/// Outside diameter [mm] and mass [kg] of the housing to which the usual values belong.
+const USUAL: (f64, f64) = (52.0, 10.0);
+
+/// Modes of a usual path for an outside diameter of 52 mm: frequency [Hz], damping ratio, part of the inverse
+/// of the mass. They are round numbers about a path that was fitted on a motor's end shield, not measured ones.
+const USUAL_MODES: [(f64, f64, f64); 4] =
+    [(600.0, 0.08, 0.3), (1500.0, 0.06, 0.8), (3400.0, 0.04, 1.5), (7000.0, 0.04, 0.7)];
+
+/// Background of a usual machine [m/s²] in the third octave at 1 kHz, and its growth with the frequency: 0.5
+/// m/s² in all below 10 kHz.
+const USUAL_BACKGROUND: f64 = 0.1;
+const USUAL_GROWTH: f64 = 0.3;
+
+/// Mass [kg] that usually moves with the outer ring of a bearing of this size: 10 kg about a 6205, growing with
+/// the square of the outside diameter.
+pub fn usual_mass_kg(bearing: &BearingScene) -> f64 {
+    let kg = USUAL.1 * (outside_mm(bearing) / USUAL.0).powi(2);
+    let digits = 10_f64.powf(kg.log10().floor() - 1.0);
+    (kg / digits).round() * digits
+}
+
+fn outside_mm(bearing: &BearingScene) -> f64 {
+    bearing.outer_race_diameter_mm + 2.0 * bearing.outer_ring_thickness_mm
+}
+
+impl MachineScene {
+    /// Reads the machine in a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is no machine.
+    pub fn read(path: &Path) -> Result<Self, SceneError> {
+        let text = scene_file::load(path)?;
+        let (machine, _) = scene_file::read_as(without_mark(&text), &path.display().to_string(), &FILE)?;
+        Ok(machine)
+    }
+
+    /// Its text, without what has its default.
+    pub fn to_ron(&self) -> String {
+        self.write().to_ron(Self::SHAPE, &crate::fields::Group::omits)
+    }
+
+    /// What this machine says, before what `other` says.
+    #[must_use]
+    pub fn before(self, other: Self) -> Self {
+        let usual = Self::default();
+        macro_rules! first {
+            ($($field:ident),*) => {
+                Self {
+                    $($field: if self.$field == usual.$field { other.$field } else { self.$field },)*
+                    file: String::new(),
+                }
+            };
+        }
+        first!(
+            mass_kg,
+            damping_per_s,
+            direction_deg,
+            gains,
+            modes,
+            background,
+            lines,
+            sensor,
+            seed
+        )
+    }
+
+    /// The mass about the ring, as the run takes it.
+    pub fn mass(&self, bearing: &BearingScene) -> RigidHousingScene {
+        RigidHousingScene {
+            mass_kg: self.mass_kg.unwrap_or_else(|| usual_mass_kg(bearing)),
+            damping_per_s: self.damping_per_s,
+        }
+    }
+
+    /// Modes of the path: its own, or usual ones for the size of a bearing where it has no gains either.
+    pub fn path_modes(&self, bearing: &BearingScene) -> Vec<PathModeScene> {
+        if !self.modes.is_empty() || !self.gains.is_empty() {
+            return self.modes.clone();
+        }
+        let mass_kg = self.mass(bearing).mass_kg.max(f64::MIN_POSITIVE);
+        let slower = USUAL.0 / outside_mm(bearing);
+        USUAL_MODES
+            .map(|(hz, damping, part)| PathModeScene { hz: slower * hz, damping, gain: part / mass_kg })
+            .into()
+    }
+
+    /// The background below `highest_hz`: its own, or a usual one.
+    pub fn background(&self, highest_hz: f64) -> Vec<BackgroundScene> {
+        if !self.background.is_empty() {
+            return self.background.clone();
+        }
+        third_octaves(50.0, highest_hz)
+            .into_iter()
+            .map(|hz| BackgroundScene { hz, rms_m_s2: USUAL_BACKGROUND * (hz / 1000.0).powf(USUAL_GROWTH) })
+            .collect()
+    }
+
+    /// What of it is usual and not given, in words; `None` where nothing is.
+    pub fn assumed(&self) -> Option<String> {
+        let path = (self.gains.is_empty() && self.modes.is_empty()).then_some("path to the sensor");
+        let background = self.background.is_empty().then_some("background");
+        let what: Vec<&str> = path.into_iter().chain(background).collect();
+        (!what.is_empty()).then(|| {
+            format!(
+                "the {} of the machine {} usual for the size of the bearing, not measured: `stribeck machine` \
+                 fits a machine to records",
+                what.join(" and the "),
+                if what.len() == 1 { "is" } else { "are" }
+            )
+        })
+    }
+}
+
+/// Middles of the third octaves [Hz] whose upper ends lie below `highest_hz`, from `lowest_hz` on: 1 kHz is one.
+pub fn third_octaves(lowest_hz: f64, highest_hz: f64) -> Vec<f64> {
+    let middle = |step: i32| 1000.0 * (f64::from(step) / 3.0).exp2();
+    let fits = |hz: &f64| *hz >= lowest_hz && *hz * (1.0_f64 / 6.0).exp2() <= highest_hz;
+    (-24..=24).map(middle).filter(fits).collect()
+}
