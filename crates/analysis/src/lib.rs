@@ -92,6 +92,7 @@ pub mod tones;
 
 pub mod artefacts;
 pub mod diagnosis;
+pub mod detection;
 pub mod machine;
 pub mod records;
 pub mod stiffness;

@@ -5,6 +5,7 @@
 //! run, exactly. [`fit`] finds path and background from measured records; [`octaves`] sets records side by
 //! side.
 
+pub mod agreement;
 pub mod fit;
 pub mod octaves;
 
@@ -22,7 +23,7 @@ use crate::record::Record;
 use crate::records::normal;
 
 /// Name of the channel of such a record.
-pub const CHANNEL: &str = "machine.a_m_s2";
+pub const CHANNEL: &str = "sensor.machine.a_m_s2";
 
 /// Beginning of a run that is left out of the record, in which its bearing settles [s], and its largest share.
 const SETTLES_S: f64 = 0.05;

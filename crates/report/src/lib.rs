@@ -20,6 +20,7 @@
 //! | runs, ensembles and records beside each other | [`write_comparison`] | `report.html`, `compare.json` |
 //! | a campaign | [`write_campaign`] | `index.html` |
 //! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
+//! | the smallest spall that is found | [`write_detection`] | `report.html` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
 //! | several channels of one machine | [`write_joint`] | `joint.html`, `joint.json` |
@@ -45,6 +46,7 @@ mod run;
 mod agreement;
 mod campaign;
 mod comparison;
+mod detection;
 mod ensemble;
 pub mod inference;
 mod measured;
@@ -58,6 +60,7 @@ pub use campaign::{CampaignIndex, CampaignRun, write_campaign};
 pub use comparison::{
     MOST_COMPARED, answer as comparison_in_words, by_chance, difference, mean, write_comparison,
 };
+pub use detection::write_detection;
 pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use measured::{Baseline, write_measured};

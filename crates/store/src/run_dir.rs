@@ -3,6 +3,7 @@
 //! ```text
 //! runs/x/  scene.ron  run.json  trace.npy  energy.npy  mesh.vtu  checkpoint  frames/   written by the run
 //!          report.html  lab.html  summary.json  figures/                               written by the report
+//!          machine.npy                                  what the sensor of a scene's machine records of it
 //!          .lock                                                                       held while the run writes
 //! ```
 //!
@@ -46,6 +47,7 @@ const INFO: &str = "run.json";
 const ENSEMBLE: &str = "ensemble.json";
 const TRACE: &str = "trace.npy";
 const SIGNALS: &str = "signals.npy";
+const MACHINE: &str = "machine.npy";
 const ENERGY: &str = "energy.npy";
 const MESH: &str = "mesh.vtu";
 const CHECKPOINT: &str = "checkpoint";
@@ -62,8 +64,8 @@ const PARTIAL: &str = ".part";
 
 /// Every file that a run or its report writes, in the order of removal: without `run.json` a folder is no
 /// run, so it is removed first, and a half removed run is not taken for a result.
-const FILES: [&str; 11] =
-    [INFO, ENSEMBLE, REPORT, LAB, SUMMARY, TRACE, SIGNALS, ENERGY, MESH, CHECKPOINT, SCENE];
+const FILES: [&str; 12] =
+    [INFO, ENSEMBLE, REPORT, LAB, SUMMARY, TRACE, SIGNALS, MACHINE, ENERGY, MESH, CHECKPOINT, SCENE];
 
 /// Folders that a run or its report fills, and their files.
 const FOLDERS: [(&str, &[&str]); 2] = [(FIGURES, &["svg", "png", "gif"]), (FRAMES, &["npy"])];

@@ -24,7 +24,7 @@ use crate::causes;
 use crate::interrupt::{Interrupt, Interrupted};
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
-pub(crate) use reading::{Reading, Speed, examine};
+pub(crate) use reading::{Accelerations, Reading, Speed, accelerations, examine};
 use simulated::Simulation;
 
 /// Flags of `analyse`.

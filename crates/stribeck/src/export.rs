@@ -47,6 +47,10 @@ pub struct Options {
     /// that sensor shows is written, as path.ax_m_s2 and path.ay_m_s2
     #[arg(long, value_name = "PATH")]
     path: Option<String>,
+    /// Writes what the sensor of a machine records instead, in m/s²: that of the scene, or the one in FILE, which
+    /// `stribeck machine` writes
+    #[arg(long, value_name = "FILE", num_args = 0..=1, conflicts_with_all = ["path", "sensor", "channels"])]
+    machine: Option<Option<PathBuf>>,
     /// Samples a second of a sound [Hz]: 44100 or 48000 [default: 48000]
     #[arg(long, value_name = "HZ", value_parser = sound::rate)]
     rate_hz: Option<u32>,
@@ -142,6 +146,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
              and `--sensor`"
         );
     }
+    if options.machine.is_some() && !options.to.holds_signals(false) {
+        bail!("`--machine` makes a signal: use it with `--to` csv, npz, mat, uff, parquet or wav64");
+    }
     if let Some(out) = &options.out {
         may_be_written(out, options.to)?;
     }
@@ -209,6 +216,9 @@ fn provenance(run: &Run) -> Vec<String> {
 
 fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<PathBuf> {
     let mut recording = Recording::open(dir.trace())?;
+    if let Some(machine) = &options.machine {
+        recording.channels = crate::machine::channels(run, machine.as_deref(), place)?;
+    }
     if let Some(path) = &options.path {
         let time = recording.channels.iter().filter(|c| c.name == TIME).cloned();
         let made = Transfer::read(path, place)?.at_sensor(&recording)?;

@@ -23,6 +23,8 @@ mod demo;
 #[cfg(not(feature = "full"))]
 mod elsewhere;
 #[cfg(feature = "full")]
+mod detect;
+#[cfg(feature = "full")]
 mod emit;
 #[cfg(feature = "full")]
 mod export;
@@ -30,6 +32,9 @@ mod export;
 mod infer;
 pub mod lab;
 mod list;
+mod machine;
+#[cfg(feature = "full")]
+pub mod machine_fit;
 #[cfg(feature = "full")]
 mod many_runs;
 #[cfg(feature = "full")]
@@ -57,8 +62,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
-    self as analyse, self as campaign, self as compare, self as demo, self as export, self as infer,
-    self as sweep,
+    self as analyse, self as campaign, self as compare, self as demo, self as detect, self as export,
+    self as infer, self as machine_fit, self as sweep,
 };
 pub use out::Loudness;
 pub use place::Place;
@@ -118,6 +123,15 @@ pub enum Command {
     /// which are not
     #[command(after_help = "Example: stribeck infer unknown.ron")]
     Infer(infer::Options),
+    /// Fits a machine to measured records of known state: the path from the bearing to the sensor, and the
+    /// background
+    #[command(
+        after_help = "Example: stribeck machine sound.mat spalled.mat --defect none --defect outer:0.53 --bearing 6205 --unit g"
+    )]
+    Machine(machine_fit::Options),
+    /// Finds the smallest spall that the verdict sees in nine of ten records of a machine
+    #[command(after_help = "Example: stribeck detect mine.ron --lengths 0.3..5")]
+    Detect(detect::Options),
     /// Runs a scene by the full and by the reduced model, and compares them
     #[command(after_help = "Example: stribeck validate mine.ron")]
     Validate(validate::Options),
@@ -173,6 +187,8 @@ impl Command {
                 | Self::Campaign(_)
                 | Self::Sweep(_)
                 | Self::Infer(_)
+                | Self::Machine(_)
+                | Self::Detect(_)
                 | Self::Analyse(_)
                 | Self::Compare(_)
                 | Self::Export(_)
@@ -194,6 +210,8 @@ impl Command {
             Self::Campaign(options) => campaign::run(options, place),
             Self::Sweep(options) => sweep::run(options, place),
             Self::Infer(options) => infer::run(options, place),
+            Self::Machine(options) => machine_fit::run(options, place),
+            Self::Detect(options) => detect::run(options, place),
             Self::Validate(options) => validate::run(options, place),
             Self::Plan(options) => plan::run(options, place),
             Self::Stiffness(options) => stiffness::run(options, place),

@@ -178,6 +178,7 @@ fn settle(path: &Path, keep: Keep) -> Result<()> {
         Err(Error::FolderInUse { .. }) => return Ok(()),
         dir => dir?,
     };
+    crate::machine::keep(&dir)?;
     if read_summary(&dir).is_none() {
         write_summary(&dir)?;
     }

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue;
 use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
 use stribeck_scene::machine::usual_mass_kg;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{DefectRing, Scene};
 use stribeck_store::run_dir::write_atomic;
 use stribeck_theory::catalogue::CatalogueBearing;
 use stribeck_theory::fits::mounted_clearance_change_um;
@@ -332,6 +332,22 @@ fn ask<T>(question: &str, default: &dyn Display, parse: &dyn Fn(&str) -> Result<
             Err(why) => writeln!(stderr, "  {why}")?,
         }
     }
+}
+
+/// The scene of a bearing with a spall of a raceway, or a sound one, as `new` writes it.
+///
+/// # Errors
+/// When the numbers are none of such a bearing.
+pub(crate) fn scene(bearing: &str, load_n: f64, speed_rpm: f64, ring: Option<DefectRing>) -> Result<Scene> {
+    let limits = Limits::of(bearing)?;
+    limits.load(load_n).and_then(|_| limits.speed(speed_rpm)).map_err(anyhow::Error::msg)?;
+    let defect = match ring {
+        None => Where::None,
+        Some(DefectRing::Outer) => Where::Outer,
+        Some(DefectRing::Inner) => Where::Inner,
+    };
+    let answers = Answers { bearing: bearing.to_owned(), load_n, speed_rpm, defect, duration_s: 1.0 };
+    Ok(Scene::parse(&text(&name(&answers), &answers), "the scene of the record")?)
 }
 
 /// Name of the scene: the bearing with its defect.

@@ -151,6 +151,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             tell!("continue it: {} simulate --resume {path}", place.program);
         }
     }
+    if complete {
+        crate::machine::keep(&dir)?;
+        if let Some(assumed) = stribeck_analysis::machine::assumed(&scene) {
+            tell!("note: {assumed}");
+        }
+    }
     // A run that broke off has a report too: the samples until then show the cause.
     if dir.has_started() && !options.no_report {
         match report::write(dir.path()) {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use stribeck_scene::fields::words;
 
-use super::{CHECKPOINT, ENERGY, FRAMES, MESH, PARTIAL, RunDir, SIGNALS, TRACE, files};
+use super::{CHECKPOINT, ENERGY, FRAMES, MACHINE, MESH, PARTIAL, RunDir, SIGNALS, TRACE, files};
 use crate::error::Error;
 use crate::trace::TraceFile;
 
@@ -27,6 +27,11 @@ impl RunDir {
     /// Channels of sensors, where the trace was not kept.
     pub fn signals(&self) -> PathBuf {
         self.path.join(SIGNALS)
+    }
+
+    /// The record of the machine's sensor, where the scene has a machine.
+    pub fn machine(&self) -> PathBuf {
+        self.path.join(MACHINE)
     }
 
     /// Whether the trace, which is removed last, is gone and the samples that `keep` names are there.
@@ -55,6 +60,9 @@ impl RunDir {
             TraceFile::open(self.trace())?
                 .copy(&beside, |name| name == "time_s" || name.starts_with(SENSOR))?;
             files::rename(&beside, &self.signals())?;
+        }
+        if keep == Keep::Numbers {
+            files::remove(&self.path.join(MACHINE))?;
         }
         files::remove_folder(&self.path, FRAMES)?;
         [CHECKPOINT, MESH, ENERGY, TRACE].iter().try_for_each(|name| files::remove(&self.path.join(name)))

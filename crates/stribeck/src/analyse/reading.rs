@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::record;
 use stribeck_diagnosis::{
-    Analysis, Machine, Pressed, over_angle,
+    AccelerationUnit, Analysis, Machine, Pressed, over_angle,
     speed::{ridge, tacho},
 };
 use stribeck_formats::{Channel, Recording, says_time};
@@ -194,23 +194,50 @@ pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<
     Ok(analysis)
 }
 
+/// Accelerations of a record [m/s²], and what is known of it.
+pub(crate) struct Accelerations {
+    pub(crate) samples: Vec<f64>,
+    pub(crate) rate_hz: f64,
+    pub(crate) machine: Machine,
+}
+
+/// Reads the accelerations of a record.
+pub(crate) fn accelerations(asked: &Path, options: &Reading, place: &Place) -> Result<Accelerations> {
+    let Read { signal, rate_hz, machine, turning, .. } = read(asked, options, place)?;
+    ensure!(turning.is_none(), "the speed of `{}` varies: take a record at a steady speed", asked.display());
+    let unit = signal.unit.as_deref().and_then(AccelerationUnit::parse).with_context(|| {
+        format!(
+            "`{}` does not say that its samples are accelerations: give `--unit g` or `--unit m/s^2`, with \
+             `--scale` for a voltage",
+            asked.display()
+        )
+    })?;
+    Ok(Accelerations { samples: signal.scaled(unit.in_m_s2()).read()?, rate_hz, machine })
+}
+
 /// Reads one record.
 pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
-    let (file, scene) = located(asked, place)?;
+    let (mut file, scene) = located(asked, place)?;
+    // What its machine's sensor records is a signal as a measured one.
+    let at_sensor = file.with_file_name("machine.npy");
+    let of_machine = scene.is_some() && options.channel.is_none() && options.path.is_none() && at_sensor.is_file();
+    if of_machine {
+        file = at_sensor;
+    }
     let recording = Recording::open(&file)?;
     let picked = pick(&recording, options.channel.as_deref(), scene.is_some())?;
     let path = options.path.as_deref().map(|text| Transfer::read(text, place)).transpose()?;
-    let at_sensor = match (&path, &scene) {
+    let behind_path = match (&path, &scene) {
         (Some(path), Some(_)) => Some(path.of_run(&recording, picked)?),
         _ => None,
     };
-    let channel = at_sensor.as_ref().map_or(picked, |(channel, _)| channel);
+    let channel = behind_path.as_ref().map_or(picked, |(channel, _)| channel);
     let Some(rate_hz) = options.rate_hz.or(channel.rate_hz) else {
         let notes: String = recording.notes.iter().map(|note| format!("; {note}")).collect();
         bail!("`{}` does not say how fast it was sampled: give `--rate-hz`{notes}", file.display());
     };
     let mut notes = recording.notes.clone();
-    notes.extend(at_sensor.iter().map(|(_, note)| note.clone()));
+    notes.extend(behind_path.iter().map(|(_, note)| note.clone()));
     if let (Some(given), Some(said)) = (options.rate_hz, channel.rate_hz) {
         let same = (given / said - 1.0).abs() <= SAME_RATE;
         ensure!(
@@ -260,7 +287,7 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
         }
         None => None,
     };
-    let of_run = scene.is_some();
+    let of_run = scene.is_some() && !of_machine;
     let Some((even, even_hz)) = over_angle else {
         return Ok(Read { signal: scaled, rate_hz, machine, notes, of_run, turning: None });
     };

@@ -17,6 +17,7 @@ use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::{Keep, RunDir};
 use stribeck_store::run_info::Status;
+use stribeck_store::trace::TraceFile;
 use stribeck_theory::kinematics::Kinematics;
 
 use super::Folder;
@@ -102,7 +103,10 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 row.numbers.retain(|_, number| number.is_finite());
                 row.warnings = Some(info.warnings.join("\n")).filter(|text| !text.is_empty());
                 row.program = Some(format!("{} ({})", info.version, info.commit));
-                row.samples = i64::try_from(info.samples).ok();
+                let machine = RunDir::open(&path)?.machine();
+                let samples =
+                    if machine.exists() { TraceFile::open(machine)?.len() } else { info.samples };
+                row.samples = i64::try_from(samples).ok();
                 row.folder = Some(path);
             }
             (Stage::Failed(why), _) => (row.status, row.reason) = ("failed", Some(why.clone())),
@@ -247,7 +251,9 @@ fn columns(campaign: &Campaign, rows: &[Row]) -> Vec<Column> {
     columns
 }
 
-/// Samples a second, to a thousandth.
+/// Samples of its signals a second, to a thousandth.
 pub(super) fn sampling_rate_hz(scene: &Scene) -> f64 {
-    (1e6 / scene.output.interval_us * 1e3).round() / 1e3
+    let of_run = 1e6 / scene.output.interval_us;
+    let rate_hz = scene.housing.machine().map_or(of_run, |machine| machine.sensor.rate_hz);
+    (rate_hz * 1e3).round() / 1e3
 }

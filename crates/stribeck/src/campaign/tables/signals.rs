@@ -10,12 +10,13 @@ use stribeck_store::trace::{Trace, TraceFile};
 
 use super::Row;
 
-/// Runs that have signals to their end, and the file of each: the record of a diverged run is not a signal of
+/// Runs that have signals to their end, and the file of each, that of the machine's sensor where there is one: the record of a diverged run is not a signal of
 /// a bearing.
 fn recorded(rows: &[Row]) -> impl Iterator<Item = (&Row, PathBuf)> {
     rows.iter().filter(|row| row.is_complete()).filter_map(|row| {
         let dir = RunDir::open(row.folder.as_ref()?).ok()?;
-        Some((row, if dir.signals().exists() { dir.signals() } else { dir.trace() }))
+        let files = [dir.machine(), dir.signals()];
+        Some((row, files.into_iter().find(|file| file.exists()).unwrap_or_else(|| dir.trace())))
     })
 }
 

@@ -1,0 +1,82 @@
+//! The page of `stribeck detect`: the smallest spall that is found, and the share of records over its length.
+
+use std::path::Path;
+
+use maud::{DOCTYPE, html};
+use stribeck_analysis::detection::{Detection, Smallest, WANTED, in_words};
+use stribeck_store::run_dir::write_atomic;
+
+use crate::Error;
+use crate::page::head;
+use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
+
+/// Writes `report.html` into a folder.
+///
+/// # Errors
+/// [`Error::Run`] when it cannot be written, [`Error::Drawing`].
+pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error> {
+    let figure = figure(detection).to_html()?;
+    let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(&format!("{}: the smallest spall that is found", detection.scene)))
+            body {
+                h1 { (detection.scene) ": the smallest spall that is found" }
+                p class="lead" { (in_words(detection)) }
+                @if let Some(sound) = detection.sound {
+                    p {
+                        "Of the sound bearing the verdict claims " (detection.family) " in " (sound.count) " of "
+                        (sound.of) " records (" (percent(sound.low)) " to " (percent(sound.high)) ", 95 %)."
+                    }
+                }
+                (figure)
+                table {
+                    tr { th { "Length, mm" } th { "Found" } th { "Share" } th { "95 %" } th { "Curve" } }
+                    @for one in &detection.lengths {
+                        tr {
+                            td { (format!("{:.2}", one.length_mm)) }
+                            td { (one.found.count) " of " (one.found.of) }
+                            td { (percent(one.found.share)) }
+                            td { (percent(one.found.low)) " to " (percent(one.found.high)) }
+                            td { (percent(one.by_curve)) }
+                        }
+                    }
+                }
+                p {
+                    "Each record is a simulated bearing from another start, behind the machine's path, with another \
+                    background; it is found where the verdict of `analyse` claims " (detection.family) ". The \
+                    intervals are Wilson's. The curve is logistic in the logarithm of the length; the interval of \
+                    the length of nine in ten is that of a parametric bootstrap. Seed " (detection.seed) "."
+                }
+            }
+        }
+    };
+    write_atomic(&folder.join("report.html"), page.into_string().as_bytes())?;
+    Ok(())
+}
+
+fn figure(detection: &Detection) -> Figure {
+    let of = |value: &dyn Fn(&stribeck_analysis::detection::OfLength) -> f64| {
+        detection.lengths.iter().map(value).collect::<Vec<f64>>()
+    };
+    let lengths = of(&|one| one.length_mm);
+    let percent = |value: &dyn Fn(&stribeck_analysis::detection::OfLength) -> f64| {
+        of(&|one| 100.0 * value(one))
+    };
+    let mut figure = Figure::new(
+        "found",
+        "Records in which the spall is found",
+        Axis::decades("length of the spall", "mm"),
+        Axis::plain("records", "%").over(0.0, 100.0),
+    )
+    .with(Series::listed("curve", Colour::Blue, lengths.clone(), percent(&|one| one.by_curve)))
+    .with(Series::listed("found", Colour::Orange, lengths.clone(), percent(&|one| one.found.share)).as_points())
+    .with(Series::listed("95 %", Colour::Grey, lengths.clone(), percent(&|one| one.found.high)).as_edge())
+    .with(Series::listed("95 %", Colour::Grey, lengths, percent(&|one| one.found.low)).as_edge());
+    figure.levels.push(Level { y: 100.0 * WANTED, label: "nine of ten".to_owned(), colour: Colour::Grey });
+    if let Smallest::Between { length_mm, .. } = detection.smallest {
+        figure.marks.push(Mark::new(length_mm, format!("{length_mm:.2} mm"), Colour::Blue, true));
+    }
+    figure
+}
