@@ -21,6 +21,7 @@ mod host;
 mod impulse;
 mod kills;
 mod long;
+mod machine;
 mod measured_loop;
 mod noise;
 mod own;
@@ -87,6 +88,8 @@ pub enum Study {
     Impulse(impulse::Options),
     /// Bearings by their own fields, at the first try, by both models
     Own(Flags),
+    /// Records of machines fitted on one record a rig, beside the measured ones
+    Machine(machine::Options),
     /// Measured records of known state through the verdict of `analyse`, beside plainer methods
     Verdicts(verdicts::Options),
 }
@@ -109,6 +112,7 @@ impl Study {
             Self::Reduced(_) => "reduced",
             Self::Impulse(_) => "impulse",
             Self::Own(_) => "own",
+            Self::Machine(_) => "machine",
             Self::Verdicts(_) => "verdicts",
         }
     }
@@ -132,6 +136,7 @@ impl Study {
             Self::Reduced(flags) => reduced::measure(&runner(flags), rows)?,
             Self::Impulse(options) => impulse::measure(options, host, rows)?,
             Self::Own(flags) => return own::measure(&runner(flags), rows),
+            Self::Machine(options) => machine::measure(options, host, rows)?,
             Self::Verdicts(options) => verdicts::measure(options, host, rows)?,
         }
         Ok(Answer::default())

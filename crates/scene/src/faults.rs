@@ -40,6 +40,7 @@ impl Scene {
                 depth_mm: spall.depth_mm,
                 angle_deg: deviation.angle_deg,
                 edge_slope_deg: spall.depth_mm.atan2(edge).to_degrees(),
+                width_mm: None,
             })
         });
         self.defect.iter().cloned().chain(of_defects).collect()
@@ -82,7 +83,7 @@ impl DeviationScene {
         let FormScene::Spall(spall) = &self.form else { return None };
         let (length_mm, depth_mm, angle_deg) = (spall.length_mm, spall.depth_mm, self.angle_deg);
         let ring = self.on.ring().filter(|_| self.is_cut())?;
-        Some(DefectScene { ring, length_mm, depth_mm, angle_deg, edge_slope_deg: 90.0 })
+        Some(DefectScene { ring, length_mm, depth_mm, angle_deg, edge_slope_deg: 90.0, width_mm: None })
     }
 }
 

@@ -57,6 +57,7 @@ pub mod fields;
 pub mod housing;
 pub mod machine;
 pub mod mesh_text;
+mod narrow;
 pub mod paper;
 pub mod records;
 pub mod resolved;

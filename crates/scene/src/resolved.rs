@@ -201,7 +201,7 @@ impl ResolvedScene {
         };
         let of_roller = |i: usize| Some((i, relief(RollingSurface::Roller(i + 1))?));
         let clearance_mm = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
-        Self {
+        let mut resolved = Self {
             written: scene.clone(),
             duty: scene.duty(),
             outer_race_radius: 0.5e-3 * b.outer_race_diameter_mm,
@@ -243,7 +243,11 @@ impl ResolvedScene {
             sensor_angles: scene.output.sensors.iter().map(|sensor| sensor.angle_deg.to_radians()).collect(),
             frame_half_width: scene.output.frames.as_ref().map(|frames| 1e-3 * frames.half_width_mm),
             material,
+        };
+        for (groove, defect) in scene.grooves().iter().enumerate().filter(|(_, defect)| defect.width_mm.is_some()) {
+            resolved.grooves[groove].depth = resolved.depth_of(defect);
         }
+        resolved
     }
 
     /// Radius of the circle on which the centres of rollers run that touch the outer raceway [m].

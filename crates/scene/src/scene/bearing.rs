@@ -115,6 +115,9 @@ group! {
         pub angle_deg: f64 = 90.0, within(-360.0, 360.0);
         /// Angle between its edges and the raceway [°]; 90 for radial walls, 22 or more under oil.
         pub edge_slope_deg: f64 = 90.0, within(5.0, 90.0), before("90.0");
+        /// Width across the raceway [mm]; `None` for the whole contact. A narrower one takes a part of the contact,
+        /// and stands in the plane as a shallower one (`narrow.rs`).
+        pub width_mm: Option<f64> = None, positive(20_000.0), omitted();
     }
 }
 
