@@ -29,6 +29,9 @@ const LEAST_SHARE: f64 = 0.05;
 /// Part of the sample rate up to which records are compared: recorders filter what is above.
 const COMPARED: f64 = 0.45;
 
+/// Range of the fitted recorder over the largest sample of the records.
+const ROOM: f64 = 10.0;
+
 /// A measured record, and the force of the simulated bearing of its state.
 #[derive(Debug, Clone)]
 pub struct Known {
@@ -92,6 +95,7 @@ pub fn fit(records: &[Known]) -> Result<MachineScene, Error> {
             break;
         }
     }
+    let peak = records.iter().flat_map(|known| &known.measured).fold(0.0_f64, |most, x| most.max(x.abs()));
     let gains = hz.iter().zip(&path.gains).map(|(&hz, g)| GainScene { hz, gain: rounded((0.5 * g).exp()) });
     let levels = hz.iter().zip(&path.background);
     Ok(MachineScene {
@@ -102,7 +106,7 @@ pub fn fit(records: &[Known]) -> Result<MachineScene, Error> {
             // Beyond the record: the gains have what there is of it.
             resonance_hz: 1e6,
             noise_density: 0.0,
-            range_m_s2: 1e6,
+            range_m_s2: rounded(ROOM * peak),
             ..MachineSensorScene::default()
         },
         ..MachineScene::default()
