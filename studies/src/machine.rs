@@ -114,13 +114,16 @@ impl Entry {
             "inner" => Some(DefectRing::Inner),
             _ => None,
         };
-        State { spall: ring.map(|ring| (ring, self.3)) }
+        State {
+            spall: ring.map(|ring| (ring, self.3)),
+            width_mm: Some(self.4).filter(|mm| ring.is_some() && *mm > 0.0),
+        }
     }
 }
 
 /// Reads a record and simulates its bearing.
 fn pair(rig: &Rig, entry: &Entry, folder: &Path, set: &[String], host: &Host) -> Result<Pair> {
-    let Entry(file, channel, _, _, width_mm, rpm, load_n, rate_hz) = entry;
+    let Entry(file, channel, _, _, _, rpm, load_n, rate_hz) = entry;
     let path = folder.join(file);
     let recording = Recording::open(&path)?;
     let chosen = if channel.is_empty() {
@@ -130,9 +133,7 @@ fn pair(rig: &Rig, entry: &Entry, folder: &Path, set: &[String], host: &Host) ->
     };
     let samples = chosen.with_context(|| format!("{}: no such channel", path.display()))?.read()?;
     let duration_s = samples.len() as f64 / rate_hz;
-    let mut set = set.to_vec();
-    set.extend((*width_mm > 0.0).then(|| format!("defect.width_mm={width_mm:?}")).filter(|_| entry.state().spall.is_some()));
-    let scene = scene_of(&rig.bearing, (*load_n, *rpm), entry.state(), (*rate_hz, duration_s), &set)?;
+    let scene = scene_of(&rig.bearing, (*load_n, *rpm), entry.state(), (*rate_hz, duration_s), set)?;
     let run = run(&scene, host)?;
     let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let force = Force::of_run(&run, MachineScene::default().direction_deg)?;

@@ -412,6 +412,7 @@ fn roundtrip_what_is_saved_and_what_is_heard() {
         depth_mm: 0.15,
         angle_deg: 77.0,
         edge_slope_deg: 60.0,
+        width_mm: None,
     });
     assert_eq!(read(&said["ron"]).to_ron(), wanted.to_ron());
     let oiled = read(&said["oiled"]);

@@ -230,3 +230,63 @@ pub fn third_octaves(lowest_hz: f64, highest_hz: f64) -> Vec<f64> {
     let fits = |hz: &f64| *hz >= lowest_hz && *hz * (1.0_f64 / 6.0).exp2() <= highest_hz;
     (-24..=24).map(middle).filter(fits).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::housing::HousingScene;
+    use stribeck_testing::Scratch;
+
+    const BASE: &str = "bearing: \"6205\", model: reduced(), film: None, defect: None";
+
+    fn machine(scene: &Scene) -> &MachineScene {
+        scene.housing.machine().expect("a machine")
+    }
+
+    #[test]
+    fn roundtrip_a_machine_in_a_file_becomes_a_part_of_the_scene() {
+        let folder = Scratch::create("machine-file");
+        let gains = vec![GainScene { hz: 500.0, gain: 0.01 }, GainScene { hz: 2000.0, gain: 0.2 }];
+        let fitted = MachineScene { gains, mass_kg: Some(7.0), seed: 3, ..MachineScene::default() };
+        std::fs::write(folder.join("motor.ron"), fitted.to_ron()).expect("room");
+        std::fs::write(folder.join("x.ron"), format!("({BASE}, housing: machine(file: \"motor.ron\", seed: 9))"))
+            .expect("room");
+        let scene = Scene::read(folder.join("x.ron")).expect("a scene");
+        // What the scene says stands before the file, which a run does not need any more.
+        assert_eq!(*machine(&scene), MachineScene { seed: 9, ..fitted });
+        assert_eq!(Scene::parse(&scene.to_ron(), "again").expect("a scene"), scene);
+        assert_eq!(scene.housing.mass(&scene.bearing).expect("rigid").mass_kg, 7.0);
+    }
+
+    #[test]
+    fn refuses_files_that_are_no_machine() {
+        let folder = Scratch::create("no-machine");
+        let said = |text: Option<&str>| {
+            if let Some(text) = text {
+                std::fs::write(folder.join("motor.ron"), text).expect("room");
+            }
+            std::fs::write(folder.join("x.ron"), format!("({BASE}, housing: machine(file: \"motor.ron\"))"))
+                .expect("room");
+            Scene::read(folder.join("x.ron")).expect_err("no machine").to_string()
+        };
+        let none = said(None);
+        assert!(none.contains("no such file") && none.contains("x.ron:1"), "{none}");
+        let misspelt = said(Some("(\n mas_kg: 3)"));
+        assert!(misspelt.contains("mas_kg") && misspelt.contains("motor.ron:2"), "{misspelt}");
+        let outside = said(Some("(gains: [(hz: -3, gain: 1)])"));
+        assert!(outside.contains("hz"), "{outside}");
+    }
+
+    /// A scene without a machine has not a word of it, and one with a machine runs as a rigid housing of its mass.
+    #[test]
+    fn behaves_a_machine_is_a_rigid_housing_and_others_have_none() {
+        let scene = |housing: &str| {
+            Scene::parse(&format!("({BASE}, housing: {housing})"), "mine").expect("a scene")
+        };
+        let (usual, rigid) = (scene("machine()"), scene("rigid(mass_kg: 10, damping_per_s: 1000)"));
+        assert_eq!(usual.housing.mass(&usual.bearing), rigid.housing.mass(&rigid.bearing));
+        assert!(usual.housing.is_rigid() && rigid.housing.machine().is_none());
+        assert!(!rigid.to_ron().contains("machine") && matches!(rigid.housing, HousingScene::Rigid(_)));
+        assert!(machine(&usual).assumed().expect("usual").contains("not measured"));
+    }
+}

@@ -33,7 +33,7 @@ pub struct Options {
     #[arg(required = true, value_name = "RECORD")]
     records: Vec<PathBuf>,
     /// State of each record, in their order: "none" for a sound bearing, or the raceway of a spall and its length
-    /// in mm, such as outer:0.53
+    /// in mm, such as outer:0.53; outer:0.18x0.18 for a pit of that width across the raceway
     #[arg(long = "defect", required = true, value_name = "STATE", value_parser = State::parse)]
     states: Vec<State>,
     #[command(flatten)]
@@ -56,16 +56,19 @@ pub struct Options {
 pub struct State {
     /// Raceway and length of its spall [mm]; `None` for a sound one.
     pub spall: Option<(DefectRing, f64)>,
+    /// Its width across the raceway [mm]; `None` for one that takes the whole contact.
+    pub width_mm: Option<f64>,
 }
 
 impl State {
     fn parse(text: &str) -> Result<Self, String> {
         if text.trim().eq_ignore_ascii_case("none") {
-            return Ok(Self { spall: None });
+            return Ok(Self { spall: None, width_mm: None });
         }
         let wrong = || {
             format!(
-                "`{text}` is no state: none, or outer:LENGTH or inner:LENGTH in mm, such as outer:0.53. Damaged \
+                "`{text}` is no state: none, or outer:LENGTH or inner:LENGTH in mm, such as outer:0.53, with \
+                 xWIDTH behind it for a narrow pit. Damaged \
                  rolling elements spin about an axis that wanders, and fit no path"
             )
         };
@@ -75,8 +78,10 @@ impl State {
             "inner" => DefectRing::Inner,
             _ => return Err(wrong()),
         };
-        let length = length.trim().parse::<f64>().ok().filter(|mm| mm.is_finite() && *mm > 0.0);
-        Ok(Self { spall: Some((ring, length.ok_or_else(wrong)?)) })
+        let (length, width) = length.split_once('x').map_or((length, None), |(l, w)| (l, Some(w)));
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|mm| mm.is_finite() && *mm > 0.0);
+        let width_mm = width.map(|width| number(width).ok_or_else(wrong)).transpose()?;
+        Ok(Self { spall: Some((ring, number(length).ok_or_else(wrong)?)), width_mm })
     }
 
     /// The family of its defect.
@@ -106,6 +111,7 @@ pub fn scene_of(
         "output.frames=None".to_owned(),
     ];
     all.extend(state.spall.map(|(_, mm)| format!("defect.length_mm={mm:?}")));
+    all.extend(state.width_mm.map(|mm| format!("defect.width_mm={mm:?}")));
     all.extend_from_slice(set);
     Ok(scene.with_overrides(&all)?)
 }
@@ -270,14 +276,15 @@ mod tests {
         assert_eq!(spall("none"), Ok(None));
         assert_eq!(spall("outer:0.53"), Ok(Some((DefectRing::Outer, 0.53))));
         assert_eq!(spall("inner: 2"), Ok(Some((DefectRing::Inner, 2.0))));
-        for text in ["outer", "roller:1", "outer:-1", "outer:wide", "inner:inf"] {
+        assert_eq!(State::parse("outer:0.18x0.2").map(|state| state.width_mm), Ok(Some(0.2)));
+        for text in ["outer", "roller:1", "outer:-1", "outer:wide", "inner:inf", "outer:1x", "outer:1x0"] {
             assert!(spall(text).unwrap_err().contains("outer:0.53"), "{text}");
         }
     }
 
     #[test]
     fn behaves_the_scene_of_a_state_has_its_spall_and_rate() {
-        let state = State { spall: Some((DefectRing::Inner, 0.7)) };
+        let state = State { spall: Some((DefectRing::Inner, 0.7)), width_mm: None };
         let scene = scene_of("6205", (200.0, 1797.0), state, (48_828.0, 9.0), &[]).expect("a scene");
         let defect = scene.defect.expect("a spall");
         assert_eq!((defect.ring, defect.length_mm), (DefectRing::Inner, 0.7));

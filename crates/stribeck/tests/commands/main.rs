@@ -13,6 +13,7 @@ mod everyday;
 mod first_hour;
 mod fmu;
 mod infer;
+mod machine;
 mod measured;
 mod mistakes;
 mod path;
