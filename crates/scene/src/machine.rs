@@ -23,7 +23,7 @@ group! {
     /// the force on it to a sensor, and a background. Everything that is left out has a value that is usual for
     /// the size of the bearing, not that of any machine.
     pub struct MachineScene {
-        /// File that `stribeck machine` wrote, beside the scene. What the scene says itself stands before it.
+        /// File that the command `machine` wrote, beside the scene. What the scene says itself stands before it.
         pub file: String = String::new(), omitted();
         /// Mass that moves with the outer ring [kg]; 10 (outside diameter/52 mm)² where it is left out.
         pub mass_kg: Option<f64> = None, within(0.0, 1e6), omitted();
