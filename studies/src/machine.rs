@@ -76,14 +76,36 @@ pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result
         any = true;
         of_rig(rig, folder, options, host, rows)?;
     }
-    ensure!(any, "`{}` holds no record: give a folder with `cwru`, `hit-sm` or `paderborn` in it", folder.display());
+    ensure!(
+        any,
+        "`{}` holds no record: give a folder with `cwru`, `hit-sm` or `paderborn` in it",
+        folder.display()
+    );
     Ok(())
 }
 
 fn of_rig(rig: &Rig, folder: &Path, options: &Options, host: &Host, rows: &mut Rows) -> Result<()> {
     let all: Vec<&Entry> = rig.fitted.iter().chain(&rig.predicted).collect();
-    let pairs = host.each(&all, stribeck::host::cores(), |entry| pair(rig, entry, folder, &options.set, host))?;
-    let pairs = pairs.into_iter().collect::<Result<Vec<Pair>>>()?;
+    let pairs =
+        host.each(&all, stribeck::host::cores(), |entry| pair(rig, entry, folder, &options.set, host))?;
+    // A bearing whose run did not end is told, and left out.
+    let (mut all_kept, mut kept) = (Vec::new(), Vec::new());
+    for (entry, pair) in all.into_iter().zip(pairs) {
+        match pair {
+            Ok(pair) => {
+                all_kept.push(entry);
+                kept.push(pair);
+            }
+            Err(why) => host.say(&format!("{}: {why:#}", entry.0)),
+        }
+    }
+    let (all, pairs) = (all_kept, kept);
+    let is_fitted = |entry: &Entry| rig.fitted.iter().any(|fitted| fitted.0 == entry.0);
+    ensure!(
+        all.iter().filter(|entry| is_fitted(entry)).count() == rig.fitted.len(),
+        "{}: a bearing on which the machine is fitted did not run",
+        rig.name
+    );
     let known: Vec<Known> = rig
         .fitted
         .iter()
@@ -97,7 +119,8 @@ fn of_rig(rig: &Rig, folder: &Path, options: &Options, host: &Host, rows: &mut R
         .collect();
     let machine = fit(&known)?;
     let judged: Vec<(&Entry, &Pair)> = all.into_iter().zip(&pairs).collect();
-    let judged = host.each(&judged, stribeck::host::cores(), |(entry, pair)| beside_record(rig, entry, pair, &machine))?;
+    let judged = host
+        .each(&judged, stribeck::host::cores(), |(entry, pair)| beside_record(rig, entry, pair, &machine))?;
     let judged = judged.into_iter().collect::<Result<Vec<MachineAgreement>>>()?;
     for ((pair, a), fitted) in pairs.iter().zip(&judged).zip((0..).map(|n| n < rig.fitted.len())) {
         put(rows, &rig.name, &pair.name, fitted, a);
@@ -150,7 +173,8 @@ fn run(scene: &Scene, host: &Host) -> Result<Run> {
     let begun = folder.join("checkpoint").exists();
     host.run(&Job { scene, folder: &folder, begun, threads: Some(1), alone: false })?;
     let run = Run::read(&folder)?;
-    ensure!(is_done(&run), "{}: the run did not end", folder.display());
+    let why = run.info.stop_reason.as_deref().unwrap_or("the run did not end");
+    ensure!(is_done(&run), "{}: {why}", folder.display());
     Ok(run)
 }
 

@@ -89,8 +89,7 @@ impl Curve {
         let centre = logs.iter().sum::<f64>() / logs.len().max(1) as f64;
         let (mut a, mut b) = (0.0, 1.0);
         for _ in 0..STEPS {
-            let (mut ga, mut gb, mut haa, mut hab, mut hbb) =
-                (-FLAT * a, -FLAT * b, FLAT, 0.0, FLAT);
+            let (mut ga, mut gb, mut haa, mut hab, mut hbb) = (-FLAT * a, -FLAT * b, FLAT, 0.0, FLAT);
             for ((_, found, of), log) in records.iter().zip(&logs) {
                 let x = log - centre;
                 let p = logistic(a + b * x);
@@ -224,6 +223,9 @@ mod tests {
         // Without overlap the length lies between the last missed and the first found one.
         let step = [(0.5, 0, 20), (1.0, 0, 20), (2.0, 20, 20), (4.0, 20, 20)];
         let (_, found) = smallest(&step, 1).expect("four");
-        assert!(matches!(found, Smallest::Between { length_mm, .. } if (1.0..2.2).contains(&length_mm)), "{found:?}");
+        assert!(
+            matches!(found, Smallest::Between { length_mm, .. } if (1.0..2.2).contains(&length_mm)),
+            "{found:?}"
+        );
     }
 }

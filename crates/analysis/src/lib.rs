@@ -91,8 +91,8 @@ pub mod spall_length;
 pub mod tones;
 
 pub mod artefacts;
-pub mod diagnosis;
 pub mod detection;
+pub mod diagnosis;
 pub mod machine;
 pub mod records;
 pub mod stiffness;

@@ -85,11 +85,7 @@ pub fn of_run(run: &Run) -> Result<Option<MachineRecord>, Error> {
 ///
 /// # Errors
 /// [`Error::Signal`] for a force of fewer than 16 samples, or a sensor faster than it.
-pub fn record(
-    machine: &MachineScene,
-    bearing: &BearingScene,
-    force: &Force,
-) -> Result<MachineRecord, Error> {
+pub fn record(machine: &MachineScene, bearing: &BearingScene, force: &Force) -> Result<MachineRecord, Error> {
     let highest_hz = 0.5 * force.rate_hz;
     let mut dice = Dice::new(machine.seed);
     let mut samples =

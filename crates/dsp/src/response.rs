@@ -78,9 +78,15 @@ pub struct Response(Form);
 #[derive(Debug, Clone, PartialEq)]
 enum Form {
     Modes(Vec<Mode>),
-    Lines { hz: Vec<f64>, values: Vec<Complex<f64>> },
+    Lines {
+        hz: Vec<f64>,
+        values: Vec<Complex<f64>>,
+    },
     /// At even steps of the frequency from 0 on.
-    Causal { grid_hz: f64, values: Vec<Complex<f64>> },
+    Causal {
+        grid_hz: f64,
+        values: Vec<Complex<f64>>,
+    },
     Sum(Vec<Response>),
 }
 
@@ -324,7 +330,11 @@ mod tests {
         let response = Response::of_gains(&hz, &gains, 10_000.0).expect("gains");
         for (hz, gain) in hz.iter().zip(gains) {
             // Aliasing of the cepstrum.
-            assert!((response.at(*hz).norm() / gain - 1.0).abs() < 0.02, "{hz} Hz: {}", response.at(*hz).norm());
+            assert!(
+                (response.at(*hz).norm() / gain - 1.0).abs() < 0.02,
+                "{hz} Hz: {}",
+                response.at(*hz).norm()
+            );
         }
         let half_way = (1.0_f64 * 0.2).sqrt();
         assert!((response.at(2000.0).norm() / half_way - 1.0).abs() < 0.01);

@@ -61,9 +61,8 @@ fn figure(detection: &Detection) -> Figure {
         detection.lengths.iter().map(value).collect::<Vec<f64>>()
     };
     let lengths = of(&|one| one.length_mm);
-    let percent = |value: &dyn Fn(&stribeck_analysis::detection::OfLength) -> f64| {
-        of(&|one| 100.0 * value(one))
-    };
+    let percent =
+        |value: &dyn Fn(&stribeck_analysis::detection::OfLength) -> f64| of(&|one| 100.0 * value(one));
     let mut figure = Figure::new(
         "found",
         "Records in which the spall is found",
@@ -71,7 +70,9 @@ fn figure(detection: &Detection) -> Figure {
         Axis::plain("records", "%").over(0.0, 100.0),
     )
     .with(Series::listed("curve", Colour::Blue, lengths.clone(), percent(&|one| one.by_curve)))
-    .with(Series::listed("found", Colour::Orange, lengths.clone(), percent(&|one| one.found.share)).as_points())
+    .with(
+        Series::listed("found", Colour::Orange, lengths.clone(), percent(&|one| one.found.share)).as_points(),
+    )
     .with(Series::listed("95 %", Colour::Grey, lengths.clone(), percent(&|one| one.found.high)).as_edge())
     .with(Series::listed("95 %", Colour::Grey, lengths, percent(&|one| one.found.low)).as_edge());
     figure.levels.push(Level { y: 100.0 * WANTED, label: "nine of ten".to_owned(), colour: Colour::Grey });

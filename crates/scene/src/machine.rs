@@ -108,8 +108,11 @@ group! {
 }
 
 /// The file of a machine.
-const FILE: Kind =
-    Kind { noun: "a machine", example: "`(mass_kg: 10, sensor: (rate_hz: 25600))`", for_fields_of_scenes: Some("") };
+const FILE: Kind = Kind {
+    noun: "a machine",
+    example: "`(mass_kg: 10, sensor: (rate_hz: 25600))`",
+    for_fields_of_scenes: Some(""),
+};
 
 /// Outside diameter [mm] and mass [kg] of the housing to which the usual values belong.
 const USUAL: (f64, f64) = (52.0, 10.0);
@@ -164,17 +167,7 @@ impl MachineScene {
                 }
             };
         }
-        first!(
-            mass_kg,
-            damping_per_s,
-            direction_deg,
-            gains,
-            modes,
-            background,
-            lines,
-            sensor,
-            seed
-        )
+        first!(mass_kg, damping_per_s, direction_deg, gains, modes, background, lines, sensor, seed)
     }
 
     /// The mass about the ring, as the run takes it.
@@ -249,8 +242,11 @@ mod tests {
         let gains = vec![GainScene { hz: 500.0, gain: 0.01 }, GainScene { hz: 2000.0, gain: 0.2 }];
         let fitted = MachineScene { gains, mass_kg: Some(7.0), seed: 3, ..MachineScene::default() };
         std::fs::write(folder.join("motor.ron"), fitted.to_ron()).expect("room");
-        std::fs::write(folder.join("x.ron"), format!("({BASE}, housing: machine(file: \"motor.ron\", seed: 9))"))
-            .expect("room");
+        std::fs::write(
+            folder.join("x.ron"),
+            format!("({BASE}, housing: machine(file: \"motor.ron\", seed: 9))"),
+        )
+        .expect("room");
         let scene = Scene::read(folder.join("x.ron")).expect("a scene");
         // What the scene says stands before the file, which a run does not need any more.
         assert_eq!(*machine(&scene), MachineScene { seed: 9, ..fitted });
@@ -280,9 +276,8 @@ mod tests {
     /// A scene without a machine has not a word of it, and one with a machine runs as a rigid housing of its mass.
     #[test]
     fn behaves_a_machine_is_a_rigid_housing_and_others_have_none() {
-        let scene = |housing: &str| {
-            Scene::parse(&format!("({BASE}, housing: {housing})"), "mine").expect("a scene")
-        };
+        let scene =
+            |housing: &str| Scene::parse(&format!("({BASE}, housing: {housing})"), "mine").expect("a scene");
         let (usual, rigid) = (scene("machine()"), scene("rigid(mass_kg: 10, damping_per_s: 1000)"));
         assert_eq!(usual.housing.mass(&usual.bearing), rigid.housing.mass(&rigid.bearing));
         assert!(usual.housing.is_rigid() && rigid.housing.machine().is_none());

@@ -31,9 +31,12 @@ impl ResolvedScene {
 
     /// `None` for one that takes the whole contact, and without an equilibrium.
     fn bridged(&self, ring: DefectRing, width: f64) -> Option<f64> {
-        let from_load: Vec<f64> =
-            (0..self.rollers).map(|n| 360.0 * n as f64 / self.rollers as f64).map(|deg| deg.min(360.0 - deg)).collect();
-        let load = RigidRings::new(self, self.contact_law).distribute(self.duty.load_n(0.0), &from_load).ok()?;
+        let from_load: Vec<f64> = (0..self.rollers)
+            .map(|n| 360.0 * n as f64 / self.rollers as f64)
+            .map(|deg| deg.min(360.0 - deg))
+            .collect();
+        let load =
+            RigidRings::new(self, self.contact_law).distribute(self.duty.load_n(0.0), &from_load).ok()?;
         let part = match self.written.element() {
             Element::Ball => {
                 let across = match ring {

@@ -244,7 +244,9 @@ impl ResolvedScene {
             frame_half_width: scene.output.frames.as_ref().map(|frames| 1e-3 * frames.half_width_mm),
             material,
         };
-        for (groove, defect) in scene.grooves().iter().enumerate().filter(|(_, defect)| defect.width_mm.is_some()) {
+        for (groove, defect) in
+            scene.grooves().iter().enumerate().filter(|(_, defect)| defect.width_mm.is_some())
+        {
             resolved.grooves[groove].depth = resolved.depth_of(defect);
         }
         resolved

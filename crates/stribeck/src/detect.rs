@@ -13,10 +13,11 @@ use stribeck_report::write_detection;
 use stribeck_scene::scene::{DefectRing, HousingScene, ModelScene, Scene};
 use stribeck_scene::{catalogue, ensemble, machine::MachineScene};
 use stribeck_store::run_dir::{Keep, RunDir, check_folder, write_atomic};
+use stribeck_store::run_info::Status;
 
 use crate::interrupt::{Interrupt, Interrupted};
 use crate::many_runs::{ManyRuns, Share, Wanted};
-use crate::out::{say, tell};
+use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
 
 /// Flags of `detect`.
@@ -89,10 +90,22 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let known = known(&base);
     let mut found = Vec::new();
     let mut record_s = 0.0;
+    let mut diverged = 0;
     for made in &all {
-        let (seen, long_s) = judge(&runs.run(&made.scene), &known, family)?;
+        let folder = runs.run(&made.scene);
+        if RunDir::open(&folder)?.read_info()?.status != Status::Complete {
+            diverged += 1;
+            continue;
+        }
+        let (seen, long_s) = judge(&folder, &known, family)?;
         record_s = long_s;
         found.push((made.length_mm, seen));
+    }
+    if diverged > 0 {
+        caution!(
+            "{diverged} of {} runs diverged and are left out; a smaller `model.step_us` may help",
+            all.len()
+        );
     }
     let detection = conclude(&base, family, &found, record_s, options)?;
     write_atomic(&out.join(NUMBERS), (serde_json::to_string_pretty(&detection)? + "\n").as_bytes())?;
@@ -151,9 +164,9 @@ fn scenes(base: &Scene, options: &Options) -> Result<Vec<Made>> {
             (Some(mm), Some(defect)) => defect.length_mm = mm,
             _ => scene.defect = None,
         }
-        scene
-            .validate()
-            .with_context(|| format!("a spall of {} mm; choose other `--lengths`", length_mm.unwrap_or(0.0)))?;
+        scene.validate().with_context(|| {
+            format!("a spall of {} mm; choose other `--lengths`", length_mm.unwrap_or(0.0))
+        })?;
         for number in 1..=options.records as usize {
             let mut scene = ensemble::start(&scene, u64::from(options.seed), number);
             if let HousingScene::Machine(machine) = &mut scene.housing {

@@ -18,12 +18,12 @@ mod board;
 mod campaign;
 #[cfg(feature = "full")]
 mod compare;
-#[cfg(feature = "full")]
-mod demo;
-#[cfg(not(feature = "full"))]
-mod elsewhere;
+    self as analyse, self as campaign, self as compare, self as demo, self as detect, self as export,
+    self as infer, self as machine_fit,
 #[cfg(feature = "full")]
 mod detect;
+#[cfg(not(feature = "full"))]
+mod elsewhere;
 #[cfg(feature = "full")]
 mod emit;
 #[cfg(feature = "full")]
@@ -63,7 +63,7 @@ use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
     self as analyse, self as campaign, self as compare, self as demo, self as detect, self as export,
-    self as infer, self as machine_fit, self as sweep,
+    self as infer, self as machine_fit,
 };
 pub use out::Loudness;
 pub use place::Place;

@@ -27,7 +27,9 @@ pub(crate) fn keep(dir: &RunDir) -> Result<()> {
         return Ok(());
     }
     let run = Run::read(dir.path())?;
-    let Some(record) = machine::of_run(&run).context("no record of the machine's sensor")? else { return Ok(()) };
+    let Some(record) = machine::of_run(&run).context("no record of the machine's sensor")? else {
+        return Ok(());
+    };
     let mut writer = TraceWriter::create(&file, &["time_s", CHANNEL])?;
     for (time, sample) in times(&record).zip(&record.samples) {
         writer.push(&[time, *sample])?;

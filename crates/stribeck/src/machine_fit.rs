@@ -13,6 +13,7 @@ use stribeck_scene::catalogue;
 use stribeck_scene::machine::MachineScene;
 use stribeck_scene::scene::{DefectRing, Scene};
 use stribeck_store::run_dir::{Keep, Run, write_atomic};
+use stribeck_store::run_info::Status;
 
 use crate::analyse::{Accelerations, Reading, accelerations};
 use crate::interrupt::{Interrupt, Interrupted};
@@ -136,7 +137,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         "all records are of sound bearings, which hardly excite the path: add one with a spall of known length, \
          `--defect outer:0.53`"
     );
-    let bearing = options.reading.bearing.as_deref().context("name the bearing with `--bearing`, such as 6205")?;
+    let bearing =
+        options.reading.bearing.as_deref().context("name the bearing with `--bearing`, such as 6205")?;
     let mut set = options.set.clone();
     set.extend(options.mass_kg.map(|kg| format!("housing.mass_kg={kg:?}")));
     let given = options
@@ -222,6 +224,9 @@ fn forces(scenes: &[&Scene], folder: PathBuf, share: Share) -> Result<Vec<Force>
     let force = |scene: &&Scene| {
         let folder = runs.run(scene);
         let run = Run::read(&folder).with_context(|| format!("no run in `{}`", shown(&folder)))?;
+        if let (true, Some(why)) = (run.info.status != Status::Complete, &run.info.stop_reason) {
+            bail!("the bearing of a record could not be simulated: {why}. `--set` changes its scene");
+        }
         Ok(Force::of_run(&run, MachineScene::default().direction_deg)?)
     };
     scenes.iter().map(force).collect()

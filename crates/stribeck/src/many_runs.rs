@@ -10,6 +10,7 @@ use stribeck_analysis::record::Record;
 use stribeck_scene::scene::Scene;
 use stribeck_store::Error;
 use stribeck_store::run_dir::{Keep, Run, RunDir, State, write_atomic};
+use stribeck_store::run_info::Status;
 
 use crate::interrupt::Interrupt;
 use crate::memory;
@@ -178,7 +179,9 @@ fn settle(path: &Path, keep: Keep) -> Result<()> {
         Err(Error::FolderInUse { .. }) => return Ok(()),
         dir => dir?,
     };
-    crate::machine::keep(&dir)?;
+    if dir.read_info()?.status == Status::Complete {
+        crate::machine::keep(&dir)?;
+    }
     if read_summary(&dir).is_none() {
         write_summary(&dir)?;
     }

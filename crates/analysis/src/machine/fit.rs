@@ -55,8 +55,9 @@ struct Octaves {
 
 impl Known {
     fn octaves(&self, highest_hz: f64) -> Result<Octaves, Error> {
-        let force =
-            Sensor::ideal(self.rate_hz).record(&self.force.samples, self.force.rate_hz).map_err(Error::Signal)?;
+        let force = Sensor::ideal(self.rate_hz)
+            .record(&self.force.samples, self.force.rate_hz)
+            .map_err(Error::Signal)?;
         Ok(Octaves {
             measured: third_octaves(&self.measured, self.rate_hz, highest_hz)?,
             force: third_octaves(&force, self.rate_hz, highest_hz)?,
@@ -159,8 +160,7 @@ impl Path {
                 for band in 0..n {
                     let passed = self.gains[band].exp() * octaves.force[band].rms.powi(2);
                     let all = passed + self.background[band];
-                    let (slope, misfit) =
-                        (passed / all, 2.0 * octaves.measured[band].rms.ln() - all.ln());
+                    let (slope, misfit) = (passed / all, 2.0 * octaves.measured[band].rms.ln() - all.ln());
                     matrix[(band, band)] += slope * slope;
                     right[(band, 0)] += slope * misfit;
                 }

@@ -124,9 +124,10 @@ fn elements(scene: &Scene) -> [(&'static str, f64); 4] {
     let [width, height] = match &scene.housing {
         HousingScene::Adapter => [scene.adapter.width_mm, scene.adapter.height_mm],
         HousingScene::Pedestal(pedestal) => [pedestal.width_mm, pedestal.base_mm + pedestal.top_mm],
-        HousingScene::Mesh(_) | HousingScene::Rigid(_) | HousingScene::Springs(_) | HousingScene::Machine(_) => {
-            [0.0; 2]
-        }
+        HousingScene::Mesh(_)
+        | HousingScene::Rigid(_)
+        | HousingScene::Springs(_)
+        | HousingScene::Machine(_) => [0.0; 2],
     };
     let held = match &mesh.grading {
         None => layers(width) * layers(height),

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use stribeck_scene::{
     duty::LONGEST_RUN_S,
     scene::{
-        CageScene, ContactFormula, ContactScene, DefectRing, DefectScene, GuardsScene, HousingScene, ModelScene,
-        OperationScene, OutputScene, ReducedScene, Scene, SolverScene,
+        CageScene, ContactFormula, ContactScene, DefectRing, DefectScene, GuardsScene, HousingScene,
+        ModelScene, OperationScene, OutputScene, ReducedScene, Scene, SolverScene,
     },
 };
 use stribeck_store::run_dir::write_atomic;

@@ -220,7 +220,8 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     let (mut file, scene) = located(asked, place)?;
     // What its machine's sensor records is a signal as a measured one.
     let at_sensor = file.with_file_name("machine.npy");
-    let of_machine = scene.is_some() && options.channel.is_none() && options.path.is_none() && at_sensor.is_file();
+    let of_machine =
+        scene.is_some() && options.channel.is_none() && options.path.is_none() && at_sensor.is_file();
     if of_machine {
         file = at_sensor;
     }

@@ -104,8 +104,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 row.warnings = Some(info.warnings.join("\n")).filter(|text| !text.is_empty());
                 row.program = Some(format!("{} ({})", info.version, info.commit));
                 let machine = RunDir::open(&path)?.machine();
-                let samples =
-                    if machine.exists() { TraceFile::open(machine)?.len() } else { info.samples };
+                let samples = if machine.exists() { TraceFile::open(machine)?.len() } else { info.samples };
                 row.samples = i64::try_from(samples).ok();
                 row.folder = Some(path);
             }

@@ -156,10 +156,7 @@ fn left_out(scene: &ResolvedScene) -> Vec<String> {
             matches!(scene.written.housing, HousingScene::Springs(_)),
             "the springs and dampers of the housing, which hold the ring",
         ),
-        (
-            scene.written.housing.is_rigid(),
-            "the mass of the housing beyond that of the ring",
-        ),
+        (scene.written.housing.is_rigid(), "the mass of the housing beyond that of the ring"),
     ];
     all.into_iter().filter(|(there, _)| *there).map(|(_, what)| what.to_owned()).collect()
 }

@@ -17,8 +17,11 @@ fn desk(name: &str) -> Desk {
     desk
 }
 
-const BEHIND: [&str; 3] =
-    ["--set=housing=machine(file: \"planted.ron\")", "--set=output.interval_us=20", "--set=output.frames=None"];
+const BEHIND: [&str; 3] = [
+    "--set=housing=machine(file: \"planted.ron\")",
+    "--set=output.interval_us=20",
+    "--set=output.frames=None",
+];
 
 /// The path behind which two runs were recorded is found again from their records, by other simulations of the same
 /// bearing, to 3 dB (median) where it passes the spall's knocks; the record is judged as a measured one.
@@ -70,7 +73,8 @@ fn planted_the_machine_of_two_runs_is_found_again() {
 fn invariant_detect_is_that_of_its_seed() {
     let desk = desk("detect");
     let asked = |out: &str| {
-        let words = ["detect", "mine.ron", "--machine=planted.ron", "--lengths=0.2..2", "--points=2", "--records=5"];
+        let words =
+            ["detect", "mine.ron", "--machine=planted.ron", "--lengths=0.2..2", "--points=2", "--records=5"];
         let out = format!("--out={out}");
         let quick = ["--set=solver.duration_ms=250", "--set=output.interval_us=20", "-q", &out];
         desk.succeeds(&[&words[..], &quick].concat());
@@ -80,8 +84,12 @@ fn invariant_detect_is_that_of_its_seed() {
     assert_eq!(desk.text("a/detect.json"), desk.text("b/detect.json"));
     let found = desk.json("a/detect.json");
     assert_eq!(found["version"], 1);
-    let curve: Vec<f64> =
-        found["lengths"].as_array().expect("lengths").iter().filter_map(|one| one["by_curve"].as_f64()).collect();
+    let curve: Vec<f64> = found["lengths"]
+        .as_array()
+        .expect("lengths")
+        .iter()
+        .filter_map(|one| one["by_curve"].as_f64())
+        .collect();
     assert!(curve.len() == 2 && curve[0] <= curve[1], "{found}");
     assert!(desk.text("a/report.html").contains("the smallest spall that is found"));
 }
@@ -94,5 +102,8 @@ fn refuses_what_has_no_machine() {
         &["machine", "a.csv", "--defect=none", "--bearing=6205"],
         &["sound bearings", "--defect outer:0.53"],
     );
-    desk.refuses(&["machine", "a.csv", "b.csv", "--defect=none", "--bearing=6205"], &["2 records and 1 states"]);
+    desk.refuses(
+        &["machine", "a.csv", "b.csv", "--defect=none", "--bearing=6205"],
+        &["2 records and 1 states"],
+    );
 }
