@@ -108,7 +108,10 @@ fn path(machine: &MachineScene, bearing: &BearingScene, highest_hz: f64) -> Resu
     let mut paths = Vec::new();
     if !machine.gains.is_empty() {
         let (hz, gains): (Vec<f64>, Vec<f64>) = machine.gains.iter().map(|g| (g.hz, g.gain)).unzip();
-        paths.push(Response::of_gains(&hz, &gains, highest_hz).map_err(Error::Signal)?);
+        let plain = Response::of_gains(&hz, &gains, highest_hz).map_err(Error::Signal)?;
+        let rings = machine.ring_ms > 0.0;
+        let path = if rings { plain.ringing(1e-3 * machine.ring_ms).map_err(Error::Signal)? } else { plain };
+        paths.push(path);
     }
     let modes = machine.path_modes(bearing);
     if !modes.is_empty() {

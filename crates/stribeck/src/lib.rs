@@ -18,8 +18,8 @@ mod board;
 mod campaign;
 #[cfg(feature = "full")]
 mod compare;
-    self as analyse, self as campaign, self as compare, self as demo, self as detect, self as export,
-    self as infer, self as machine_fit,
+#[cfg(feature = "full")]
+mod demo;
 #[cfg(feature = "full")]
 mod detect;
 #[cfg(not(feature = "full"))]
@@ -63,7 +63,7 @@ use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
     self as analyse, self as campaign, self as compare, self as demo, self as detect, self as export,
-    self as infer, self as machine_fit,
+    self as infer, self as machine_fit, self as sweep,
 };
 pub use out::Loudness;
 pub use place::Place;
