@@ -45,7 +45,7 @@ pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error
                 }
                 p {
                     "Each record is a simulated bearing from another start, behind the machine's path, with another \
-                    background; it is found where the verdict of `analyse` claims " (detection.family) ". The \
+                    background; it is found where the verdict on measured records claims " (detection.family) ". The \
                     intervals are Wilson's. The curve is logistic in the logarithm of the length; the interval of \
                     the length of nine in ten is that of a parametric bootstrap. Seed " (detection.seed) "."
                 }
@@ -60,7 +60,7 @@ fn figure(detection: &Detection) -> Figure {
     let of = |value: &dyn Fn(&stribeck_analysis::detection::OfLength) -> f64| {
         detection.lengths.iter().map(value).collect::<Vec<f64>>()
     };
-    let lengths = of(&|one| one.length_mm);
+    let lengths = of(&|one| one.length_mm.log10());
     let percent =
         |value: &dyn Fn(&stribeck_analysis::detection::OfLength) -> f64| of(&|one| 100.0 * value(one));
     let mut figure = Figure::new(
@@ -77,7 +77,7 @@ fn figure(detection: &Detection) -> Figure {
     .with(Series::listed("95 %", Colour::Grey, lengths, percent(&|one| one.found.low)).as_edge());
     figure.levels.push(Level { y: 100.0 * WANTED, label: "nine of ten".to_owned(), colour: Colour::Grey });
     if let Smallest::Between { length_mm, .. } = detection.smallest {
-        figure.marks.push(Mark::new(length_mm, format!("{length_mm:.2} mm"), Colour::Blue, true));
+        figure.marks.push(Mark::new(length_mm.log10(), format!("{length_mm:.2} mm"), Colour::Blue, true));
     }
     figure
 }

@@ -346,7 +346,8 @@ pub(crate) fn scene(bearing: &str, load_n: f64, speed_rpm: f64, ring: Option<Def
         Some(DefectRing::Outer) => Where::Outer,
         Some(DefectRing::Inner) => Where::Inner,
     };
-    let answers = Answers { bearing: bearing.to_owned(), load_n, speed_rpm, defect, duration_s: 1.0 };
+    let (bearing, length_mm) = (bearing.to_owned(), None);
+    let answers = Answers { bearing, load_n, speed_rpm, defect, length_mm, duration_s: 1.0 };
     Ok(Scene::parse(&text(&name(&answers), &answers), "the scene of the record")?)
 }
 
