@@ -9,6 +9,7 @@ use crate::length::estimate;
 use crate::record::bands::over_period;
 use crate::record::enhanced::{self, Enhanced};
 use crate::record::pass::Record;
+use crate::record::quality::{self, Quality};
 use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
 use crate::speed::settled::Settled;
 use crate::words::sentence::conclude;
@@ -50,7 +51,28 @@ impl Analysis {
     /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or
     /// constant, [`Error::Signal`] when it cannot be processed.
     pub fn of(channel: &Channel, rate_hz: f64, machine: &Machine) -> Result<Self, Error> {
-        let record = Record::read(channel, rate_hz)?;
+        Self::of_inspected(channel, rate_hz, machine, None)
+    }
+
+    /// As [`Analysis::of`]; `quality` is that of the samples as they were measured ([`quality::of`]), where the
+    /// channel was made of them, or nothing for simulated ones, which no sensor has spoilt.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`].
+    pub fn of_inspected(
+        channel: &Channel,
+        rate_hz: f64,
+        machine: &Machine,
+        quality: Option<Vec<Quality>>,
+    ) -> Result<Self, Error> {
+        let mut record = Record::read(channel, rate_hz)?;
+        let quality = match quality {
+            Some(quality) => quality,
+            None => {
+                let hum = quality::hum_of(&record.kept, rate_hz, machine.speed_rpm)?;
+                std::mem::take(&mut record.quality).into_iter().chain(hum).collect()
+            }
+        };
         let speed = Settled::of(&record, machine);
         let candidates = Candidates::of(&record, &speed.machine, speed.lines_hz, speed.by_shaft);
         let half = candidates.as_ref().ok().and_then(|candidates| {
@@ -78,7 +100,9 @@ impl Analysis {
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
         let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families))?;
         let duration_s = record.duration_s();
-        let notes = [record.notes, speed.notes, decided.notes, vec![spall.note]].concat();
+        let of_quality = quality.iter().map(|of| of.words.clone()).collect();
+        let reservation = quality::reservation(&quality);
+        let notes = [record.notes, of_quality, speed.notes, decided.notes, vec![spall.note]].concat();
         Ok(Self {
             findings: MeasuredFindings {
                 channel: channel.name.clone(),
@@ -101,11 +125,16 @@ impl Analysis {
                 sound_as_high: decided
                     .sound
                     .map(|sound| SoundAsHigh { as_high: sound.as_high, records: sound.records }),
-                verdict: std::iter::once(said).chain(said_of_half).collect::<Vec<_>>().join(" "),
+                verdict: std::iter::once(said)
+                    .chain(said_of_half)
+                    .chain(reservation)
+                    .collect::<Vec<_>>()
+                    .join(" "),
                 spall_mm: spall.length_mm,
                 spall_otherwise_mm: spall.otherwise_mm,
                 event_spacing_ms: spall.spacing_ms,
                 spall_below_mm: spall.below_mm,
+                quality,
                 notes,
             },
             beginning: record.kept.into_iter().take(SHOWN).collect(),

@@ -5,6 +5,7 @@ pub(crate) mod bands;
 pub mod course;
 pub mod enhanced;
 pub(crate) mod pass;
+pub mod quality;
 pub mod screening;
 pub mod unit;
 pub(crate) mod velocity;

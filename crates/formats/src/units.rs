@@ -108,6 +108,22 @@ const STEPS: [&str; 18] = [
     "tsample",
 ];
 
+/// Names of the time at which a channel begins; a unit of time may follow.
+const STARTS: [&str; 12] = [
+    "t0",
+    "tstart",
+    "start",
+    "starttime",
+    "startoffset",
+    "timestart",
+    "timeoffset",
+    "timezero",
+    "wfstarttime",
+    "wfstartoffset",
+    "xstart",
+    "x0",
+];
+
 /// Endings of names of channels that rise evenly and are not times.
 const TURNS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
 
@@ -230,6 +246,18 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
             .map(|(_, s)| value * s)
     };
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
+}
+
+/// The seconds of one of a number under a name, where the name is that of the time at which a channel begins.
+pub(crate) fn start_unit_s(name: &str) -> Option<f64> {
+    let key: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
+    let plain = STARTS.contains(&key.as_str()).then_some(1.0);
+    plain.or_else(|| {
+        ends.filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
+            .find(|(key, _)| STARTS.contains(key))
+            .map(|(_, s)| s)
+    })
 }
 
 /// A step from which on numbers without a unit are no seconds: vibration is sampled faster than a thousand

@@ -1,6 +1,7 @@
 //! `stribeck analyse`: verdict, families and levels of a measured record.
 
 mod baseline;
+mod clocks;
 mod components;
 mod gaps;
 mod reading;

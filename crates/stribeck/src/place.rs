@@ -9,7 +9,7 @@ use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
 use stribeck_simulation::{Error, bearing::own_mesh};
 
-use crate::out::{caution, detail};
+use crate::out::{alert, caution, detail};
 
 /// The variable by which `cargo xtask` says, when it hands a command on, which repository it is in.
 pub const REPOSITORY: &str = "STRIBECK_REPOSITORY";
@@ -81,7 +81,7 @@ impl Place {
     pub(crate) fn say_assumed(scene: &Scene) {
         let own = Some(&scene.bearing).filter(|bearing| !bearing.assumed.is_empty());
         for note in own.into_iter().flat_map(catalogue::assumptions) {
-            eprintln!("note: {note}");
+            alert!("note: {note}");
         }
     }
 
