@@ -13,7 +13,7 @@ use crate::record::quality::{self, Quality};
 use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
 use crate::speed::settled::Settled;
 use crate::words::sentence::conclude;
-use crate::{Course, Error, Family, Machine, MeasuredFindings, SoundAsHigh, Varying};
+use crate::{Course, Error, Family, Machine, MeasuredFindings, SPEEDS_RPM, SoundAsHigh, Varying};
 
 /// The numbers and the curves that a report draws.
 #[derive(Debug, Clone)]
@@ -65,6 +65,13 @@ impl Analysis {
         machine: &Machine,
         quality: Option<Vec<Quality>>,
     ) -> Result<Self, Error> {
+        if let Some(rpm) = machine.speed_rpm.filter(|rpm| !SPEEDS_RPM.contains(rpm)) {
+            return Err(Error::NoSignal(format!(
+                "a speed of {rpm} rpm: shafts turn {} to {} times a minute; is it in another unit?",
+                SPEEDS_RPM.start(),
+                SPEEDS_RPM.end()
+            )));
+        }
         let mut record = Record::read(channel, rate_hz)?;
         let quality = match quality {
             Some(quality) => quality,

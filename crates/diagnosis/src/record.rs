@@ -8,5 +8,5 @@ pub(crate) mod pass;
 pub mod quality;
 pub mod screening;
 pub mod unit;
-pub(crate) mod velocity;
+pub mod velocity;
 pub mod zone;

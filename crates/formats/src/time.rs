@@ -4,6 +4,8 @@
 //! that turns steadily: none of them is a signal. All samples are checked, a stretch at a time, because an
 //! interruption of the record, or a joint, shows nowhere else.
 
+mod packets;
+
 use crate::units::{self, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result};
 
@@ -72,6 +74,7 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
         // The one in the same struct before that of the file.
         channel.rate_hz = beside.max_by_key(|(of, _)| of.len()).map(|(_, hz)| *hz);
     }
+    packets::told(channels, &courses, &mut recording.notes)?;
     for (of, start_s) in starts_said(channels)? {
         let own = |c: &&mut Channel| c.name == of || parent(&c.name) == of;
         channels.iter_mut().filter(|c| c.len > 1).filter(own).for_each(|c| c.start_s = Some(start_s));
@@ -121,6 +124,14 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
         }
     }
     recording.notes.dedup();
+    if !channels.iter().any(|c| c.len > 1 && !c.is_time && c.rate_hz.is_some()) {
+        for (channel, _) in channels.iter().zip(&courses).filter(|(_, course)| course.is_none()) {
+            let is_clock = matches!(unit_of(channel), Unit::Time(..)) || says_time(own_name(channel));
+            if is_clock && channel.len >= LEAST as u64 {
+                recording.notes.extend(packets::why_uneven(channel)?);
+            }
+        }
+    }
     Ok(recording)
 }
 
@@ -190,7 +201,7 @@ pub fn says_time(name: &str) -> bool {
     word.starts_with("time")
         || matches!(
             word.as_str(),
-            "t" | "zeit" | "temps" | "tiempo" | "tempo" | "datum" | "date" | "datetime" | "zeitstempel"
+            "t" | "ts" | "epoch" | "unix" | "utc" | "stamp" | "clock" | "uhrzeit" | "zeit" | "temps" | "tiempo" | "tempo" | "datum" | "date" | "datetime" | "zeitstempel"
         )
 }
 

@@ -50,10 +50,11 @@ const TIMES: [(&str, f64, &[&str]); 7] = [
 ];
 
 /// Other units that recorders write, without brackets and in small letters.
-const OTHERS: [&str; 48] = [
+const OTHERS: [&str; 62] = [
     "g", "gn", "mg", "v", "mv", "uv", "µv", "volt", "volts", "n", "kn", "nm", "pa", "kpa", "mpa", "bar", "m",
     "mm", "um", "µm", "μm", "mil", "mils", "in", "rad", "deg", "rev", "rpm", "hz", "khz", "-", "%", "eu",
     "ips", "a", "ma", "w", "kw", "db", "k", "c", "f", "counts", "1", "unit", "units", "strain", "none",
+    "ug", "µg", "g's", "gs", "gee", "gees", "g_rms", "grms", "g rms", "g peak", "gal", "cm", "ft", "inch",
 ];
 
 /// Names of sample rates, of letters and digits alone; a unit of frequency may follow.
@@ -171,7 +172,11 @@ pub(crate) fn is_unit(field: &str) -> bool {
     };
     let degrees = unit.starts_with('°') || unit.starts_with("\u{fffd}");
     let known = !unit.is_empty() && unit.split(['/', '*', '·']).all(one);
-    bracketed || degrees || known && unit != "-" || field.trim() == "-"
+    // `ms-2`, `m s-2`, `m·s⁻²` are powers without a fraction.
+    let plain: String = unit.chars().filter(|c| !" ·*^".contains(*c)).collect();
+    let power = ["s-2", "s⁻²", "s-1", "s⁻¹"].into_iter().find_map(|end| plain.strip_suffix(end));
+    let power = power.is_some_and(|length| OTHERS.contains(&length));
+    bracketed || degrees || power || known && unit != "-" || field.trim() == "-"
 }
 
 impl Unit {

@@ -29,6 +29,7 @@ mod export;
 #[cfg(feature = "full")]
 mod infer;
 pub mod lab;
+mod limits;
 mod list;
 #[cfg(feature = "full")]
 mod many_runs;
@@ -37,6 +38,7 @@ mod memory;
 mod new;
 mod open;
 mod out;
+mod own_files;
 mod pdf;
 mod plan;
 mod remove;
@@ -60,6 +62,7 @@ use elsewhere::{
     self as analyse, self as campaign, self as compare, self as demo, self as export, self as infer,
     self as sweep,
 };
+pub use limits::Limits;
 pub use out::Loudness;
 pub use place::Place;
 
@@ -74,6 +77,8 @@ pub struct Cli {
     command: Command,
     #[command(flatten)]
     loudness: Loudness,
+    #[command(flatten)]
+    limits: Limits,
 }
 
 impl Cli {
@@ -83,6 +88,8 @@ impl Cli {
     /// The message for the user.
     pub fn run(&self) -> Result<ExitCode> {
         self.loudness.apply();
+        self.limits.apply();
+        interrupt::outlive_full_files();
         self.command.run(&match std::env::var_os(place::REPOSITORY) {
             Some(root) => Place::repository("cargo xtask", root.into()),
             None => Place::here(),

@@ -9,7 +9,7 @@ use crate::record::bands::{HIGHEST_HZ, bands};
 use crate::record::course::{Course, Tracing};
 use crate::record::quality::{self, Inspection, Quality};
 use crate::record::screening::{Health, Screening};
-use crate::record::unit::AccelerationUnit;
+use crate::record::unit::MotionUnit;
 use crate::record::velocity::VelocityLevel;
 
 /// Longest segment [samples]: its envelopes take some tens of megabytes.
@@ -131,7 +131,7 @@ impl Pass {
         let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
         let segment = if len > LONGEST_SEGMENT { SEGMENT } else { longest_kept };
         let highest_hz = HIGHEST_HZ.min(0.5 * rate_hz);
-        let unit = channel.unit.as_deref().and_then(AccelerationUnit::parse);
+        let unit = channel.unit.as_deref().and_then(MotionUnit::parse);
         let mut pass = Self {
             segment,
             envelopes: BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz)

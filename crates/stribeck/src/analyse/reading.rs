@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::record;
 use stribeck_diagnosis::{
-    Analysis, Machine, Pressed, over_angle,
+    Analysis, Machine, Pressed, SPEEDS_RPM, over_angle,
     record::quality::{self, Quality},
     speed::{ridge, tacho},
 };
@@ -113,7 +113,17 @@ impl Speed {
         // A shaft that turns the other way has the same lines.
         let number = |text: &str| {
             let rpm = text.trim().parse::<f64>().ok().filter(|rpm| rpm.is_finite() && *rpm != 0.0);
-            rpm.ok_or_else(|| format!("`{text}` is no speed in 1/min, and no range such as 1400..1600"))
+            let rpm = rpm
+                .ok_or_else(|| format!("`{text}` is no speed in 1/min, and no range such as 1400..1600"))?;
+            if SPEEDS_RPM.contains(&rpm.abs()) {
+                Ok(rpm)
+            } else {
+                Err(format!(
+                    "`{text}`: shafts turn {} to {} times a minute; is it in another unit?",
+                    SPEEDS_RPM.start(),
+                    SPEEDS_RPM.end()
+                ))
+            }
         };
         match text.split_once("..") {
             None => Ok(Self::Of(number(text)?.abs())),
