@@ -105,7 +105,7 @@ impl Analysis {
             conclude(&families, decided.unexplained.as_ref())
         };
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
-        let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families))?;
+        let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families).min(0.5 * rate_hz))?;
         let duration_s = record.duration_s();
         let of_quality = quality.iter().map(|of| of.words.clone()).collect();
         let reservation = quality::reservation(&quality);

@@ -224,7 +224,8 @@ fn states_size(rows: &[String], dialect: Dialect, columns: usize, count: u64) ->
     let whole = |field: &&str| field.parse::<u64>().ok();
     let sizes: Option<Vec<u64>> = dialect.split(first).iter().map(whole).collect();
     let Some(sizes) = sizes.filter(|sizes| sizes.contains(&(count - 1))) else { return false };
-    let fraction = |field: &str| field.contains(['.', 'e', 'E']) || dialect.decimal_comma && field.contains(',');
+    let fraction =
+        |field: &str| field.contains(['.', 'e', 'E']) || dialect.decimal_comma && field.contains(',');
     let mut below = rows.take(8).map(|row| dialect.split(row).into_iter().any(fraction));
     below.all(|has| has) || sizes.iter().all(|n| *n == count - 1 || *n == columns as u64)
 }

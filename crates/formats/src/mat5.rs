@@ -99,10 +99,7 @@ pub fn open(path: &Path) -> Result<Recording> {
                     None => {
                         asked = asked.saturating_add(length.saturating_mul(2));
                         memory::ask(path, &format!("the variable at byte {at}"), asked)?;
-                        (&mut file)
-                            .take(length - bytes.len() as u64)
-                            .read_to_end(&mut bytes)
-                            .map_err(io)?;
+                        (&mut file).take(length - bytes.len() as u64).read_to_end(&mut bytes).map_err(io)?;
                         found.matrix(&bytes, "", 0).map_err(of)?;
                     }
                 }

@@ -90,7 +90,8 @@ fn in_use(path: &Path) -> Result<File> {
     memory::ask(path, "a file that was not closed", std::fs::metadata(path).map_err(io)?.len())?;
     let bytes = std::fs::read(path).map_err(io)?;
     File::from_bytes(bytes).map_err(|why| {
-        let what = format!("it was not closed by the program that wrote it, and its structure is not whole: {why}");
+        let what =
+            format!("it was not closed by the program that wrote it, and its structure is not whole: {why}");
         Error::damaged(path, FORMAT, what)
     })
 }

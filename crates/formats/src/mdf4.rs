@@ -49,7 +49,10 @@ pub fn open(path: &Path) -> Result<Recording> {
     let mut found = Found { channels: Vec::new(), notes: Vec::new() };
     if head.starts_with(b"UnFin") {
         source.unfinished = true;
-        found.notes.push("the recorder did not finish the file: its samples are counted, and the last may be missing".to_owned());
+        found.notes.push(
+            "the recorder did not finish the file: its samples are counted, and the last may be missing"
+                .to_owned(),
+        );
     }
     let mut at = source.block(64, b"##HD")?.link(0);
     let mut seen = 0;
@@ -165,7 +168,8 @@ impl Source<'_> {
             b"##DT" if length >= HEAD && links == 0 => {
                 // The length of the last one is written when the file is closed.
                 let to_end = self.size - at.min(self.size);
-                let length = if self.unfinished && (length == HEAD || length > to_end) { to_end } else { length };
+                let length =
+                    if self.unfinished && (length == HEAD || length > to_end) { to_end } else { length };
                 let count = length - HEAD.min(length);
                 if at.saturating_add(length) > self.size {
                     return Err(self.damaged(format!("the samples at {at} end behind the file")));

@@ -46,7 +46,10 @@ impl Recording {
             tdms::open(path)
         } else if begins(b"TDSh") {
             let partner = path.with_extension("tdms");
-            return unknown(&format!("it is the index of `{}`, and holds no sample: open that", partner.display()));
+            return unknown(&format!(
+                "it is the index of `{}`, and holds no sample: open that",
+                partner.display()
+            ));
         } else if begins(b"MDF") || begins(b"UnFinMF") {
             mdf4::open(path)
         } else if begins(b"fLaC") || flac::behind_tag(path)?.is_some() {

@@ -337,7 +337,8 @@ const TIME: u32 = 0x44;
 /// Seconds since 1904: fractions of 2⁻⁶⁴ s, then whole seconds; the other way round where the upper byte is
 /// the first. Zero stands for none.
 fn stamp_s(bytes: &[u8], big_endian: bool) -> Option<f64> {
-    let (first, second): ([u8; 8], [u8; 8]) = (bytes.get(..8)?.try_into().ok()?, bytes.get(8..16)?.try_into().ok()?);
+    let (first, second): ([u8; 8], [u8; 8]) =
+        (bytes.get(..8)?.try_into().ok()?, bytes.get(8..16)?.try_into().ok()?);
     let (whole, fraction) = if big_endian {
         (i64::from_be_bytes(first), u64::from_be_bytes(second))
     } else {

@@ -60,7 +60,7 @@ struct Stretch {
 /// As [`Channel::for_each_block`], for times.
 pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     let channels = &mut recording.channels;
-    let courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
+    let mut courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
     for (channel, course) in channels.iter_mut().zip(&courses) {
         channel.is_time |=
             course.as_ref().is_some_and(|course| course.is_even() || says_time(own_name(channel)));
@@ -74,7 +74,9 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
         // The one in the same struct before that of the file.
         channel.rate_hz = beside.max_by_key(|(of, _)| of.len()).map(|(_, hz)| *hz);
     }
-    packets::told(channels, &courses, &mut recording.notes)?;
+    for told in packets::told(channels, &courses, &mut recording.notes)? {
+        courses[told] = None;
+    }
     for (of, start_s) in starts_said(channels)? {
         let own = |c: &&mut Channel| c.name == of || parent(&c.name) == of;
         channels.iter_mut().filter(|c| c.len > 1).filter(own).for_each(|c| c.start_s = Some(start_s));
@@ -125,7 +127,9 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     }
     recording.notes.dedup();
     if !channels.iter().any(|c| c.len > 1 && !c.is_time && c.rate_hz.is_some()) {
-        for (channel, _) in channels.iter().zip(&courses).filter(|(_, course)| course.is_none()) {
+        for (channel, _) in
+            channels.iter().zip(&courses).filter(|(channel, course)| course.is_none() && !channel.is_time)
+        {
             let is_clock = matches!(unit_of(channel), Unit::Time(..)) || says_time(own_name(channel));
             if is_clock && channel.len >= LEAST as u64 {
                 recording.notes.extend(packets::why_uneven(channel)?);
@@ -175,7 +179,9 @@ fn starts_said(channels: &[Channel]) -> Result<Vec<(String, f64)>> {
             Some((before, units::start_unit_s(&channel.name[before.len() + 1..])?))
         };
         // One for all shifts none of them.
-        let Some((of, second)) = of_struct.filter(|(of, _)| !of.is_empty()).or_else(of_name) else { continue };
+        let Some((of, second)) = of_struct.filter(|(of, _)| !of.is_empty()).or_else(of_name) else {
+            continue;
+        };
         let value = channel.read()?.first().copied().unwrap_or(f64::NAN) * second;
         if value.is_finite() {
             said.push((of.to_owned(), value));
@@ -201,7 +207,21 @@ pub fn says_time(name: &str) -> bool {
     word.starts_with("time")
         || matches!(
             word.as_str(),
-            "t" | "ts" | "epoch" | "unix" | "utc" | "stamp" | "clock" | "uhrzeit" | "zeit" | "temps" | "tiempo" | "tempo" | "datum" | "date" | "datetime" | "zeitstempel"
+            "t" | "ts"
+                | "epoch"
+                | "unix"
+                | "utc"
+                | "stamp"
+                | "clock"
+                | "uhrzeit"
+                | "zeit"
+                | "temps"
+                | "tiempo"
+                | "tempo"
+                | "datum"
+                | "date"
+                | "datetime"
+                | "zeitstempel"
         )
 }
 

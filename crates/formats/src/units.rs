@@ -53,8 +53,8 @@ const TIMES: [(&str, f64, &[&str]); 7] = [
 const OTHERS: [&str; 62] = [
     "g", "gn", "mg", "v", "mv", "uv", "µv", "volt", "volts", "n", "kn", "nm", "pa", "kpa", "mpa", "bar", "m",
     "mm", "um", "µm", "μm", "mil", "mils", "in", "rad", "deg", "rev", "rpm", "hz", "khz", "-", "%", "eu",
-    "ips", "a", "ma", "w", "kw", "db", "k", "c", "f", "counts", "1", "unit", "units", "strain", "none",
-    "ug", "µg", "g's", "gs", "gee", "gees", "g_rms", "grms", "g rms", "g peak", "gal", "cm", "ft", "inch",
+    "ips", "a", "ma", "w", "kw", "db", "k", "c", "f", "counts", "1", "unit", "units", "strain", "none", "ug",
+    "µg", "g's", "gs", "gee", "gees", "g_rms", "grms", "g rms", "g peak", "gal", "cm", "ft", "inch",
 ];
 
 /// Names of sample rates, of letters and digits alone; a unit of frequency may follow.

@@ -53,7 +53,8 @@ impl Scene {
 
 /// Names of the files that the text of a mesh holds beside the first one, as they were included.
 pub fn included(text: &str) -> Vec<&str> {
-    let name = |line| str::strip_prefix(line, "** included: ").or_else(|| str::strip_prefix(line, "$ included: "));
+    let name =
+        |line| str::strip_prefix(line, "** included: ").or_else(|| str::strip_prefix(line, "$ included: "));
     // A binary file includes nothing.
     if text.starts_with(BINARY) { Vec::new() } else { text.lines().filter_map(name).collect() }
 }

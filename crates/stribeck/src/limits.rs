@@ -60,7 +60,9 @@ mod tests {
 
     #[test]
     fn by_hand_sizes_of_memory() {
-        for (text, size) in [("500MB", 500_000_000), ("2 GiB", 1 << 31), ("1.5g", 1_500_000_000), ("4000000", 4_000_000)] {
+        for (text, size) in
+            [("500MB", 500_000_000), ("2 GiB", 1 << 31), ("1.5g", 1_500_000_000), ("4000000", 4_000_000)]
+        {
             assert_eq!(bytes(text), Ok(size), "{text}");
         }
         for text in ["", "GB", "-1GB", "0", "12 apples", "nan", "1e3"] {

@@ -11,15 +11,45 @@ use crate::shelf::Kind;
 /// Files of all kinds of folders, by name.
 const FILES: [&str; 36] = [
     // A run, an ensemble and their reports.
-    "run.json", "ensemble.json", "report.html", "report.pdf", "lab.html", "summary.json", "trace.npy", "signals.npy",
-    "energy.npy", "mesh.vtu", "checkpoint", "scene.ron", ".lock",
+    "run.json",
+    "ensemble.json",
+    "report.html",
+    "report.pdf",
+    "lab.html",
+    "summary.json",
+    "trace.npy",
+    "signals.npy",
+    "energy.npy",
+    "mesh.vtu",
+    "checkpoint",
+    "scene.ron",
+    ".lock",
     // A campaign.
-    "runs.parquet", "events.parquet", "signals.parquet", "campaign.ron", "scenes.txt", "index.html", ".turn",
+    "runs.parquet",
+    "events.parquet",
+    "signals.parquet",
+    "campaign.ron",
+    "scenes.txt",
+    "index.html",
+    ".turn",
     // A validation, an inference, a comparison, a stiffness.
-    "validation.json", "inference.ron", "inference.json", "posterior.parquet", "measured.uff", "synthetic.uff",
-    "measured.wav", "synthetic.wav", "compare.json", "stiffness.json", "DATASHEET.md",
+    "validation.json",
+    "inference.ron",
+    "inference.json",
+    "posterior.parquet",
+    "measured.uff",
+    "synthetic.uff",
+    "measured.wav",
+    "synthetic.wav",
+    "compare.json",
+    "stiffness.json",
+    "DATASHEET.md",
     // Records.
-    "findings.json", "trend.json", "trend.html", "joint.json", "joint.html",
+    "findings.json",
+    "trend.json",
+    "trend.html",
+    "joint.json",
+    "joint.html",
 ];
 
 /// Folders whose files all have one of some endings.
@@ -113,10 +143,12 @@ fn is_own(name: &str) -> bool {
 fn is_half_written(name: &str) -> bool {
     let hidden = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
     let beside = name.strip_suffix(".new").or_else(|| name.strip_suffix(".part"));
-    let base = |name: &str| name.rsplit_once('.').is_some_and(|(file, writer)| {
-        writer.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-')
-            && FILES.iter().any(|of| *of == file || of.split('.').next() == Some(file))
-    });
+    let base = |name: &str| {
+        name.rsplit_once('.').is_some_and(|(file, writer)| {
+            writer.bytes().all(|byte| byte.is_ascii_digit() || byte == b'-')
+                && FILES.iter().any(|of| *of == file || of.split('.').next() == Some(file))
+        })
+    };
     hidden.is_some_and(base) || beside.is_some_and(|name| base(name) || FILES.contains(&name))
 }
 
@@ -132,19 +164,32 @@ mod tests {
             fs::create_dir_all(run.join(folder)).expect("room");
         }
         for file in [
-            "run.json", "scene.ron", ".run.json.12-3.part", "figures/a.svg", "figures/mine.xcf", "photos/a.jpg",
-            "start-001/run.json", "start-001/frames/1.npy", "thesis.docx", "trace.npy.bak",
+            "run.json",
+            "scene.ron",
+            ".run.json.12-3.part",
+            "figures/a.svg",
+            "figures/mine.xcf",
+            "photos/a.jpg",
+            "start-001/run.json",
+            "start-001/frames/1.npy",
+            "thesis.docx",
+            "trace.npy.bak",
         ] {
             fs::write(run.join(file), "x").expect("room");
         }
         let contents = Contents::of(&run);
         let named = |all: &[PathBuf]| {
-            let mut names: Vec<String> =
-                all.iter().map(|path| path.strip_prefix(&run).expect("below").display().to_string()).collect();
+            let mut names: Vec<String> = all
+                .iter()
+                .map(|path| path.strip_prefix(&run).expect("below").display().to_string())
+                .collect();
             names.sort();
             names
         };
-        assert_eq!(named(&contents.others), ["figures/mine.xcf", "notes", "photos", "thesis.docx", "trace.npy.bak"]);
+        assert_eq!(
+            named(&contents.others),
+            ["figures/mine.xcf", "notes", "photos", "thesis.docx", "trace.npy.bak"]
+        );
         contents.remove().expect("removed");
         assert!(run.join("photos/a.jpg").exists() && run.join("thesis.docx").exists());
         assert!(!run.join("run.json").exists() && !run.join("start-001").exists());

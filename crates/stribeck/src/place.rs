@@ -5,9 +5,9 @@ use std::time::SystemTime;
 
 use anyhow::{Result, anyhow, bail};
 use stribeck_scene::advice::doubts_of_material;
-use stribeck_scene::{catalogue, mesh_text};
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
+use stribeck_scene::{catalogue, mesh_text};
 use stribeck_simulation::{Error, bearing::own_mesh};
 
 use crate::out::{alert, caution, detail, tell};
@@ -52,9 +52,13 @@ impl Place {
 
     /// Prints the files that mesh files include: a run, and its page, hold a copy of each.
     fn say_copied(scene: &Scene) {
-        let copied: Vec<String> = scene.mesh_texts().flat_map(mesh_text::included).map(|name| format!("`{name}`")).collect();
+        let copied: Vec<String> =
+            scene.mesh_texts().flat_map(mesh_text::included).map(|name| format!("`{name}`")).collect();
         if !copied.is_empty() {
-            tell!("note: the run will hold copies of the files that its mesh includes: {}", copied.join(", "));
+            tell!(
+                "note: the run will hold copies of the files that its mesh includes: {}",
+                copied.join(", ")
+            );
         }
     }
 

@@ -40,17 +40,26 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             say!("  stays, as it is not of Stribeck: {}", listed(&contents.others, &item.path));
         }
     }
-    let bytes = contents.iter().flat_map(|c| &c.own).filter_map(|file| file.metadata().ok()).map(|of| of.len()).sum();
+    let bytes =
+        contents.iter().flat_map(|c| &c.own).filter_map(|file| file.metadata().ok()).map(|of| of.len()).sum();
     if !options.yes && !agreed(&items, bytes, place)? {
         say!("nothing was removed");
         return Ok(ExitCode::FAILURE);
     }
     contents.iter().try_for_each(Contents::remove)?;
-    let kept: Vec<String> =
-        items.iter().filter(|item| item.path.exists()).map(|item| format!("`{}`", shown(&item.path))).collect();
-    say!("removed {}, {}", in_number(items.len() - kept.len()), in_words(bytes));
-    if !kept.is_empty() {
-        say!("kept, with the files of others in them: {}", kept.join(", "));
+    let kept: Vec<String> = items
+        .iter()
+        .filter(|item| item.path.exists())
+        .map(|item| format!("`{}`", shown(&item.path)))
+        .collect();
+    let files: usize = contents.iter().map(|contents| contents.own.len()).sum();
+    match kept.len() {
+        0 => say!("removed {}, {}", in_number(items.len()), in_words(bytes)),
+        _ => say!(
+            "removed {files} files, {}; with the files of others in them stay {}",
+            in_words(bytes),
+            kept.join(", ")
+        ),
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -119,7 +119,8 @@ pub(crate) fn reservation(found: &[Quality]) -> Option<String> {
         .filter(|of| of.kind.spoils_verdicts())
         .map(|of| format!("{} ({} of the samples)", of.kind.name(), percent(of.share)))
         .collect();
-    (!spoils.is_empty()).then(|| format!("The record is not sound, and the verdict rests on it: {}.", spoils.join(", ")))
+    (!spoils.is_empty())
+        .then(|| format!("The record is not sound, and the verdict rests on it: {}.", spoils.join(", ")))
 }
 
 /// A share in words.
@@ -231,19 +232,31 @@ impl Inspection {
         let clipped = self.values.clipped(natural, few.is_some());
         let is_mark = |value: f64| self.values.is_far(value);
         // A long stay at the largest value is clipping, too, unless that value is a mark of missing samples.
-        let (at_rail, inside): (Vec<_>, Vec<_>) =
-            flats.into_iter().partition(|run| self.values.is_extreme(run.value) && !is_mark(run.value) && few.is_none() && !run.to_end && !run.from_start);
+        let (at_rail, inside): (Vec<_>, Vec<_>) = flats.into_iter().partition(|run| {
+            self.values.is_extreme(run.value)
+                && !is_mark(run.value)
+                && few.is_none()
+                && !run.to_end
+                && !run.from_start
+        });
         let rails = [clipped.0, clipped.1].into_iter().flatten().collect::<Vec<_>>();
-        let ends: Vec<Run> = inside.iter().filter(|run| run.count as f64 > 0.01 * all && (run.to_end || run.from_start)).copied().collect();
+        let ends: Vec<Run> = inside
+            .iter()
+            .filter(|run| run.count as f64 > 0.01 * all && (run.to_end || run.from_start))
+            .copied()
+            .collect();
         let gaps: Vec<Run> = inside.into_iter().filter(|run| !ends.contains(run)).collect();
         // A channel that stands at its largest value to the end is dead, and not clipped.
-        let rails: Vec<Rail> = rails.into_iter().filter(|rail| ends.iter().all(|run| run.value != rail.value)).collect();
+        let rails: Vec<Rail> =
+            rails.into_iter().filter(|rail| ends.iter().all(|run| run.value != rail.value)).collect();
         let held: u64 = at_rail.iter().map(|run| run.count).sum();
         let at: u64 = rails.iter().map(|rail| rail.samples).sum();
         if at.max(held) > 0 {
             let share = at.max(held) as f64 / all;
-            let first = rails.iter().map(|r| r.first).chain(at_rail.iter().map(|r| r.from)).min().unwrap_or(0);
-            let values: Vec<String> = rails.iter().map(|r| spelt(r.value)).chain(at_rail.iter().map(|r| spelt(r.value))).collect();
+            let first =
+                rails.iter().map(|r| r.first).chain(at_rail.iter().map(|r| r.from)).min().unwrap_or(0);
+            let values: Vec<String> =
+                rails.iter().map(|r| spelt(r.value)).chain(at_rail.iter().map(|r| spelt(r.value))).collect();
             let mut values = values;
             values.dedup();
             values.truncate(2);
@@ -318,12 +331,14 @@ impl Inspection {
 
     /// Level from which on a channel is silent, over that of most of the record, and how much of it must be.
     fn silent(&self) -> Option<Quality> {
-        let deviations: Vec<f64> = self.stretches.iter().filter(|s| s.count > 1.0).map(Stretch::deviation).collect();
+        let deviations: Vec<f64> =
+            self.stretches.iter().filter(|s| s.count > 1.0).map(Stretch::deviation).collect();
         let usual = median(&deviations)?;
         let quiet = |d: &&f64| **d < SILENT * usual;
         let first = deviations.iter().take_while(quiet).count();
         let last = deviations.iter().rev().take_while(quiet).count();
-        let (count, from, side) = if last >= first { (last, deviations.len() - last, "last") } else { (first, 0, "first") };
+        let (count, from, side) =
+            if last >= first { (last, deviations.len() - last, "last") } else { (first, 0, "first") };
         let share = count as f64 / deviations.len() as f64;
         (share > 0.05).then(|| {
             let seconds = (count * self.length) as f64 / self.rate_hz;
@@ -336,7 +351,8 @@ impl Inspection {
 
     /// A mean that moves by more than the signal swings.
     fn drift(&self) -> Option<Quality> {
-        let some: Vec<&Stretch> = self.stretches.iter().filter(|s| s.count >= 0.5 * self.length as f64).collect();
+        let some: Vec<&Stretch> =
+            self.stretches.iter().filter(|s| s.count >= 0.5 * self.length as f64).collect();
         if some.len() < 8 || (self.length as f64) < SHORTEST_S * self.rate_hz {
             return None;
         }
@@ -346,7 +362,8 @@ impl Inspection {
         let eighth = some.len() / 8;
         let mean = |part: &[&Stretch]| part.iter().map(|s| s.mean()).sum::<f64>() / part.len() as f64;
         let means: Vec<f64> = some.chunks(eighth).filter(|c| c.len() == eighth).map(mean).collect();
-        let (low, high) = means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(*m), h.max(*m)));
+        let (low, high) =
+            means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(*m), h.max(*m)));
         (usual > 0.0 && high - low > DRIFTING * usual).then(|| {
             self.quality(Kind::Drift, 1.0, 0, format!(
                 "drifting mean: it moves by {} over the record, {:.1} times the root mean square of the signal about it; the sensor warms up, or its bias is not settled. Levels about the mean of the whole record are too high",
@@ -378,4 +395,189 @@ fn stretches(count: usize) -> String {
 fn spelt(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     format!("{rounded}")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use stribeck_testing::Noise;
+
+    use super::*;
+
+    const RATE_HZ: f64 = 12_800.0;
+    const COUNT: usize = 1 << 16;
+
+    /// Nearly Gaussian, of unit variance.
+    fn gaussian(noise: &mut Noise) -> f64 {
+        (0..12).map(|_| noise.share()).sum::<f64>() - 6.0
+    }
+
+    /// Noise, and knocks that ring at 3 kHz: a sound record of a damaged bearing.
+    fn sound() -> Vec<f64> {
+        let mut noise = Noise::new(5);
+        let ring = |s: f64| 3.0 * (-s / 1e-3).exp() * (TAU * 3000.0 * s).sin();
+        (0..COUNT).map(|n| 0.4 * gaussian(&mut noise) + ring((n as f64 / RATE_HZ) % (1.0 / 71.7))).collect()
+    }
+
+    fn found(samples: &[f64]) -> Vec<Quality> {
+        let mut inspection = Inspection::new(RATE_HZ, samples.len());
+        samples.chunks(777).for_each(|block| inspection.add(block));
+        inspection.finish()
+    }
+
+    fn kinds(samples: &[f64]) -> Vec<Kind> {
+        found(samples).into_iter().map(|of| of.kind).collect()
+    }
+
+    /// Up to 11 of 100 samples at a rail in runs of one to three had no word.
+    #[test]
+    fn issue_clipping_in_short_runs_is_found_by_its_density() {
+        let x = sound();
+        let (mut dither, lsb) = (Noise::new(9), 0.8 / 2048.0);
+        let clip = |low: f64, high: f64| x.iter().map(|x| x.clamp(low, high)).collect::<Vec<f64>>();
+        let hard = clip(-0.8, 0.8);
+        let stepped = |samples: Vec<f64>| samples.into_iter().map(|x| (x / lsb).round() * lsb).collect();
+        let held: Vec<f64> = (0..COUNT).map(|n| hard[n / 4 * 4]).collect();
+        for (name, samples, sides) in [
+            ("hard", hard.clone(), 2.0),
+            ("12 bits", stepped(clip(-0.8, 0.8 - lsb)), 2.0),
+            ("dither", hard.iter().map(|x| x + 2e-4 * gaussian(&mut dither)).collect(), 2.0),
+            ("one side", clip(f64::NEG_INFINITY, 0.8), 1.0),
+            ("whole numbers", hard.iter().map(|x| (x * 40_960.0).round().min(32_767.0)).collect(), 2.0),
+            ("held fourfold", held, 2.0),
+            (
+                "a glitch beyond",
+                hard.iter().enumerate().map(|(n, x)| if n == 777 { 9.0 } else { *x }).collect(),
+                2.0,
+            ),
+        ] {
+            let all = found(&samples);
+            assert!(all.len() == 1 && all[0].kind == Kind::Clipped, "{name}: {all:?}");
+            let share =
+                x.iter().filter(|x| **x >= 0.8 || sides > 1.0 && **x <= -0.8).count() as f64 / COUNT as f64;
+            assert!((all[0].share / share - 1.0).abs() < 0.1, "{name}: {} of {share}", all[0].share);
+        }
+        // A rail that a sample in four hundred reaches.
+        assert_eq!(kinds(&clip(-2.5, 2.5)), [Kind::Clipped]);
+    }
+
+    #[test]
+    fn issue_filled_gaps_and_dead_channels_are_named() {
+        let x = sound();
+        let gap = |fill: &dyn Fn(usize) -> f64, length: usize| {
+            let mut y = x.clone();
+            for from in (5000..65_000).step_by(10_000) {
+                (from..from + length).for_each(|n| y[n] = fill(from));
+            }
+            y
+        };
+        let share = |samples: &[f64], kind: Kind| {
+            let all = found(samples);
+            assert!(all.len() == 1 && all[0].kind == kind, "{kind:?}: {all:?}");
+            all[0].share
+        };
+        let part = |n: usize| n as f64 / COUNT as f64;
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 2e-4, "{a} {b}");
+        near(share(&gap(&|_| 0.0, 800), Kind::Held), part(4800));
+        near(share(&gap(&|_| 0.0, 50), Kind::Held), part(300));
+        near(share(&gap(&|at| x[at - 1], 800), Kind::Held), part(4806));
+        near(share(&gap(&|_| -999.0, 800), Kind::Held), part(4800));
+        near(share(&gap(&|_| 1e6, 800), Kind::Held), part(4800));
+        let tail = |value: &dyn Fn(f64) -> f64| {
+            x.iter().enumerate().map(|(n, x)| if n < 40_000 { *x } else { value(*x) }).collect::<Vec<f64>>()
+        };
+        near(share(&tail(&|_| 0.0), Kind::Dead), part(COUNT - 40_000));
+        near(share(&tail(&|_| 7.0), Kind::Dead), part(COUNT - 40_000));
+        assert!((share(&tail(&|x| 1e-4 * x), Kind::Dead) - 0.39).abs() < 0.02);
+        let bridged: Vec<f64> = (0..COUNT)
+            .map(
+                |n| if (20_000..20_800).contains(&n) { x[20_000] + (n - 20_000) as f64 * 1e-4 } else { x[n] },
+            )
+            .collect();
+        near(share(&bridged, Kind::Held), part(800));
+    }
+
+    #[test]
+    fn issue_converters_amplifiers_and_means_are_named() {
+        let x = sound();
+        let rounded = |step: f64| x.iter().map(|x| (x / step).round() * step).collect::<Vec<f64>>();
+        assert_eq!(kinds(&rounded(1.0)), [Kind::FewLevels]);
+        let mut at = 0.0;
+        let slow: Vec<f64> = x
+            .iter()
+            .map(|x| {
+                at += (x - at).clamp(-0.25, 0.25);
+                at
+            })
+            .collect();
+        assert_eq!(kinds(&slow), [Kind::SlewLimited]);
+        let moved = |by: &dyn Fn(f64) -> f64| {
+            x.iter().enumerate().map(|(n, x)| x + by(n as f64 / RATE_HZ)).collect::<Vec<f64>>()
+        };
+        assert_eq!(kinds(&moved(&|s| 5.0 * s)), [Kind::Drift]);
+        assert_eq!(kinds(&moved(&|s| 10.0 * (-s).exp())), [Kind::Drift]);
+        assert_eq!(kinds(&moved(&|_| 500.0)), []);
+    }
+
+    /// What looks like these, and is none of them.
+    #[test]
+    fn behaves_sound_records_have_no_findings() {
+        let x = sound();
+        let of =
+            |make: &dyn Fn(f64) -> f64| (0..COUNT).map(|n| make(n as f64 / RATE_HZ)).collect::<Vec<f64>>();
+        let knock = |s: f64| 3.0 * (-s / 1e-3).exp() * (TAU * 3000.0 * s).sin();
+        for (name, samples) in [
+            ("noise and knocks", x.clone()),
+            ("12 bits", x.iter().map(|x| (x / 0.01).round() * 0.01).collect()),
+            ("48 levels", x.iter().map(|x| (x / 0.15).round() * 0.15).collect()),
+            ("sample and hold", (0..COUNT).map(|n| x[n / 16 * 16]).collect()),
+            ("sine", of(&|s| (TAU * 100.3 * s).sin())),
+            ("sine in step with the samples", of(&|s| (TAU * 100.0 * s).sin())),
+            ("beating", of(&|s| (1.0 + 0.5 * (TAU * 3.0 * s).sin()) * (TAU * 1000.7 * s).sin())),
+            ("knocks without noise", of(&|s| knock(s % (1.0 / 71.7)))),
+            (
+                "knocks in step with the samples",
+                (0..COUNT).map(|n| knock((n % 180) as f64 / RATE_HZ)).collect(),
+            ),
+            ("a period again and again", (0..COUNT).map(|n| x[n % 1024]).collect()),
+        ] {
+            assert_eq!(found(&samples), [], "{name}");
+        }
+    }
+
+    #[test]
+    fn planted_lines_of_the_mains_and_power_below_half_the_rate_are_named() {
+        let mut noise = Noise::new(3);
+        let mut with = |hz: f64, height: f64, third: f64| -> Vec<f64> {
+            let of = |n: usize, hz: f64| (TAU * hz * n as f64 / RATE_HZ).sin();
+            (0..COUNT).map(|n| gaussian(&mut noise) + height * of(n, hz) + third * of(n, 3.0 * hz)).collect()
+        };
+        let named = |samples: &[f64], rpm| hum_of(samples, RATE_HZ, rpm).unwrap().map(|of| of.kind);
+        assert_eq!(named(&with(50.0, 0.5, 0.2), None), Some(Kind::Hum));
+        assert_eq!(named(&with(60.02, 3.0, 0.0), Some(1200.0 * 1.1)), Some(Kind::Hum));
+        assert_eq!(named(&with(50.0, 3.0, 0.5), Some(3000.0)), None, "the shaft turns as fast");
+        assert_eq!(named(&with(48.0, 3.0, 0.5), None), None);
+        assert_eq!(named(&with(50.0, 0.0, 0.0), None), None);
+        let high = with(6200.0, 2.0, 0.0);
+        let record = |samples: Vec<f64>| {
+            let channel = Channel::held("a", samples);
+            crate::record::pass::Record::read(&channel, RATE_HZ).unwrap().quality
+        };
+        assert!(record(high).iter().any(|of| of.kind == Kind::Aliased));
+        assert_eq!(record(with(3000.0, 2.0, 0.0)), []);
+    }
+
+    #[test]
+    fn behaves_a_verdict_says_that_it_rests_on_spoilt_samples() {
+        let clipped: Vec<f64> = sound().iter().map(|x| x.clamp(-0.8, 0.8)).collect();
+        let channel = Channel::held("a", clipped);
+        let findings = crate::Analysis::of(&channel, RATE_HZ, &crate::Machine::default()).unwrap().findings;
+        assert!(
+            findings.verdict.contains("not sound") && findings.verdict.contains("clipped ("),
+            "{}",
+            findings.verdict
+        );
+        assert!(findings.notes.iter().any(|note| note.starts_with("clipped:")), "{:?}", findings.notes);
+    }
 }

@@ -83,7 +83,9 @@ impl AccelerationUnit {
             (Some("mm"), _) => Some(Self::MillimetrePerSecondSquared),
             (Some("in" | "inch"), _) => Some(Self::InchPerSecondSquared),
             (Some("ft"), _) => Some(Self::FootPerSecondSquared),
-            (_, "g" | "G" | "gn" | "g0" | "g's" | "gs" | "G's" | "Gs" | "gee" | "gees") => Some(Self::Gravity),
+            (_, "g" | "G" | "gn" | "g0" | "g's" | "gs" | "G's" | "Gs" | "gee" | "gees") => {
+                Some(Self::Gravity)
+            }
             (_, "mg" | "mG" | "mgn") => Some(Self::MilliGravity),
             (_, "ug" | "µg" | "μg") => Some(Self::MicroGravity),
             _ => None,

@@ -41,11 +41,7 @@ pub(crate) struct VelocityLevel {
 impl VelocityLevel {
     /// For segments of `segment` samples in `unit`; `None` where that is no acceleration or velocity, or
     /// the record too short or sampled too slowly for the band.
-    pub(crate) fn new(
-        rate_hz: f64,
-        segment: usize,
-        unit: Option<MotionUnit>,
-    ) -> Result<Option<Self>, Error> {
+    pub(crate) fn new(rate_hz: f64, segment: usize, unit: Option<MotionUnit>) -> Result<Option<Self>, Error> {
         let Some(unit) = unit else { return Ok(None) };
         let part = (SEGMENT_S * rate_hz) as usize;
         if part > segment || 0.5 * rate_hz < BAND_HZ.1 {

@@ -63,12 +63,14 @@ impl Packets {
     }
 }
 
-/// Sets the rate of channels whose clock stamps packets, with notes on packets that lack.
+/// Sets the rate of channels whose clock stamps packets, with notes on packets that lack; returns the places of
+/// such clocks.
 pub(super) fn told(
     channels: &mut [Channel],
     courses: &[Option<Course>],
     notes: &mut Vec<String>,
-) -> Result<()> {
+) -> Result<Vec<usize>> {
+    let mut found = Vec::new();
     for n in 0..channels.len() {
         let clock = &channels[n];
         let unit = unit_of(clock);
@@ -84,7 +86,10 @@ pub(super) fn told(
         let second = match unit {
             Unit::Time(_, second) => second,
             // Of all units only one makes a date of our time of it.
-            _ => [1.0, 1e-3, 1e-6, 1e-9].into_iter().find(|s| DATES_S.contains(&(first_stamp * s))).unwrap_or(1.0),
+            _ => [1.0, 1e-3, 1e-6, 1e-9]
+                .into_iter()
+                .find(|s| DATES_S.contains(&(first_stamp * s)))
+                .unwrap_or(1.0),
         };
         let gaps: Vec<&[(f64, f64)]> =
             packets.starts.windows(2).filter(|w| w[1].1 - w[0].1 > LACKS * period).collect();
@@ -94,7 +99,8 @@ pub(super) fn told(
         let span = packets.starts[packets.starts.len() - 1].1 - first_stamp;
         let exact_hz = size * count / (span * second);
         // The first and the last stamp are rounded; where a round rate lies within that, it is the rate.
-        let digit = packets.starts.windows(2).map(|w| w[1].1 - w[0].1).fold(f64::INFINITY, f64::min).min(period);
+        let digit =
+            packets.starts.windows(2).map(|w| w[1].1 - w[0].1).fold(f64::INFINITY, f64::min).min(period);
         let round_hz = (exact_hz / 100.0).round() * 100.0;
         let is_round = (exact_hz / round_hz - 1.0).abs() < digit / span;
         let hz = if is_round { round_hz } else { units::rounded(exact_hz) };
@@ -116,12 +122,13 @@ pub(super) fn told(
             ));
         }
         let (len, group) = (clock.len, clock.group.clone());
+        found.push(n);
         channels[n].is_time = true;
         for channel in channels.iter_mut().filter(|c| c.len == len && c.group == group) {
             channel.rate_hz = channel.rate_hz.or(Some(hz).filter(|hz| hz.is_finite() && *hz > 0.0));
         }
     }
-    Ok(())
+    Ok(found)
 }
 
 /// Why a channel that is called a time says no rate.

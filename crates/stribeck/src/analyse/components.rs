@@ -8,7 +8,7 @@ use stribeck_diagnosis::sources;
 use stribeck_report::write_sources;
 use stribeck_store::run_dir::check_folder;
 
-use super::{Options, default_folder, print_families, add_zone};
+use super::{Options, add_zone, default_folder, print_families};
 use crate::out::say;
 use crate::place::{Place, shown};
 

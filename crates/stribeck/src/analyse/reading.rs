@@ -113,8 +113,8 @@ impl Speed {
         // A shaft that turns the other way has the same lines.
         let number = |text: &str| {
             let rpm = text.trim().parse::<f64>().ok().filter(|rpm| rpm.is_finite() && *rpm != 0.0);
-            let rpm = rpm
-                .ok_or_else(|| format!("`{text}` is no speed in 1/min, and no range such as 1400..1600"))?;
+            let rpm =
+                rpm.ok_or_else(|| format!("`{text}` is no speed in 1/min, and no range such as 1400..1600"))?;
             if SPEEDS_RPM.contains(&rpm.abs()) {
                 Ok(rpm)
             } else {

@@ -36,7 +36,8 @@ impl Flat {
             Some((run, _)) if !is_new => run.count += 1,
             _ => {
                 self.interrupt();
-                self.run = Some((Run { value, from: at, count: 1, from_start: at == 0, to_end: false }, is_extreme));
+                self.run =
+                    Some((Run { value, from: at, count: 1, from_start: at == 0, to_end: false }, is_extreme));
             }
         }
     }

@@ -199,12 +199,17 @@ impl Rails {
         }
         let (mut least, mut most) = (*occupied.first()?, *occupied.last()?);
         let mut skipped = 0;
-        let inward: Vec<usize> = if upper { occupied.iter().rev().copied().collect() } else { occupied.clone() };
+        let inward: Vec<usize> =
+            if upper { occupied.iter().rev().copied().collect() } else { occupied.clone() };
         let outer = inward.into_iter().find(|n| {
             skipped += self.bands[*n].samples;
             skipped > beyond
         })?;
-        if upper { most = outer } else { least = outer }
+        if upper {
+            most = outer
+        } else {
+            least = outer
+        }
         let range = most.checked_sub(least)? as f64;
         // Where a converter has fewer levels than there are bands, one of these holds one level.
         let spacing = range / (occupied.len() as f64 - 1.0);

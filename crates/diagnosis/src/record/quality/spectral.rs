@@ -27,7 +27,8 @@ pub(crate) fn hum(frequencies_hz: &[f64], density: &[f64], shaft_hz: Option<f64>
         let reach = OFF_HZ.max(1.5 * grid) * hz / MAINS_HZ[0];
         let near = density.get(of(hz - reach)..=of(hz + reach))?;
         let top = near.iter().copied().fold(0.0, f64::max);
-        let (low, high) = (density.get(of(hz - 12.0)..of(hz - 4.0))?, density.get(of(hz + 4.0)..of(hz + 12.0))?);
+        let (low, high) =
+            (density.get(of(hz - 12.0)..of(hz - 4.0))?, density.get(of(hz + 4.0)..of(hz + 12.0))?);
         let around = super::median(&[low, high].concat())?;
         Some((10.0 * (top / around).log10(), near.iter().sum::<f64>() * grid))
     };
