@@ -3,7 +3,7 @@
 use stribeck_dsp::BandEnvelope;
 use stribeck_dsp::channel::Channel;
 
-use crate::families::verdict::{Candidates, Decided, FirstDefect};
+use crate::families::verdict::{Candidates, Decided, FirstDefect, orders_and_speed};
 use crate::families::{halves, rules, second};
 use crate::length::estimate;
 use crate::record::bands::over_period;
@@ -70,6 +70,12 @@ impl Analysis {
                 "a speed of {rpm} rpm: shafts turn {} to {} times a minute; is it in another unit?",
                 SPEEDS_RPM.start(),
                 SPEEDS_RPM.end()
+            )));
+        }
+        if let Some(hz) = far_beyond(machine, rate_hz, channel.len as f64 / rate_hz) {
+            return Err(Error::NoSignal(format!(
+                "families of this bearing at this speed lie at {hz:.3e} Hz, far above half of the {rate_hz} samples \
+                 a second; is the speed, a diameter or the rate in another unit?"
             )));
         }
         let mut record = Record::read(channel, rate_hz)?;
@@ -168,6 +174,16 @@ impl Analysis {
         let bands = if family.over.is_some() { &self.over } else { &self.bands };
         bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
     }
+}
+
+/// The highest frequency of a family, where no record could hold it and the search for it would not end: so many
+/// times the sample rate, and as many resolutions.
+fn far_beyond(machine: &Machine, rate_hz: f64, duration_s: f64) -> Option<f64> {
+    const TIMES: f64 = 10.0;
+    const RESOLUTIONS: f64 = 1e5;
+    let (orders, shaft_hz) = orders_and_speed(machine).ok()?;
+    let hz = shaft_hz * [orders.bpfo, orders.bpfi, orders.bsf].into_iter().fold(0.0, f64::max);
+    (hz > TIMES * rate_hz && hz * duration_s > RESOLUTIONS).then_some(hz)
 }
 
 /// The families after the last rules: a second defect beside the first, claims that stand in one half of the

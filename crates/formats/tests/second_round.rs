@@ -139,7 +139,7 @@ fn issue_stamps_of_packets_say_the_rate_and_what_lacks() {
     let found = opened(&desk, "lost.csv", format!("epoch_ms,acc_g\n{text}").as_bytes());
     sampled(&found, "acc_g");
     assert!(
-        found.notes.join("; ").contains("packets lack: 7 of 128, the first after row 224"),
+        found.notes.join("; ").contains("packets lack: 6 of 127, the first after row 224"),
         "{:?}",
         found.notes
     );
@@ -154,7 +154,7 @@ fn issue_times_that_say_no_rate_say_why() {
     for (text, words) in [
         (stamped(&|n| (COUNT - n) as f64 / RATE_HZ), "fall from row to row"),
         (stamped(&|n| (n % 1000) as f64 / RATE_HZ * if n < 2000 { 1.0 } else { -1.0 }), "go back at"),
-        (stamped(&|n| ((n * n) as f64 / 1e4).floor() / 1e3), "stand still at"),
+        (stamped(&|n| ((n * n) as f64 / 1e4).floor() / 1e3), "uneven"),
     ] {
         let found = opened(&desk, "a.csv", text.as_bytes());
         assert_eq!(found.channel("acc").unwrap().rate_hz, None);
