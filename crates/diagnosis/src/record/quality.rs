@@ -1,5 +1,5 @@
-//! What sensor, amplifier, converter and recorder did to the samples: clipping, gaps that were filled, a channel
-//! that died, too few levels, a limited slew rate, a mean that drifts, mains hum, and content that no
+//! What sensor, amplifier, converter and recorder did to the samples: clipping, gaps that were filled, a
+//! channel that died, too few levels, a limited slew rate, a mean that drifts, mains hum, and content that no
 //! anti-alias filter let pass.
 //!
 //! All of it is found in the pass in which a record is read anyway, in memory that does not grow with it. Each
@@ -154,6 +154,24 @@ impl Stretch {
     }
 }
 
+/// Stretches that stand still.
+#[derive(Debug, Default)]
+struct Stays {
+    /// At the least or the largest value.
+    at_rail: Vec<Run>,
+    /// From the beginning, or to the end.
+    ends: Vec<Run>,
+    /// All others.
+    gaps: Vec<Run>,
+}
+
+/// Part of the record from which on a channel that stands still at its end is dead.
+const LEAST_END: f64 = 0.01;
+
+/// What gaps mean, and what to do.
+const NO_SIGNAL: &str = "there is no signal in them, and levels and kurtosis are not those of the machine. Leave \
+                         the field empty in their place, or cut the record there";
+
 /// An inspection in the making.
 #[derive(Debug)]
 pub(crate) struct Inspection {
@@ -224,105 +242,155 @@ impl Inspection {
     pub(crate) fn finish(mut self) -> Vec<Quality> {
         self.flat.interrupt();
         self.lines.interrupt();
-        let mut found = Vec::new();
-        let all = self.count.max(1) as f64;
         let few = self.values.few_levels();
-        let natural = self.flat.natural();
-        let flats = self.flat.stretches(self.count);
-        let clipped = self.values.clipped(natural, few.is_some());
-        let is_mark = |value: f64| self.values.is_far(value);
-        // A long stay at the largest value is clipping, too, unless that value is a mark of missing samples.
-        let (at_rail, inside): (Vec<_>, Vec<_>) = flats.into_iter().partition(|run| {
-            self.values.is_extreme(run.value)
-                && !is_mark(run.value)
-                && few.is_none()
-                && !run.to_end
-                && !run.from_start
-        });
-        let rails = [clipped.0, clipped.1].into_iter().flatten().collect::<Vec<_>>();
-        let ends: Vec<Run> = inside
-            .iter()
-            .filter(|run| run.count as f64 > 0.01 * all && (run.to_end || run.from_start))
-            .copied()
-            .collect();
-        let gaps: Vec<Run> = inside.into_iter().filter(|run| !ends.contains(run)).collect();
-        // A channel that stands at its largest value to the end is dead, and not clipped.
-        let rails: Vec<Rail> =
-            rails.into_iter().filter(|rail| ends.iter().all(|run| run.value != rail.value)).collect();
-        let held: u64 = at_rail.iter().map(|run| run.count).sum();
-        let at: u64 = rails.iter().map(|rail| rail.samples).sum();
-        if at.max(held) > 0 {
-            let share = at.max(held) as f64 / all;
-            let first =
-                rails.iter().map(|r| r.first).chain(at_rail.iter().map(|r| r.from)).min().unwrap_or(0);
-            let values: Vec<String> =
-                rails.iter().map(|r| spelt(r.value)).chain(at_rail.iter().map(|r| spelt(r.value))).collect();
-            let mut values = values;
-            values.dedup();
-            values.truncate(2);
-            found.push(self.quality(Kind::Clipped, share, first, format!(
-                "clipped: {} of the samples stand at {}, the end of the range; levels, crest and kurtosis are too low, the clipping makes harmonics, and a length from two events is not to be trusted. Measure again with a larger range",
-                percent(share), values.join(" and ")
-            )));
+        let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
+        let mut found: Vec<Quality> = self.clipped(few.is_some(), &at_rail, &ends).into_iter().collect();
+        found.extend(ends.iter().map(|run| self.dead(run)));
+        if few.is_none() {
+            found.extend(self.held(&gaps));
         }
-        for run in &ends {
-            let share = run.count as f64 / all;
-            let seconds = run.count as f64 / self.rate_hz;
-            let side = if run.to_end { "last" } else { "first" };
-            found.push(self.quality(Kind::Dead, share, run.from, format!(
-                "dead channel: the {side} {seconds:.2} s ({} of the samples) stand at {}; there is no signal, and levels and kurtosis are not those of the machine. Cut the record to its sound part",
-                percent(share), spelt(run.value)
-            )));
-        }
-        if let Some(first) = gaps.first()
-            && few.is_none()
-        {
-            let total: u64 = gaps.iter().map(|run| run.count).sum();
-            let share = total as f64 / all;
-            let one = gaps.iter().all(|run| run.value == first.value);
-            let longest = gaps.iter().map(|run| run.count).max().unwrap_or(0);
-            let with = match (one, first.value) {
-                (true, v) if v == 0.0 => "zero, as a recorder fills gaps".to_owned(),
-                (true, v) => format!("{}, as a recorder marks gaps", spelt(v)),
-                _ => "the value before, as a recorder bridges gaps".to_owned(),
-            };
-            found.push(self.quality(Kind::Held, share, first.from, format!(
-                "filled gaps: {} of up to {longest} samples ({} of the samples) stand still at {with}; there is no signal in them, and levels and kurtosis are not those of the machine. Leave the field empty in their place, or cut the record there",
-                stretches(gaps.len()), percent(share)
-            )));
-        }
-        if let [first, ..] = self.lines.kept() {
-            let total: u64 = self.lines.kept().iter().map(|run| run.count).sum();
-            let share = total as f64 / all;
-            found.push(self.quality(Kind::Held, share, first.from, format!(
-                "filled gaps: {} of {} samples and more ({} of the samples) are straight lines, as a recorder bridges gaps; there is no signal in them, and levels and kurtosis are not those of the machine. Leave the field empty in their place, or cut the record there",
-                stretches(self.lines.kept().len()), flat::STRAIGHT, percent(share)
-            )));
-        }
+        found.extend(self.straight());
         if ends.is_empty() {
             found.extend(self.silent());
         }
-        if let Some(levels) = few {
-            found.push(self.quality(Kind::FewLevels, 1.0, 0, format!(
-                "few levels: {levels} values make up 99 % of all samples; the converter hardly resolves the signal, and its steps make noise and lines of their own. Measure again with a smaller range or a more sensitive sensor"
-            )));
-        } else if found.is_empty()
-            && let (Some(up), Some(down)) = self.steps.clipped(1, false)
-        {
-            let share = (up.samples + down.samples) as f64 / all;
-            if share > SLEWING {
-                let rate = 0.5 * (up.value - down.value) * self.rate_hz;
-                found.push(self.quality(Kind::SlewLimited, share, up.first.min(down.first), format!(
-                    "limited slew rate: {} of the steps from sample to sample are the largest, {} a second; the amplifier cannot follow the signal, levels are too low, and lines of its own appear. Use a smaller gain, or an amplifier that is faster",
-                    percent(share), spelt(rate)
-                )));
-            }
+        match few {
+            Some(levels) => found.push(self.coarse(levels)),
+            // A gap makes steps of its own.
+            None if found.is_empty() => found.extend(self.slewing()),
+            None => {}
         }
         // What was filled in moves the mean, too.
         if found.iter().all(|of| !matches!(of.kind, Kind::Held | Kind::Dead)) {
             found.extend(self.drift());
         }
         found
+    }
+
+    /// The stretches that stand still, by what they mean.
+    fn stays(&self, few_levels: bool) -> Stays {
+        let least = LEAST_END * self.count as f64;
+        let mut stays = Stays::default();
+        for run in self.flat.stretches(self.count) {
+            let at_end = run.to_end || run.from_start;
+            // A mark of missing samples is no rail.
+            let is_rail = self.values.is_extreme(run.value) && !self.values.is_far(run.value);
+            if at_end && run.count as f64 > least {
+                stays.ends.push(run);
+            } else if is_rail && !at_end && !few_levels {
+                stays.at_rail.push(run);
+            } else {
+                stays.gaps.push(run);
+            }
+        }
+        stays
+    }
+
+    /// Samples at the ends of the range; a long stay there is clipping, too.
+    fn clipped(&self, few_levels: bool, at_rail: &[Run], ends: &[Run]) -> Option<Quality> {
+        let (low, high) = self.values.clipped(self.flat.natural(), few_levels);
+        // A channel that stands at its largest value to the end is dead, and not clipped.
+        let stands = |rail: &Rail| ends.iter().any(|run| run.value == rail.value);
+        let rails: Vec<Rail> = [low, high].into_iter().flatten().filter(|rail| !stands(rail)).collect();
+        let held: u64 = at_rail.iter().map(|run| run.count).sum();
+        let samples = held.max(rails.iter().map(|rail| rail.samples).sum());
+        if samples == 0 {
+            return None;
+        }
+        let places = rails.iter().map(|rail| (rail.first, rail.value));
+        let places: Vec<(u64, f64)> = places.chain(at_rail.iter().map(|run| (run.from, run.value))).collect();
+        let first = places.iter().map(|(first, _)| *first).min().unwrap_or(0);
+        let mut values: Vec<String> = places.iter().map(|(_, value)| spelt(*value)).collect();
+        values.dedup();
+        values.truncate(2);
+        let share = self.part(samples);
+        let words = format!(
+            "clipped: {} of the samples stand at {}, the end of the range; levels, crest and kurtosis are too \
+             low, the clipping makes harmonics, and a length from two events is not to be trusted. Measure \
+             again with a larger range",
+            percent(share),
+            values.join(" and ")
+        );
+        Some(self.quality(Kind::Clipped, share, first, words))
+    }
+
+    /// A channel that stands still at its beginning or to its end.
+    fn dead(&self, run: &Run) -> Quality {
+        let share = self.part(run.count);
+        let words = format!(
+            "dead channel: the {} {:.2} s ({} of the samples) stand at {}; there is no signal, and levels and \
+             kurtosis are not those of the machine. Cut the record to its sound part",
+            if run.to_end { "last" } else { "first" },
+            run.count as f64 / self.rate_hz,
+            percent(share),
+            spelt(run.value)
+        );
+        self.quality(Kind::Dead, share, run.from, words)
+    }
+
+    /// Gaps that were filled with one value, or with the last one.
+    fn held(&self, gaps: &[Run]) -> Option<Quality> {
+        let first = gaps.first()?;
+        let share = self.part(gaps.iter().map(|run| run.count).sum());
+        let longest = gaps.iter().map(|run| run.count).max().unwrap_or(0);
+        let with = if gaps.iter().any(|run| run.value != first.value) {
+            "the value before, as a recorder bridges gaps".to_owned()
+        } else if first.value == 0.0 {
+            "zero, as a recorder fills gaps".to_owned()
+        } else {
+            format!("{}, as a recorder marks gaps", spelt(first.value))
+        };
+        let words = format!(
+            "filled gaps: {} of up to {longest} samples ({} of the samples) stand still at {with}; {NO_SIGNAL}",
+            stretches(gaps.len()),
+            percent(share)
+        );
+        Some(self.quality(Kind::Held, share, first.from, words))
+    }
+
+    /// Gaps that were filled with straight lines.
+    fn straight(&self) -> Option<Quality> {
+        let kept = self.lines.kept();
+        let first = kept.first()?;
+        let share = self.part(kept.iter().map(|run| run.count).sum());
+        let words = format!(
+            "filled gaps: {} of {} samples and more ({} of the samples) are straight lines, as a recorder \
+             bridges gaps; {NO_SIGNAL}",
+            stretches(kept.len()),
+            flat::STRAIGHT,
+            percent(share)
+        );
+        Some(self.quality(Kind::Held, share, first.from, words))
+    }
+
+    /// A converter of a few levels.
+    fn coarse(&self, levels: usize) -> Quality {
+        let words = format!(
+            "few levels: {levels} values make up 99 % of all samples; the converter hardly resolves the \
+             signal, and its steps make noise and lines of their own. Measure again with a smaller range or a \
+             more sensitive sensor"
+        );
+        self.quality(Kind::FewLevels, 1.0, 0, words)
+    }
+
+    /// Steps from sample to sample that pile up at the largest, upwards and downwards.
+    fn slewing(&self) -> Option<Quality> {
+        let (Some(up), Some(down)) = self.steps.clipped(1, false) else { return None };
+        let share = self.part(up.samples + down.samples);
+        let rate = 0.5 * (up.value - down.value).abs() * self.rate_hz;
+        let words = format!(
+            "limited slew rate: {} of the steps from sample to sample are the largest, {} a second; the \
+             amplifier cannot follow the signal, levels are too low, and lines of its own appear. Use a \
+             smaller gain, or an amplifier that is faster",
+            percent(share),
+            spelt(rate)
+        );
+        let first = up.first.min(down.first);
+        (share > SLEWING).then(|| self.quality(Kind::SlewLimited, share, first, words))
+    }
+
+    /// A number of samples as a part of all.
+    fn part(&self, samples: u64) -> f64 {
+        samples as f64 / self.count.max(1) as f64
     }
 
     fn quality(&self, kind: Kind, share: f64, first: u64, words: String) -> Quality {
@@ -343,7 +411,9 @@ impl Inspection {
         (share > 0.05).then(|| {
             let seconds = (count * self.length) as f64 / self.rate_hz;
             self.quality(Kind::Dead, share, (from * self.length) as u64, format!(
-                "dead channel: the {side} {seconds:.2} s ({} of the samples) have less than a hundredth of the level of the rest; the machine stood still, or the sensor came loose. Cut the record to its sound part",
+                "dead channel: the {side} {seconds:.2} s ({} of the samples) have less than a hundredth of \
+                 the level of the rest; the machine stood still, or the sensor came loose. Cut the record \
+                 to its sound part",
                 percent(share)
             ))
         })
@@ -365,10 +435,18 @@ impl Inspection {
         let (low, high) =
             means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(*m), h.max(*m)));
         (usual > 0.0 && high - low > DRIFTING * usual).then(|| {
-            self.quality(Kind::Drift, 1.0, 0, format!(
-                "drifting mean: it moves by {} over the record, {:.1} times the root mean square of the signal about it; the sensor warms up, or its bias is not settled. Levels about the mean of the whole record are too high",
-                spelt(high - low), (high - low) / usual
-            ))
+            self.quality(
+                Kind::Drift,
+                1.0,
+                0,
+                format!(
+                    "drifting mean: it moves by {} over the record, {:.1} times the root mean square of the \
+                 signal about it; the sensor warms up, or its bias is not settled. Levels about the mean of \
+                 the whole record are too high",
+                    spelt(high - low),
+                    (high - low) / usual
+                ),
+            )
         })
     }
 }

@@ -9,7 +9,8 @@ const OFF_HZ: f64 = 0.2;
 /// Height of the line over its surroundings, and of a further one [dB].
 const HIGH_DB: f64 = 20.0;
 const FURTHER_DB: f64 = 12.0;
-/// Share of the power from which on a line needs no harmonics to be named.
+/// Share of the power from which on the lines matter, and from which on one needs no harmonics to be named.
+const SOME: f64 = 0.05;
 const MUCH: f64 = 0.2;
 /// A shaft whose lines are as near as this part is a reason of its own.
 const SHAFT: f64 = 0.01;
@@ -39,7 +40,7 @@ pub(crate) fn hum(frequencies_hz: &[f64], density: &[f64], shaft_hz: Option<f64>
         let (high_db, power) = line(mains)?;
         let odd = [3.0, 5.0].into_iter().filter_map(|k| line(k * mains)).filter(|of| of.0 > FURTHER_DB);
         let share = (power + odd.clone().map(|of| of.1).sum::<f64>()) / total;
-        let is_hum = high_db > HIGH_DB && !turns && (odd.count() > 0 || share > MUCH);
+        let is_hum = high_db > HIGH_DB && share > SOME && !turns && (odd.count() > 0 || share > MUCH);
         is_hum.then(|| Quality {
             kind: Kind::Hum,
             share: 1.0,
