@@ -14,8 +14,6 @@ use std::sync::{Mutex, PoisonError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use crate::scene::{HousingScene, Scene};
-
 /// Prefix of a binary file.
 const BINARY: &str = "base64:";
 /// Files that include files that include files.
@@ -37,18 +35,6 @@ static ALLOWED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 /// Lets mesh files include files below these folders, too, from now on.
 pub fn allow(folders: &[PathBuf]) {
     ALLOWED.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(folders);
-}
-
-impl Scene {
-    /// The texts of all its mesh files.
-    pub fn mesh_texts(&self) -> impl Iterator<Item = &str> {
-        let housing = match &self.housing {
-            HousingScene::Mesh(housing) => Some(housing.text.as_str()),
-            _ => None,
-        };
-        let rings = [&self.outer_ring_mesh, &self.inner_ring_mesh].into_iter().flatten();
-        housing.into_iter().chain(rings.map(|ring| ring.text.as_str()))
-    }
 }
 
 /// Names of the files that the text of a mesh holds beside the first one, as they were included.
