@@ -18,7 +18,7 @@ use std::ffi::{OsStr, OsString};
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
-use stribeck::{Loudness, Place};
+use stribeck::{Limits, Loudness, Place};
 
 /// Stribeck: explicit dynamics of rolling element bearings. The commands of `stribeck`, and those that
 /// develop it.
@@ -29,6 +29,8 @@ struct Cli {
     command: Command,
     #[command(flatten)]
     loudness: Loudness,
+    #[command(flatten)]
+    limits: Limits,
 }
 
 #[derive(Debug, Subcommand)]
@@ -71,6 +73,7 @@ fn main() -> ExitCode {
     }
     let cli = stribeck::command_line::parse::<Cli>();
     cli.loudness.apply();
+    cli.limits.apply();
     stribeck::conclude(match cli.command {
         Command::Program(command) if command.needs_full() => handed_on::program(&words, cli.loudness),
         Command::Program(command) => lab::with_module(command)

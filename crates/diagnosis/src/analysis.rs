@@ -3,16 +3,17 @@
 use stribeck_dsp::BandEnvelope;
 use stribeck_dsp::channel::Channel;
 
-use crate::families::verdict::{Candidates, Decided, FirstDefect};
+use crate::families::verdict::{Candidates, Decided, FirstDefect, orders_and_speed};
 use crate::families::{halves, rules, second};
 use crate::length::estimate;
 use crate::record::bands::over_period;
 use crate::record::enhanced::{self, Enhanced};
 use crate::record::pass::Record;
+use crate::record::quality::{self, Quality};
 use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
 use crate::speed::settled::Settled;
 use crate::words::sentence::conclude;
-use crate::{Course, Error, Family, Machine, MeasuredFindings, SoundAsHigh, Varying};
+use crate::{Course, Error, Family, Machine, MeasuredFindings, SPEEDS_RPM, SoundAsHigh, Varying};
 
 /// The numbers and the curves that a report draws.
 #[derive(Debug, Clone)]
@@ -50,7 +51,41 @@ impl Analysis {
     /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or
     /// constant, [`Error::Signal`] when it cannot be processed.
     pub fn of(channel: &Channel, rate_hz: f64, machine: &Machine) -> Result<Self, Error> {
-        let record = Record::read(channel, rate_hz)?;
+        Self::of_inspected(channel, rate_hz, machine, None)
+    }
+
+    /// As [`Analysis::of`]; `quality` is that of the samples as they were measured ([`quality::of`]), where the
+    /// channel was made of them, or nothing for simulated ones, which no sensor has spoilt.
+    ///
+    /// # Errors
+    /// As [`Analysis::of`].
+    pub fn of_inspected(
+        channel: &Channel,
+        rate_hz: f64,
+        machine: &Machine,
+        quality: Option<Vec<Quality>>,
+    ) -> Result<Self, Error> {
+        if let Some(rpm) = machine.speed_rpm.filter(|rpm| !SPEEDS_RPM.contains(rpm)) {
+            return Err(Error::NoSignal(format!(
+                "a speed of {rpm} rpm: shafts turn {} to {} times a minute; is it in another unit?",
+                SPEEDS_RPM.start(),
+                SPEEDS_RPM.end()
+            )));
+        }
+        if let Some(hz) = far_beyond(machine, rate_hz, channel.len as f64 / rate_hz) {
+            return Err(Error::NoSignal(format!(
+                "families of this bearing at this speed lie at {hz:.3e} Hz, far above half of the {rate_hz} samples \
+                 a second; is the speed, a diameter or the rate in another unit?"
+            )));
+        }
+        let mut record = Record::read(channel, rate_hz)?;
+        let quality = match quality {
+            Some(quality) => quality,
+            None => {
+                let hum = quality::hum_of(&record.kept, rate_hz, machine.speed_rpm)?;
+                std::mem::take(&mut record.quality).into_iter().chain(hum).collect()
+            }
+        };
         let speed = Settled::of(&record, machine);
         let candidates = Candidates::of(&record, &speed.machine, speed.lines_hz, speed.by_shaft);
         let half = candidates.as_ref().ok().and_then(|candidates| {
@@ -76,9 +111,11 @@ impl Analysis {
             conclude(&families, decided.unexplained.as_ref())
         };
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
-        let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families))?;
+        let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families).min(0.5 * rate_hz))?;
         let duration_s = record.duration_s();
-        let notes = [record.notes, speed.notes, decided.notes, vec![spall.note]].concat();
+        let of_quality = quality.iter().map(|of| of.words.clone()).collect();
+        let reservation = quality::reservation(&quality);
+        let notes = [record.notes, of_quality, speed.notes, decided.notes, vec![spall.note]].concat();
         Ok(Self {
             findings: MeasuredFindings {
                 channel: channel.name.clone(),
@@ -101,11 +138,16 @@ impl Analysis {
                 sound_as_high: decided
                     .sound
                     .map(|sound| SoundAsHigh { as_high: sound.as_high, records: sound.records }),
-                verdict: std::iter::once(said).chain(said_of_half).collect::<Vec<_>>().join(" "),
+                verdict: std::iter::once(said)
+                    .chain(said_of_half)
+                    .chain(reservation)
+                    .collect::<Vec<_>>()
+                    .join(" "),
                 spall_mm: spall.length_mm,
                 spall_otherwise_mm: spall.otherwise_mm,
                 event_spacing_ms: spall.spacing_ms,
                 spall_below_mm: spall.below_mm,
+                quality,
                 notes,
             },
             beginning: record.kept.into_iter().take(SHOWN).collect(),
@@ -132,6 +174,16 @@ impl Analysis {
         let bands = if family.over.is_some() { &self.over } else { &self.bands };
         bands.iter().find(|b| b.low_hz == low_hz && b.high_hz == high_hz)
     }
+}
+
+/// The highest frequency of a family, where no record could hold it and the search for it would not end: so many
+/// times the sample rate, and as many resolutions.
+fn far_beyond(machine: &Machine, rate_hz: f64, duration_s: f64) -> Option<f64> {
+    const TIMES: f64 = 10.0;
+    const RESOLUTIONS: f64 = 1e5;
+    let (orders, shaft_hz) = orders_and_speed(machine).ok()?;
+    let hz = shaft_hz * [orders.bpfo, orders.bpfi, orders.bsf].into_iter().fold(0.0, f64::max);
+    (hz > TIMES * rate_hz && hz * duration_s > RESOLUTIONS).then_some(hz)
 }
 
 /// The families after the last rules: a second defect beside the first, claims that stand in one half of the

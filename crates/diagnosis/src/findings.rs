@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::record::quality::Quality;
 use crate::record::zone;
 use crate::{AccelerationUnit, Family, Health, Unexplained};
 
@@ -65,6 +66,9 @@ pub struct MeasuredFindings {
     /// Where a passage has a single event: the spall is shorter than this, if entry and exit both knock [mm].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spall_below_mm: Option<f64>,
+    /// What sensor, amplifier, converter and recorder did to the samples; none for a sound record. The notes
+    /// have it in words.
+    pub quality: Vec<Quality>,
     /// Limits of the conclusion.
     pub notes: Vec<String>,
 }

@@ -57,7 +57,7 @@ pub use families::unexplained::Unexplained;
 pub use findings::{Interval, MeasuredFindings, SoundAsHigh};
 pub use length::estimate::SHORTEST_S;
 pub use length::pressed::{Pressed, usual_load_n};
-pub use machine::Machine;
+pub use machine::{Machine, SPEEDS_RPM};
 pub use record::course::Course;
 pub use record::enhanced::Enhanced;
 pub use record::screening::Health;

@@ -5,6 +5,10 @@ use stribeck_theory::catalogue::CatalogueBearing;
 use crate::length::pressed::Pressed;
 use crate::sources::Surroundings;
 
+/// No shaft turns slower or faster [1/min]: rings of kilns take minutes for a turn, spindles on air reach some
+/// hundred thousand turns a minute.
+pub const SPEEDS_RPM: std::ops::RangeInclusive<f64> = 1e-3..=1e6;
+
 /// Speed and bearing of the machine, as far as they are known.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Machine {

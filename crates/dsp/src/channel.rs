@@ -18,6 +18,7 @@
 
 mod error;
 
+pub mod memory;
 pub mod wav;
 
 use std::any::Any;
@@ -61,6 +62,9 @@ pub struct Channel {
     pub unit: Option<String>,
     /// Sample rate [Hz], where it is known.
     pub rate_hz: Option<f64>,
+    /// Time of its first sample [s], from an origin that all channels of its file share; `None` where the file
+    /// does not say it.
+    pub start_s: Option<f64>,
     /// Number of samples.
     pub len: u64,
     /// Whether it is the time, or rises as evenly (a count, an angle), and so is no signal.
@@ -81,6 +85,7 @@ impl Channel {
             name: name.into(),
             unit: None,
             rate_hz: None,
+            start_s: None,
             len,
             is_time: false,
             group: String::new(),
@@ -98,6 +103,12 @@ impl Channel {
     /// The same channel with a sample rate [Hz].
     pub fn at_rate(mut self, rate_hz: Option<f64>) -> Self {
         self.rate_hz = rate_hz;
+        self
+    }
+
+    /// The same channel with the time of its first sample [s].
+    pub fn from_time(mut self, start_s: Option<f64>) -> Self {
+        self.start_s = start_s;
         self
     }
 
@@ -147,8 +158,9 @@ impl Channel {
     /// All samples.
     ///
     /// # Errors
-    /// As [`Channel::for_each_block`].
+    /// As [`Channel::for_each_block`]; [`Error::TooLarge`] for more samples than memory may hold.
     pub fn read(&self) -> Result<Vec<f64>> {
+        memory::ask(self.name.as_ref(), "all of its samples at once", self.len.saturating_mul(8))?;
         let mut all = Vec::with_capacity(usize::try_from(self.len).unwrap_or(0).min(1 << 28));
         self.for_each_block(|block| {
             all.extend_from_slice(block);

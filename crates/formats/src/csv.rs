@@ -19,7 +19,8 @@ use std::path::{Path, PathBuf};
 use dialect::{Dialect, Field};
 pub(crate) use lines::is_wide;
 use lines::{Coding, Lines};
-use stribeck_dsp::channel::Samples;
+pub(crate) use stamp::stamp;
+use stribeck_dsp::channel::{Samples, memory};
 
 use crate::recording::{equal_lengths, left_out};
 use crate::units;
@@ -89,7 +90,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     let columns = columns(&start[first..], dialect);
     let rows: Vec<&String> = start[first..].iter().filter(|line| !dialect.is_empty(line)).collect();
-    if first == 0 && lie_across(&rows, columns) {
+    let is_whole = start.len() < PREAMBLE + SAMPLE;
+    if first == 0 && is_whole && lie_across(&rows, columns) {
         return across(path, &rows, dialect);
     }
     let commas = dialect.decimal_comma && start[first..].iter().any(|line| line.contains(','));
@@ -101,9 +103,17 @@ pub fn open(path: &Path) -> Result<Recording> {
     {
         first -= 1;
     }
-    let (names, units) = head::names(&start[..first], dialect, columns);
-    let (census, rows, mut notes) = census(path, coding, dialect, first as u64, columns)?;
+    let (names, units) = head::names(&start[..first], dialect, columns, names_rows(&rows, dialect));
+    let mut counted = census(path, coding, dialect, first as u64, columns)?;
+    if states_size(&start[first..], dialect, columns, counted.1) {
+        first += 1;
+        counted = census(path, coding, dialect, first as u64, columns)?;
+        let size = start[first - 1].trim();
+        counted.2.push(format!("line {first}, `{size}`, says how many samples there are: it is none itself"));
+    }
+    let (census, rows, mut notes) = counted;
     let mut channels = Vec::new();
+    let origin_s = census.iter().find_map(|census| census.origin_s).unwrap_or(0);
     for (at, (name, census)) in names.into_iter().zip(census).enumerate() {
         if let Some(why) = census.refusal() {
             // A separator at the end of all rows makes no column.
@@ -122,7 +132,6 @@ pub fn open(path: &Path) -> Result<Recording> {
                 "`{name}`: `{text}` in line {line} is no number{more}: such samples are left out"
             ));
         }
-        let origin_s = census.origin_s.unwrap_or(0);
         let column = Column { path: path.to_owned(), at, preamble: first as u64, dialect, coding, origin_s };
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
         let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
@@ -131,7 +140,29 @@ pub fn open(path: &Path) -> Result<Recording> {
         channel.column = Some(at + 1);
         channels.push(channel);
     }
+    // Each column by itself would read the whole file: that of a wide table is read once.
+    let channels = if channels.len() > NARROW { held(path, &channels, rows)? } else { channels };
     Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
+}
+
+/// Most columns that stay in the file.
+const NARROW: usize = 64;
+
+/// Columns of `rows` samples, read at once.
+fn held(path: &Path, channels: &[Channel], rows: u64) -> Result<Vec<Channel>> {
+    let Some(first) = channels.first().and_then(|c| c.samples_as::<Column>()) else { return Ok(Vec::new()) };
+    memory::ask(path, "its columns", rows.saturating_mul(8 * channels.len() as u64))?;
+    let mut columns = vec![Vec::with_capacity(rows as usize); channels.len()];
+    let places: Vec<&Column> = channels.iter().filter_map(|c| c.samples_as()).collect();
+    let mut lines = Lines::open(path, first.coding)?;
+    while let Some(line) = lines.next(path)? {
+        if lines.read <= first.preamble || first.dialect.is_empty(&line) || columns[0].len() as u64 == rows {
+            continue;
+        }
+        let fields = first.dialect.split(&line);
+        columns.iter_mut().zip(&places).for_each(|(column, of)| column.push(of.value(&fields)));
+    }
+    Ok(channels.iter().zip(columns).map(|(channel, samples)| channel.clone().through(|_| samples)).collect())
 }
 
 /// Whether the first row counts the columns from 0, as pandas heads a table without names, and the next holds
@@ -170,6 +201,35 @@ fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
         }
 }
 
+/// Whether the first column names the rows, as R and others write it: it counts them, or holds texts alone.
+fn names_rows(rows: &[&String], dialect: Dialect) -> bool {
+    let fields: Vec<Vec<&str>> = rows.iter().take(SAMPLE).map(|row| dialect.split(row)).collect();
+    // A separator at the end of a row makes no column.
+    if fields.len() < 2 || fields.iter().any(|row| row.len() < 2 || row.last().is_none_or(|f| f.is_empty())) {
+        return false;
+    }
+    let kinds: Vec<Field> = fields.iter().map(|row| dialect.field(row[0])).collect();
+    let counts = kinds.windows(2).all(|pair| match pair {
+        [Field::Number(a), Field::Number(b)] => a.fract() == 0.0 && b - a == 1.0,
+        _ => false,
+    });
+    counts || kinds.iter().all(|kind| *kind == Field::Text)
+}
+
+/// Whether the first of `count` rows says the size of the table, `2,16384` or `16384`: one of its whole numbers
+/// is that of the rows below, and the others that of the columns, or the rows below have fractions.
+fn states_size(rows: &[String], dialect: Dialect, columns: usize, count: u64) -> bool {
+    let mut rows = rows.iter().filter(|line| !dialect.is_empty(line));
+    let (Some(first), true) = (rows.next(), count > 2) else { return false };
+    let whole = |field: &&str| field.parse::<u64>().ok();
+    let sizes: Option<Vec<u64>> = dialect.split(first).iter().map(whole).collect();
+    let Some(sizes) = sizes.filter(|sizes| sizes.contains(&(count - 1))) else { return false };
+    let fraction =
+        |field: &str| field.contains(['.', 'e', 'E']) || dialect.decimal_comma && field.contains(',');
+    let mut below = rows.take(8).map(|row| dialect.split(row).into_iter().any(fraction));
+    below.all(|has| has) || sizes.iter().all(|n| *n == count - 1 || *n == columns as u64)
+}
+
 /// Places of the numbers of a row.
 fn columns_of_numbers(row: &str, dialect: Dialect) -> Vec<usize> {
     let fields = dialect.split(row).into_iter().enumerate();
@@ -191,9 +251,10 @@ fn is_row_beside_words(line: &str, dialect: Dialect, columns: usize, numbers: &[
 /// Fewest samples of rows that are channels.
 const WIDE: usize = 256;
 
-/// Whether rows are the channels: they are few and long, as a vector that was written as a row.
+/// Whether rows are the channels: they are all of the file, few and long, as a vector that was written as a
+/// row.
 fn lie_across(rows: &[&String], columns: usize) -> bool {
-    columns >= WIDE && rows.len() < SAMPLE / 2 && columns > 16 * rows.len()
+    columns >= WIDE && columns > 16 * rows.len()
 }
 
 /// Channels of a table whose rows they are.
@@ -203,7 +264,8 @@ fn across(path: &Path, rows: &[&String], dialect: Dialect) -> Result<Recording> 
         _ => f64::NAN,
     };
     let row = |(n, row): (usize, &&String)| {
-        let mut samples: Vec<f64> = dialect.split(row).into_iter().map(value).collect();
+        let mut samples = Vec::new();
+        dialect.each(row, |field| samples.push(value(field)));
         // A separator at the end of a row makes no sample.
         if row.trim_end().ends_with(dialect.separator) {
             samples.pop();
@@ -364,6 +426,17 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
     file.flush().map_err(io)
 }
 
+impl Column {
+    /// The number in a row of fields.
+    fn value(&self, fields: &[&str]) -> f64 {
+        match self.dialect.field(fields.get(self.at).copied().unwrap_or_default()) {
+            Field::Number(x) => x,
+            Field::Stamp(s, ns) => s.saturating_sub(self.origin_s) as f64 + 1e-9 * f64::from(ns),
+            Field::Missing | Field::Text => f64::NAN,
+        }
+    }
+}
+
 impl Samples for Column {
     fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
         let mut lines = Lines::open(&self.path, self.coding)?;
@@ -375,11 +448,7 @@ impl Samples for Column {
                 continue;
             }
             let fields = self.dialect.split(&line);
-            block.push(match self.dialect.field(fields.get(self.at).copied().unwrap_or_default()) {
-                Field::Number(x) => x,
-                Field::Stamp(s, ns) => s.saturating_sub(self.origin_s) as f64 + 1e-9 * f64::from(ns),
-                Field::Missing | Field::Text => f64::NAN,
-            });
+            block.push(self.value(&fields));
             left -= 1;
             if block.len() == BLOCK {
                 if !take(&block) {

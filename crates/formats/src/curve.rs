@@ -91,6 +91,32 @@ pub(crate) fn along(channel: Channel, curve: Option<Curve>) -> Channel {
     }
 }
 
+/// Samples of which some stored values stand for missing ones.
+#[derive(Debug)]
+struct Marked {
+    stored: Arc<dyn Samples>,
+    marks: Vec<f64>,
+}
+
+impl Samples for Marked {
+    fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let mut values = Vec::new();
+        self.stored.for_each_block(len, &mut |block| {
+            values.clear();
+            values.extend(block.iter().map(|x| if self.marks.contains(x) { f64::NAN } else { *x }));
+            take(&values)
+        })
+    }
+}
+
+/// `channel` with samples that are no numbers in place of those stored values.
+pub(crate) fn without(channel: Channel, marks: &[f64]) -> Channel {
+    if marks.is_empty() {
+        return channel;
+    }
+    channel.through(|stored| Marked { stored, marks: marks.to_vec() })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

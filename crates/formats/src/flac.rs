@@ -2,11 +2,11 @@
 //! floating-point numbers, and WAV does.
 
 use std::fs::File;
-use std::io::BufReader;
+use std::io::{BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use claxon::FlacReader;
-use stribeck_dsp::channel::Samples;
+use stribeck_dsp::channel::{Samples, memory};
 
 use crate::{Channel, Error, Recording, Result};
 
@@ -26,6 +26,7 @@ pub(crate) struct Stream {
 /// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let info = reader(path)?.streaminfo();
+    let mut most = memory::most_bytes() / 8;
     if info.sample_rate == 0 || info.channels == 0 || info.bits_per_sample == 0 {
         return Err(Error::damaged(path, FORMAT, "it has no sample rate, no channels or no bits"));
     }
@@ -38,7 +39,9 @@ pub fn open(path: &Path) -> Result<Recording> {
             let mut len = 0;
             blocks(path, |block| {
                 len += u64::from(block.duration());
-                true
+                // What is longer is refused, and need not be counted to its end.
+                most = most.saturating_sub(u64::from(block.duration()));
+                most > 0
             })?;
             len
         }
@@ -76,8 +79,33 @@ impl Samples for Stream {
     }
 }
 
+/// Where FLAC begins behind a tag ID3, which players of music put before it; `None` for a file without one.
+///
+/// # Errors
+/// [`Error::Io`].
+pub(crate) fn behind_tag(path: &Path) -> Result<Option<u64>> {
+    let io = |e| Error::read(path, e);
+    let mut file = File::open(path).map_err(io)?;
+    let mut at = 0;
+    loop {
+        let mut head = Vec::new();
+        file.seek(SeekFrom::Start(at)).map_err(io)?;
+        file.by_ref().take(10).read_to_end(&mut head).map_err(io)?;
+        if head.starts_with(b"fLaC") && at > 0 {
+            return Ok(Some(at));
+        }
+        if !head.starts_with(b"ID3") || head.len() < 10 {
+            return Ok(None);
+        }
+        // Seven bits a byte (ID3v2.4, §3.1); a footer is as long as the head.
+        let length = head[6..10].iter().fold(0_u64, |n, byte| n << 7 | u64::from(byte & 0x7f));
+        at += 10 + length + if head[5] & 0x10 == 0 { 0 } else { 10 };
+    }
+}
+
 fn reader(path: &Path) -> Result<FlacReader<BufReader<File>>> {
-    let file = File::open(path).map_err(|e| Error::read(path, e))?;
+    let mut file = File::open(path).map_err(|e| Error::read(path, e))?;
+    file.seek(SeekFrom::Start(behind_tag(path)?.unwrap_or(0))).map_err(|e| Error::read(path, e))?;
     FlacReader::new(BufReader::new(file)).map_err(|why| broken(path, why))
 }
 

@@ -19,6 +19,8 @@ use crate::{Error, Result};
 
 /// Largest chunk [bytes]; one is held at a time.
 const LARGEST: u64 = 1 << 28;
+/// Samples handed on at a time.
+const BLOCK: usize = 1 << 16;
 /// Most filters of a set: a chunk says in 32 bits which of them it went without.
 const MOST_FILTERS: usize = 32;
 /// Numbers of the filters.
@@ -134,11 +136,18 @@ impl Samples for Column {
             let bytes = set.unpacked(&mut file, chunk)?;
             let width = set.number.kind.bytes();
             let count = self.samples.min(len.saturating_sub(chunk.place * self.samples));
-            block.clear();
             let numbers = bytes[self.first * width..].chunks_exact(width).step_by(self.stride);
-            block.extend(numbers.take(count as usize).map(|at| set.number.decode(at)));
-            if !take(&block) {
-                break;
+            let mut numbers = numbers.take(count as usize).map(|at| set.number.decode(at));
+            // A set may be one chunk.
+            loop {
+                block.clear();
+                block.extend(numbers.by_ref().take(BLOCK));
+                if block.is_empty() {
+                    break;
+                }
+                if !take(&block) {
+                    return Ok(());
+                }
             }
         }
         Ok(())

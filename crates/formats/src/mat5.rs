@@ -8,6 +8,7 @@ use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use flate2::read::ZlibDecoder;
+use stribeck_dsp::channel::memory;
 
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
@@ -29,8 +30,8 @@ const DOUBLE: u32 = 6;
 const UINT64: u32 = 15;
 /// Flags of arrays.
 const COMPLEX: u32 = 0x0800;
-/// Longest element that is held in memory [bytes].
-const MAX_HELD: u64 = 1 << 32;
+/// Bytes of a packed variable in which its head lies, unless that is longer than most.
+const HEAD: u64 = 4096;
 /// Structs in structs, at most.
 const MAX_DEPTH: usize = 16;
 
@@ -54,12 +55,17 @@ pub fn open(path: &Path) -> Result<Recording> {
     file.read_exact(&mut order).map_err(io)?;
     let big_endian = order == *b"MI";
     let mut found = Found { big_endian, channels: Vec::new(), notes: Vec::new() };
-    let mut at = HEADER;
+    let (mut at, mut asked) = (HEADER, 0_u64);
     while at + 8 <= size {
         file.seek(SeekFrom::Start(at)).map_err(io)?;
         let mut tag = [0; 8];
         file.read_exact(&mut tag).map_err(io)?;
-        let (kind, length) = (found.word(&tag, 0), u64::from(found.word(&tag, 4)));
+        let (kind, mut length) = (found.word(&tag, 0), u64::from(found.word(&tag, 4)));
+        // libsndfile counts the tag of the numbers twice: all of them are there.
+        let lacks = (at + 8 + length).saturating_sub(size);
+        if kind == MATRIX && (1..=8).contains(&lacks) {
+            length -= lacks;
+        }
         let cut = || {
             damaged(format!("the variable at byte {at} takes {length} bytes, and {} follow", size - at - 8))
         };
@@ -69,8 +75,13 @@ pub fn open(path: &Path) -> Result<Recording> {
         match kind {
             COMPRESSED => {
                 let mut bytes = Vec::new();
-                let mut inflated = ZlibDecoder::new((&mut file).take(length)).take(MAX_HELD);
-                let whole = inflated.read_to_end(&mut bytes);
+                let mut inflated = ZlibDecoder::new((&mut file).take(length));
+                let begins = inflated.by_ref().take(HEAD).read_to_end(&mut bytes);
+                let most = found.unpacked(&bytes);
+                asked = asked.saturating_add(most.saturating_mul(2));
+                memory::ask(path, &format!("the variable at byte {at}"), asked)?;
+                let left = (most + 16).saturating_sub(bytes.len() as u64);
+                let whole = begins.and_then(|_| inflated.take(left).read_to_end(&mut bytes));
                 whole.map_err(|e| damaged(format!("the variable at byte {at} cannot be inflated: {e}")))?;
                 let (element, _) = found
                     .element(&bytes)
@@ -86,10 +97,9 @@ pub fn open(path: &Path) -> Result<Recording> {
                 match found.plain(&bytes, length).map_err(of)? {
                     Some(plain) => found.channels.extend(plain.channels(path, at + 8)),
                     None => {
-                        (&mut file)
-                            .take((length - bytes.len() as u64).min(MAX_HELD))
-                            .read_to_end(&mut bytes)
-                            .map_err(io)?;
+                        asked = asked.saturating_add(length.saturating_mul(2));
+                        memory::ask(path, &format!("the variable at byte {at}"), asked)?;
+                        (&mut file).take(length - bytes.len() as u64).read_to_end(&mut bytes).map_err(io)?;
                         found.matrix(&bytes, "", 0).map_err(of)?;
                     }
                 }
@@ -244,6 +254,19 @@ impl Found {
         // Deflated variables are not padded.
         let end = if start == 4 { 8 } else { (start + length).next_multiple_of(8) };
         Ok((Element { kind, data }, &bytes[end.min(bytes.len())..]))
+    }
+
+    /// Bytes that a packed variable unpacks to, by its beginning: its tag says it modulo 4 GiB, and the size of
+    /// its array without end.
+    fn unpacked(&self, start: &[u8]) -> u64 {
+        let tag = 8 + u64::from(self.word(start, 4));
+        let head = start.get(8..).and_then(|body| self.head(body).ok());
+        let numbers = head.filter(|head| (DOUBLE..=UINT64).contains(&head.class)).map_or(0, |head| {
+            let kind = self.word(head.rest, 0);
+            let width = self.number(kind & 0xffff).map_or(8, |number| number.kind.bytes());
+            head.count.saturating_mul(width as u64)
+        });
+        tag.max(numbers)
     }
 
     fn head<'a>(&self, bytes: &'a [u8]) -> Parsed<Head<'a>> {

@@ -12,11 +12,13 @@ use hdf5_pure::{
     Group, Layout,
 };
 
-use crate::curve::{Curve, along};
+use stribeck_dsp::channel::memory;
+
+use crate::curve::{Curve, along, without};
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
 use crate::strided::Strided;
-use crate::{Channel, Error, Recording, Result, hdf5_chunks, hdf5_links, shape, units};
+use crate::{Channel, Error, Recording, Result, csv, hdf5_chunks, hdf5_links, shape, units};
 
 const FORMAT: &str = "MATLAB 7.3 (HDF5)";
 /// Structs within structs; a forged file may hold itself.
@@ -34,7 +36,10 @@ pub fn open(path: &Path) -> Result<Recording> {
     // A damaged file must not take the program along, whatever the library thinks of it.
     let read = std::panic::catch_unwind(|| {
         let broken = |why: hdf5_pure::Error| Error::damaged(path, FORMAT, why.to_string());
-        let file = File::open_streaming(path).map_err(broken)?;
+        let (file, unclosed) = match File::open_streaming(path) {
+            Err(hdf5_pure::Error::FileMarkedInUse { .. }) => (in_use(path)?, true),
+            opened => (opened.map_err(broken)?, false),
+        };
         let size = std::fs::metadata(path).map_err(|e| Error::read(path, e))?.len();
         let mut found = Found {
             path: path.to_owned(),
@@ -47,6 +52,12 @@ pub fn open(path: &Path) -> Result<Recording> {
             rates: Vec::new(),
         };
         found.group(&file.root(), "", &mut Vec::new());
+        if unclosed {
+            found.notes.push(
+                "the program that wrote the file did not close it, or still writes: what it wrote last may be missing"
+                    .to_owned(),
+            );
+        }
         Ok(found)
     });
     let found = read.map_err(|_| Error::damaged(path, FORMAT, "its structure contradicts itself"))??;
@@ -68,6 +79,21 @@ pub fn open(path: &Path) -> Result<Recording> {
         channel.rate_hz = of.max_by_key(|(prefix, _)| prefix.len()).map(|(_, hz)| *hz);
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+}
+
+/// A file that is marked as being written: as its writer offers it to readers, or as its bytes stand.
+fn in_use(path: &Path) -> Result<File> {
+    if let Ok(file) = File::open_swmr(path) {
+        return Ok(file);
+    }
+    let io = |e| Error::read(path, e);
+    memory::ask(path, "a file that was not closed", std::fs::metadata(path).map_err(io)?.len())?;
+    let bytes = std::fs::read(path).map_err(io)?;
+    File::from_bytes(bytes).map_err(|why| {
+        let what =
+            format!("it was not closed by the program that wrote it, and its structure is not whole: {why}");
+        Error::damaged(path, FORMAT, what)
+    })
 }
 
 struct Found {
@@ -195,7 +221,9 @@ impl Found {
             return Ok(());
         };
         let rate_hz = rates(&attributes, "").first().map(|(_, hz)| *hz);
+        let start_s = start_s(&attributes);
         let scale = scale(&attributes);
+        let marks = marks(&attributes);
         let unit = ["unit", "units", "Unit", "Units", "unit_string"].into_iter();
         let unit = unit.filter_map(|key| attributes.get(key)?.as_str().map(str::to_owned)).next();
         let axes = Some(axes);
@@ -210,7 +238,19 @@ impl Found {
                 held(&dataset.read_f64()?, &shape, axes.as_ref())
             }
             None => {
-                self.too_long.push(format!("`{name}`"));
+                let chunk = dataset.chunk_shape()?.unwrap_or_default();
+                let chunk = chunk.iter().fold(1_u64, |product, n| product.saturating_mul(*n));
+                if dataset.chunks()?.is_empty() {
+                    self.notes.push(left_out(name, &format!("none of its {count} numbers was ever written")));
+                } else if chunk > MOST {
+                    let why = format!(
+                        "it is packed in pieces of {chunk} numbers, which must be unpacked whole, and {MOST} are \
+                         the most: pack it anew with `h5repack -l CHUNK=65536 -f GZIP=1`"
+                    );
+                    self.notes.push(left_out(name, &why));
+                } else {
+                    self.too_long.push(format!("`{name}`"));
+                }
                 return Ok(());
             }
         };
@@ -223,7 +263,8 @@ impl Found {
                 (_, true, _) => format!("{name}({},:)", k + 1),
             };
             channel.group = name.rsplit_once('.').map_or("", |(group, _)| group).to_owned();
-            along(channel.at_rate(rate_hz).in_unit(unit.clone()), scale.clone())
+            let channel = channel.at_rate(rate_hz).from_time(start_s).in_unit(unit.clone());
+            along(without(channel, &marks), scale.clone())
         }));
         Ok(())
     }
@@ -273,11 +314,19 @@ fn scale(attributes: &HashMap<String, AttrValue>) -> Option<Curve> {
     (slope.is_some() || offset.is_some()).then(|| Curve::linear(offset.unwrap_or(0.0), slope.unwrap_or(1.0)))
 }
 
+/// Stored values that stand for missing samples, by netCDF's conventions.
+fn marks(attributes: &HashMap<String, AttrValue>) -> Vec<f64> {
+    let names = ["_FillValue", "missing_value", "FillValue", "fill_value"];
+    names.into_iter().filter_map(|name| attributes.get(name).and_then(number)).collect()
+}
+
 /// The number of an attribute.
 fn number(value: &AttrValue) -> Option<f64> {
     match value {
         AttrValue::F32(x) => Some(f64::from(*x)),
         AttrValue::F64(x) => Some(*x),
+        AttrValue::I8(x) => Some(f64::from(*x)),
+        AttrValue::U8(x) => Some(f64::from(*x)),
         AttrValue::I16(x) => Some(f64::from(*x)),
         AttrValue::I32(x) => Some(f64::from(*x)),
         AttrValue::I64(x) => Some(*x as f64),
@@ -290,6 +339,25 @@ fn number(value: &AttrValue) -> Option<f64> {
         AttrValue::I32Array(all) if all.len() == 1 => all.first().map(|x| f64::from(*x)),
         other => other.as_str()?.trim().parse().ok(),
     }
+}
+
+/// When the first sample was taken [s], by an attribute: a number, or a stamp of date and time; a time and an
+/// offset add up.
+fn start_s(attributes: &HashMap<String, AttrValue>) -> Option<f64> {
+    let mut found: Vec<f64> = attributes
+        .iter()
+        .filter_map(|(name, value)| {
+            let second = units::start_unit_s(name)?;
+            let stamp = || {
+                let (s, ns) = csv::stamp(value.as_str()?)?;
+                Some(s as f64 + 1e-9 * f64::from(ns))
+            };
+            number(value).map(|x| x * second).or_else(stamp)
+        })
+        .collect();
+    found.sort_by(f64::total_cmp);
+    found.dedup();
+    (!found.is_empty()).then(|| found.iter().sum())
 }
 
 /// The sample rates [Hz] in attributes of a group or a set.

@@ -35,7 +35,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let io = |e| Error::read(path, e);
     let mut file = BufReader::new(File::open(path).map_err(io)?);
     let size = file.get_ref().metadata().map_err(io)?.len();
-    let mut source = Source { path: path.to_owned(), file: &mut file, size };
+    let mut source = Source { path: path.to_owned(), file: &mut file, size, unfinished: false };
     let head = source.bytes(0, 64)?;
     let version = u16::from_le_bytes([head[28], head[29]]);
     if version < 400 {
@@ -47,6 +47,13 @@ pub fn open(path: &Path) -> Result<Recording> {
         });
     }
     let mut found = Found { channels: Vec::new(), notes: Vec::new() };
+    if head.starts_with(b"UnFin") {
+        source.unfinished = true;
+        found.notes.push(
+            "the recorder did not finish the file: its samples are counted, and the last may be missing"
+                .to_owned(),
+        );
+    }
     let mut at = source.block(64, b"##HD")?.link(0);
     let mut seen = 0;
     while at != 0 {
@@ -66,6 +73,8 @@ pub(crate) struct Source<'a> {
     pub(crate) path: PathBuf,
     file: &'a mut BufReader<File>,
     size: u64,
+    /// Whether counts and lengths may not be up to date.
+    unfinished: bool,
 }
 
 /// A block without its data.
@@ -157,7 +166,11 @@ impl Source<'_> {
         let (sort, length, links) = self.head(at)?;
         match &sort {
             b"##DT" if length >= HEAD && links == 0 => {
-                let count = length - HEAD;
+                // The length of the last one is written when the file is closed.
+                let to_end = self.size - at.min(self.size);
+                let length =
+                    if self.unfinished && (length == HEAD || length > to_end) { to_end } else { length };
+                let count = length - HEAD.min(length);
                 if at.saturating_add(length) > self.size {
                     return Err(self.damaged(format!("the samples at {at} end behind the file")));
                 }
@@ -219,8 +232,12 @@ impl Found {
             self.notes.push("a group of mixed records is left out: sort the file first".to_owned());
             return Ok(());
         }
-        let (cycles, data_bytes) = (of.long(8), of.word(24) as usize);
+        let (mut cycles, data_bytes) = (of.long(8), of.word(24) as usize);
         let width = data_bytes + of.word(28) as usize;
+        if source.unfinished {
+            // Counts are written when the file is closed.
+            cycles = u64::MAX;
+        }
         if cycles == 0 {
             return Ok(());
         }
@@ -248,7 +265,7 @@ impl Found {
         let data = Arc::new(source.data(group.link(2))?);
         let bytes = data.iter().fold(0_u64, |sum, s| sum.saturating_add(s.full));
         let there = (bytes / width as u64).min(cycles);
-        if there < cycles {
+        if there < cycles && !source.unfinished {
             self.notes.push(format!("a group promises {cycles} samples, and {there} are there"));
         }
         // Groups of one name keep apart.

@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::Path;
 
+use stribeck_dsp::channel::memory;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -12,8 +13,6 @@ use crate::strided::held_from;
 use crate::{Channel, Error, Recording, Result, npy};
 
 const FORMAT: &str = "NumPy .npz";
-/// Longest array that is unpacked [bytes].
-const MAX_UNPACKED: u64 = 1 << 32;
 
 /// Opens an archive. Arrays that are stored without compression stay in the file; texts and other values that
 /// are not real numbers are left out with a note.
@@ -25,6 +24,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let damaged = |what: String| Error::damaged(path, FORMAT, what);
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(|e| damaged(e.to_string()))?;
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
+    let mut asked = 0_u64;
     for at in 0..archive.len() {
         let mut entry = archive.by_index(at).map_err(|e| damaged(e.to_string()))?;
         let Some(name) = entry.name().strip_suffix(".npy").map(str::to_owned) else { continue };
@@ -32,7 +32,12 @@ pub fn open(path: &Path) -> Result<Recording> {
         let stored = (entry.compression() == CompressionMethod::Stored).then(|| entry.data_start()).flatten();
         let size = entry.size();
         let mut bytes = Vec::new();
-        let wanted = if stored.is_some() { 1 << 20 } else { MAX_UNPACKED };
+        if stored.is_none() {
+            // Its bytes, and numbers of eight for each: what it is is known only when it is unpacked.
+            asked = asked.saturating_add(size.saturating_mul(2));
+            memory::ask(path, &format!("array `{name}`"), asked)?;
+        }
+        let wanted = if stored.is_some() { 1 << 20 } else { size };
         entry.by_ref().take(wanted).read_to_end(&mut bytes).map_err(|e| of(e.to_string()))?;
         let layout = match npy::Layout::of(&bytes) {
             Ok(layout) => layout,

@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use stribeck_dsp::channel::memory;
+
 use crate::{
     Error, Recording, Result, csv, flac, mat4, mat5, mat73, mdf4, npy, npz, parquet, tdms, time, uff58, wav,
 };
@@ -30,7 +32,7 @@ impl Recording {
             npy::open(path)
         } else if begins(b"PK") {
             npz::open(path)
-        } else if begins(b"RIFF") || begins(b"RF64") {
+        } else if begins(b"RIFF") || begins(b"RF64") || begins(b"BW64") {
             wav::open(path)
         } else if begins(b"\x89HDF") || (begins(b"MATLAB 7.3") && start.len() > 512) {
             mat73::open(path)
@@ -42,9 +44,15 @@ impl Recording {
             parquet::open(path)
         } else if begins(b"TDSm") {
             tdms::open(path)
-        } else if begins(b"MDF") {
+        } else if begins(b"TDSh") {
+            let partner = path.with_extension("tdms");
+            return unknown(&format!(
+                "it is the index of `{}`, and holds no sample: open that",
+                partner.display()
+            ));
+        } else if begins(b"MDF") || begins(b"UnFinMF") {
             mdf4::open(path)
-        } else if begins(b"fLaC") {
+        } else if begins(b"fLaC") || flac::behind_tag(path)?.is_some() {
             flac::open(path)
         } else if uff58::recognise(&start) || matches!(extension.as_str(), "uff" | "unv" | "u58") {
             uff58::open(path)
@@ -53,6 +61,23 @@ impl Recording {
         } else {
             csv::open(path)
         }?;
+        within_memory(&opened)?;
         time::told(opened)
+    }
+}
+
+/// How many times its size on disk a record takes in memory that was packed as records are.
+const PACKED: u64 = 64;
+
+/// Refuses a small file that unpacks to more than memory may hold: a record of that length is no record, and
+/// reading it would take as long as if it were one.
+fn within_memory(recording: &Recording) -> Result<()> {
+    let path = &recording.path;
+    let size = std::fs::metadata(path).map_err(|e| Error::read(path, e))?.len();
+    let longest = recording.channels.iter().max_by_key(|channel| channel.len);
+    let bytes = longest.map_or(0, |channel| channel.len.saturating_mul(8));
+    match longest.filter(|_| bytes / size.max(1) > PACKED) {
+        Some(channel) => memory::ask(path, &format!("channel `{}`", channel.name), bytes),
+        None => Ok(()),
     }
 }

@@ -203,12 +203,16 @@ pub fn open(path: &Path) -> Result<Recording> {
     let rate_hz = given
         .and_then(|all| all.iter().find(|note| note.key == "rate_hz"))
         .and_then(|note| note.value.as_ref()?.parse::<f64>().ok());
+    let pandas = given
+        .and_then(|all| all.iter().find(|note| note.key == "pandas"))
+        .and_then(|note| note.value.as_deref());
     let rows = (0..reader.num_row_groups()).map(|n| reader.metadata().row_group(n).num_rows());
     let rows = rows.map(|n| u64::try_from(n).unwrap_or(0)).fold(0_u64, u64::saturating_add);
     for (number, column) in columns.iter().enumerate() {
         let name = column.path().string();
         match Meaning::of(column) {
             Ok((meaning, unit)) => {
+                let unit = unit.or_else(|| duration_unit(&name, pandas?));
                 let stored =
                     Stored { path: path.to_owned(), number, defined: column.max_def_level(), meaning };
                 channels.push(Channel::new(name, rows, stored).at_rate(rate_hz).in_unit(unit));
@@ -217,6 +221,16 @@ pub fn open(path: &Path) -> Result<Recording> {
         }
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
+}
+
+/// The unit of a column of durations, which Parquet stores as whole numbers, by what pandas wrote beside them.
+fn duration_unit(name: &str, pandas: &str) -> Option<String> {
+    let of_column = pandas.split('{').find(|part| {
+        let plain: String = part.chars().filter(|c| !c.is_whitespace()).collect();
+        plain.contains(&format!("\"field_name\":\"{name}\""))
+    })?;
+    let (_, unit) = of_column.split_once("timedelta64[")?;
+    Some(unit.split_once(']')?.0.to_owned())
 }
 
 /// Conversion of the stored values of a column.

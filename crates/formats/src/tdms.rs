@@ -48,6 +48,9 @@ struct Object {
     /// Time from sample to sample, in seconds or in the unit beside it.
     increment: Option<f64>,
     increment_unit: Option<String>,
+    /// Time of the first sample, since 1904, and what is added to it [s].
+    start_time_s: Option<f64>,
+    start_offset_s: Option<f64>,
     /// Sample rate by a property such as `SamplingRate` [Hz].
     rate_hz: Option<f64>,
     unit: Option<String>,
@@ -124,6 +127,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let of_file = objects.get("/").map(|o| o.scales.clone()).unwrap_or_default();
     let groups: HashMap<String, BTreeMap<String, Property>> =
         objects.iter().map(|(name, o)| (name.clone(), o.scales.clone())).collect();
+    let has_times = objects.values().any(|o| o.start_time_s.is_some());
     let said: HashMap<String, f64> =
         objects.iter().filter_map(|(name, o)| Some((name.clone(), o.rate_hz?))).collect();
     for path_in_file in known {
@@ -154,7 +158,14 @@ pub fn open(path: &Path) -> Result<Recording> {
         let second = object.increment_unit.as_deref().and_then(seconds).map_or(1.0, |(_, second)| second);
         let step = object.increment.filter(|step| *step > 0.0).map(|step| rounded(1.0 / (step * second)));
         let rate_hz = step.or(object.rate_hz).or_else(|| said.get(group).or(said.get("/")).copied());
-        let channel = Pieces(object.pieces).channel(name).at_rate(rate_hz).in_unit(object.unit);
+        // Where others have a time, one without it has none on their axis.
+        let start_s = match object.start_time_s {
+            Some(time_s) => Some(time_s + object.start_offset_s.unwrap_or(0.0)),
+            None if has_times => None,
+            None => object.start_offset_s,
+        };
+        let channel = Pieces(object.pieces).channel(name).at_rate(rate_hz).from_time(start_s);
+        let channel = channel.in_unit(object.unit);
         channels.push(along(channel, curve).of_group(group));
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
@@ -297,10 +308,15 @@ impl Metadata<'_> {
                         object.scales.insert(property, Property::Text(value));
                     }
                 } else {
-                    let number = number(kind, self.big_endian);
+                    let big_endian = self.big_endian;
+                    let number = number(kind, big_endian);
                     let bytes = self.take(width(kind)?)?;
                     let value = number.map(|n| n.decode(bytes));
-                    if property == "wf_increment" {
+                    if property == "wf_start_time" && kind == TIME {
+                        object.start_time_s = stamp_s(bytes, big_endian);
+                    } else if property == "wf_start_offset" {
+                        object.start_offset_s = value;
+                    } else if property == "wf_increment" {
                         object.increment = value;
                     } else if let Some(hz) = value.and_then(|x| units::rate_hz(&property, None, x)) {
                         object.rate_hz = Some(hz);
@@ -316,6 +332,20 @@ impl Metadata<'_> {
 }
 
 const TEXT: u32 = 0x20;
+const TIME: u32 = 0x44;
+
+/// Seconds since 1904: fractions of 2⁻⁶⁴ s, then whole seconds; the other way round where the upper byte is
+/// the first. Zero stands for none.
+fn stamp_s(bytes: &[u8], big_endian: bool) -> Option<f64> {
+    let (first, second): ([u8; 8], [u8; 8]) =
+        (bytes.get(..8)?.try_into().ok()?, bytes.get(8..16)?.try_into().ok()?);
+    let (whole, fraction) = if big_endian {
+        (i64::from_be_bytes(first), u64::from_be_bytes(second))
+    } else {
+        (i64::from_le_bytes(second), u64::from_le_bytes(first))
+    };
+    (whole != 0).then(|| whole as f64 + fraction as f64 / 2.0_f64.powi(64))
+}
 
 fn number(kind: u32, big_endian: bool) -> Option<Number> {
     let kind = match kind {
@@ -338,7 +368,7 @@ fn number(kind: u32, big_endian: bool) -> Option<Number> {
 fn width(kind: u32) -> Option<usize> {
     Some(match kind {
         0 => 0,
-        0x44 | 0x10_000d => 16,
+        TIME | 0x10_000d => 16,
         0x08_000c => 8,
         other => number(other, false)?.kind.bytes(),
     })

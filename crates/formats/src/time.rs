@@ -4,6 +4,8 @@
 //! that turns steadily: none of them is a signal. All samples are checked, a stretch at a time, because an
 //! interruption of the record, or a joint, shows nowhere else.
 
+mod packets;
+
 use crate::units::{self, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result};
 
@@ -58,7 +60,7 @@ struct Stretch {
 /// As [`Channel::for_each_block`], for times.
 pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     let channels = &mut recording.channels;
-    let courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
+    let mut courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
     for (channel, course) in channels.iter_mut().zip(&courses) {
         channel.is_time |=
             course.as_ref().is_some_and(|course| course.is_even() || says_time(own_name(channel)));
@@ -71,6 +73,13 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
         let beside = said.iter().filter(|(of, _)| of.is_empty() || *of == parent(&channel.name));
         // The one in the same struct before that of the file.
         channel.rate_hz = beside.max_by_key(|(of, _)| of.len()).map(|(_, hz)| *hz);
+    }
+    for told in packets::told(channels, &courses, &mut recording.notes)? {
+        courses[told] = None;
+    }
+    for (of, start_s) in starts_said(channels)? {
+        let own = |c: &&mut Channel| c.name == of || parent(&c.name) == of;
+        channels.iter_mut().filter(|c| c.len > 1).filter(own).for_each(|c| c.start_s = Some(start_s));
     }
     let mut clocks: Vec<(u64, String)> = channels.iter().map(|c| (c.len, c.group.clone())).collect();
     clocks.sort_unstable();
@@ -97,6 +106,11 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
             continue;
         }
         let rate_hz = course.rate_hz(&channels[n], asked, &mut recording.notes);
+        // The clock of another group says how fast, and not when.
+        let start_s = rate_hz.filter(|_| channels[n].group == group).and_then(|hz| course.start_s(hz));
+        for channel in channels.iter_mut().filter(|c| c.len == len && c.group == group) {
+            channel.start_s = channel.start_s.or(start_s);
+        }
         for channel in channels.iter_mut().filter(|c| c.len == len && c.group == group) {
             match (channel.rate_hz, rate_hz) {
                 (None, _) => channel.rate_hz = rate_hz,
@@ -112,6 +126,16 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
         }
     }
     recording.notes.dedup();
+    if !channels.iter().any(|c| c.len > 1 && !c.is_time && c.rate_hz.is_some()) {
+        for (channel, _) in
+            channels.iter().zip(&courses).filter(|(channel, course)| course.is_none() && !channel.is_time)
+        {
+            let is_clock = matches!(unit_of(channel), Unit::Time(..)) || says_time(own_name(channel));
+            if is_clock && channel.len >= LEAST as u64 {
+                recording.notes.extend(packets::why_uneven(channel)?);
+            }
+        }
+    }
     Ok(recording)
 }
 
@@ -140,6 +164,32 @@ fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Vec<(String, f64
     said.into_iter().filter(|(_, hz, _)| hz.is_finite()).map(|(of, hz, _)| (of, hz)).collect()
 }
 
+/// Times of beginning [s] that are numbers of their own, each with the struct or the channel that it is of:
+/// `tacho.t0`, `tacho_start_s`.
+fn starts_said(channels: &[Channel]) -> Result<Vec<(String, f64)>> {
+    let mut said = Vec::new();
+    for channel in channels.iter().filter(|c| c.len == 1) {
+        let of_struct = units::start_unit_s(member(&channel.name)).map(|s| (parent(&channel.name), s));
+        let of_name = || {
+            let (before, _) = channel.name.match_indices('_').find_map(|(at, _)| {
+                let (before, key) = (&channel.name[..at], &channel.name[at + 1..]);
+                let is_there = channels.iter().any(|c| c.len > 1 && c.name == before);
+                Some((before, units::start_unit_s(key).filter(|_| is_there)?))
+            })?;
+            Some((before, units::start_unit_s(&channel.name[before.len() + 1..])?))
+        };
+        // One for all shifts none of them.
+        let Some((of, second)) = of_struct.filter(|(of, _)| !of.is_empty()).or_else(of_name) else {
+            continue;
+        };
+        let value = channel.read()?.first().copied().unwrap_or(f64::NAN) * second;
+        if value.is_finite() {
+            said.push((of.to_owned(), value));
+        }
+    }
+    Ok(said)
+}
+
 /// The structs around a name.
 fn parent(name: &str) -> &str {
     name.rsplit_once('.').map_or("", |(parent, _)| parent)
@@ -157,7 +207,21 @@ pub fn says_time(name: &str) -> bool {
     word.starts_with("time")
         || matches!(
             word.as_str(),
-            "t" | "zeit" | "temps" | "tiempo" | "tempo" | "datum" | "date" | "datetime" | "zeitstempel"
+            "t" | "ts"
+                | "epoch"
+                | "unix"
+                | "utc"
+                | "stamp"
+                | "clock"
+                | "uhrzeit"
+                | "zeit"
+                | "temps"
+                | "tiempo"
+                | "tempo"
+                | "datum"
+                | "date"
+                | "datetime"
+                | "zeitstempel"
         )
 }
 
@@ -237,6 +301,12 @@ impl Course {
 
     fn is_even(&self) -> bool {
         self.even > self.uneven
+    }
+
+    /// When the first sample was taken [s], by times that rise `rate_hz` times a second.
+    fn start_s(&self, rate_hz: f64) -> Option<f64> {
+        let step = (self.last.1 - self.first.1 - self.jumped) / (self.last.0 - self.first.0);
+        Some(self.first.1 / (step * rate_hz) - self.first.0 / rate_hz).filter(|s| s.is_finite())
     }
 
     /// The sample rate [Hz] from times, with notes on irregularities, also on their unit if it is `asked`

@@ -232,11 +232,13 @@ impl Dataset {
         // Some writers count in milliseconds, and say so.
         let second = self.unit(7).and_then(|unit| seconds(&unit)).map_or(1.0, |(_, second)| second);
         let rate_hz = rate_hz / second;
+        let first = if self.even { self.first } else { values.first().copied().unwrap_or(f64::NAN) };
+        let start_s = Some(first * second).filter(|s| s.is_finite());
         // The increment has six digits: a rate is a round number more often than not.
         let round = (rate_hz * 10.0).round() / 10.0;
         let rate_hz = if (rate_hz / round - 1.0).abs() < 5e-6 { round } else { rate_hz };
         let rate_hz = Some(rate_hz).filter(|hz| hz.is_finite() && *hz > 0.0);
-        Ok(Channel::held(self.name(), samples).at_rate(rate_hz).in_unit(self.unit(8)))
+        Ok(Channel::held(self.name(), samples).at_rate(rate_hz).from_time(start_s).in_unit(self.unit(8)))
     }
 }
 

@@ -50,10 +50,11 @@ const TIMES: [(&str, f64, &[&str]); 7] = [
 ];
 
 /// Other units that recorders write, without brackets and in small letters.
-const OTHERS: [&str; 48] = [
+const OTHERS: [&str; 62] = [
     "g", "gn", "mg", "v", "mv", "uv", "µv", "volt", "volts", "n", "kn", "nm", "pa", "kpa", "mpa", "bar", "m",
     "mm", "um", "µm", "μm", "mil", "mils", "in", "rad", "deg", "rev", "rpm", "hz", "khz", "-", "%", "eu",
-    "ips", "a", "ma", "w", "kw", "db", "k", "c", "f", "counts", "1", "unit", "units", "strain", "none",
+    "ips", "a", "ma", "w", "kw", "db", "k", "c", "f", "counts", "1", "unit", "units", "strain", "none", "ug",
+    "µg", "g's", "gs", "gee", "gees", "g_rms", "grms", "g rms", "g peak", "gal", "cm", "ft", "inch",
 ];
 
 /// Names of sample rates, of letters and digits alone; a unit of frequency may follow.
@@ -108,6 +109,22 @@ const STEPS: [&str; 18] = [
     "tsample",
 ];
 
+/// Names of the time at which a channel begins; a unit of time may follow.
+const STARTS: [&str; 12] = [
+    "t0",
+    "tstart",
+    "start",
+    "starttime",
+    "startoffset",
+    "timestart",
+    "timeoffset",
+    "timezero",
+    "wfstarttime",
+    "wfstartoffset",
+    "xstart",
+    "x0",
+];
+
 /// Endings of names of channels that rise evenly and are not times.
 const TURNS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
 
@@ -155,7 +172,11 @@ pub(crate) fn is_unit(field: &str) -> bool {
     };
     let degrees = unit.starts_with('°') || unit.starts_with("\u{fffd}");
     let known = !unit.is_empty() && unit.split(['/', '*', '·']).all(one);
-    bracketed || degrees || known && unit != "-" || field.trim() == "-"
+    // `ms-2`, `m s-2`, `m·s⁻²` are powers without a fraction.
+    let plain: String = unit.chars().filter(|c| !" ·*^".contains(*c)).collect();
+    let power = ["s-2", "s⁻²", "s-1", "s⁻¹"].into_iter().find_map(|end| plain.strip_suffix(end));
+    let power = power.is_some_and(|length| OTHERS.contains(&length));
+    bracketed || degrees || power || known && unit != "-" || field.trim() == "-"
 }
 
 impl Unit {
@@ -230,6 +251,18 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
             .map(|(_, s)| value * s)
     };
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
+}
+
+/// The seconds of one of a number under a name, where the name is that of the time at which a channel begins.
+pub(crate) fn start_unit_s(name: &str) -> Option<f64> {
+    let key: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
+    let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
+    let plain = STARTS.contains(&key.as_str()).then_some(1.0);
+    plain.or_else(|| {
+        ends.filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
+            .find(|(key, _)| STARTS.contains(key))
+            .map(|(_, s)| s)
+    })
 }
 
 /// A step from which on numbers without a unit are no seconds: vibration is sampled faster than a thousand

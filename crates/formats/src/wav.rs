@@ -54,7 +54,9 @@ pub fn open(path: &Path) -> Result<Recording> {
             }
             b"data" => {
                 let format = format.ok_or_else(|| damaged("the samples come before their format"))?;
-                let data = Data { at: at + 8, there: size - at - 8, length, long_data };
+                let behind = at + 8 + length;
+                let ends = behind >= size || is_piece(&mut file, behind, size).map_err(io)?;
+                let data = Data { at: at + 8, there: size - at - 8, length, long_data, ends };
                 return samples(path, format, frame, data);
             }
             _ => {}
@@ -82,6 +84,23 @@ struct Data {
     there: u64,
     length: u64,
     long_data: Option<u64>,
+    /// Whether another piece follows, or nothing.
+    ends: bool,
+}
+
+/// Whether a piece with a name and a length that fits begins at `at` or at the next even byte.
+fn is_piece(file: &mut BufReader<File>, at: u64, size: u64) -> std::io::Result<bool> {
+    for at in [at, at.next_multiple_of(2)] {
+        let mut head = Vec::new();
+        file.seek(SeekFrom::Start(at))?;
+        file.by_ref().take(8).read_to_end(&mut head)?;
+        let length = head.get(4..8).and_then(|b| b.try_into().ok()).map_or(0, u32::from_le_bytes);
+        let name = head.get(..4).is_some_and(|name| name.iter().all(|b| b.is_ascii_graphic() || *b == b' '));
+        if name && at + 8 + u64::from(length) <= size {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// The channels of the piece `data`, whose header gives `frame` bytes to a sample of all channels, or none.
@@ -126,16 +145,23 @@ impl Data {
     /// Bytes of samples, with notes. A recorder that streams, or was cut off, leaves 0 or the largest number
     /// in place of the size.
     fn held(self) -> (u64, Vec<String>) {
-        let Self { there, length, long_data, .. } = self;
+        let Self { there, length, long_data, ends, .. } = self;
         let unsaid = length == 0 || length == u64::from(u32::MAX) && long_data.is_none_or(|n| n == 0);
         let promised = match long_data {
             _ if unsaid => there,
             Some(long) if length == u64::from(u32::MAX) => long,
             _ => length,
         };
-        let held = promised.min(there);
+        let mut held = promised.min(there);
         let mut notes = Vec::new();
-        if unsaid && there > 0 {
+        // A recorder that was stopped leaves the size of its last save; padding of a few bytes is none.
+        if !unsaid && !ends && there - held > (promised / 100).max(1024) {
+            notes.push(format!(
+                "its header promises {promised} bytes of samples, and {there} are there, with nothing else \
+                 behind them: all are taken"
+            ));
+            held = there;
+        } else if unsaid && there > 0 {
             notes.push(format!(
                 "its header does not say how many samples there are: all {there} bytes to its end are taken"
             ));

@@ -9,6 +9,7 @@ use stribeck_store::run_dir::write_atomic;
 use crate::page::{self, charts, drawn, head, json, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
 use crate::{Error, course, kurtogram, sound};
+use stribeck_diagnosis::record::quality::Quality;
 use stribeck_diagnosis::words::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_diagnosis::words::numbers::significant;
 use stribeck_diagnosis::{Analysis, Defect, Enhanced, Family, MeasuredFindings};
@@ -72,6 +73,7 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
                 (evidence)
                 h3 { "What would change it" }
                 ul { @for words in what_would_change(findings) { li { (words) } } }
+                @if !findings.quality.is_empty() { (quality(&findings.quality)) }
                 h2 #families { "Defect families" }
                 @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
                 h2 #signal { "Signal" }
@@ -94,6 +96,24 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
             }
         }
     })
+}
+
+/// What sensor and recorder did to the samples, one finding a row.
+fn quality(found: &[Quality]) -> Markup {
+    html! {
+        h2 #quality { "Quality of the record" }
+        table {
+            tr { th { "Finding" } th { "Share of the samples (%)" } th { "First (s)" } th { "" } }
+            @for of in found {
+                tr {
+                    td { (of.kind.name()) }
+                    td { (format!("{:.2}", 100.0 * of.share)) }
+                    td { (format!("{:.3}", of.first_s)) }
+                    td { (sentence(&of.words)) }
+                }
+            }
+        }
+    }
 }
 
 /// The levels of the baseline as a row of the table.

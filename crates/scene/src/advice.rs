@@ -1,6 +1,7 @@
-//! Advice on fields of a scene for a run that went wrong; only changes that the scene does not have yet.
+//! Advice on fields of a scene: for a run that went wrong only changes that the scene does not have yet, and before
+//! a run on values that no solid has.
 
-use crate::scene::{PocketWalls, Scene};
+use crate::scene::{MaterialScene, PocketWalls, Scene};
 
 /// Largest coefficient of friction that a scene may have.
 pub(crate) const MOST_FRICTION: f64 = 2.0;
@@ -16,6 +17,37 @@ pub fn holds_cage(scene: &Scene) -> String {
     };
     let friction = if scene.contact.friction < MOST_FRICTION { "more `contact.friction`, " } else { "" };
     format!("{pockets}, {friction}or `cage: None`")
+}
+
+/// Young's moduli [GPa] and densities [kg/m³] of solids of which bearings are made: from polymers to hard metal and
+/// diamond, from light polymers to tungsten. Source: Ashby, Materials Selection in Mechanical Design (2011), app. A.
+const MODULI_GPA: std::ops::RangeInclusive<f64> = 1.0..=1100.0;
+const DENSITIES_KG_M3: std::ops::RangeInclusive<f64> = 500.0..=20_000.0;
+
+/// Values of the material that no solid of a bearing has, with the likely meaning.
+pub fn doubts_of_material(scene: &Scene) -> Vec<String> {
+    let MaterialScene { youngs_modulus_gpa, density_kg_m3, .. } = scene.material;
+    // Of all usual units only one makes a solid of it, if any.
+    let meant = |value: f64, solid: &std::ops::RangeInclusive<f64>, units: &[(f64, &str)]| {
+        let unit = units.iter().find(|(factor, _)| solid.contains(&(value * factor)));
+        unit.map_or(String::new(), |(factor, unit)| format!("; {value} {unit} are {}", value * factor))
+    };
+    let mut doubts = Vec::new();
+    if !MODULI_GPA.contains(&youngs_modulus_gpa) {
+        let meant = meant(youngs_modulus_gpa, &MODULI_GPA, &[(1e-3, "MPa"), (1e-9, "Pa"), (1e3, "TPa")]);
+        doubts.push(format!(
+            "`material.youngs_modulus_gpa` is {youngs_modulus_gpa}: no solid of bearings has {youngs_modulus_gpa} \
+             GPa, steel has 200{meant}"
+        ));
+    }
+    if !DENSITIES_KG_M3.contains(&density_kg_m3) {
+        let meant = meant(density_kg_m3, &DENSITIES_KG_M3, &[(1e3, "g/cm³"), (1e12, "t/mm³")]);
+        doubts.push(format!(
+            "`material.density_kg_m3` is {density_kg_m3}: no solid of bearings has {density_kg_m3} kg/m³, steel has \
+             7850{meant}"
+        ));
+    }
+    doubts
 }
 
 #[cfg(test)]
@@ -36,5 +68,21 @@ mod tests {
         let told = holds_cage(&scene);
         assert!(!told.contains("corners") && !told.contains("friction"), "{told}");
         assert!(told.contains("pocket_clearance_um") && told.ends_with("or `cage: None`"), "{told}");
+    }
+
+    /// A density in g/cm³ and a modulus in TPa passed without a word.
+    #[test]
+    fn issue_values_that_no_solid_has_are_doubted() {
+        let mut scene = Scene::default();
+        assert_eq!(doubts_of_material(&scene), Vec::<String>::new());
+        scene.material.density_kg_m3 = 7.85;
+        scene.material.youngs_modulus_gpa = 0.21;
+        let told = doubts_of_material(&scene).join("; ");
+        assert!(told.contains("7.85 g/cm³ are 7850") && told.contains("0.21 TPa are 210"), "{told}");
+        // Silicon nitride, and a polymer.
+        (scene.material.density_kg_m3, scene.material.youngs_modulus_gpa) = (3200.0, 310.0);
+        assert_eq!(doubts_of_material(&scene), Vec::<String>::new());
+        (scene.material.density_kg_m3, scene.material.youngs_modulus_gpa) = (1400.0, 3.0);
+        assert_eq!(doubts_of_material(&scene), Vec::<String>::new());
     }
 }

@@ -9,6 +9,7 @@ use std::borrow::Cow;
 use std::fs::File;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -26,6 +27,22 @@ pub fn bytes(text: &str) -> Result<Cow<'_, [u8]>, String> {
     let Some(letters) = text.strip_prefix(BINARY) else { return Ok(text.as_bytes().into()) };
     let bytes = STANDARD.decode(letters.trim());
     bytes.map(Cow::Owned).map_err(|why| format!("its bytes are damaged in the scene: {why}"))
+}
+
+/// Folders from which mesh files may include others, beside their own.
+static ALLOWED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Lets mesh files include files below these folders, too, from now on.
+pub fn allow(folders: &[PathBuf]) {
+    ALLOWED.lock().unwrap_or_else(PoisonError::into_inner).extend_from_slice(folders);
+}
+
+/// Names of the files that the text of a mesh holds beside the first one, as they were included.
+pub fn included(text: &str) -> Vec<&str> {
+    let name =
+        |line| str::strip_prefix(line, "** included: ").or_else(|| str::strip_prefix(line, "$ included: "));
+    // A binary file includes nothing.
+    if text.starts_with(BINARY) { Vec::new() } else { text.lines().filter_map(name).collect() }
 }
 
 /// The text of the mesh `file` and of the files that it includes, of at most `most` bytes in all.
@@ -202,6 +219,7 @@ impl Assembled {
         let path = name.replace('\\', "/");
         let beside = from.parent().unwrap_or(Path::new("")).join(&path);
         let file = if beside.exists() { beside } else { self.folder.join(&path) };
+        self.reaches(&file).map_err(|why| format!("it includes `{name}`, {why}"))?;
         let bytes = bytes_of(&file, self.left).map_err(|why| {
             let limit = if why.contains("limit") {
                 format!(", and {} bytes are in all", self.most)
@@ -216,6 +234,28 @@ impl Assembled {
         self.add(&text_of(bytes), &file, depth + 1)?;
         self.put(&format!("{comment} end of included"));
         Ok(())
+    }
+
+    /// Refuses a file outside of the folder of the first one, unless its folder is allowed: a run, and its page,
+    /// hold a copy of it, and somebody else may have written the mesh file.
+    fn reaches(&self, file: &Path) -> Result<(), String> {
+        // What is missing is told where it is read; links lead to where they lead.
+        let Ok(real) = file.canonicalize() else { return Ok(()) };
+        let below = |folder: &Path| {
+            let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+            folder.canonicalize().is_ok_and(|folder| real.starts_with(folder))
+        };
+        let allowed = ALLOWED.lock().unwrap_or_else(PoisonError::into_inner);
+        if below(&self.folder) || allowed.iter().any(|folder| below(folder)) {
+            return Ok(());
+        }
+        let parent = real.parent().unwrap_or(Path::new("/"));
+        Err(format!(
+            "which lies outside of its folder: `{}`. A run and its page would hold a copy of it; \
+             `--allow-include {}` allows that",
+            real.display(),
+            parent.display()
+        ))
     }
 
     fn put(&mut self, line: &str) {
@@ -276,6 +316,43 @@ mod tests {
         }
         let why = read(&folder.join("main.inp"), 80).expect_err("too long");
         assert!(why.contains("the limit"), "{why}");
+    }
+
+    /// A deck of another person had any readable file copied into the run and its page.
+    #[test]
+    fn issue_files_outside_of_the_folder_are_not_included() {
+        let scratch = Scratch::create("outside");
+        let folder = scratch.join("scene");
+        std::fs::create_dir_all(folder.join("parts")).expect("a folder");
+        let secret = scratch.join("secret.txt");
+        let absolute = format!("*INCLUDE, INPUT={}\n", secret.display());
+        for (file, text) in [
+            (secret.clone(), "** secret\n"),
+            (folder.join("up.inp"), "*INCLUDE, INPUT=../secret.txt\n"),
+            (folder.join("up.k"), "*INCLUDE\n../secret.txt\n"),
+            (folder.join("absolute.inp"), absolute.as_str()),
+            (folder.join("nodes.inp"), "*NODE, INPUT=../secret.txt\n"),
+            (folder.join("below.inp"), "*INCLUDE, INPUT=parts/a.inp\n"),
+            (folder.join("parts/a.inp"), "*INCLUDE, INPUT=../b.inp\n"),
+            (folder.join("b.inp"), "** b\n"),
+        ] {
+            std::fs::write(file, text).expect("written");
+        }
+        let mut names = vec!["up.inp", "up.k", "absolute.inp", "nodes.inp"];
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(&secret, folder.join("link.txt")).expect("a link");
+            std::fs::write(folder.join("linked.inp"), "*INCLUDE, INPUT=link.txt\n").expect("written");
+            names.push("linked.inp");
+        }
+        for name in names {
+            let why = read(&folder.join(name), 10_000).expect_err(name);
+            assert!(why.contains("secret.txt") && why.contains("--allow-include"), "{why}");
+        }
+        let text = read(&folder.join("below.inp"), 10_000).expect("below");
+        assert_eq!(included(&text), ["parts/a.inp", "../b.inp"]);
+        allow(&[scratch.path().to_owned()]);
+        assert!(read(&folder.join("up.inp"), 10_000).expect("allowed").contains("** secret"));
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `stribeck analyse`: verdict, families and levels of a measured record.
 
 mod baseline;
+mod clocks;
 mod components;
 mod gaps;
 mod reading;
@@ -14,6 +15,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use stribeck_diagnosis::Analysis;
 use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
+use stribeck_diagnosis::record::velocity;
 use stribeck_diagnosis::record::zone::{Foundation, Group, Zoned};
 use stribeck_diagnosis::sources::Component;
 use stribeck_report::{Baseline, TrendEntry, write_measured, write_trend};
@@ -254,7 +256,7 @@ fn analyse(asked: &Path, out: &Path, of: &Asked<'_>, reading: &Reading, place: &
         write_measured(out, &name, &analysis, None)?;
         analysis = simulation.again(analysis, asked, reading, out, place)?;
     }
-    analysis.findings.zone = zoned(options, &analysis);
+    add_zone(options, &mut analysis);
     if let Some(first) = sound {
         baseline::beside(&mut analysis, first)?;
     }
@@ -262,21 +264,21 @@ fn analyse(asked: &Path, out: &Path, of: &Asked<'_>, reading: &Reading, place: &
     Ok(analysis)
 }
 
-/// The zone of the velocity level, where it is requested and can be determined.
-fn zoned(options: &Options, analysis: &Analysis) -> Option<Zoned> {
-    let group = if options.iso_group? == 1 { Group::Large } else { Group::Medium };
-    let foundation = match options.foundation? {
+/// Adds the zone of the velocity level, where it is requested, or a note why there is none.
+fn add_zone(options: &Options, analysis: &mut Analysis) {
+    let (Some(group), Some(foundation)) = (options.iso_group, options.foundation) else { return };
+    let group = if group == 1 { Group::Large } else { Group::Medium };
+    let foundation = match foundation {
         Standing::Rigid => Foundation::Rigid,
         Standing::Flexible => Foundation::Flexible,
     };
-    let velocity = analysis.findings.velocity_mm_s;
-    if velocity.is_none() {
-        tell!(
-            "note: no zone: the velocity level needs an acceleration in g or m/s² (`--unit g`), sampled at \
-             2000 Hz or faster for a second"
-        );
+    let findings = &mut analysis.findings;
+    findings.zone = findings.velocity_mm_s.map(|level| Zoned::of(level, group, foundation));
+    if findings.zone.is_none() {
+        let why = velocity::missing(findings.unit.as_deref(), findings.rate_hz, findings.duration_s);
+        let why = why.unwrap_or_else(|| "the record has no velocity level".to_owned());
+        findings.notes.push(format!("no zone of ISO 20816-3: {why}"));
     }
-    Some(Zoned::of(velocity?, group, foundation))
 }
 
 fn default_folder(file: &Path) -> PathBuf {

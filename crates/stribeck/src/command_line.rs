@@ -1,8 +1,12 @@
 //! The command line: a mistake in it is answered with an example of its command.
 
+use std::borrow::Cow;
+use std::io::Write;
+
 use clap::error::{ContextKind, Error, ErrorKind};
 use clap::{Command, Parser};
 
+use crate::out::harmless;
 use crate::place::REPOSITORY;
 
 /// The parsed command line. Help, the version and mistakes end the program.
@@ -17,7 +21,13 @@ pub fn parse<C: Parser>() -> C {
         let words: Vec<String> = std::env::args().skip(1).collect();
         let example = example(&C::command(), &words);
         let mistake = error.use_stderr();
-        without_trailing(error).print().ok();
+        let error = without_trailing(error);
+        let plain = error.render().to_string();
+        match harmless(&plain) {
+            Cow::Borrowed(_) => drop(error.print()),
+            // What was typed is repeated, and may be the name of a file of others.
+            Cow::Owned(words) => drop(write!(std::io::stderr(), "{words}")),
+        }
         if let (true, Some(example)) = (mistake, example) {
             eprintln!("{example}");
         }

@@ -84,6 +84,14 @@ impl Shared {
     }
 }
 
+/// Lets a file that may not grow further (`ulimit -f`) be an error of writing, with words, as a full disk is: by
+/// default the signal that says so ends the program.
+pub fn outlive_full_files() {
+    // Where it cannot be caught, it ends the program as before.
+    #[cfg(unix)]
+    signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default()).ok();
+}
+
 fn exit() -> ! {
     std::process::exit(i32::from(EXIT_CODE))
 }

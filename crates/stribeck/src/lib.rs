@@ -31,6 +31,7 @@ mod export;
 #[cfg(feature = "full")]
 mod infer;
 pub mod lab;
+mod limits;
 mod list;
 mod machine;
 #[cfg(feature = "full")]
@@ -42,6 +43,7 @@ mod memory;
 mod new;
 mod open;
 mod out;
+mod own_files;
 mod pdf;
 mod plan;
 mod remove;
@@ -65,6 +67,7 @@ use elsewhere::{
     self as analyse, self as campaign, self as compare, self as demo, self as detect, self as export,
     self as infer, self as machine_fit, self as sweep,
 };
+pub use limits::Limits;
 pub use out::Loudness;
 pub use place::Place;
 
@@ -79,6 +82,8 @@ pub struct Cli {
     command: Command,
     #[command(flatten)]
     loudness: Loudness,
+    #[command(flatten)]
+    limits: Limits,
 }
 
 impl Cli {
@@ -88,6 +93,8 @@ impl Cli {
     /// The message for the user.
     pub fn run(&self) -> Result<ExitCode> {
         self.loudness.apply();
+        self.limits.apply();
+        interrupt::outlive_full_files();
         self.command.run(&match std::env::var_os(place::REPOSITORY) {
             Some(root) => Place::repository("cargo xtask", root.into()),
             None => Place::here(),

@@ -37,6 +37,21 @@ pub(crate) fn free_gb() -> Option<f64> {
     available.into_iter().chain(of_group).reduce(f64::min)
 }
 
+/// Memory of the machine [bytes], capped by the limits of this process and of its group; `None` where the system
+/// does not report it.
+pub(crate) fn whole_bytes() -> Option<u64> {
+    let about = std::fs::read_to_string("/proc/meminfo").ok()?;
+    let line = about.lines().find(|line| line.starts_with("MemTotal:"))?;
+    let all = line.split_whitespace().nth(1)?.parse::<u64>().ok()? * 1024;
+    let of_group = std::fs::read_to_string("/sys/fs/cgroup/memory.max").ok();
+    let of_group = of_group.and_then(|text| text.trim().parse().ok());
+    // `ulimit -v`.
+    let limits = std::fs::read_to_string("/proc/self/limits").unwrap_or_default();
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"));
+    let of_process = line.and_then(|line| line.split_whitespace().next()?.parse().ok());
+    [Some(all), of_group, of_process].into_iter().flatten().min()
+}
+
 #[cfg(test)]
 mod tests {
     use stribeck_scene::scene::FilmScene;

@@ -1,6 +1,8 @@
 //! Standard output: results for the user, or for another program that may close it before the end. Standard
-//! error: progress, by `-q` and `-v`.
+//! error: progress, by `-q` and `-v`. All that is printed goes through [`harmless`]: names in files are of
+//! others, and must not steer a terminal.
 
+use std::borrow::Cow;
 use std::fmt::Arguments;
 use std::io::{Error, ErrorKind, IsTerminal, Write, stderr, stdout};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -78,37 +80,61 @@ macro_rules! alert {
 pub(crate) use alert;
 
 pub(crate) fn always(words: Arguments<'_>) {
-    on_error(words);
+    on_error("", words);
+}
+
+/// A text without characters that steer a terminal or turn the direction of writing round: they are written
+/// as numbers, as JSON has them. Ends of lines and tabs stay.
+pub(crate) fn harmless(text: &str) -> Cow<'_, str> {
+    let steers = |c: char| c.is_control() && !matches!(c, '\n' | '\t') || turns(c);
+    if !text.contains(steers) {
+        return Cow::Borrowed(text);
+    }
+    let shown = text.chars().map(|c| match c {
+        c if !steers(c) => c.to_string(),
+        '\0'..='\x1f' => format!("\\x{:02x}", u32::from(c)),
+        c => format!("\\u{:04x}", u32::from(c)),
+    });
+    Cow::Owned(shown.collect())
+}
+
+/// Characters that change the direction or the order in which others are shown, or are not shown at all
+/// (Unicode 15, Bidi_Control, and those of no width).
+fn turns(c: char) -> bool {
+    matches!(c, '\u{61c}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{feff}')
 }
 
 pub(crate) fn progress(words: Arguments<'_>) {
     if !is_quiet() {
-        on_error(words);
+        on_error("", words);
     }
 }
 
 pub(crate) fn aside(words: Arguments<'_>) {
     if LOUDNESS.load(Ordering::Relaxed) == VERBOSE {
-        on_error(words);
+        on_error("", words);
     }
 }
 
 pub(crate) fn warning(words: Arguments<'_>) {
-    on_error(format_args!("{} {words}", marked("warning:", AnsiColor::Yellow)));
+    on_error(&marked("warning: ", AnsiColor::Yellow), words);
 }
 
 /// Prints an error with its causes.
 pub(crate) fn error(error: &anyhow::Error, causes: &[String]) {
-    on_error(format_args!("{} {error}", marked("error:", AnsiColor::Red)));
-    causes.iter().for_each(|cause| on_error(format_args!("  because: {cause}")));
+    on_error(&marked("error: ", AnsiColor::Red), format_args!("{error}"));
+    causes.iter().for_each(|cause| on_error("", format_args!("  because: {cause}")));
 }
 
-fn on_error(words: Arguments<'_>) {
+/// Writes a line, with a mark before it that may be in colour.
+fn on_error(mark: &str, words: Arguments<'_>) {
+    let words = words.to_string();
+    let words = harmless(&words);
     let since = BEGAN.get().filter(|_| LOUDNESS.load(Ordering::Relaxed) == VERBOSE);
     // A closed standard error cannot be reported.
     match since {
-        Some(began) => drop(writeln!(stderr(), "[{:8.3} s] {words}", began.elapsed().as_secs_f64())),
-        None => drop(writeln!(stderr(), "{words}")),
+        Some(began) => drop(writeln!(stderr(), "[{:8.3} s] {mark}{words}", began.elapsed().as_secs_f64())),
+        None => drop(writeln!(stderr(), "{mark}{words}")),
     }
 }
 
@@ -140,7 +166,8 @@ pub(crate) fn line(words: Arguments<'_>) {
 
 fn write_line(out: &mut dyn Write, closed: &mut Option<Error>, words: Arguments<'_>) {
     if closed.is_none() {
-        *closed = writeln!(out, "{words}").and_then(|()| out.flush()).err();
+        let words = words.to_string();
+        *closed = writeln!(out, "{}", harmless(&words)).and_then(|()| out.flush()).err();
     }
 }
 
@@ -173,6 +200,13 @@ mod tests {
         fn flush(&mut self) -> std::io::Result<()> {
             Ok(())
         }
+    }
+
+    #[test]
+    fn issue_names_do_not_steer_a_terminal() {
+        let said = harmless("a\u{1b}[31m\r\u{7}\u{9b}2J \u{202e}gpj.\u{2066}\n\tµ²–é");
+        assert_eq!(said, "a\\x1b[31m\\x0d\\x07\\u009b2J \\u202egpj.\\u2066\n\tµ²–é");
+        assert!(matches!(harmless("plain, µm/s²\n"), Cow::Borrowed(_)));
     }
 
     #[test]

@@ -1,6 +1,5 @@
-//! `stribeck rm`: removes runs, after asking.
+//! `stribeck rm`: removes runs, after asking: the files that Stribeck wrote, one by one, and no others.
 
-use std::fs;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -8,6 +7,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use crate::out::say;
+use crate::own_files::Contents;
 use crate::place::{Place, shown};
 use crate::shelf::{Item, find, in_words, is_held};
 
@@ -32,20 +32,49 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             items.push(item);
         }
     }
-    let bytes = items.iter().map(|item| item.bytes).sum();
-    for item in &items {
+    let contents: Vec<Contents> = items.iter().map(|item| Contents::of(&item.path)).collect();
+    for (item, contents) in items.iter().zip(&contents) {
         say!("{}  {}, {}, {}", shown(&item.path), item.kind.word(), item.state, in_words(item.bytes));
+        say!("  {}", listed(&contents.own, &item.path));
+        if !contents.others.is_empty() {
+            say!("  stays, as it is not of Stribeck: {}", listed(&contents.others, &item.path));
+        }
     }
+    let bytes =
+        contents.iter().flat_map(|c| &c.own).filter_map(|file| file.metadata().ok()).map(|of| of.len()).sum();
     if !options.yes && !agreed(&items, bytes, place)? {
         say!("nothing was removed");
         return Ok(ExitCode::FAILURE);
     }
-    for item in &items {
-        fs::remove_dir_all(&item.path)
-            .with_context(|| format!("`{}` could not be removed in full", shown(&item.path)))?;
+    contents.iter().try_for_each(Contents::remove)?;
+    let kept: Vec<String> = items
+        .iter()
+        .filter(|item| item.path.exists())
+        .map(|item| format!("`{}`", shown(&item.path)))
+        .collect();
+    let files: usize = contents.iter().map(|contents| contents.own.len()).sum();
+    match kept.len() {
+        0 => say!("removed {}, {}", in_number(items.len()), in_words(bytes)),
+        _ => say!(
+            "removed {files} files, {}; with the files of others in them stay {}",
+            in_words(bytes),
+            kept.join(", ")
+        ),
     }
-    say!("removed {}, {}", in_number(items.len()), in_words(bytes));
     Ok(ExitCode::SUCCESS)
+}
+
+/// Most names of files that are printed.
+const NAMED: usize = 12;
+
+/// Names of files below a folder.
+fn listed(files: &[PathBuf], folder: &Path) -> String {
+    let name = |path: &PathBuf| path.strip_prefix(folder).unwrap_or(path).display().to_string();
+    let mut names: Vec<String> = files.iter().take(NAMED).map(name).collect();
+    if files.len() > NAMED {
+        names.push(format!("{} more", files.len() - NAMED));
+    }
+    names.join(", ")
 }
 
 fn in_number(count: usize) -> String {

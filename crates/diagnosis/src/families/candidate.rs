@@ -66,6 +66,10 @@ pub(crate) fn search(
         ));
     }
     let (low, high) = ((1.0 - SLIP) * comb_hz, (1.0 + SLIP) * comb_hz);
+    // The lines of such a family lie beyond all spectra; their places would be many.
+    if CombTest::FOUR_OF_FIVE.needed as f64 * low > HIGHEST_HZ {
+        return refused(too_narrow(comb_hz, !bands.is_empty()));
+    }
     let ranges = own.ranges_without(low, high);
     if ranges.is_empty() || own.holds(comb_hz) {
         let why = "undecided: its place is within a resolution of a multiple of the shaft or the cage; a longer \

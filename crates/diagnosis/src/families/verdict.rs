@@ -230,7 +230,7 @@ impl Decided {
 }
 
 /// Orders of the families, and the speed of the shaft [Hz]; a note on what is missing for them.
-fn orders_and_speed(machine: &Machine) -> Result<(DefectOrders, f64), String> {
+pub(crate) fn orders_and_speed(machine: &Machine) -> Result<(DefectOrders, f64), String> {
     let bearing = machine.bearing.as_ref();
     let bearing = bearing.ok_or("no bearing was given: `--bearing \"6205\"`, or its numbers")?;
     let shaft_hz = machine.speed_rpm.map(|rpm| rpm / 60.0).filter(|hz| *hz > 0.0 && hz.is_finite());

@@ -7,8 +7,9 @@ use stribeck_dsp::{BandEnvelope, BandEnvelopes, Welch, WelchOptions};
 use crate::Error;
 use crate::record::bands::{HIGHEST_HZ, bands};
 use crate::record::course::{Course, Tracing};
+use crate::record::quality::{self, Inspection, Quality};
 use crate::record::screening::{Health, Screening};
-use crate::record::unit::AccelerationUnit;
+use crate::record::unit::MotionUnit;
 use crate::record::velocity::VelocityLevel;
 
 /// Longest segment [samples]: its envelopes take some tens of megabytes.
@@ -43,6 +44,8 @@ pub(crate) struct Record {
     pub(crate) kept: Vec<f64>,
     /// Faults of the samples.
     pub(crate) notes: Vec<String>,
+    /// What sensor and recorder did to them; lines of the mains are not among it.
+    pub(crate) quality: Vec<Quality>,
 }
 
 impl Record {
@@ -66,8 +69,10 @@ impl Record {
         let mut notes = pass.notes(rate_hz);
         pass.refuse(channel, &notes)?;
         notes.extend(pass.remainder_note(rate_hz, len));
-        let Pass { segment, envelopes, density, tracing, velocity, screening, kept, .. } = pass;
+        let Pass { segment, envelopes, density, tracing, velocity, screening, inspection, kept, .. } = pass;
         let density = density.finish();
+        let folded = quality::folded(&density.0, &density.1);
+        let quality = inspection.finish().into_iter().chain(folded).collect();
         let Some(health) = screening.health(&density.1) else {
             return Err(Error::NoSignal(format!(
                 "channel `{}` is constant; is the sensor connected?",
@@ -86,6 +91,7 @@ impl Record {
             health,
             kept,
             notes,
+            quality,
         })
     }
 
@@ -110,6 +116,7 @@ struct Pass {
     /// `None` where the channel is no acceleration, or too short.
     velocity: Option<VelocityLevel>,
     screening: Screening,
+    inspection: Inspection,
     /// The first samples, as many as one segment may hold.
     kept: Vec<f64>,
     /// Samples that fill no segment yet.
@@ -124,7 +131,7 @@ impl Pass {
         let longest_kept = BandEnvelopes::segment_of(len, LONGEST_SEGMENT);
         let segment = if len > LONGEST_SEGMENT { SEGMENT } else { longest_kept };
         let highest_hz = HIGHEST_HZ.min(0.5 * rate_hz);
-        let unit = channel.unit.as_deref().and_then(AccelerationUnit::parse);
+        let unit = channel.unit.as_deref().and_then(MotionUnit::parse);
         let mut pass = Self {
             segment,
             envelopes: BandEnvelopes::new(rate_hz, segment, &bands(rate_hz), highest_hz)
@@ -133,6 +140,7 @@ impl Pass {
             tracing: Tracing::new(rate_hz, len)?,
             velocity: VelocityLevel::new(rate_hz, segment, unit)?,
             screening: Screening::default(),
+            inspection: Inspection::new(rate_hz, len),
             kept: Vec::with_capacity(longest_kept),
             buffer: Vec::with_capacity(segment),
             refused: 0,
@@ -149,6 +157,7 @@ impl Pass {
     /// Samples as they follow.
     fn add(&mut self, mut block: &[f64]) -> Result<(), stribeck_dsp::Error> {
         self.screening.add(block);
+        self.inspection.add(block);
         while !block.is_empty() {
             let (now, later) = block.split_at((self.segment - self.buffer.len()).min(block.len()));
             self.buffer.extend_from_slice(now);

@@ -1,5 +1,5 @@
-//! Is a record sound? Values that are not numbers, clipping, and the numbers that describe it as a whole, in
-//! one pass.
+//! Is a record sound? Values that are not numbers, single samples that stand for themselves, and the numbers
+//! that describe it as a whole, in one pass. What sensor and recorder did to many samples is in `quality`.
 
 use serde::Serialize;
 
@@ -40,13 +40,10 @@ pub(crate) struct Screening {
     highest: Extreme,
 }
 
-/// An extreme value, how often it occurs in a row, and the next ones.
+/// An extreme value, how often it occurs, and the next ones.
 #[derive(Debug, Clone, Default)]
 struct Extreme {
     value: f64,
-    /// Samples in a row at the value, now and at most.
-    row: u64,
-    longest: u64,
     /// Samples at the value, and the largest value below it.
     total: u64,
     next: Option<f64>,
@@ -64,9 +61,6 @@ const NEAR: u64 = 3;
 const MOST: usize = 8;
 /// Largest values kept: those of [`MOST`] samples with their neighbours, and one more.
 const KEPT: usize = MOST * (2 * NEAR as usize + 1) + 1;
-
-/// Samples in a row at the extreme that only a limiter makes.
-const CLIPPED_ROW: u64 = 4;
 
 impl Screening {
     pub(crate) fn add(&mut self, block: &[f64]) {
@@ -104,18 +98,6 @@ impl Screening {
                 self.count,
                 first as f64 / rate_hz
             ));
-        }
-        let origin = self.origin.unwrap_or(0.0);
-        for (extreme, value) in
-            [(&self.highest, origin + self.highest.value), (&self.lowest, origin - self.lowest.value)]
-        {
-            if extreme.longest >= CLIPPED_ROW {
-                notes.push(format!(
-                    "clipped: up to {} samples in a row stand at {value:.6}; levels are too low and the \
-                     clipping makes harmonics. Measure again with a larger range",
-                    extreme.longest
-                ));
-            }
         }
         match self.spurious(rate_hz) {
             Some(note) => notes.push(note),
@@ -233,15 +215,12 @@ impl Extreme {
                 self.largest.remove(0);
             }
         }
-        if value > self.value || self.longest == 0 {
-            self.next = (self.longest > 0).then_some(self.value);
-            (self.value, self.row, self.longest, self.total) = (value, 1, 1, 1);
+        if value > self.value || self.total == 0 {
+            self.next = (self.total > 0).then_some(self.value);
+            (self.value, self.total) = (value, 1);
         } else if value == self.value {
-            self.row += 1;
             self.total += 1;
-            self.longest = self.longest.max(self.row);
         } else {
-            self.row = 0;
             self.next = Some(self.next.map_or(value, |next| next.max(value)));
         }
     }

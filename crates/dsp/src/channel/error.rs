@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::memory;
+
 /// Result of this crate.
 pub type Result<T> = std::result::Result<T, Error>;
 
@@ -69,6 +71,19 @@ pub enum Error {
         channel: String,
         /// The text at that place.
         text: String,
+    },
+    /// It would take more memory than is allowed.
+    #[error("`{}` is not read: {what} would take {}, and {} are allowed. `--max-memory` allows more; or cut the \
+        file", .path.display(), memory::in_words(.bytes), memory::in_words(.most))]
+    TooLarge {
+        /// The file, or the channel.
+        path: PathBuf,
+        /// The part of it that is too large.
+        what: String,
+        /// Memory that it takes [bytes].
+        bytes: u64,
+        /// The limit [bytes].
+        most: u64,
     },
     /// There is no such channel.
     #[error("`{}` has no channel `{asked}`; it has {has}", .path.display())]

@@ -56,11 +56,14 @@ impl Dialect {
             if self.separator != ' ' && !line.contains(self.separator) {
                 return None;
             }
-            let fields = self.split(line);
-            let kinds = || fields.iter().map(|field| self.field(field));
-            let some = kinds().any(|kind| matches!(kind, Field::Number(_)));
-            let texts = kinds().filter(|kind| *kind == Field::Text).count();
-            (some && (texts == 0 || !strict && 2 * texts <= fields.len())).then_some(fields.len())
+            let (mut fields, mut numbers, mut texts) = (0, 0, 0);
+            self.each(line, |field| {
+                let kind = self.field(field);
+                fields += 1;
+                numbers += usize::from(matches!(kind, Field::Number(_)));
+                texts += usize::from(kind == Field::Text);
+            });
+            (numbers > 0 && (texts == 0 || !strict && 2 * texts <= fields)).then_some(fields)
         };
         let rows: Vec<Option<usize>> = lines.iter().map(|line| row(line)).collect();
         (0..lines.len()).find(|n| {
@@ -81,25 +84,31 @@ impl Dialect {
 
     /// The fields of a line, quotes taken off.
     pub(crate) fn split<'a>(&self, line: &'a str) -> Vec<&'a str> {
+        let mut fields = Vec::new();
+        self.each(line, |field| fields.push(field));
+        fields
+    }
+
+    /// Passes the fields of a line to `take`, one after the other: a line may hold millions.
+    pub(crate) fn each<'a>(&self, line: &'a str, mut take: impl FnMut(&'a str)) {
         let clean = |field: &'a str| field.trim().trim_matches('"').trim();
         if self.separator == ' ' {
-            return line.split_whitespace().map(clean).collect();
+            return line.split_whitespace().for_each(|field| take(clean(field)));
         }
         // A quote without its other half takes no separator along.
-        if line.matches('"').count() % 2 == 1 || !line.contains('"') {
-            return line.split(self.separator).map(clean).collect();
+        if !line.contains('"') || line.matches('"').count() % 2 == 1 {
+            return line.split(self.separator).for_each(|field| take(clean(field)));
         }
-        let (mut fields, mut from, mut quoted) = (Vec::new(), 0, false);
+        let (mut from, mut quoted) = (0, false);
         for (at, c) in line.char_indices() {
             if c == '"' {
                 quoted = !quoted;
             } else if c == self.separator && !quoted {
-                fields.push(clean(&line[from..at]));
+                take(clean(&line[from..at]));
                 from = at + c.len_utf8();
             }
         }
-        fields.push(clean(&line[from..]));
-        fields
+        take(clean(&line[from..]));
     }
 
     /// Whether a line holds nothing, or nothing between its separators.
@@ -124,6 +133,12 @@ impl Dialect {
         // Rust takes words for numbers that are none here.
         if !field.contains(|c: char| c.is_ascii_digit()) {
             return None;
+        }
+        // Nearly all are plain.
+        if field.bytes().all(|b| b.is_ascii_digit() || b"+-.eE".contains(&b))
+            && let Ok(number) = field.parse()
+        {
+            return Some(number);
         }
         // Some write a minus that is no hyphen.
         let field = field.replace('\u{2212}', "-");

@@ -6,11 +6,12 @@ use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
+use stribeck_dsp::channel::memory;
 
 use crate::{Error, Result};
 
-/// Longest line [bytes].
-const LONGEST: u64 = 1 << 24;
+/// Parts of the memory that a line may take: its bytes, its text and its numbers are held at once.
+const PARTS: u64 = 4;
 
 /// How the bytes of a text become lines.
 #[derive(Debug, Clone, Copy)]
@@ -94,11 +95,19 @@ impl Lines {
         let io = |e| Error::read(path, e);
         let end = self.coding.end;
         let wide = self.coding.is_wide();
+        let longest = memory::most_bytes() / PARTS;
         loop {
             let before = self.bytes.len() as u64;
-            let left = LONGEST.saturating_sub(before);
+            if before >= longest {
+                let what = format!("line {}", self.read + 1);
+                return memory::ask(path, &what, PARTS * (before + 1)).map(|()| None);
+            }
+            let left = longest - before;
             let count = (&mut self.file).take(left).read_until(end, &mut self.bytes).map_err(io)?;
             self.ended = self.bytes.last() == Some(&end);
+            if !wide && !self.ended && self.bytes.len() as u64 >= longest {
+                continue;
+            }
             if count == 0 || !wide {
                 break;
             }

@@ -10,7 +10,7 @@ use crate::units::seconds;
 /// Seconds and nanoseconds since some origin that all stamps of one form share.
 pub(crate) fn stamp(field: &str) -> Option<(i64, i32)> {
     let field = field.trim();
-    if let Some(span) = span(field) {
+    if let Some(span) = span(field).or_else(|| duration(field)) {
         return Some(span);
     }
     let shaped = field.len() >= 6 && field.starts_with(|c: char| c.is_ascii_digit());
@@ -46,6 +46,49 @@ fn span(field: &str) -> Option<(i64, i32)> {
     let value: f64 = number.trim().parse().ok().filter(|x: &f64| x.abs() < 1e9)?;
     let whole = (value * second).floor();
     Some((whole as i64, (1e9 * (value * second - whole)).round() as i32))
+}
+
+/// A duration as pandas writes it, `0 days 00:00:00.000078125` or `-1 days +23:59:59`, and as ISO 8601 has it,
+/// `P0DT0H0M0.5S`.
+fn duration(field: &str) -> Option<(i64, i32)> {
+    const DAY_S: i64 = 86_400;
+    if let Some(rest) = field.strip_prefix('P').filter(|rest| !rest.is_empty()) {
+        let (days, time) = rest.split_once('T').unwrap_or((rest, ""));
+        let days: i64 = if days.is_empty() { 0 } else { days.strip_suffix('D')?.parse().ok()? };
+        let (mut s, mut ns, mut rest) = (days.checked_mul(DAY_S)?, 0, time);
+        while !rest.is_empty() {
+            let (number, unit) = rest.split_at(rest.find(|c: char| c.is_ascii_uppercase())?);
+            let (whole, fraction) = number.split_once('.').unwrap_or((number, ""));
+            let each = match &unit[..1] {
+                "H" => 3600,
+                "M" => 60,
+                "S" => 1,
+                _ => return None,
+            };
+            s = s.checked_add(whole.parse::<i64>().ok()?.checked_mul(each)?)?;
+            if each == 1 {
+                ns = nanos(fraction)?;
+            }
+            rest = &unit[1..];
+        }
+        return Some((s, ns));
+    }
+    let (days, time) = field.split_once(" day")?;
+    let time = time.trim_start_matches('s').trim_start_matches(',').trim().trim_start_matches('+');
+    let days: i64 = days.trim().parse().ok()?;
+    let [hours, minutes, seconds] = time.split(':').collect::<Vec<_>>()[..] else { return None };
+    let (seconds, fraction) = seconds.split_once('.').unwrap_or((seconds, ""));
+    let of = |text: &str| text.parse::<u8>().ok().map(i64::from);
+    let in_day = of(hours)? * 3600 + of(minutes)? * 60 + of(seconds)?;
+    Some((days.checked_mul(DAY_S)?.checked_add(in_day)?, nanos(fraction)?))
+}
+
+/// Nanoseconds of the digits behind a point.
+fn nanos(fraction: &str) -> Option<i32> {
+    if !fraction.bytes().all(|b| b.is_ascii_digit()) {
+        return None;
+    }
+    fraction.chars().chain("000000000".chars()).take(9).collect::<String>().parse().ok()
 }
 
 /// A day; with dots, the day comes first, with slashes the month, unless it can be none.
@@ -113,6 +156,11 @@ mod tests {
         assert_eq!(stamp("08:00:00,5"), Some((28_800, 500_000_000)));
         assert_eq!(stamp("78.125 ms"), Some((0, 78_125_000)));
         assert_eq!(stamp("2.5 sec"), Some((2, 500_000_000)));
+        assert_eq!(stamp("0 days 00:00:00.000078125"), Some((0, 78_125)));
+        assert_eq!(stamp("-1 days +23:59:59.5"), Some((-1, 500_000_000)));
+        assert_eq!(stamp("1 day, 0:00:01"), Some((86_401, 0)));
+        assert_eq!(stamp("P0DT0H1M0.5S"), Some((60, 500_000_000)));
+        assert_eq!(stamp("PT0.000078125S"), Some((0, 78_125)));
         for text in ["1.5", "-3", "12", "3 g", "ms", "1.5 V", "1e-3", "acc", "1.234,5", "08-15"] {
             assert_eq!(stamp(text), None, "{text}");
         }

@@ -8,7 +8,7 @@ use stribeck_diagnosis::sources;
 use stribeck_report::write_sources;
 use stribeck_store::run_dir::check_folder;
 
-use super::{Options, default_folder, print_families, zoned};
+use super::{Options, add_zone, default_folder, print_families};
 use crate::out::say;
 use crate::place::{Place, shown};
 
@@ -31,7 +31,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let mut found = sources::analyse(&read.signal, read.rate_hz, &read.machine, &options.components)?;
     for (_, analysis) in &mut found.bearings {
         analysis.findings.notes.splice(0..0, read.notes.iter().cloned());
-        analysis.findings.zone = zoned(options, analysis);
+        add_zone(options, analysis);
     }
     let name = file.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
     write_sources(&out, &name, &options.components, &found)?;

@@ -37,7 +37,10 @@ pub(super) fn without(channel: &Channel, notes: &mut Vec<String>) -> Result<Whol
         bail!("channel `{}` holds no numbers", channel.name);
     }
     let of = |samples: Vec<f64>| {
-        Channel::held(&channel.name, samples).at_rate(channel.rate_hz).in_unit(channel.unit.clone())
+        Channel::held(&channel.name, samples)
+            .at_rate(channel.rate_hz)
+            .from_time(channel.start_s)
+            .in_unit(channel.unit.clone())
     };
     if (from, until) == (0, samples.len()) {
         notes.push(format!(

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::record;
 use stribeck_diagnosis::{
-    AccelerationUnit, Analysis, Machine, Pressed, over_angle,
+    AccelerationUnit, Analysis, Machine, Pressed, SPEEDS_RPM, over_angle,
+    record::quality::{self, Quality},
     speed::{ridge, tacho},
 };
 use stribeck_formats::{Channel, Recording, says_time};
@@ -13,7 +14,7 @@ use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::RunDir;
 
-use super::{gaps, turning};
+use super::{clocks, gaps, turning};
 use crate::out::tell;
 use crate::place::Place;
 use crate::transfer::Transfer;
@@ -112,7 +113,17 @@ impl Speed {
         // A shaft that turns the other way has the same lines.
         let number = |text: &str| {
             let rpm = text.trim().parse::<f64>().ok().filter(|rpm| rpm.is_finite() && *rpm != 0.0);
-            rpm.ok_or_else(|| format!("`{text}` is no speed in 1/min, and no range such as 1400..1600"))
+            let rpm =
+                rpm.ok_or_else(|| format!("`{text}` is no speed in 1/min, and no range such as 1400..1600"))?;
+            if SPEEDS_RPM.contains(&rpm.abs()) {
+                Ok(rpm)
+            } else {
+                Err(format!(
+                    "`{text}`: shafts turn {} to {} times a minute; is it in another unit?",
+                    SPEEDS_RPM.start(),
+                    SPEEDS_RPM.end()
+                ))
+            }
         };
         match text.split_once("..") {
             None => Ok(Self::Of(number(text)?.abs())),
@@ -164,6 +175,8 @@ pub(super) struct Read {
     pub(super) of_run: bool,
     /// Where the speed varies: the samples over time.
     pub(super) turning: Option<Turning>,
+    /// That of the samples as they were measured, where the signal is made of them; nothing for a run.
+    pub(super) quality: Option<Vec<Quality>>,
 }
 
 /// A record whose shaft changes its speed, over time.
@@ -176,8 +189,8 @@ pub(super) struct Turning {
 
 /// Reads and analyses one record.
 pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
-    let Read { signal, rate_hz, machine, mut notes, of_run, turning } = read(asked, options, place)?;
-    let mut analysis = Analysis::of(&signal, rate_hz, &machine)?;
+    let Read { signal, rate_hz, machine, mut notes, of_run, turning, quality } = read(asked, options, place)?;
+    let mut analysis = Analysis::of_inspected(&signal, rate_hz, &machine, quality)?;
     if let Some(Turning { signal, rate_hz, pulses }) = &turning {
         analysis.varying = turning::varying(&analysis, signal, *rate_hz, pulses)?;
     }
@@ -261,7 +274,7 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     let mut scaled = channel.scaled(options.scale).in_unit(unit);
     if let (Some(path), None) = (&path, &scene) {
         let (before, note) = path.before(&scaled, rate_hz)?;
-        scaled = before;
+        scaled = before.from_time(channel.start_s);
         notes.push(note);
     }
     let (mut machine, pulses) = machine(options, &recording, &scaled, rate_hz, scene.as_ref(), &mut notes)?;
@@ -289,15 +302,21 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
         None => None,
     };
     let of_run = scene.is_some() && !of_machine;
+    let quality = match (&over_angle, &options.path) {
+        _ if of_run => Some(Vec::new()),
+        (None, None) => None,
+        (Some(_), _) => Some(quality::of(channel, rate_hz, None)?),
+        (None, Some(_)) => Some(quality::of(channel, rate_hz, machine.speed_rpm)?),
+    };
     let Some((even, even_hz)) = over_angle else {
-        return Ok(Read { signal: scaled, rate_hz, machine, notes, of_run, turning: None });
+        return Ok(Read { signal: scaled, rate_hz, machine, notes, of_run, turning: None, quality });
     };
     notes.push(
         "the record was taken over the angle of the shaft: frequencies are those at its mean speed"
             .to_owned(),
     );
     let turning = pulses.map(|pulses| Turning { signal: scaled, rate_hz, pulses });
-    Ok(Read { signal: even, rate_hz: even_hz, machine, notes, of_run, turning })
+    Ok(Read { signal: even, rate_hz: even_hz, machine, notes, of_run, turning, quality })
 }
 
 /// Mean distance of pulses.
@@ -435,13 +454,15 @@ fn machine(
         }
         Some(60.0 * found.mean_hz())
     } else if let Some(name) = &options.tacho {
-        let channel = recording.channel(name)?;
+        let (signal, channel) = (channel, recording.channel(name)?);
         // A tachometer may have a rate of its own.
         let own_hz =
             channel.rate_hz.filter(|_| !options.force_rate || channel.len != samples).unwrap_or(rate_hz);
         let mut turns = tacho::of(channel, own_hz, options.pulses_per_turn)?;
         turns.pulses.iter_mut().for_each(|at| *at *= rate_hz / own_hz);
         notes.append(&mut turns.notes);
+        let later_s = clocks::later_s(signal, channel, (rate_hz, own_hz), notes)?;
+        turns.pulses.iter_mut().for_each(|at| *at += later_s * rate_hz);
         if turns.variation > STEADY {
             notes.push(format!("the speed varies by {:.1} % over the record", 100.0 * turns.variation));
             pulses = Some(turns.pulses);

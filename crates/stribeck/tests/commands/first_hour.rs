@@ -346,8 +346,13 @@ fn behaves_runs_are_listed_opened_and_removed_after_asking() {
     std::os::unix::fs::symlink("a", desk.0.join("runs/link")).expect("a link");
     desk.refuses(&["rm", "link", "--yes"], &["is a link"]);
     assert!(desk.0.join("runs/a/trace.npy").exists() && desk.0.join("runs/thesis/draft.txt").exists());
-    says(&desk.succeeds(&["rm", "a", "b", "--yes"]), &["removed 2 folders"]);
-    assert!(!desk.0.join("runs/a").exists() && !desk.0.join("runs/b").exists());
+    fs::write(desk.0.join("runs/b/notes.txt"), "mine").expect("writable");
+    says(
+        &desk.succeeds(&["rm", "a", "b", "--yes"]),
+        &["stays, as it is not of Stribeck: notes.txt", "removed"],
+    );
+    assert!(desk.0.join("runs/b/notes.txt").exists() && !desk.0.join("runs/b/ensemble.json").exists());
+    assert!(!desk.0.join("runs/a").exists() && !desk.0.join("runs/b/start-001").exists());
 }
 
 #[test]

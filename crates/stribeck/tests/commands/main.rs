@@ -22,6 +22,7 @@ mod quick_run;
 mod resume;
 mod rotor;
 mod same_door;
+mod second_round;
 mod sources;
 mod validate;
 mod vectors;

@@ -1,0 +1,115 @@
+//! Stretches that stand still at one value.
+
+/// Samples that stand still at one value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Run {
+    pub(super) value: f64,
+    pub(super) from: u64,
+    pub(super) count: u64,
+    /// Whether it begins with the record, or ends with it.
+    pub(super) from_start: bool,
+    pub(super) to_end: bool,
+}
+
+/// Shortest stretch that is kept [samples]: a converter that resolves the signal makes none as long.
+const SHORTEST: u64 = 32;
+/// How many times as long as nearly all runs of equal samples a stretch is in which there is no signal.
+const UNUSUAL: u64 = 16;
+/// Stretches kept; further ones are as these.
+const KEPT: usize = 1 << 16;
+/// Lengths that are counted.
+const LENGTHS: usize = 1 << 12;
+
+/// Runs of equal samples.
+#[derive(Debug, Default)]
+pub(super) struct Flat {
+    run: Option<(Run, bool)>,
+    kept: Vec<Run>,
+    /// Runs by their length, those at an extreme apart: what a limiter makes says nothing about the converter.
+    lengths: Vec<u64>,
+    all: u64,
+}
+
+impl Flat {
+    pub(super) fn add(&mut self, value: f64, at: u64, is_new: bool, is_extreme: bool) {
+        match &mut self.run {
+            Some((run, _)) if !is_new => run.count += 1,
+            _ => {
+                self.interrupt();
+                self.run =
+                    Some((Run { value, from: at, count: 1, from_start: at == 0, to_end: false }, is_extreme));
+            }
+        }
+    }
+
+    /// Ends the run, as a sample that is no number does, and the end of the record.
+    pub(super) fn interrupt(&mut self) {
+        let Some((run, is_extreme)) = self.run.take() else { return };
+        if !is_extreme {
+            let place = (run.count as usize).min(LENGTHS - 1);
+            if self.lengths.len() <= place {
+                self.lengths.resize(place + 1, 0);
+            }
+            self.lengths[place] += 1;
+            self.all += 1;
+        }
+        if run.count >= SHORTEST && self.kept.len() < KEPT {
+            self.kept.push(run);
+        }
+    }
+
+    /// Length that 99 of 100 runs do not exceed; 1 for samples that all differ, more for a sensor that is read
+    /// more often than it measures.
+    pub(super) fn natural(&self) -> u64 {
+        let mut seen = 0;
+        let place = self.lengths.iter().position(|count| {
+            seen += count;
+            100 * seen >= 99 * self.all
+        });
+        place.unwrap_or(1).max(1) as u64
+    }
+
+    /// The stretches without a signal in a record of `count` samples.
+    pub(super) fn stretches(&self, count: u64) -> Vec<Run> {
+        let least = SHORTEST.max(UNUSUAL * self.natural());
+        let long = self.kept.iter().filter(|run| run.count >= least);
+        long.map(|run| Run { to_end: run.from + run.count == count, ..*run }).collect()
+    }
+}
+
+/// Shortest straight line that is kept [samples], and how much its steps may differ, over the values.
+pub(super) const STRAIGHT: u64 = 64;
+const ROUNDING: f64 = 1e-12;
+
+/// Runs of equal steps that are not zero: straight lines.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    line: Option<(f64, Run)>,
+    kept: Vec<Run>,
+}
+
+impl Lines {
+    /// The step from `value` to the sample `at`.
+    pub(super) fn add(&mut self, value: f64, step: f64, at: u64) {
+        let reach = ROUNDING * (value.abs() + step.abs()) + f64::MIN_POSITIVE;
+        match &mut self.line {
+            Some((before, run)) if (step - *before).abs() <= reach => run.count += 1,
+            _ => {
+                self.interrupt();
+                if step != 0.0 {
+                    let run = Run { value, from: at, count: 1, from_start: false, to_end: false };
+                    self.line = Some((step, run));
+                }
+            }
+        }
+    }
+
+    pub(super) fn interrupt(&mut self) {
+        let long = self.line.take().filter(|(_, run)| run.count >= STRAIGHT && self.kept.len() < KEPT);
+        self.kept.extend(long.map(|(_, run)| run));
+    }
+
+    pub(super) fn kept(&self) -> &[Run] {
+        &self.kept
+    }
+}

@@ -1,0 +1,305 @@
+//! A second round of what people's files hold: clocks, sizes, stamps of packets, and packings, each as a small
+//! input of our own.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use stribeck_formats::{Channel, Error, Recording};
+use stribeck_testing::Scratch;
+
+const RATE_HZ: f64 = 12_800.0;
+const COUNT: usize = 4096;
+
+fn signal(n: usize) -> f64 {
+    ((n * 37 % 101) as f64 - 50.0) / 50.0
+}
+
+fn try_open(desk: &Scratch, name: &str, bytes: &[u8]) -> Result<Recording, Error> {
+    let path: PathBuf = desk.join(name);
+    std::fs::write(&path, bytes).unwrap();
+    Recording::open(&path)
+}
+
+fn opened(desk: &Scratch, name: &str, bytes: &[u8]) -> Recording {
+    try_open(desk, name, bytes).unwrap_or_else(|why| panic!("{name}: {why}"))
+}
+
+fn rows(row: impl Fn(usize) -> String) -> String {
+    (0..COUNT).map(|n| row(n) + "\n").collect()
+}
+
+/// Seconds and value of a sample, as texts write them.
+fn at(n: usize) -> (f64, f64) {
+    (n as f64 / RATE_HZ, signal(n))
+}
+
+fn sampled(found: &Recording, name: &str) -> Channel {
+    let channel = found.channel(name).unwrap_or_else(|why| panic!("{why}; {:?}", found.notes)).clone();
+    let rate_hz = channel.rate_hz.unwrap_or_else(|| panic!("{name}: no rate; {:?}", found.notes));
+    assert!((rate_hz / RATE_HZ - 1.0).abs() < 1e-3, "{name}: {rate_hz}");
+    channel
+}
+
+/// R leaves the names of rows without a heading: `time_ms` was set upon them, and the rate was 1000 Hz.
+#[test]
+fn issue_names_of_rows_shift_no_headings() {
+    let desk = Scratch::create("second-row-names");
+    let r = |quote: &str, head: &str, from: usize, separator: &str| {
+        head.to_owned()
+            + &rows(|n| {
+                let (s, x) = at(n);
+                let name = format!("{quote}{}{quote}", n + from);
+                format!("{name}{separator}{:.6}{separator}{x:.4}", 1e3 * s)
+            })
+    };
+    for text in [
+        r("\"", "\"time_ms\" \"acc_g\"\n", 1, " "),
+        r("", "time_ms acc_g\n", 1, " "),
+        r("", "time_ms,acc_g\n", 0, ","),
+        r("\"", "\"time_ms\";\"acc_g\"\n", 17, ";"),
+        r("\"", "\"time_ms\"\t\"acc_g\"\n", 1, "\t"),
+    ] {
+        let found = opened(&desk, "r.txt", text.as_bytes());
+        let channel = sampled(&found, "acc_g");
+        assert_eq!((channel.len, channel.column), (COUNT as u64, Some(3)));
+    }
+    // A separator at the end of all rows is no column, and takes no name.
+    let text = "n,time_s,acc\n".to_owned()
+        + &rows(|n| {
+            let (s, x) = at(n);
+            format!("{n},{s:.7},{x:.4},")
+        });
+    sampled(&opened(&desk, "a.csv", text.as_bytes()), "acc");
+}
+
+/// The size of a table above it was its first sample.
+#[test]
+fn issue_a_first_row_of_sizes_is_no_sample() {
+    let desk = Scratch::create("second-sizes");
+    let fractions = rows(|n| format!("{:.6},{:.6}", signal(n), signal(n + 1)));
+    let whole = rows(|n| format!("{},{}", (50.0 * signal(n)) as i64, n % 7));
+    let alone = rows(|n| format!("{:.6}", signal(n)));
+    for (head, body, len) in [
+        ("2,4096", &fractions, COUNT),
+        ("4096,2", &fractions, COUNT),
+        ("1,4096", &fractions, COUNT),
+        ("2,4096", &whole, COUNT),
+        ("4096", &alone, COUNT),
+        // Neither: samples.
+        ("2,4000", &fractions, COUNT + 1),
+        ("0,0", &fractions, COUNT + 1),
+        ("17,4096", &whole, COUNT + 1),
+    ] {
+        let found = opened(&desk, "a.csv", format!("{head}\n{body}").as_bytes());
+        assert_eq!(found.channel("column 1").unwrap().len, len as u64, "{head}");
+        assert_eq!(found.notes.iter().any(|note| note.contains("how many samples")), len == COUNT, "{head}");
+    }
+}
+
+/// A vector as one row of three million fields hung, and beyond 16 MiB a row was several channels.
+#[test]
+fn issue_one_long_row_is_one_channel() {
+    let desk = Scratch::create("second-long-row");
+    let count = 3_000_000;
+    let text: String = (0..count).map(|n| if n % 2 == 0 { "-0.125," } else { "0.5," }).collect();
+    let found = opened(&desk, "row.csv", format!("{}\n", text.trim_end_matches(',')).as_bytes());
+    assert_eq!((found.channels.len(), found.channels[0].len), (1, count));
+    assert_eq!(found.channels[0].read().unwrap()[count as usize - 1], 0.5);
+    // Fifty rows of ten thousand fields are fifty channels, and so are a hundred.
+    for count in [50, 100] {
+        let row = (0..10_000).map(|n| format!("{:.2}", signal(n))).collect::<Vec<_>>().join(",") + "\n";
+        let found = opened(&desk, "rows.csv", row.repeat(count).as_bytes());
+        assert_eq!((found.channels.len(), found.channels[0].len), (count, 10_000));
+    }
+    // A wide table of many rows is read once, and not once a column.
+    let row = (0..500).map(|n| format!("{:.2}", signal(n))).collect::<Vec<_>>().join(",") + "\n";
+    let found = opened(&desk, "wide.csv", row.repeat(1000).as_bytes());
+    assert_eq!((found.channels.len(), found.channels[499].len), (500, 1000));
+    assert_eq!(found.channels[3].read().unwrap()[999], (100.0 * signal(3)).round() / 100.0);
+}
+
+/// Sensors on radio stamp a packet; "does not say how fast" was all that was said.
+#[test]
+fn issue_stamps_of_packets_say_the_rate_and_what_lacks() {
+    let desk = Scratch::create("second-packets");
+    let epoch =
+        |n: usize, size: usize| 1_714_550_400_000.0 + (1e3 * (n / size * size) as f64 / RATE_HZ).round();
+    for size in [32, 64, 25] {
+        let text = "epoch_ms,acc_g\n".to_owned() + &rows(|n| format!("{},{:.4}", epoch(n, size), signal(n)));
+        let found = opened(&desk, "a.csv", text.as_bytes());
+        sampled(&found, "acc_g");
+        let said = found.notes.join("; ");
+        assert!(said.contains(&format!("packets of {size} samples")) && !said.contains("uneven"), "{said}");
+    }
+    let kept = |n: usize| (n / 32) % 20 != 7;
+    let text: String =
+        (0..COUNT).filter(|n| kept(*n)).map(|n| format!("{},{:.4}\n", epoch(n, 32), signal(n))).collect();
+    let found = opened(&desk, "lost.csv", format!("epoch_ms,acc_g\n{text}").as_bytes());
+    sampled(&found, "acc_g");
+    assert!(
+        found.notes.join("; ").contains("packets lack: 6 of 127, the first after row 224"),
+        "{:?}",
+        found.notes
+    );
+}
+
+#[test]
+fn issue_times_that_say_no_rate_say_why() {
+    let desk = Scratch::create("second-why");
+    let stamped = |stamp: &dyn Fn(usize) -> f64| {
+        "time_s,acc\n".to_owned() + &rows(|n| format!("{:.6},{:.4}", stamp(n), signal(n)))
+    };
+    for (text, words) in [
+        (stamped(&|n| (COUNT - n) as f64 / RATE_HZ), "fall from row to row"),
+        (stamped(&|n| (n % 1000) as f64 / RATE_HZ * if n < 2000 { 1.0 } else { -1.0 }), "go back at"),
+        (stamped(&|n| ((n * n) as f64 / 1e4).floor() / 1e3), "uneven"),
+    ] {
+        let found = opened(&desk, "a.csv", text.as_bytes());
+        assert_eq!(found.channel("acc").unwrap().rate_hz, None);
+        assert!(found.notes.join("; ").contains(words), "{words}: {:?}", found.notes);
+    }
+}
+
+#[test]
+fn issue_durations_are_times() {
+    let desk = Scratch::create("second-durations");
+    let iso = |n: usize| format!("P0DT0H0M{:.9}S", at(n).0);
+    for text in [
+        "acc,t\n".to_owned()
+            + &rows(|n| format!("{:.4},0 days 00:00:00.{:09}", signal(n), (1e9 * at(n).0) as u64)),
+        "acc,t\n".to_owned() + &rows(|n| format!("{:.4},{}", signal(n), iso(n))),
+    ] {
+        sampled(&opened(&desk, "a.csv", text.as_bytes()), "acc");
+    }
+}
+
+/// The clock of each channel counts: that of a struct, of a column, of a text's second column of times.
+#[test]
+fn issue_each_channel_begins_when_its_clock_says() {
+    let desk = Scratch::create("second-clocks");
+    let channel = |name: &str, from: usize| Channel::held(name, (from..from + COUNT).map(signal).collect());
+    let (start, rate) = (Channel::held("tacho_start_s", vec![0.8]), Channel::held("fs", vec![RATE_HZ]));
+    let path = desk.join("a.npz");
+    stribeck_formats::npz::write(&path, &[channel("acc", 0), channel("tacho", 9), start, rate], &[]).unwrap();
+    let found = Recording::open(&path).unwrap();
+    assert_eq!(
+        (found.channel("tacho").unwrap().start_s, found.channel("acc").unwrap().start_s),
+        (Some(0.8), None)
+    );
+    // Times that begin later.
+    let text = "time_s,acc\n".to_owned() + &rows(|n| format!("{:.7},{:.4}", 2.5 + at(n).0, signal(n)));
+    let found = opened(&desk, "a.csv", text.as_bytes());
+    let start_s = sampled(&found, "acc").start_s.unwrap();
+    assert!((start_s - 2.5).abs() < 1e-6, "{start_s}");
+}
+
+fn wav(form: &[u8], says: u32, bytes: &[u8], behind: &[u8]) -> Vec<u8> {
+    let mut all = [form, &(36 + bytes.len() as u32).to_le_bytes(), b"WAVEfmt "].concat();
+    all.extend(16_u32.to_le_bytes());
+    all.extend([1_u16, 1].map(u16::to_le_bytes).concat());
+    all.extend([RATE_HZ as u32, 2 * RATE_HZ as u32].map(u32::to_le_bytes).concat());
+    all.extend([2_u16, 16].map(u16::to_le_bytes).concat());
+    all.extend(b"data");
+    all.extend(says.to_le_bytes());
+    all.extend(bytes);
+    all.extend(behind);
+    all
+}
+
+#[test]
+fn issue_wav_whose_head_says_half_the_length_is_read_whole() {
+    let desk = Scratch::create("second-wav");
+    let bytes: Vec<u8> = (0..COUNT).flat_map(|n| ((20_000.0 * signal(n)) as i16).to_le_bytes()).collect();
+    let whole = bytes.len() as u32;
+    let list = [b"LIST", &4_u32.to_le_bytes()[..], b"INFO"].concat();
+    for (form, says, behind, len, noted) in [
+        (b"RIFF", whole / 2, &[][..], COUNT, true),
+        (b"RIFF", whole, &list, COUNT, false),
+        (b"RIFF", whole, &[0; 30], COUNT, false),
+        (b"BW64", whole, &[], COUNT, false),
+    ] {
+        let found = opened(&desk, "a.wav", &wav(form, says, &bytes, behind));
+        assert_eq!(
+            (found.channels[0].len, found.notes.is_empty()),
+            (len as u64, !noted),
+            "{:?}",
+            found.notes
+        );
+    }
+}
+
+#[test]
+fn issue_files_beside_sound_ones_are_named() {
+    let desk = Scratch::create("second-beside");
+    let why = try_open(&desk, "a.tdms_index", b"TDSh\0\0\0\0").unwrap_err().to_string();
+    assert!(why.contains("a.tdms`") && why.contains("open that"), "{why}");
+    // Tags before FLAC are looked behind, and what stands there is judged.
+    let tag = [&b"ID3\x04\0\0\0\0\0\x0a"[..], &[0; 10], b"fLaC"].concat();
+    let why = try_open(&desk, "a.flac", &tag).unwrap_err().to_string();
+    assert!(why.contains("FLAC"), "{why}");
+}
+
+/// The head of a `.npy` array of `count` doubles.
+fn npy_head(count: u64) -> Vec<u8> {
+    let text = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({count},), }}");
+    let text = format!("{text:<117}\n");
+    [b"\x93NUMPY\x01\0", &(text.len() as u16).to_le_bytes()[..], text.as_bytes()].concat()
+}
+
+fn deflated(parts: &[&[u8]], zeros: usize) -> Vec<u8> {
+    let mut packer = ZlibEncoder::new(Vec::new(), Compression::fast());
+    parts.iter().for_each(|part| packer.write_all(part).unwrap());
+    let block = vec![0; 1 << 20];
+    (0..zeros >> 20).for_each(|_| packer.write_all(&block).unwrap());
+    packer.finish().unwrap()
+}
+
+/// A file of megabytes that unpacks to gigabytes took them, and was then called damaged.
+#[test]
+fn refuses_what_unpacks_to_more_than_memory_may_hold_before_it_is_unpacked() {
+    let desk = Scratch::create("second-bombs");
+    // A deflated MATLAB array of 8 GB, of which 64 MB are there.
+    let element = |kind: u32, data: &[u8]| {
+        [
+            &kind.to_le_bytes()[..],
+            &(data.len() as u32).to_le_bytes(),
+            data,
+            &vec![0; data.len().next_multiple_of(8) - data.len()],
+        ]
+        .concat()
+    };
+    let count = 1_000_000_000_u32;
+    let flags = element(6, &[6_u32, 0].map(u32::to_le_bytes).concat());
+    let head = [flags, element(5, &[count, 1].map(u32::to_le_bytes).concat()), element(1, b"acc")].concat();
+    let tags = [14, 0, 9, 0_u32].map(u32::to_le_bytes);
+    let body = deflated(&[&tags[..2].concat(), &head, &tags[2..].concat()], 64 << 20);
+    let mut mat = b"MATLAB 5.0 MAT-file".to_vec();
+    mat.resize(124, b' ');
+    mat.extend([0, 1, b'I', b'M']);
+    mat.extend([15, body.len() as u32].map(u32::to_le_bytes).concat());
+    mat.extend(body);
+    // An archive with a deflated array of 8 GB by its directory.
+    let mut npz = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    let options =
+        zip::write::SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
+    npz.start_file("acc.npy", options).unwrap();
+    npz.write_all(&npy_head(8 << 20)).unwrap();
+    (0..64).for_each(|_| npz.write_all(&vec![0; 1 << 20]).unwrap());
+    let npz = npz.finish().unwrap().into_inner();
+    let size = (128 + (64_u32 << 20)).to_le_bytes();
+    let claimed: Vec<u8> = {
+        // Both heads of the entry say its size.
+        let mut bytes = npz;
+        let places: Vec<usize> = (0..bytes.len() - 4).filter(|at| bytes[*at..*at + 4] == size).collect();
+        places.iter().for_each(|at| bytes[*at..*at + 4].copy_from_slice(&0xf000_0000_u32.to_le_bytes()));
+        bytes
+    };
+    for (name, bytes) in [("a.mat", &mat), ("a.npz", &claimed)] {
+        match try_open(&desk, name, bytes) {
+            Err(Error::TooLarge { bytes, most, .. }) => assert!(bytes > most, "{name}"),
+            other => panic!("{name}: {:?}", other.map(|found| found.names())),
+        }
+    }
+}
