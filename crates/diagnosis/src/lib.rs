@@ -42,6 +42,7 @@ pub mod joint;
 pub mod length;
 mod machine;
 pub mod record;
+pub mod series;
 pub mod sources;
 pub mod speed;
 pub mod words;

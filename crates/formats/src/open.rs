@@ -7,7 +7,8 @@ use std::path::Path;
 use stribeck_dsp::channel::memory;
 
 use crate::{
-    Error, Recording, Result, csv, flac, mat4, mat5, mat73, mdf4, npy, npz, parquet, tdms, time, uff58, wav,
+    Error, Recording, Result, clock_columns, csv, flac, mat4, mat5, mat73, mdf4, npy, npz, parquet, tdms,
+    time, uff58, wav,
 };
 
 impl Recording {
@@ -62,7 +63,7 @@ impl Recording {
             csv::open(path)
         }?;
         within_memory(&opened)?;
-        time::told(opened)
+        time::told(clock_columns::joined(opened)?)
     }
 }
 

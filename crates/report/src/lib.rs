@@ -22,7 +22,7 @@
 //! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | the smallest spall that is found | [`write_detection`] | `report.html` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
-//! | several measured records | [`write_trend`] | `trend.html`, `trend.json` |
+//! | a series of measured records | [`write_series`] | `report.html`, `findings.json` |
 //! | several channels of one machine | [`write_joint`] | `joint.html`, `joint.json` |
 //!
 //! [`plot`] draws figures of any signal, for a page (zoomable) and for a document (SVG, PNG). The page of a
@@ -49,9 +49,10 @@ mod comparison;
 mod detection;
 mod ensemble;
 pub mod inference;
+mod joint;
 mod measured;
+mod series;
 mod sources;
-mod trend;
 
 mod error;
 
@@ -63,10 +64,11 @@ pub use comparison::{
 pub use detection::write_detection;
 pub use ensemble::write_ensemble;
 pub use error::Error;
+pub use joint::write_joint;
 pub use measured::{Baseline, write_measured};
 pub use run::{write, write_between};
+pub use series::{SeriesFindings, SeriesRecord, write_series};
 pub use sources::write_sources;
-pub use trend::{TrendEntry, write_joint, write_trend};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -5,6 +5,7 @@ mod clocks;
 mod components;
 mod gaps;
 mod reading;
+mod series;
 mod simulated;
 mod together;
 mod turning;
@@ -12,18 +13,17 @@ mod turning;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use stribeck_diagnosis::Analysis;
-use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, Quantity, State};
+use stribeck_diagnosis::record::alarm::{Judged, LEAST_RECORDS, Limit, State};
 use stribeck_diagnosis::record::velocity;
 use stribeck_diagnosis::record::zone::{Foundation, Group, Zoned};
 use stribeck_diagnosis::sources::Component;
-use stribeck_report::{Baseline, TrendEntry, write_measured, write_trend};
+use stribeck_report::{Baseline, write_measured};
 use stribeck_scene::catalogue;
-use stribeck_store::run_dir::{check_folder, write_atomic};
+use stribeck_store::run_dir::check_folder;
 
-use crate::causes;
-use crate::interrupt::{Interrupt, Interrupted};
+use crate::interrupt::Interrupt;
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
 pub(crate) use reading::{Accelerations, Reading, Speed, accelerations, examine};
@@ -33,7 +33,8 @@ use simulated::Simulation;
 #[derive(Debug, clap::Args)]
 pub struct Options {
     /// A file of signals (CSV, .npy, .npz, .mat, .h5, .uff, .tdms, .mf4, .parquet, .wav, .flac), or the
-    /// folder of a run; several are set side by side, in their order
+    /// folder of a run; several, or a folder of files in the order of their names, are a series of one machine
+    /// in the order of time
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
@@ -67,8 +68,8 @@ pub struct Options {
     /// 1000 Hz), kurtosis, crest, BPFO, BPFI, BSF, FTF (dB); may be repeated
     #[arg(long = "alarm", value_name = "LIMIT", value_parser = Limit::parse)]
     alarms: Vec<Limit>,
-    /// The first N files are of the sound machine: limits of all levels follow from their scatter, but for
-    /// those given, and seven or more calibrate the verdict on the others
+    /// The first N records of a series are of the sound machine: limits of all levels follow from their
+    /// scatter, but for those given, and seven or more calibrate the verdict on the others
     #[arg(long, value_name = "N")]
     reference: Option<usize>,
     /// One verdict on several channels that were recorded together: all signals of a file, or one of each of
@@ -80,7 +81,7 @@ pub struct Options {
     /// -analysis]
     #[arg(long)]
     out: Option<PathBuf>,
-    /// Writes the findings to standard output as JSON: those of one record, or a list of several
+    /// Writes the findings to standard output as JSON
     #[arg(long)]
     json: bool,
 }
@@ -100,12 +101,13 @@ fn component(text: &str) -> Result<Component, String> {
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    let files = series::files(&options.files, place)?;
     if let Some(count) = options.reference {
         ensure!(
-            (LEAST_RECORDS..options.files.len()).contains(&count),
+            (LEAST_RECORDS..files.len()).contains(&count),
             "`--reference {count}`: {} files were given; at least {LEAST_RECORDS} must be of the sound \
              machine, and one more",
-            options.files.len()
+            files.len()
         );
     }
     // Once a process, however many records are simulated.
@@ -120,12 +122,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         return components::run(options, place);
     }
     let sound = baseline::read(options, place)?;
-    let mut reading = Reading { sound_db: baseline::scores(&sound), ..options.reading.clone() };
-    let asked = Asked { options, sound: sound.first(), simulation: simulation.as_ref() };
-    if let [file] = &options.files[..] {
+    let reading = Reading { sound_db: baseline::scores(&sound), ..options.reading.clone() };
+    let asked = Asked { options, sound: sound.first(), simulation: simulation.as_ref(), place };
+    if let [file] = &files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
-        let analysis = analyse(file, &out, &asked, &reading, place)?;
+        let analysis = analyse(file, Some(&out), &asked, &reading)?;
         if options.json {
             say!("{}", serde_json::to_string_pretty(&analysis.findings)?);
             return Ok(ExitCode::SUCCESS);
@@ -140,86 +142,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         say!("report: {}", shown(&out.join("report.html")));
         return Ok(ExitCode::SUCCESS);
     }
-    let out = options.out.clone().unwrap_or_else(|| PathBuf::from("trend-analysis"));
-    let folders = folders(&options.files);
-    check_folder(&out, &[TREND])?;
-    // The table of all is written last; until then an empty one marks the folder as this command's.
-    if !out.join(TREND).exists() {
-        std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
-        write_atomic(&out.join(TREND), b"[]")?;
-    }
-    let (mut entries, mut of_reference) = (Vec::new(), Vec::new());
-    for (at, (file, folder)) in options.files.iter().zip(folders).enumerate() {
-        let done = analyse(file, &out.join(&folder), &asked, &reading, place);
-        let (findings, error) = match done {
-            Ok(analysis) => {
-                if options.reference.is_some_and(|count| at < count) {
-                    of_reference.extend(analysis.findings.score_db);
-                }
-                (Some(analysis.findings), None)
-            }
-            Err(why) if why.is::<Interrupted>() => return Err(why),
-            Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
-        };
-        let file = file.display().to_string();
-        let verdict = findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict);
-        if !options.json {
-            say!("{file}: {verdict}");
-        }
-        entries.push(TrendEntry { file, folder, findings, error, alarms: Vec::new() });
-        // Not by one another: what they scatter by is what the others are judged by.
-        if options.reference == Some(at + 1) {
-            reading.sound_db.append(&mut of_reference);
-        }
-    }
-    let limits = limits(options, &entries);
-    for limit in &limits {
-        let mut records = entries.iter().filter_map(|e| e.findings.as_ref()).peekable();
-        let why = records.peek().map(|first| limit.quantity.missing(first));
-        if let (Some(why), false) = (why, records.any(|f| limit.judge(f).is_some())) {
-            tell!("note: no record has a level for the limit of {}: {why}", limit.quantity.name());
-        }
-    }
-    for entry in &mut entries {
-        let Some(findings) = &entry.findings else { continue };
-        entry.alarms = limits.iter().filter_map(|limit| limit.judge(findings)).collect();
-        for judged in entry.alarms.iter().filter(|judged| judged.state != State::Good && !options.json) {
-            say!("{}: {}", entry.file, passed(judged));
-        }
-    }
-    write_trend(&out, &entries, &limits)?;
-    if options.json {
-        say!("{}", serde_json::to_string_pretty(&entries)?);
-    } else {
-        say!("side by side: {}", shown(&out.join("trend.html")));
-    }
-    let failed = entries.iter().filter(|entry| entry.findings.is_none()).count();
-    ensure!(failed == 0, "{failed} of {} records could not be analysed", entries.len());
-    Ok(ExitCode::SUCCESS)
-}
-
-/// A folder for each of several files: those of one name in several places keep apart.
-fn folders(files: &[PathBuf]) -> Vec<String> {
-    let digits = files.len().to_string().len();
-    let name = |(at, file): (usize, &PathBuf)| {
-        let stem = file.file_stem().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-        format!("{:0digits$}-{stem}", at + 1)
-    };
-    files.iter().enumerate().map(name).collect()
-}
-
-/// Limits that were given, and those that follow from the reference records.
-fn limits(options: &Options, entries: &[TrendEntry]) -> Vec<Limit> {
-    let mut limits = options.alarms.clone();
-    let reference = &entries[..options.reference.unwrap_or(0)];
-    for quantity in Quantity::ALL {
-        if limits.iter().any(|limit| limit.quantity == quantity) {
-            continue;
-        }
-        let values: Vec<f64> = reference.iter().filter_map(|e| quantity.of(e.findings.as_ref()?)).collect();
-        limits.extend(Limit::from_reference(quantity, &values));
-    }
-    limits
+    series::run(&files, &asked, reading)
 }
 
 /// A level and its limits in words.
@@ -235,23 +158,21 @@ fn passed(judged: &Judged) -> String {
     }
 }
 
-/// The levels of several records side by side.
-const TREND: &str = "trend.json";
-
 /// What is asked of every record.
 struct Asked<'a> {
     options: &'a Options,
     /// The record of the sound machine that is drawn behind.
     sound: Option<&'a Baseline>,
     simulation: Option<&'a Simulation>,
+    place: &'a Place,
 }
 
-/// Analyses one record and writes its findings and its page into `out`.
-fn analyse(asked: &Path, out: &Path, of: &Asked<'_>, reading: &Reading, place: &Place) -> Result<Analysis> {
-    let Asked { options, sound, simulation } = *of;
+/// Analyses one record and writes its findings and its page into `out`, if there is one.
+fn analyse(asked: &Path, out: Option<&Path>, of: &Asked<'_>, reading: &Reading) -> Result<Analysis> {
+    let Asked { options, sound, simulation, place } = *of;
     let mut analysis = examine(asked, reading, place)?;
     let name = asked.file_name().map_or_else(|| "record".into(), |n| n.to_string_lossy());
-    if let Some(simulation) = simulation {
+    if let (Some(simulation), Some(out)) = (simulation, out) {
         // What is known without it stays when the simulation is interrupted.
         write_measured(out, &name, &analysis, None)?;
         analysis = simulation.again(analysis, asked, reading, out, place)?;
@@ -260,7 +181,9 @@ fn analyse(asked: &Path, out: &Path, of: &Asked<'_>, reading: &Reading, place: &
     if let Some(first) = sound {
         baseline::beside(&mut analysis, first)?;
     }
-    write_measured(out, &name, &analysis, sound)?;
+    if let Some(out) = out {
+        write_measured(out, &name, &analysis, sound)?;
+    }
     Ok(analysis)
 }
 

@@ -20,11 +20,10 @@ pub(crate) enum Kind {
     Inference,
     Comparison,
     Analysis,
-    Trend,
 }
 
 /// A kind of folder: the files that mark it, its page, and a word for it.
-const KINDS: [(Kind, &[&str], &str, &str); 8] = [
+const KINDS: [(Kind, &[&str], &str, &str); 7] = [
     (Kind::Ensemble, &["ensemble.json"], "report.html", "ensemble"),
     (Kind::Run, &["run.json"], "report.html", "run"),
     (Kind::Campaign, &["runs.parquet", "campaign.ron"], "index.html", "campaign"),
@@ -36,7 +35,6 @@ const KINDS: [(Kind, &[&str], &str, &str); 8] = [
     ),
     (Kind::Inference, &["inference.json", "inference.ron"], "report.html", "inference"),
     (Kind::Comparison, &["compare.json"], "report.html", "comparison"),
-    (Kind::Trend, &["trend.json"], "trend.html", "records"),
     (Kind::Analysis, &["findings.json"], "report.html", "record"),
 ];
 

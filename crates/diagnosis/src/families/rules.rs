@@ -157,9 +157,7 @@ impl Around<'_> {
 
 /// What the rules ask beside a family.
 pub(crate) struct Case<'a> {
-    /// A comb that is no family's.
-    pub(crate) unexplained: Option<&'a Unexplained>,
-    /// The same of each band.
+    /// The combs that are no family's.
     around: Around<'a>,
     /// The family that stands farthest above unrelated combs, beside sound records of the machine.
     sound: Option<BesideSound>,
@@ -174,7 +172,7 @@ type Rule = fn(&Family, &Case<'_>) -> Option<String>;
 
 /// The rules, in their order: the first that refuses a family decides. Every family of rolling defects is
 /// modulated by the cage, so the cage is suspected last.
-const RULES: [Rule; 11] = [
+const RULES: [Rule; 10] = [
     noise_makes_as_much,
     unrelated_combs_stand_as_high,
     swings_as_in_sound_bearings,
@@ -182,7 +180,6 @@ const RULES: [Rule; 11] = [
     no_cage_rolls_so_fast,
     unexplained_comb_stands_higher,
     something_else_knocks_louder,
-    cage_shares_in_unexplained_comb,
     element_without_the_cage,
     cage_shares_in_a_family,
     another_family_stands_higher,
@@ -261,14 +258,6 @@ fn something_else_knocks_louder(family: &Family, case: &Case<'_>) -> Option<Stri
     })
 }
 
-fn cage_shares_in_unexplained_comb(family: &Family, case: &Case<'_>) -> Option<String> {
-    let other = case.unexplained.filter(|_| family.name == Defect::Ftf)?;
-    Some(format!(
-        "it is there, as the cage's share in a comb at {:.3} times the shaft that is no family of this bearing",
-        other.order
-    ))
-}
-
 fn element_without_the_cage(family: &Family, case: &Case<'_>) -> Option<String> {
     (family.name == Defect::Bsf && !case.modulated).then(|| {
         "it is there, and no turn of the cage is in it, as it is where a spot on a rolling element comes under \
@@ -291,13 +280,12 @@ fn another_family_stands_higher(family: &Family, case: &Case<'_>) -> Option<Stri
 /// Which of the families that are there are defects.
 pub(crate) fn decide(
     families: Vec<Family>,
-    unexplained: Option<&Unexplained>,
     around: Around<'_>,
     sound: Option<BesideSound>,
     modulated: bool,
 ) -> Vec<Family> {
     let first_db = first(families.iter()).map_or(f64::NEG_INFINITY, |at| families[at].height_db);
-    let case = Case { unexplained, around, sound, modulated, first_db };
+    let case = Case { around, sound, modulated, first_db };
     let decided = |family: Family| match &family.reason {
         Reason::Decided(_) => family,
         Reason::Undecided => match RULES.iter().find_map(|rule| rule(&family, &case)) {
@@ -418,7 +406,7 @@ mod tests {
     #[test]
     fn planted_one_line_is_claimed_for_one_family() {
         let families = vec![found(Defect::Bpfo, 106.328, 106.163), found(Defect::Bsf, 52.304, 53.081)];
-        let families = decide(shared_out(families, 1.25, true), None, Around::default(), None, true);
+        let families = decide(shared_out(families, 1.25, true), Around::default(), None, true);
         assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         assert!(
             families[1].reason.to_string().contains("those of BPFO, which are nearer"),
@@ -428,8 +416,7 @@ mod tests {
         // A cage that slips takes BPFO to where the element would be; only a turn of the cage makes it one.
         for (modulated, claimed) in [(true, Defect::Bsf), (false, Defect::Bpfo)] {
             let families = vec![found(Defect::Bpfo, 106.328, 105.153), found(Defect::Bsf, 52.304, 52.576)];
-            let families =
-                decide(shared_out(families, 1.25, modulated), None, Around::default(), None, modulated);
+            let families = decide(shared_out(families, 1.25, modulated), Around::default(), None, modulated);
             let names: Vec<Defect> = families.iter().filter(|f| f.claimed).map(|f| f.name).collect();
             assert_eq!(names, [claimed], "{families:?}");
         }
@@ -440,7 +427,7 @@ mod tests {
                 found(Defect::Bsf, 48.0104, 0.5 * measured_hz + 0.02),
             ];
             families[0].height_db = 24.9;
-            let families = decide(shared_out(families, 1.0, true), None, Around::default(), None, true);
+            let families = decide(shared_out(families, 1.0, true), Around::default(), None, true);
             let verdict = conclude(&families, None);
             assert!(families.iter().all(|family| family.claimed), "{families:?}");
             assert!(verdict.contains("of the outer raceway or of a rolling element"), "{verdict}");
@@ -450,7 +437,7 @@ mod tests {
                 found(Defect::Bpfo, 96.0048, measured_hz),
                 found(Defect::Bsf, 48.0104, 0.5 * measured_hz),
             ];
-            let families = decide(shared_out(families, 1.0, false), None, Around::default(), None, false);
+            let families = decide(shared_out(families, 1.0, false), Around::default(), None, false);
             assert!(families[0].claimed && !families[1].claimed, "{families:?}");
         }
         // Lines of their own are not shared.

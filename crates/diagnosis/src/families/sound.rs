@@ -13,7 +13,7 @@ use crate::{Defect, Reason};
 /// Fewest sound records by which a family is claimed: one more exceeds all of seven once in eight.
 pub const LEAST_SOUND: usize = 7;
 /// Largest probability that a further sound record has as high a score, with which a family is claimed.
-const BEYOND_SOUND: f64 = 0.01;
+pub(crate) const BEYOND_SOUND: f64 = 0.01;
 
 /// A score beside those of sound records.
 #[derive(Debug, Clone, Copy, PartialEq)]

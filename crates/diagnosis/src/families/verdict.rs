@@ -14,7 +14,7 @@
 //! stands higher than all that are, nothing weaker is claimed (`unexplained.rs`).
 
 use stribeck_dsp::{BandEnvelope, Whitened};
-use stribeck_theory::catalogue::{CatalogueBearing, DefectOrders};
+use stribeck_theory::catalogue::{CatalogueBearing, DefectOrders, Element};
 
 use crate::families::candidate::{Candidate, Standing, search};
 use crate::families::comb_at_half::comb_at_half;
@@ -83,9 +83,13 @@ pub(crate) struct FirstDefect {
 
 /// Lines about a multiple of the shaft or the cage that are its own: half the width of a Hann window’s lobe.
 const OWN_LINES: f64 = 1.5;
-/// How far a load along the shaft steepens the contact of a deep-groove bearing [°], and what makers' sizes
-/// differ by in the families' places.
-const STEEPER_DEG: f64 = 15.0;
+/// Largest radial clearance of ball bearings with a bore of 24 to 40 mm of group 3, which is usual in motors
+/// [mm] (ISO 5753-1), and the sum of the curvatures of both grooves over the diameter of a ball, radii of 52 %
+/// each: by both a load along the shaft steepens the contact (T. A. Harris, Rolling Bearing Analysis, 4th ed.,
+/// Wiley 2001, section 2.4).
+const CLEARANCE_MM: f64 = 0.028;
+const CURVATURE: f64 = 0.04;
+/// Part by which makers' sizes move the families' places.
 const SIZES_DIFFER: f64 = 0.003;
 /// Numbers of elements of most bearings.
 const USUAL_COUNTS: std::ops::RangeInclusive<u32> = 7..=10;
@@ -209,7 +213,7 @@ impl Candidates {
         } = self;
         let width_hz = OWN_LINES * resolution_hz;
         let around = Around { foreign: &foreign, at_half: at_half.as_ref(), rolling, shaft_hz, width_hz };
-        let decided = decide(families, unexplained.as_ref(), around, sound, modulated);
+        let decided = decide(families, around, sound, modulated);
         let first = claimed_first(&decided).map(|(at, comb_hz)| FirstDefect {
             at,
             comb_hz,
@@ -251,8 +255,12 @@ pub(crate) fn orders_and_speed(machine: &Machine) -> Result<(DefectOrders, f64),
 /// The family of the outer raceway over its place in a bearing whose contact a load along the shaft steepens,
 /// and that of the inner one.
 fn reach_of_rolling(bearing: &CatalogueBearing) -> (f64, f64) {
-    let ratio = |angle_deg: f64| bearing.diameter_mm / bearing.pitch_mm * angle_deg.to_radians().cos();
-    let (least, most) = (ratio(bearing.angle_deg + STEEPER_DEG), ratio(bearing.angle_deg));
+    let flat = bearing.angle_deg.to_radians().cos();
+    let steeper = match bearing.element {
+        Element::Ball => (flat - 0.5 * CLEARANCE_MM / (CURVATURE * bearing.diameter_mm)).max(0.0),
+        Element::Roller => flat,
+    };
+    let [least, most] = [steeper, flat].map(|cosine| bearing.diameter_mm / bearing.pitch_mm * cosine);
     let off = SIZES_DIFFER;
     ((1.0 - least) / (1.0 - most) + off, (1.0 + least) / (1.0 + most) - off)
 }

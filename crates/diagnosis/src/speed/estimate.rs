@@ -38,6 +38,9 @@ const SLIP_STEPS: i32 = 20;
 pub(crate) const LEAST_LEAD: f64 = 20.0;
 /// Speeds nearer to one another than this part are one.
 const SAME: f64 = 0.02;
+/// Speeds that are looked at one by one, and how far a ratio of two may be off a whole number.
+const PEAKS: usize = 10;
+const WHOLE: f64 = 0.01;
 /// Evidence of the lines between those of a speed, and part of them that must stand, for it to be a multiple
 /// of the true one, and what the true one may lack as a whole [nats].
 const BETWEEN: f64 = 4.0;
@@ -85,12 +88,22 @@ impl SpeedEstimate {
         let shaft_shows = clear.comb(spectrum, hz, SHAFT) >= LEAST_OF_SHAFT;
         Self {
             hz,
-            uncertainty_hz: 0.5 * spectrum.grid_hz / f64::from(SHAFT),
+            uncertainty_hz: uncertainty_hz(spectrum),
             lead: score - next.1,
             next_hz: next.0,
             is_accepted: shaft_shows && score - next.1 >= least_lead,
         }
     }
+}
+
+/// A speed that the lines of a record support.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Supported {
+    pub(crate) hz: f64,
+    /// Half of the resolution over the highest multiple of the shaft that was looked at [Hz].
+    pub(crate) uncertainty_hz: f64,
+    /// Its evidence [nats].
+    pub(crate) score: f64,
 }
 
 /// The speed with the largest evidence; `None` for a record too short to search.
@@ -100,14 +113,26 @@ pub(crate) fn without_any_given(
     bands: &[BandEnvelope],
     bearing: &CatalogueBearing,
 ) -> Option<SpeedEstimate> {
+    search(samples, rate_hz, bands, bearing).map(|(found, _)| found)
+}
+
+/// The same, and all speeds that no other one outweighs, the one with the largest evidence first.
+pub(crate) fn search(
+    samples: &[f64],
+    rate_hz: f64,
+    bands: &[BandEnvelope],
+    bearing: &CatalogueBearing,
+) -> Option<(SpeedEstimate, Vec<Supported>)> {
     let spectrum = Evidence::of_samples(samples, rate_hz)?;
     let clear = Clear::of(bearing, None)?;
     let scored = Scored::between((FROM_HZ, TO_HZ), &spectrum, bands, bearing, &clear)?;
     let found = scored.highest(|_| true)?;
     let hz = scored.lowest_of(&spectrum, found);
     let next = scored.highest(|other| !is_simple(other / hz))?;
-    let holds = samples.len() as f64 / rate_hz * hz >= TURNS;
-    holds.then(|| SpeedEstimate::of(hz, found.1, next, (&spectrum, &clear), LEAST_LEAD))
+    let holds = |hz: f64| samples.len() as f64 / rate_hz * hz >= TURNS;
+    let supported = scored.supported(&spectrum, &clear).into_iter().filter(|speed| holds(speed.hz)).collect();
+    let best = SpeedEstimate::of(hz, found.1, next, (&spectrum, &clear), LEAST_LEAD);
+    holds(hz).then_some((best, supported))
 }
 
 /// The speed near a given one with the largest evidence; `None` for a record too short to search.
@@ -179,6 +204,26 @@ impl Scored {
         all.filter(|(hz, score)| asked(*hz) && score.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// The highest speeds at which the shaft itself shows, and which none of the others leads by
+    /// [`LEAST_LEAD`], except whole multiples: these have lines at every second or third multiple of theirs.
+    fn supported(&self, spectrum: &Evidence, clear: &Clear) -> Vec<Supported> {
+        let mut peaks: Vec<(f64, f64)> = Vec::new();
+        while let Some(peak) = (peaks.len() < PEAKS)
+            .then(|| self.highest(|hz| peaks.iter().all(|(other, _)| (hz / other - 1.0).abs() > SAME)))
+            .flatten()
+        {
+            peaks.push(peak);
+        }
+        let leads = |hz: f64, score: f64| {
+            peaks.iter().all(|(other, best)| is_whole(other / hz) || best - score < LEAST_LEAD)
+        };
+        let supported = peaks
+            .iter()
+            .filter(|(hz, score)| clear.comb(spectrum, *hz, SHAFT) >= LEAST_OF_SHAFT && leads(*hz, *score));
+        let uncertainty_hz = uncertainty_hz(spectrum);
+        supported.map(|(hz, score)| Supported { hz: *hz, uncertainty_hz, score: *score }).collect()
+    }
+
     /// A half or a third of a speed, as often as its lines between stand: twice a speed has the lines of
     /// every second multiple.
     fn lowest_of(&self, spectrum: &Evidence, found: (f64, f64)) -> f64 {
@@ -221,6 +266,17 @@ impl Clear {
         let lines = (1..=multiples).map(|n| f64::from(n) * hz).filter(|line| !is_of_a_family(*line));
         lines.map(|line| spectrum.at(line)).sum()
     }
+}
+
+/// Half of the resolution over the highest multiple of the shaft that is looked at [Hz].
+fn uncertainty_hz(spectrum: &Evidence) -> f64 {
+    0.5 * spectrum.grid_hz / f64::from(SHAFT)
+}
+
+/// Whether a ratio of two speeds is a whole number above 1.
+fn is_whole(ratio: f64) -> bool {
+    let whole = ratio.round();
+    whole > 1.0 && (ratio / whole - 1.0).abs() < WHOLE
 }
 
 /// Whether lines of the shaft alone cannot distinguish two speeds of this ratio.

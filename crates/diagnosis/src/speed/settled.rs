@@ -5,7 +5,7 @@ use stribeck_dsp::BandEnvelope;
 
 use crate::Machine;
 use crate::record::pass::Record;
-use crate::speed::{estimate, shaft};
+use crate::speed::{by_verdict, estimate, shaft};
 
 /// The speed, and where it is from.
 pub(crate) struct Settled {
@@ -29,10 +29,9 @@ impl Settled {
     /// The speed of a machine, by a record.
     pub(crate) fn of(record: &Record, machine: &Machine) -> Self {
         let Record { kept, rate_hz, bands, .. } = record;
-        let (estimate, found_note) = found_speed(kept, *rate_hz, bands, machine).unzip();
-        let found = estimate.filter(|estimate| estimate.is_accepted);
+        let FoundSpeed { found, note: found_note } = FoundSpeed::of(record, machine);
         let taken = Machine {
-            speed_rpm: machine.speed_rpm.or(found.map(|found| 60.0 * found.hz)),
+            speed_rpm: machine.speed_rpm.or(found.map(|(hz, _)| 60.0 * hz)),
             speed_is_exact: machine.speed_is_exact || found.is_some(),
             ..machine.clone()
         };
@@ -43,7 +42,7 @@ impl Settled {
         Self {
             given_rpm: taken.speed_rpm,
             is_corrected: corrected_hz.is_some(),
-            uncertainty_rpm: found.map(|found| 60.0 * found.uncertainty_hz),
+            uncertainty_rpm: found.map(|(_, uncertainty_hz)| 60.0 * uncertainty_hz),
             lines_hz: lines.map(|lines| lines.hz),
             by_shaft: shaft.is_some_and(|shaft| shaft.is_distinct()),
             notes: found_note.into_iter().chain(corrected_note).collect(),
@@ -123,18 +122,38 @@ fn by_lines(
     near.or_else(of_all).map(SpeedByLines::of_both)
 }
 
-/// The speed by shaft and bearing together, where the user gives none; a note where it is not found.
-fn found_speed(
-    samples: &[f64],
-    rate_hz: f64,
-    bands: &[BandEnvelope],
-    machine: &Machine,
-) -> Option<(estimate::SpeedEstimate, String)> {
-    let bearing = machine.bearing.as_ref().filter(|_| machine.speed_rpm.is_none())?;
-    samples.iter().all(|x| x.is_finite()).then_some(())?;
-    let found = estimate::without_any_given(samples, rate_hz, bands, bearing)?;
+/// The speed of a record for which the user gives none.
+#[derive(Debug, Default)]
+struct FoundSpeed {
+    /// The speed and its uncertainty [Hz], where it is found.
+    found: Option<(f64, f64)>,
+    /// What the record says of it.
+    note: Option<String>,
+}
+
+impl FoundSpeed {
+    /// The speed at which a raceway is claimed, of those that the lines support; without one, that of which the
+    /// lines of shaft and bearing together leave no doubt.
+    fn of(record: &Record, machine: &Machine) -> Self {
+        let Record { kept, rate_hz, bands, .. } = record;
+        let asked = machine.bearing.as_ref().filter(|_| machine.speed_rpm.is_none());
+        let asked = asked.filter(|_| kept.iter().all(|x| x.is_finite()));
+        let searched = asked.and_then(|bearing| estimate::search(kept, *rate_hz, bands, bearing));
+        let Some((by_lines, supported)) = searched else { return Self::default() };
+        if let Some(found) = by_verdict::find(record, machine, &supported) {
+            let speed = found.speed;
+            let note = Some(found.note(supported.len()));
+            return Self { found: Some((speed.hz, speed.uncertainty_hz)), note };
+        }
+        let speed = (by_lines.hz, by_lines.uncertainty_hz);
+        Self { found: Some(speed).filter(|_| by_lines.is_accepted), note: Some(note_on(&by_lines)) }
+    }
+}
+
+/// The note on a speed by shaft and bearing together.
+fn note_on(found: &estimate::SpeedEstimate) -> String {
     let (rpm, next_rpm, lead) = (60.0 * found.hz, 60.0 * found.next_hz, found.lead);
-    let note = if found.is_accepted {
+    if found.is_accepted {
         format!(
             "no speed was given: the lines of the shaft and of the bearing together say {rpm:.1} ± {:.1} \
              rpm, of all speeds from {:.0} to {:.0} rpm. The next best is {next_rpm:.0} rpm, {lead:.0} \
@@ -149,8 +168,7 @@ fn found_speed(
             "the record does not determine the speed: {rpm:.0} and {next_rpm:.0} rpm, among others, explain \
              about as much of it"
         )
-    };
-    Some((found, note))
+    }
 }
 
 /// The shaft by its lines, where a speed is given and the outer ring stands still.

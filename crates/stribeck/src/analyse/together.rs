@@ -7,7 +7,7 @@ use anyhow::{Context, Result, ensure};
 use stribeck_diagnosis::Analysis;
 use stribeck_diagnosis::joint::Joint;
 use stribeck_formats::{Recording, says_time};
-use stribeck_report::{TrendEntry, write_joint, write_measured};
+use stribeck_report::{SeriesRecord, write_joint, write_measured};
 use stribeck_store::run_dir::{check_folder, write_atomic};
 
 use super::reading::{located, moves};
@@ -46,9 +46,9 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     for (at, (source, analysis)) in sources.iter().zip(&analyses).enumerate() {
         let folder = format!("{:0digits$}-{}", at + 1, source.name.replace(['/', '\\', ' ', ':'], "_"));
         write_measured(&out.join(&folder), &source.name, analysis, None)?;
-        entries.push(TrendEntry {
+        entries.push(SeriesRecord {
             file: source.name.clone(),
-            folder,
+            folder: Some(folder),
             findings: Some(analysis.findings.clone()),
             error: None,
             alarms: Vec::new(),

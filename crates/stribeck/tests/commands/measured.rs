@@ -290,14 +290,20 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
     assert!(text.contains("5.mat: rms 1.1") && text.contains("ALARM"), "{text}");
     assert!(!text.contains("4.mat: rms"), "{text}");
     assert!(text.contains("4.mat: kurtosis 1.") && text.contains("WARNING, from 1.5000"), "{text}");
-    let trend: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let found: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/findings.json")).unwrap()).unwrap();
     let rms = |at: usize| {
-        trend[at]["alarms"].as_array().unwrap().iter().find(|a| a["quantity"] == "rms").unwrap().clone()
+        found["records"][at]["alarms"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|a| a["quantity"] == "rms")
+            .unwrap()
+            .clone()
     };
     assert_eq!((rms(4)["state"].as_str(), rms(5)["state"].as_str()), (Some("good"), Some("alarm")));
-    assert!(trend[5]["findings"]["velocity_mm_s"].is_number());
-    let page = std::fs::read_to_string(desk.join("T/trend.html")).unwrap();
+    assert!(found["records"][5]["findings"]["velocity_mm_s"].is_number());
+    let page = std::fs::read_to_string(desk.join("T/report.html")).unwrap();
     assert!(page.contains("Alarm bands"));
     for (more, says) in [
         ("--reference=2", "at least 3"),
@@ -329,10 +335,10 @@ fn issue_sound_records_give_limits_for_each_family() {
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
     let output = stribeck(&desk, &words);
     assert!(output.status.success(), "{}", said(&output));
-    let trend: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let found: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/findings.json")).unwrap()).unwrap();
     let state = |at: usize, name: &str| {
-        let alarms = trend[at]["alarms"].as_array().unwrap();
+        let alarms = found["records"][at]["alarms"].as_array().unwrap();
         let judged =
             alarms.iter().find(|a| a["quantity"] == name).unwrap_or_else(|| panic!("{name}: {alarms:?}"));
         judged["state"].as_str().unwrap().to_owned()
@@ -344,7 +350,7 @@ fn issue_sound_records_give_limits_for_each_family() {
 }
 
 #[test]
-fn behaves_several_records_are_set_side_by_side() {
+fn behaves_several_records_are_a_series() {
     let desk = Scratch::create("trend");
     let mut noise = Noise::new(9);
     let sound: Vec<f64> = (0..100_000).map(|_| noise.uniform()).collect();
@@ -359,10 +365,10 @@ fn behaves_several_records_are_set_side_by_side() {
     let text = said(&output);
     assert!(!output.status.success() && text.contains("1 of 3 records could not be analysed"), "{text}");
     assert_eq!((text.matches("No such file").count(), text.matches("none.mat").count()), (1, 2), "{text}");
-    let trend: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(desk.join("T/trend.json")).unwrap()).unwrap();
+    let found: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(desk.join("T/findings.json")).unwrap()).unwrap();
     let claimed = |at: usize| {
-        let families = trend[at]["findings"]["families"].as_array().unwrap();
+        let families = found["records"][at]["findings"]["families"].as_array().unwrap();
         families
             .iter()
             .filter(|f| f["claimed"] == true)
@@ -370,10 +376,63 @@ fn behaves_several_records_are_set_side_by_side() {
             .collect::<Vec<_>>()
     };
     assert_eq!((claimed(0), claimed(1)), (vec![], vec!["BPFO".to_owned()]));
-    assert!(trend[2]["findings"].is_null() && trend[2]["error"].as_str().unwrap().contains("none.mat"));
-    let page = std::fs::read_to_string(desk.join("T/trend.html")).unwrap();
+    assert!(
+        found["records"][2]["findings"].is_null()
+            && found["records"][2]["error"].as_str().unwrap().contains("none.mat")
+    );
+    let page = std::fs::read_to_string(desk.join("T/report.html")).unwrap();
     assert!(page.contains("2-after/report.html"));
     assert!(desk.join("T/1-before/findings.json").exists());
+}
+
+/// Snapshots of one channel whose outer raceway knocks from the seventh on, in the forms of two public
+/// collections of runs to failure: tables without a header, times in four columns, and files without a sample
+/// rate whose names are times.
+#[test]
+fn planted_a_folder_is_a_series_with_an_onset() {
+    let desk = Scratch::create("series");
+    let mut noise = Noise::new(12);
+    let knocks = knocks(12_800.0);
+    let loud = |n: usize| if n < 7 { 0.0 } else { 0.2 * (n - 5) as f64 };
+    for (folder, separator) in [("times", ","), ("semicolons", ";"), ("names", "\t")] {
+        std::fs::create_dir(desk.join(folder)).unwrap();
+        for n in 1..=10 {
+            let row = |(at, knock): (usize, &f64)| {
+                let x = noise.uniform() + loud(n) * knock;
+                let us = (1e6 * at as f64 / 12_800.0).round() + 999_000.0;
+                let (s, us) = (12 + us as u64 / 1_000_000, us as u64 % 1_000_000);
+                let clock = [9.to_string(), 39.to_string(), s.to_string(), us.to_string()];
+                let values = [format!("{x:.5}"), "0.000".to_owned()];
+                let all = if folder == "names" { values.to_vec() } else { [&clock[..], &values].concat() };
+                all.join(separator) + "\n"
+            };
+            let text: String = knocks.iter().take(40_000).enumerate().map(row).collect();
+            let name =
+                if folder == "names" { format!("2004.02.12.{n}.52.39") } else { format!("acc_{n}.csv") };
+            std::fs::write(desk.join(folder).join(name), text).unwrap();
+        }
+        let rate: &[&str] = if folder == "names" { &["--rate-hz=12800"] } else { &[] };
+        let words = ["analyse", folder, "--bearing=6205", "--speed-rpm=1200", "--reference=4", "--out"];
+        let out = format!("{folder}-out");
+        let output = stribeck(&desk, &[&words[..], &[&out], rate].concat());
+        let text = said(&output);
+        assert!(output.status.success(), "{text}");
+        let read = std::fs::read(desk.join(&out).join("findings.json")).unwrap();
+        let found: serde_json::Value = serde_json::from_slice(&read).unwrap();
+        let outer = &found["series"]["families"][0];
+        assert_eq!((&outer["name"], &outer["claimed"]), (&"BPFO".into(), &true.into()), "{text}");
+        assert_eq!(outer["onset"]["record"], 7, "{text}");
+        let last = found["records"][9]["file"].as_str().unwrap();
+        assert!(last.contains("10"), "numbers count by their value: {last}");
+        let page = std::fs::read_to_string(desk.join(&out).join("report.html")).unwrap();
+        assert!(page.contains("from record 7 on"), "{folder}");
+    }
+    let output = stribeck(&desk, &["analyse", ".", "--bearing=6205"]);
+    assert!(
+        !output.status.success() && said(&output).contains("folder of files of signals"),
+        "{}",
+        said(&output)
+    );
 }
 
 #[test]

@@ -1,4 +1,5 @@
-//! The page of several measured records side by side: levels and defect families from one record to the next.
+//! The page of a series of measured records: the verdict on all of them, families, levels and lengths from one
+//! record to the next.
 
 use std::path::Path;
 
@@ -7,20 +8,20 @@ use serde::Serialize;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{head, json};
-use crate::plot::{Axis, Colour, Figure, Level, Series};
-use stribeck_diagnosis::joint::Joint;
+use crate::page::{cell, folded, head, json, wide_table};
+use crate::plot::{Axis, Band, Colour, Figure, Level, Mark, Series as Curve};
 use stribeck_diagnosis::record::alarm::{Judged, Limit, Quantity, State};
+use stribeck_diagnosis::series::{Onset, Series};
 use stribeck_diagnosis::words::numbers::chance;
-use stribeck_diagnosis::{Defect, Family, MeasuredFindings};
+use stribeck_diagnosis::{Defect, Family, Interval, MeasuredFindings};
 
-/// One record of a trend.
+/// One record of a series.
 #[derive(Debug, Serialize)]
-pub struct TrendEntry {
+pub struct SeriesRecord {
     /// The file.
     pub file: String,
-    /// Folder of its own page, below that of the trend.
-    pub folder: String,
+    /// Folder of its own page, below that of the series; `null` where it has none.
+    pub folder: Option<String>,
     /// Its findings; `null` where it could not be analysed.
     pub findings: Option<MeasuredFindings>,
     /// Why it could not be.
@@ -32,104 +33,88 @@ pub struct TrendEntry {
 /// Highest limit that is drawn, over the highest value.
 const ROOM: f64 = 2.0;
 
-/// Writes `trend.json` and `trend.html` of some records, in their order, into `folder`, which must be there;
+/// Content of `findings.json` of a series.
+#[derive(Debug, Serialize)]
+pub struct SeriesFindings<'a> {
+    /// The verdict on all of them.
+    pub series: &'a Series,
+    /// Each of them, in their order.
+    pub records: &'a [SeriesRecord],
+}
+
+/// Writes `findings.json` and `report.html` of a series of records into `folder`, which must be there;
 /// `limits` are drawn beside the levels.
 ///
 /// # Errors
 /// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
-pub fn write_trend(folder: &Path, entries: &[TrendEntry], limits: &[Limit]) -> Result<(), Error> {
-    write_atomic(&folder.join("trend.json"), json(&entries)?.as_bytes())?;
-    write_atomic(&folder.join("trend.html"), page(entries, limits)?.into_string().as_bytes())?;
+pub fn write_series(folder: &Path, findings: &SeriesFindings<'_>, limits: &[Limit]) -> Result<(), Error> {
+    write_atomic(&folder.join("findings.json"), json(findings)?.as_bytes())?;
+    write_atomic(&folder.join("report.html"), page(findings, limits)?.into_string().as_bytes())?;
     Ok(())
 }
 
-/// Writes `joint.json` and `joint.html` of several channels of one machine and their joint verdict into
-/// `folder`, which must be there.
-///
-/// # Errors
-/// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
-pub fn write_joint(folder: &Path, joint: &Joint, entries: &[TrendEntry]) -> Result<(), Error> {
-    write_atomic(&folder.join("joint.json"), json(&joint)?.as_bytes())?;
-    write_atomic(&folder.join("joint.html"), joint_page(joint, entries).into_string().as_bytes())?;
-    Ok(())
-}
-
-fn joint_page(joint: &Joint, entries: &[TrendEntry]) -> Markup {
-    let title = format!("{} channels together", entries.len());
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&title))
-            body {
-                h1 { (title) }
-                p class="lead" { (joint.verdict) }
-                @for note in &joint.notes { p class="hint" { (note) } }
-                h2 #shares { "Share of each channel" }
-                div class="scroll" { (families_by_channel(joint)) }
-                p class="hint" {
-                    "The part of each channel in the power that swings with a family, and the height of the \
-                    family in it; bold where the channel claims a defect by itself. The probability of a false \
-                    alarm is the smallest of all channels times their number, which holds however they depend \
-                    on each other."
-                }
-                h2 #channels { "Channels" }
-                div class="scroll" { (table(entries)) }
-            }
-        }
-    }
-}
-
-/// Families of a joint verdict: a row a family, a column a channel.
-fn families_by_channel(joint: &Joint) -> Markup {
-    let number = |x: Option<f64>, unit: &str, factor: f64| {
-        x.map_or_else(|| "–".to_owned(), |x| format!("{:.0} {unit}", factor * x))
-    };
-    html! {
-        table {
-            tr {
-                th { "Family" } @for name in &joint.channels { th { (name) } }
-                th { "False alarm" } th { "Nearest" } th { "Verdict" }
-            }
-            @for family in &joint.families {
-                tr {
-                    td { (family.name) }
-                    @for channel in &family.channels {
-                        @let share = number(channel.share, "%", 100.0);
-                        @let text = format!("{share}, {}", number(channel.height_db, "dB", 1.0));
-                        td { @if channel.claimed { strong { (text) } } @else { (text) } }
-                    }
-                    td { (chance(family.p_value)) }
-                    td { (family.nearest.as_deref().filter(|_| family.claimed).unwrap_or("–")) }
-                    td { @if family.claimed { strong { "a defect" } } @else { "none" } }
-                }
-            }
-        }
-    }
-}
-
-fn page(entries: &[TrendEntry], limits: &[Limit]) -> Result<Markup, Error> {
-    let figures = figures(entries, limits).iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>()?;
-    let title = format!("{} records side by side", entries.len());
+fn page(findings: &SeriesFindings<'_>, limits: &[Limit]) -> Result<Markup, Error> {
+    let SeriesFindings { series, records } = findings;
+    let html_of = |figures: Vec<Figure>| figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>();
+    let of_families = html_of(heights(series).into_iter().chain(lengths(series, records)).collect())?;
+    let of_levels = html_of(levels(records, limits))?;
+    let title = format!("A series of {} records", records.len());
     Ok(html! {
         (DOCTYPE)
         html lang="en" {
             (head(&title))
             body {
                 h1 { (title) }
-                p class="lead" { "In the order in which they were given." }
-                div class="scroll" { (table(entries)) }
+                p class="lead" { (series.verdict) }
+                @if series.sound > 0 {
+                    p class="hint" { "The first " (series.sound) " records are of the sound machine." }
+                }
+                @if !series.families.is_empty() {
+                    h2 #families { "Defect families" }
+                    @for figure in of_families { (figure) }
+                    (evidence(series))
+                }
+                h2 #levels { "Levels" }
+                @for figure in of_levels { (figure) }
                 @if !limits.is_empty() {
                     h2 #alarms { "Alarm bands" }
-                    div class="scroll" { (alarms(entries, limits)) }
-                    h2 #levels-over-records { "Levels" }
+                    (folded(html! { div class="scroll" { (alarms(records, limits)) } }, records.len(), "records and their levels"))
                 }
-                @for figure in figures { (figure) }
+                h2 #records { "Records" }
+                (folded(html! { div class="scroll" { (table(records)) } }, records.len(), "records, in the order in which they were given"))
             }
         }
     })
 }
 
-fn table(entries: &[TrendEntry]) -> Markup {
+/// What the records together say of each family.
+fn evidence(series: &Series) -> Markup {
+    let head = html! {
+        th { "Family" } th { "Records that claim it" } th { "Of the last" } th { "False alarm" } th { "Since record" }
+        th { "Verdict" }
+    };
+    let rows = series.families.iter().map(|family| {
+        let since = family.onset.map(|onset| format!("{} ({}–{})", onset.record, onset.low, onset.high));
+        html! {
+            td { (family.name) }
+            (cell(Some(family.claiming.to_string())))
+            (cell(Some(format!("{} of {}", family.last_claiming, family.last))))
+            td { (chance(family.p_value)) }
+            (cell(since))
+            td { @if family.claimed { strong { "a defect" } } @else { "none" } }
+        }
+    });
+    html! {
+        (wide_table(None, &head, rows))
+        p class="hint" {
+            "Twice the median probability of the last records, one, two, four and so on, of which the smallest \
+            counts, times the number of choices: it holds however the records depend on each other. In brackets \
+            the interval of 90 %."
+        }
+    }
+}
+
+pub(crate) fn table(entries: &[SeriesRecord]) -> Markup {
     let number = |x: f64| format!("{x:.4}");
     let level = |findings: &MeasuredFindings, name: Defect| {
         let family = findings.families.iter().find(|f| f.name == name);
@@ -146,7 +131,11 @@ fn table(entries: &[TrendEntry]) -> Markup {
                 tr {
                     td { (at + 1) }
                     @if let Some(findings) = &entry.findings {
-                        td { a href=(format!("{}/report.html", entry.folder)) { (entry.file) } }
+                        td {
+                            @if let Some(folder) = &entry.folder {
+                                a href=(format!("{folder}/report.html")) { (entry.file) }
+                            } @else { (entry.file) }
+                        }
                         td { (format!("{:.2}", findings.duration_s)) } td { (number(findings.health.rms)) }
                         td { (number(findings.health.crest_factor)) } td { (number(findings.health.kurtosis)) }
                         @for name in Defect::ALL {
@@ -172,7 +161,7 @@ fn table(entries: &[TrendEntry]) -> Markup {
 }
 
 /// A column a limit, a row a record.
-fn alarms(entries: &[TrendEntry], limits: &[Limit]) -> Markup {
+fn alarms(entries: &[SeriesRecord], limits: &[Limit]) -> Markup {
     html! {
         table {
             tr { th { "" } th { "Record" } @for limit in limits { th { (limit.quantity.name()) } } }
@@ -202,14 +191,12 @@ fn alarms(entries: &[TrendEntry], limits: &[Limit]) -> Markup {
     }
 }
 
-fn figures(entries: &[TrendEntry], limits: &[Limit]) -> Vec<Figure> {
+/// Levels from one record to the next, beside their limits.
+fn levels(entries: &[SeriesRecord], limits: &[Limit]) -> Vec<Figure> {
     let over = |of: &dyn Fn(&MeasuredFindings) -> Option<f64>| -> Vec<f64> {
         entries.iter().map(|e| e.findings.as_ref().and_then(of).unwrap_or(f64::NAN)).collect()
     };
-    let chart = |id: &str, title: &str, axis: Axis| {
-        Figure::new(id, title, Axis::counted("Record", entries.len()), axis)
-    };
-    let points = |name: &str, colour, y| Series::sampled(name, colour, 1.0, 1.0, y).as_points();
+    let chart = |id: &str, title: &str, axis: Axis| chart(id, title, entries.len(), axis);
     let limited = |mut figure: Figure, quantities: &[Quantity]| {
         // One that lies far above all values would leave them no room.
         let values = figure.series.iter().flat_map(|s| &s.y).copied().filter(|y| y.is_finite());
@@ -252,9 +239,9 @@ fn figures(entries: &[TrendEntry], limits: &[Limit]) -> Vec<Figure> {
         let figure = figure.with(points("velocity", Colour::Blue, velocity));
         figures.push(limited(figure, &[Quantity::VelocityMmS]));
     }
-    let colours = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple];
-    let mut levels = chart("levels", "Defect families that are there", Axis::plain("Level", "dB"));
-    for (name, colour) in Defect::ALL.into_iter().zip(colours) {
+    let mut levels =
+        chart("first-lines", "First lines of the families that are there", Axis::plain("Level", "dB"));
+    for (name, colour) in Defect::ALL.into_iter().zip(COLOURS) {
         let y = level(name);
         if y.iter().any(|db| db.is_finite()) {
             levels = levels.with(points(name.name(), colour, y));
@@ -265,4 +252,49 @@ fn figures(entries: &[TrendEntry], limits: &[Limit]) -> Vec<Figure> {
         figures.push(limited(levels, &all));
     }
     figures
+}
+
+/// Colours of the families, in their order.
+const COLOURS: [Colour; 4] = [Colour::Blue, Colour::Orange, Colour::Green, Colour::Purple];
+
+fn chart(id: &str, title: &str, records: usize, axis: Axis) -> Figure {
+    Figure::new(id, title, Axis::counted("Record", records), axis)
+}
+
+fn points(name: &str, colour: Colour, y: Vec<f64>) -> Curve {
+    Curve::sampled(name, colour, 1.0, 1.0, y).as_points()
+}
+
+/// Heights of the families' combs, with the onsets of those that are claimed.
+fn heights(series: &Series) -> Option<Figure> {
+    let axis = Axis::plain("Height of the comb above the background", "dB");
+    let mut figure = chart("heights", "How high each family stands", series.records, axis);
+    for (family, colour) in series.families.iter().zip(COLOURS) {
+        let y: Vec<f64> = family.height_db.iter().map(|db| db.unwrap_or(f64::NAN)).collect();
+        if y.iter().any(|db| db.is_finite()) {
+            figure = figure.with(points(family.name.name(), colour, y));
+        }
+        if let Some(Onset { record, low, high }) = family.onset {
+            let name = family.name;
+            figure.marks.push(Mark::new(record as f64, format!("{name} since {record}"), colour, false));
+            let label = format!("{name} begins, 90 %");
+            figure.bands.push(Band { from: low as f64 - 0.5, to: high as f64 + 0.5, label });
+        }
+    }
+    (!figure.series.is_empty()).then_some(figure)
+}
+
+/// Lengths of a spall with their intervals, where two records at least give one.
+fn lengths(series: &Series, records: &[SeriesRecord]) -> Option<Figure> {
+    series.growth?;
+    let of = |value: fn(&Interval) -> f64| -> Vec<f64> {
+        let spall = |record: &SeriesRecord| record.findings.as_ref()?.spall_mm.as_ref().map(value);
+        records.iter().map(|record| spall(record).unwrap_or(f64::NAN)).collect()
+    };
+    let axis = Axis::plain("Length", "mm");
+    let figure = chart("lengths", "Length of the spall", records.len(), axis)
+        .with(points("length", Colour::Blue, of(|mm| mm.value)))
+        .with(points("90 %, from", Colour::Grey, of(|mm| mm.low)))
+        .with(points("90 %, to", Colour::Grey, of(|mm| mm.high)));
+    Some(figure)
 }

@@ -1,0 +1,347 @@
+//! Records of one machine in the order of time: one verdict, the record from which on it holds, and how the
+//! defect grows.
+//!
+//! Damage does not heal. A family is therefore looked for in the last record, the last two, four and so on:
+//! whatever the dependence of the records, twice the median of their probabilities is one (L. Rüschendorf,
+//! Adv. Appl. Probab. 14 (1982) 623–632; V. Vovk and R. Wang, Biometrika 107 (2020) 791–808), and the number
+//! of these choices is paid for (Bonferroni). The onset is the place where the heights of its comb change
+//! from a constant to a line, each with normal scatter (THEORY §7.9).
+
+use serde::Serialize;
+use statrs::function::gamma::ln_gamma;
+
+use crate::families::limits::ALPHA;
+use crate::families::sound::BEYOND_SOUND;
+use crate::words::numbers::chance;
+use crate::{Defect, Family, Interval, MeasuredFindings};
+
+/// The verdict on a series of records.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Series {
+    /// Records in all.
+    pub records: usize,
+    /// Those that could be analysed.
+    pub analysed: usize,
+    /// The first ones, which are of the sound machine.
+    pub sound: usize,
+    /// The defect families; none without speed and bearing.
+    pub families: Vec<SeriesFamily>,
+    /// Growth of the spall, where two records at least give a length.
+    pub growth: Option<Growth>,
+    /// The conclusion in one sentence.
+    pub verdict: String,
+}
+
+/// One family over the series.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SeriesFamily {
+    /// Whose family it is.
+    pub name: Defect,
+    /// Probability that sound bearings show as much in half of the last `last` records.
+    pub p_value: f64,
+    /// Records at the end of the series by which it is judged.
+    pub last: usize,
+    /// Those of them that claim it.
+    pub last_claiming: usize,
+    /// All records behind those of the sound machine that claim it.
+    pub claiming: usize,
+    /// Whether the series is called a defect of this part.
+    pub claimed: bool,
+    /// The record from which on it stands; `null` where it is not claimed, or the series shows no beginning.
+    pub onset: Option<Onset>,
+    /// Height of its comb above the background in each record [dB]; `null` where it was not looked for.
+    pub height_db: Vec<Option<f64>>,
+}
+
+/// The first record in which a defect stands, from 1 on, with its interval of 90 %.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Onset {
+    /// The likeliest record.
+    pub record: usize,
+    /// First record of the interval.
+    pub low: usize,
+    /// Last record of the interval.
+    pub high: usize,
+}
+
+/// Lengths of the spall at both ends of the series.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Growth {
+    /// The first record that gives a length, from 1 on.
+    pub from: usize,
+    /// Its length [mm].
+    pub from_mm: Interval,
+    /// The last record that gives one.
+    pub to: usize,
+    /// Its length [mm].
+    pub to_mm: Interval,
+    /// Whether the last interval lies above the first.
+    pub has_grown: bool,
+}
+
+impl Series {
+    /// Of records in the order of time, `None` for those that could not be analysed, of which the first `sound`
+    /// are of the sound machine.
+    pub fn of(records: &[Option<&MeasuredFindings>], sound: usize) -> Self {
+        let analysed = records.iter().flatten().count();
+        let names =
+            Defect::ALL.into_iter().filter(|name| records.iter().any(|r| family(*r, *name).is_some()));
+        let mut families: Vec<SeriesFamily> =
+            names.map(|name| SeriesFamily::of(name, records, sound)).collect();
+        highest_alone(&mut families);
+        let growth = growth(records);
+        let verdict = conclude(&families, growth.as_ref(), analysed);
+        Self { records: records.len(), analysed, sound, families, growth, verdict }
+    }
+}
+
+fn family(record: Option<&MeasuredFindings>, name: Defect) -> Option<&Family> {
+    record?.families.iter().find(|family| family.name == name)
+}
+
+impl SeriesFamily {
+    fn of(name: Defect, records: &[Option<&MeasuredFindings>], sound: usize) -> Self {
+        let of = |record: &Option<&MeasuredFindings>| family(*record, name).cloned();
+        let later: Vec<Family> = records.iter().skip(sound).filter_map(of).collect();
+        let limit = if later.iter().any(|f| f.claimed && f.p_value >= ALPHA) { BEYOND_SOUND } else { ALPHA };
+        let End { p_value, last, claiming: last_claiming } = End::of(&later, limit);
+        let claimed = p_value < limit && 2 * last_claiming >= last;
+        let height_db: Vec<Option<f64>> = records
+            .iter()
+            .map(|r| family(*r, name).map(Family::score_db).filter(|db| db.is_finite()))
+            .collect();
+        let onset = if claimed { onset(&height_db, sound) } else { None };
+        let claiming = later.iter().filter(|family| family.claimed).count();
+        Self { name, p_value, last, last_claiming, claiming, claimed, onset, height_db }
+    }
+
+    /// Its mean height in the records by which it is judged [dB].
+    fn height_at_the_end_db(&self) -> f64 {
+        let last: Vec<f64> = self.height_db.iter().rev().flatten().take(self.last).copied().collect();
+        last.iter().sum::<f64>() / last.len().max(1) as f64
+    }
+}
+
+/// The end of a series, as many records of it as show a family.
+struct End {
+    /// The smallest of twice the medians of their probabilities, times the choices.
+    p_value: f64,
+    last: usize,
+    claiming: usize,
+}
+
+impl End {
+    /// Of the families of all records that are not known to be sound: most of the last ones of which half claim
+    /// it, with a probability below `limit`; without such, those that show most.
+    fn of(families: &[Family], limit: f64) -> Self {
+        let choices: Vec<usize> = std::iter::successors(Some(1), |last| Some(2 * last))
+            .take_while(|n| *n <= families.len())
+            .collect();
+        let at = |last: usize| {
+            let end = &families[families.len() - last..];
+            let mut p_values: Vec<f64> = end.iter().map(|family| family.p_value).collect();
+            p_values.sort_by(f64::total_cmp);
+            // One record is its own median; of more, the upper one, and twice.
+            let median = p_values[last / 2] * if last == 1 { 1.0 } else { 2.0 };
+            let claiming = end.iter().filter(|family| family.claimed).count();
+            Self { p_value: (median * choices.len() as f64).min(1.0), last, claiming }
+        };
+        let ends: Vec<Self> = choices.iter().map(|last| at(*last)).collect();
+        let smallest = ends.iter().min_by(|a, b| a.p_value.total_cmp(&b.p_value));
+        let claims = |end: &&Self| end.p_value < limit && 2 * end.claiming >= end.last;
+        match (smallest, ends.iter().rev().find(claims)) {
+            (Some(smallest), longest) => {
+                let Self { last, claiming, .. } = *longest.unwrap_or(smallest);
+                Self { p_value: smallest.p_value, last, claiming }
+            }
+            (None, _) => Self { p_value: 1.0, last: 0, claiming: 0 },
+        }
+    }
+}
+
+/// Of families that different records claim the highest at the end: the others may be its sidebands. A family
+/// that stands in the same records beside it is a second defect.
+fn highest_alone(families: &mut [SeriesFamily]) {
+    let claimed = families.iter().enumerate().filter(|(_, family)| family.claimed);
+    let highest = claimed
+        .max_by(|a, b| a.1.height_at_the_end_db().total_cmp(&b.1.height_at_the_end_db()))
+        .map(|(at, family)| (at, family.last_claiming));
+    let Some((first, claiming)) = highest else { return };
+    for (at, family) in families.iter_mut().enumerate() {
+        if at != first && 2 * family.last_claiming < claiming {
+            family.claimed = false;
+            family.onset = None;
+        }
+    }
+}
+
+/// Least records before and from the onset on: a mean, and a line, need one more for their scatter.
+const LEAST_BEFORE: usize = 2;
+const LEAST_AFTER: usize = 3;
+/// Scatter that heights have at least [dB], so that equal ones have one.
+const LEAST_SCATTER_DB: f64 = 0.1;
+/// Probability on either side of the interval.
+const BESIDE: f64 = 0.05;
+
+/// Where heights change from a constant to a line: each place has the marginal likelihood of both parts with
+/// unknown levels, slope and scatters under Jeffreys' priors, and the places are equally likely beforehand.
+fn onset(heights_db: &[Option<f64>], sound: usize) -> Option<Onset> {
+    let known: Vec<(usize, f64)> =
+        heights_db.iter().enumerate().filter_map(|(at, db)| Some((at, (*db)?))).collect();
+    let first = known.iter().filter(|(at, _)| *at < sound).count().max(LEAST_BEFORE);
+    let places = first..(known.len() + 1).saturating_sub(LEAST_AFTER);
+    let points: Vec<(f64, f64)> = known.iter().map(|(at, db)| (*at as f64, *db)).collect();
+    let mean = |part: &[(f64, f64)]| part.iter().map(|(_, db)| db).sum::<f64>() / part.len() as f64;
+    let scored: Vec<(usize, f64)> = places
+        .filter(|place| mean(&points[*place..]) > mean(&points[..*place]))
+        .map(|place| (place, likelihood(&points[..place], 1) + likelihood(&points[place..], 2)))
+        .collect();
+    let best = *scored.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let weights: Vec<f64> = scored.iter().map(|(_, score)| (score - best.1).exp()).collect();
+    let total: f64 = weights.iter().sum();
+    let quantile = |part: f64| {
+        let mut sum = 0.0;
+        let reached = scored.iter().zip(&weights).find(|(_, weight)| {
+            sum += *weight;
+            sum >= part * total
+        });
+        reached.map_or(best.0, |((place, _), _)| *place)
+    };
+    let record = |place: usize| known[place].0 + 1;
+    Some(Onset {
+        record: record(best.0),
+        low: record(quantile(BESIDE).min(best.0)),
+        high: record(quantile(1.0 - BESIDE).max(best.0)),
+    })
+}
+
+/// Logarithm of the marginal likelihood of points on a constant (`parameters` = 1) or a line (2), but for what
+/// is the same for all places of the change.
+fn likelihood(points: &[(f64, f64)], parameters: usize) -> f64 {
+    let n = points.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
+    let (time, level) = (mean(|p| p.0), mean(|p| p.1));
+    let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(t, x)| of(t - time, x - level)).sum::<f64>();
+    let (spread, together, square) = (sum(&|t, _| t * t), sum(&|t, x| t * x), sum(&|_, x| x * x));
+    let (rest, determinant) = match parameters {
+        1 => (square, n),
+        _ => (square - together * together / spread, n * spread),
+    };
+    let half = 0.5 * (n - parameters as f64);
+    let rest = rest.max(n * LEAST_SCATTER_DB * LEAST_SCATTER_DB);
+    ln_gamma(half) - half * (std::f64::consts::PI * rest).ln() - 0.5 * determinant.ln()
+}
+
+/// The lengths of the first and the last record that give one.
+fn growth(records: &[Option<&MeasuredFindings>]) -> Option<Growth> {
+    let mut lengths =
+        records.iter().enumerate().filter_map(|(at, record)| Some((at + 1, record.as_ref()?.spall_mm?)));
+    let ((from, from_mm), (to, to_mm)) = (lengths.next()?, lengths.next_back()?);
+    Some(Growth { from, from_mm, to, to_mm, has_grown: to_mm.low > from_mm.high })
+}
+
+fn conclude(families: &[SeriesFamily], growth: Option<&Growth>, analysed: usize) -> String {
+    let claimed: Vec<String> = families.iter().filter(|family| family.claimed).map(words).collect();
+    if !claimed.is_empty() {
+        let growth = growth.map_or_else(String::new, growth_in_words);
+        return format!("The series shows {}.{growth}", claimed.join(" and "));
+    }
+    if families.is_empty() {
+        return format!(
+            "No verdict on the {analysed} records: without speed and bearing there are no families."
+        );
+    }
+    let single: usize = families.iter().map(|family| family.claiming).sum();
+    match single {
+        0 => format!("The series of {analysed} records shows no defect."),
+        _ => format!(
+            "The series shows no defect that lasts to its end: {single} of {analysed} records claim one, and fewer \
+             than half of the last ones."
+        ),
+    }
+}
+
+fn words(family: &SeriesFamily) -> String {
+    let SeriesFamily { name, p_value, last, last_claiming, onset, .. } = family;
+    let part = match name {
+        Defect::Ftf => "the cage or of one rolling element",
+        _ => name.part(),
+    };
+    let since = match onset {
+        Some(Onset { record, low, high }) if low < high => {
+            format!("from record {record} on (90 %: {low} to {high}), ")
+        }
+        Some(Onset { record, .. }) => format!("from record {record} on, "),
+        None => String::new(),
+    };
+    let by = match last {
+        1 => "the last record claims it".to_owned(),
+        _ => format!("{last_claiming} of the last {last} records claim it"),
+    };
+    format!("a defect of {part} ({name}): {since}{by}, false alarm {}", chance(*p_value))
+}
+
+fn growth_in_words(growth: &Growth) -> String {
+    let Growth { from, from_mm, to, to_mm, has_grown } = growth;
+    let of = |mm: &Interval| format!("{:.2} mm ({:.2} to {:.2})", mm.value, mm.low, mm.high);
+    let [first, last] = [from_mm, to_mm].map(of);
+    let grown = if *has_grown { "" } else { "; the intervals overlap, so that growth is not certain" };
+    format!(" The spall is {first} long in record {from} and {last} in record {to}{grown}.")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn heights(values: &[f64]) -> Vec<Option<f64>> {
+        values.iter().map(|db| Some(*db)).collect()
+    }
+
+    /// A constant of six records, then a line: the place where the line begins.
+    #[test]
+    fn planted_an_onset_is_where_a_line_leaves_a_constant() {
+        let scatter = [0.3, -0.4, 0.1, -0.2, 0.4, -0.3, 0.2, -0.1, 0.3, -0.4, 0.1, -0.2];
+        let mut values: Vec<f64> = scatter.iter().map(|by| 5.0 + by).collect();
+        for (at, value) in values.iter_mut().enumerate().skip(6) {
+            *value += 6.0 + 3.0 * (at - 6) as f64;
+        }
+        let found = onset(&heights(&values), 0).unwrap();
+        assert_eq!((found.record, found.low, found.high), (7, 7, 7));
+        // A faint one is less certain, and one among the sound records is excluded.
+        values.iter_mut().enumerate().skip(6).for_each(|(at, x)| *x = 5.0 + scatter[at] + 0.4);
+        let faint = onset(&heights(&values), 0).unwrap();
+        assert!(faint.high > faint.low, "{faint:?}");
+        assert!(onset(&heights(&values), 8).is_none_or(|found| found.low > 8));
+        // Records that were not analysed count in the numbering.
+        let mut gaps = heights(&values);
+        gaps[2] = None;
+        assert!(onset(&gaps, 0).is_some());
+        assert!(onset(&heights(&values[..4]), 0).is_none(), "too few for either part");
+    }
+
+    #[test]
+    fn by_hand_the_end_of_a_series() {
+        let of = |p_value: f64, claimed: bool| Family {
+            p_value,
+            claimed,
+            ..Family::expected(Defect::Bpfo, 100.0)
+        };
+        // One of eight records: four choices of 1, 2, 4 and 8, and the last record is its own median.
+        let mut families = vec![of(0.5, false); 8];
+        families[7] = of(1e-6, true);
+        let end = End::of(&families, ALPHA);
+        assert_eq!((end.last, end.claiming), (1, 1));
+        assert!((end.p_value - 4e-6).abs() < 1e-12);
+        // A false alarm in the middle of a sound series is none at its end.
+        families.swap(3, 7);
+        assert!(End::of(&families, ALPHA).p_value > 0.5);
+        // Five of the last eight claim it, of which the upper median is 1e-4: 2 · 1e-4 · 4 is below 1e-3.
+        for (at, p_value) in [(4, 1e-4), (5, 1e-7), (6, 1e-5), (7, 1e-7)] {
+            families[at] = of(p_value, true);
+        }
+        let end = End::of(&families, ALPHA);
+        assert_eq!((end.last, end.claiming), (8, 5), "the longest end that shows it");
+        assert!((end.p_value - 4e-7).abs() < 1e-15, "the smallest probability");
+        assert!(End::of(&[], ALPHA).p_value >= 1.0);
+    }
+}
