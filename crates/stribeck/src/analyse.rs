@@ -24,7 +24,7 @@ use stribeck_scene::catalogue;
 use stribeck_store::run_dir::check_folder;
 
 use crate::interrupt::Interrupt;
-use crate::out::{say, tell};
+use crate::out::say;
 use crate::place::{Place, shown};
 pub(crate) use reading::{Accelerations, Reading, Speed, accelerations, examine};
 use simulated::Simulation;

@@ -9,7 +9,7 @@ use crate::place::shown;
 use crate::shelf::Kind;
 
 /// Files of all kinds of folders, by name.
-const FILES: [&str; 36] = [
+const FILES: [&str; 38] = [
     // A run, an ensemble and their reports.
     "run.json",
     "ensemble.json",
@@ -43,6 +43,8 @@ const FILES: [&str; 36] = [
     "synthetic.wav",
     "compare.json",
     "stiffness.json",
+    "detect.json",
+    "machine.npy",
     "DATASHEET.md",
     // Records.
     "findings.json",
