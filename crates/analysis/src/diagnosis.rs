@@ -2,13 +2,16 @@
 //! on the record, beside the defects that the scene has.
 
 use serde::{Deserialize, Serialize};
-use stribeck_diagnosis::{AccelerationUnit, Analysis, Defect, Family, Machine, sidebands_seen};
+use stribeck_diagnosis::{
+    AccelerationUnit, Analysis, Defect, Family, Machine, STANDARD_GRAVITY, sidebands_seen,
+};
 use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
 use stribeck_scene::catalogue;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::Scene;
+use stribeck_store::run_dir::Run;
 use stribeck_theory::kinematics::Kinematics;
 
 use crate::Error;
@@ -35,6 +38,9 @@ quantities! {
         pub channel: String,
         /// The conclusion in one sentence.
         pub verdict: String,
+        /// Root mean square of the record that is judged [g].
+        #[serde(default)]
+        pub level_g: f64,
         /// One over the length of the segments behind the envelope spectra [Hz].
         pub resolution_hz: f64,
         /// Every family.
@@ -99,7 +105,20 @@ pub fn analysis(
     name: &str,
 ) -> Result<Option<Analysis>, Error> {
     let Some(samples) = record.part(0..record.len(), |n| n == name)?.take(name) else { return Ok(None) };
-    judged(scene, record, expected, name, samples)
+    judged(scene, expected, name, (samples, record.sample_rate_hz()))
+}
+
+/// The same of what the sensor of the scene's machine records; `None` where the scene has none.
+///
+/// # Errors
+/// As [`analysis`].
+pub fn analysis_at_the_machine(run: &Run, expected: &Kinematics) -> Result<Option<Analysis>, Error> {
+    match crate::machine::of_run(run)? {
+        Some(record) => {
+            judged(&run.scene, expected, crate::machine::CHANNEL, (record.samples, record.rate_hz))
+        }
+        None => Ok(None),
+    }
 }
 
 /// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always
@@ -119,20 +138,19 @@ pub fn analysis_in_noise(
     let mean = samples.iter().sum::<f64>() / samples.len() as f64;
     let power = samples.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / samples.len() as f64;
     let sensor = Sensor { noise_density: noise * (power / (0.5 * rate_hz)).sqrt(), ..Sensor::ideal(rate_hz) };
-    judged(scene, record, expected, name, sensor.record(&samples, rate_hz).map_err(Error::Signal)?)
+    judged(scene, expected, name, (sensor.record(&samples, rate_hz).map_err(Error::Signal)?, rate_hz))
 }
 
 fn judged(
     scene: &ResolvedScene,
-    record: &Record<'_>,
     expected: &Kinematics,
     name: &str,
-    samples: Vec<f64>,
+    (samples, rate_hz): (Vec<f64>, f64),
 ) -> Result<Option<Analysis>, Error> {
     let machine = machine(scene, expected);
     let channel = Channel::held(name.to_owned(), samples)
         .in_unit(Some(AccelerationUnit::MetrePerSecondSquared.symbol().to_owned()));
-    match Analysis::of(&channel, record.sample_rate_hz(), &machine) {
+    match Analysis::of(&channel, rate_hz, &machine) {
         // A record that is too short, or a sensor that stands still.
         Err(stribeck_diagnosis::Error::NoSignal(_)) => Ok(None),
         analysis => Ok(Some(analysis?)),
@@ -180,6 +198,7 @@ pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis
     DiagnosisFinding {
         channel: analysis.findings.channel.clone(),
         verdict: analysis.findings.verdict.clone(),
+        level_g: analysis.findings.health.rms / STANDARD_GRAVITY,
         resolution_hz: analysis.findings.resolution_hz,
         families: families.collect(),
     }

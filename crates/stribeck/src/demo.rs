@@ -21,7 +21,7 @@ pub struct Options {
     open: bool,
 }
 
-/// What is made, and by which command; `DIR` is the folder. A sensor of a machine adds its noise to the record.
+/// What is made, and by which command; `DIR` is the folder.
 const STEPS: [(&str, &[&str]); 5] = [
     ("A scene: a 6205 with a spall of 2 mm on its outer raceway.", &["new", "DIR/bearing.ron", "--yes"]),
     (
@@ -44,19 +44,8 @@ const STEPS: [(&str, &[&str]); 5] = [
         ],
     ),
     (
-        "A record of it, as a sensor of 16 bits with noise takes it: made by this program, not measured.",
-        &[
-            "export",
-            "DIR/run",
-            "--to",
-            "csv",
-            "--channel",
-            "sensor.side.ay_m_s2",
-            "--sensor",
-            "rate_hz=25600, range=500, bits=16, noise_density=0.01, resonance_hz=30000",
-            "--out",
-            "DIR/record.csv",
-        ],
+        "A record of it, as the sensor of a machine takes it: made by this program, not measured.",
+        &["export", "DIR/run", "--to", "csv", "--machine", "--out", "DIR/record.csv"],
     ),
     (
         "The verdict on that record, without the scene.",

@@ -8,7 +8,6 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue;
 use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
-use stribeck_scene::machine::usual_mass_kg;
 use stribeck_scene::scene::{DefectRing, Scene};
 use stribeck_store::run_dir::write_atomic;
 use stribeck_theory::catalogue::CatalogueBearing;
@@ -451,7 +450,6 @@ fn text(name: &str, answers: &Answers) -> String {
         .replace("<load>", &format!("{load_n:?}"))
         .replace("<speed>", &format!("{speed_rpm:?}"))
         .replace("<duration>", &format!("{:?}", 1e3 * duration_s))
-        .replace("<mass>", &format!("{:?}", usual_mass_kg(&of_bearing(bearing).bearing)))
 }
 
 #[cfg(test)]

@@ -91,12 +91,18 @@ impl<'a> Case<'a> {
         notes
     }
 
-    /// What is the verdict on the leading sensor, without the scene? `None` for a record of fewer than ten
+    /// What is the verdict on the sensor of the machine, or else on the leading one, without the scene? `None` for a record of fewer than ten
     /// periods, or of a speed that changes.
     pub(super) fn judged_by_itself(&self) -> Result<Option<Analysis>, Error> {
         let [begin_s, end_s] = self.record.stretch_s();
         let long = (end_s - begin_s) * self.prediction.kinematics.bpfo_hz >= PeriodCount::ENOUGH;
-        match leading_channel(self.run).filter(|_| self.steady && long) {
+        if !self.steady || !long {
+            return Ok(None);
+        }
+        if let Some(analysis) = diagnosis::analysis_at_the_machine(self.run, &self.prediction.kinematics)? {
+            return Ok(Some(analysis));
+        }
+        match leading_channel(self.run) {
             Some(name) => {
                 diagnosis::analysis(&self.run.scene, self.record, &self.prediction.kinematics, &name)
             }

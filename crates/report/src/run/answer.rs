@@ -74,13 +74,15 @@ fn headline(of: &Subject<'_>) -> String {
     }
     let summary = &of.findings.summary;
     let faults = of.run.scene.written.faults();
-    let level = summary.levels.record.as_ref().map_or(String::new(), |level| {
-        format!("; {} RMS at sensor “{}”", gravities(level.rms_g), sensor(summary))
-    });
     let Some(diagnosis) = &summary.diagnosis else {
         let state = if faults.is_empty() { "A sound bearing" } else { "A damaged bearing" };
+        let level = summary.levels.record.as_ref().map_or(String::new(), |level| {
+            format!("; {} RMS at sensor “{}”", gravities(level.rms_g), sensor(summary))
+        });
         return format!("{state}{level}. The record is too short for a verdict on the signal alone.");
     };
+    let at = diagnosis.channel.split('.').nth(1).unwrap_or_default();
+    let level = format!("; {} RMS at sensor “{at}”", gravities(diagnosis.level_g));
     let named = |wanted: fn(&DiagnosedFamily) -> bool| {
         let families: Vec<String> = diagnosis
             .families
@@ -99,7 +101,7 @@ fn headline(of: &Subject<'_>) -> String {
         (true, _, None) => format!("A sound bearing, and its signal shows no defect{level}."),
         (true, _, Some(wrong)) => format!(
             "A sound bearing whose signal alone would be called damaged, by {wrong}: {}{level}.",
-            likely_cause(summary)
+            likely_cause(summary, of.run.scene.written.housing.machine().is_some())
         ),
         (false, Some(found), _) => format!("The signal alone shows the defect: {found}{level}."),
         (false, None, Some(wrong)) => {
@@ -115,9 +117,12 @@ fn has_facet_lines(summary: &Summary) -> bool {
 }
 
 /// What makes the lines of a sound bearing look like those of a defect.
-fn likely_cause(summary: &Summary) -> &'static str {
+fn likely_cause(summary: &Summary, in_machine: bool) -> &'static str {
     if has_facet_lines(summary) {
         "its surfaces are chords, whose corners knock; `contact.surface: arc` has none"
+    } else if in_machine {
+        "rolling elements come under the load and leave it at that rate, and the noise of the machine does not \
+         cover them"
     } else {
         "rolling elements come under the load and leave it at that rate, and the run has no other noise of a \
          machine that would cover them"
