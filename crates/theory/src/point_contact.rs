@@ -76,7 +76,7 @@ mod tests {
     fn analytic_a_ball_on_a_plane_touches_it_in_a_circle() {
         // The fits of the elliptic integrals are within 3 % for a circle.
         const FIT: f64 = 0.03;
-        let (ball, load, modulus) = (5e-3, 100.0, 220e9);
+        let (ball, load, modulus): (f64, f64, f64) = (5e-3, 100.0, 220e9);
         let far = 1e9;
         let circle = (3.0 * load * ball / (4.0 * 0.5 * modulus)).cbrt();
         let ours = half_width(ball, far, -far, load, modulus);
