@@ -141,7 +141,7 @@ fn planted_a_sound_and_a_damaged_record() {
     let found = desk.succeeds(&[&["analyse", "damaged.mat", "--json", "-q"][..], &machine].concat());
     assert_eq!(json(&found)["families"][0]["claimed"], true);
     let both = desk.succeeds(&[&["analyse", "damaged.mat", "sound.mat", "--json"][..], &machine].concat());
-    assert_eq!(json(&both).as_array().map(Vec::len), Some(2));
+    assert_eq!(json(&both)["records"].as_array().map(Vec::len), Some(2));
     let page = desk.text("damaged-analysis/report.html");
     assert!(page.contains("data:audio/wav;base64,"), "the record cannot be heard");
     // The same over the sound one, and with the mistakes that are made with it.

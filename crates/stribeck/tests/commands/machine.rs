@@ -97,7 +97,8 @@ fn invariant_detect_is_that_of_its_seed() {
 #[test]
 fn refuses_what_has_no_machine() {
     let desk = desk("no-machine");
-    desk.refuses(&["detect", "mine.ron"], &["has no machine", "--machine FILE"]);
+    let rigid = "--set=housing=rigid(mass_kg: 10)";
+    desk.refuses(&["detect", "mine.ron", rigid], &["has no machine", "--machine FILE"]);
     desk.refuses(
         &["machine", "a.csv", "--defect=none", "--bearing=6205"],
         &["sound bearings", "--defect outer:0.53"],

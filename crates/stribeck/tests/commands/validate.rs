@@ -289,7 +289,7 @@ fn issue_no_command_writes_over_a_run_or_among_foreign_files() {
     // Folders of users are left alone, and no run is put there.
     for (command, words) in [
         (&["analyse", "a.csv", "--rate-hz=1000"][..], "report"),
-        (&["analyse", "a.csv", "a.csv", "--rate-hz=1000", "--out=both"], "side by side"),
+        (&["analyse", "a.csv", "a.csv", "--rate-hz=1000", "--out=both"], "report: both"),
         (&["campaign", "c.ron", "--out=runs/c"], "1 of 1"),
     ] {
         for _ in 0..2 {
