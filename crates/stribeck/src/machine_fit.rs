@@ -1,7 +1,7 @@
 //! `stribeck machine`: the path from a bearing to a sensor, and the background, from measured records of known
 //! state.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
@@ -184,7 +184,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 }
 
 fn one(
-    file: &PathBuf,
+    file: &Path,
     state: State,
     bearing: &str,
     options: &Options,

@@ -8,7 +8,9 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue;
 use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
-use stribeck_scene::scene::{DefectRing, Scene};
+#[cfg(feature = "full")]
+use stribeck_scene::scene::DefectRing;
+use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
 use stribeck_theory::catalogue::CatalogueBearing;
 use stribeck_theory::fits::mounted_clearance_change_um;
@@ -337,6 +339,7 @@ fn ask<T>(question: &str, default: &dyn Display, parse: &dyn Fn(&str) -> Result<
 ///
 /// # Errors
 /// When the numbers are none of such a bearing.
+#[cfg(feature = "full")]
 pub(crate) fn scene(bearing: &str, load_n: f64, speed_rpm: f64, ring: Option<DefectRing>) -> Result<Scene> {
     let limits = Limits::of(bearing)?;
     limits.load(load_n).and_then(|_| limits.speed(speed_rpm)).map_err(anyhow::Error::msg)?;
