@@ -23,7 +23,7 @@ pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error
             (head(&format!("{}: the smallest spall that is found", detection.scene)))
             body {
                 h1 { (detection.scene) ": the smallest spall that is found" }
-                p class="lead" { (in_words(detection)) }
+                p class="headline" { (in_words(detection)) }
                 @if let Some(sound) = detection.sound {
                     p {
                         "Of the sound bearing the verdict claims " (detection.family) " in " (sound.count) " of "

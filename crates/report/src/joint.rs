@@ -30,7 +30,7 @@ fn joint_page(joint: &Joint, entries: &[SeriesRecord]) -> Markup {
             (head(&title))
             body {
                 h1 { (title) }
-                p class="lead" { (joint.verdict) }
+                p class="headline" { (joint.verdict) }
                 @for note in &joint.notes { p class="hint" { (note) } }
                 h2 #shares { "Share of each channel" }
                 div class="scroll" { (families_by_channel(joint)) }

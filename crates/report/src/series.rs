@@ -65,7 +65,7 @@ fn page(findings: &SeriesFindings<'_>, limits: &[Limit]) -> Result<Markup, Error
             (head(&title))
             body {
                 h1 { (title) }
-                p class="lead" { (series.verdict) }
+                p class="headline" { (series.verdict) }
                 @if series.sound > 0 {
                     p class="hint" { "The first " (series.sound) " records are of the sound machine." }
                 }
