@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use maud::{DOCTYPE, html};
-use stribeck_analysis::detection::{Detection, Smallest, WANTED, in_words};
+use stribeck_analysis::detection::{CAUTION, Detection, Smallest, WANTED, in_words};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::head;
+use crate::page::{head, with_code};
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 
 /// Writes `report.html` into a folder.
@@ -30,6 +30,7 @@ pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error
                         (sound.of) " records (" (percent(sound.low)) " to " (percent(sound.high)) ", 95 %)."
                     }
                 }
+                aside class="limits" { p { strong { "How far to trust it. " } (with_code(CAUTION)) "." } }
                 (figure)
                 table {
                     tr { th { "Length, mm" } th { "Found" } th { "Share" } th { "95 %" } th { "Curve" } }

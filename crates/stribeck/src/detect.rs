@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_analysis::detection::{Detection, OfLength, VERSION, in_words, smallest};
+use stribeck_analysis::detection::{CAUTION, Detection, OfLength, VERSION, in_words, smallest};
 use stribeck_analysis::machine::{CHANNEL, assumed};
 use stribeck_analysis::statistic::Share as Found;
 use stribeck_diagnosis::{Analysis, Defect, Machine};
@@ -111,6 +111,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     write_atomic(&out.join(NUMBERS), (serde_json::to_string_pretty(&detection)? + "\n").as_bytes())?;
     write_detection(&out, &detection)?;
     say!("{}", in_words(&detection));
+    say!("  {CAUTION}");
     if let Some(sound) = detection.sound {
         say!("  of the sound bearing the same is claimed in {} of {} records", sound.count, sound.of);
     }
