@@ -35,8 +35,9 @@ fn page() -> Result<String> {
     let mut text = String::from(
         "# Every number of a run\n\nWritten by `cargo xtask quantities` from the summary's own declarations. \
          A path leads to a number in `summary.json`, to its statistic in that of an ensemble, to the column \
-         `summary.PATH` of a campaign, and to a target of an inference. Of a number in a list an inference \
-         takes one item or combines all, as in `median(events.floor_n)`; campaigns have no column of it. \
+         `summary.PATH` of a campaign, and to a target of an inference. Numbers with an … are in a list, of \
+         which an inference takes one item or combines all, as in `median(events.floor_n)`, and campaigns \
+         have no column. \
          `compare` sets the bold ones side by side, and the page of a campaign draws them over its fields.\n",
     );
     let mut section = String::new();
@@ -47,9 +48,11 @@ fn page() -> Result<String> {
             write!(text, "\n## `{section}`\n\n| path | unit | |\n|---|---|---|\n")?;
         }
         let mark = if quantity.place.is_some() { "**" } else { "" };
-        let list = if quantity.is_listed { "In a list. " } else { "" };
-        let about = quantity.about_in_markdown();
-        writeln!(text, "| {mark}`{}`{mark} | {} | {list}{about} |", quantity.path, quantity.unit())?;
+        let list = if quantity.is_listed { " …" } else { "" };
+        let unit = quantity.unit();
+        // The sentence has its unit in brackets, which the column beside it says.
+        let about = quantity.about_in_markdown().replace(&format!(" [{unit}]"), "");
+        writeln!(text, "| {mark}`{}`{mark}{list} | {unit} | {about} |", quantity.path)?;
     }
     Ok(text)
 }
