@@ -4,13 +4,13 @@
 use std::fs;
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 use stribeck_scene::fields;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{Section, head, json, sentence};
+use crate::page::{Section, document, json, sentence};
 use crate::plot::{Axis, Colour, Figure, Series};
 use stribeck_analysis::agreement::{Agreement, Octaves, Row};
 
@@ -27,20 +27,17 @@ pub fn write_agreement(folder: &Path, agreement: &Agreement) -> Result<(), Error
     write_atomic(&folder.join(FILE), json(agreement)?.as_bytes())?;
     let figures = agreement.sensors.iter().map(|s| octaves(s).to_html()).collect::<Result<Vec<_>, _>>()?;
     let title = format!("{}: the reduced model beside the full one", agreement.scene);
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&title))
-            body {
-                h1 { (title) }
-                p class="lead" { (lead(agreement)) }
-                p { strong { (verdict(agreement)) } }
-                (table(agreement))
-                @for note in &agreement.notes { p class="hint" { (sentence(note)) } }
-                @for figure in figures { (figure) }
-            }
-        }
-    };
+    let page = document(
+        &title,
+        html! {
+            h1 { (title) }
+            p class="lead" { (lead(agreement)) }
+            p { strong { (verdict(agreement)) } }
+            (table(agreement))
+            @for note in &agreement.notes { p class="hint" { (sentence(note)) } }
+            @for figure in figures { (figure) }
+        },
+    );
     write_atomic(&folder.join("report.html"), page.into_string().as_bytes())?;
     Ok(())
 }

@@ -5,7 +5,7 @@ mod change;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 use stribeck_analysis::comparison::OF_SIGNAL;
 use stribeck_analysis::summary::Summary;
 use stribeck_diagnosis::words::numbers::significant;
@@ -13,7 +13,7 @@ use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::field_words::FieldWords;
-use crate::page::{HALF_PAGE_PX, capital, head};
+use crate::page::{HALF_PAGE_PX, capital, document};
 use crate::plot::{Axis, Colour, Figure, Series};
 use change::Change;
 
@@ -142,25 +142,22 @@ fn page(index: &CampaignIndex) -> Result<Markup, Error> {
     let complete = index.runs.iter().filter(|run| run.status == "complete").count();
     let sections = over.iter().enumerate().map(|(place, over)| over.markup(place == 0));
     let sections = sections.collect::<Result<Vec<_>, _>>()?;
-    Ok(html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&index.name))
-            body {
-                h1 { (index.name) }
-                p class="lead" { (lead(index)) }
-                @if complete < index.runs.len() { (banner(index, complete)) }
-                (first_screen(index, &over)?)
-                @for section in sections { (section) }
-                h2 #runs { "Runs" }
-                (table(index))
-                h2 #files { "Files" }
-                ul class="notes" {
-                    @for (file, what) in &index.files { li { a href=(file) { (file) } ": " (what) } }
-                }
+    Ok(document(
+        &index.name,
+        html! {
+            h1 { (index.name) }
+            p class="lead" { (lead(index)) }
+            @if complete < index.runs.len() { (banner(index, complete)) }
+            (first_screen(index, &over)?)
+            @for section in sections { (section) }
+            h2 #runs { "Runs" }
+            (table(index))
+            h2 #files { "Files" }
+            ul class="notes" {
+                @for (file, what) in &index.files { li { a href=(file) { (file) } ": " (what) } }
             }
-        }
-    })
+        },
+    ))
 }
 
 /// Sentences of a field on the first screen.

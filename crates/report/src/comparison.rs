@@ -4,14 +4,14 @@ mod figures;
 
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 use stribeck_analysis::comparison::{Comparison, Contrast, FieldDifference, Kind, Row, Side, Verdict};
 use stribeck_analysis::statistic::Statistic;
 use stribeck_diagnosis::words::numbers::significant;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{head, json, sentence};
+use crate::page::{document, json, sentence};
 use crate::plot::{Colour, Figure};
 use figures::Figures;
 
@@ -45,34 +45,31 @@ fn page(comparison: &Comparison) -> Result<Markup, Error> {
         ("envelopes", "Envelope spectra", drawn(envelope)?),
         ("forces", "Forces", drawn(forces)?),
     ];
-    Ok(html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&title))
-            body {
-                h1 { (title) }
-                @for line in answer(comparison) { p { (line) } }
-                (at_a_glance(sides))
-                h2 #fields { "What was changed" }
-                (fields(comparison))
-                h2 #numbers { "What changed with it" }
-                (rows(comparison, &comparison.rows))
-                @for (id, name, figures) in sections.iter().filter(|(_, _, figures)| !figures.is_empty()) {
-                    h2 id=(id) { (name) }
-                    @for figure in figures { (figure) }
-                }
-                @if !comparison.numbers.is_empty() {
-                    h2 #all { "All numbers" }
-                    details {
-                        summary { (format!("The {} numbers of the summaries that are not the same", comparison.numbers.len())) }
-                        (rows(comparison, &comparison.numbers))
-                    }
-                }
-                h2 #notes { "Notes" }
-                ul class="notes" { @for note in &comparison.notes { li { (sentence(note)) } } }
+    Ok(document(
+        &title,
+        html! {
+            h1 { (title) }
+            @for line in answer(comparison) { p { (line) } }
+            (at_a_glance(sides))
+            h2 #fields { "What was changed" }
+            (fields(comparison))
+            h2 #numbers { "What changed with it" }
+            (rows(comparison, &comparison.rows))
+            @for (id, name, figures) in sections.iter().filter(|(_, _, figures)| !figures.is_empty()) {
+                h2 id=(id) { (name) }
+                @for figure in figures { (figure) }
             }
-        }
-    })
+            @if !comparison.numbers.is_empty() {
+                h2 #all { "All numbers" }
+                details {
+                    summary { (format!("The {} numbers of the summaries that are not the same", comparison.numbers.len())) }
+                    (rows(comparison, &comparison.numbers))
+                }
+            }
+            h2 #notes { "Notes" }
+            ul class="notes" { @for note in &comparison.notes { li { (sentence(note)) } } }
+        },
+    ))
 }
 
 fn title(sides: &[Side]) -> String {

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use maud::{DOCTYPE, html};
+use maud::html;
 use stribeck_analysis::detection::{CAUTION, Detection, Smallest, WANTED, in_words};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{head, with_code};
+use crate::page::{document, with_code};
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 
 /// Writes `report.html` into a folder.
@@ -17,42 +17,39 @@ use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error> {
     let figure = figure(detection).to_html()?;
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&format!("{}: the smallest spall that is found", detection.scene)))
-            body {
-                h1 { (detection.scene) ": the smallest spall that is found" }
-                p class="headline" { (in_words(detection)) }
-                @if let Some(sound) = detection.sound {
-                    p {
-                        "Of the sound bearing the verdict claims " (detection.family) " in " (sound.count) " of "
-                        (sound.of) " records (" (percent(sound.low)) " to " (percent(sound.high)) ", 95 %)."
-                    }
-                }
-                aside class="limits" { p { strong { "How far to trust it. " } (with_code(CAUTION)) "." } }
-                (figure)
-                table {
-                    tr { th { "Length, mm" } th { "Found" } th { "Share" } th { "95 %" } th { "Curve" } }
-                    @for one in &detection.lengths {
-                        tr {
-                            td { (format!("{:.2}", one.length_mm)) }
-                            td { (one.found.count) " of " (one.found.of) }
-                            td { (percent(one.found.share)) }
-                            td { (percent(one.found.low)) " to " (percent(one.found.high)) }
-                            td { (percent(one.by_curve)) }
-                        }
-                    }
-                }
+    let page = document(
+        &format!("{}: the smallest spall that is found", detection.scene),
+        html! {
+            h1 { (detection.scene) ": the smallest spall that is found" }
+            p class="headline" { (in_words(detection)) }
+            @if let Some(sound) = detection.sound {
                 p {
-                    "Each record is a simulated bearing from another start, behind the machine's path, with another \
-                    background; it is found where the verdict on measured records claims " (detection.family) ". The \
-                    intervals are Wilson's. The curve is logistic in the logarithm of the length; the interval of \
-                    the length of nine in ten is that of a parametric bootstrap. Seed " (detection.seed) "."
+                    "Of the sound bearing the verdict claims " (detection.family) " in " (sound.count) " of "
+                    (sound.of) " records (" (percent(sound.low)) " to " (percent(sound.high)) ", 95 %)."
                 }
             }
-        }
-    };
+            aside class="limits" { p { strong { "How far to trust it. " } (with_code(CAUTION)) "." } }
+            (figure)
+            table {
+                tr { th { "Length, mm" } th { "Found" } th { "Share" } th { "95 %" } th { "Curve" } }
+                @for one in &detection.lengths {
+                    tr {
+                        td { (format!("{:.2}", one.length_mm)) }
+                        td { (one.found.count) " of " (one.found.of) }
+                        td { (percent(one.found.share)) }
+                        td { (percent(one.found.low)) " to " (percent(one.found.high)) }
+                        td { (percent(one.by_curve)) }
+                    }
+                }
+            }
+            p {
+                "Each record is a simulated bearing from another start, behind the machine's path, with another \
+                background; it is found where the verdict on measured records claims " (detection.family) ". The \
+                intervals are Wilson's. The curve is logistic in the logarithm of the length; the interval of \
+                the length of nine in ten is that of a parametric bootstrap. Seed " (detection.seed) "."
+            }
+        },
+    );
     write_atomic(&folder.join("report.html"), page.into_string().as_bytes())?;
     Ok(())
 }

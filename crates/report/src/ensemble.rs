@@ -7,11 +7,11 @@ mod tables;
 
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 use stribeck_store::run_dir::{RunDir, write_atomic};
 
 use crate::element_words::ElementWords;
-use crate::page::{Item, Section, charts, contents, drawn, head, json, sentence, write_figures};
+use crate::page::{Item, Section, charts, contents, document, drawn, json, sentence, write_figures};
 use crate::run::lead::lead;
 use crate::{Error, agreement};
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
@@ -42,20 +42,17 @@ fn page(findings: &EnsembleFindings, sections: &[Section]) -> Result<Markup, Err
     let first = findings.complete.first().map(|(_, first)| first);
     let duty = first.and_then(|first| first.summary.duty.as_ref());
     let drawn = sections.iter().map(Section::markup).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&summary.scene))
-            body {
-                h1 { (summary.scene) ", " (asked) " starts" }
-                p class="lead" { (lead(&findings.scene, duty, simulated_ms)) }
-                @if complete < asked { (banner(summary, complete)) }
-                (answer::paragraphs(findings))
-                (contents(sections))
-                @for section in drawn { (section) }
-            }
-        }
-    })
+    Ok(document(
+        &summary.scene,
+        html! {
+            h1 { (summary.scene) ", " (asked) " starts" }
+            p class="lead" { (lead(&findings.scene, duty, simulated_ms)) }
+            @if complete < asked { (banner(summary, complete)) }
+            (answer::paragraphs(findings))
+            (contents(sections))
+            @for section in drawn { (section) }
+        },
+    ))
 }
 
 /// All sections, in the order of the page.

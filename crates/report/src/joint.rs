@@ -2,13 +2,13 @@
 
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 use stribeck_diagnosis::joint::Joint;
 use stribeck_diagnosis::words::numbers::chance;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{head, json};
+use crate::page::{document, json};
 use crate::series::{SeriesRecord, table};
 
 /// Writes `joint.json` and `joint.html` of several channels of one machine and their joint verdict into
@@ -24,27 +24,24 @@ pub fn write_joint(folder: &Path, joint: &Joint, entries: &[SeriesRecord]) -> Re
 
 fn joint_page(joint: &Joint, entries: &[SeriesRecord]) -> Markup {
     let title = format!("{} channels together", entries.len());
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&title))
-            body {
-                h1 { (title) }
-                p class="headline" { (joint.verdict) }
-                @for note in &joint.notes { p class="hint" { (note) } }
-                h2 #shares { "Share of each channel" }
-                div class="scroll" { (families_by_channel(joint)) }
-                p class="hint" {
-                    "The part of each channel in the power that swings with a family, and the height of the \
-                    family in it; bold where the channel claims a defect by itself. The probability of a false \
-                    alarm is the smallest of all channels times their number, which holds however they depend \
-                    on each other."
-                }
-                h2 #channels { "Channels" }
-                div class="scroll" { (table(entries)) }
+    document(
+        &title,
+        html! {
+            h1 { (title) }
+            p class="headline" { (joint.verdict) }
+            @for note in &joint.notes { p class="hint" { (note) } }
+            h2 #shares { "Share of each channel" }
+            div class="scroll" { (families_by_channel(joint)) }
+            p class="hint" {
+                "The part of each channel in the power that swings with a family, and the height of the \
+                family in it; bold where the channel claims a defect by itself. The probability of a false \
+                alarm is the smallest of all channels times their number, which holds however they depend \
+                on each other."
             }
-        }
-    }
+            h2 #channels { "Channels" }
+            div class="scroll" { (table(entries)) }
+        },
+    )
 }
 
 /// Families of a joint verdict: a row a family, a column a channel.

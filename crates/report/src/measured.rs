@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 use stribeck_dsp::BandEnvelope;
 use stribeck_store::run_dir::write_atomic;
 
-use crate::page::{self, charts, drawn, head, json, sentence};
+use crate::page::{self, charts, document, drawn, json, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
 use crate::{Error, course, kurtogram, sound};
 use stribeck_diagnosis::record::quality::Quality;
@@ -53,49 +53,46 @@ fn page(file: &str, analysis: &Analysis, baseline: Option<&Baseline>) -> Result<
     let title = format!("{file}, {}", findings.channel);
     let number = |x: f64| format!("{x:.4}");
     let health = &findings.health;
-    Ok(html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&title))
-            body {
-                h1 { (title) }
-                p class="lead" {
-                    (format!("{:.2} s at {} Hz", findings.duration_s, significant(findings.rate_hz, 7)))
-                    @if let Some(rpm) = findings.speed_rpm { (turning(rpm, analysis)) }
-                    @if let Some(bearing) = &findings.bearing { "; " (bearing) }
-                    "."
-                    @if let Some(baseline) = baseline { " In grey behind it: " (baseline.name) "." }
-                }
-                p { strong { (findings.verdict) } }
-                @if let Some(zone) = &findings.zone { p { "Velocity: " (zone.to_string()) "." } }
-                @if let Some(words) = spall_in_words(findings) { p { (words) } }
-                h2 #evidence { "What the verdict rests on" }
-                (evidence)
-                h3 { "What would change it" }
-                ul { @for words in what_would_change(findings) { li { (words) } } }
-                @if !findings.quality.is_empty() { (quality(&findings.quality)) }
-                h2 #families { "Defect families" }
-                @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
-                h2 #signal { "Signal" }
-                table {
-                    tr { @if baseline.is_some() { th { "" } } th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } th { "Spectral entropy" } @if findings.velocity_mm_s.is_some() { th { "Velocity, 10–1000 Hz (mm/s)" } } }
-                    tr {
-                        @if baseline.is_some() { td { "this record" } }
-                        td { (number(health.mean)) } td { (number(health.rms)) } td { (number(health.peak)) } td { (number(health.crest_factor)) }
-                        td { (number(health.kurtosis)) } td { (number(health.skewness)) } td { (number(health.impulse_factor)) }
-                        td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
-                    }
-                    @if let Some(baseline) = baseline { (levels_of(baseline, findings.velocity_mm_s.is_some())) }
-                }
-                (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz, findings.unit.as_deref().unwrap_or("")))
-                (figures)
-                h2 #course { "Bands and course" }
-                (pictures)
-                h2 #notes { "Notes" }
-                ul class="notes" { @for note in &findings.notes { li { (page::with_code(&sentence(note))) } } }
+    Ok(document(
+        &title,
+        html! {
+            h1 { (title) }
+            p class="lead" {
+                (format!("{:.2} s at {} Hz", findings.duration_s, significant(findings.rate_hz, 7)))
+                @if let Some(rpm) = findings.speed_rpm { (turning(rpm, analysis)) }
+                @if let Some(bearing) = &findings.bearing { "; " (bearing) }
+                "."
+                @if let Some(baseline) = baseline { " In grey behind it: " (baseline.name) "." }
             }
-        }
-    })
+            p { strong { (findings.verdict) } }
+            @if let Some(zone) = &findings.zone { p { "Velocity: " (zone.to_string()) "." } }
+            @if let Some(words) = spall_in_words(findings) { p { (words) } }
+            h2 #evidence { "What the verdict rests on" }
+            (evidence)
+            h3 { "What would change it" }
+            ul { @for words in what_would_change(findings) { li { (words) } } }
+            @if !findings.quality.is_empty() { (quality(&findings.quality)) }
+            h2 #families { "Defect families" }
+            @if findings.families.is_empty() { p { "None was looked for: see the notes." } } @else { (families(&findings.families)) }
+            h2 #signal { "Signal" }
+            table {
+                tr { @if baseline.is_some() { th { "" } } th { "Mean" } th { "RMS" } th { "Peak" } th { "Crest factor" } th { "Kurtosis" } th { "Skewness" } th { "Impulse factor" } th { "Spectral entropy" } @if findings.velocity_mm_s.is_some() { th { "Velocity, 10–1000 Hz (mm/s)" } } }
+                tr {
+                    @if baseline.is_some() { td { "this record" } }
+                    td { (number(health.mean)) } td { (number(health.rms)) } td { (number(health.peak)) } td { (number(health.crest_factor)) }
+                    td { (number(health.kurtosis)) } td { (number(health.skewness)) } td { (number(health.impulse_factor)) }
+                    td { (number(health.spectral_entropy)) } @if let Some(level) = findings.velocity_mm_s { td { (number(level)) } }
+                }
+                @if let Some(baseline) = baseline { (levels_of(baseline, findings.velocity_mm_s.is_some())) }
+            }
+            (sound::player(&findings.channel, &analysis.beginning, findings.rate_hz, findings.unit.as_deref().unwrap_or("")))
+            (figures)
+            h2 #course { "Bands and course" }
+            (pictures)
+            h2 #notes { "Notes" }
+            ul class="notes" { @for note in &findings.notes { li { (page::with_code(&sentence(note))) } } }
+        },
+    ))
 }
 
 /// What sensor and recorder did to the samples, one finding a row.

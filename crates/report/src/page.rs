@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-use maud::{Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 
 use crate::element_words::ElementWords;
@@ -51,17 +51,21 @@ pub(crate) fn json(summary: &impl Serialize) -> Result<String, Error> {
     Ok(text + "\n")
 }
 
-/// The head of a page: title, styles and scripts.
-pub(crate) fn head(name: &str) -> Markup {
+/// A page: title, styles, scripts and what it says.
+pub(crate) fn document(name: &str, body: Markup) -> Markup {
     html! {
-        head {
-            meta charset="utf-8";
-            meta name="viewport" content="width=device-width, initial-scale=1";
-            // An empty picture keeps browsers from asking a server for an icon.
-            link rel="icon" href="data:,";
-            title { (name) " – Stribeck" }
-            (plot::script())
-            style { (PreEscaped(include_str!("../assets/report.css"))) }
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                // An empty picture keeps browsers from asking a server for an icon.
+                link rel="icon" href="data:,";
+                title { (name) " – Stribeck" }
+                (plot::script())
+                style { (PreEscaped(include_str!("../assets/report.css"))) }
+            }
+            body { (body) }
         }
     }
 }

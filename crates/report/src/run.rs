@@ -34,7 +34,7 @@ mod drawing;
 use std::ops::Range;
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
@@ -43,7 +43,7 @@ use stribeck_store::run_dir::{LAB, Run, write_atomic};
 use stribeck_store::run_info::Status;
 
 use crate::element_words::ElementWords;
-use crate::page::{Item, Section, contents, head, json, write_figures};
+use crate::page::{Item, Section, contents, document, json, write_figures};
 use crate::{Error, agreement};
 use paper::PaperCase;
 
@@ -117,20 +117,17 @@ fn sections(of: &Subject<'_>, stress: Section) -> Result<Vec<Section>, Error> {
 fn page(of: &Subject<'_>, sections: &[Section]) -> Result<Markup, Error> {
     let summary = &of.findings.summary;
     let drawn = sections.iter().map(Section::markup).collect::<Result<Vec<_>, _>>()?;
-    Ok(html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&summary.scene))
-            body {
-                h1 { (summary.scene) }
-                p class="lead" { (lead::lead(&of.run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
-                (banner(of.run))
-                (answer::first_screen(of, sections)?)
-                (contents(sections))
-                @for section in drawn { (section) }
-            }
-        }
-    })
+    Ok(document(
+        &summary.scene,
+        html! {
+            h1 { (summary.scene) }
+            p class="lead" { (lead::lead(&of.run.scene, summary.duty.as_ref(), summary.run.simulated_ms)) }
+            (banner(of.run))
+            (answer::first_screen(of, sections)?)
+            (contents(sections))
+            @for section in drawn { (section) }
+        },
+    ))
 }
 
 /// Links to the interactive page of a reduced run, or names the command that makes it.

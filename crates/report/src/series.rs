@@ -3,12 +3,12 @@
 
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 use serde::Serialize;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{cell, folded, head, json, wide_table};
+use crate::page::{cell, document, folded, json, wide_table};
 use crate::plot::{Axis, Band, Colour, Figure, Level, Mark, Series as Curve};
 use stribeck_diagnosis::record::alarm::{Judged, Limit, Quantity, State};
 use stribeck_diagnosis::series::{Onset, Series};
@@ -59,32 +59,29 @@ fn page(findings: &SeriesFindings<'_>, limits: &[Limit]) -> Result<Markup, Error
     let of_families = html_of(heights(series).into_iter().chain(lengths(series, records)).collect())?;
     let of_levels = html_of(levels(records, limits))?;
     let title = format!("A series of {} records", records.len());
-    Ok(html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&title))
-            body {
-                h1 { (title) }
-                p class="headline" { (series.verdict) }
-                @if series.sound > 0 {
-                    p class="hint" { "The first " (series.sound) " records are of the sound machine." }
-                }
-                @if !series.families.is_empty() {
-                    h2 #families { "Defect families" }
-                    @for figure in of_families { (figure) }
-                    (evidence(series))
-                }
-                h2 #levels { "Levels" }
-                @for figure in of_levels { (figure) }
-                @if !limits.is_empty() {
-                    h2 #alarms { "Alarm bands" }
-                    (folded(html! { div class="scroll" { (alarms(records, limits)) } }, records.len(), "records and their levels"))
-                }
-                h2 #records { "Records" }
-                (folded(html! { div class="scroll" { (table(records)) } }, records.len(), "records, in the order in which they were given"))
+    Ok(document(
+        &title,
+        html! {
+            h1 { (title) }
+            p class="headline" { (series.verdict) }
+            @if series.sound > 0 {
+                p class="hint" { "The first " (series.sound) " records are of the sound machine." }
             }
-        }
-    })
+            @if !series.families.is_empty() {
+                h2 #families { "Defect families" }
+                @for figure in of_families { (figure) }
+                (evidence(series))
+            }
+            h2 #levels { "Levels" }
+            @for figure in of_levels { (figure) }
+            @if !limits.is_empty() {
+                h2 #alarms { "Alarm bands" }
+                (folded(html! { div class="scroll" { (alarms(records, limits)) } }, records.len(), "records and their levels"))
+            }
+            h2 #records { "Records" }
+            (folded(html! { div class="scroll" { (table(records)) } }, records.len(), "records, in the order in which they were given"))
+        },
+    ))
 }
 
 /// What the records together say of each family.

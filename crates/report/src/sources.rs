@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use maud::{DOCTYPE, html};
+use maud::html;
 use serde_json::json;
 use stribeck_diagnosis::sources::{Component, Sources};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::measured::write_measured;
-use crate::page::{head, json as pretty};
+use crate::page::{document, json as pretty};
 
 /// Writes `findings.json` and `report.html` of all components into `folder`, and below it the page of each
 /// bearing.
@@ -37,34 +37,31 @@ pub fn write_sources(
     let all = json!({ "components": words, "verdict": sources.verdict, "bearings": entries });
     write_atomic(&folder.join("findings.json"), pretty(&all)?.as_bytes())?;
     let title = format!("{file}: {} components", components.len());
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&title))
-            body {
-                h1 { (title) }
-                p class="lead" { (words.join("; ")) "." }
-                div class="scroll" { table {
-                    tr { th { "Bearing" } th { "Shaft (rpm)" } th { "Family" } th { "Measured (Hz)" } th { "Claimed" } th { "Why" } }
-                    @for (n, (component, analysis)) in sources.bearings.iter().enumerate() {
-                        @for family in &analysis.findings.families {
-                            tr {
-                                td { a href=(format!("{}/report.html", subfolder(n, component))) { (component.to_string()) } }
-                                td { (analysis.findings.speed_rpm.map_or_else(String::new, |rpm| format!("{rpm:.1}"))) }
-                                td { (family.name.name()) }
-                                td { (family.measured_hz.map_or_else(|| "–".to_owned(), |hz| format!("{hz:.2}"))) }
-                                td { @if family.claimed { strong { "yes" } } @else { "no" } }
-                                td { (family.reason.to_string()) }
-                            }
+    let page = document(
+        &title,
+        html! {
+            h1 { (title) }
+            p class="lead" { (words.join("; ")) "." }
+            div class="scroll" { table {
+                tr { th { "Bearing" } th { "Shaft (rpm)" } th { "Family" } th { "Measured (Hz)" } th { "Claimed" } th { "Why" } }
+                @for (n, (component, analysis)) in sources.bearings.iter().enumerate() {
+                    @for family in &analysis.findings.families {
+                        tr {
+                            td { a href=(format!("{}/report.html", subfolder(n, component))) { (component.to_string()) } }
+                            td { (analysis.findings.speed_rpm.map_or_else(String::new, |rpm| format!("{rpm:.1}"))) }
+                            td { (family.name.name()) }
+                            td { (family.measured_hz.map_or_else(|| "–".to_owned(), |hz| format!("{hz:.2}"))) }
+                            td { @if family.claimed { strong { "yes" } } @else { "no" } }
+                            td { (family.reason.to_string()) }
                         }
                     }
-                } }
-                @for (component, analysis) in &sources.bearings {
-                    p { strong { (component.to_string()) ": " } (analysis.findings.verdict) }
                 }
+            } }
+            @for (component, analysis) in &sources.bearings {
+                p { strong { (component.to_string()) ": " } (analysis.findings.verdict) }
             }
-        }
-    };
+        },
+    );
     write_atomic(&folder.join("report.html"), page.into_string().as_bytes())?;
     Ok(())
 }

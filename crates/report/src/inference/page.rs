@@ -1,11 +1,11 @@
 //! The page and its tables.
 
-use maud::{DOCTYPE, Markup, html};
+use maud::{Markup, html};
 
 use super::{Answer, FieldCalibrated, FieldFound, OUT_OF_REACH, TargetFound, figures, short};
 use crate::Error;
 use crate::field_words::FieldWords;
-use crate::page::{head, with_code};
+use crate::page::{document, with_code};
 
 pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
     let [priors, pairs, targets, pulls] = [
@@ -15,39 +15,36 @@ pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
         figures::pulls(answer),
     ]
     .map(|picture| picture.to_html());
-    Ok(html! {
-        (DOCTYPE)
-        html lang="en" {
-            (head(&answer.name))
-            body {
-                h1 { (answer.name) }
-                div class="top" {
-                    p class="headline" { (headline(answer)) }
-                    div class="picture" { (priors?) }
-                    div class="answer" {
-                        @for field in by_width(answer).into_iter().skip(1) { p { (found(field)) } }
-                    }
+    Ok(document(
+        &answer.name,
+        html! {
+            h1 { (answer.name) }
+            div class="top" {
+                p class="headline" { (headline(answer)) }
+                div class="picture" { (priors?) }
+                div class="answer" {
+                    @for field in by_width(answer).into_iter().skip(1) { p { (found(field)) } }
                 }
-                aside class="limits" { p {
-                    strong { "How far to trust it. " } (lead(answer))
-                    @if let Some(words) = answer.too_narrow() { " " (with_code(&words)) "." }
-                } }
-                h2 #unknowns { "Unknowns" }
-                div class="scroll" { (unknowns(&answer.fields)) }
-                (pairs?)
-                h2 #targets { "Targets, and what such scenes make" }
-                div class="scroll" { (targets_table(answer)) }
-                (targets?)
-                h2 #reach { "What no scene makes" }
-                (reach(answer))
-                h2 #pulls { "What each target contributes" }
-                (pulls?)
-                h2 #trust { "How far to believe it" }
-                (trust(answer))
-                @if let Some(calibration) = &answer.calibration { (calibrated(calibration)?) }
             }
-        }
-    })
+            aside class="limits" { p {
+                strong { "How far to trust it. " } (lead(answer))
+                @if let Some(words) = answer.too_narrow() { " " (with_code(&words)) "." }
+            } }
+            h2 #unknowns { "Unknowns" }
+            div class="scroll" { (unknowns(&answer.fields)) }
+            (pairs?)
+            h2 #targets { "Targets, and what such scenes make" }
+            div class="scroll" { (targets_table(answer)) }
+            (targets?)
+            h2 #reach { "What no scene makes" }
+            (reach(answer))
+            h2 #pulls { "What each target contributes" }
+            (pulls?)
+            h2 #trust { "How far to believe it" }
+            (trust(answer))
+            @if let Some(calibration) = &answer.calibration { (calibrated(calibration)?) }
+        },
+    ))
 }
 
 /// The unknowns, those first of which the targets say most.
