@@ -1,6 +1,12 @@
-//! Writes the commit into the program, so that a run can say what made it.
+//! Writes the commit into the program, so that a run can say what made it, and finds the library of FMUs that
+//! the program carries: the file that `STRIBECK_FMU_EMBED` names, as `cargo xtask release` does. It is not
+//! compiled here, because its bindings need libclang.
 
+use std::path::PathBuf;
 use std::process::Command;
+
+/// Names the library.
+const FMU: &str = "STRIBECK_FMU_EMBED";
 
 fn main() {
     // Whatever changes in the crates changes the program, and with it perhaps the answer.
@@ -9,6 +15,16 @@ fn main() {
         println!("cargo:rerun-if-changed={log}");
     }
     println!("cargo:rustc-env=STRIBECK_COMMIT={}", commit());
+    println!("cargo:rerun-if-env-changed={FMU}");
+    println!("cargo:rustc-check-cfg=cfg(fmu_embedded)");
+    let Some(library) = std::env::var_os(FMU).map(PathBuf::from) else { return };
+    if !library.is_absolute() || !library.is_file() {
+        println!("cargo:warning={FMU} = {}: must be the whole path of a file", library.display());
+        return;
+    }
+    println!("cargo:rerun-if-changed={}", library.display());
+    println!("cargo:rustc-env=STRIBECK_FMU_EMBEDDED={}", library.display());
+    println!("cargo:rustc-cfg=fmu_embedded");
 }
 
 /// Commit of the checkout, with a mark when its files have been changed since; `unknown` outside a checkout.

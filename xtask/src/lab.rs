@@ -48,11 +48,10 @@ pub(crate) fn build_module(options: &Options) -> Result<ExitCode> {
 }
 
 /// The module, built where a build finds the same name again.
-fn build() -> Result<PathBuf> {
+pub(crate) fn build() -> Result<PathBuf> {
     let root = workspace::root();
     // A folder of its own: cargo would wait for the one that runs this command.
-    let folder =
-        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("lab");
+    let folder = workspace::target().join("lab");
     let mut cargo = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
     cargo
         .current_dir(&root)
@@ -69,8 +68,7 @@ fn build() -> Result<PathBuf> {
         ])
         .args(["--target", TARGET, "--target-dir"])
         .arg(&folder)
-        .env("RUSTFLAGS", "-C target-feature=+simd128")
-        .env_remove("CARGO_ENCODED_RUSTFLAGS");
+        .env("CARGO_ENCODED_RUSTFLAGS", workspace::flags_without_paths(&["-Ctarget-feature=+simd128"]));
     let done = cargo.status().context("cannot start cargo")?;
     ensure!(
         done.success(),

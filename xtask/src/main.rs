@@ -11,6 +11,7 @@ mod fmu;
 mod handed_on;
 mod lab;
 mod quantities;
+mod release;
 mod wheel;
 mod workspace;
 
@@ -48,8 +49,8 @@ enum Command {
     Book,
     /// Builds the wheel of the Python module, which needs no Rust where it is installed
     Wheel(wheel::Options),
-    /// Packs the reduced bearing of a scene as an FMU: the shaft's motion in, forces out
-    Fmu(fmu::Options),
+    /// Makes the files of a release: programs, wheels, installers, checksums, licences
+    Release(release::Options),
     /// Writes the guide's page of all fields of a scene from their types
     Fields(fields::Options),
     /// Writes the guide's page of all numbers of a run from the summary's declarations
@@ -77,13 +78,14 @@ fn main() -> ExitCode {
     stribeck::conclude(match cli.command {
         Command::Program(command) if command.needs_full() => handed_on::program(&words, cli.loudness),
         Command::Program(command) => lab::with_module(command)
+            .and_then(fmu::with_library)
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
         Command::Study(words) => handed_on::study(None, &words, cli.loudness),
         Command::Peers(options) => compare::run(&options),
         Command::LabModule(options) => lab::build_module(&options),
         Command::Wheel(options) => wheel::build(&options),
         Command::Book => book::run(),
-        Command::Fmu(options) => fmu::build(&options),
+        Command::Release(options) => release::run(&options),
         Command::Fields(options) => fields::run(&options),
         Command::Quantities(options) => quantities::run(&options),
         Command::Fuzz(words) => handed_on::study(Some("fuzz"), &words, cli.loudness),

@@ -1,5 +1,6 @@
 //! The wheel of the Python module, which needs no Rust where it is installed.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -19,39 +20,50 @@ pub(crate) struct Options {
 }
 
 /// Largest size of a wheel [bytes]. That of `.ci/run`, which shares its libraries with the tests, is larger.
-const LARGEST: u64 = 10 << 20;
+const LARGEST: u64 = 14_000_000;
 
 /// Oldest system that a wheel made with zig runs on: glibc 2.17.
 const POLICY: &str = "manylinux2014";
 
-/// Builds the wheel, with zig for old systems where it is there and else by the policy of this machine, and
-/// says where it is.
+/// Builds the wheel of this machine and says where it is.
 pub(crate) fn build(options: &Options) -> Result<ExitCode> {
-    let root = workspace::root();
-    let out = root.join(&options.out);
+    let wheel = make(&workspace::root().join(&options.out), &options.python, None, &[])?;
+    let bytes = std::fs::metadata(&wheel).map_or(0, |file| file.len());
+    println!("{} ({:.2} MB)", wheel.display(), 1e-6 * bytes as f64);
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Builds a wheel, with zig for old systems where it is there and else by the policy of this machine.
+pub(crate) fn make(
+    out: &Path,
+    python: &str,
+    target: Option<&str>,
+    environment: &[(&str, OsString)],
+) -> Result<PathBuf> {
     ensure!(
-        has(&options.python, "maturin"),
-        "`{}` has no maturin: `pip install maturin ziglang`, and name its Python with `--python`",
-        options.python
+        has(python, "maturin"),
+        "`{python}` has no maturin: `pip install maturin ziglang`, and name its Python with `--python`"
     );
-    let zig = has(&options.python, "ziglang");
-    let mut maturin = Command::new(&options.python);
-    maturin.current_dir(&root).args(["-m", "maturin", "build", "--profile", "dist"]);
-    maturin.args(["--compression-level", "9", "--out"]).arg(&out);
-    if zig {
-        maturin.args(["--zig", "--compatibility", POLICY]);
+    let mut maturin = Command::new(python);
+    maturin.current_dir(workspace::root()).args(["-m", "maturin", "build", "--quiet", "--profile", "dist"]);
+    maturin.args(["--compression-level", "9", "--out"]).arg(out).envs(environment.iter().cloned());
+    maturin.args(target.into_iter().flat_map(|target| ["--target", target]));
+    if has(python, "ziglang") {
+        maturin.arg("--zig");
+        if target.is_none_or(|target| target.contains("linux")) {
+            maturin.args(["--compatibility", POLICY]);
+        }
         // Its zig is a module of that Python, which need not be the one in the path.
-        maturin.env("CARGO_ZIGBUILD_PYTHON_PATH", &options.python);
+        maturin.env("CARGO_ZIGBUILD_PYTHON_PATH", python);
     } else {
         println!("no ziglang: the wheel runs on systems as new as this one");
     }
     let done = maturin.status().context("cannot start maturin")?;
     ensure!(done.success(), "maturin could not build the wheel; see its output above");
-    let Some(wheel) = newest(&out)? else { bail!("maturin left no wheel in `{}`", out.display()) };
+    let Some(wheel) = newest(out)? else { bail!("maturin left no wheel in `{}`", out.display()) };
     let bytes = std::fs::metadata(&wheel).map_or(0, |file| file.len());
-    println!("{} ({:.2} MB)", wheel.display(), 1e-6 * bytes as f64);
     ensure!(bytes <= LARGEST, "the wheel has {bytes} bytes; {LARGEST} are allowed");
-    Ok(ExitCode::SUCCESS)
+    Ok(wheel)
 }
 
 /// Whether a Python has a module.

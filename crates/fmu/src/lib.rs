@@ -1,6 +1,7 @@
 //! The reduced bearing as an FMU: co-simulation by FMI 3.0, the shaft's motion in, forces out.
 //!
-//! `cargo xtask fmu SCENE` reduces the bearing of a scene, builds this library and packs both. The library
+//! `stribeck fmu SCENE` reduces the bearing of a scene and packs it with this library, which `cargo xtask fmu`
+//! builds before it, and which the programs of a release carry. The library
 //! reads the bearing from the resources of its archive and steps it by [`stribeck_reduced::shaft`]; it meshes
 //! nothing.
 //!

@@ -28,6 +28,7 @@ mod elsewhere;
 mod emit;
 #[cfg(feature = "full")]
 mod export;
+pub mod fmu;
 #[cfg(feature = "full")]
 mod infer;
 pub mod lab;
@@ -151,6 +152,9 @@ pub enum Command {
     /// Makes a page in which bearings run: one file for a browser, with handles and instruments
     #[command(after_help = "Example: stribeck lab mine.ron --out mine.html --open")]
     Lab(lab::Options),
+    /// Packs the reduced bearing of a scene as an FMU for rotor programs: the shaft's motion in, forces out
+    #[command(after_help = "Example: stribeck fmu mine.ron --set 'model=reduced()'")]
+    Fmu(fmu::Options),
     /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are
     /// from
     #[command(after_help = "Example: stribeck bearings \"NU 205\"")]
@@ -223,6 +227,7 @@ impl Command {
             Self::Plan(options) => plan::run(options, place),
             Self::Stiffness(options) => stiffness::run(options, place),
             Self::Lab(options) => lab::run(options, place),
+            Self::Fmu(options) => fmu::run(options, place),
             Self::Bearings(options) => bearings::run(options),
             Self::Analyse(options) => analyse::run(options, place),
             Self::Compare(options) => compare::run(options, place),

@@ -47,6 +47,7 @@ const LAYERS: [(&str, &[&str]); 23] = [
             "lab",
             "mesh",
             "plans",
+            "reduced",
             "report",
             "scene",
             "simulation",
