@@ -45,6 +45,7 @@ const TARGETS: [&str; 3] = ["x86_64-unknown-linux-gnu", "aarch64-unknown-linux-g
 struct Release {
     folder: PathBuf,
     python: String,
+    wheels: bool,
     left_out: Vec<String>,
     start: Instant,
 }
@@ -77,8 +78,13 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let folder = folder.canonicalize()?;
     // Tools that pack files read it.
     let epoch = epoch(&root)?;
-    let mut release =
-        Release { folder, python: options.python.clone(), left_out: Vec::new(), start: Instant::now() };
+    let mut release = Release {
+        folder,
+        python: options.python.clone(),
+        wheels: !options.no_wheels,
+        left_out: Vec::new(),
+        start: Instant::now(),
+    };
     let wanted = options.targets.iter().map(String::as_str);
     let wanted: Vec<&str> = if options.targets.is_empty() { TARGETS.to_vec() } else { wanted.collect() };
     let platforms = wanted.into_iter().map(Platform::new).collect::<Result<Vec<_>>>()?;
@@ -116,7 +122,7 @@ fn program(
         .program(&python, &build)
         .and_then(|program| archive::pack(&release.folder, platform, &program, licences, epoch));
     let archive = release.part(&format!("{}: program", platform.target), made);
-    if platform.wheel {
+    if release.wheels && platform.wheel {
         let made = wheel::make(&release.folder, &python, Some(platform.target), &build);
         release.part(&format!("{}: wheel", platform.target), made);
     }
