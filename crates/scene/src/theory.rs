@@ -12,7 +12,9 @@ use stribeck_theory::{Error, contact_law::ContactLawKind, load_rating};
 
 use crate::duty::LONGEST_RUN_S;
 use crate::resolved::ResolvedScene;
-use crate::scene::{BearingScene, ContactFormula, DefectRing, DefectScene, MaterialScene, ModelScene, Scene};
+use crate::scene::{
+    BearingScene, ContactFormula, DefectRing, DefectScene, MaterialScene, ModelScene, RollerProfile, Scene,
+};
 
 impl From<&BearingScene> for Dimensions {
     fn from(bearing: &BearingScene) -> Self {
@@ -106,14 +108,18 @@ impl Scene {
         if is_ball { Element::Ball } else { Element::Roller }
     }
 
-    /// Law of the contacts of rolling elements in its model: balls touch in points where the model has no
-    /// mesh and contact is as in steel; anything else is plane.
+    /// Law of the contacts of rolling elements in its model: balls touch in points and relieved rollers with their
+    /// middles where the model has no mesh and contact is as in steel; anything else is plane.
     pub(crate) fn contact_law(&self) -> ContactLawKind {
         let in_steel = self.contact.formula == ContactFormula::Hertz;
-        if in_steel && self.model != ModelScene::Full && self.element() == Element::Ball {
-            ContactLawKind::Ball
-        } else {
-            ContactLawKind::Line
+        if in_steel && self.model != ModelScene::Full { self.law_of_elements() } else { ContactLawKind::Line }
+    }
+
+    /// Law of its rolling elements, whatever the model.
+    fn law_of_elements(&self) -> ContactLawKind {
+        match (self.element(), self.bearing.roller_profile) {
+            (Element::Roller, RollerProfile::Logarithmic) => ContactLawKind::Profiled,
+            (element, _) => ContactLawKind::of(element),
         }
     }
 
@@ -168,7 +174,7 @@ impl ResolvedScene {
 
     /// Law of its contacts: points for balls of the catalogue, lines for all others.
     pub fn contact_law(&self) -> ContactLawKind {
-        ContactLawKind::of(self.written.element())
+        self.written.law_of_elements()
     }
 
     /// The bearing between rigid rings, without defects, with its inner ring at `speed_rpm`; the outer one

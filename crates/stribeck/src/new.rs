@@ -12,7 +12,7 @@ use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
 use stribeck_scene::scene::DefectRing;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
-use stribeck_theory::catalogue::CatalogueBearing;
+use stribeck_theory::catalogue::{CatalogueBearing, Element};
 use stribeck_theory::fits::mounted_clearance_change_um;
 
 use crate::out::say;
@@ -409,6 +409,17 @@ fn clearance_change_um(bearing: &str) -> f64 {
     mounted_clearance_change_um(inner_mm - 2.0 * b.inner_ring_thickness_mm, inner_mm, pitch_mm).round()
 }
 
+/// The profile of rollers.
+fn profile(bearing: &str) -> &'static str {
+    match of_bearing(bearing).element() {
+        Element::Ball => "",
+        Element::Roller => {
+            "\n        // Ends relieved as those of real rollers. Straight ones enter the load with a knock.\n        \
+             roller_profile: logarithmic,"
+        }
+    }
+}
+
 /// The scene with its comments.
 fn text(name: &str, answers: &Answers) -> String {
     let Answers { bearing, load_n, speed_rpm, defect, length_mm, duration_s } = answers;
@@ -449,6 +460,7 @@ fn text(name: &str, answers: &Answers) -> String {
         .replace("<state>", state)
         .replace("<file>", name)
         .replace("<bearing>", bearing)
+        .replace("<profile>", profile(bearing))
         .replace("<change>", &format!("{:?}", clearance_change_um(bearing)))
         .replace("<load>", &format!("{load_n:?}"))
         .replace("<speed>", &format!("{speed_rpm:?}"))

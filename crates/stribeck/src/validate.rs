@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use stribeck_analysis::agreement::{Agreement, FINE_S, FROM_S, LEAST_S, Row};
 use stribeck_report as report;
 use stribeck_scene::ensemble::{folder_name, start};
-use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_scene::scene::{ModelScene, RollerProfile, Scene};
 use stribeck_store::run_dir::{Run, State, check_folder};
 use stribeck_store::run_info::Status;
 
@@ -119,11 +119,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
 /// Samples of a run of the full model, at most: 140 MB, a quarter of a second.
 const SAMPLES: f64 = 131_072.0;
 
-/// The scene by the full and by the reduced model. The full one is sampled more often, unless it is long, and
-/// makes no pictures.
+/// The scene by the full and by the reduced model, with straight rollers, which both have. The full one is sampled
+/// more often, unless it is long, and makes no pictures.
 fn models(scene: &Scene) -> Result<[Scene; 2]> {
     let by = |model: ModelScene| -> Result<Scene> {
-        let scene = Scene { model, ..scene.clone() };
+        let mut scene = Scene { model, ..scene.clone() };
+        scene.bearing.roller_profile = RollerProfile::Straight;
         scene.validate()?;
         Ok(scene)
     };

@@ -26,6 +26,8 @@ group! {
         pub rollers: usize = 24, within(3.0, 400.0);
         /// Diameter of a rolling element [mm].
         pub roller_diameter_mm: f64 = 18.0, positive(5_000.0);
+        /// Profile of rollers along their length, in the reduced model.
+        pub roller_profile: RollerProfile = RollerProfile::Straight, omitted();
         /// Out-of-plane thickness of the plane-strain model [mm]; the paper does not state it.
         pub thickness_mm: f64 = 30.0, positive(10_000.0);
         /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow
@@ -42,6 +44,18 @@ group! {
         pub width_mm: Option<f64> = None, positive(20_000.0), omitted();
         /// Dimensions that the user did not give and the program assumed; written by the program.
         pub assumed: Vec<Assumed> = Vec::new(), omitted();
+    }
+}
+
+words! {
+    /// Profile of rollers along their length.
+    pub enum RollerProfile: Copy, Eq {
+        /// Cylinders, whose force sets in with a corner where they enter the load.
+        Straight = "straight",
+        /// Relieved towards the ends by 0.00035 D ln 1/(1 − (2x/l)²), the reference profile of ISO/TS 16281: a
+        /// light load presses the middle alone, and the force sets in gently. That of real rollers, and what
+        /// `stribeck new` writes.
+        Logarithmic = "logarithmic",
     }
 }
 

@@ -1,11 +1,12 @@
 //! Choices that exclude each other: two kinds of damping, oil over gentle edges, a sudden start of the
-//! reduced model; and bands and lists of damping that must not be empty.
+//! reduced model, relieved rollers where there is a mesh; and bands and lists of damping that must not be empty.
 
 use super::finding::{Finding, Remedy};
 use super::wording::number;
 use crate::deviation::RollingSurface;
 use crate::faults::rolling_circle;
-use crate::scene::{DefectRing, ModelScene, Scene, Start};
+use crate::scene::{ContactFormula, DefectRing, ModelScene, RollerProfile, Scene, Start};
+use stribeck_theory::catalogue::Element;
 
 /// Upper over lower end of the narrowest band of structural damping.
 const NARROWEST_BAND: f64 = 2.0;
@@ -19,7 +20,7 @@ const LEAST_EDGE_DEG: f64 = 22.0;
 
 /// Every choice that excludes another, in a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let groups = [damped_band, damped_bodies, damped_twice, oiled_edges, reduced_starts];
+    let groups = [damped_band, damped_bodies, damped_twice, oiled_edges, reduced_starts, profiles];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
 
@@ -107,6 +108,28 @@ fn oiled_edges(scene: &Scene) -> Option<Finding> {
     let slope = Remedy::new("defect.edge_slope_deg", format!("{least}° or more"));
     let dry = Remedy::new("film", "`None`").value("None", "dry");
     Some(Finding::new(message, vec![slope.number(30.0, ""), dry]))
+}
+
+/// Only the reduced model relieves rollers towards their ends, as a part of steel's contact.
+fn profiles(scene: &Scene) -> Option<Finding> {
+    const PROFILE: &str = "bearing.roller_profile";
+    if scene.bearing.roller_profile == RollerProfile::Straight {
+        return None;
+    }
+    let (why, other) = if scene.element() == Element::Ball {
+        ("balls have none", None)
+    } else if scene.model == ModelScene::Full {
+        let reduced = Remedy::new("model", "`reduced()`".to_owned()).value("reduced()", "");
+        ("the full model has `straight` ones", Some(reduced))
+    } else if scene.contact.formula != ContactFormula::Hertz {
+        let hertz = Remedy::new("contact.formula", "`hertz`".to_owned()).value("hertz", "");
+        ("`contact.formula` is another than that of steel rollers", Some(hertz))
+    } else {
+        return None;
+    };
+    let straight = Remedy::new(PROFILE, "`straight`".to_owned()).value("straight", "");
+    let remedies = std::iter::once(straight).chain(other).collect();
+    Some(Finding::new(format!("`{PROFILE}` is `logarithmic`, and {why}"), remedies))
 }
 
 /// The reduced model is made about the preload.

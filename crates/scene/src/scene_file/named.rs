@@ -99,7 +99,8 @@ pub(super) fn alone(bearing: &BearingScene, given: &[String]) -> Option<String> 
 }
 
 /// Fields of a bearing that a scene may give beside its name.
-const BESIDE_A_NAME: [&str; 4] = ["designation", "rollers", "first_roller_deg", "clearance_change_um"];
+const BESIDE_A_NAME: [&str; 5] =
+    ["designation", "rollers", "roller_profile", "first_roller_deg", "clearance_change_um"];
 
 /// A bearing of the catalogue with what a scene says beside its name.
 fn beside_the_name(said: &BearingScene, of_name: BearingScene, given: &[String]) -> BearingScene {
@@ -107,6 +108,7 @@ fn beside_the_name(said: &BearingScene, of_name: BearingScene, given: &[String])
     let rollers = if written("rollers") { said.rollers } else { of_name.rollers };
     BearingScene {
         rollers,
+        roller_profile: said.roller_profile,
         first_roller_deg: if written("first_roller_deg") {
             said.first_roller_deg
         } else {

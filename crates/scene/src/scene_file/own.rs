@@ -203,6 +203,7 @@ fn bearing(
         inner_ring_thickness_mm: tidy(inner_ring.unwrap_or(thickest(0.5 * d.inner))),
         rollers,
         roller_diameter_mm: tidy(d.roller),
+        roller_profile: b.roller_profile,
         thickness_mm: tidy(length),
         first_roller_deg: first,
         clearance_change_um: b.clearance_change_um,

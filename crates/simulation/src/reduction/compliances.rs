@@ -88,16 +88,16 @@ impl Compliances {
     }
 }
 
-/// Approach by which balls, touching in points, give way more than the lines that are meshed [m], at the outer
-/// and the inner contact, over the force [N]; nothing for rollers.
+/// Approach by which balls, touching in points, and relieved rollers give way more than the lines that are meshed
+/// [m], at the outer and the inner contact, over the force [N]; nothing for straight rollers.
 fn beyond_lines(scene: &ResolvedScene) -> impl Fn(usize, f64) -> f64 {
-    let points =
-        (scene.contact_law == ContactLawKind::Ball).then(|| ContactLaw::of(scene, ContactLawKind::Ball));
+    let is_line = scene.contact_law == ContactLawKind::Line;
+    let law = (!is_line).then(|| ContactLaw::of(scene, scene.contact_law));
     let (meshed, facet, stiffness) = (scene.meshed_contacts(), scene.element_size, scene.penalty_stiffness);
     let thickness = scene.thickness;
     move |side, force| {
         let on_mesh = || meshed.approach_on_mesh(side, force / thickness, facet, stiffness);
-        points.map_or(0.0, |points| points.approach(side, force).0 - on_mesh())
+        law.map_or(0.0, |law| law.approach(side, force).0 - on_mesh())
     }
 }
 

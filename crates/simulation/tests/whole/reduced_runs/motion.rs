@@ -259,23 +259,29 @@ fn analytic_rollers_in_a_rigid_housing() {
 }
 
 /// Bearings by their names carry as Hertz's contacts between rigid rings do, balls in points and rollers in
-/// lines, under light and heavy loads.
+/// lines, straight or relieved, under light and heavy loads.
 /// Source: Stribeck and Sjövall's distribution, THEORY §6.2, with Hertz's points (Hamrock and Brewe 1983) or
-/// Johnson's lines.
+/// Johnson's lines, and the profile of ISO/TS 16281.
 #[test]
 fn analytic_bearings_by_name_carry_as_hertz_says() {
     const SHARE: f64 = 0.02;
     let folder = Scratch::create("reduced-by-name");
-    for (name, load_n) in
-        [("6205", 200.0), ("6205", 1600.0), ("6311", 8000.0), ("NU 205", 3000.0), ("NU 210", 800.0)]
-    {
+    for (name, load_n, profile) in [
+        ("6205", 200.0, "straight"),
+        ("6205", 1600.0, "straight"),
+        ("6311", 8000.0, "straight"),
+        ("NU 205", 3000.0, "straight"),
+        ("NU 210", 800.0, "straight"),
+        ("NU 205", 3000.0, "logarithmic"),
+        ("NU 210", 300.0, "logarithmic"),
+    ] {
         let text = format!(
-            "(bearing: \"{name}\", model: reduced(), film: None, defect: None, housing: rigid(mass_kg: 1), \
+            "(bearing: (designation: \"{name}\", roller_profile: {profile}), model: reduced(), film: None, defect: None, housing: rigid(mass_kg: 1), \
              operation: (load_n: {load_n:?}, speed_rpm: 0, gravity_m_s2: 0), output: (frames: None),
              solver: (duration_ms: 0.05, structural_damping: None))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");
-        let at = format!("{}-{load_n}", scene.name);
+        let at = format!("{}-{load_n}-{profile}", scene.name);
         let info = run(&scene, &folder, &at, 1);
         assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
         let trace = Trace::read(folder.join(&at).join("trace.npy")).expect("a trace");
@@ -285,7 +291,7 @@ fn analytic_bearings_by_name_carry_as_hertz_says() {
             let [x, y] = ["x", "y"]
                 .map(|c| trace.get(&format!("roller.{}.outer_f{c}_n", i + 1)).expect("recorded")[0]);
             let off = (x.hypot(y) - expected).abs() / largest;
-            assert!(off < SHARE, "{name} {load_n} N, roller {}: {expected} N, off by {off}", i + 1);
+            assert!(off < SHARE, "{name} {profile} {load_n} N, roller {}: {expected} N, off by {off}", i + 1);
         }
     }
 }
