@@ -3,16 +3,12 @@
 use stribeck_dsp::BandEnvelope;
 use stribeck_dsp::channel::Channel;
 
-use crate::families::verdict::{Candidates, Decided, FirstDefect, orders_and_speed};
-use crate::families::{halves, rules, second};
+use crate::families::verdict::orders_and_speed;
+use crate::judged::Judged;
 use crate::length::estimate;
-use crate::record::bands::over_period;
 use crate::record::enhanced::{self, Enhanced};
 use crate::record::pass::Record;
 use crate::record::quality::{self, Quality};
-use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
-use crate::speed::settled::Settled;
-use crate::words::sentence::conclude;
 use crate::{Course, Error, Family, Machine, MeasuredFindings, SPEEDS_RPM, SoundAsHigh, Varying};
 
 /// The numbers and the curves that a report draws.
@@ -86,30 +82,8 @@ impl Analysis {
                 std::mem::take(&mut record.quality).into_iter().chain(hum).collect()
             }
         };
-        let speed = Settled::of(&record, machine);
-        let candidates = Candidates::of(&record, &speed.machine, speed.lines_hz, speed.by_shaft);
-        let half = candidates.as_ref().ok().and_then(|candidates| {
-            let half = detect_half_speed(candidates, &record, &speed.machine)?;
-            let (slower, decided) = decide_at_half(half, &record, &speed.machine)?;
-            Some((half_speed::sentence(half, speed.given_rpm?), slower, decided))
-        });
-        let (said_of_half, taken, decided) = match half {
-            Some((said, slower, decided)) => (Some(said), slower, decided),
-            None => {
-                (None, speed.machine, candidates.map_or_else(Decided::without_families, Candidates::decide))
-            }
-        };
-        let is_corrected = speed.is_corrected || said_of_half.is_some();
-        let over = match &decided.first {
-            Some(first) => over_period(channel, rate_hz, record.segment, first.comb_hz)?,
-            None => Vec::new(),
-        };
-        let families = concluded(decided.families, decided.first.as_ref(), &record, &over)?;
-        let said = if families.is_empty() {
-            format!("No verdict: {}.", decided.notes.join("; "))
-        } else {
-            conclude(&families, decided.unexplained.as_ref())
-        };
+        let Judged { machine: taken, speed, is_corrected, decided, families, over, verdict } =
+            Judged::of(channel, &record, machine)?;
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
         let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families).min(0.5 * rate_hz))?;
         let duration_s = record.duration_s();
@@ -138,11 +112,7 @@ impl Analysis {
                 sound_as_high: decided
                     .sound
                     .map(|sound| SoundAsHigh { as_high: sound.as_high, records: sound.records }),
-                verdict: std::iter::once(said)
-                    .chain(said_of_half)
-                    .chain(reservation)
-                    .collect::<Vec<_>>()
-                    .join(" "),
+                verdict: std::iter::once(verdict).chain(reservation).collect::<Vec<_>>().join(" "),
                 spall_mm: spall.length_mm,
                 spall_otherwise_mm: spall.otherwise_mm,
                 event_spacing_ms: spall.spacing_ms,
@@ -184,22 +154,6 @@ fn far_beyond(machine: &Machine, rate_hz: f64, duration_s: f64) -> Option<f64> {
     let (orders, shaft_hz) = orders_and_speed(machine).ok()?;
     let hz = shaft_hz * [orders.bpfo, orders.bpfi, orders.bsf].into_iter().fold(0.0, f64::max);
     (hz > TIMES * rate_hz && hz * duration_s > RESOLUTIONS).then_some(hz)
-}
-
-/// The families after the last rules: a second defect beside the first, claims that stand in one half of the
-/// record alone, and the element that knocks once a turn of the cage.
-fn concluded(
-    decided: Vec<Family>,
-    first: Option<&FirstDefect>,
-    record: &Record,
-    over: &[BandEnvelope],
-) -> Result<Vec<Family>, Error> {
-    let with_second = match first {
-        Some(first) => second::with_second(decided, first, record.bands.first(), over),
-        None => decided,
-    };
-    let lasting = halves::without_passing(with_second, &record.kept, record.rate_hz)?;
-    Ok(rules::with_element(lasting, &record.bands))
 }
 
 /// Highest frequency of the enhanced envelope spectrum [Hz].

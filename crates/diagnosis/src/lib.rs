@@ -39,6 +39,7 @@ mod analysis;
 pub mod families;
 mod findings;
 pub mod joint;
+mod judged;
 pub mod length;
 mod machine;
 pub mod record;

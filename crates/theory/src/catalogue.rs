@@ -153,6 +153,22 @@ impl CatalogueBearing {
         }
     }
 
+    /// Numbers of rolling elements that makers may fit: that of the entry, or, where it has none, for balls what
+    /// goes in from one side and one more or less, for rollers what leaves a twelfth to a third of the pitch circle
+    /// free (own).
+    pub fn possible_elements(&self) -> Vec<u32> {
+        if let Some(elements) = self.elements {
+            return vec![elements];
+        }
+        let usual = u32::try_from(self.usual_elements()).unwrap_or(3);
+        let room = PI * self.pitch_mm / self.diameter_mm;
+        let among = |least: u32, most: u32| (least.max(3)..=most.min(self.most_elements())).collect();
+        match self.element {
+            Element::Ball => among(usual.saturating_sub(1), usual + 1),
+            Element::Roller => among((2.0 / 3.0 * room).ceil() as u32, (11.0 / 12.0 * room) as u32),
+        }
+    }
+
     /// The most that find room on the pitch circle.
     fn most_elements(&self) -> u32 {
         (PI / (self.diameter_mm / self.pitch_mm).asin() + 1e-9) as u32

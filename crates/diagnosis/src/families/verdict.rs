@@ -91,8 +91,6 @@ const CLEARANCE_MM: f64 = 0.028;
 const CURVATURE: f64 = 0.04;
 /// Part by which makers' sizes move the families' places.
 const SIZES_DIFFER: f64 = 0.003;
-/// Numbers of elements of most bearings.
-const USUAL_COUNTS: std::ops::RangeInclusive<u32> = 7..=10;
 /// Least and largest part by which a cage that skids is slower than rolling without slip.
 const SKID: (f64, f64) = (SLIP, 0.06);
 
@@ -247,7 +245,10 @@ pub(crate) fn orders_and_speed(machine: &Machine) -> Result<(DefectOrders, f64),
             let [outer, inner] = [orders.bpfo, orders.bpfi].map(|order| order * shaft_hz);
             Some(format!("{elements} make BPFO {outer:.1} Hz and BPFI {inner:.1} Hz"))
         };
-        format!("{why}; {}", USUAL_COUNTS.filter_map(places).collect::<Vec<_>>().join(", "))
+        format!(
+            "{why}; {}",
+            bearing.possible_elements().into_iter().filter_map(places).collect::<Vec<_>>().join(", ")
+        )
     })?;
     Ok((orders, shaft_hz))
 }

@@ -262,9 +262,14 @@ fn behaves_a_scene_of_ones_own_is_written_once() {
     let made = desk.succeeds(&["new", "--bearing=SKF NU 205 ECP", "--load-n=3000", "--defect=inner"]);
     says(&made, &["nu205-inner.ron", "BPFI", "stribeck simulate nu205-inner.ron"]);
     let text = desk.text("nu205-inner.ron");
-    for line in
-        ["designation: \"NU 205\"", "clearance_change_um: -10.0", "roller_profile: logarithmic", "load_n: 3000.0", "ring: inner", "// "]
-    {
+    for line in [
+        "designation: \"NU 205\"",
+        "clearance_change_um: -10.0",
+        "roller_profile: logarithmic",
+        "load_n: 3000.0",
+        "ring: inner",
+        "// ",
+    ] {
         assert!(text.contains(line), "{line}: {text}");
     }
     desk.refuses(&["new", "nu205-inner.ron"], &["is there already and is kept"]);

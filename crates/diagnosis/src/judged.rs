@@ -1,0 +1,172 @@
+//! What the stages from the speed to the families make of a record, for a bearing whose number of rolling elements
+//! may be unknown.
+//!
+//! Makers fit different numbers into bearings of one designation, and frequencies of raceways go with the number.
+//! Where it is unknown, every one that makers may fit is judged by itself: a number that alone explains the knocks
+//! of a record is found by them.
+
+use stribeck_dsp::BandEnvelope;
+use stribeck_dsp::channel::Channel;
+use stribeck_theory::catalogue::CatalogueBearing;
+
+use crate::families::verdict::{Candidates, Decided, FirstDefect};
+use crate::families::{halves, rules, second};
+use crate::record::bands::over_period;
+use crate::record::pass::Record;
+use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
+use crate::speed::settled::Settled;
+use crate::words::sentence::conclude;
+use crate::{Defect, Error, Family, Machine};
+
+/// Families of a record, and the machine that they were found for.
+pub(crate) struct Judged {
+    /// The machine at the speed, and with the number of rolling elements, that was taken.
+    pub(crate) machine: Machine,
+    /// The speed, and where it is from.
+    pub(crate) speed: Settled,
+    /// The record, not the user, gives the speed.
+    pub(crate) is_corrected: bool,
+    /// What the rules said, but for the families.
+    pub(crate) decided: Decided,
+    /// The families after the last rules.
+    pub(crate) families: Vec<Family>,
+    /// Envelope spectra over the period of the defect that stands highest; none without a defect.
+    pub(crate) over: Vec<BandEnvelope>,
+    /// The verdict in words.
+    pub(crate) verdict: String,
+}
+
+impl Judged {
+    /// Judges the families of a record of this channel.
+    pub(crate) fn of(channel: &Channel, record: &Record, machine: &Machine) -> Result<Self, Error> {
+        let Some(bearing) = machine.bearing.as_ref().filter(|bearing| bearing.elements.is_none()) else {
+            return Self::of_known(channel, record, machine);
+        };
+        let speed = Settled::of(record, machine);
+        if speed.machine.speed_rpm.is_none() {
+            return Self::of_known(channel, record, machine);
+        }
+        let with = |elements: u32| {
+            let bearing = Some(CatalogueBearing { elements: Some(elements), ..bearing.clone() });
+            let speed_is_exact = speed.machine.speed_is_exact;
+            let machine = Machine { bearing, speed_rpm: speed.given_rpm, speed_is_exact, ..machine.clone() };
+            Ok((elements, Self::of_known(channel, record, &machine)?))
+        };
+        let numbers = bearing.possible_elements();
+        let judged = numbers.iter().copied().map(with).collect::<Result<Vec<_>, Error>>()?;
+        let Some(mut found) = Self::among(judged, bearing) else {
+            return Self::of_known(channel, record, machine);
+        };
+        if machine.speed_rpm.is_none() {
+            found.speed.uncertainty_rpm = speed.uncertainty_rpm;
+            found.speed.notes.splice(..0, speed.notes);
+        }
+        Ok(found)
+    }
+
+    /// Of the judgements for each possible number of rolling elements the one to report; `None` without any.
+    fn among(judged: Vec<(u32, Self)>, bearing: &CatalogueBearing) -> Option<Self> {
+        let numbers: Vec<u32> = judged.iter().map(|(elements, _)| *elements).collect();
+        let (least, most) = (*numbers.first()?, *numbers.last()?);
+        let usual = u32::try_from(bearing.usual_elements()).unwrap_or(least).clamp(least, most);
+        let name = &bearing.name;
+        let claims: Vec<(u32, Defect, f64)> = judged.iter().filter_map(|(n, it)| it.raceway(*n)).collect();
+        let taken = match claims[..] {
+            [(alone, ..)] => alone,
+            _ => usual,
+        };
+        let mut found = judged.into_iter().find(|(elements, _)| *elements == taken)?.1;
+        let count = format!("count them, and give `--bearing \"{name}, elements=…\"`");
+        match &claims[..] {
+            [] => {
+                found.verdict += &format!(
+                    " So it is with each number of rolling elements from {least} to {most} that makers may fit into \
+                     `{name}`; places are those of {taken}."
+                );
+            }
+            [_] => {
+                found.verdict += &format!(
+                    " Of {least} to {most} rolling elements that makers may fit into `{name}`, {taken} alone explain \
+                     it: {count}."
+                );
+            }
+            several => {
+                let each: Vec<String> = several
+                    .iter()
+                    .map(|(elements, name, hz)| {
+                        format!("a defect of {} with {elements} ({name} at {hz:.2} Hz)", name.part())
+                    })
+                    .collect();
+                found.verdict = format!(
+                    "The record knocks, and where depends on the number of rolling elements in `{name}`: {}. {}{}.",
+                    each.join(", "),
+                    count[..1].to_uppercase(),
+                    &count[1..]
+                );
+                for family in found.families.iter_mut().filter(|family| family.claimed) {
+                    family.claimed = false;
+                    family.reason =
+                        "other numbers of rolling elements explain the record as well".to_owned().into();
+                }
+            }
+        }
+        Some(found)
+    }
+
+    /// The raceway that is called defect with so many rolling elements, and its frequency [Hz].
+    fn raceway(&self, elements: u32) -> Option<(u32, Defect, f64)> {
+        let raceways = [Defect::Bpfo, Defect::Bpfi];
+        let claimed =
+            self.families.iter().find(|family| family.claimed && raceways.contains(&family.name))?;
+        Some((elements, claimed.name, claimed.measured_hz.unwrap_or(claimed.expected_hz)))
+    }
+
+    /// The same for a bearing whose number of rolling elements is known, or none.
+    fn of_known(channel: &Channel, record: &Record, machine: &Machine) -> Result<Self, Error> {
+        let speed = Settled::of(record, machine);
+        let candidates = Candidates::of(record, &speed.machine, speed.lines_hz, speed.by_shaft);
+        let half = candidates.as_ref().ok().and_then(|candidates| {
+            let half = detect_half_speed(candidates, record, &speed.machine)?;
+            let (slower, decided) = decide_at_half(half, record, &speed.machine)?;
+            Some((half_speed::sentence(half, speed.given_rpm?), slower, decided))
+        });
+        let (said_of_half, machine, mut decided) = match half {
+            Some((said, slower, decided)) => (Some(said), slower, decided),
+            None => (
+                None,
+                speed.machine.clone(),
+                candidates.map_or_else(Decided::without_families, Candidates::decide),
+            ),
+        };
+        let is_corrected = speed.is_corrected || said_of_half.is_some();
+        let over = match &decided.first {
+            Some(first) => over_period(channel, record.rate_hz, record.segment, first.comb_hz)?,
+            None => Vec::new(),
+        };
+        let families = std::mem::take(&mut decided.families);
+        let families = concluded(families, decided.first.as_ref(), record, &over)?;
+        let said = if families.is_empty() {
+            format!("No verdict: {}.", decided.notes.join("; "))
+        } else {
+            conclude(&families, decided.unexplained.as_ref())
+        };
+        let verdict = std::iter::once(said).chain(said_of_half).collect::<Vec<_>>().join(" ");
+        Ok(Self { machine, speed, is_corrected, decided, families, over, verdict })
+    }
+}
+
+/// The families after the last rules: a second defect beside the first, claims that stand in one half of the
+/// record alone, and the element that knocks once a turn of the cage.
+fn concluded(
+    decided: Vec<Family>,
+    first: Option<&FirstDefect>,
+    record: &Record,
+    over: &[BandEnvelope],
+) -> Result<Vec<Family>, Error> {
+    let with_second = match first {
+        Some(first) => second::with_second(decided, first, record.bands.first(), over),
+        None => decided,
+    };
+    let lasting = halves::without_passing(with_second, &record.kept, record.rate_hz)?;
+    Ok(rules::with_element(lasting, &record.bands))
+}
