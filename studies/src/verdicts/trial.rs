@@ -16,8 +16,6 @@ pub(super) enum Change {
     Speed(f64),
     /// No speed is stated.
     NoSpeed,
-    /// The number of rolling elements is not stated.
-    NoNumber,
     /// A bearing that none of the test rigs has.
     Bearing(&'static str),
     /// Only the first seconds [s].
@@ -36,7 +34,7 @@ pub(super) enum Change {
 pub(super) const WITHOUT_SPEED: &str = "no speed";
 
 /// All changes, with their names and whether claims about them may be right.
-pub(super) const CHANGES: [(&str, Change); 16] = [
+pub(super) const CHANGES: [(&str, Change); 15] = [
     ("as it is", Change::None),
     ("speed −1.5 %", Change::Speed(0.985)),
     ("speed +1.5 %", Change::Speed(1.015)),
@@ -44,7 +42,6 @@ pub(super) const CHANGES: [(&str, Change); 16] = [
     ("speed +3 %", Change::Speed(1.03)),
     ("speed × 2", Change::Speed(2.0)),
     (WITHOUT_SPEED, Change::NoSpeed),
-    ("no number of elements", Change::NoNumber),
     ("6305 given", Change::Bearing("6305")),
     ("6306 with 8 balls given", Change::Bearing("6306, elements=8")),
     ("first 1 s", Change::First(1.0)),
@@ -118,7 +115,6 @@ pub(super) fn judge_beside(record: &Labelled, change: Change, sound_db: &[f64]) 
     match change {
         Change::None | Change::NoSpeed => {}
         Change::Speed(factor) => speed_rpm *= factor,
-        Change::NoNumber => bearing.elements = None,
         Change::Bearing(name) => bearing = CatalogueBearing::parse(name).ok()?,
         Change::First(s) => samples.truncate((s * rate_hz) as usize),
         Change::HalfRate => {
