@@ -114,7 +114,9 @@ impl Bearing {
             both.each_ref().map(|raceway| raceway.compliance.stiffest(self.law.penalty, raceway.relative));
         let along = |raceway: &Raceway| {
             let fullest = raceway.compliance.largest_load() / OVERLOAD;
-            let stiffness = self.law.sticking * contact_length(fullest, self.law.penalty, raceway.relative);
+            let length = contact_length(fullest, self.law.penalty, raceway.relative);
+            let flexibility = raceway.curve.approach(fullest).0[1].max(0.0);
+            let stiffness = self.law.sticking * length / (1.0 + self.law.penalty * length * flexibility);
             if self.law.friction > 0.0 { stiffness } else { 0.0 }
         };
         let [along_outer, along_inner] = both.each_ref().map(along);

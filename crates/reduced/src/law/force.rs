@@ -73,7 +73,7 @@ impl ContactLaw {
         // Friction: a spring whose stretch leaves with the material that leaves the contact (THEORY §9.4).
         let dt = all(self.time_step);
         let left = one - (all(2.0) * pace * dt / length).min(one);
-        let stiffness = all(self.sticking) * length;
+        let stiffness = all(self.sticking) * length * part;
         let most = all(self.friction) * normal / stiffness;
         let slip = Vector::load(simd, &contacts.slip, at).times_plus(left, dt * sliding);
         let slip = where_it_touches(slip.min(most).max(-most));
@@ -111,7 +111,9 @@ impl ContactLaw {
             let (normal, overlap) = (contacts.normal[lane], &contacts.overlap);
             if normal > 0.0 && overlap.area[lane] > 0.0 {
                 let slip = contacts.slip[lane];
-                let stuck = 0.5 * self.sticking * overlap.length[lane] * slip * slip;
+                let length = overlap.length[lane];
+                let part = 1.0 / (1.0 + self.penalty * length * contacts.flexibility[lane]);
+                let stuck = 0.5 * self.sticking * length * part * slip * slip;
                 energy.contact +=
                     0.5 * self.penalty * overlap.square[lane] + raceway.curve.energy(normal) + stuck;
                 energy.sticking += stuck;

@@ -11,6 +11,8 @@ use stribeck_mesh::Mesh;
 use stribeck_reduced::modal::{GROUP, Reduction, Seat};
 use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_system::Parts;
+use stribeck_theory::bearing::Bearing;
+use stribeck_theory::contact_law::{ContactLawKind, element_mass};
 
 use crate::error::Error;
 use crate::reduction::{
@@ -100,13 +102,22 @@ fn reduce(
         outer_compliance: compliances.outer,
         inner_compliance: compliances.inner,
         wall_compliance: compliances.wall,
-        roller_inertia: from.roller.mass_and_moment,
+        roller_inertia: element_inertia(scene).unwrap_or(from.roller.mass_and_moment),
         cage: from.cage.map(|cage| (cage.mass_and_moment, cage.centre)),
         structure_mass: from.structure_mass,
         seat: from.seat,
         springs,
     };
     Ok((reduction, between_rollers))
+}
+
+/// Mass [kg] and moment of inertia [kg m²] of balls, for which cylinders of another mass are meshed; `None` for
+/// rollers.
+fn element_inertia(scene: &ResolvedScene) -> Option<[f64; 2]> {
+    (scene.contact_law == ContactLawKind::Ball).then(|| {
+        let mass = element_mass(&Bearing::from(scene), ContactLawKind::Ball);
+        [mass, 0.4 * mass * scene.roller_radius.powi(2)]
+    })
 }
 
 /// Part of the approach of the most loaded roller below which a gap in the seat may close as rollers pass.
