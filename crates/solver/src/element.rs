@@ -275,13 +275,8 @@ pub fn energy_density([exx, eyy, exy]: [f64; 3], k: &Stiffness) -> f64 {
 }
 
 /// Strain and hourglass energy [J] of one quadrilateral.
-pub fn quad_energy(x: [f64; 4], y: [f64; 4], q: &QuadReference, k: &Stiffness) -> [f64; 2] {
-    any_quad_energy(x, y, [q.b1, q.b2], [q.s1, q.s2], q.volume, k)
-}
-
-/// The same for numbers of any kind.
 #[inline(always)]
-pub(crate) fn any_quad_energy<T: Number>(
+pub(crate) fn quad_energy<T: Number>(
     x: [T; 4],
     y: [T; 4],
     [b1, b2]: [[T; 2]; 2],

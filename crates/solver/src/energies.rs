@@ -10,7 +10,7 @@ use pulp::{Arch, Simd, WithSimd};
 
 use crate::{
     dynamics::{Dynamics, ElasticBody},
-    element::{QuadReference, Stiffness, any_quad_energy, triangle_energy},
+    element::{QuadReference, Stiffness, quad_energy, triangle_energy},
     kernel::{
         batch::{BATCH, QuadBatch, Quads},
         tile::Tile,
@@ -196,7 +196,7 @@ impl WithSimd for QuadSum<'_> {
             batch.gather(elements, x, y);
             for at in (0..BATCH).step_by(Vector::<S>::LEN) {
                 let Quads { x, y, b, s, volume } = batch.at(simd, at);
-                let [of_strain, of_hourglass] = any_quad_energy(x, y, b, s, volume, k);
+                let [of_strain, of_hourglass] = quad_energy(x, y, b, s, volume, k);
                 let column = at % LANES;
                 (Vector::load(simd, &strain, column) + of_strain).store(&mut strain, column);
                 (Vector::load(simd, &hourglass, column) + of_hourglass).store(&mut hourglass, column);

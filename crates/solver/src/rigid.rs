@@ -203,12 +203,4 @@ impl RigidMotion {
         }
         Self { mass, centre, velocity, inertia, spin: momentum / inertia }
     }
-
-    /// Velocity of the rigid motion at a point [m/s].
-    pub fn velocity_at(&self, p: [f64; 2]) -> [f64; 2] {
-        [
-            self.velocity[0] - self.spin * (p[1] - self.centre[1]),
-            self.velocity[1] + self.spin * (p[0] - self.centre[0]),
-        ]
-    }
 }

@@ -4,6 +4,7 @@
 use stribeck_mesh::{Annulus, Disc, Mesh, Part, Rectangle};
 use stribeck_solver::{
     Dynamics, Elastic, Force, Model, NodeMotion,
+    snapshot::Snapshot,
     statics::{Equilibrium, Statics},
 };
 use stribeck_testing::Noise;
@@ -188,4 +189,28 @@ pub(crate) fn shake(d: &mut Dynamics, speed: f64) {
     for n in massive(d) {
         (d.state.vx[n], d.state.vy[n]) = (speed * noise.uniform(), speed * noise.uniform());
     }
+}
+
+/// Fails unless two threads, and one that stops and goes on from a snapshot, come to the same bits as one;
+/// returns the state they start from. `made` is given the number of threads.
+pub(crate) fn assert_threads_and_interruptions_change_no_bit(made: impl Fn(usize) -> Dynamics) -> Snapshot {
+    let mut one = made(1);
+    assert!(one.layout().len() > 12_000, "{} slots fill several tiles", one.layout().len());
+    shake(&mut one, 0.1);
+    let start = one.snapshot();
+    run(&mut one, &mut [], 60);
+    let mut two = made(2);
+    two.restore(start.clone()).expect("the same model");
+    let pool = micropool::ThreadPoolBuilder::default().num_threads(1).build();
+    pool.install(|| run(&mut two, &mut [], 60));
+    assert!(one.snapshot() == two.snapshot(), "threads change bits");
+    let mut parts = made(1);
+    parts.restore(start.clone()).expect("the same model");
+    run(&mut parts, &mut [], 23);
+    let saved = parts.snapshot();
+    let mut rest = made(1);
+    rest.restore(saved).expect("the same model");
+    run(&mut rest, &mut [], 37);
+    assert!(one.snapshot() == rest.snapshot(), "an interruption changes bits");
+    start
 }

@@ -190,24 +190,7 @@ fn invariant_threads_and_interruptions_change_no_bit() {
         damp(&mut d, &BRANCHES, DAMPED.to_vec(), 0.9);
         d
     };
-    let mut one = made(1);
-    assert!(one.layout().len() > 12_000, "{} slots fill several tiles", one.layout().len());
-    shake(&mut one, 0.1);
-    let start = one.snapshot();
-    run(&mut one, &mut [], 60);
-    let mut two = made(2);
-    two.restore(start.clone()).expect("the same model");
-    let pool = micropool::ThreadPoolBuilder::default().num_threads(1).build();
-    pool.install(|| run(&mut two, &mut [], 60));
-    assert!(one.snapshot() == two.snapshot(), "threads change bits");
-    let mut parts = made(1);
-    parts.restore(start.clone()).expect("the same model");
-    run(&mut parts, &mut [], 23);
-    let saved = parts.snapshot();
-    let mut rest = made(1);
-    rest.restore(saved).expect("the same model");
-    run(&mut rest, &mut [], 37);
-    assert!(one.snapshot() == rest.snapshot(), "an interruption changes bits");
+    let start = assert_threads_and_interruptions_change_no_bit(made);
     let mut undamped = lay_out(&model);
     assert!(undamped.restore(start).is_err(), "a snapshot with other branches");
 }
