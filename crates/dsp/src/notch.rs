@@ -124,14 +124,6 @@ impl Notch {
         Ok((decibels / (-20.0 * self.largest_pole().log10())).ceil() as usize)
     }
 
-    /// State of a transposed direct form II for which a constant input of 1 gives a constant output of 1:
-    /// `scipy.signal.lfilter_zi`.
-    pub fn steady_state(&self) -> [f64; 2] {
-        // s₂ = b₂ − a₂ and s₁ = b₁ − a₁ + s₂; the notch has b₁ = a₁.
-        let state = self.coefficients.b2 - self.coefficients.a2;
-        [state, state]
-    }
-
     /// One pass from rest, `scipy.signal.lfilter(b, a, x)`. A record that does not start at zero begins with
     /// a step response.
     ///

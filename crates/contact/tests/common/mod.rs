@@ -7,6 +7,7 @@ use stribeck_solver::{
     Dynamics, Elastic, Force, Model,
     statics::{Statics, Undecided},
 };
+use stribeck_testing::Noise;
 
 /// Out-of-plane thickness of every model [m]; an odd one, so that a forgotten factor shows.
 pub(crate) const THICKNESS: f64 = 0.007;
@@ -187,4 +188,37 @@ pub(crate) fn preload(
         let statics = Statics { tolerance: rough * tolerance, ..statics.clone() };
         d.equilibrate(&mut [loads, contacts], &statics).expect("a load that reaches its support");
     }
+}
+
+/// Σ k (d·u)² over Σ bound |u|², at the worst displacement u that power iteration on bound⁻¹ K finds.
+pub(crate) fn worst_share_of_the_bound(contacts: &Contacts, x: &[f64], y: &[f64], seed: u64) -> f64 {
+    let mut bound = vec![0.0; x.len()];
+    contacts.stiffness_bound(0.0, &mut bound);
+    let mut pieces = Vec::new();
+    contacts.tangent(x, y, &mut |r| {
+        pieces.push((r.nodes.to_vec(), r.direction.to_vec(), r.stiffness));
+    });
+    let mut noise = Noise::new(seed);
+    let mut u: Vec<[f64; 2]> = bound.iter().map(|_| [noise.uniform(), noise.uniform()]).collect();
+    let mut worst = 0.0_f64;
+    for _ in 0..60 {
+        let mut force = vec![[0.0; 2]; u.len()];
+        let mut twice = 0.0;
+        for (nodes, direction, stiffness) in &pieces {
+            let along = |i: usize| direction[i] * u[nodes[i / 2] as usize][i % 2];
+            let stretch: f64 = (0..direction.len()).map(along).sum();
+            twice += stiffness * stretch * stretch;
+            for i in 0..direction.len() {
+                force[nodes[i / 2] as usize][i % 2] += stiffness * stretch * direction[i];
+            }
+        }
+        if pieces.is_empty() {
+            break;
+        }
+        let limit: f64 = u.iter().zip(&bound).map(|(u, b)| b * (u[0] * u[0] + u[1] * u[1])).sum();
+        worst = worst.max(twice / limit);
+        let size = force.as_flattened().iter().fold(f64::MIN_POSITIVE, |m: f64, f| m.max(f.abs()));
+        u = force.iter().zip(&bound).map(|(f, b)| [f[0] / (b * size), f[1] / (b * size)]).collect();
+    }
+    worst
 }
