@@ -243,7 +243,12 @@ pub fn prepared(scene: &ResolvedScene, runs: Option<&Path>) -> Result<Prepared, 
     Ok(Prepared { modal, steps_per_sample, bearing, start })
 }
 
-/// The bearing with steps of the scene's length, or shorter where the critical time step demands it, and the
+/// Longest step over the critical one where rolling elements strike edges of spalls: with steps of 0.8 of the critical
+/// one the ledgers of a 6205 and an NU 205 by name, under 200 and 1000 N, are off by up to 1.5 % of the heat, with this
+/// by 0.23 % at most.
+const OVER_EDGES: f64 = 0.35;
+
+/// The bearing with steps of the scene's length, or shorter where the critical time step or edges demand it, and the
 /// number of steps in a sample.
 fn in_steps(
     scene: &ResolvedScene,
@@ -253,7 +258,8 @@ fn in_steps(
     let interval = scene.interval;
     let steps = steps_per_sample(scene, 1e-6 * wanted.step_us);
     let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
-    let most = bearing.critical_time_step();
+    let share = if scene.written.spalls().is_empty() { 1.0 } else { OVER_EDGES };
+    let most = share * bearing.critical_time_step();
     if bearing.time_step <= most {
         return Ok((bearing, steps));
     }

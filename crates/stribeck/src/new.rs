@@ -409,10 +409,6 @@ fn clearance_change_um(bearing: &str) -> f64 {
     mounted_clearance_change_um(inner_mm - 2.0 * b.inner_ring_thickness_mm, inner_mm, pitch_mm).round()
 }
 
-/// The model where a spall's edges are struck within ten microseconds: with longer steps energy is off by more than
-/// half a per cent of the heat.
-const STEPS_AT_EDGES: &str = "reduced(step_us: 0.7)";
-
 /// The profile of rollers.
 fn profile(bearing: &str) -> &'static str {
     match of_bearing(bearing).element() {
@@ -464,7 +460,6 @@ fn text(name: &str, answers: &Answers) -> String {
         .replace("<state>", state)
         .replace("<file>", name)
         .replace("<bearing>", bearing)
-        .replace("<model>", if *defect == Where::None { "reduced()" } else { STEPS_AT_EDGES })
         .replace("<profile>", profile(bearing))
         .replace("<change>", &format!("{:?}", clearance_change_um(bearing)))
         .replace("<load>", &format!("{load_n:?}"))

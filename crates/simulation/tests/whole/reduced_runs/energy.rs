@@ -44,7 +44,8 @@ fn issue_steps_are_short_enough_for_springs_of_friction() {
     assert!(info.energy.max_relative_error < 1e-3, "{:?}", info.energy);
     // Without friction the step is that of contacts and modes.
     let smooth = scene.with_overrides(&["contact.friction=0", "solver.duration_ms=0.1"]).expect("valid");
-    let [rough_s, smooth_s] = [&info, &run(&smooth, &folder, "smooth", 1)].map(|info| info.critical_time_step_s);
+    let [rough_s, smooth_s] =
+        [&info, &run(&smooth, &folder, "smooth", 1)].map(|info| info.critical_time_step_s);
     assert!(smooth_s > rough_s, "{smooth_s} {rough_s}");
 }
 
