@@ -242,6 +242,7 @@ mod tests {
     };
 
     /// Force of slices that give way independently, with the stiffness of the whole line: 1e-4 is the sum's error.
+    /// Source: THEORY §6.2, (6.3b).
     #[test]
     fn analytic_a_relieved_roller_is_the_sum_of_its_slices() {
         const SLICES: usize = 200_000;
@@ -262,6 +263,7 @@ mod tests {
 
     /// What the profile adds to the approach of both raceways, beside the slices of ISO/TS 16281. Theirs are of
     /// Palmgren's law, c (δ − 2P)^(10/9): 2 % is what the logarithm of (6.2) differs from its power.
+    /// Source: ISO/TS 16281:2008, profile and law of slices; THEORY §6.2.
     #[test]
     fn analytic_the_profile_adds_what_it_does_by_iso_16281() {
         const SLICES: usize = 20_000;

@@ -89,13 +89,6 @@ pub struct Tone {
     pub hz: f64,
 }
 
-impl Tone {
-    /// Frequency of harmonic `n` [Hz]; 1 is the fundamental.
-    pub fn harmonic_hz(&self, n: usize) -> f64 {
-        self.hz * n as f64
-    }
-}
-
 /// One roller crossing the defect.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
@@ -333,7 +326,6 @@ mod tests {
         assert_close(tones[0].hz, 4671.5, PRINTED);
         assert_close(tones[1].hz, 4719.0, PRINTED);
         assert_close(tones[2].hz, 4716.0, PRINTED);
-        assert_eq!(tones[0].harmonic_hz(6), 6.0 * tones[0].hz);
     }
 
     /// Source: Singh et al. 2014, equation (2).

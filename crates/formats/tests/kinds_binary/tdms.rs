@@ -65,6 +65,16 @@ pub(crate) const F64: u32 = 10;
 const I16: u32 = 2;
 
 #[test]
+fn by_hand_a_channel_of_tdms_begins_at_its_offset() {
+    let desk = Scratch::create("formats-tdms-offset");
+    let data: Vec<u8> = (0..COUNT).flat_map(|n| signal(n).to_le_bytes()).collect();
+    let begins = [("wf_increment", Is::Number(1.0 / RATE_HZ)), ("wf_start_offset", Is::Number(0.75))];
+    let object = tdms_object("/'g'/'acc'", &Index::Of(F64, COUNT as u64), &begins);
+    let found = opened(&desk, "a.tdms", &tdms_segment(&[object], true, &data));
+    assert_eq!(found.channel("g/acc").unwrap().start_s, Some(0.75));
+}
+
+#[test]
 fn issue_steps_of_tdms_in_milliseconds_are_no_seconds() {
     let desk = Scratch::create("formats-tdms-milliseconds");
     let data: Vec<u8> = (0..COUNT).flat_map(|n| signal(n).to_le_bytes()).collect();

@@ -1,0 +1,342 @@
+//! The inspection of samples as they are read: each finding that needs no spectrum, and its words.
+
+use super::flat::{self, Flat, Lines, Run};
+use super::rails::{Rail, Rails};
+use super::{Kind, Quality, median, percent};
+
+/// Stretches over which mean and level are followed, at most, and the shortest [s].
+const STRETCHES: usize = 200;
+const SHORTEST_S: f64 = 0.1;
+
+/// Sums over a stretch of the record.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stretch {
+    count: f64,
+    sum: f64,
+    squares: f64,
+}
+
+impl Stretch {
+    fn mean(&self) -> f64 {
+        self.sum / self.count
+    }
+
+    fn deviation(&self) -> f64 {
+        (self.squares / self.count - self.mean().powi(2)).max(0.0).sqrt()
+    }
+}
+
+/// Stretches that stand still.
+#[derive(Debug, Default)]
+struct Stays {
+    /// At the least or the largest value.
+    at_rail: Vec<Run>,
+    /// From the beginning, or to the end.
+    ends: Vec<Run>,
+    /// All others.
+    gaps: Vec<Run>,
+}
+
+/// Part of the record from which on a channel that stands still at its end is dead.
+const LEAST_END: f64 = 0.01;
+
+/// What gaps mean, and what to do.
+const NO_SIGNAL: &str = "there is no signal in them, and levels and kurtosis are not those of the machine. Leave \
+                         the field empty in their place, or cut the record there";
+
+/// An inspection in the making.
+#[derive(Debug)]
+pub(crate) struct Inspection {
+    rate_hz: f64,
+    values: Rails,
+    steps: Rails,
+    flat: Flat,
+    lines: Lines,
+    stretches: Vec<Stretch>,
+    /// Samples of a stretch.
+    length: usize,
+    /// First value, from which stretches count, and the last one.
+    origin: Option<f64>,
+    last: Option<f64>,
+    count: u64,
+}
+
+impl Inspection {
+    /// Of a record of `len` samples.
+    pub(crate) fn new(rate_hz: f64, len: usize) -> Self {
+        let longest = (len as f64 / rate_hz / SHORTEST_S) as usize;
+        let length = len.div_ceil(longest.clamp(8, STRETCHES)).max(1);
+        Self {
+            rate_hz,
+            values: Rails::with_levels(),
+            steps: Rails::default(),
+            flat: Flat::default(),
+            lines: Lines::default(),
+            stretches: vec![Stretch::default(); len.div_ceil(length).max(1)],
+            length,
+            origin: None,
+            last: None,
+            count: 0,
+        }
+    }
+
+    /// Samples as they follow.
+    pub(crate) fn add(&mut self, block: &[f64]) {
+        for &x in block {
+            let at = self.count;
+            self.count += 1;
+            if !x.is_finite() {
+                self.flat.interrupt();
+                self.lines.interrupt();
+                self.last = None;
+                continue;
+            }
+            let is_new = self.last != Some(x);
+            self.values.add(x, is_new);
+            self.flat.add(x, at, is_new, self.values.is_extreme(x));
+            if let Some(last) = self.last
+                && (x - last).is_finite()
+            {
+                self.steps.add(x - last, true);
+                self.lines.add(last, x - last, at);
+            }
+            self.last = Some(x);
+            let d = x - *self.origin.get_or_insert(x);
+            let place = (at as usize / self.length).min(self.stretches.len() - 1);
+            let stretch = &mut self.stretches[place];
+            stretch.count += 1.0;
+            stretch.sum += d;
+            stretch.squares += d * d;
+        }
+    }
+
+    /// The findings that need no spectrum.
+    pub(crate) fn finish(mut self) -> Vec<Quality> {
+        self.flat.interrupt();
+        self.lines.interrupt();
+        let few = self.values.few_levels();
+        let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
+        let mut found: Vec<Quality> = self.clipped(few.is_some(), &at_rail, &ends).into_iter().collect();
+        found.extend(ends.iter().map(|run| self.dead(run)));
+        if few.is_none() {
+            found.extend(self.held(&gaps));
+        }
+        found.extend(self.straight());
+        if ends.is_empty() {
+            found.extend(self.silent());
+        }
+        match few {
+            Some(levels) => found.push(self.coarse(levels)),
+            // A gap makes steps of its own.
+            None if found.is_empty() => found.extend(self.slewing()),
+            None => {}
+        }
+        // What was filled in moves the mean, too.
+        if found.iter().all(|of| !matches!(of.kind, Kind::Held | Kind::Dead)) {
+            found.extend(self.drift());
+        }
+        found
+    }
+
+    /// The stretches that stand still, by what they mean.
+    fn stays(&self, few_levels: bool) -> Stays {
+        let least = LEAST_END * self.count as f64;
+        let mut stays = Stays::default();
+        for run in self.flat.stretches(self.count) {
+            let at_end = run.to_end || run.from_start;
+            // A mark of missing samples is no rail.
+            let is_rail = self.values.is_extreme(run.value) && !self.values.is_far(run.value);
+            if at_end && run.count as f64 > least {
+                stays.ends.push(run);
+            } else if is_rail && !at_end && !few_levels {
+                stays.at_rail.push(run);
+            } else {
+                stays.gaps.push(run);
+            }
+        }
+        stays
+    }
+
+    /// Samples at the ends of the range; a long stay there is clipping, too.
+    fn clipped(&self, few_levels: bool, at_rail: &[Run], ends: &[Run]) -> Option<Quality> {
+        let (low, high) = self.values.clipped(self.flat.natural(), few_levels);
+        // A channel that stands at its largest value to the end is dead, and not clipped.
+        let stands = |rail: &Rail| ends.iter().any(|run| run.value == rail.value);
+        let rails: Vec<Rail> = [low, high].into_iter().flatten().filter(|rail| !stands(rail)).collect();
+        let held: u64 = at_rail.iter().map(|run| run.count).sum();
+        let samples = held.max(rails.iter().map(|rail| rail.samples).sum());
+        if samples == 0 {
+            return None;
+        }
+        let places = rails.iter().map(|rail| (rail.first, rail.value));
+        let places: Vec<(u64, f64)> = places.chain(at_rail.iter().map(|run| (run.from, run.value))).collect();
+        let first = places.iter().map(|(first, _)| *first).min().unwrap_or(0);
+        let mut values: Vec<String> = places.iter().map(|(_, value)| spelt(*value)).collect();
+        values.dedup();
+        values.truncate(2);
+        let share = self.part(samples);
+        let words = format!(
+            "clipped: {} of the samples stand at {}, the end of the range; levels, crest and kurtosis are too \
+             low, the clipping makes harmonics, and a length from two events is not to be trusted. Measure \
+             again with a larger range",
+            percent(share),
+            values.join(" and ")
+        );
+        Some(self.quality(Kind::Clipped, share, first, words))
+    }
+
+    /// A channel that stands still at its beginning or to its end.
+    fn dead(&self, run: &Run) -> Quality {
+        let share = self.part(run.count);
+        let words = format!(
+            "dead channel: the {} {:.2} s ({} of the samples) stand at {}; there is no signal, and levels and \
+             kurtosis are not those of the machine. Cut the record to its sound part",
+            if run.to_end { "last" } else { "first" },
+            run.count as f64 / self.rate_hz,
+            percent(share),
+            spelt(run.value)
+        );
+        self.quality(Kind::Dead, share, run.from, words)
+    }
+
+    /// Gaps that were filled with one value, or with the last one.
+    fn held(&self, gaps: &[Run]) -> Option<Quality> {
+        let first = gaps.first()?;
+        let share = self.part(gaps.iter().map(|run| run.count).sum());
+        let longest = gaps.iter().map(|run| run.count).max().unwrap_or(0);
+        let with = if gaps.iter().any(|run| run.value != first.value) {
+            "the value before, as a recorder bridges gaps".to_owned()
+        } else if first.value == 0.0 {
+            "zero, as a recorder fills gaps".to_owned()
+        } else {
+            format!("{}, as a recorder marks gaps", spelt(first.value))
+        };
+        let words = format!(
+            "filled gaps: {} of up to {longest} samples ({} of the samples) stand still at {with}; {NO_SIGNAL}",
+            stretches(gaps.len()),
+            percent(share)
+        );
+        Some(self.quality(Kind::Held, share, first.from, words))
+    }
+
+    /// Gaps that were filled with straight lines.
+    fn straight(&self) -> Option<Quality> {
+        let kept = self.lines.kept();
+        let first = kept.first()?;
+        let share = self.part(kept.iter().map(|run| run.count).sum());
+        let words = format!(
+            "filled gaps: {} of {} samples and more ({} of the samples) are straight lines, as a recorder \
+             bridges gaps; {NO_SIGNAL}",
+            stretches(kept.len()),
+            flat::STRAIGHT,
+            percent(share)
+        );
+        Some(self.quality(Kind::Held, share, first.from, words))
+    }
+
+    /// A converter of a few levels.
+    fn coarse(&self, levels: usize) -> Quality {
+        let words = format!(
+            "few levels: {levels} values make up 99 % of all samples; the converter hardly resolves the \
+             signal, and its steps make noise and lines of their own. Measure again with a smaller range or a \
+             more sensitive sensor"
+        );
+        self.quality(Kind::FewLevels, 1.0, 0, words)
+    }
+
+    /// Steps from sample to sample that pile up at the largest, upwards and downwards.
+    fn slewing(&self) -> Option<Quality> {
+        let (Some(up), Some(down)) = self.steps.clipped(1, false) else { return None };
+        let share = self.part(up.samples + down.samples);
+        let rate = 0.5 * (up.value - down.value).abs() * self.rate_hz;
+        let words = format!(
+            "limited slew rate: {} of the steps from sample to sample are the largest, {} a second; the \
+             amplifier cannot follow the signal, levels are too low, and lines of its own appear. Use a \
+             smaller gain, or an amplifier that is faster",
+            percent(share),
+            spelt(rate)
+        );
+        let first = up.first.min(down.first);
+        (share > SLEWING).then(|| self.quality(Kind::SlewLimited, share, first, words))
+    }
+
+    /// A number of samples as a part of all.
+    fn part(&self, samples: u64) -> f64 {
+        samples as f64 / self.count.max(1) as f64
+    }
+
+    fn quality(&self, kind: Kind, share: f64, first: u64, words: String) -> Quality {
+        Quality { kind, share, first_s: first as f64 / self.rate_hz, words }
+    }
+
+    /// Level from which on a channel is silent, over that of most of the record, and how much of it must be.
+    fn silent(&self) -> Option<Quality> {
+        let deviations: Vec<f64> =
+            self.stretches.iter().filter(|s| s.count > 1.0).map(Stretch::deviation).collect();
+        let usual = median(&deviations)?;
+        let quiet = |d: &&f64| **d < SILENT * usual;
+        let first = deviations.iter().take_while(quiet).count();
+        let last = deviations.iter().rev().take_while(quiet).count();
+        let (count, from, side) =
+            if last >= first { (last, deviations.len() - last, "last") } else { (first, 0, "first") };
+        let share = count as f64 / deviations.len() as f64;
+        (share > 0.05).then(|| {
+            let seconds = (count * self.length) as f64 / self.rate_hz;
+            self.quality(Kind::Dead, share, (from * self.length) as u64, format!(
+                "dead channel: the {side} {seconds:.2} s ({} of the samples) have less than a hundredth of \
+                 the level of the rest; the machine stood still, or the sensor came loose. Cut the record \
+                 to its sound part",
+                percent(share)
+            ))
+        })
+    }
+
+    /// A mean that moves by more than the signal swings.
+    fn drift(&self) -> Option<Quality> {
+        let some: Vec<&Stretch> =
+            self.stretches.iter().filter(|s| s.count >= 0.5 * self.length as f64).collect();
+        if some.len() < 8 || (self.length as f64) < SHORTEST_S * self.rate_hz {
+            return None;
+        }
+        let deviations: Vec<f64> = some.iter().map(|s| s.deviation()).collect();
+        let usual = median(&deviations)?;
+        // Over an eighth of the record each, so that one knock or step inside moves it little.
+        let eighth = some.len() / 8;
+        let mean = |part: &[&Stretch]| part.iter().map(|s| s.mean()).sum::<f64>() / part.len() as f64;
+        let means: Vec<f64> = some.chunks(eighth).filter(|c| c.len() == eighth).map(mean).collect();
+        let (low, high) =
+            means.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), m| (l.min(*m), h.max(*m)));
+        (usual > 0.0 && high - low > DRIFTING * usual).then(|| {
+            self.quality(
+                Kind::Drift,
+                1.0,
+                0,
+                format!(
+                    "drifting mean: it moves by {} over the record, {:.1} times the root mean square of the \
+                 signal about it; the sensor warms up, or its bias is not settled. Levels about the mean of \
+                 the whole record are too high",
+                    spelt(high - low),
+                    (high - low) / usual
+                ),
+            )
+        })
+    }
+}
+
+/// Share of steps at the largest ones from which on the slew rate is limited.
+const SLEWING: f64 = 0.02;
+/// Part of the usual level below which a stretch is silent.
+const SILENT: f64 = 0.01;
+/// How far the mean moves over the usual root mean square.
+const DRIFTING: f64 = 3.0;
+
+/// A number of stretches in words.
+fn stretches(count: usize) -> String {
+    if count == 1 { "1 stretch".to_owned() } else { format!("{count} stretches") }
+}
+
+/// A value with six digits.
+fn spelt(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    format!("{rounded}")
+}
