@@ -20,6 +20,8 @@
 //! PAIR`; and a step of explicit dynamics ([`Step`]): gravity, loads on nodes, guided and turning nodes, and
 //! the velocities of all at the start.
 //!
+//! [`radioss`] writes a motion that has begun for Radioss, which reads none of these.
+//!
 //! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh
 //! Reference Manual*, MSH file formats 2.2, 4.0 and 4.1.
 
@@ -29,6 +31,7 @@ mod gmsh;
 mod lsdyna;
 mod model;
 mod origin;
+pub mod radioss;
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;

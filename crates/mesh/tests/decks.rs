@@ -3,8 +3,9 @@
 
 use std::process::Command;
 
+use stribeck_mesh::decks::radioss::{Motion, Touching, Viscosity};
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
-use stribeck_mesh::{Annulus, Disc, Groove, Mesh};
+use stribeck_mesh::{Annulus, Disc, Groove, Mesh, Part, Rectangle};
 use stribeck_testing::{
     Noise, Scratch,
     peer::{absent, python_with},
@@ -401,4 +402,62 @@ print('agreed')",
         Command::new(&python).current_dir(folder.path()).args(["-c", &script]).output().expect("it starts");
     says(&output, &["agreed"]);
     assert!(output.status.success(), "{}", said(&output));
+}
+
+/// The decks of a block that lies on another, a thousandth shorter under its load, with a triangle beside it
+/// that turns, and a body that is left out. Both blocks
+/// have squares of 1 mm, so that `Stfac` is k h/K, less a thousandth of their area: 0.1 E/h has 0.3 (1 − 2ν) · 0.999 = 0.11988.
+#[test]
+fn golden_decks_for_radioss() {
+    let block = |y0| Rectangle { x0: 0.0, y0, width: 2e-3, height: 1e-3, columns: 2, rows: 1 };
+    let triangle = Part {
+        x: vec![4e-3, 5e-3, 4e-3],
+        y: vec![0.0, 0.0, 1e-3],
+        triangles: vec![[0, 1, 2]],
+        ..Part::default()
+    };
+    let mut mesh = Mesh::new();
+    let ground = mesh.add("ground", &block(0.0).part().expect("a block"));
+    let upper = mesh.add("upper", &block(1e-3).part().expect("a block"));
+    mesh.add("left out", &block(3e-3).part().expect("a block"));
+    let wheel = mesh.add("wheel", &triangle);
+    let surface = |placed: &stribeck_mesh::Placed, name: &str| placed.surface(name).expect("a side").clone();
+    let (top, bottom, loaded) = (surface(&ground, "top"), surface(&upper, "bottom"), surface(&upper, "top"));
+    let of_wheel: Vec<u32> = mesh.bodies[wheel.body].nodes.clone().map(|n| n as u32).collect();
+    let nodes = || mesh.x.iter().zip(&mesh.y);
+    let motion = Motion {
+        mesh: &mesh,
+        absent: vec![2],
+        youngs_modulus: 200e9,
+        poissons_ratio: 0.3,
+        density: 7850.0,
+        thickness: 0.01,
+        viscosity: Viscosity::default(),
+        contacts: vec![Touching {
+            name: "upper on ground".into(),
+            surfaces: [&bottom, &top],
+            stiffness: 0.1 * 200e9 / 1e-3,
+        }],
+        gravity: [0.0, -9.81],
+        load: (&loaded, [0.0, -5000.0]),
+        guided: loaded.nodes.clone(),
+        turning: (of_wheel, 50.0),
+        damping: (vec![ground.body, upper.body], 1000.0),
+        position: nodes().map(|(x, y)| [*x, 0.999 * y]).collect(),
+        velocity: nodes().map(|(x, y)| if *x > 3e-3 { [-50.0 * y, 50.0 * x] } else { [0.0; 2] }).collect(),
+        duration: 1e-4,
+        time_step: 1e-7,
+        interval: 1e-6,
+        kept: vec![("corner".into(), loaded.nodes[0])],
+        remarks: vec!["left out: friction".into()],
+    };
+    let starter = motion.starter("two_blocks", "a block on another");
+    assert!(starter.contains("   1.198800000000E-1    0.0"), "Stfac");
+    for (deck, end) in [(starter, "0000"), (motion.engine("two_blocks"), "0001")] {
+        let golden = format!("{}/../../fixtures/golden/two_blocks_{end}.rad", env!("CARGO_MANIFEST_DIR"));
+        if std::env::var_os("STRIBECK_BLESS").is_some() {
+            std::fs::write(&golden, &deck).expect("writable");
+        }
+        assert!(std::fs::read_to_string(&golden).expect("readable") == deck, "the deck {end} has changed");
+    }
 }

@@ -1,6 +1,7 @@
 //! `stribeck export`: the results of a run in the formats of other programs.
 
 mod deck;
+mod radioss;
 mod sound;
 mod vtkhdf;
 
@@ -30,7 +31,8 @@ const TIME: &str = "time_s";
 /// Flags of `export`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Folder of the run, or its name below runs/ [default: the newest run; of an ensemble name a start]
+    /// Folder of the run, or its name below runs/ [default: the newest run; of an ensemble name a start]; with
+    /// `--to radioss` also a scene file
     run: Option<PathBuf>,
     /// Format
     #[arg(long)]
@@ -57,8 +59,12 @@ pub struct Options {
     /// Plays a sound N times slower, and as much lower [default: 1]
     #[arg(long, value_name = "N", value_parser = sound::slow)]
     slow: Option<f64>,
+    /// Overrides a field of the scene file of `--to radioss`, for example --set contact.surface=facet; may be
+    /// repeated
+    #[arg(long, value_name = "FIELD=VALUE")]
+    set: Vec<String>,
     /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, sound.wav, paraview,
-    /// frames.vtkhdf or mesh.FORMAT]
+    /// frames.vtkhdf, mesh.FORMAT or radioss_0000.rad; of a scene file NAME_0000.rad]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -92,6 +98,8 @@ enum Format {
     Inp,
     /// The mesh, undeformed, for Gmsh (4.1)
     Msh,
+    /// The preloaded bearing, set rolling, for Radioss: a starter deck and an engine deck
+    Radioss,
 }
 
 impl Format {
@@ -108,6 +116,7 @@ impl Format {
             Self::K => &["k", "key", "dyn"],
             Self::Inp => &["inp"],
             Self::Msh => &["msh"],
+            Self::Radioss => &["rad"],
             Self::Pvd => &[],
         }
     }
@@ -117,12 +126,26 @@ impl Format {
         match self {
             Self::Csv | Self::Npz | Self::Mat | Self::Uff | Self::Parquet | Self::Wav64 => true,
             Self::Wav => recorded,
-            Self::Pvd | Self::Vtkhdf | Self::K | Self::Inp | Self::Msh => false,
+            Self::Pvd | Self::Vtkhdf | Self::K | Self::Inp | Self::Msh | Self::Radioss => false,
         }
     }
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    if options.to == Format::Radioss
+        && let Some(file) = options.run.as_ref().filter(|run| run.extension().is_some_and(|end| end == "ron"))
+    {
+        let scene = place.scene(Some(file), &options.set)?;
+        let out = options.out.clone().unwrap_or_else(|| format!("{}_0000.rad", scene.name).into());
+        may_be_written(&out, options.to)?;
+        let title = format!("{}: Stribeck {}", scene.name, env!("CARGO_PKG_VERSION"));
+        say!("{}", shown(&radioss::write(&scene.resolve(), &title, out)?));
+        return Ok(ExitCode::SUCCESS);
+    }
+    ensure!(
+        options.set.is_empty(),
+        "`--set` changes a scene before it is written: use it with a scene file and `--to radioss`"
+    );
     let folder = match &options.run {
         Some(run) => existing(run, place)?,
         None => place.newest_single_run()?,
@@ -162,6 +185,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
         Format::K => deck::write(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
         Format::Inp => deck::write(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
+        Format::Radioss => radioss::write(&run.scene, &provenance(&run).join("; "), out("radioss_0000.rad"))?,
         Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
         Format::Wav if options.sensor.is_none() => sound::write(&dir, &run, options, &out("sound.wav"))?,
         _ => signals(&dir, &run, options, place)?,
@@ -257,7 +281,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         Format::Parquet => parquet::write(&path, &channels, &notes)?,
         Format::Wav => sound::recorded(&path, &no_time, options.sensor.as_deref(), notes)?,
         Format::Wav64 => wav::write(&path, &no_time, &notes)?,
-        Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh => {}
+        Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh | Format::Radioss => {}
     }
     Ok(path)
 }

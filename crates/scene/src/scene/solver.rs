@@ -68,6 +68,8 @@ words! {
         /// A roller's motion along the raceways and its spin: rolling is driven and braked by friction alone,
         /// while rattling across the clearance is damped, as by oil. Outer ring and adapter: rest.
         Rolling = "rolling",
+        /// As `rolling`, but rollers are not damped at all: outer ring and adapter alone, relative to rest.
+        Standing = "standing",
         /// The rigid motion of each body: only its vibration is damped.
         RigidMotion = "rigid_motion",
         /// Rest (what LS-DYNA's global damping does): brakes rolling.

@@ -75,27 +75,33 @@ pub fn preload(
     }))
 }
 
-/// Gives every body its rolling velocity, half a step before the start.
-pub fn launch(bearing: &mut BearingSystem, k: &Kinematics) {
-    let acceleration = rolling_acceleration(bearing, k);
-    let half = 0.5 * bearing.system.time_step();
-    let system = &mut bearing.system;
+/// Velocities [m/s] of every node in rolling without slip, at the start; those of a rigid cage are not among
+/// them.
+pub fn rolling_velocity(bearing: &BearingSystem, k: &Kinematics) -> Vec<[f64; 2]> {
+    let system = &bearing.system;
+    let mut velocity: Vec<[f64; 2]> = (0..system.node_count()).map(|n| system.velocity(n as u32)).collect();
     for n in system.nodes_of(bearing.inner) {
         let [x, y] = system.position(n);
-        system.set_velocity(n, [-k.shaft_rad_s * y, k.shaft_rad_s * x]);
+        velocity[n as usize] = [-k.shaft_rad_s * y, k.shaft_rad_s * x];
     }
     for roller in &bearing.rollers {
         let [cx, cy] = system.position(roller.centre);
         for n in system.nodes_of(roller.body) {
             let [x, y] = system.position(n);
             let (rx, ry) = (x - cx, y - cy);
-            let velocity =
+            velocity[n as usize] =
                 [-k.cage_rad_s * cy - k.roller_rad_s * ry, k.cage_rad_s * cx + k.roller_rad_s * rx];
-            system.set_velocity(n, velocity);
         }
     }
-    for (n, a) in acceleration.iter().enumerate() {
-        let [vx, vy] = system.velocity(n as u32);
+    velocity
+}
+
+/// Gives every body its rolling velocity, half a step before the start.
+pub fn launch(bearing: &mut BearingSystem, k: &Kinematics) {
+    let half = 0.5 * bearing.system.time_step();
+    let start = rolling_velocity(bearing, k).into_iter().zip(rolling_acceleration(bearing, k));
+    let system = &mut bearing.system;
+    for (n, ([vx, vy], a)) in start.enumerate() {
         system.set_velocity(n as u32, [vx - half * a[0], vy - half * a[1]]);
     }
     if let Some(cage) = bearing.cage {
@@ -113,14 +119,15 @@ pub fn damp(scene: &ResolvedScene, bearing: &mut BearingSystem) -> Result<(), Er
         return Ok(());
     }
     let (standing, rolling) = match scene.written.solver.damping_frame {
-        DampingFrame::Rolling => (Frame::Rest, Frame::Tangential { centre: [0.0; 2] }),
-        DampingFrame::RigidMotion => (Frame::OwnMotion, Frame::OwnMotion),
-        DampingFrame::Absolute => (Frame::Rest, Frame::Rest),
+        DampingFrame::Rolling => (Frame::Rest, Some(Frame::Tangential { centre: [0.0; 2] })),
+        DampingFrame::Standing => (Frame::Rest, None),
+        DampingFrame::RigidMotion => (Frame::OwnMotion, Some(Frame::OwnMotion)),
+        DampingFrame::Absolute => (Frame::Rest, Some(Frame::Rest)),
     };
     // The inner ring's bore is driven: damping there would only take energy that the drive supplies again.
     let held = std::iter::once(bearing.outer).chain(bearing.housing);
     let mut frames: Vec<(usize, Frame)> = held.map(|body| (body, standing)).collect();
-    frames.extend(bearing.rollers.iter().map(|r| (r.body, rolling)));
+    frames.extend(bearing.rollers.iter().filter_map(|r| Some((r.body, rolling?))));
     bearing.system.set_mass_damping(&MassDamping::new(rate, frames)?);
     Ok(())
 }

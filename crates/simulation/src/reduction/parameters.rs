@@ -164,14 +164,15 @@ fn damping(scene: &ResolvedScene) -> Result<Damping, Error> {
     };
     let frame = match scene.written.solver.damping_frame {
         SceneFrame::Rolling => DampingFrame::Rolling,
-        SceneFrame::RigidMotion => DampingFrame::RigidMotion,
+        // Its rollers do not deform: their own motion is all of theirs.
+        SceneFrame::Standing | SceneFrame::RigidMotion => DampingFrame::RigidMotion,
         SceneFrame::Absolute => DampingFrame::Absolute,
     };
     let mass = scene.written.solver.mass_damping_per_s;
     // As in the full model, mass damping does not act on bodies that move as one piece.
     let mass_of_modes = match scene.written.housing.mass(&scene.written.bearing) {
         Some(rigid) => rigid.damping_per_s,
-        None if frame == DampingFrame::RigidMotion => 0.0,
+        None if scene.written.solver.damping_frame == SceneFrame::RigidMotion => 0.0,
         None => mass,
     };
     Ok(Damping { mass, mass_of_modes, frame, stiffness: scene.stiffness_damping, branches })

@@ -250,6 +250,18 @@ fn behaves_a_reduced_run_from_its_plan_to_a_deck() {
         let deck = fs::read_to_string(desk.0.join(format!("runs/mine/mesh.{format}"))).expect("a deck");
         assert!(deck.contains(has), "{format}");
     }
+    // The reduced model has no elements in motion, and decks for Radioss have names of their own.
+    says(&desk.run(&["export", "mine", "--to=radioss"]), &["`model: reduced`", "`model: full`"]);
+    let full = ["export", "mine.ron", "--to=radioss", "--set=model=full"];
+    says(&desk.run(&full), &["`contact.surface`", "`surface: facet`"]);
+    let full = [&full[..], &["--set=contact.surface=facet"]].concat();
+    says(&desk.run(&[&full[..], &["--out=full.rad"]].concat()), &["`_0000.rad`"]);
+    says(&desk.run(&full), &["mine_0000.rad"]);
+    let starter = fs::read_to_string(desk.0.join("mine_0000.rad")).expect("a deck");
+    for has in ["# left out: friction", "/PART/16\nroller 13", "/INTER/TYPE3/27\n", "# node "] {
+        assert!(starter.contains(has), "{has}");
+    }
+    assert!(desk.0.join("mine_0001.rad").exists());
     // There are no frames to export, and only the full model makes some.
     says(&desk.run(&["export", "mine", "--to=pvd"]), &["`model: full`", "`output: (frames: ())`"]);
     // Dampers that allow far shorter steps than the scene has.

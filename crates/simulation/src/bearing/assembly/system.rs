@@ -201,8 +201,7 @@ impl Assembly {
     /// The load of the scene on the housing, or on the outer ring's back where there is none, and the load
     /// across it where one turns with the shaft.
     fn apply_load(&self, plan: &mut Plan, scene: &ResolvedScene) -> Result<(), Error> {
-        let back = surface(&self.outer, "outer");
-        plan.surface(LOADED, self.housing.as_ref().map_or(back, |housing| &housing.loaded).clone())?;
+        plan.surface(LOADED, self.loaded().clone())?;
         let (load_n, [along_x, along_y]) = (scene.written.operation.load_n, scene.written.load_direction());
         plan.load(LOADED, [load_n * along_x, load_n * along_y])?;
         if scene.duty.load_across_n(0.0).is_some() {
@@ -261,6 +260,25 @@ impl Assembly {
             plan.contact(of_roller(i, INNER_RACEWAY, "inner raceway"))?;
         }
         Ok(Pairs { seats, rollers: pockets.len(), walls: if self.cage.is_some() { 2 } else { 0 } })
+    }
+
+    /// The surface that takes the load: of the housing, or the outer ring's back where there is none.
+    pub fn loaded(&self) -> &Surface {
+        self.housing.as_ref().map_or_else(|| surface(&self.outer, "outer"), |housing| &housing.loaded)
+    }
+
+    /// Names and surfaces of the contact pairs, in the order of [`Pairs`], without those of the cage. The
+    /// resultant of a pair is the force on the body of the first surface.
+    pub fn touching(&self) -> Vec<(String, [&Surface; 2])> {
+        let seat = self.seat().map(|seat| ("seat".to_owned(), [surface(&self.outer, "outer"), seat]));
+        let on = |raceway: &'static str, track| {
+            let rollers = self.rollers.iter();
+            rollers.map(move |(i, roller)| {
+                (format!("roller {} {raceway}", i + 1), [surface(roller, "rim"), track])
+            })
+        };
+        let (outer, inner) = (surface(&self.outer, "inner"), surface(&self.inner, "outer"));
+        seat.into_iter().chain(on("outer raceway", outer)).chain(on("inner raceway", inner)).collect()
     }
 
     /// Surface of the housing that the outer ring sits in, if there is one.
