@@ -303,8 +303,7 @@ impl Motion<'_> {
                 None => shares.push((share, vec![node])),
             }
         }
-        let mut number = first;
-        for (share, group) in shares {
+        for (number, (share, group)) in (first..).zip(shares) {
             nodes(out, number, "loaded", &group);
             for (axis, (letter, total)) in ["Y", "Z"].into_iter().zip(total).enumerate() {
                 if total != 0.0 {
@@ -322,7 +321,6 @@ impl Motion<'_> {
                     );
                 }
             }
-            number += 1;
         }
     }
 
