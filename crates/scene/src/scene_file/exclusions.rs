@@ -120,7 +120,7 @@ fn profiles(scene: &Scene) -> Option<Finding> {
         ("balls have none", None)
     } else if scene.model == ModelScene::Full {
         let reduced = Remedy::new("model", "`reduced()`".to_owned()).value("reduced()", "");
-        ("the full model has `straight` ones", Some(reduced))
+        ("the full model meshes cylinders: it is `straight` there, or take `model: reduced()`", Some(reduced))
     } else if scene.contact.formula != ContactFormula::Hertz {
         let hertz = Remedy::new("contact.formula", "`hertz`".to_owned()).value("hertz", "");
         ("`contact.formula` is another than that of steel rollers", Some(hertz))
