@@ -216,7 +216,7 @@ fn issue_a_speed_over_time_is_no_tachometer_of_pulses() {
         (held("tacho", 1.0), false),
         (held("rpm", 1.0).in_unit(Some("V".into())), false),
     ] {
-        match of(&channel, 100.0, 1) {
+        match of(&channel, 100.0, 1.0) {
             Ok(found) => {
                 assert!(is_speed && (found.rpm / 1200.0 - 1.0).abs() < 1e-3, "{}: {found:?}", channel.name);
                 // 200 turns, sixty pulses each; the speed at the end less that at the beginning.
@@ -230,13 +230,26 @@ fn issue_a_speed_over_time_is_no_tachometer_of_pulses() {
         }
     }
     // Pulses of a channel that is called so.
-    let called = of(&Channel::held("rpm", wheel(40, |_| true)), 12_800.0, 1).unwrap();
+    let called = of(&Channel::held("rpm", wheel(40, |_| true)), 12_800.0, 1.0).unwrap();
     assert!((called.rpm / 1200.0 - 1.0).abs() < 1e-3, "{}", called.rpm);
     let stopped = held("n", 1.0).in_unit(Some("rpm".into()));
     let why = of(
         &Channel::held("n", [&[0.0; 5][..], &stopped.read().unwrap()].concat()).in_unit(stopped.unit.clone()),
         100.0,
-        1,
+        1.0,
     );
     assert!(why.unwrap_err().to_string().contains("stands still at 0.0000 s"));
+}
+
+/// It had to be a whole number.
+#[test]
+fn issue_pulses_of_a_shaft_of_a_gear_are_no_whole_number_a_turn() {
+    for each_turn in [1.5, 0.4, 2.25] {
+        let pulse = |n: usize| (each_turn * 1200.0 / 60.0 * n as f64 / 12_800.0).fract();
+        let samples = (0..64_000).map(|n| f64::from(pulse(n) < 0.1)).collect();
+        let found = of(&Channel::held("tacho", samples), 12_800.0, each_turn).unwrap();
+        assert!((found.rpm / 1200.0 - 1.0).abs() < 1e-4, "{each_turn}: {}", found.rpm);
+        // All turns but those before the first pulse and behind the last.
+        assert!((found.count as f64 - 99.0).abs() <= 2.0 / each_turn, "{each_turn}: {}", found.count);
+    }
 }

@@ -40,17 +40,18 @@ const FAST: f64 = 20_000.0;
 
 /// The speed from a channel sampled `rate_hz` times a second: from the angle of the shaft where its name ends
 /// in `_rad`, from the speed over time where its unit or its name says so (`rpm`, `1/min`, `rad/s` …),
-/// otherwise from `per_turn` pulses a turn.
+/// otherwise from `per_turn` pulses a turn, which need not be a whole number: those of another shaft of a gear,
+/// or of every other turn.
 ///
 /// # Errors
 /// As [`of_angle`] and [`pulses`]; [`Error::NoSignal`] for a speed over time that goes through zero.
-pub fn of(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, Error> {
+pub fn of(channel: &Channel, rate_hz: f64, per_turn: f64) -> Result<Turns, Error> {
     if channel.name.ends_with("_rad") {
         return of_angle(channel, rate_hz);
     }
     match course::of_speed(channel, rate_hz)? {
         Some(turns) => Ok(turns),
-        None => pulses(channel, rate_hz, per_turn),
+        None => marks(channel, rate_hz, per_turn),
     }
 }
 
@@ -75,9 +76,16 @@ pub fn turns(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
 /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] when it holds fewer than three pulses, or when
 /// too many are missing or surplus for a speed to follow.
 pub fn pulses(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, Error> {
+    marks(channel, rate_hz, f64::from(per_turn.max(1)))
+}
+
+/// The same with any number a turn; pulses of a part of one are at even angles.
+fn marks(channel: &Channel, rate_hz: f64, each_turn: f64) -> Result<Turns, Error> {
     let samples = channel.read()?;
     let name = &channel.name;
-    let per_turn = per_turn.max(1) as usize;
+    let per_turn = if each_turn.fract() == 0.0 { each_turn as usize } else { 1 };
+    // Of a part of a turn the pulses are as those of a shaft that turns faster, or slower.
+    let faster = each_turn / per_turn as f64;
     let steps = steps(&samples);
     // With the pulses that were mended, or were missed.
     let mut best: Option<(usize, Mended)> = None;
@@ -115,11 +123,11 @@ pub fn pulses(channel: &Channel, rate_hz: f64, per_turn: u32) -> Result<Turns, E
     };
     let Mended { per_turn, .. } = found;
     let mut notes = found.notes(name, rate_hz);
-    let count = (found.pulses.len() - 1) / per_turn;
+    let count = ((found.pulses.len() - 1) as f64 / per_turn as f64 / faster) as usize;
     let pulses = over_turns(found.pulses, per_turn);
     let (mean, variation) = mean_and_variation(&pulses);
-    let rpm = 60.0 * rate_hz / (mean * per_turn as f64);
-    if per_turn == 1 && rpm > FAST {
+    let rpm = 60.0 * rate_hz / (mean * per_turn as f64 * faster);
+    if each_turn == 1.0 && rpm > FAST {
         notes.push(format!(
             "tachometer `{name}`: with one pulse a turn the shaft turns at {rpm:.0} rpm; if its wheel has \
              several teeth, give their number by `--pulses-per-turn`"

@@ -45,9 +45,10 @@ pub(crate) struct Reading {
     /// record whose speed varies is analysed over the angle
     #[arg(long)]
     pub(crate) tacho: Option<String>,
-    /// Pulses of the tachometer a turn, such as the teeth of its wheel
-    #[arg(long, value_name = "N", default_value_t = 1, requires = "tacho", value_parser = clap::value_parser!(u32).range(1..=100_000))]
-    pub(super) pulses_per_turn: u32,
+    /// Pulses of the tachometer a turn, such as the teeth of its wheel; 1.5 of one on a shaft that is geared up
+    /// to this one
+    #[arg(long, value_name = "N", default_value_t = 1.0, requires = "tacho", value_parser = pulses_per_turn)]
+    pub(super) pulses_per_turn: f64,
     /// Radial load of the bearing [N], a number or a range such as 50..150: how far it presses an element
     /// together belongs to the length of a spall [default: 0.2 to 10 % of the static rating]
     #[arg(long, value_name = "RANGE", value_parser = range)]
@@ -152,6 +153,11 @@ fn range(text: &str) -> Result<(f64, f64), String> {
         Some((low, high)) => (number(low)?, number(high)?),
     };
     if low > high { Err(format!("`{text}`: a range must ascend, as 50..150 does")) } else { Ok((low, high)) }
+}
+
+fn pulses_per_turn(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse::<f64>().ok().filter(|n| (1e-3..=1e5).contains(n));
+    number.ok_or_else(|| format!("`{text}`: must be a number from 0.001 to 100000, such as 1, 60 or 1.5"))
 }
 
 fn scale(text: &str) -> Result<f64, String> {
