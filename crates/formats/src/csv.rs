@@ -16,7 +16,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use dialect::{Dialect, Field};
+use dialect::{Dialect, Field, Groups, groups};
 pub(crate) use lines::is_wide;
 use lines::{Coding, Lines};
 pub(crate) use stamp::stamp;
@@ -32,6 +32,10 @@ const PREAMBLE: usize = 200;
 const SAMPLE: usize = 60;
 /// Samples handed on at a time.
 const BLOCK: usize = 1 << 14;
+/// What may stand between thousands, or before a fraction.
+const SIGNS: [char; 2] = [',', '.'];
+/// Fewest numbers below 1000 that show that a sign above parts thousands.
+const FEWEST_PLAIN: u64 = 4;
 /// One in this many fields of a column may be something other than a number.
 const FEW: u64 = 100;
 
@@ -47,6 +51,8 @@ pub(crate) struct Column {
     coding: Coding,
     /// The second that time stamps are counted from.
     origin_s: i64,
+    /// What stands between its thousands.
+    thousands: Option<char>,
 }
 
 /// Content of a column.
@@ -59,6 +65,21 @@ struct Census {
     /// Texts, and the first of them with its line.
     texts: u64,
     first: Option<(u64, String)>,
+    /// What commas and points may be in it.
+    signs: [Sign; 2],
+    /// Numbers without a comma or a point in them, and the largest.
+    plain: u64,
+    largest: f64,
+}
+
+/// How a column has a comma, or a point.
+#[derive(Debug, Default)]
+struct Sign {
+    /// Fields of which it may part the thousands, and how many of them are no numbers otherwise.
+    thousands: u64,
+    texts: u64,
+    first: Option<(u64, String)>,
+    fractions: u64,
 }
 
 /// Opens a table: its columns, their names and units.
@@ -114,13 +135,20 @@ pub fn open(path: &Path) -> Result<Recording> {
     let (census, rows, mut notes) = counted;
     let mut channels = Vec::new();
     let origin_s = census.iter().find_map(|census| census.origin_s).unwrap_or(0);
-    for (at, (name, census)) in names.into_iter().zip(census).enumerate() {
+    for (at, (name, mut census)) in names.into_iter().zip(census).enumerate() {
+        let thousands = census.thousands();
         if let Some(why) = census.refusal() {
             // A separator at the end of all rows makes no column.
             if census.texts > 0 || !name.starts_with("column ") {
                 notes.push(left_out(&name, &why));
             }
             continue;
+        }
+        if let Some((sign, (line, text))) = &thousands {
+            notes.push(format!(
+                "`{name}`: `{text}` in line {line} has `{sign}` between its thousands, as no other number of \
+                 the column reaches 1000"
+            ));
         }
         if let Some((line, text)) = &census.first {
             let more = if census.texts > 1 {
@@ -132,7 +160,16 @@ pub fn open(path: &Path) -> Result<Recording> {
                 "`{name}`: `{text}` in line {line} is no number{more}: such samples are left out"
             ));
         }
-        let column = Column { path: path.to_owned(), at, preamble: first as u64, dialect, coding, origin_s };
+        let thousands = thousands.map(|(sign, _)| sign);
+        let column = Column {
+            path: path.to_owned(),
+            at,
+            preamble: first as u64,
+            dialect,
+            coding,
+            origin_s,
+            thousands,
+        };
         let unit = units.get(at).map(|unit| unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned());
         let unit = if census.stamps > 0 { Some("s".to_owned()) } else { unit };
         let unit = unit.filter(|unit| !unit.is_empty()).or_else(|| units::in_brackets(&name));
@@ -364,6 +401,24 @@ fn summary(all: &mut [Census], tail: &VecDeque<(u64, u64)>, notes: &mut Vec<Stri
 
 impl Census {
     fn take(&mut self, kind: Field, field: &str, line: u64) {
+        let mut is_plain = true;
+        for (sign, of) in SIGNS.into_iter().zip(&mut self.signs).filter(|(sign, _)| field.contains(*sign)) {
+            is_plain = false;
+            // One fraction decides.
+            match if of.fractions > 0 { None } else { groups(field, sign) } {
+                Some(Groups::Thousands) => {
+                    of.thousands += 1;
+                    of.texts += u64::from(kind == Field::Text);
+                    of.first.get_or_insert_with(|| (line, field.to_owned()));
+                }
+                Some(Groups::Fraction) => of.fractions += 1,
+                None => {}
+            }
+        }
+        if let (true, Field::Number(x)) = (is_plain, kind) {
+            self.plain += 1;
+            self.largest = self.largest.max(x.abs());
+        }
         match kind {
             Field::Number(_) => self.numbers += 1,
             Field::Stamp(s, _) => {
@@ -376,6 +431,19 @@ impl Census {
                 self.first.get_or_insert_with(|| (line, field.chars().take(40).collect()));
             }
         }
+    }
+
+    /// What stands between the thousands of a column, and the first field that has it: behind it are always
+    /// three digits, and numbers without it end below 1000, most of their range filled. Such fields are
+    /// numbers then.
+    fn thousands(&mut self) -> Option<(char, (u64, String))> {
+        let filled = self.plain >= FEWEST_PLAIN && (100.0..1000.0).contains(&self.largest);
+        let at = self.signs.iter().position(|of| filled && of.thousands > 0 && of.fractions == 0)?;
+        let of = &self.signs[at];
+        self.texts -= of.texts;
+        self.numbers += of.texts;
+        self.first.take_if(|(_, text)| groups(text, SIGNS[at]) == Some(Groups::Thousands));
+        Some((SIGNS[at], of.first.clone()?))
     }
 
     /// Why a column is no channel.
@@ -429,7 +497,10 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
 impl Column {
     /// The number in a row of fields.
     fn value(&self, fields: &[&str]) -> f64 {
-        match self.dialect.field(fields.get(self.at).copied().unwrap_or_default()) {
+        let field = fields.get(self.at).copied().unwrap_or_default();
+        let ungrouped =
+            self.thousands.filter(|sign| field.contains(*sign)).map(|sign| field.replace(sign, ""));
+        match self.dialect.field(ungrouped.as_deref().unwrap_or(field)) {
             Field::Number(x) => x,
             Field::Stamp(s, ns) => s.saturating_sub(self.origin_s) as f64 + 1e-9 * f64::from(ns),
             Field::Missing | Field::Text => f64::NAN,

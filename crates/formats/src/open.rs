@@ -63,7 +63,7 @@ impl Recording {
             csv::open(path)
         }?;
         within_memory(&opened)?;
-        time::told(clock_columns::joined(opened)?)
+        Ok(time::told(clock_columns::joined(opened)?)?.told_apart())
     }
 }
 

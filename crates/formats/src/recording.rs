@@ -1,5 +1,6 @@
 //! A file of signals and its channels.
 
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use crate::{Channel, Error, Result};
@@ -39,6 +40,34 @@ impl Recording {
             (Some(channel), None) => Ok(channel),
             _ => Err(Error::NoChannel { path: self.path.clone(), asked: name.to_owned(), has: self.names() }),
         }
+    }
+
+    /// Gives channels whose name another one has before them a number behind it, with a note.
+    pub(crate) fn told_apart(mut self) -> Self {
+        let mut taken: HashSet<String> = self.channels.iter().map(|c| c.name.clone()).collect();
+        let (mut seen, mut renamed) = (HashMap::<String, usize>::new(), Vec::new());
+        for channel in &mut self.channels {
+            let count = seen.entry(channel.name.clone()).or_insert(0);
+            *count += 1;
+            if *count == 1 {
+                continue;
+            }
+            let mut name = format!("{} ({count})", channel.name);
+            while !taken.insert(name.clone()) {
+                *count += 1;
+                name = format!("{} ({count})", channel.name);
+            }
+            if !channel.is_time {
+                renamed.push(format!("`{name}`"));
+            }
+            channel.name = name;
+        }
+        if let Some(first) = renamed.first() {
+            let more =
+                if renamed.len() > 1 { format!(" to {}", renamed[renamed.len() - 1]) } else { String::new() };
+            self.notes.push(format!("names occur twice: those behind the first are {first}{more}"));
+        }
+        self
     }
 
     /// Names and lengths of the channels, for messages.

@@ -98,6 +98,72 @@ fn issue_a_first_row_of_sizes_is_no_sample() {
     }
 }
 
+/// Thousands that first came far below the first row were fractions, texts, or columns of their own.
+#[test]
+fn issue_thousands_that_come_late_are_thousands() {
+    let desk = Scratch::create("second-thousands");
+    // Beyond 1000 from row 40 on, and from row 300 on.
+    for from in [40, 300] {
+        let value = |n: usize| (if n < from { 900.0 } else { 5000.0 }) * signal(n);
+        let grouped = |n: usize, sign: &str, point: &str, digits: usize| {
+            let text = format!("{:.digits$}", value(n).abs());
+            let (whole, rest) = text.split_once('.').map_or((&text[..], None), |(a, b)| (a, Some(b)));
+            let minus = if text.contains(['1', '2', '3', '4', '5', '6', '7', '8', '9']) && value(n) < 0.0 {
+                "-"
+            } else {
+                ""
+            };
+            let whole = match whole.len() {
+                4.. => format!("{}{sign}{}", &whole[..whole.len() - 3], &whole[whole.len() - 3..]),
+                _ => whole.to_owned(),
+            };
+            format!("{minus}{whole}{}", rest.map_or(String::new(), |rest| format!("{point}{rest}")))
+        };
+        let time = |n: usize, point: &str| format!("{:.8}", at(n).0).replace('.', point);
+        for (name, text, off) in [
+            ("points;", rows(|n| format!("{};{}", time(n, "."), grouped(n, ",", ".", 1))), 0.06),
+            ("whole;", rows(|n| format!("{};{}", time(n, "."), grouped(n, ",", ".", 0))), 0.6),
+            ("whole\t", rows(|n| format!("{}\t{}", time(n, "."), grouped(n, ",", ".", 0))), 0.6),
+            ("German", rows(|n| format!("{};{}", time(n, ","), grouped(n, ".", ",", 1))), 0.06),
+            ("German, whole", rows(|n| format!("{};{}", time(n, ","), grouped(n, ".", ",", 0))), 0.6),
+            ("quoted", rows(|n| format!("{},\"{}\"", time(n, "."), grouped(n, ",", ".", 0))), 0.6),
+            ("one", rows(|n| grouped(n, ",", ".", 1)), 0.06),
+            ("one, whole", rows(|n| grouped(n, ",", ".", 0)), 0.6),
+            ("one, quoted", rows(|n| format!("\"{}\"", grouped(n, ",", ".", 1))), 0.06),
+        ] {
+            let head = if name.starts_with("one") { "acc\n" } else { "time_s\tacc\n" };
+            let found = opened(&desk, "a.csv", format!("{head}{text}").as_bytes());
+            let channel =
+                found.channel("acc").unwrap_or_else(|why| panic!("{name}: {why} {:?}", found.notes));
+            let read = channel.read().unwrap();
+            assert_eq!(read.len(), COUNT, "{name}: {:?}", found.notes);
+            let wrong = read.iter().enumerate().find(|(n, x)| (*x - value(*n)).abs() > off);
+            assert_eq!(wrong, None, "{name} {from}: {:?}", found.notes);
+        }
+    }
+    // Three digits behind each comma, and no number without one: fractions.
+    let text = "n;acc\n".to_owned() + &rows(|n| format!("{n};{},{:03}", 1 + n % 7, n % 1000));
+    let found = opened(&desk, "b.csv", text.as_bytes());
+    assert_eq!(found.channel("acc").unwrap().read().unwrap()[9], 3.009);
+}
+
+/// Only the first of them could be asked for.
+#[test]
+fn issue_names_that_occur_twice_are_told_apart() {
+    let desk = Scratch::create("second-twice");
+    let text = "time_s,acc,acc,acc (2)\n".to_owned()
+        + &rows(|n| {
+            let (s, x) = at(n);
+            format!("{s:.7},{x:.4},{:.4},{:.4}", 2.0 * x, 3.0 * x)
+        });
+    let found = opened(&desk, "a.csv", text.as_bytes());
+    for (name, factor) in [("acc", 1.0), ("acc (3)", 2.0), ("acc (2)", 3.0)] {
+        let x = found.channel(name).unwrap().read().unwrap()[7];
+        assert!((x - factor * signal(7)).abs() < 1e-4, "{name}: {x}");
+    }
+    assert!(found.notes.join("; ").contains("names occur twice"), "{:?}", found.notes);
+}
+
 /// A vector as one row of three million fields hung, and beyond 16 MiB a row was several channels.
 #[test]
 fn issue_one_long_row_is_one_channel() {

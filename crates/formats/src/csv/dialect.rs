@@ -41,8 +41,16 @@ impl Dialect {
         // Strictly: numbers, times and gaps alone. Otherwise some columns may be texts.
         let found = [true, false].into_iter().find_map(|strict| {
             let all = ALL.into_iter().map(|(separator, decimal_comma)| Self { separator, decimal_comma });
-            all.filter(|d| strict || d.separator != ' ')
-                .find_map(|dialect| Some((dialect, dialect.begins(lines, strict)?)))
+            let mut all = all
+                .filter(|d| strict || d.separator != ' ')
+                .filter_map(|dialect| Some((dialect, dialect.begins(lines, strict)?)));
+            let first = all.next()?;
+            if first.0.separator != ',' || first.1 < 2 * AGREE {
+                return Some(first);
+            }
+            // Thousands far below the first row are no columns.
+            let above = |of: &(Self, usize)| of.0.separator == ' ' && of.1 + 2 * AGREE < first.1;
+            Some(all.find(|of| above(of) && of.0.is_single(&lines[of.1..])).unwrap_or(first))
         });
         let (dialect, first) = found?;
         let single = Self { separator: ' ', decimal_comma: true };
@@ -80,6 +88,15 @@ impl Dialect {
                 agree >= 2
             }
         })
+    }
+
+    /// Whether nearly all rows are one number, with its thousands in groups or not.
+    fn is_single(self, rows: &[String]) -> bool {
+        let number = |row: &&String| {
+            let field = row.trim().trim_matches('"');
+            self.number(field).is_some() || groups(field, ',') == Some(Groups::Thousands)
+        };
+        10 * rows.iter().filter(number).count() > 9 * rows.len()
     }
 
     /// The fields of a line, quotes taken off.
@@ -155,6 +172,10 @@ impl Dialect {
             number(&field).or_else(|| grouped(group))
         }
         .or_else(|| {
+            // Of both signs in one number the last is the decimal one, whatever the table has elsewhere.
+            if field.contains(group) && field.contains(point) {
+                return plain(&ungrouped(&field, group, point)?);
+            }
             let signs = ['\'', '\u{2019}', '\u{a0}', '\u{202f}', ' '];
             let point = if field.contains(point) { point } else { '.' };
             signs.into_iter().find_map(|sign| plain(&ungrouped(&field, point, sign)?))
@@ -178,6 +199,29 @@ fn ungrouped(field: &str, point: char, group: char) -> Option<String> {
         && rest.len() >= if fraction.is_some() { 1 } else { 2 };
     let sign = if whole.starts_with('-') { "-" } else { "" };
     is_grouped.then(|| format!("{sign}{first}{}.{}", rest.concat(), fraction.unwrap_or("0")))
+}
+
+/// What a point or a comma in a field may be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Groups {
+    /// Groups of three digits stand behind it, and nothing else: `-12,345`.
+    Thousands,
+    /// It is the sign of a fraction: `0,125`, `1,5`.
+    Fraction,
+}
+
+/// What `sign` may be in a field that has it; nothing where the field has the other sign, too.
+pub(super) fn groups(field: &str, sign: char) -> Option<Groups> {
+    if !field.contains(sign) || field.contains(if sign == ',' { '.' } else { ',' }) {
+        return None;
+    }
+    let mut parts = field.trim_start_matches(['-', '+']).split(sign);
+    let digits = |text: &str, most: usize| {
+        (1..=most).contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit())
+    };
+    let first = parts.next().is_some_and(|text| digits(text, 3) && !text.starts_with('0'));
+    let grouped = first && parts.all(|text| text.len() == 3 && digits(text, 3));
+    Some(if grouped { Groups::Thousands } else { Groups::Fraction })
 }
 
 /// Whether lines of two whole numbers with a comma between them are one column with decimal commas: the line
