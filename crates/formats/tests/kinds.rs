@@ -199,6 +199,15 @@ fn issue_steps_of_universal_files_have_the_unit_of_their_axis() {
         let other = text.replace(&axis, &format!("{:<20} {unit:<20}", "Time"));
         assert_eq!(opened(&desk, "b.uff", other.as_bytes()).channels[0].rate_hz, Some(rate_hz), "{unit}");
     }
+    // And so has the place of their first sample, which was taken for 0.
+    let begins = "  0.00000E+00  7.81250E-02";
+    assert_eq!(text.matches(begins).count(), 1, "{text}");
+    for (unit, start_s) in [("s", 0.8), ("ms", 0.8e-3)] {
+        let other = text.replace(&axis, &format!("{:<20} {unit:<20}", "Time"));
+        let other = other.replace(begins, "  8.00000E-01  7.81250E-02");
+        let found = opened(&desk, "c.uff", other.as_bytes()).channels[0].start_s.unwrap();
+        assert!((found - start_s).abs() < 1e-9, "{unit}: {found}");
+    }
 }
 
 /// `12,800 Hz` was read as 12.8 Hz, and the 8 s of a whole record as the time between two samples.

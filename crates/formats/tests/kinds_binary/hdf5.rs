@@ -91,3 +91,27 @@ fn issue_scale_factors_of_hdf5_are_applied() {
     let found = fixture("scaled.h5");
     holds(found.channel("acc").unwrap(), COUNT, |n| 0.5 + 0.001 * (1000.0 * signal(n)).round());
 }
+
+/// All sets were laid at one start, and a tachometer that began 0.8 s later shifted the angle.
+#[test]
+fn issue_sets_of_hdf5_begin_when_their_attributes_say() {
+    let found = fixture("started.h5");
+    let start = |name: &str| found.channel(name).unwrap().start_s;
+    assert_eq!((start("acc"), start("tacho")), (Some(2.5), Some(3.3)), "{:?}", found.notes);
+}
+
+/// They became samples of -32.768.
+#[test]
+fn issue_fill_values_of_netcdf_are_no_numbers() {
+    let found = fixture("missing.h5");
+    let is_missing = |n: usize| (100..103).contains(&n);
+    holds(found.channel("acc").unwrap(), COUNT, |n| if is_missing(n) { f64::NAN } else { signal(n) });
+}
+
+/// It was refused in the words of the library, which advised a programmer.
+#[test]
+fn issue_a_file_of_hdf5_that_is_being_written_is_read() {
+    let found = fixture("in_use.h5");
+    holds(found.channel("acc").unwrap(), COUNT, |n| signal(n) as f32 as f64);
+    notes(&found, &["did not close it", "still writes"]);
+}

@@ -2,7 +2,7 @@
 
 use stribeck_testing::Scratch;
 
-use crate::{COUNT, RATE_HZ, holds, opened, signal};
+use crate::{COUNT, RATE_HZ, holds, notes, opened, signal};
 
 /// One channel of an MDF group.
 pub(crate) struct MdfChannel<'a> {
@@ -140,8 +140,31 @@ fn issue_groups_of_mdf_have_masters_of_their_own() {
     let found = opened(
         &desk,
         "a.mf4",
-        &mdf(&[(&acc, 16, 0, timed(|n| n as f64 / RATE_HZ)), (&tacho, 16, 0, timed(|n| n as f64 / 3200.0))]),
+        &mdf(&[
+            (&acc, 16, 0, timed(|n| n as f64 / RATE_HZ)),
+            (&tacho, 16, 0, timed(|n| 0.8 + n as f64 / 3200.0)),
+        ]),
     );
     assert_eq!(found.channel("acc").unwrap().rate_hz, Some(RATE_HZ), "{:?}", found.notes);
     assert_eq!(found.channel("tacho").unwrap().rate_hz, Some(3200.0), "{:?}", found.notes);
+    // Each begins when its own master says: the later one was laid at the start of the other.
+    let start_s = |name: &str| found.channel(name).unwrap().start_s.unwrap_or(f64::NAN);
+    assert!(start_s("acc").abs() < 1e-9 && (start_s("tacho") - 0.8).abs() < 1e-9, "{}", start_s("tacho"));
+}
+
+/// A recorder that was switched off has neither finished the head nor counted the records.
+#[test]
+fn issue_a_file_that_its_recorder_did_not_finish_is_read() {
+    let desk = Scratch::create("formats-mdf-unfinished");
+    let channels = [MdfChannel { sort: 2, ..mdf_channel("time", 0) }, mdf_channel("acc", 8)];
+    let mut bytes = mdf(&[(&channels, 16, 0, timed(|n| n as f64 / RATE_HZ))]);
+    bytes[..8].copy_from_slice(b"UnFinMF ");
+    // The number of records, behind the six links of the group's block.
+    let group = bytes.windows(4).position(|w| w == b"##CG").unwrap();
+    bytes[group + 24 + 8 * 6 + 8..][..8].fill(0);
+    let found = opened(&desk, "a.mf4", &bytes);
+    let channel = found.channel("acc").unwrap();
+    assert_eq!(channel.rate_hz, Some(RATE_HZ), "{:?}", found.notes);
+    holds(channel, COUNT, signal);
+    notes(&found, &["did not finish the file"]);
 }

@@ -114,3 +114,28 @@ fn issue_arrays_of_numpy_keep_their_shape() {
     };
     assert!(said.contains("3 dimensions, 2 × 3 × 50"), "{said}");
 }
+
+/// libsndfile counts the tag of the last numbers twice; the file was called damaged.
+#[test]
+fn issue_matlab_5_of_libsndfile_counts_a_tag_twice() {
+    let desk = Scratch::create("formats-mat5-sndfile");
+    let mut bytes = b"MATLAB 5.0 MAT-file".to_vec();
+    bytes.resize(124, b' ');
+    bytes.extend([0, 1, b'I', b'M']);
+    bytes.extend(mat5_matrix("samplerate", &[1, 1], std::iter::once(RATE_HZ)));
+    let mut wave = mat5_matrix("wavedata", &[1, COUNT as i32], (0..COUNT).map(signal));
+    let length = wave.len() as u32 - 8;
+    for (more, is_read) in [(0, true), (8, true), (9, false)] {
+        wave[4..8].copy_from_slice(&(length + more).to_le_bytes());
+        let path = desk.join("a.mat");
+        std::fs::write(&path, [&bytes[..], &wave].concat()).unwrap();
+        match Recording::open(&path) {
+            Ok(found) => {
+                let channel = found.channel("wavedata").unwrap();
+                assert_eq!((is_read, channel.rate_hz), (true, Some(RATE_HZ)), "{more}: {:?}", found.notes);
+                holds(channel, COUNT, signal);
+            }
+            Err(why) => assert!(!is_read, "{more}: {why}"),
+        }
+    }
+}
