@@ -42,7 +42,7 @@ pub(crate) struct Options {
     /// and writes docs/results/readers.csv and .md
     #[arg(long, value_name = "PYTHON", conflicts_with = "kind")]
     peers: Option<String>,
-    /// With --peers: begins no further batch of files after this number of seconds
+    /// With --peers: after this number of seconds the other programs are given no further files
     #[arg(long, value_name = "S", default_value_t = 600, requires = "peers")]
     seconds: u64,
     /// With --peers: keeps the files that are read differently, or by the other program alone

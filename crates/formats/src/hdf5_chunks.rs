@@ -109,6 +109,10 @@ pub(crate) fn columns(
         chunks.len() as u64 == whole(along) && chunks.iter().zip(0..).all(|(c, n)| c.place == n)
     };
     rows.values_mut().for_each(|chunks| chunks.sort_by_key(|c| c.place));
+    // Whichever is taken, the other one's place stays empty.
+    if rows.values().any(|chunks| chunks.windows(2).any(|pair| pair[0].place == pair[1].place)) {
+        return Err(hdf5_pure::Error::Shape("two of its chunks have the same place".to_owned()));
+    }
     if rows.len() as u64 != across.map_or(1, whole) || !rows.values().all(complete) {
         return Ok(None);
     }

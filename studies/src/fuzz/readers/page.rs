@@ -60,7 +60,7 @@ fn reader(kind: &str) -> &'static str {
 
 /// Differences of which examples were looked at and lie with the other program: format, in what (all where it
 /// is empty), by what damage (all where it is empty), and why.
-const EXPLAINED: [(&str, &str, &str, &str); 10] = [
+const EXPLAINED: [(&str, &str, &str, &str); 12] = [
     ("csv", "", "it is cut off", "pandas keeps the row that breaks off; we leave it out, with a note"),
     ("csv", "samples", "", LINES),
     ("csv", "numbers among the samples", "", LINES),
@@ -71,6 +71,19 @@ const EXPLAINED: [(&str, &str, &str, &str); 10] = [
         "a piece stands twice",
         "two sizes in the head of an RF64 file: soundfile takes the 64-bit one, we take all to the end of \
          the file, with a note",
+    ),
+    (
+        "h5",
+        "rms",
+        "a bit is turned",
+        "a type of floats without the leading bit of their mantissa, which no processor has: h5py converts \
+         them; we take the usual type of that size",
+    ),
+    (
+        "mf4",
+        "rms",
+        "a type or a flag is another",
+        "a conversion whose name or comment lies nowhere: asammdf leaves the conversion out, we apply it",
     ),
     ("inp", "samples", "", SAME_ELEMENT),
     ("msh", "samples", "", SAME_ELEMENT),
@@ -138,11 +151,17 @@ impl Tables {
         open.map(|(_, k)| k.count).sum()
     }
 
-    pub(super) fn rows(&self, files: u64, first: u64, versions: &str) -> Rows {
+    /// Values of the page, of `files` that we have read and of `compared` that the others have, too.
+    pub(super) fn rows(&self, [files, compared]: [u64; 2], first: u64, versions: &str) -> Rows {
         let mut rows = Rows::default();
-        let values =
-            [("files", files as f64), ("first seed", first as f64), ("panics", self.panics.len() as f64)];
+        let values = [
+            ("files", files as f64),
+            ("compared", compared as f64),
+            ("first seed", first as f64),
+            ("panics", self.panics.len() as f64),
+        ];
         rows.values("all", "all", values);
+        rows.value("all", "all", "peak MiB", stribeck::host::peak_memory_mib().unwrap_or(f64::NAN));
         rows.value("all", "all", "slowest s", self.slowest.as_secs_f64());
         rows.word("all", "all", "versions", versions);
         for (kind, ends) in &self.counts {
