@@ -24,6 +24,8 @@ pub struct Rollers {
     pub(crate) rims: Vec<Rim>,
     /// Rim of each roller, as an index of `rims`.
     pub(crate) rim_of: Vec<u32>,
+    /// By how much the radius of each exceeds that of its rim [m].
+    pub(crate) larger: Vec<f64>,
     /// The round rim as the cage meets it.
     pub(crate) polygon: Polygon,
     /// Places at the start, and the radius of the circle that centres are on then [m].
@@ -55,6 +57,7 @@ impl Rollers {
             inertia,
             polygon: Polygon::new(rims[0].outline.len(), rims[0].top),
             rims,
+            larger: of_each(&outlines.larger, parameters.rollers.len()),
             rim_of: outlines.rim_of.clone(),
             starts: parameters.rollers.clone(),
             path: radii.outer - radii.roller,
@@ -69,6 +72,11 @@ impl Rollers {
     pub(crate) fn rim(&self, roller: usize) -> &Rim {
         &self.rims[self.rim_of[roller] as usize]
     }
+}
+
+/// Numbers of all rollers, of which none may be given.
+fn of_each(given: &[f64], rollers: usize) -> Vec<f64> {
+    (0..rollers).map(|i| given.get(i).copied().unwrap_or_default()).collect()
 }
 
 impl Rim {

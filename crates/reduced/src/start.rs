@@ -266,13 +266,14 @@ impl Bearing {
         let mut forces = [state.force[0][i], state.force[1][i]];
         for _ in 0..40 {
             let [before, other] = forces;
-            let rim = self.rollers.rim(i);
+            let (rim, larger) = (self.rollers.rim(i), self.rollers.larger[i]);
             let near = RollerOnRaceway {
                 raceway: on_outer,
                 rim,
                 centre: seen,
                 spin: [c, s],
                 bound: on_outer.bound,
+                larger,
                 before,
             };
             let outer = self.law.normal_force(simd, near, &mut hints[0]);
@@ -285,6 +286,7 @@ impl Bearing {
                     centre,
                     spin,
                     bound: on_inner.bound,
+                    larger,
                     before: other,
                 },
                 &mut hints[1],

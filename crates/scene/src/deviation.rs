@@ -261,7 +261,7 @@ impl Relief {
     /// Relief of a surface of radius `radius` [m] whose facets are `facet_mm` long; `None` when no deviation
     /// is `on` it. Grooves of raceways are no part of it.
     pub fn of(deviations: &[DeviationScene], on: RollingSurface, radius: f64, facet_mm: f64) -> Option<Self> {
-        let mut relief = Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 };
+        let mut relief = Self::round(radius);
         let mut any = false;
         for deviation in deviations.iter().filter(|d| d.on == on && d.groove().is_none()) {
             any = true;
@@ -284,6 +284,22 @@ impl Relief {
             }
         }
         any.then_some(relief)
+    }
+
+    /// A surface without deviations.
+    pub(crate) fn round(radius: f64) -> Self {
+        Self { radius, waves: Vec::new(), pieces: Vec::new(), level: 0.0 }
+    }
+
+    /// The same, higher by `by` everywhere [m].
+    pub(crate) fn raised(mut self, by: f64) -> Self {
+        self.level -= by;
+        self
+    }
+
+    /// By how much the radius exceeds the nominal one [m], where that is all of the deviation.
+    pub fn larger_by(&self) -> Option<f64> {
+        (self.waves.is_empty() && self.pieces.is_empty()).then_some(-self.level)
     }
 
     /// How far below its circle the surface lies at `angle` [rad] from the centre, into the body [m].

@@ -16,9 +16,11 @@ use stribeck_theory::material::Material;
 
 use crate::contact_formula::{ContactNumbers, as_hertz};
 use crate::deviation::{Relief, RollingSurface};
+use crate::dice::Dice;
 use crate::faults::rolling_circle;
 use crate::scene::{
-    CageScene, ContactFormula, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
+    BearingScene, CageScene, ContactFormula, DefectRing, DefectScene, FilmScene, PocketWalls, Scene,
+    StructuralDampingScene,
 };
 
 /// A scene in SI: dimensions, material, mesh, contact, load and times, and the scene as written, for fields
@@ -199,7 +201,15 @@ impl ResolvedScene {
             let [diameter_mm, facet_mm] = rolling_circle(scene, on);
             Relief::of(&scene.defects, on, 0.5e-3 * diameter_mm, facet_mm)
         };
-        let of_roller = |i: usize| Some((i, relief(RollingSurface::Roller(i + 1))?));
+        let larger = larger_by(b);
+        let of_roller = |i: usize| {
+            let formed = relief(RollingSurface::Roller(i + 1));
+            let relief = match larger.get(i) {
+                None => formed?,
+                Some(by) => formed.unwrap_or(Relief::round(0.5e-3 * b.roller_diameter_mm)).raised(*by),
+            };
+            Some((i, relief))
+        };
         let clearance_mm = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
         let mut resolved = Self {
             written: scene.clone(),
@@ -277,6 +287,14 @@ impl ResolvedScene {
     pub fn inner_contact_radius(&self) -> f64 {
         1.0 / (1.0 / self.roller_radius + 1.0 / self.inner_race_radius)
     }
+}
+
+/// By how much the radius of each rolling element exceeds the nominal one [m]; none where all are alike.
+fn larger_by(bearing: &BearingScene) -> Vec<f64> {
+    let half = 0.5e-6 * bearing.diameter_variation_um;
+    let mut dice = Dice::new(bearing.diameter_seed);
+    let count = if half > 0.0 { bearing.rollers } else { 0 };
+    (0..count).map(|_| half * (dice.share() - 0.5)).collect()
 }
 
 impl CageGeometry {
@@ -395,5 +413,23 @@ mod tests {
         let bare = Scene { cage: None, defect: None, ..scene };
         let bare = bare.resolve();
         assert!(bare.cage.is_none() && bare.grooves.is_empty());
+    }
+
+    /// Source: ISO 3290-1, V_DwL: the largest less the smallest mean diameter of a lot.
+    #[test]
+    fn analytic_diameters_lie_within_their_variation() {
+        let with = |fields: &str| {
+            let scene = Scene::default().with_overrides(&[fields.to_owned()]).expect("a scene");
+            let reliefs = scene.resolve().roller_reliefs;
+            reliefs.iter().map(|(_, relief)| relief.larger_by().expect("round")).collect::<Vec<f64>>()
+        };
+        let radii = with("bearing=(diameter_variation_um: 2.0)");
+        let [low, high] =
+            [radii.iter().copied().fold(1.0, f64::min), radii.iter().copied().fold(-1.0, f64::max)];
+        assert_eq!(radii.len(), 24);
+        assert!(2.0 * (high - low) <= 2e-6 && 2.0 * (high - low) > 1.5e-6, "{low} to {high}");
+        assert_eq!(radii, with("bearing=(diameter_variation_um: 2.0)"));
+        assert_ne!(radii, with("bearing=(diameter_variation_um: 2.0, diameter_seed: 2)"));
+        assert!(with("bearing=(diameter_variation_um: 0.0)").is_empty());
     }
 }

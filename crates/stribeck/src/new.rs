@@ -383,14 +383,19 @@ fn spall_of_an_element_mm(answers: &Answers) -> f64 {
     f64::max(USUAL_SPALL_MM, (10.0 * least).ceil() / 10.0)
 }
 
-/// Roughness of honed raceways, as it usually is over the width of a contact and more [µm]: its root mean square,
-/// and its shortest waves as far as the mesh of a large bearing has them.
+/// Roughness of honed raceways over the width of a contact and more [µm], of those of balls, which are finished
+/// finer, half of it: its root mean square, and its shortest waves as far as the mesh of a large bearing has them.
 fn roughness(bearing: &str) -> String {
-    let shortest_mm = (10.0 * WAVE_ELEMENTS * of_bearing(bearing).mesh.size_mm).ceil() / 10.0;
+    let scene = of_bearing(bearing);
+    let rq_um = match scene.element() {
+        Element::Ball => 0.05,
+        Element::Roller => 0.1,
+    };
+    let shortest_mm = (10.0 * WAVE_ELEMENTS * scene.mesh.size_mm).ceil() / 10.0;
     let usual_mm = RoughnessScene::default().shortest_mm;
     let waves =
         if shortest_mm > usual_mm { format!(", shortest_mm: {shortest_mm:?}") } else { String::new() };
-    format!("rq_um: 0.1{waves}")
+    format!("rq_um: {rq_um:?}{waves}")
 }
 
 /// Elements in the shortest wave of a raceway's roughness.
@@ -409,13 +414,18 @@ fn clearance_change_um(bearing: &str) -> f64 {
     mounted_clearance_change_um(inner_mm - 2.0 * b.inner_ring_thickness_mm, inner_mm, pitch_mm).round()
 }
 
-/// The profile of rollers.
-fn profile(bearing: &str) -> &'static str {
+/// What tells its rolling elements from perfect ones.
+fn elements(bearing: &str) -> &'static str {
     match of_bearing(bearing).element() {
-        Element::Ball => "",
+        Element::Ball => {
+            "\n        // Balls of a set differ in diameter: these are of grade 10.\n        \
+             diameter_variation_um: 0.5,"
+        }
         Element::Roller => {
             "\n        // Ends relieved as those of real rollers. Straight ones enter the load with a knock.\n        \
-             roller_profile: logarithmic,"
+             roller_profile: logarithmic,\n        \
+             // Rollers of a set differ in diameter: these are of grade G2.\n        \
+             diameter_variation_um: 2.0,"
         }
     }
 }
@@ -460,7 +470,7 @@ fn text(name: &str, answers: &Answers) -> String {
         .replace("<state>", state)
         .replace("<file>", name)
         .replace("<bearing>", bearing)
-        .replace("<profile>", profile(bearing))
+        .replace("<elements>", elements(bearing))
         .replace("<change>", &format!("{:?}", clearance_change_um(bearing)))
         .replace("<load>", &format!("{load_n:?}"))
         .replace("<speed>", &format!("{speed_rpm:?}"))

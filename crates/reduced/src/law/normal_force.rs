@@ -58,6 +58,8 @@ pub(crate) struct RollerOnRaceway<'a> {
     pub(crate) spin: [f64; 2],
     /// Circle that nothing of the raceway stands out from there [m].
     pub(crate) bound: f64,
+    /// By how much the roller's radius exceeds that of its rim [m].
+    pub(crate) larger: f64,
     /// Force that is expected from the steps before [N].
     pub(crate) before: f64,
 }
@@ -76,9 +78,9 @@ impl ContactLaw {
         parts: &mut [Penetration<Row>; LANES],
     ) {
         for block in &mut *blocks {
-            let Block { top, bits, round, contacts, .. } = block;
+            let Block { top, larger, bits, round, contacts, .. } = block;
             for (raceway, contacts) in raceways.iter().zip(contacts) {
-                Self::approach(simd, raceway, top, [*bits, *round], contacts);
+                Self::approach(simd, raceway, [top, larger], [*bits, *round], contacts);
             }
         }
         for block in &mut *blocks {
@@ -121,7 +123,7 @@ impl ContactLaw {
     fn approach<S: Simd>(
         simd: S,
         raceway: &Raceway,
-        top: &Row,
+        [top, larger]: [&Row; 2],
         [present, round]: [u64; 2],
         contacts: &mut RacewayContacts,
     ) {
@@ -134,6 +136,8 @@ impl ContactLaw {
             let (x, y) = (x - all(raceway.centre[0]), y - all(raceway.centre[1]));
             let distance = x.times_plus(x, y * y).sqrt();
             let per = outwards / distance;
+            // A larger roller meets a raceway as one does that is nearer to it.
+            let distance = outwards.times_plus(Vector::load(simd, larger, at), distance);
             let bound = Vector::load(simd, &contacts.bound, at);
             let most = outwards.times_plus(distance - bound, Vector::load(simd, top, at));
             distance.store(&mut contacts.distance, at);
@@ -171,7 +175,8 @@ impl ContactLaw {
             let rim = rollers.rim(first + lane);
             let before = contacts.normal[lane];
             let (centre, spin) = (of_one(&contacts.centre, lane), of_one(&contacts.spin, lane));
-            let near = RollerOnRaceway { raceway, rim, centre, spin, bound: contacts.bound[lane], before };
+            let (bound, larger) = (contacts.bound[lane], rollers.larger[first + lane]);
+            let near = RollerOnRaceway { raceway, rim, centre, spin, bound, larger, before };
             let found = self.normal_force(simd, near, &mut contacts.hints[lane]);
             contacts.normal[lane] = found.normal;
             contacts.flexibility[lane] = found.flexibility;
@@ -331,6 +336,7 @@ impl ContactLaw {
                         centre,
                         spin: of_one(&contacts.spin, lane),
                         bound: raceway.bound,
+                        larger: 0.0,
                         before: 0.0,
                     };
                     let views = Self::views(&near, d, &mut contacts.hints[lane]);
@@ -399,11 +405,12 @@ impl ContactLaw {
         near: RollerOnRaceway<'_>,
         hints: &mut [u32; 2],
     ) -> NormalForce {
-        let RollerOnRaceway { raceway, rim, centre, bound, before, .. } = near;
+        let RollerOnRaceway { raceway, rim, centre, bound, larger, before, .. } = near;
         let [x, y] = [centre[0] - raceway.centre[0], centre[1] - raceway.centre[1]];
         let distance = (x * x + y * y).sqrt();
         let outwards = raceway.outwards();
         let d = [outwards * x / distance, outwards * y / distance];
+        let distance = distance + outwards * larger;
         let most = outwards * (distance - bound) + rim.top;
         if most <= 0.0 {
             return NormalForce::default();

@@ -47,6 +47,9 @@ pub struct Outlines {
     pub rims: Vec<Vec<[f64; 2]>>,
     /// Rim of each roller, as an index of `rims`.
     pub rim_of: Vec<u32>,
+    /// By how much the radius of each roller exceeds that of its rim [m]: a deviation that leaves it round.
+    #[serde(default)]
+    pub larger: Vec<f64>,
     /// Whether facets stand for arcs of the circles that they are drawn in, or are straight.
     pub arcs: bool,
 }

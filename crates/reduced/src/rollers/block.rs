@@ -35,6 +35,8 @@ pub(crate) struct Block {
     pub(crate) turned: Rows,
     /// Radii of the circles around them [m].
     pub(crate) top: Row,
+    /// By how much their radii exceed those of their rims [m].
+    pub(crate) larger: Row,
     /// From the bearing's centre [m], and the direction there.
     pub(crate) distance: Row,
     pub(crate) radial: Rows,
@@ -157,6 +159,7 @@ impl Block {
             block.present[lane] = 1.0;
             let rim = rollers.rim(first + lane);
             block.top[lane] = rim.top;
+            block.larger[lane] = rollers.larger[first + lane];
             block.round |= u64::from(rim.is_round) << lane;
         }
         block

@@ -26,6 +26,12 @@ group! {
         pub rollers: usize = 24, within(3.0, 400.0);
         /// Diameter of a rolling element [mm].
         pub roller_diameter_mm: f64 = 18.0, positive(5_000.0);
+        /// Variation of the diameters of rolling elements within their set [µm]: each is drawn from as far
+        /// above and below its nominal value as half of it. Balls of grade 10 vary by 0.5 (V_DwL of
+        /// ISO 3290-1), rollers of grade G2 by 2 (a gauge of ISO 3096).
+        pub diameter_variation_um: f64 = 0.0, within(0.0, 100.0), omitted();
+        /// Seed of these draws.
+        pub diameter_seed: u64 = 1, within(0.0, 1e9), omitted();
         /// Profile of rollers along their length, in the reduced model.
         pub roller_profile: RollerProfile = RollerProfile::Straight, omitted();
         /// Out-of-plane thickness of the plane-strain model [mm]; the paper does not state it.

@@ -99,8 +99,15 @@ pub(super) fn alone(bearing: &BearingScene, given: &[String]) -> Option<String> 
 }
 
 /// Fields of a bearing that a scene may give beside its name.
-const BESIDE_A_NAME: [&str; 5] =
-    ["designation", "rollers", "roller_profile", "first_roller_deg", "clearance_change_um"];
+const BESIDE_A_NAME: [&str; 7] = [
+    "designation",
+    "rollers",
+    "diameter_variation_um",
+    "diameter_seed",
+    "roller_profile",
+    "first_roller_deg",
+    "clearance_change_um",
+];
 
 /// A bearing of the catalogue with what a scene says beside its name.
 fn beside_the_name(said: &BearingScene, of_name: BearingScene, given: &[String]) -> BearingScene {
@@ -108,6 +115,8 @@ fn beside_the_name(said: &BearingScene, of_name: BearingScene, given: &[String])
     let rollers = if written("rollers") { said.rollers } else { of_name.rollers };
     BearingScene {
         rollers,
+        diameter_variation_um: said.diameter_variation_um,
+        diameter_seed: said.diameter_seed,
         roller_profile: said.roller_profile,
         first_roller_deg: if written("first_roller_deg") {
             said.first_roller_deg

@@ -203,6 +203,8 @@ fn bearing(
         inner_ring_thickness_mm: tidy(inner_ring.unwrap_or(thickest(0.5 * d.inner))),
         rollers,
         roller_diameter_mm: tidy(d.roller),
+        diameter_variation_um: b.diameter_variation_um,
+        diameter_seed: b.diameter_seed,
         roller_profile: b.roller_profile,
         thickness_mm: tidy(length),
         first_roller_deg: first,

@@ -125,8 +125,16 @@ fn outlines(
     rollers: &[RollerStart],
 ) -> Outlines {
     let (mut rims, mut rim_of) = (vec![reduction.roller.clone()], vec![0; numbers.len()]);
+    let mut larger = vec![0.0; numbers.len()];
+    let arcs = scene.written.contact.surface != ContactSurface::Facet;
+    // Films of oil, and facets, go by the vertices of the rim.
+    let by_radius = arcs && scene.written.film.is_none();
     for (of, relief) in &scene.roller_reliefs {
         let Some(i) = numbers.iter().position(|number| number == of) else { continue };
+        if let Some(by) = relief.larger_by().filter(|_| by_radius) {
+            larger[i] = by;
+            continue;
+        }
         rim_of[i] = rims.len() as u32;
         // A rim is seen from its vertex 0.
         let relief = relief.turned(-rollers[i].vertex_angle);
@@ -137,7 +145,8 @@ fn outlines(
         inner: formed(&reduction.inner, scene.inner_relief.as_ref(), Circle::Outer),
         rims,
         rim_of,
-        arcs: scene.written.contact.surface != ContactSurface::Facet,
+        larger,
+        arcs,
     }
 }
 

@@ -84,6 +84,38 @@ fn peer_defects_are_felt_as_by_the_full_model() {
     assert!(felt > 3.0 * off, "the defects make {felt}, the models differ by {off}");
 }
 
+/// Rollers of other diameters, which stay round, carry as those do whose rims are outlines of their own: waves of
+/// no height make them so.
+#[test]
+fn invariant_a_larger_roller_is_one_with_a_larger_rim() {
+    let text = "(bearing: (designation: \"NU 205\", diameter_variation_um: 8), model: reduced(), film: None, \
+        defect: None, housing: rigid(mass_kg: 1), operation: (load_n: 2000, speed_rpm: 1000), \
+        output: (frames: None), solver: (duration_ms: 5))";
+    let by_radius = Scene::parse(text, "here").expect("a sound scene");
+    let waves = |i| format!("(on: roller({i}), form: waviness(order: 2, amplitude_um: 0.0))");
+    let waves: Vec<String> = (1..=by_radius.bearing.rollers).map(waves).collect();
+    let by_rim = by_radius.with_overrides(&[format!("defects=[{}]", waves.join(", "))]).expect("a scene");
+    let alike = by_radius.with_overrides(&["bearing.diameter_variation_um=0"]).expect("a scene");
+    let folder = Scratch::create("reduced-larger");
+    let forces = |scene: &Scene, name: &str| -> Vec<f64> {
+        assert_eq!(run(scene, &folder, name, 1).status, Status::Complete);
+        let trace = trace(&folder, name);
+        let of = |i: usize, c: &str| channel(&trace, &format!("roller.{i}.outer_f{c}_n")).to_vec();
+        let size = |(x, y): (f64, f64)| x.hypot(y);
+        (1..=scene.bearing.rollers).flat_map(|i| of(i, "x").into_iter().zip(of(i, "y")).map(size)).collect()
+    };
+    let [by_radius, by_rim, alike] = [(&by_radius, "radius"), (&by_rim, "rim"), (&alike, "alike")]
+        .map(|(scene, name)| forces(scene, name));
+    let largest = by_rim.iter().copied().fold(0.0, f64::max);
+    let apart = |a: &[f64], b: &[f64]| {
+        let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64;
+        square.sqrt() / largest
+    };
+    let (off, felt) = (apart(&by_radius, &by_rim), apart(&alike, &by_rim));
+    assert!(off < 2e-3, "{off}");
+    assert!(felt > 20.0 * off, "diameters make {felt}, the ways differ by {off}");
+}
+
 /// From one start, full and reduced model carry the load on the same rollers at first.
 #[test]
 fn peer_the_reduced_model_starts_as_the_full_one() {
