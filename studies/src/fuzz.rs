@@ -170,7 +170,9 @@ mod tests {
 
     #[test]
     fn survives_generated_bad_inputs_with_an_answer() {
-        let code = run(&Options { cases: 800, seed: 7, kind: None, peers: None, seconds: 0, keep: None })
+        // As many as the test of the readers where it is told how many.
+        let cases = std::env::var("STRIBECK_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(800);
+        let code = run(&Options { cases, seed: 7, kind: None, peers: None, seconds: 0, keep: None })
             .expect("a folder for temporary files");
         assert_eq!(code, ExitCode::SUCCESS);
     }
