@@ -106,7 +106,7 @@ pub(crate) fn hum_of(kept: &[f64], rate_hz: f64, speed_rpm: Option<f64>) -> Resu
     }
     let mut welch = Welch::new(rate_hz, kept.len(), &WelchOptions::new(segment)).map_err(Error::Signal)?;
     let density = welch.estimate(kept).map_err(Error::Signal)?;
-    Ok(spectral::hum(density.frequencies_hz(), density.values(), speed_rpm.map(|rpm| rpm / 60.0)))
+    Ok(spectral::hum(&density, speed_rpm.map(|rpm| rpm / 60.0)))
 }
 
 /// Fewest samples of a spectrum.
@@ -301,6 +301,13 @@ mod tests {
         assert_eq!(named(&with(50.0, 3.0, 0.5), Some(3000.0)), None, "the shaft turns as fast");
         assert_eq!(named(&with(48.0, 3.0, 0.5), None), None);
         assert_eq!(named(&with(50.0, 0.0, 0.0), None), None);
+        // A strong line of the machine beside a harmonic of a weak hum is none of it, and the harmonic is.
+        for (hz, is_hum) in [(301.5, None), (300.0, Some(Kind::Hum))] {
+            let line = |n: usize| 2.0 * (TAU * hz * n as f64 / RATE_HZ).sin();
+            let samples: Vec<f64> =
+                with(60.0, 0.2, 0.0).iter().enumerate().map(|(n, x)| x + line(n)).collect();
+            assert_eq!(named(&samples, None), is_hum, "{hz}");
+        }
         let high = with(6200.0, 2.0, 0.0);
         let record = |samples: Vec<f64>| {
             let channel = Channel::held("a", samples);

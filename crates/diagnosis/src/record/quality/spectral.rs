@@ -1,5 +1,7 @@
 //! Findings in the spectrum: lines of the mains, and content just below half the sample rate.
 
+use stribeck_dsp::Spectrum;
+
 use super::{Kind, Quality, percent};
 
 /// Frequencies of the mains [Hz].
@@ -9,23 +11,24 @@ const OFF_HZ: f64 = 0.2;
 /// Height of the line over its surroundings, and of a further one [dB].
 const HIGH_DB: f64 = 20.0;
 const FURTHER_DB: f64 = 12.0;
-/// Share of the power from which on the lines matter, and from which on one needs no harmonics to be named.
+/// Share of the power from which on the lines matter, as they raise the rms by a fortieth, and from which on one
+/// needs no harmonics to be named.
 const SOME: f64 = 0.05;
 const MUCH: f64 = 0.2;
 /// A shaft whose lines are as near as this part is a reason of its own.
 const SHAFT: f64 = 0.01;
 
-/// Lines of the mains in a density of equidistant frequencies [Hz]; `shaft_hz` where the speed is known.
-pub(crate) fn hum(frequencies_hz: &[f64], density: &[f64], shaft_hz: Option<f64>) -> Option<Quality> {
+/// Lines of the mains in a density; `shaft_hz` where the speed is known.
+pub(crate) fn hum(spectrum: &Spectrum, shaft_hz: Option<f64>) -> Option<Quality> {
+    let (frequencies_hz, density) = (spectrum.frequencies_hz(), spectrum.values());
     let grid = frequencies_hz.get(1)? - frequencies_hz[0];
     // The main lobe of a window is four lines wide: harmonics of a slow shaft must lie outside it.
     if grid > 1.0 {
         return None;
     }
     let total: f64 = density.iter().skip((2.0 / grid) as usize).sum::<f64>() * grid;
-    let line = |hz: f64| -> Option<(f64, f64)> {
+    let line = |hz: f64, reach: f64| -> Option<(f64, f64)> {
         let of = |hz: f64| (hz / grid).round() as usize;
-        let reach = OFF_HZ.max(1.5 * grid) * hz / MAINS_HZ[0];
         let near = density.get(of(hz - reach)..=of(hz + reach))?;
         let top = near.iter().copied().fold(0.0, f64::max);
         let (low, high) =
@@ -37,8 +40,12 @@ pub(crate) fn hum(frequencies_hz: &[f64], density: &[f64], shaft_hz: Option<f64>
         let turns = shaft_hz.is_some_and(|hz| {
             (1..=8).any(|k| (f64::from(k) * hz / mains - 1.0).abs() < SHAFT)
         });
-        let (high_db, power) = line(mains)?;
-        let odd = [3.0, 5.0].into_iter().filter_map(|k| line(k * mains)).filter(|of| of.0 > FURTHER_DB);
+        let lobe = 1.5 * grid;
+        let reach = OFF_HZ.max(lobe);
+        let (high_db, power) = line(mains, reach)?;
+        // Harmonics lie where the first line says, not at any line of the machine nearby.
+        let is_hz = spectrum.peak(mains - reach, mains + reach).ok()?.frequency_hz;
+        let odd = [3.0, 5.0].into_iter().filter_map(|k| line(k * is_hz, lobe)).filter(|of| of.0 > FURTHER_DB);
         let share = (power + odd.clone().map(|of| of.1).sum::<f64>()) / total;
         let is_hum = high_db > HIGH_DB && share > SOME && !turns && (odd.count() > 0 || share > MUCH);
         is_hum.then(|| Quality {
