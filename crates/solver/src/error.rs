@@ -30,8 +30,8 @@ pub enum Error {
     },
     /// An element has no or negative area.
     #[error(
-        "element {element} of body `{body}` has area {area:e} m²: corners must run counter-clockwise around \
-         a positive area"
+        "element {element} of body `{body}` has area {area:e} m², {:e} mm²: corners must run \
+         counter-clockwise around a positive area", 1e6 * .area
     )]
     BadElement {
         /// Body name.

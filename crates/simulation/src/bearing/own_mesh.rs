@@ -33,6 +33,8 @@ struct OwnMesh<'a> {
     file: &'a str,
     part: Part,
     deck: ReadDeck,
+    /// Metres of a unit of length of the file.
+    unit: f64,
 }
 
 impl<'a> OwnMesh<'a> {
@@ -46,7 +48,7 @@ impl<'a> OwnMesh<'a> {
         let mut part = deck.part().map_err(|error| refuse(error.to_string()))?;
         let unit = 1e-3 * unit_mm;
         part.x.iter_mut().chain(&mut part.y).for_each(|place| *place *= unit);
-        Ok(Self { group, file, part, deck })
+        Ok(Self { group, file, part, deck, unit })
     }
 
     fn refuse<T>(&self, what: String) -> Result<T, Error> {
@@ -149,9 +151,10 @@ impl<'a> OwnMesh<'a> {
 
     fn misses<T>(&self, what: &str, fits: &str, [is, wanted]: [f64; 2]) -> Result<T, Error> {
         self.refuse(format!(
-            "its {what} does not fit {fits}: a node lies {:.4} mm from the centre, and the radius there is \
-             {:.4} mm. Look at `{}.unit_mm`; the bearing's centre is the origin of the mesh",
+            "its {what} does not fit {fits}: a node lies {:.4} mm from the centre, {:.6} in the file, and the \
+             radius there is {:.4} mm. Look at `{}.unit_mm`; the bearing's centre is the origin of the mesh",
             1e3 * is,
+            is / self.unit,
             1e3 * wanted,
             self.group
         ))

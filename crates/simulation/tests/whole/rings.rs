@@ -215,11 +215,14 @@ fn refuses_a_mesh_that_is_no_ring_of_the_bearing() {
             ring(", raceway: \"track\""),
             "no set of nodes `track`, which `outer_ring_mesh.raceway` names; sets: `fit`, `raceway`",
         ),
-        (ring(", unit_mm: 1000"), "its raceway does not fit the one of `bearing`: a node lies 23250.000"),
+        (
+            ring(", unit_mm: 1000"),
+            "its raceway does not fit the one of `bearing`: a node lies 23250.0000 mm from the centre, 23.25",
+        ),
         (ring(", raceway: \"fit\""), "its raceway does not fit the one of `bearing`: a node lies 26.000"),
         (
             ring(", fit: \"raceway\""),
-            "its back does not fit the thickness of the ring: a node lies 23.2500 mm",
+            "thickness of the ring: a node lies 23.2500 mm from the centre, 23.250000 in the file",
         ),
         (ring("").replace("outer_ring", "inner_ring"), "its raceway does not fit the one of `bearing`"),
     ] {
