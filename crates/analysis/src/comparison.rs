@@ -73,9 +73,10 @@ impl Comparison {
     ///
     /// # Errors
     /// [`Error::Summary`] when a summary cannot be read as numbers.
-    pub fn of(sides: Vec<Side>) -> Result<Self, Error> {
+    pub fn of(mut sides: Vec<Side>) -> Result<Self, Error> {
         let scenes: Vec<_> = sides.iter().map(|side| side.scene.as_ref()).collect();
         let fields = differences(&scenes);
+        name_by_fields(&mut sides, &fields);
         let units: Vec<&str> = sides.iter().map(|side| side.unit.as_str()).collect();
         let one_unit = units.windows(2).all(|pair| pair[0] == pair[1]);
         let row = |name: &str, words: &str, unit: &str, of: &dyn Fn(&Member) -> Option<f64>| {
@@ -123,6 +124,24 @@ impl Comparison {
         let known: Vec<f64> = self.sides.iter().filter_map(|side| side.shaft_hz).collect();
         let equal = |pair: &[f64]| (pair[1] - pair[0]).abs() <= SAME * pair[0];
         known.len() < self.sides.len() || known.windows(2).all(equal)
+    }
+}
+
+/// Fields by which runs of a campaign are called, whose folders have the names of their scenes' hashes.
+const CALLED_BY: usize = 2;
+
+/// Calls runs of a campaign by what differs in their scenes: `load_n 200`.
+fn name_by_fields(sides: &mut [Side], fields: &[FieldDifference]) {
+    let is_hash = |label: &str| label.len() == 16 && label.chars().all(|c| c.is_ascii_hexdigit());
+    if !(1..=CALLED_BY).contains(&fields.len()) || !sides.iter().all(|side| is_hash(&side.label)) {
+        return;
+    }
+    for (at, side) in sides.iter_mut().enumerate() {
+        let of = |field: &FieldDifference| {
+            let name = field.field.rsplit('.').next().unwrap_or_default();
+            format!("{name} {}", field.values[at].as_deref().unwrap_or("–"))
+        };
+        side.label = fields.iter().map(of).collect::<Vec<_>>().join(", ");
     }
 }
 

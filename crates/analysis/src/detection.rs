@@ -161,7 +161,9 @@ fn counted(of: Option<&OfLength>, record_s: f64) -> String {
     of.map_or_else(String::new, |OfLength { found, .. }| {
         let [low, high] = [found.low, found.high].map(|share| 100.0 * share);
         let Share { count, of, .. } = found;
-        format!("{count} of {of} records of {record_s:.1} s ({low:.0} to {high:.0} %, 95 %)")
+        format!(
+            "{count} of {of} records of {record_s:.1} s (95 % interval of the share: {low:.0} to {high:.0} %)"
+        )
     })
 }
 
@@ -182,11 +184,11 @@ pub fn in_words(detection: &Detection) -> String {
             )
         }
         Smallest::Below(mm) => format!(
-            "The shortest spall that was tried, {mm:.2} mm, is found in {}, {of}.",
+            "Even the shortest spall that was tried, {mm:.2} mm, is found in {}, {of}: the smallest lies below.",
             counted(detection.lengths.first(), *record_s)
         ),
         Smallest::Above(mm) => format!(
-            "The longest spall that was tried, {mm:.2} mm, is found in {} only, {of}.",
+            "Even the longest spall that was tried, {mm:.2} mm, is found in {} only, {of}: the smallest lies above.",
             counted(detection.lengths.last(), *record_s)
         ),
     }

@@ -26,7 +26,7 @@ quantities! {
         #[serde(default)]
         pub relative_hz: f64,
         /// Cage; without one, the mean orbital frequency of the rollers.
-        pub cage_hz: Option<f64> => "cage" at 8,
+        pub cage_hz: Option<f64> => "speed of the cage" at 8,
         /// Cage, no slip (fundamental train frequency).
         pub expected_cage_hz: f64,
         /// Cage as seen from the outer ring, measured and without slip.

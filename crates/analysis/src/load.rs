@@ -17,7 +17,7 @@ quantities! {
     pub struct LoadFinding {
         /// Mean over the record of the force between rollers and outer ring along the load [N], positive when
         /// it supports the load.
-        pub mean_n: Option<f64> => "mean force of all rollers on the outer ring" at 5,
+        pub mean_n: Option<f64> => "mean force of load and weight on the outer ring" at 5,
         /// Expected value: the load, its mean over the record where it changes, plus the weight of housing
         /// and outer ring along it [N].
         pub expected_n: f64,

@@ -276,7 +276,7 @@ fn words(family: &SeriesFamily) -> String {
     };
     let by = match last {
         1 => "the last record claims it".to_owned(),
-        _ => format!("{last_claiming} of the last {last} records claim it"),
+        _ => format!("the last {last} records, of which {last_claiming} claim it, decide"),
     };
     format!("a defect of {part} ({name}): {since}{by}, false alarm {}", chance(*p_value))
 }

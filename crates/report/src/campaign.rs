@@ -105,13 +105,25 @@ impl<'a> Over<'a> {
         let (field, abscissa) = (index.fields[at].as_str(), Abscissa::of(index, at));
         let mut changes = Vec::new();
         let mut same = Vec::new();
+        let mut seen: Vec<Vec<Option<String>>> = Vec::new();
         for drawn in drawn() {
+            let numbers: Vec<Option<String>> = index
+                .runs
+                .iter()
+                .map(|run| run.numbers.get(&drawn.path).map(|x| significant(*x, 3)))
+                .collect();
+            // Two names of one number, as of a peak that is that of the exits.
+            if numbers.iter().any(Option::is_some) && seen.contains(&numbers) {
+                continue;
+            }
+            seen.push(numbers);
             let Some(figure) = figure(index, at, &abscissa, &drawn) else { continue };
             match Change::of(index, &abscissa, &drawn.path) {
                 Some(change) if change.size(drawn.unit) >= 1.0 => {
                     let words = change.words(&drawn, field);
                     let caption = format!("{words}.");
-                    let rank = (!change.is_monotone(), -change.size(drawn.unit));
+                    // The signal first: it is what a sensor has of the field.
+                    let rank = ((!change.is_monotone(), !drawn.is_listed), -change.size(drawn.unit));
                     changes.push((rank, (words, figure.caption(caption))));
                 }
                 _ => same.push(drawn.words),
@@ -184,6 +196,8 @@ fn first_screen(index: &CampaignIndex, over: &[Over<'_>]) -> Result<Markup, Erro
             p {
                 strong { "How far to trust it. " }
                 @if several { "A change counts from three standard deviations of the starts on." }
+                @else if index.fields.len() > 1 { "A change counts from three standard deviations of the runs on \
+                         that share its value and differ in the other fields, and from a hundredth on." }
                 @else { "Each value has one start, whose scatter is unknown: a change counts from a tenth or 3 dB \
                          on. Several starts (" code { "starts" } ") measure it." }
                 " Means of all runs of a value."

@@ -4,14 +4,14 @@ mod figures;
 
 use std::path::Path;
 
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 use stribeck_analysis::comparison::{Comparison, Contrast, FieldDifference, Kind, Row, Side, Verdict};
 use stribeck_analysis::statistic::Statistic;
 use stribeck_diagnosis::words::numbers::significant;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
-use crate::page::{document, json, sentence};
+use crate::page::{HALF_PAGE_PX, capital, document, json, sentence};
 use crate::plot::{Colour, Figure};
 use figures::Figures;
 
@@ -19,6 +19,8 @@ use figures::Figures;
 pub const MOST_COMPARED: usize = Colour::FOREGROUNDS.len();
 /// Fields and numbers that the answer names; the tables have all.
 const NAMED: usize = 4;
+/// Least change of a number that the answer names where its scatter is unknown [%].
+const WORTH: f64 = 10.0;
 /// Longest value of a field in the answer [characters].
 const LONGEST: usize = 48;
 
@@ -38,6 +40,7 @@ fn page(comparison: &Comparison) -> Result<Markup, Error> {
     let sides = &comparison.sides;
     let title = title(sides);
     let Figures { trace, spectra, envelope, forces } = Figures::of(comparison);
+    let first = first_screen(comparison, envelope.first().or(spectra.first()).or(trace.first()))?;
     let drawn = |figures: Vec<Figure>| figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>();
     let sections = [
         ("signals", "Signals", drawn(trace)?),
@@ -49,7 +52,7 @@ fn page(comparison: &Comparison) -> Result<Markup, Error> {
         &title,
         html! {
             h1 { (title) }
-            @for line in answer(comparison) { p { (line) } }
+            (first)
             (at_a_glance(sides))
             h2 #fields { "What was changed" }
             (fields(comparison))
@@ -72,6 +75,23 @@ fn page(comparison: &Comparison) -> Result<Markup, Error> {
     ))
 }
 
+/// The answer, its first sentence in bold, beside a figure.
+fn first_screen(comparison: &Comparison, figure: Option<&Figure>) -> Result<Markup, Error> {
+    let lines = answer(comparison);
+    let Some((first, others)) = lines.split_first() else { return Ok(html! {}) };
+    let picture = figure.map(|figure| {
+        Ok::<_, Error>((&figure.id, Figure { width_px: HALF_PAGE_PX, ..figure.clone() }.to_svg()?))
+    });
+    let picture = picture.transpose()?;
+    Ok(html! {
+        div class="top" {
+            p class="headline" { (first) }
+            @if let Some((id, svg)) = picture { a class="picture" href={ "#" (id) } { (PreEscaped(svg)) } }
+            div class="answer" { @for line in others { p { (line) } } }
+        }
+    })
+}
+
 fn title(sides: &[Side]) -> String {
     match sides {
         [a, b] => format!("{} beside {}", b.label, a.label),
@@ -84,7 +104,7 @@ fn count(number: usize, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }
 
-/// The answer in a few sentences: the fields that differ, the results that differ, and each side alone.
+/// The answer in a few sentences: the results that differ, the fields that do, and each side alone.
 pub fn answer(comparison: &Comparison) -> Vec<String> {
     let sides = &comparison.sides;
     let scenes = sides.iter().filter(|side| side.scene.is_some()).count();
@@ -111,23 +131,30 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
     let follows = if known.is_empty() {
         "They have no number in common.".to_owned()
     } else if !scatter {
-        let mut largest: Vec<(f64, &&Row)> = known
-            .iter()
-            .filter_map(|row| {
-                let percent = row.against_first.iter().flatten().filter_map(|c| c.percent);
-                Some((percent.map(f64::abs).max_by(f64::total_cmp)?, row))
-            })
-            .collect();
-        largest.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let named = largest.iter().take(NAMED).map(|(_, row)| row_in_words(row));
+        // In the order of the table, the signal first.
+        let changes = |row: &&&Row| {
+            let percent = row.against_first.iter().flatten().filter_map(|c| c.percent);
+            percent.map(f64::abs).any(|percent| percent >= WORTH)
+        };
+        let mut told = Vec::new();
+        // A peak that is that of the exits is told once.
+        let is_new = |row: &&&Row| {
+            let values = values_in_words(row);
+            let is_new = !told.contains(&values);
+            told.push(values);
+            is_new
+        };
+        let named = known.iter().filter(changes).filter(is_new).take(NAMED).map(|row| row_in_words(row));
+        let named: Vec<String> = named.collect();
         if known.iter().all(|row| row.against_first.iter().flatten().all(|c| c.difference == 0.0)) {
             "No number differs.".to_owned()
         } else {
-            format!(
-                "Largest differences: {}. Each is a single signal, so change and scatter are not \
-                 distinguished.",
-                named.collect::<Vec<_>>().join("; ")
-            )
+            let named = if named.is_empty() {
+                format!("No number differs by {WORTH} % or more.")
+            } else {
+                format!("{}.", capital(&named.join("; ")))
+            };
+            named
         }
     } else if differ.is_empty() {
         format!("None of {} differs by more than the starts scatter.", count(known.len(), "number"))
@@ -146,7 +173,12 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
         "" => format!("{}: too short to be judged by itself.", side.label),
         words => format!("{}: {}", side.label, sentence(words)),
     };
-    [changed, follows, sides.iter().map(verdict).collect::<Vec<_>>().join(" ")]
+    let caution = if known.is_empty() || scatter {
+        String::new()
+    } else {
+        "Each is a single signal, so change and scatter are not distinguished.".to_owned()
+    };
+    [follows, changed, caution, sides.iter().map(verdict).collect::<Vec<_>>().join(" ")]
         .into_iter()
         .filter(|line| !line.is_empty())
         .collect()
@@ -167,10 +199,13 @@ fn shortened(text: &str) -> String {
 }
 
 fn row_in_words(row: &Row) -> String {
-    let values: Vec<String> =
-        row.values.iter().map(|v| v.as_ref().map_or("–".to_owned(), |s| significant(s.mean, 3))).collect();
-    let unit = if row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
-    format!("{} {}{unit}", row.quantity, values.join(" → "))
+    format!("{} {}", row.quantity, values_in_words(row))
+}
+
+fn values_in_words(row: &Row) -> String {
+    let value = |v: &Option<Statistic>| v.as_ref().map_or("–".to_owned(), |s| significant(s.mean, 3));
+    let values: Vec<String> = row.values.iter().map(value).collect();
+    format!("{} {}", values.join(" → "), row.unit).trim_end().to_owned()
 }
 
 /// The sides with their colours.

@@ -71,8 +71,11 @@ fn figure(detection: &Detection) -> Figure {
     .with(
         Series::listed("found", Colour::Orange, lengths.clone(), percent(&|one| one.found.share)).as_points(),
     )
-    .with(Series::listed("95 %", Colour::Grey, lengths.clone(), percent(&|one| one.found.high)).as_edge())
-    .with(Series::listed("95 %", Colour::Grey, lengths, percent(&|one| one.found.low)).as_edge());
+    .with(
+        Series::listed("95 %, upper end", Colour::Grey, lengths.clone(), percent(&|one| one.found.high))
+            .as_edge(),
+    )
+    .with(Series::listed("95 %, lower end", Colour::Grey, lengths, percent(&|one| one.found.low)).as_edge());
     figure.levels.push(Level { y: 100.0 * WANTED, label: "nine of ten".to_owned(), colour: Colour::Grey });
     if let Smallest::Between { length_mm, .. } = detection.smallest {
         figure.marks.push(Mark::new(length_mm.log10(), format!("{length_mm:.2} mm"), Colour::Blue, true));

@@ -68,6 +68,11 @@ pub struct Answer {
 const ENOUGH_SCENES: usize = 40;
 
 impl Answer {
+    /// The share of truths that its intervals of 90 % hold, in words.
+    pub fn share(&self) -> &'static str {
+        if self.own_runs < ENOUGH_SCENES { "about 80 %" } else { "90 %" }
+    }
+
     /// A word on intervals that few scenes make too narrow.
     pub fn too_narrow(&self) -> Option<String> {
         (self.own_runs < ENOUGH_SCENES).then(|| {
@@ -228,9 +233,9 @@ impl Answer {
     }
 }
 
-/// A number with four significant digits.
+/// A number with three significant digits, and no fewer than its integers.
 fn short(value: f64) -> String {
-    let digits = if value == 0.0 { 0 } else { 3 - value.abs().log10().floor().clamp(-6.0, 3.0) as i32 };
+    let digits = if value == 0.0 { 0 } else { 2 - value.abs().log10().floor().clamp(-6.0, 2.0) as i32 };
     format!("{value:.*}", digits.max(0) as usize).replace('-', "−")
 }
 

@@ -29,6 +29,7 @@ mod emit;
 #[cfg(feature = "full")]
 mod export;
 pub mod fmu;
+mod help;
 #[cfg(feature = "full")]
 mod infer;
 pub mod lab;
@@ -77,7 +78,13 @@ pub use place::Place;
 /// Reads a scene (a short text), simulates the bearing, and leaves a folder with traces, energies and a
 /// report.
 #[derive(Debug, clap::Parser)]
-#[command(name = "stribeck", version = host::VERSION, max_term_width = 100, arg_required_else_help = true)]
+#[command(
+    name = "stribeck",
+    version = host::VERSION,
+    max_term_width = 100,
+    arg_required_else_help = true,
+    help_template = help::template()
+)]
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -106,8 +113,7 @@ impl Cli {
 /// Commands of the program.
 #[derive(Debug, clap::Subcommand)]
 pub enum Command {
-    /// Shows what it does, in ten seconds: a bearing with a spall, its page and sound, and the verdict on its
-    /// record
+    /// Shows what it does, in ten seconds: a spall, its page, its sound, and the verdict
     #[command(after_help = "Example: stribeck demo")]
     Demo(demo::Options),
     /// Writes a scene of your own, by six questions or by flags, that runs as it is
@@ -121,23 +127,21 @@ pub enum Command {
     /// Writes the report of a run again
     #[command(after_help = "Example: stribeck report mine --pdf")]
     Report(report::Options),
-    /// Runs many scenes made from one, and makes a data set of them; the same command starts and continues
+    /// Runs many scenes made from one, and makes a data set of them; starts and continues
     #[command(after_help = "Example: stribeck campaign starts.ron --out runs/starts")]
     Campaign(campaign::Options),
-    /// Runs a scene with several values of some fields, each with every other: a campaign in one line
+    /// Runs a scene with several values of some fields: a campaign in one line
     #[command(after_help = "Example: stribeck sweep mine.ron --set operation.load_n=1000,2000,4000")]
     Sweep(sweep::Options),
-    /// Infers unknown fields of a scene from observed numbers: which values are consistent with them, and
-    /// which are not
+    /// Infers unknown fields of a scene from observed numbers, with their intervals
     #[command(after_help = "Example: stribeck infer unknown.ron")]
     Infer(infer::Options),
-    /// Fits a machine to measured records of known state: the path from the bearing to the sensor, and the
-    /// background
+    /// Fits path to the sensor and background of a machine to records of known state
     #[command(
         after_help = "Example: stribeck machine sound.mat spalled.mat --defect none --defect outer:0.53 --bearing 6205 --unit g"
     )]
     Machine(machine_fit::Options),
-    /// Finds the smallest spall that the verdict sees in nine of ten records of a machine
+    /// Finds the smallest spall that nine of ten records of a machine show
     #[command(after_help = "Example: stribeck detect mine.ron --lengths 0.3..5")]
     Detect(detect::Options),
     /// Runs a scene by the full and by the reduced model, and compares them
@@ -149,23 +153,22 @@ pub enum Command {
     /// Stiffness and damping of a bearing over load, speed and cage angle, for rotor dynamics
     #[command(after_help = "Example: stribeck stiffness mine.ron")]
     Stiffness(stiffness::Options),
-    /// Makes a page in which bearings run: one file for a browser, with handles and instruments
+    /// Makes a page in which bearings run, with handles and instruments
     #[command(after_help = "Example: stribeck lab mine.ron --out mine.html --open")]
     Lab(lab::Options),
-    /// Packs the reduced bearing of a scene as an FMU for rotor programs: the shaft's motion in, forces out
+    /// Packs a bearing as an FMU for rotor programs: the shaft's motion in, forces out
     #[command(after_help = "Example: stribeck fmu mine.ron --set 'model=reduced()'")]
     Fmu(fmu::Options),
-    /// Lists the bearings that have a name, with dimensions, defect frequencies and where the numbers are
-    /// from
+    /// Lists bearings by name: dimensions, defect frequencies, sources
     #[command(after_help = "Example: stribeck bearings \"NU 205\"")]
     Bearings(bearings::Options),
-    /// Analyses a measured record: which defects, how certain, and what it does not decide
+    /// Analyses measured records: which defects, how certain, and what is open
     #[command(
         visible_alias = "analyze",
         after_help = "Example: stribeck analyse record.mat --bearing 6205 --speed-rpm 1797"
     )]
     Analyse(analyse::Options),
-    /// Compares runs, ensembles and measured records: changed fields, and changed results
+    /// Compares runs, ensembles and records: changed fields, changed results
     #[command(after_help = "Example: stribeck compare mine other record.mat")]
     Compare(compare::Options),
     /// Writes the signals or the stress frames of a run in a format of other programs

@@ -160,7 +160,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     // A run that broke off has a report too: the samples until then show the cause.
     if dir.has_started() && !options.no_report {
         match report::write(dir.path()) {
-            Ok(_) => say!("report: {}", shown(&dir.report())),
+            Ok(summary) => {
+                if let Some(diagnosis) = summary.diagnosis {
+                    say!("{}", diagnosis.verdict);
+                }
+                say!("report: {}", shown(&dir.report()));
+            }
             // The run's own error matters more than that of its report.
             Err(error) if finished.is_err() => caution!("no report: {error}"),
             Err(error) => {

@@ -4,6 +4,18 @@ use crate::Defect;
 use crate::families::family::Family;
 use crate::families::unexplained::Unexplained;
 
+/// A frequency beside that of rolling without slip, in words.
+fn beside(hz: f64, without_slip_hz: f64) -> String {
+    let off = 100.0 * (hz / without_slip_hz - 1.0);
+    match off.abs() {
+        percent if percent < 0.05 => "as rolling without slip has it".to_owned(),
+        percent => {
+            let side = if off > 0.0 { "above" } else { "below" };
+            format!("{percent:.1} % {side} that of rolling without slip")
+        }
+    }
+}
+
 /// The verdict in words.
 pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -> String {
     // Two families that cannot be distinguished are reported under the name of the first.
@@ -16,23 +28,18 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
         .filter(|(at, f)| f.claimed && !spoken_for(*at, f))
         .map(|(_, f)| {
             let hz = f.measured_hz.unwrap_or(f.expected_hz);
-            let off = 100.0 * (hz / f.expected_hz - 1.0);
+            let beside = beside(hz, f.expected_hz);
             let other = families.iter().find(|other| f.not_told_apart_from == Some(other.name));
             match other {
                 Some(_) if f.name == Defect::Ftf => format!(
                     "a defect of the cage or of one rolling element, which the record cannot distinguish \
-                     (something knocks once a turn of the cage, {} at {hz:.2} Hz, {off:+.1} % from its \
-                     place)",
+                     (something knocks once a turn of the cage, {} at {hz:.2} Hz, {beside})",
                     f.name
                 ),
-                None => format!(
-                    "a defect of {} ({} at {hz:.2} Hz, {off:+.1} % from its place)",
-                    f.name.part(),
-                    f.name
-                ),
+                None => format!("a defect of {} ({} at {hz:.2} Hz, {beside})", f.name.part(), f.name),
                 Some(other) => format!(
                     "a defect of {} or of {}, which the record cannot distinguish ({} at {hz:.2} Hz, \
-                     {off:+.1} % from its place, and {} times {} stand within a resolution)",
+                     {beside}, and {} times {} stand within a resolution)",
                     f.name.part(),
                     other.name.part(),
                     f.name,

@@ -11,6 +11,8 @@ const BEYOND: f64 = 3.0;
 const PART: f64 = 0.1;
 /// … or of less than this level.
 const PART_DB: f64 = 3.0;
+/// However little the runs scatter, a change of less than this part is not worth a sentence.
+const LEAST_PART: f64 = 0.01;
 
 /// A number over a field: its means from the first value to the last.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,9 +56,8 @@ impl Change {
             None if unit == "dB" => PART_DB,
             None => PART * least.abs().max(most.abs()),
         };
-        // Numbers that do not scatter change by their rounding.
-        let rounding = 1e-6 * least.abs().max(most.abs());
-        (most - least) / counts.max(rounding).max(f64::MIN_POSITIVE)
+        let worth = LEAST_PART * least.abs().max(most.abs());
+        (most - least) / counts.max(worth).max(f64::MIN_POSITIVE)
     }
 
     /// In words: what happens from the first value of the field to the last.

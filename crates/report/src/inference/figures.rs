@@ -66,7 +66,9 @@ fn panel(sheet: &mut Sheet, field: &FieldFound, [x, y]: [f64; 2], [width, height
             );
             if let Some(median) = field.median {
                 sheet.circle([place(median), line], 3.5, &format!("fill:{TEXT}"));
-                sheet.text([x + 0.5 * width, y + height + 24.0], 11.0, Anchor::Middle, TEXT, &short(median));
+                // Below its dot, and clear of the numbers of both ends.
+                let below = place(median).clamp(x + 0.2 * width, x + 0.8 * width);
+                sheet.text([below, y + height + 24.0], 11.0, Anchor::Middle, TEXT, &short(median));
             }
         }
         _ => {

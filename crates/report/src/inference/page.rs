@@ -23,7 +23,7 @@ pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
                 p class="headline" { (headline(answer)) }
                 div class="picture" { (priors?) }
                 div class="answer" {
-                    @for field in by_width(answer).into_iter().skip(1) { p { (found(field)) } }
+                    @for field in by_width(answer).into_iter().skip(1) { p { (found(field, answer.share())) } }
                 }
             }
             aside class="limits" { p {
@@ -63,19 +63,19 @@ fn headline(answer: &Answer) -> String {
         return "Nothing was unknown.".to_owned();
     };
     match field.width_of_prior {
-        width if width > UNKNOWN => format!("The targets hardly tell. {}", found(field)),
-        _ => found(field),
+        width if width > UNKNOWN => format!("The targets hardly tell. {}", found(field, answer.share())),
+        _ => found(field, answer.share()),
     }
 }
 
 /// What was found of one unknown, in words.
-fn found(field: &FieldFound) -> String {
+fn found(field: &FieldFound, share: &str) -> String {
     let FieldWords { words, unit } = FieldWords::of(&field.name);
     let unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     match (field.median, field.interval_90) {
         (Some(median), Some([low, high])) => {
             format!(
-                "{words}: {}{unit}, 90 % between {} and {}{unit}.",
+                "{words}: {}{unit}, {share} between {} and {}{unit}.",
                 short(median),
                 short(low),
                 short(high)

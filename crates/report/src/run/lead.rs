@@ -8,7 +8,7 @@ use stribeck_scene::deviation::DeviationScene;
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::ring_mesh::RingMeshScene;
-use stribeck_scene::scene::DefectRing;
+use stribeck_scene::scene::{DefectRing, ModelScene};
 use stribeck_theory::catalogue::Element;
 
 /// The sentence under the title.
@@ -34,12 +34,16 @@ pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_
     // The page calls them balls where the bearing has balls.
     let as_cylinders = if scene.written.element() == Element::Ball { ", modelled as cylinders," } else { "" };
     format!(
-        "{name}{} rollers{as_cylinders}{} under {} at {}, {defect}; {:.1} ms on record.",
+        "{name}{} rollers{as_cylinders}{} under {} at {}, {defect}; {:.1} ms, simulated {}.",
         scene.written.rollers_in_place().count(),
         own_rings(scene) + &housing(scene),
         load(scene, duty),
         speed(scene, duty),
-        simulated_ms
+        simulated_ms,
+        match scene.written.model {
+            ModelScene::Full => "in finite elements",
+            ModelScene::Reduced(_) => "by the reduced model",
+        }
     )
 }
 

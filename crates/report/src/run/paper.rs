@@ -102,7 +102,7 @@ impl<'a> PaperCase<'a> {
     pub(crate) fn headline(&self) -> String {
         let [all, met] = [self.on_record().count(), self.on_record().filter(|b| !b.differs()).count()];
         let scatter = if self.starts.len() > 1 { "starts scatter" } else { "one start may scatter" };
-        format!("{met} of {all} numbers that the paper prints are met within what {scatter}.")
+        format!("{met} of {all} numbers that Singh et al. (2014) print are met within what {scatter}.")
     }
 
     /// Which of them are not; empty where all are.

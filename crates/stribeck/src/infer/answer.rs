@@ -291,8 +291,9 @@ pub(super) fn tell(answer: &Answer) {
     for field in &answer.fields {
         match (field.median, field.interval_90) {
             (Some(median), Some([low, high])) => say!(
-                "{}: {median:.4}, 90 % between {low:.4} and {high:.4} ({:.0} % of the prior)",
+                "{}: {median:.4}, {} between {low:.4} and {high:.4} ({:.0} % of the prior)",
                 field.name,
+                answer.share(),
                 100.0 * field.width_of_prior
             ),
             _ => {

@@ -340,7 +340,8 @@ pub(super) fn in_words(inference: &Inference, answer: &stribeck_report::inferenc
     let at = inference.unknowns.iter().position(|unknown| unknown.name == "defect.length_mm")?;
     let field = &answer.fields[at];
     let (median, [low, high]) = (field.median?, field.interval_90?);
-    Some(format!("the spall is {median:.2} mm long, 90 % between {low:.2} and {high:.2} mm"))
+    let share = answer.share();
+    Some(format!("the spall is {median:.2} mm long, {share} between {low:.2} and {high:.2} mm"))
 }
 
 #[cfg(test)]
