@@ -60,11 +60,11 @@ fn reader(kind: &str) -> &'static str {
 
 /// Differences of which examples were looked at and lie with the other program: format, in what (all where it
 /// is empty), by what damage (all where it is empty), and why.
-const EXPLAINED: [(&str, &str, &str, &str); 12] = [
+const EXPLAINED: [(&str, &str, &str, &str); 13] = [
     ("csv", "", "it is cut off", "pandas keeps the row that breaks off; we leave it out, with a note"),
     ("csv", "samples", "", LINES),
     ("csv", "numbers among the samples", "", LINES),
-    ("csv", "rms", "a bit is turned", LINES),
+    ("csv", "rms", "", LINES),
     (
         "wav",
         "samples",
@@ -82,8 +82,15 @@ const EXPLAINED: [(&str, &str, &str, &str); 12] = [
     (
         "mf4",
         "rms",
-        "a type or a flag is another",
-        "a conversion whose name or comment lies nowhere: asammdf leaves the conversion out, we apply it",
+        "",
+        "a conversion whose block is damaged beside its numbers: asammdf leaves the conversion out, we apply it",
+    ),
+    (
+        "msh",
+        "rms",
+        "",
+        "a total of nodes, or the number of a node without elements, is damaged: meshio takes numbers from \
+         memory that it has not filled, we take the nodes of the blocks",
     ),
     ("inp", "samples", "", SAME_ELEMENT),
     ("msh", "samples", "", SAME_ELEMENT),
