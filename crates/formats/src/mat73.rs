@@ -231,23 +231,31 @@ impl Found {
             (Some(axes), Some(number)) => self.streamed(dataset, number, &shape, axes)?,
             _ => None,
         };
+        let chunk = dataset.chunk_shape()?.unwrap_or_default();
+        let chunk = chunk.iter().fold(1_u64, |product, n| product.saturating_mul(*n));
+        let unwritten = format!("none of its {count} numbers was ever written");
         let channels = match streamed {
             Some(channels) => channels,
+            // The library unpacks a piece as a whole, whatever the set needs of it.
+            None if chunk > MOST => {
+                let why = if dataset.chunks()?.is_empty() {
+                    unwritten
+                } else {
+                    format!(
+                        "it is packed in pieces of {chunk} numbers, which must be unpacked whole, and {MOST} are \
+                         the most: pack it anew with `h5repack -l CHUNK=65536 -f GZIP=1`"
+                    )
+                };
+                self.notes.push(left_out(name, &why));
+                return Ok(());
+            }
             None if count <= MOST.saturating_sub(self.numbers) => {
                 self.numbers += count;
                 held(&dataset.read_f64()?, &shape, axes.as_ref())
             }
             None => {
-                let chunk = dataset.chunk_shape()?.unwrap_or_default();
-                let chunk = chunk.iter().fold(1_u64, |product, n| product.saturating_mul(*n));
                 if dataset.chunks()?.is_empty() {
-                    self.notes.push(left_out(name, &format!("none of its {count} numbers was ever written")));
-                } else if chunk > MOST {
-                    let why = format!(
-                        "it is packed in pieces of {chunk} numbers, which must be unpacked whole, and {MOST} are \
-                         the most: pack it anew with `h5repack -l CHUNK=65536 -f GZIP=1`"
-                    );
-                    self.notes.push(left_out(name, &why));
+                    self.notes.push(left_out(name, &unwritten));
                 } else {
                     self.too_long.push(format!("`{name}`"));
                 }

@@ -115,3 +115,22 @@ fn issue_a_file_of_hdf5_that_is_being_written_is_read() {
     holds(found.channel("acc").unwrap(), COUNT, |n| signal(n) as f32 as f64);
     notes(&found, &["did not close it", "still writes"]);
 }
+
+/// A file of 9 kB whose head claims a piece of 4 GB took them for 48 numbers.
+#[test]
+fn refuses_a_piece_of_hdf5_that_no_memory_should_hold() {
+    let desk = Scratch::create("formats-hdf5-piece");
+    let path = format!("{}/../../fixtures/signals/small/old.h5", env!("CARGO_MANIFEST_DIR"));
+    let mut bytes = std::fs::read(path).unwrap();
+    // The layout of `gzip`, of version 3: pieces of 16 numbers of 8 bytes, behind the address of their index.
+    let sizes = [16, 8_u32].map(u32::to_le_bytes).concat();
+    let is_layout =
+        |at: &usize| bytes[*at..].starts_with(&[3, 2, 2]) && bytes[*at + 11..].starts_with(&sizes);
+    let at = (0..bytes.len() - 19).find(is_layout).unwrap();
+    bytes[at + 14] = 0x1f;
+    let path = desk.join("a.h5");
+    std::fs::write(&path, bytes).unwrap();
+    let found = Recording::open(&path).unwrap();
+    notes(&found, &["`gzip` is left out", "in pieces of 520093712 numbers"]);
+    assert!(found.channel("plain").is_ok());
+}
