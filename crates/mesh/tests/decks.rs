@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use stribeck_mesh::decks::radioss::{Motion, Touching, Viscosity};
+use stribeck_mesh::decks::radioss::{Motion, Touching};
 use stribeck_mesh::decks::{ContactPair, Deck, Model, Side, Step};
 use stribeck_mesh::{Annulus, Disc, Groove, Mesh, Part, Rectangle};
 use stribeck_testing::{
@@ -432,7 +432,6 @@ fn golden_decks_for_radioss() {
         poissons_ratio: 0.3,
         density: 7850.0,
         thickness: 0.01,
-        viscosity: Viscosity::default(),
         contacts: vec![Touching {
             name: "upper on ground".into(),
             surfaces: [&bottom, &top],
@@ -444,7 +443,7 @@ fn golden_decks_for_radioss() {
         turning: (of_wheel, 50.0),
         damping: (vec![ground.body, upper.body], 1000.0),
         position: nodes().map(|(x, y)| [*x, 0.999 * y]).collect(),
-        velocity: nodes().map(|(x, y)| if *x > 3e-3 { [-50.0 * y, 50.0 * x] } else { [0.0; 2] }).collect(),
+        rolling: [0.0, 0.0, 0.0, 50.0].map(|rate| ([0.0; 2], rate)).to_vec(),
         duration: 1e-4,
         time_step: 1e-7,
         interval: 1e-6,
@@ -453,7 +452,8 @@ fn golden_decks_for_radioss() {
     };
     let starter = motion.starter("two_blocks", "a block on another");
     assert!(starter.contains("   1.198800000000E-1    0.0"), "Stfac");
-    for (deck, end) in [(starter, "0000"), (motion.engine("two_blocks"), "0001")] {
+    let [way, run] = motion.engines("two_blocks");
+    for (deck, end) in [(starter, "0000"), (way, "0001"), (run, "0002")] {
         let golden = format!("{}/../../fixtures/golden/two_blocks_{end}.rad", env!("CARGO_MANIFEST_DIR"));
         if std::env::var_os("STRIBECK_BLESS").is_some() {
             std::fs::write(&golden, &deck).expect("writable");

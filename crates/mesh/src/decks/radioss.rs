@@ -1,24 +1,28 @@
 //! Decks for Radioss, of a motion that has begun: where all nodes are, what stress that is, and how they move.
 //!
-//! A starter deck has mesh, material, contacts, loads and the start; an engine deck the time step and how
-//! long. Radioss has plane strain in its plane of y and z, for a unit of thickness: our x is its y, our y its
-//! z, forces are those of a millimetre, and units are kg, mm and ms. Contacts are `/INTER/TYPE3`, the one of
-//! its plane contacts with a penalty, whose stiffness is matched through `Stfac` ([`Touching::stiffness`]);
-//! it has neither damping nor a friction that slides. Its two passes are alike where facets of both surfaces
-//! are as long; otherwise that of the shorter ones is the stiffer.
+//! A starter deck has mesh, material, contacts and loads; the first engine deck brings the nodes from rest to
+//! where they are at the start, the second sets the bodies rolling and runs. Radioss has plane strain in its
+//! plane of y and z, for a unit of thickness: our x is its y, our y its z, forces are those of a millimetre,
+//! and units are kg, mm and ms. Contacts are `/INTER/TYPE3`, the one of its plane contacts with a penalty,
+//! whose stiffness is matched through `Stfac` ([`Touching::stiffness`]); it has neither damping nor a friction
+//! that slides. Its two passes are alike where facets of both surfaces are as long; otherwise that of the
+//! shorter ones is the stiffer.
 //!
-//! Elements are `/QUAD` with one point and a frame that turns with them; triangles have their last node
-//! twice, as which their mass is shared ¼, ¼, ½. Bulk and hourglass viscosity are those of [`Viscosity`].
+//! Elements are `/QUAD` in a frame that turns with them, without viscosity. Those that are parallelograms or
+//! isosceles trapezia, as along the surfaces, have four points with one pressure: these resist hourglassing as
+//! ours with [`HOURGLASS_SCALE`]. The one-point element of the program does so by viscosity alone, which
+//! brakes turning, and lets go of the sixth part of a node's contact force that ours carries by stiffness.
+//! All others have one point, because with four points they resist turning: a free body swings. With four
+//! pressures vibrations grow where elements are trapezia. Triangles have their last node twice, as which their
+//! mass is shared ¼, ¼, ½. Stress cannot be written in place of a way from rest: `/INIQUA/STRESS` has one for
+//! all four points, and without a density beside it loses its pressure.
 //!
 //! Source: *Altair Radioss Reference Guide*, starter and engine input.
-
-mod state;
 
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::ops::Range;
 
-use self::state::stress;
 use crate::{Mesh, Surface};
 
 /// Millimetres in a metre, milliseconds in a second.
@@ -31,8 +35,22 @@ const A_LINE: usize = 10;
 const NONE: f64 = 1e-20;
 /// Shares of a load that differ by less are one.
 const ALIKE: f64 = 1e-9;
+/// Steps from rest to the start. Stress follows strain a step late, so that a thousandth of its deviator lacks.
+const WAY_STEPS: f64 = 1e3;
+/// Length of each [s], in which no force moves a node.
+const WAY_STEP: f64 = 1e-12;
 /// The program's own estimate of the critical step, times this, must not undercut ours.
 const STEP_SCALE: f64 = 4.0;
+
+/// `solver.hourglass_scale` with which our elements, if they are square, resist hourglassing as those of the
+/// deck, for ν = 0.3: µ/E'. Measured; a rectangle a × b bent along a has µ b/12a there.
+pub const HOURGLASS_SCALE: f64 = 0.35;
+
+/// Numbers of the properties.
+const FOUR_POINTS: usize = 1;
+const ONE_POINT: usize = 2;
+/// Sides that differ in length or direction by less are equal or parallel [-].
+const REGULAR: f64 = 0.01;
 
 /// Two surfaces that may touch.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,22 +61,6 @@ pub struct Touching<'a> {
     pub surfaces: [&'a Surface; 2],
     /// Pressure a metre of penetration, of both passes together [Pa/m].
     pub stiffness: f64,
-}
-
-/// Artificial viscosity of elements.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Viscosity {
-    /// Quadratic and linear bulk viscosity [-].
-    pub bulk: [f64; 2],
-    /// Hourglass viscosity [-].
-    pub hourglass: f64,
-}
-
-/// No bulk viscosity; the program's usual viscosity against hourglassing.
-impl Default for Viscosity {
-    fn default() -> Self {
-        Self { bulk: [0.0; 2], hourglass: 0.1 }
-    }
 }
 
 /// Bodies in motion.
@@ -76,8 +78,6 @@ pub struct Motion<'a> {
     pub density: f64,
     /// Thickness across the plane [m].
     pub thickness: f64,
-    /// Artificial viscosity of elements.
-    pub viscosity: Viscosity,
     /// What may touch.
     pub contacts: Vec<Touching<'a>>,
     /// Acceleration of gravity [m/s²].
@@ -92,8 +92,9 @@ pub struct Motion<'a> {
     pub damping: (Vec<usize>, f64),
     /// Where each node is at the start [m].
     pub position: Vec<[f64; 2]>,
-    /// Its velocity then [m/s].
-    pub velocity: Vec<[f64; 2]>,
+    /// How each body moves then, as a rigid one: the velocity of its point at the origin [m/s] and its rate
+    /// [rad/s], counter-clockwise.
+    pub rolling: Vec<([f64; 2], f64)>,
     /// How long it lasts [s].
     pub duration: f64,
     /// Time step [s].
@@ -113,13 +114,18 @@ impl Motion<'_> {
         for remark in &self.remarks {
             let _ = writeln!(out, "# {remark}");
         }
+        let elements = || self.present().flat_map(|(_, body)| self.elements(body));
+        let of_one_point = elements().filter(|(_, e)| self.property(*e) == ONE_POINT).count();
+        let all = elements().count();
+        let _ =
+            writeln!(out, "# {of_one_point} of {all} elements have one point: hourglassing is free there");
         let units = format!("{:>20}{:>20}{:>20}\n", "kg", "mm", "ms");
         let _ = write!(out, "/BEGIN\n{name}\n{:10}{:10}\n{units}{units}/TITLE\n{name}\n", 2022, 0);
         // Plane strain.
         let _ = writeln!(out, "/ANALY\n{:10}{:10}{:10}{:10}", 2, "", 0, 0);
         self.material(&mut out);
         self.mesh_cards(&mut out);
-        self.start(&mut out);
+        self.way(&mut out);
         self.driven(&mut out);
         for (n, touching) in self.contacts.iter().enumerate() {
             self.contact(&mut out, n + 1, touching);
@@ -128,14 +134,25 @@ impl Motion<'_> {
         out + "/END\n"
     }
 
-    /// The engine deck of the same run.
-    pub fn engine(&self, name: &str) -> String {
-        let [duration, step, interval] =
-            [self.duration, self.time_step, self.interval].map(|s| shortest(MILLI * s));
-        format!(
-            "/RUN/{name}/1\n{duration}\n/VERS/2022\n/TFILE/3\n{interval}\n/PRINT/-10000\n/DT/ALL\n\
-             {STEP_SCALE} 0\n/DTIX\n{step} {step}\n/MON/ON\n/RFILE\n100000000\n"
-        )
+    /// The two engine decks of the same run.
+    pub fn engines(&self, name: &str) -> [String; 2] {
+        let deck = |run: usize, until: f64, step: f64, interval: f64| {
+            let [until, step, interval] = [until, step, interval].map(|s| shortest(MILLI * s));
+            format!(
+                "/RUN/{name}/{run}\n{until}\n/VERS/2022\n/TFILE/3\n{interval}\n/PRINT/-10000\n/DT/ALL\n\
+                 {STEP_SCALE} 0\n/DTIX\n{step} {step}\n/MON/ON\n/RFILE\n100000000\n"
+            )
+        };
+        let way = WAY_STEPS * WAY_STEP;
+        let mut run = deck(2, self.duration, self.time_step, self.interval);
+        for (n, body) in self.present() {
+            let ([y, z], rate) = self.rolling[n];
+            let [y, z, rate] = [y, z, rate / MILLI].map(shortest);
+            let (first, last) = (body.nodes.start + 1, body.nodes.end);
+            let _ = writeln!(run, "/INIV/AXIS/X/1\n0\n0 {y} {z} {rate}\n{first} {last}");
+        }
+        // It ends with the step that passes its end.
+        [deck(1, way - 0.5 * WAY_STEP, WAY_STEP, self.duration), run]
     }
 
     fn present(&self) -> impl Iterator<Item = (usize, &crate::Body)> {
@@ -145,33 +162,59 @@ impl Motion<'_> {
     fn material(&self, out: &mut String) {
         let [density, modulus] = [self.density, self.youngs_modulus].map(|v| real(GIGA * v));
         let _ = writeln!(out, "/MAT/LAW1/1\nelastic\n{density}\n{modulus}{}", real(self.poissons_ratio));
-        let Viscosity { bulk: [quadratic, linear], hourglass } = self.viscosity;
-        let [quadratic, linear, hourglass] = [quadratic, linear, hourglass].map(|v| real(v.max(NONE)));
         let zero = real(0.0);
-        // One point, finite strain, a frame that turns with the element.
-        let _ = write!(out, "/PROP/TYPE14/1\nplane strain\n");
-        let _ = writeln!(out, "{:10}{:10}{:10}{:10}{:10}{:10}{:10}{:10}{zero}", 2, 4, "", 0, 0, 222, 0, 2);
-        let _ = writeln!(out, "{quadratic}{linear}{hourglass}{zero}{zero}\n{zero}{:10}{:10}", 0, 0);
-        let _ = writeln!(out, "{:10}{:10}", 0, 0);
+        let none = real(NONE);
+        // Finite strain, a frame that turns with the element.
+        for (property, [points, pressure]) in [(FOUR_POINTS, [17, 1]), (ONE_POINT, [2, 0])] {
+            let _ = write!(out, "/PROP/TYPE14/{property}\nplane strain\n");
+            let _ = writeln!(
+                out,
+                "{points:10}{:10}{:10}{pressure:10}{:10}{:10}{:10}{:10}{zero}",
+                4, "", 0, 222, 0, 2
+            );
+            let _ = writeln!(out, "{none}{none}{none}{zero}{zero}\n{zero}{:10}{:10}", 0, 0);
+            let _ = writeln!(out, "{:10}{:10}", 0, 0);
+        }
+    }
+
+    /// Numbers of the parts of a body, by the property of their elements, as far as it has them.
+    fn parts(&self, n: usize) -> impl Iterator<Item = (usize, usize)> {
+        let bodies = self.mesh.bodies.len();
+        let has =
+            move |property| self.elements(&self.mesh.bodies[n]).any(|(_, e)| self.property(e) == property);
+        let parts = [(n + 1, FOUR_POINTS), (n + 1 + bodies, ONE_POINT)];
+        parts.into_iter().filter(move |&(_, property)| has(property))
+    }
+
+    /// Property of an element.
+    fn property(&self, corners: [u32; 4]) -> usize {
+        let at = corners.map(|n| [self.mesh.x[n as usize], self.mesh.y[n as usize]]);
+        if corners[2] != corners[3] && regular(&at) { FOUR_POINTS } else { ONE_POINT }
     }
 
     fn mesh_cards(&self, out: &mut String) {
         for (n, body) in self.present() {
-            let _ = writeln!(out, "/PART/{}\n{}\n{:10}{:10}{:10}", n + 1, body.name, 1, 1, 0);
+            for (part, property) in self.parts(n) {
+                let _ = writeln!(out, "/PART/{part}\n{}\n{property:10}{:10}{:10}", body.name, 1, 0);
+            }
         }
         *out += "/NODE\n";
         for (_, body) in self.present() {
             for n in body.nodes.clone() {
-                let [y, z] = self.position[n].map(|v| real(MILLI * v));
+                let [y, z] = [self.mesh.x[n], self.mesh.y[n]].map(|v| real(MILLI * v));
                 let _ = writeln!(out, "{:10}{}{y}{z}", n + 1, real(0.0));
             }
         }
         let zero = real(0.0);
         let _ = writeln!(out, "{:10}{zero}{zero}{zero}", self.main());
         for (n, body) in self.present() {
-            let _ = writeln!(out, "/QUAD/{}", n + 1);
-            for (number, [a, b, c, d]) in self.elements(body) {
-                let _ = writeln!(out, "{number:10}{:10}{:10}{:10}{:10}", a + 1, b + 1, c + 1, d + 1);
+            for (part, property) in self.parts(n) {
+                let _ = writeln!(out, "/QUAD/{part}");
+                for (number, [a, b, c, d]) in
+                    self.elements(body).filter(|(_, corners)| self.property(*corners) == property)
+                {
+                    let _ = writeln!(out, "{number:10}{:10}{:10}{:10}{:10}", a + 1, b + 1, c + 1, d + 1);
+                }
             }
         }
     }
@@ -194,29 +237,21 @@ impl Motion<'_> {
         quads.chain(triangles)
     }
 
-    /// Stresses and velocities.
-    fn start(&self, out: &mut String) {
-        let lame = [self.youngs_modulus, self.poissons_ratio];
-        let rest = |n: u32| [self.mesh.x[n as usize], self.mesh.y[n as usize]];
-        let now = |n: u32| self.position[n as usize];
-        *out += "/INIQUA/STRESS\n";
+    /// Velocities that bring the nodes to where they are at the start.
+    fn way(&self, out: &mut String) {
+        *out += "/INIVEL/NODE/1\nway\n";
+        let zero = real(0.0);
         for (_, body) in self.present() {
-            for (number, corners) in self.elements(body) {
-                let of = stress(&corners.map(rest), &corners.map(now), lame).map(|s| real(GIGA * s));
-                let _ = writeln!(out, "{number:10}{:10}{}", "", of.concat());
+            for n in body.nodes.clone() {
+                let [x, y] = self.position[n];
+                let way = [x - self.mesh.x[n], y - self.mesh.y[n]];
+                if way != [0.0; 2] {
+                    let [y, z] = way.map(|v| real(v / (WAY_STEPS * WAY_STEP)));
+                    let number = n + 1;
+                    let _ = writeln!(out, "{number:10}{:10}{zero}{y}{z}\n{:20}{zero}{zero}{zero}", 0, "");
+                }
             }
         }
-        *out += "/INIVEL/NODE/1\nstart\n";
-        let zero = real(0.0);
-        let mut one = |number: usize, [y, z]: [f64; 2], spin: f64| {
-            let (y, z, spin) = (real(y), real(z), real(1.0 / MILLI * spin));
-            let _ = writeln!(out, "{number:10}{:10}{zero}{y}{z}\n{:20}{spin}{zero}{zero}", 0, "");
-        };
-        for (_, body) in self.present() {
-            let moving = body.nodes.clone().filter(|&n| self.velocity[n] != [0.0; 2]);
-            moving.for_each(|n| one(n + 1, self.velocity[n], 0.0));
-        }
-        one(self.main(), [0.0; 2], self.turning.1);
     }
 
     /// Supports, drive, loads and damping.
@@ -251,7 +286,7 @@ impl Motion<'_> {
         let present =
             |out: &mut String, group: usize, name: &str, bodies: &mut dyn Iterator<Item = usize>| {
                 let _ = writeln!(out, "/GRNOD/PART/{group}\n{name}");
-                lines(out, bodies.map(|n| n + 1));
+                lines(out, bodies.flat_map(|n| self.parts(n)).map(|(part, _)| part));
             };
         for (axis, (letter, g)) in ["Y", "Z"].into_iter().zip(self.gravity).enumerate() {
             if g != 0.0 {
@@ -404,6 +439,21 @@ impl Motion<'_> {
     }
 }
 
+/// Whether corners are those of a parallelogram or of an isosceles trapezium.
+fn regular(corners: &[[f64; 2]; 4]) -> bool {
+    let side: [[f64; 2]; 4] =
+        std::array::from_fn(|i| [0, 1].map(|k| corners[(i + 1) % 4][k] - corners[i][k]));
+    let length = side.map(|[x, y]| x.hypot(y));
+    let near = REGULAR * length.into_iter().fold(0.0, f64::max);
+    // Opposite sides: they have opposite directions.
+    let parallel = |i: usize| {
+        let ([ax, ay], [bx, by]) = (side[i], side[i + 2]);
+        (ax * by - ay * bx).abs() < REGULAR * length[i] * length[i + 2]
+    };
+    let equal = |i: usize| (length[i] - length[i + 2]).abs() < near;
+    (parallel(0) && equal(1)) || (parallel(1) && equal(0))
+}
+
 /// A group of nodes.
 fn nodes(out: &mut String, number: usize, name: &str, nodes: &[u32]) {
     let _ = writeln!(out, "/GRNOD/NODE/{number}\n{name}");
@@ -426,4 +476,22 @@ fn real(value: f64) -> String {
 /// A number as short as it can be without loss.
 fn shortest(value: f64) -> String {
     format!("{value:E}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn by_hand_regular_quadrilaterals() {
+        for (corners, expected) in [
+            ([[0.0, 0.0], [2.0, 0.0], [2.3, 1.0], [0.3, 1.0]], true),
+            ([[0.0, 0.0], [0.5, -1.0], [0.5, 2.0], [0.0, 1.0]], true),
+            // A trapezium with a right angle, a kite.
+            ([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 2.0]], false),
+            ([[0.0, 0.0], [1.0, -1.0], [3.0, 0.0], [1.0, 1.0]], false),
+        ] {
+            assert_eq!(regular(&corners), expected, "{corners:?}");
+        }
+    }
 }

@@ -1,14 +1,14 @@
 //! A scene, or the scene of a run, as decks for Radioss: the preloaded start of the full model, set rolling.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_mesh::decks::radioss::{Motion, Touching, Viscosity};
+use stribeck_mesh::decks::radioss::{HOURGLASS_SCALE, Motion, Touching};
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::{ContactSurface, DampingFrame, ModelScene, Start};
 use stribeck_simulation::bearing::assembly::{Assembly, BearingSystem};
-use stribeck_simulation::bearing::start::{preload, rolling_velocity};
+use stribeck_simulation::bearing::start::preload;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::out::caution;
@@ -16,7 +16,7 @@ use crate::out::caution;
 /// End of the name of a starter deck; an engine deck has `_0001.rad` in its place.
 const STARTER: &str = "_0000.rad";
 
-/// Writes the starter deck to `path` and the engine deck beside it.
+/// Writes the starter deck to `path` and the engine decks beside it.
 pub(super) fn write(scene: &ResolvedScene, title: &str, path: PathBuf) -> Result<PathBuf> {
     let name = path.file_name().and_then(|name| name.to_str()).and_then(|name| name.strip_suffix(STARTER));
     let name = name.filter(|name| !name.is_empty()).with_context(|| {
@@ -34,9 +34,10 @@ pub(super) fn write(scene: &ResolvedScene, title: &str, path: PathBuf) -> Result
         caution!("{words}");
     }
     let motion = motion(scene, &assembly, &bearing);
-    let engine: &Path = &path.with_file_name(format!("{name}_0001.rad"));
     write_atomic(&path, motion.starter(name, title).as_bytes())?;
-    write_atomic(engine, motion.engine(name).as_bytes())?;
+    for (run, engine) in (1..).zip(motion.engines(name)) {
+        write_atomic(&path.with_file_name(format!("{name}_000{run}.rad")), engine.as_bytes())?;
+    }
     Ok(path)
 }
 
@@ -90,7 +91,6 @@ fn motion<'a>(scene: &ResolvedScene, assembly: &'a Assembly, bearing: &BearingSy
         poissons_ratio: scene.material.poissons_ratio,
         density: scene.material.density,
         thickness: scene.thickness,
-        viscosity: Viscosity::default(),
         contacts: assembly
             .touching()
             .into_iter()
@@ -102,13 +102,27 @@ fn motion<'a>(scene: &ResolvedScene, assembly: &'a Assembly, bearing: &BearingSy
         turning: (assembly.turned_by_the_shaft(), assembly.kinematics.shaft_rad_s),
         damping: (standing.chain(rollers).collect(), damped),
         position: nodes.map(|n| system.position(n)).collect(),
-        velocity: rolling_velocity(bearing, &assembly.kinematics),
+        rolling: rolling(assembly, bearing),
         duration: scene.duration,
         time_step: scene.interval / steps,
         interval: scene.interval,
         kept: sensors.chain(centres).collect(),
         remarks: remarks(scene, assembly),
     }
+}
+
+/// How each body moves in rolling without slip.
+fn rolling(assembly: &Assembly, bearing: &BearingSystem) -> Vec<([f64; 2], f64)> {
+    let k = &assembly.kinematics;
+    let mut rolling = vec![([0.0; 2], 0.0); assembly.model.mesh.bodies.len()];
+    rolling[bearing.inner].1 = k.shaft_rad_s;
+    for roller in &bearing.rollers {
+        let [x, y] = bearing.system.position(roller.centre);
+        // The centre runs around the origin, and the roller turns about it.
+        let less = k.cage_rad_s - k.roller_rad_s;
+        rolling[roller.body] = ([-less * y, less * x], k.roller_rad_s);
+    }
+    rolling
 }
 
 /// How far the deck is another model than the scene.
@@ -135,7 +149,11 @@ fn remarks(scene: &ResolvedScene, assembly: &Assembly) -> Vec<String> {
          surfaces had better be as long, and those of the seat in the same places, as in a graded mesh"
             .into(),
     );
-    remarks.push("hourglassing is resisted by viscosity, not by stiffness".into());
+    remarks.push(format!(
+        "hourglassing of squares is resisted as with `solver.hourglass_scale: {HOURGLASS_SCALE}`; the \
+         scene has {}",
+        v.hourglass_scale
+    ));
     if !assembly.model.mesh.triangles.is_empty() {
         remarks.push(
             "triangles are quadrilaterals with their last node twice, which has half of their mass".into(),
