@@ -226,36 +226,24 @@ impl Found {
         let marks = marks(&attributes);
         let unit = ["unit", "units", "Unit", "Units", "unit_string"].into_iter();
         let unit = unit.filter_map(|key| attributes.get(key)?.as_str().map(str::to_owned)).next();
+        if let Some(why) = self.beyond(dataset, count)? {
+            self.notes.push(left_out(name, &why));
+            return Ok(());
+        }
         let axes = Some(axes);
         let streamed = match (&axes, plain(&dataset.datatype()?)) {
             (Some(axes), Some(number)) => self.streamed(dataset, number, &shape, axes)?,
             _ => None,
         };
-        let chunk = dataset.chunk_shape()?.unwrap_or_default();
-        let chunk = chunk.iter().fold(1_u64, |product, n| product.saturating_mul(*n));
-        let unwritten = format!("none of its {count} numbers was ever written");
         let channels = match streamed {
             Some(channels) => channels,
-            // The library unpacks a piece as a whole, whatever the set needs of it.
-            None if chunk > MOST => {
-                let why = if dataset.chunks()?.is_empty() {
-                    unwritten
-                } else {
-                    format!(
-                        "it is packed in pieces of {chunk} numbers, which must be unpacked whole, and {MOST} are \
-                         the most: pack it anew with `h5repack -l CHUNK=65536 -f GZIP=1`"
-                    )
-                };
-                self.notes.push(left_out(name, &why));
-                return Ok(());
-            }
             None if count <= MOST.saturating_sub(self.numbers) => {
                 self.numbers += count;
                 held(&dataset.read_f64()?, &shape, axes.as_ref())
             }
             None => {
                 if dataset.chunks()?.is_empty() {
-                    self.notes.push(left_out(name, &unwritten));
+                    self.notes.push(left_out(name, &unwritten(count)));
                 } else {
                     self.too_long.push(format!("`{name}`"));
                 }
@@ -275,6 +263,27 @@ impl Found {
             along(without(channel, &marks), scale.clone())
         }));
         Ok(())
+    }
+
+    /// Why the pieces of a set cannot be read as a whole: the library takes the memory that a piece claims.
+    fn beyond(&self, dataset: &Dataset, count: u64) -> std::result::Result<Option<String>, hdf5_pure::Error> {
+        let Some(shape) = dataset.chunk_shape()? else { return Ok(None) };
+        let chunk = shape.iter().fold(1_u64, |product, n| product.saturating_mul(*n));
+        let stored = dataset.chunks()?;
+        let ends = stored.iter().map(|of| of.address.saturating_add(of.storage_size));
+        Ok(if stored.is_empty() && count > MOST {
+            Some(unwritten(count))
+        } else if chunk > 2 * MOST {
+            Some(format!(
+                "it is packed in pieces of {chunk} numbers, which must be unpacked whole, and {} are the \
+                 most: pack it anew with `h5repack -l CHUNK=65536 -f GZIP=1`",
+                2 * MOST
+            ))
+        } else if ends.max().is_some_and(|end| end > self.size) {
+            Some("a piece of it ends behind the end of the file".to_owned())
+        } else {
+            None
+        })
     }
 
     /// Channels whose samples stay in the file.
@@ -314,6 +323,10 @@ impl Found {
             _ => Ok(None),
         }
     }
+}
+
+fn unwritten(count: u64) -> String {
+    format!("none of its {count} numbers was ever written")
 }
 
 /// The line from stored to physical values that netCDF's conventions write beside a set.

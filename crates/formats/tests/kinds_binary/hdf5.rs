@@ -127,10 +127,20 @@ fn refuses_a_piece_of_hdf5_that_no_memory_should_hold() {
     let is_layout =
         |at: &usize| bytes[*at..].starts_with(&[3, 2, 2]) && bytes[*at + 11..].starts_with(&sizes);
     let at = (0..bytes.len() - 19).find(is_layout).unwrap();
-    bytes[at + 14] = 0x1f;
     let path = desk.join("a.h5");
-    std::fs::write(&path, bytes).unwrap();
-    let found = Recording::open(&path).unwrap();
-    notes(&found, &["`gzip` is left out", "in pieces of 520093712 numbers"]);
-    assert!(found.channel("plain").is_ok());
+    let tree = u64::from_le_bytes(bytes[at + 3..at + 11].try_into().unwrap()) as usize;
+    assert!(bytes[tree..].starts_with(b"TREE"));
+    // The size of a piece, and how many bytes its first one takes by the index.
+    for (place, with, why) in [
+        (at + 11, 0x1f00_0010_u32, "in pieces of 520093712 numbers"),
+        (tree + 24, u32::MAX, "ends behind the end of the file"),
+    ] {
+        let before = bytes[place..place + 4].to_vec();
+        bytes[place..place + 4].copy_from_slice(&with.to_le_bytes());
+        std::fs::write(&path, &bytes).unwrap();
+        let found = Recording::open(&path).unwrap();
+        notes(&found, &["`gzip` is left out", why]);
+        assert!(found.channel("plain").is_ok());
+        bytes[place..place + 4].copy_from_slice(&before);
+    }
 }
