@@ -415,7 +415,7 @@ mod tests {
         assert!(bare.cage.is_none() && bare.grooves.is_empty());
     }
 
-    /// Source: ISO 3290-1:2014, V_DwL: the largest less the smallest mean diameter of a lot.
+    /// Source: ISO 3290-1 (2014), V_DwL: the largest less the smallest mean diameter of a lot.
     #[test]
     fn analytic_diameters_lie_within_their_variation() {
         let with = |fields: &str| {
