@@ -184,11 +184,11 @@ pub fn in_words(detection: &Detection) -> String {
             )
         }
         Smallest::Below(mm) => format!(
-            "Even the shortest spall that was tried, {mm:.2} mm, is found in {}, {of}: the smallest lies below.",
+            "Even the shortest spall that was tried, {mm:.2} mm, is found in {}, {of}: shorter ones are found, too.",
             counted(detection.lengths.first(), *record_s)
         ),
         Smallest::Above(mm) => format!(
-            "Even the longest spall that was tried, {mm:.2} mm, is found in {} only, {of}: the smallest lies above.",
+            "Even the longest spall that was tried, {mm:.2} mm, is found in {} only, {of}: it takes a longer one, or a nearer sensor.",
             counted(detection.lengths.last(), *record_s)
         ),
     }

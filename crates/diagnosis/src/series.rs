@@ -90,7 +90,7 @@ impl Series {
             names.map(|name| SeriesFamily::of(name, records, sound)).collect();
         highest_alone(&mut families);
         let growth = growth(records);
-        let verdict = conclude(&families, growth.as_ref(), analysed);
+        let verdict = conclude(&families, growth.as_ref(), [analysed, sound]);
         Self { records: records.len(), analysed, sound, families, growth, verdict }
     }
 }
@@ -240,8 +240,9 @@ fn growth(records: &[Option<&MeasuredFindings>]) -> Option<Growth> {
     Some(Growth { from, from_mm, to, to_mm, has_grown: to_mm.low > from_mm.high })
 }
 
-fn conclude(families: &[SeriesFamily], growth: Option<&Growth>, analysed: usize) -> String {
-    let claimed: Vec<String> = families.iter().filter(|family| family.claimed).map(words).collect();
+fn conclude(families: &[SeriesFamily], growth: Option<&Growth>, [analysed, sound]: [usize; 2]) -> String {
+    let claimed: Vec<String> =
+        families.iter().filter(|family| family.claimed).map(|family| words(family, sound)).collect();
     if !claimed.is_empty() {
         let growth = growth.map_or_else(String::new, growth_in_words);
         return format!("The series shows {}.{growth}", claimed.join(" and "));
@@ -261,8 +262,8 @@ fn conclude(families: &[SeriesFamily], growth: Option<&Growth>, analysed: usize)
     }
 }
 
-fn words(family: &SeriesFamily) -> String {
-    let SeriesFamily { name, p_value, last, last_claiming, onset, .. } = family;
+fn words(family: &SeriesFamily, sound: usize) -> String {
+    let SeriesFamily { name, p_value, claiming, onset, height_db, .. } = family;
     let part = match name {
         Defect::Ftf => "the cage or of one rolling element",
         _ => name.part(),
@@ -274,9 +275,11 @@ fn words(family: &SeriesFamily) -> String {
         Some(Onset { record, .. }) => format!("from record {record} on, "),
         None => String::new(),
     };
-    let by = match last {
-        1 => "the last record claims it".to_owned(),
-        _ => format!("the last {last} records, of which {last_claiming} claim it, decide"),
+    let by = match (claiming, height_db.len() - sound) {
+        (claiming, of) if *claiming == of => {
+            format!("all {of} records that are not of the sound machine claim it")
+        }
+        (claiming, of) => format!("{claiming} of {of} records claim it"),
     };
     format!("a defect of {part} ({name}): {since}{by}, false alarm {}", chance(*p_value))
 }

@@ -196,8 +196,8 @@ fn first_screen(index: &CampaignIndex, over: &[Over<'_>]) -> Result<Markup, Erro
             p {
                 strong { "How far to trust it. " }
                 @if several { "A change counts from three standard deviations of the starts on." }
-                @else if index.fields.len() > 1 { "A change counts from three standard deviations of the runs on \
-                         that share its value and differ in the other fields, and from a hundredth on." }
+                @else if index.fields.len() > 1 { "A change counts where it is three times what the other fields make \
+                         at one value, and a hundredth at least." }
                 @else { "Each value has one start, whose scatter is unknown: a change counts from a tenth or 3 dB \
                          on. Several starts (" code { "starts" } ") measure it." }
                 " Means of all runs of a value."
@@ -369,11 +369,8 @@ fn means(name: &str, colour: Colour, x: &[f64], y: &[f64]) -> Option<Series> {
         places.push(all[0]);
         means.push(y[from..from + all.len()].iter().sum::<f64>() / all.len() as f64);
     }
-    let name = if places.len() < x.len() {
-        format!("{name}, mean")
-    } else {
-        format!("{name}, line through the dots")
-    };
+    // Dots and the line through them have one name.
+    let name = if places.len() < x.len() { format!("{name}, mean") } else { name.to_owned() };
     (places.len() > 1).then(|| Series::listed(&name, colour, places, means))
 }
 

@@ -512,7 +512,7 @@ fn envelope(band: &BandEnvelope, family: &Family, findings: &MeasuredFindings) -
     if let Some((control_hz, _)) = highest {
         let inside = (1..=5).map(f64::from).filter(|n| n * control_hz < 5.6 * hz);
         figure.marks.extend(inside.map(|n| {
-            let label = if n > 1.0 { String::new() } else { "highest unrelated".to_owned() };
+            let label = if n > 1.0 { String::new() } else { "an unrelated comb".to_owned() };
             mark(n * control_hz, label, Colour::Grey, true)
         }));
     }

@@ -71,7 +71,10 @@ impl Change {
             return text.trim_end().to_owned();
         }
         let verb = if to >= from { "grows with the" } else { "falls with the" };
-        format!("{words} {verb} {field}: {} → {} {unit}", number(from), number(to)).trim_end().to_owned()
+        let mean = if self.scatter.is_some() { "on average " } else { "" };
+        format!("{words} {verb} {field}: {mean}{} → {} {unit}", number(from), number(to))
+            .trim_end()
+            .to_owned()
     }
 }
 
@@ -91,7 +94,9 @@ mod tests {
         let seen =
             one(vec![run(1, "100", 1.0), run(2, "100", 3.0), run(3, "200", 11.0), run(4, "200", 13.0)]);
         assert!((seen.size("g") - 10.0 / (3.0 * 2.0_f64.sqrt())).abs() < 1e-12, "{seen:?}");
-        assert!(seen.words(&drawn()[0], "operation.load_n").ends_with("grows with the load: 2 → 12 g"));
+        assert!(
+            seen.words(&drawn()[0], "operation.load_n").ends_with("grows with the load: on average 2 → 12 g")
+        );
         let lost = one(vec![run(1, "100", 1.0), run(2, "100", 9.0), run(3, "200", 2.0), run(4, "200", 10.0)]);
         assert!(lost.size("g") < 1.0, "{lost:?}");
         // One run a value: a tenth counts.

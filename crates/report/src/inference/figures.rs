@@ -21,7 +21,7 @@ pub(super) fn marginals(answer: &Answer) -> Picture {
     }
     let mut picture = Picture::new("marginals", "What each unknown can have been", sheet);
     picture.caption =
-        "Blue: probability after the targets. Grey line: before. Bar below: the 90 % interval.".to_owned();
+        "Blue: probability after the targets. Grey line: before. Bar below: the interval.".to_owned();
     picture
 }
 

@@ -31,7 +31,7 @@ pub(super) fn page(answer: &Answer) -> Result<Markup, Error> {
                 @if let Some(words) = answer.too_narrow() { " " (with_code(&words)) "." }
             } }
             h2 #unknowns { "Unknowns" }
-            div class="scroll" { (unknowns(&answer.fields)) }
+            div class="scroll" { (unknowns(answer)) }
             (pairs?)
             h2 #targets { "Targets, and what such scenes make" }
             div class="scroll" { (targets_table(answer)) }
@@ -130,10 +130,11 @@ fn likeliest(field: &FieldFound) -> Vec<String> {
     lines
 }
 
-fn unknowns(fields: &[FieldFound]) -> Markup {
+fn unknowns(answer: &Answer) -> Markup {
+    let fields = &answer.fields;
     html! {
         table {
-            tr { th { "Unknown" } th { "Prior" } th { "Median, or choices" } th { "50 %" } th { "90 %" } th { "Width, of the prior" } th { "Expected width after one more round" } th { "After any number of rounds" } }
+            tr { th { "Unknown" } th { "Prior" } th { "Median, or choices" } th { "50 %" } th { (answer.share()) } th { "Width, of the prior" } th { "Expected width after one more round" } th { "After any number of rounds" } }
             @for field in fields {
                 tr {
                     td title=(field.name) { (FieldWords::of(&field.name).words) }
