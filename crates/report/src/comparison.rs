@@ -149,12 +149,10 @@ pub fn answer(comparison: &Comparison) -> Vec<String> {
         if known.iter().all(|row| row.against_first.iter().flatten().all(|c| c.difference == 0.0)) {
             "No number differs.".to_owned()
         } else {
-            let named = if named.is_empty() {
-                format!("No number differs by {WORTH} % or more.")
-            } else {
-                format!("{}.", capital(&named.join("; ")))
-            };
-            named
+            match named.is_empty() {
+                true => format!("No number differs by {WORTH} % or more."),
+                false => format!("{}.", capital(&named.join("; "))),
+            }
         }
     } else if differ.is_empty() {
         format!("None of {} differs by more than the starts scatter.", count(known.len(), "number"))
