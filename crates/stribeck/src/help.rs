@@ -19,9 +19,9 @@ const GROUPS: [(&str, &[&str]); 5] = [
 /// Where most begin.
 const EXAMPLES: &str = "\
 Examples:
-  stribeck new mine.ron --bearing 6205 --defect outer    a scene of your own, to be run
-  stribeck simulate mine.ron                             its run, with a page that says what it shows
-  stribeck analyse record.mat --bearing 6205 --speed-rpm 1797    the verdict on a measured record";
+  stribeck new mine.ron --bearing 6205 --defect outer            a scene of your own
+  stribeck simulate mine.ron                                     its run, with a page
+  stribeck analyse record.mat --bearing 6205 --speed-rpm 1797    the verdict on a record";
 
 /// The form of `stribeck --help`, as clap takes it.
 pub(crate) fn template() -> String {

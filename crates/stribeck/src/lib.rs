@@ -150,7 +150,7 @@ pub enum Command {
     /// Predicts a run before it is made: lines, levels, steps, cost, advice
     #[command(after_help = "Example: stribeck plan mine.ron --set mesh.size_mm=1")]
     Plan(plan::Options),
-    /// Stiffness and damping of a bearing over load, speed and cage angle, for rotor dynamics
+    /// Stiffness and damping over load, speed and cage angle, for rotor dynamics
     #[command(after_help = "Example: stribeck stiffness mine.ron")]
     Stiffness(stiffness::Options),
     /// Makes a page in which bearings run, with handles and instruments
