@@ -183,7 +183,8 @@ impl SeenRollers {
     #[inline(always)]
     fn of<S: Simd>(simd: S, block: &Block, raceway: usize, turning: RingRotation) -> Self {
         let contacts = &block.contacts[raceway];
-        let mut seen = Self { centre: contacts.centre, spin: contacts.spin, ..Self::default() };
+        let mut seen =
+            Self { centre: contacts.centre, spin: contacts.spin, larger: block.larger, ..Self::default() };
         let rate = Vector::all(simd, turning.rate);
         for at in vector_starts(simd) {
             let ([x, y], [vx, vy]) = (load(simd, &block.centre, at), load(simd, &block.velocity, at));
@@ -243,6 +244,6 @@ impl Rollers {
         let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
         let [x, y] = [state.x[i], state.y[i]];
         let centre = if raceway == 0 { [x - moved[0], y - moved[1]] } else { [x, y] };
-        RollerView { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0 }
+        RollerView { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0, larger: self.larger[i] }
     }
 }

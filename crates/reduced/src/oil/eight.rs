@@ -55,6 +55,7 @@ pub(crate) struct SeenRollers {
     pub(crate) spin: Rows,
     pub(crate) velocity: Rows,
     pub(crate) turning: Row,
+    pub(crate) larger: Row,
 }
 
 impl SeenRollers {
@@ -76,6 +77,7 @@ impl SeenRollers {
             spin: of_one(&self.spin, lane),
             velocity: of_one(&self.velocity, lane),
             turning: self.turning[lane],
+            larger: self.larger[lane],
         }
     }
 }
@@ -285,7 +287,7 @@ impl EightFilms {
             let to = [u.times_plus(tx, h * ty), u.times_plus(ty, -(h * tx))];
             let distance = to[0].times_plus(to[0], to[1] * to[1]).sqrt();
             let d = [to[0] / distance, to[1] / distance];
-            let gap = distance - all(radius);
+            let gap = distance - (all(radius) + Vector::load(simd, &seen.larger, at));
             wide |= all(WIDEST).bits_below(gap) << at;
             let [vx, vy] = load(simd, &seen.velocity, at);
             let across = d[0].times_plus(vy, -(d[1] * vx));

@@ -34,6 +34,8 @@ pub(crate) struct RollerView {
     /// Velocity of the centre [m/s] and angular velocity [rad/s].
     pub(crate) velocity: [f64; 2],
     pub(crate) turning: f64,
+    /// By how much its radius exceeds that of its rim [m], where that is round.
+    pub(crate) larger: f64,
 }
 
 /// The closest approach of a roller and a land.
@@ -147,7 +149,9 @@ impl Nearest {
         let to = [foot.at[0] - seen.centre[0], foot.at[1] - seen.centre[1]];
         let distance = (to[0] * to[0] + to[1] * to[1]).sqrt();
         let (gap, d, lever) = match rim {
-            Rim::Round(radius) => (distance - radius, [to[0] / distance, to[1] / distance], 0.0),
+            Rim::Round(radius) => {
+                (distance - (radius + seen.larger), [to[0] / distance, to[1] / distance], 0.0)
+            }
             Rim::Formed(rim) => {
                 let own = seen.by_roller(foot.at);
                 let point = rim.nearest(&rim.lands[0], own, places[1]);

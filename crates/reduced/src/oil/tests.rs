@@ -40,7 +40,7 @@ fn raceway(radius: impl Fn(f64) -> f64, hollow: bool) -> OiledRaceway {
 }
 
 fn on_x_axis(at: f64, velocity: [f64; 2], turning: f64) -> RollerView {
-    RollerView { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning }
+    RollerView { centre: [at, 0.0], spin: [1.0, 0.0], velocity, turning, larger: 0.0 }
 }
 
 /// A roller under its weight between the raceways: place, velocity and thickness of the outer film above
@@ -188,7 +188,13 @@ impl WithSimd for Rolling<'_> {
             let outwards = 15e-6 * 3000.0 * (1.0 + 0.1 * lane as f64) * beats.cos();
             let ((s, c), along) = (angle.sin_cos(), turn * at);
             let velocity = [outwards * c - along * s, outwards * s + along * c];
-            RollerView { centre: [at * c, at * s], spin: [1.0, 0.0], velocity, turning: -along / RADIUS }
+            RollerView {
+                centre: [at * c, at * s],
+                spin: [1.0, 0.0],
+                velocity,
+                turning: -along / RADIUS,
+                larger: 0.0,
+            }
         };
         let mut eights = vec![EightFilms::default(); race.lands()];
         let mut alone: Vec<Vec<Film>> =

@@ -127,11 +127,9 @@ fn outlines(
     let (mut rims, mut rim_of) = (vec![reduction.roller.clone()], vec![0; numbers.len()]);
     let mut larger = vec![0.0; numbers.len()];
     let arcs = scene.written.contact.surface != ContactSurface::Facet;
-    // Films of oil, and facets, go by the vertices of the rim.
-    let by_radius = arcs && scene.written.film.is_none();
     for (of, relief) in &scene.roller_reliefs {
         let Some(i) = numbers.iter().position(|number| number == of) else { continue };
-        if let Some(by) = relief.larger_by().filter(|_| by_radius) {
+        if let Some(by) = relief.larger_by().filter(|_| arcs) {
             larger[i] = by;
             continue;
         }
