@@ -370,8 +370,9 @@ fn trust(summary: &Summary) -> Vec<String> {
         .map_or(String::new(), |e| format!(", the mean load to {:.2} %", 100.0 * e.abs()));
     // The heat of a long run outgrows the strain energy, and the imbalance grows with it.
     let times = share_of_heat.filter(|share| *share > 0.0).map(|share| max_relative_error / share);
-    let smaller =
-        times.map_or(String::new(), |times| format!(", which is {} times less", significant(times, 2)));
+    let smaller = times.map_or(String::new(), |times| {
+        format!(", of which there is {} times less than of heat", significant(times, 2))
+    });
     let mut said = vec![
         "Peaks are those of one start: another start angle moves them by tens of per cent. They also \
          depend on contact stiffness, damping and pocket clearance, which are choices of the scene."

@@ -230,8 +230,8 @@ fn physics_marks(findings: &Findings, top: f64) -> Vec<Mark> {
         let family = diagnosis.and_then(|found| found.families.iter().find(|f| f.name == shocks.defect));
         let moved = family.and_then(|f| f.from_motion_hz).map(|hz| shocks.defect.shocks_per_period() * hz);
         // Where the cage lags, multiples of rolling without slip run off the lines.
-        let (hz, of) = moved.map_or((shocks.hz, ""), |hz| (hz, " as the elements move"));
-        let text = |n: usize| if n == 1 { format!("{name} {hz:.1} Hz{of}") } else { format!("×{n}") };
+        let hz = moved.unwrap_or(shocks.hz);
+        let text = |n: usize| if n == 1 { format!("{name} {hz:.1} Hz") } else { format!("×{n}") };
         marks.extend((1..=FAMILY).map(|n| Mark::new(n as f64 * hz, text(n), Colour::Red, true)));
     }
     marks.extend(
