@@ -7,9 +7,12 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 #[cfg(target_arch = "x86_64")]
 use std::any::Any;
 
+use pulp::Simd;
 #[cfg(target_arch = "x86_64")]
-use pulp::x86::{V3, V4};
-use pulp::{Simd, bytemuck};
+use pulp::{
+    bytemuck,
+    x86::{V3, V4},
+};
 
 /// Numbers in a line of cache. No vector is longer, and arrays are cut into groups of that many.
 pub const LANES: usize = 8;
@@ -360,6 +363,7 @@ impl<S: Simd> Vector<S> {
         }
     }
 
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     fn joined<const HOW: u8>([a, b]: [Self; 2]) -> Self {
         if HOW == SUM { a + b } else { a.max(b) }

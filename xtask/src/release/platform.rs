@@ -53,9 +53,11 @@ impl<'a> Platform<'a> {
         ]
     }
 
-    /// Builds the program with its variables.
+    /// Builds the program with its variables, of the libraries that the wheel is made of.
     pub(super) fn program(&self, python: &str, build: &Environment) -> Result<PathBuf> {
-        self.build(python, &["--profile", "dist", "-p", "stribeck", "--bin", "stribeck"], build)?;
+        const PROGRAM: [&str; 8] =
+            ["--profile", "dist", "-p", "stribeck", "-p", "stribeck-python", "--bin", "stribeck"];
+        self.build(python, &PROGRAM, build)?;
         Ok(workspace::target().join(self.target).join("dist").join(self.program))
     }
 
