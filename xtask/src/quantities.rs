@@ -14,10 +14,18 @@ const PAGE: &str = "docs/guide/src/quantities.md";
 
 /// Flags of `quantities`.
 #[derive(Debug, clap::Args)]
-pub(crate) struct Options {}
+pub(crate) struct Options {
+    /// Prints the schema of summary.json instead
+    #[arg(long)]
+    schema: bool,
+}
 
 /// Writes the page.
-pub(crate) fn run(_: &Options) -> Result<ExitCode> {
+pub(crate) fn run(options: &Options) -> Result<ExitCode> {
+    if options.schema {
+        println!("{:#}", Summary::json_schema());
+        return Ok(ExitCode::SUCCESS);
+    }
     let path = workspace::root().join(PAGE);
     std::fs::write(path, page()?).with_context(|| format!("cannot write {PAGE}"))?;
     println!("{PAGE} says what the summary declares");
@@ -38,7 +46,8 @@ fn page() -> Result<String> {
          `summary.PATH` of a campaign, and to a target of an inference. Numbers with an … are in a list, of \
          which an inference takes one item or combines all, as in `median(events.floor_n)`, and campaigns \
          have no column. \
-         `compare` sets the bold ones side by side, and the page of a campaign draws them over its fields.\n",
+         `compare` sets the bold ones side by side, and the page of a campaign draws them over its fields. \
+         `cargo xtask quantities --schema` prints the JSON schema of `summary.json`.\n",
     );
     let mut section = String::new();
     for quantity in Summary::quantities() {

@@ -17,8 +17,10 @@
 //! }
 //! ```
 //!
-//! Reading and writing, the statistics of ensembles, the columns of campaigns, the targets of inferences and
-//! the guide's page (`cargo xtask quantities`) follow from that entry.
+//! Reading and writing, the statistics of ensembles, the columns of campaigns, the targets of inferences, the
+//! guide's page (`cargo xtask quantities`) and the schema for other programs follow from that entry.
+
+pub(crate) mod schema;
 
 use std::slice;
 
@@ -57,14 +59,34 @@ pub struct Entry {
 /// Content of a field.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
-    /// A number, yes or no, or several numbers.
+    /// A number; `null` in a file where it is not finite.
     Number,
+    /// A whole number.
+    Whole,
+    /// Yes or no.
+    Flag,
     /// Words.
     Text,
     /// A structure.
     Group(&'static [Entry]),
     /// Items of one kind.
     List(&'static Kind),
+    /// One kind, or nothing.
+    Optional(&'static Kind),
+    /// As many of one kind.
+    Several(&'static Kind, usize),
+    /// A pair of numbers, or a name with its number.
+    Pair([&'static Kind; 2]),
+}
+
+impl Kind {
+    /// The kind of each of several, and of what may be missing.
+    fn single(self) -> Self {
+        match self {
+            Self::Optional(kind) | Self::Several(kind, _) | Self::Pair([_, kind]) => kind.single(),
+            kind => kind,
+        }
+    }
 }
 
 /// A type that a summary is made of.
@@ -144,14 +166,18 @@ macro_rules! quantities {
 pub(crate) use quantities;
 
 macro_rules! numbers {
-    ($($of:ty),+) => {
-        $(impl Part for $of {
-            const KIND: Kind = Kind::Number;
-        })+
+    ($($kind:ident: $($of:ty),+;)+) => {
+        $($(impl Part for $of {
+            const KIND: Kind = Kind::$kind;
+        })+)+
     };
 }
 
-numbers!(f64, u64, u32, i32, usize, bool);
+numbers! {
+    Number: f64;
+    Whole: u64, u32, i32, usize;
+    Flag: bool;
+}
 
 impl Part for String {}
 impl Part for Status {}
@@ -159,7 +185,7 @@ impl Part for DefectRing {}
 impl Part for Defect {}
 
 impl<T: Part> Part for Option<T> {
-    const KIND: Kind = T::KIND;
+    const KIND: Kind = Kind::Optional(&T::KIND);
 }
 
 impl<T: Part> Part for Vec<T> {
@@ -167,12 +193,11 @@ impl<T: Part> Part for Vec<T> {
 }
 
 impl<T: Part, const N: usize> Part for [T; N] {
-    const KIND: Kind = T::KIND;
+    const KIND: Kind = Kind::Several(&T::KIND, N);
 }
 
-/// A pair of numbers, or a name with its number.
-impl<A, B: Part> Part for (A, B) {
-    const KIND: Kind = B::KIND;
+impl<A: Part, B: Part> Part for (A, B) {
+    const KIND: Kind = Kind::Pair([&A::KIND, &B::KIND]);
 }
 
 impl Part for MeshInfo {
@@ -187,7 +212,7 @@ impl Part for MeshInfo {
 }
 
 const fn counted(name: &'static str, about: &'static str) -> Entry {
-    Entry { name, about, written: "", kind: Kind::Number, words: None, place: None }
+    Entry { name, about, written: "", kind: Kind::Whole, words: None, place: None }
 }
 
 /// The numbers of a structure, in its order.
@@ -206,20 +231,20 @@ fn list(entries: &'static [Entry], path: &str, is_listed: bool, all: &mut Vec<Qu
             ("", _) => entry.name.to_owned(),
             (path, _) => format!("{path}.{}", entry.name),
         };
-        let (kind, is_listed) = match entry.kind {
-            Kind::List(items) => (*items, true),
+        let (kind, is_listed) = match entry.kind.single() {
+            Kind::List(items) => (items.single(), true),
             kind => (kind, is_listed),
         };
         match kind {
             Kind::Group(inner) => list(inner, &path, is_listed, all),
-            Kind::Number => all.push(Quantity {
+            Kind::Number | Kind::Whole | Kind::Flag => all.push(Quantity {
                 path,
                 about: entry.about.trim_start(),
                 words: entry.words,
                 place: entry.place,
                 is_listed,
             }),
-            Kind::Text | Kind::List(_) => {}
+            _ => {}
         }
     }
 }
@@ -237,7 +262,7 @@ impl Quantity {
 
     /// Its comment as the page of all quantities has it, without links to code.
     pub fn about_in_markdown(&self) -> String {
-        self.about.replace("`None`", "`null`").replace("[`", "`").replace("`]", "`").replace('|', "\\|")
+        without_links(self.about).replace('|', "\\|")
     }
 
     /// Its value in a `summary.json`, in lists the mean of the items that have it.
@@ -257,6 +282,11 @@ impl Quantity {
     pub fn scatters(&self) -> bool {
         self.unit() == "g"
     }
+}
+
+/// A comment without links to code, and with the words of a file.
+fn without_links(about: &str) -> String {
+    about.replace("`None`", "`null`").replace("[`", "`").replace("`]", "`")
 }
 
 /// The items of a list; a value that is none by itself.

@@ -2,6 +2,7 @@
 //! is `null`, with the reason in `notes`.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use stribeck_dsp::{Resolution, statistics};
 use stribeck_scene::scene::DefectRing;
 use stribeck_store::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
@@ -17,7 +18,7 @@ use crate::floor::FloorContact;
 use crate::kinematics::KinematicsFinding;
 use crate::levels::SignalLevel;
 use crate::load::LoadFinding;
-use crate::quantity::{self, Quantity, quantities};
+use crate::quantity::{self, Part as _, Quantity, quantities};
 use crate::reading::CursorReading;
 use crate::records::RecordFinding;
 use crate::tones::Tone;
@@ -151,6 +152,14 @@ impl Summary {
     /// Every number that a summary may have.
     pub fn quantities() -> Vec<Quantity> {
         quantity::of::<Self>()
+    }
+
+    /// The schema of a `summary.json` that this version writes (JSON Schema, 2020-12).
+    pub fn json_schema() -> Value {
+        let mut schema = quantity::schema::of(Self::KIND);
+        schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
+        schema["title"] = concat!("Summary of a run, Stribeck ", env!("CARGO_PKG_VERSION")).into();
+        schema
     }
 
     /// The main ones, in the order in which they are compared.

@@ -1,16 +1,18 @@
-//! Texts of a release: installers, a formula of Homebrew, a container, the notes.
+//! Texts of a release: installers, a formula of Homebrew, a container, the notes, schemas.
 
 use std::path::Path;
 
 use anyhow::{Context, Result, ensure};
+use stribeck_analysis::summary::Summary;
 
 use super::VERSION;
 
 /// Their templates, by file name.
-const TEMPLATES: [(&str, &str); 3] = [
+const TEMPLATES: [(&str, &str); 4] = [
     ("install.sh", include_str!("../../assets/release/install.sh")),
     ("install.ps1", include_str!("../../assets/release/install.ps1")),
     ("Containerfile", include_str!("../../assets/release/Containerfile")),
+    ("stribeck.rb", include_str!("../../assets/release/stribeck.rb")),
 ];
 
 /// Name of the bill of materials.
@@ -29,9 +31,16 @@ pub(super) fn write_all(root: &Path, folder: &Path, archives: &[(String, String)
     for (name, text) in TEMPLATES {
         let text =
             text.replace("{{version}}", VERSION).replace("{{repository}}", env!("CARGO_PKG_REPOSITORY"));
-        write(folder, name, &text.replace("{{sums}}", &sums.join("\n")))?;
+        let text = text.replace("{{sums}}", &sums.join("\n"));
+        let text =
+            archives.iter().fold(text, |text, (name, sum)| text.replace(&format!("{{{{{name}}}}}"), sum));
+        // A formula needs the archives of both processors.
+        if !text.contains("{{") {
+            write(folder, name, &text)?;
+        }
     }
-    write(folder, "stribeck.rb", &formula(archives))?;
+    write(folder, "scene.schema.json", &format!("{:#}\n", stribeck_scene::fields::json_schema()))?;
+    write(folder, "summary.schema.json", &format!("{:#}\n", Summary::json_schema()))?;
     let changes = std::fs::read_to_string(root.join("CHANGELOG.md")).context("cannot read CHANGELOG.md")?;
     write(folder, "NOTES.md", notes(&changes)?)?;
     let citation = std::fs::read_to_string(root.join("CITATION.cff")).context("cannot read CITATION.cff")?;
@@ -50,31 +59,6 @@ fn notes(changes: &str) -> Result<&str> {
         Some(section.split("\n## ").next().unwrap_or(section).trim_start())
     };
     of(VERSION).or_else(|| of("Unreleased")).context("CHANGELOG.md has no section of this version")
-}
-
-/// A formula of Homebrew for the archives of Linux and macOS.
-fn formula(archives: &[(String, String)]) -> String {
-    let mut text = format!(
-        "class Stribeck < Formula\n  desc \"Explicit dynamics of rolling element bearings\"\n  homepage \
-         \"{repository}\"\n  version \"{VERSION}\"\n  license any_of: [\"MIT\", \"Apache-2.0\"]\n",
-        repository = env!("CARGO_PKG_REPOSITORY")
-    );
-    for (system, on_system) in [("linux", "on_linux"), ("darwin", "on_macos")] {
-        for (processor, on_processor) in [("x86_64", "on_intel"), ("aarch64", "on_arm")] {
-            let wanted = |(name, _): &&(String, String)| {
-                name.contains(system) && name.contains(processor) && !name.contains("musl")
-            };
-            if let Some((name, sum)) = archives.iter().find(wanted) {
-                text += &format!(
-                    "\n  {on_system} do\n    {on_processor} do\n      url \
-                     \"{}/releases/download/v{VERSION}/{name}\"\n      sha256 \"{sum}\"\n    end\n  end\n",
-                    env!("CARGO_PKG_REPOSITORY")
-                );
-            }
-        }
-    }
-    text + "\n  def install\n    bin.install \"stribeck\"\n  end\n\n  test do\n    system bin/\"stribeck\", \
-            \"demo\"\n  end\nend\n"
 }
 
 #[cfg(test)]

@@ -101,18 +101,39 @@ fn planted_tone_levels_and_notch_of_the_synthetic_run() {
     assert!(summary.notes.iter().any(|n| n.contains("envelope")), "{:?}", summary.notes);
 }
 
-/// Paths of all numbers, those of a list's items without their places.
-fn numbers_below(value: &serde_json::Value, path: &str, each: &mut impl FnMut(&String)) {
-    match value {
-        serde_json::Value::Object(fields) => {
-            for (name, inner) in fields {
-                numbers_below(inner, format!("{path}.{name}").trim_start_matches('.'), each);
-            }
-        }
-        serde_json::Value::Array(items) => items.iter().for_each(|item| numbers_below(item, path, each)),
-        serde_json::Value::Number(_) | serde_json::Value::Bool(_) => each(&path.to_owned()),
-        serde_json::Value::Null | serde_json::Value::String(_) => {}
+/// Whether a value is what a schema of `Summary::json_schema` allows; the first place where it is not.
+fn agree(schema: &serde_json::Value, value: &serde_json::Value, path: &str) -> Result<(), String> {
+    if let Some(kinds) = schema["anyOf"].as_array() {
+        let refused: Vec<String> = kinds.iter().filter_map(|kind| agree(kind, value, path).err()).collect();
+        return if refused.len() < kinds.len() { Ok(()) } else { Err(refused.join("; ")) };
     }
+    let kind = match value {
+        serde_json::Value::Null => "null",
+        serde_json::Value::Bool(_) => "boolean",
+        serde_json::Value::Number(number) if !number.is_f64() && schema["type"] == "integer" => "integer",
+        serde_json::Value::Number(_) => "number",
+        serde_json::Value::String(_) => "string",
+        serde_json::Value::Array(_) => "array",
+        serde_json::Value::Object(_) => "object",
+    };
+    let allowed = &schema["type"];
+    let is_allowed = allowed == kind || allowed.as_array().is_some_and(|all| all.iter().any(|a| a == kind));
+    if !is_allowed {
+        return Err(format!("{path} is {kind}, not {allowed}"));
+    }
+    for (name, inner) in value.as_object().into_iter().flatten() {
+        let path = format!("{path}.{name}");
+        agree(schema["properties"].get(name).ok_or(format!("{path} is declared nowhere"))?, inner, &path)?;
+    }
+    for name in schema["required"].as_array().into_iter().flatten() {
+        value.get(name.as_str().unwrap_or_default()).ok_or(format!("{path}.{name} is missing"))?;
+    }
+    let items = value.as_array().map_or(&[][..], Vec::as_slice);
+    if schema["minItems"].as_u64().is_some_and(|n| n != items.len() as u64) {
+        return Err(format!("{path} has {} items", items.len()));
+    }
+    let each = |k: usize| schema["prefixItems"].get(k).unwrap_or(&schema["items"]);
+    items.iter().enumerate().try_for_each(|(k, item)| agree(each(k), item, &format!("{path}[{k}]")))
 }
 
 #[test]
@@ -125,7 +146,13 @@ fn golden_the_summary_has_its_stable_names() {
     for path in &declared {
         assert!(page.contains(&format!("`{path}`")), "the guide has no {path}: `cargo xtask quantities`");
     }
-    numbers_below(&json, "", &mut |path| assert!(declared.contains(path), "{path} is declared nowhere"));
+    let schema = Summary::json_schema();
+    agree(&schema, &json, "summary").expect("the schema allows it");
+    for (place, wrong) in [("/mesh/nodes", "many".into()), ("/notes", 1.into())] {
+        let mut json = json.clone();
+        *json.pointer_mut(place).expect("there") = wrong;
+        agree(&schema, &json, "summary").expect_err(place);
+    }
     for path in ["mesh.nodes", "run.wall_s", "kinematics.bpfo_hz", "load.mean_n", "levels.exit_g", "notch.q"]
     {
         assert!(declared.iter().any(|declared| declared == path), "{path} had another name before");
