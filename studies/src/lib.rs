@@ -34,6 +34,7 @@ mod rows;
 mod run_time;
 mod runner;
 mod sample;
+mod skidding;
 mod spall_size;
 mod spalls;
 mod stability;
@@ -82,6 +83,8 @@ pub enum Study {
     /// Whether the force at the exit of a spall grows with its depth and its width
     #[command(name = "spall_size")]
     SpallSize(Flags),
+    /// How far cage and rollers of a lightly loaded bearing lag behind, over load, speed, oil and clearance
+    Skidding(Flags),
     /// How far the reduced bearing is from the full one, scene by scene
     Reduced(Flags),
     /// Whether the impulse at the exit is that of a finer mesh, over many starts
@@ -108,6 +111,7 @@ impl Study {
             Self::Atlas(_) => "atlas",
             Self::Loop(_) => "loop",
             Self::Spalls(_) => "spalls",
+            Self::Skidding(_) => "skidding",
             Self::SpallSize(_) => "spall_size",
             Self::Reduced(_) => "reduced",
             Self::Impulse(_) => "impulse",
@@ -132,6 +136,7 @@ impl Study {
             Self::Atlas(flags) => atlas::measure(&runner(flags), rows)?,
             Self::Loop(options) => measured_loop::measure(options, host, rows)?,
             Self::Spalls(flags) => spalls::measure(&runner(flags), rows)?,
+            Self::Skidding(flags) => skidding::measure(&runner(flags), rows)?,
             Self::SpallSize(flags) => spall_size::measure(&runner(flags), rows)?,
             Self::Reduced(flags) => reduced::measure(&runner(flags), rows)?,
             Self::Impulse(options) => impulse::measure(options, host, rows)?,

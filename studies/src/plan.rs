@@ -156,6 +156,7 @@ fn number(run: &Finished, known: &Value, kernels: &[Kernel], place: &str) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::runner::scene_name;
     use stribeck_scene::scene::Scene;
 
     /// A field that is misspelt here would come to light after hours.
@@ -172,7 +173,11 @@ mod tests {
             let plan = Plan::read(&name).unwrap_or_else(|error| panic!("{error:#}"));
             for variant in plan.groups.iter().flat_map(|group| plan.variants(group)) {
                 let scene = Scene::read_with(crate::root().join(&variant.scene), &variant.set);
-                assert!(scene.is_ok(), "{name}, {}: {scene:?}", variant.name);
+                let scene = scene.unwrap_or_else(|error| panic!("{name}, {}: {error}", variant.name));
+                // A run is read back from the scene that it keeps.
+                let kept = Scene { name: scene_name(&variant.name), ..scene }.to_ron();
+                Scene::parse(&kept, "kept")
+                    .unwrap_or_else(|error| panic!("{name}, {}: {error}", variant.name));
                 scenes += 1;
             }
         }

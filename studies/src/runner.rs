@@ -110,9 +110,15 @@ impl Variant {
         let file = root.join(&self.scene);
         let mut scene = Scene::read_with(&file, &self.set)
             .with_context(|| format!("variant `{}` is not a scene", self.name))?;
-        scene.name.clone_from(&self.name);
+        scene.name = scene_name(&self.name);
         Ok(scene)
     }
+}
+
+/// The name of a variant without the signs that a scene's name may not have.
+pub(crate) fn scene_name(variant: &str) -> String {
+    let kept = variant.replace(|c: char| !c.is_ascii_alphanumeric() && c != '_', "-");
+    kept.trim_start_matches(['-', '_']).to_owned()
 }
 
 impl Finished {

@@ -18,7 +18,7 @@ use crate::{
     housing::Housing,
     law::ContactLaw,
     modes::Structure,
-    oil::Lubrication,
+    oil::{Lubrication, resistance::Traction},
     rollers::Rollers,
     seat::Springs,
     sensors::Sensors,
@@ -60,7 +60,7 @@ impl Bearing {
     pub fn new(modal: ModalBearing, time_step: f64) -> Result<Self, Error> {
         let ModalBearing { reduction, parameters } = modal;
         let Parameters { radii, thickness, contact, .. } = &parameters;
-        let raceways = raceways(&parameters, &reduction);
+        let mut raceways = raceways(&parameters, &reduction);
         let rollers = Rollers::new(&parameters, reduction.roller_inertia);
         let facets = rollers.rims[0].outline.len() as f64;
         let law = ContactLaw {
@@ -71,6 +71,13 @@ impl Bearing {
             arm: radii.roller - 2.0 / 3.0 * sag(&parameters, radii.roller, facets),
             time_step,
         };
+        if let Some((oil, resistance)) = parameters.oil.zip(parameters.oil.and_then(|oil| oil.resistance)) {
+            for (raceway, film) in raceways.iter_mut().zip([oil.outer, oil.inner]) {
+                let (viscosity, relative) = (oil.viscosity, raceway.relative);
+                raceway.traction =
+                    Some(Traction::new(&resistance, viscosity, film.least, relative, *thickness));
+            }
+        }
         let oil = parameters.oil.as_ref();
         let oil = oil.map(|oil| {
             let others: Vec<&Outline> = rollers.rims[1..].iter().map(|rim| &rim.outline).collect();
@@ -117,7 +124,7 @@ impl Bearing {
             let length = contact_length(fullest, self.law.penalty, raceway.relative);
             let flexibility = raceway.curve.approach(fullest).0[1].max(0.0);
             let stiffness = self.law.sticking * length / (1.0 + self.law.penalty * length * flexibility);
-            if self.law.friction > 0.0 { stiffness } else { 0.0 }
+            if self.law.friction > 0.0 || raceway.traction.is_some() { stiffness } else { 0.0 }
         };
         let [along_outer, along_inner] = both.each_ref().map(along);
         // A contact pulls on the roller and on the modes under it; (a − b)² ≤ (1 + c) a² + (1 + 1/c) b².
@@ -275,6 +282,7 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
             bound: nearest,
             bounds,
             relative: 1.0 / (kr - ko),
+            traction: None,
         },
         Raceway {
             sides: sides(false, kr + ki),
@@ -287,6 +295,7 @@ fn raceways(parameters: &Parameters, reduction: &Reduction) -> [Raceway; 2] {
             bound: farthest,
             bounds: Vec::new(),
             relative: 1.0 / (kr + ki),
+            traction: None,
         },
     ]
 }

@@ -19,7 +19,7 @@ pub use bearing::{
 };
 pub use contact::{
     ContactFormula, ContactInterpolation, ContactMethod, ContactPasses, ContactScene, ContactSurface,
-    FilmScene,
+    FilmScene, ResistanceScene,
 };
 pub use mesh::{GradingScene, MeshScene, RollerCopies};
 pub use operation::{HarmonicScene, OperationScene, ProfileScene, RampScene, RotatingLoadScene};

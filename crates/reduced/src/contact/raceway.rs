@@ -3,6 +3,8 @@
 use crate::modal::compliance::{Compliance, Curve};
 use stribeck_simd::lanes::Number;
 
+use crate::oil::resistance::Traction;
+
 use super::{outline::Outline, penetration::Sides, round::Relief};
 
 /// One raceway.
@@ -26,6 +28,8 @@ pub(crate) struct Raceway {
     pub(crate) bounds: Vec<f64>,
     /// Largest relative radius [m].
     pub(crate) relative: f64,
+    /// Traction of its loaded contacts through oil that resists; without, friction is Coulomb's.
+    pub(crate) traction: Option<Traction>,
 }
 
 impl Raceway {

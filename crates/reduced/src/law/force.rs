@@ -74,8 +74,14 @@ impl ContactLaw {
         let dt = all(self.time_step);
         let left = one - (all(2.0) * pace * dt / length).min(one);
         let stiffness = all(self.sticking) * length * part;
-        let most = all(self.friction) * normal / stiffness;
-        let slip = Vector::load(simd, &contacts.slip, at).times_plus(left, dt * sliding);
+        let friction = raceway.traction.map_or(self.friction, |traction| traction.limit);
+        let most = all(friction) * normal / stiffness;
+        let mut slip = Vector::load(simd, &contacts.slip, at).times_plus(left, dt * sliding);
+        if let Some(traction) = &raceway.traction {
+            // The film behind the spring flows, as far as it does in a step (implicit Euler).
+            let viscous = traction.viscous(simd, normal);
+            slip = slip * viscous / (stiffness * dt + viscous);
+        }
         let slip = where_it_touches(slip.min(most).max(-most));
         let drag = -(stiffness * slip);
         heat[0] = heat[0] - (old_drag + drag) * sliding;

@@ -159,6 +159,22 @@ pub struct Oil {
     pub outer: Film,
     /// Films at the inner raceway.
     pub inner: Film,
+    /// What it takes from the motion, if anything.
+    #[serde(default)]
+    pub resistance: Option<Resistance>,
+}
+
+/// Resistance of oil to rolling and sliding, and its drag on rollers (THEORY §4.6).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Resistance {
+    /// Largest traction of a loaded contact over its normal force [-].
+    pub limiting_traction: f64,
+    /// Pressure–viscosity coefficient [1/Pa].
+    pub pressure_viscosity: f64,
+    /// Modulus of Hertz's contact between like bodies, E/(2(1 − ν²)) [Pa].
+    pub contact_modulus: f64,
+    /// Density of what rollers push along [kg/m³].
+    pub density: f64,
 }
 
 /// Films at one raceway.

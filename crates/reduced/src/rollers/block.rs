@@ -69,7 +69,8 @@ pub(crate) struct Block {
     /// Forces by outer raceway, inner raceway and cage in this step [N], and their moment [N m].
     pub(crate) force: [Rows; 3],
     pub(crate) moment: Row,
-    /// Force towards smaller displacement of the outer raceway [N] (THEORY (9.5a)).
+    /// Forces that neither raceway nor cage takes up [N]: towards smaller displacement of the outer raceway
+    /// (THEORY (9.5a)), and by oil that is pushed along.
     pub(crate) downhill: Rows,
     /// The forces, summed over the steps since the last sample.
     pub(crate) sums: [Rows; 3],

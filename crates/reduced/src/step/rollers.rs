@@ -89,7 +89,14 @@ impl Bearing {
         let step = FilmStep { step: state.steps, dt, last: tally.last, felt: self.seat.is_some() };
         let by_oil = oil.add_film_forces(simd, &self.rollers, films, block, drive.rings(), step);
         tally.stored.contact += by_oil.stored;
-        for (ring, moment) in drive.rings().into_iter().zip(by_oil.drive) {
+        let mut moments = by_oil.drive;
+        if let Some(resistance) = &oil.resistance {
+            let thickness = oil.thicknesses(films, block);
+            let resisted = resistance.act(simd, block, &thickness, drive.rings());
+            films.heat += dt * resisted.power;
+            moments = [0, 1].map(|k| moments[k] + resisted.drive[k]);
+        }
+        for (ring, moment) in drive.rings().into_iter().zip(moments) {
             tally.spent.drive += ring.map_or(0.0, |ring| dt * ring.rate * moment);
         }
         [by_oil.normal, by_oil.stiffness]

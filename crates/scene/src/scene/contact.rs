@@ -105,5 +105,18 @@ group! {
         pub pressure_viscosity_per_gpa: f64 = 22.0, within(1.0, 100.0);
         /// Composite roughness of roller and raceway, √(Rq₁² + Rq₂²) [µm].
         pub roughness_um: f64 = 0.3, within(0.01, 10.0);
+        /// What the oil takes from the motion (reduced model); `None`: films push apart, and nothing else.
+        pub resistance: Option<ResistanceScene> = None, omitted();
+    }
+}
+
+group! {
+    /// Resistance of oil to rolling and sliding, and its drag on rollers: what makes a lightly loaded bearing
+    /// skid.
+    pub struct ResistanceScene {
+        /// Largest traction of a loaded contact over its normal force [-], in the place of `contact.friction`.
+        pub limiting_traction: f64 = 0.05, within(1e-3, 0.2);
+        /// Part of the space between the rings that oil fills [%]: rollers push as much of it along.
+        pub oil_percent: f64 = 10.0, within(0.0, 100.0);
     }
 }

@@ -20,7 +20,8 @@ const LEAST_EDGE_DEG: f64 = 22.0;
 
 /// Every choice that excludes another, in a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
-    let groups = [damped_band, damped_bodies, damped_twice, oiled_edges, reduced_starts, profiles];
+    let groups =
+        [damped_band, damped_bodies, damped_twice, oiled_edges, resisting_oil, reduced_starts, profiles];
     groups.iter().filter_map(|group| group(scene)).collect()
 }
 
@@ -108,6 +109,18 @@ fn oiled_edges(scene: &Scene) -> Option<Finding> {
     let slope = Remedy::new("defect.edge_slope_deg", format!("{least}° or more"));
     let dry = Remedy::new("film", "`None`").value("None", "dry");
     Some(Finding::new(message, vec![slope.number(30.0, ""), dry]))
+}
+
+/// Only the reduced model has the resistance of oil.
+fn resisting_oil(scene: &Scene) -> Option<Finding> {
+    const RESISTANCE: &str = "film.resistance";
+    let resists = scene.film.as_ref().is_some_and(|film| film.resistance.is_some());
+    if !resists || scene.model != ModelScene::Full {
+        return None;
+    }
+    let message = format!("`{RESISTANCE}` is there, and the full model has none");
+    let reduced = Remedy::new("model", "`reduced()`".to_owned()).value("reduced()", "");
+    Some(Finding::new(message, vec![reduced, Remedy::new(RESISTANCE, "`None`".to_owned()).value("None", "")]))
 }
 
 /// Only the reduced model relieves rollers towards their ends, as a part of steel's contact.

@@ -6,7 +6,8 @@ use stribeck_reduced::modal::{
     ModalBearing, Parameters, Reduction,
     outline::per_angle,
     parameters::{
-        Branch, Contact, Damping, DampingFrame, Film, Oil, Outlines, Pockets, Radii, RollerStart, Speeds,
+        Branch, Contact, Damping, DampingFrame, Film, Oil, Outlines, Pockets, Radii, Resistance, RollerStart,
+        Speeds,
     },
 };
 use stribeck_scene::{
@@ -20,6 +21,9 @@ use stribeck_theory::kinematics::Kinematics;
 
 use crate::error::Error;
 use crate::reduction::seat;
+
+/// Density of mineral oil [kg/m³].
+const OIL_DENSITY: f64 = 870.0;
 
 /// The bearing of a scene whose mesh has been reduced.
 ///
@@ -216,5 +220,12 @@ fn pockets(scene: &ResolvedScene, numbers: &[usize]) -> Option<Pockets> {
 fn oil(scene: &ResolvedScene) -> Result<Option<Oil>, Error> {
     let (Some(oil), Some([outer, inner])) = (scene.film, scene.loaded_films()?) else { return Ok(None) };
     let [outer, inner] = [outer, inner].map(|film| Film { least: film.least, speed: film.speed });
-    Ok(Some(Oil { viscosity: oil.viscosity, outer, inner }))
+    let resistance = scene.written.film.as_ref().and_then(|film| film.resistance.as_ref());
+    let resistance = resistance.map(|resistance| Resistance {
+        limiting_traction: resistance.limiting_traction,
+        pressure_viscosity: oil.pressure_viscosity,
+        contact_modulus: scene.material.contact_modulus(),
+        density: 1e-2 * resistance.oil_percent * OIL_DENSITY,
+    });
+    Ok(Some(Oil { viscosity: oil.viscosity, outer, inner, resistance }))
 }

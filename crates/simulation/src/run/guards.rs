@@ -39,6 +39,9 @@ const CARRIES: f64 = 1e-3;
 /// A cage that is off its place by this many times the clearance of its pockets is guided by nothing.
 pub const OUT_OF_POCKETS: f64 = 10.0;
 
+/// Share of the static load rating that counts as a light load on one roller.
+const JAMMING: f64 = 0.01;
+
 /// A cage below this share of its speed without slip slides.
 const SLOW: f64 = 0.5;
 
@@ -79,8 +82,8 @@ pub struct Guards {
     annulus: [f64; 2],
     cage: Option<CageRoom>,
     duty: Duty,
-    /// Largest load of the run [N].
-    load: f64,
+    /// The cage pushes no roller that has not jammed with more than this [N].
+    jamming: f64,
     /// What guides the cage in this scene, in words.
     holds_cage: String,
     /// The field that shortens the time step, as messages name it.
@@ -141,7 +144,8 @@ impl Guards {
                 scene.outer_race_radius - radius + depth + slack,
             ],
             cage: CageRoom::of(scene),
-            load: scene.duty.load_range_n(scene.duration)[1],
+            jamming: scene.duty.load_range_n(scene.duration)[1]
+                .max(JAMMING * scene.written.static_rating_n()),
             duty: scene.duty.clone(),
             holds_cage: advice::holds_cage(&scene.written),
             step_field,
@@ -238,18 +242,20 @@ impl Guards {
         None
     }
 
-    /// A cage that pushes a roller with more than the bearing's load has jammed it.
+    /// A cage that pushes a roller with more than the bearing's load has jammed it, unless all loads are
+    /// light: rollers that skid knock at it.
     fn jam(&self, info: &mut RunInfo, push: f64, when: &When) {
         let before = info.guards.cage_push_n;
         info.guards.cage_push_n = before.max(push);
-        if push > self.load && before <= self.load {
+        if push > self.jamming && before <= self.jamming {
             info.warn(Topic::Motion.warning(format!(
-                "the cage pushes a roller with {:.1} kN {when}, more than the load of {:.1} kN: a roller has \
-                 jammed between its pocket and a raceway or the edge of a defect, and what follows is no \
-                 motion of a bearing. Take a larger `cage.pocket_clearance_um`, edges that slope, or `cage: \
-                 None`",
+                "the cage pushes a roller with {:.1} kN {when}, more than {:.1} kN, the load or {:.0} % of the \
+                 static rating: a roller has jammed between its pocket and a raceway or the edge of a defect, \
+                 and what follows is no motion of a bearing. Take a larger `cage.pocket_clearance_um`, edges \
+                 that slope, or `cage: None`",
                 1e-3 * push,
-                1e-3 * self.load
+                1e-3 * self.jamming,
+                1e2 * JAMMING
             )));
         }
     }
