@@ -53,11 +53,9 @@ impl<'a> Platform<'a> {
         ]
     }
 
-    /// Builds the program with its variables, of the libraries that the wheel is made of.
+    /// Builds the program with its variables.
     pub(super) fn program(&self, python: &str, build: &Environment) -> Result<PathBuf> {
-        const PROGRAM: [&str; 8] =
-            ["--profile", "dist", "-p", "stribeck", "-p", "stribeck-python", "--bin", "stribeck"];
-        self.build(python, &PROGRAM, build)?;
+        self.build(python, &["--profile", "dist", "-p", "stribeck", "--bin", "stribeck"], build)?;
         Ok(workspace::target().join(self.target).join("dist").join(self.program))
     }
 
