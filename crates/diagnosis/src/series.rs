@@ -90,7 +90,13 @@ impl Series {
             names.map(|name| SeriesFamily::of(name, records, sound)).collect();
         highest_alone(&mut families);
         let growth = growth(records);
-        let verdict = conclude(&families, growth.as_ref(), [analysed, sound]);
+        let mut verdict = conclude(&families, growth.as_ref(), [analysed, sound]);
+        let spoilt =
+            |record: &&&MeasuredFindings| record.quality.iter().any(|found| found.kind.spoils_verdicts());
+        match records.iter().flatten().filter(spoilt).count() {
+            0 => {}
+            some => verdict += &format!(" {some} of {analysed} records are not sound: the page of each says how."),
+        }
         Self { records: records.len(), analysed, sound, families, growth, verdict }
     }
 }

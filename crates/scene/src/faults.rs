@@ -46,6 +46,12 @@ impl Scene {
         self.defect.iter().cloned().chain(of_defects).collect()
     }
 
+    /// Whether rolling elements strike edges: of spalls in rings, or of those that are their own.
+    pub fn has_edges(&self) -> bool {
+        let is_spall = |deviation: &DeviationScene| matches!(deviation.form, FormScene::Spall(_));
+        self.defect.is_some() || self.defects.iter().any(is_spall)
+    }
+
     /// The first of [`Scene::spalls`].
     pub fn leading_spall(&self) -> Option<DefectScene> {
         self.spalls().into_iter().next()

@@ -258,7 +258,7 @@ fn in_steps(
     let interval = scene.interval;
     let steps = steps_per_sample(scene, 1e-6 * wanted.step_us);
     let bearing = Bearing::new(modal.clone(), interval / steps as f64)?;
-    let share = if scene.written.spalls().is_empty() { 1.0 } else { OVER_EDGES };
+    let share = if scene.written.has_edges() { OVER_EDGES } else { 1.0 };
     let most = share * bearing.critical_time_step();
     if bearing.time_step <= most {
         return Ok((bearing, steps));
