@@ -266,7 +266,7 @@ fn issue_what_no_rolling_explains_is_another_bearings() {
     };
     let (fast, slow) = (of(1.017 * 3.585), of(0.985 * 3.585));
     assert!(claimed(&fast).is_empty(), "{fast:#?}");
-    assert!(fast.families[0].reason.to_string().contains("+1.7 % from its place"), "{fast:#?}");
+    assert!(fast.families[0].reason.to_string().contains("+1.7 % off the frequency"), "{fast:#?}");
     assert_eq!(claimed(&slow), ["BPFO"], "{slow:#?}");
 }
 

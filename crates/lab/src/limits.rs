@@ -101,7 +101,7 @@ impl Limits {
         let share = motion.deepest() / self.element_size;
         (share > 0.01 * self.penetration_percent).then(|| {
             format!(
-                "contact has sunk in by {:.0} % of an element {}: take a larger `contact.penalty_scale` or \
+                "the penetration of a contact has reached {:.0} % of an element's size {}: take a larger `contact.penalty_scale` or \
                  less `operation.load_n`",
                 100.0 * share,
                 when(motion)

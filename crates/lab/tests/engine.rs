@@ -199,7 +199,7 @@ fn issue_a_run_that_stops_says_what_the_program_says() {
     type Change = fn(&mut Scene);
     let kinds: [(&str, Change); 3] = [
         ("energy is off by", |scene| scene.operation.speed_rpm = 20_000.0),
-        ("contact has sunk in by", |scene| scene.guards.penetration_stop_percent = 1.0),
+        ("the penetration of a contact has reached", |scene| scene.guards.penetration_stop_percent = 1.0),
         ("the cage has cut through a ring", |scene| scene.solver.duration_ms = 300.0),
     ];
     for (n, (words, change)) in kinds.into_iter().enumerate() {

@@ -22,6 +22,8 @@ use change::Change;
 pub struct CampaignIndex {
     /// Its name.
     pub name: String,
+    /// What is run, in words; `None` where the bearing is among what varies.
+    pub bearing: Option<String>,
     /// Fields that vary.
     pub fields: Vec<String>,
     /// Its runs, in order.
@@ -213,8 +215,9 @@ fn lead(index: &CampaignIndex) -> String {
     };
     let of_starts = if starts > 1 { format!(", {starts} starts each") } else { String::new() };
     format!(
-        "{} runs over {}{of_starts}.",
+        "{} runs{} over {}{of_starts}.",
         index.runs.len(),
+        index.bearing.as_ref().map_or_else(String::new, |bearing| format!(" of {bearing}")),
         index.fields.iter().map(over).collect::<Vec<_>>().join(", ")
     )
 }
@@ -444,7 +447,8 @@ mod tests {
     }
 
     pub(super) fn index(runs: Vec<CampaignRun>) -> CampaignIndex {
-        CampaignIndex { name: "x".into(), fields: vec!["operation.load_n".into()], runs, files: Vec::new() }
+        let (name, fields) = ("x".into(), vec!["operation.load_n".into()]);
+        CampaignIndex { name, bearing: Some("a 6205".into()), fields, runs, files: Vec::new() }
     }
 
     #[test]

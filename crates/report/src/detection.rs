@@ -17,6 +17,7 @@ use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error> {
     let figure = figure(detection).to_html()?;
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+    let has_limit = has_limit(detection);
     let page = document(
         &format!("{}: the smallest spall that is found", detection.scene),
         html! {
@@ -31,27 +32,39 @@ pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error
             aside class="limits" { p { strong { "How far to trust it. " } (with_code(CAUTION)) "." } }
             (figure)
             table {
-                tr { th { "Length, mm" } th { "Found" } th { "Share" } th { "95 %" } th { "Curve" } }
+                tr { th { "Length, mm" } th { "Found" } th { "Share" } th { "95 %" } @if has_limit { th { "Curve" } } }
                 @for one in &detection.lengths {
                     tr {
                         td { (format!("{:.2}", one.length_mm)) }
                         td { (one.found.count) " of " (one.found.of) }
                         td { (percent(one.found.share)) }
                         td { (percent(one.found.low)) " to " (percent(one.found.high)) }
-                        td { (percent(one.by_curve)) }
+                        @if has_limit { td { (percent(one.by_curve)) } }
                     }
                 }
             }
             p {
                 "Each record is a simulated bearing from another start, behind the machine's path, with another \
                 background; it is found where the verdict on measured records claims " (detection.family) ". The \
-                intervals are Wilson's. The curve is logistic in the logarithm of the length; the interval of \
-                the length of nine in ten is that of a parametric bootstrap. Seed " (detection.seed) "."
+                intervals are Wilson's. "
+                @if has_limit {
+                    "The curve is logistic in the logarithm of the length; the interval of the length of nine in ten is \
+                    that of a parametric bootstrap. "
+                } @else {
+                    "No curve is drawn: nine of ten lie outside of the lengths that were tried. "
+                }
+                "Seed " (detection.seed) "."
             }
         },
     );
     write_atomic(&folder.join("report.html"), page.into_string().as_bytes())?;
     Ok(())
+}
+
+/// Whether the length of nine in ten lies among those that were tried, which alone makes the curve one that says
+/// something.
+fn has_limit(detection: &Detection) -> bool {
+    matches!(detection.smallest, Smallest::Between { .. })
 }
 
 fn figure(detection: &Detection) -> Figure {
@@ -67,7 +80,6 @@ fn figure(detection: &Detection) -> Figure {
         Axis::decades("length of the spall", "mm"),
         Axis::plain("records", "%").over(0.0, 100.0),
     )
-    .with(Series::listed("curve", Colour::Blue, lengths.clone(), percent(&|one| one.by_curve)))
     .with(
         Series::listed("found", Colour::Orange, lengths.clone(), percent(&|one| one.found.share)).as_points(),
     )
@@ -76,6 +88,10 @@ fn figure(detection: &Detection) -> Figure {
             .as_edge(),
     )
     .with(Series::listed("95 %, lower end", Colour::Grey, lengths, percent(&|one| one.found.low)).as_edge());
+    if has_limit(detection) {
+        let curve = percent(&|one| one.by_curve);
+        figure = figure.with(Series::listed("curve", Colour::Blue, of(&|one| one.length_mm.log10()), curve));
+    }
     figure.levels.push(Level { y: 100.0 * WANTED, label: "nine of ten".to_owned(), colour: Colour::Grey });
     if let Smallest::Between { length_mm, .. } = detection.smallest {
         figure.marks.push(Mark::new(length_mm.log10(), format!("{length_mm:.2} mm"), Colour::Blue, true));

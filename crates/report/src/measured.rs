@@ -382,11 +382,11 @@ fn combs(family: &Family) -> Option<Figure> {
     let id = format!("combs-{}", family.name.name().to_lowercase());
     let figure = Figure::new(
         &id,
-        &format!("{} beside {} unrelated combs", family.name.shocks_name(), x.len()),
+        &format!("{} beside {} combs at other spacings", family.name.shocks_name(), x.len()),
         Axis::si("Fundamental", "Hz"),
         Axis::plain("Height over the background", "dB"),
     )
-    .with(Series::listed("unrelated", Colour::Grey, x, y).as_points())
+    .with(Series::listed("other spacings", Colour::Grey, x, y).as_points())
     .with(
         Series::listed(family.name.shocks_name(), Colour::Red, vec![hz], vec![family.score_db()]).as_points(),
     )
@@ -512,7 +512,7 @@ fn envelope(band: &BandEnvelope, family: &Family, findings: &MeasuredFindings) -
     if let Some((control_hz, _)) = highest {
         let inside = (1..=5).map(f64::from).filter(|n| n * control_hz < 5.6 * hz);
         figure.marks.extend(inside.map(|n| {
-            let label = if n > 1.0 { String::new() } else { "an unrelated comb".to_owned() };
+            let label = if n > 1.0 { String::new() } else { "a comb at another spacing".to_owned() };
             mark(n * control_hz, label, Colour::Grey, true)
         }));
     }

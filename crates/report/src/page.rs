@@ -51,6 +51,11 @@ pub(crate) fn json(summary: &impl Serialize) -> Result<String, Error> {
     Ok(text + "\n")
 }
 
+/// The defect frequencies, where a page names one.
+const FREQUENCIES: &str = "BPFO and BPFI: ball pass frequencies of the outer and of the inner raceway, at which rolling \
+    elements pass a spot of it. BSF: ball spin frequency, at which an element turns; a spot on it strikes twice a turn. \
+    FTF: fundamental train frequency, that of the cage.";
+
 /// A page: title, styles, scripts and what it says.
 pub(crate) fn document(name: &str, body: Markup) -> Markup {
     html! {
@@ -65,7 +70,12 @@ pub(crate) fn document(name: &str, body: Markup) -> Markup {
                 (plot::script())
                 style { (PreEscaped(include_str!("../assets/report.css"))) }
             }
-            body { (body) }
+            body {
+                (body)
+                @if ["BPFO", "BPFI", "BSF", "FTF"].iter().any(|name| body.0.contains(name)) {
+                    footer class="hint" { (FREQUENCIES) }
+                }
+            }
         }
     }
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use stribeck_theory::catalogue::{self, ADVICE, Boundary, CatalogueBearing, Element, plain};
 
-use crate::fields::{group, words};
-use crate::scene::{Assumed, BearingScene, Scene};
+use crate::fields::group;
+use crate::scene::{Assumed, BearingScene, ElementKind, Scene};
 use crate::scene_file::{self, without_mark};
 
 /// Name of the file in either folder.
@@ -20,7 +20,7 @@ group! {
         /// Its name.
         name: String = String::new(), required();
         /// Its rolling elements.
-        element: Kind = Kind::Roller;
+        element: ElementKind = ElementKind::Roller;
         /// How many there are.
         elements: Option<u64> = None;
         /// Their diameter [mm].
@@ -37,16 +37,6 @@ group! {
         width_mm: Option<f64> = None;
         /// Where its numbers are from.
         source: String = String::new();
-    }
-}
-
-words! {
-    /// A rolling element.
-    enum Kind: Copy {
-        /// A cylinder.
-        Roller = "roller",
-        /// A ball.
-        Ball = "ball",
     }
 }
 
@@ -110,8 +100,10 @@ pub fn of_scene(scene: &Scene) -> CatalogueBearing {
 /// Assumptions of a scene: dimensions that no catalogue prints, and dimensions that the fields of a bearing
 /// left out.
 pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
-    if !bearing.assumed.is_empty() {
-        return bearing.assumed.iter().map(|what| assumption(*what, bearing)).collect();
+    let of_balls = || as_cylinders("this bearing", bearing.thickness_mm);
+    let own_balls = (bearing.element == ElementKind::Ball).then(of_balls);
+    if !bearing.assumed.is_empty() || own_balls.is_some() {
+        return bearing.assumed.iter().map(|what| assumption(*what, bearing)).chain(own_balls).collect();
     }
     // A file that can no longer be read does not concern the scene.
     let bearings = self::known().unwrap_or_else(|_| catalogue::all());
@@ -145,13 +137,18 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
             "clearance, cage and the length of the rollers, {length} mm, are usual ones for {name}, not its \
              maker's"
         )),
-        Element::Ball => notes.push(format!(
-            "the balls of {name} are cylinders {length} mm long, between which raceways approach each other \
-             as with balls at the load that the scene was made for, and in the reduced model at any load; \
-             pressures and stresses are those of lines, not of points, and clearance and cage are usual ones"
-        )),
+        Element::Ball => notes.push(as_cylinders(name, length) + ", and clearance and cage are usual ones"),
     }
     notes
+}
+
+/// The note on balls, which a plane model has as cylinders of this length [mm].
+fn as_cylinders(name: &str, length: f64) -> String {
+    format!(
+        "the balls of {name} are cylinders {length} mm long, between which raceways approach each other as with \
+         balls at the load that the scene was made for, and in the reduced model at any load; pressures and stresses \
+         are those of lines, not of points"
+    )
 }
 
 /// An assumption about a bearing given by its own fields, in words.
@@ -160,7 +157,7 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
     match what {
         Assumed::Clearance => format!(
             "nobody gave the clearance of this bearing: {:.0} µm are assumed, the middle of the normal group \
-             (ISO 5753-1), between raceways of {} and {} mm and rollers of {} mm",
+             (ISO 5753-1), between raceways of {} and {} mm and rolling elements of {} mm",
             1e3 * (b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm),
             mm(b.outer_race_diameter_mm),
             mm(b.inner_race_diameter_mm),
@@ -180,9 +177,10 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
             mm(b.inner_ring_thickness_mm)
         ),
         Assumed::Rollers => format!(
-            "nobody gave the number of rollers: {} are assumed, with a fifth of the pitch circle free, and \
+            "nobody gave the number of rolling elements: {} are assumed, with {} of the pitch circle free, and \
              all frequencies of defects but that of the cage follow it",
-            b.rollers
+            b.rollers,
+            if b.element == ElementKind::Ball { "as much as it takes to fill them in" } else { "a fifth" }
         ),
         Assumed::Length => format!(
             "nobody gave the length of the rollers, `thickness_mm`: {} mm are assumed, 0.6 of `width_mm` or, \
@@ -223,6 +221,15 @@ fn read(path: &Path) -> Result<Vec<CatalogueBearing>, String> {
     entries.into_iter().map(|entry| entry.bearing(path)).collect()
 }
 
+impl From<ElementKind> for Element {
+    fn from(kind: ElementKind) -> Self {
+        match kind {
+            ElementKind::Roller => Self::Roller,
+            ElementKind::Ball => Self::Ball,
+        }
+    }
+}
+
 impl Entry {
     fn bearing(self, path: &Path) -> Result<CatalogueBearing, String> {
         let boundary = match (self.bore_mm, self.outside_mm, self.width_mm) {
@@ -242,10 +249,7 @@ impl Entry {
         let source = if self.source.is_empty() { path.display().to_string() } else { self.source };
         let bearing = CatalogueBearing {
             name: self.name,
-            element: match self.element {
-                Kind::Roller => Element::Roller,
-                Kind::Ball => Element::Ball,
-            },
+            element: self.element.into(),
             // No bearing has room for that many.
             elements: self.elements.map(|count| u32::try_from(count).unwrap_or(u32::MAX)),
             diameter_mm: self.diameter_mm,

@@ -14,8 +14,8 @@ pub use crate::housing::HousingScene;
 pub use crate::records::RecordsScene;
 pub use crate::ring_mesh::RingMeshScene;
 pub use bearing::{
-    AdapterScene, Assumed, BearingScene, CageScene, DefectRing, DefectScene, MaterialScene, PocketWalls,
-    RollerProfile,
+    AdapterScene, Assumed, BearingScene, CageScene, DefectRing, DefectScene, ElementKind, MaterialScene,
+    PocketWalls, RollerProfile,
 };
 pub use contact::{
     ContactFormula, ContactInterpolation, ContactMethod, ContactPasses, ContactScene, ContactSurface,

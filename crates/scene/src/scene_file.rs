@@ -245,6 +245,7 @@ fn paths_in(tree: &Node) -> Vec<String> {
 /// Text → scene, overrides.
 fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Understood, SceneError> {
     let mut sources = Sources::of_text(text, file, &SCENE)?;
+    sources.accept_words_of_catalogues();
     let mut given = paths_in(&sources.tree);
     given.extend(written_by(overrides));
     let name = sources.tree.get("bearing").and_then(String::read).filter(|name| !name.contains('"'));

@@ -13,7 +13,8 @@ use stribeck_theory::{Error, contact_law::ContactLawKind, load_rating};
 use crate::duty::LONGEST_RUN_S;
 use crate::resolved::ResolvedScene;
 use crate::scene::{
-    BearingScene, ContactFormula, DefectRing, DefectScene, MaterialScene, ModelScene, RollerProfile, Scene,
+    BearingScene, ContactFormula, DefectRing, DefectScene, ElementKind, MaterialScene, ModelScene,
+    RollerProfile, Scene,
 };
 
 impl From<&BearingScene> for Dimensions {
@@ -98,9 +99,12 @@ impl Scene {
         self.rollers_in_place().map(|number| angles[number - 1] - turned).collect()
     }
 
-    /// Rolling elements that its cylinders stand for: balls in a bearing with the name of one of the
-    /// catalogue's ball bearings.
+    /// Rolling elements that its cylinders stand for: balls where its fields say so, and in a bearing with the name
+    /// of one of the catalogue's ball bearings.
     pub fn element(&self) -> Element {
+        if self.bearing.element == ElementKind::Ball {
+            return Element::Ball;
+        }
         let name = &self.bearing.designation;
         let known = || crate::catalogue::known().unwrap_or_else(|_| catalogue::all());
         let is_ball = !name.is_empty()

@@ -165,7 +165,7 @@ fn shorter_steps(wanted: &ReducedScene, time_step: f64, critical: f64) -> Option
     let is_asked = wanted.step_us != ReducedScene::default().step_us;
     (is_asked && time_step < longest && critical < longest).then(|| {
         Topic::TimeStep.warning(format!(
-            "`model.step_us` is {}, and steps are {:.3} µs: the critical one of modes and contacts is {:.3} \
+            "`model.step_us` is {}, and steps are {:.3} µs: the longest stable one for its modes and contacts is {:.3} \
              µs. A smaller `model.modes_khz` or `contact.penalty_scale` allows longer ones",
             wanted.step_us,
             1e6 * time_step,

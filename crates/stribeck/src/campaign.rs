@@ -1,5 +1,5 @@
-//! `stribeck campaign`: many scenes made from one, each run in a folder of its own, and a data set of them
-//! all.
+//! The campaign of a file, or of `stribeck sweep`: many scenes made from one, each run in a folder of its own, and
+//! a data set of them all.
 //!
 //! The state is in the folders of the runs alone, which are named by the hashes of their scenes. So the same
 //! command starts and continues, parts of it may run anywhere, in any order and at once, and the tables are
@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_report::{CampaignIndex, CampaignRun, write_campaign};
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::check_folder;
 
 use crate::emit::{self, MOST_PARTS, Part};
@@ -27,25 +27,18 @@ use crate::out::{alert, say, tell};
 use crate::place::{Place, shown};
 use tables::{Row, Written};
 
-/// Flags of `campaign`.
+/// Flags of `sweep` for the campaign of a file.
 #[derive(Debug, clap::Args)]
-pub struct Options {
-    /// Campaign file, such as fixtures/campaigns/quick64.ron
-    file: PathBuf,
-    /// Folder of the campaign [default: runs/NAME, the name of the campaign]
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    #[command(flatten)]
-    share: Share,
-    /// Continues a campaign, which the command does anyway: for scripts that state it
+pub(crate) struct OfFile {
+    /// Continues, which the command does anyway: for scripts that state it
     #[arg(long)]
     resume: bool,
-    /// Runs only part I of N, for several machines; the last one makes the tables
-    #[arg(long, value_name = "I/N", value_parser = shard)]
+    /// Of a campaign file: runs only part I of N, for several machines; the last one makes the tables
+    #[arg(long, value_name = "I/N", conflicts_with = "set", value_parser = shard)]
     shard: Option<Shard>,
-    /// Runs nothing: prints the script that has an engine run the campaign in parts, to be sent to a file: `>
-    /// job.sh`. Each part has the --jobs, --threads [default there: one] and --memory-gb of this command
-    #[arg(long, value_name = "ENGINE", conflicts_with = "shard")]
+    /// Of a campaign file: runs nothing, and prints the script that has an engine run it in parts, to be sent to a
+    /// file: `> job.sh`. Each part has the --jobs, --threads [default there: one] and --memory-gb of this command
+    #[arg(long, value_name = "ENGINE", conflicts_with_all = ["set", "shard"])]
     emit: Option<emit::Engine>,
     /// Parts of an emitted script [default: as many as runs, 16 at most]
     #[arg(long, value_name = "N", requires = "emit", value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -128,18 +121,24 @@ impl<'a> From<&'a Variant> for Wanted<'a> {
     }
 }
 
-pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
-    let file = place.locate(&options.file);
-    let campaign = Campaign::read(&file)?;
-    let out = options.out.clone().unwrap_or_else(|| place.runs().join(&campaign.name));
+/// Runs the campaign of a file in `out`, or the part of it that the flags say.
+pub(crate) fn run(
+    file: &Path,
+    out: Option<PathBuf>,
+    share: Share,
+    options: &OfFile,
+    place: &Place,
+) -> Result<ExitCode> {
+    let campaign = Campaign::read(file)?;
+    let out = out.unwrap_or_else(|| place.runs().join(&campaign.name));
     if let Some(engine) = options.emit {
         // One part a run, up to some.
         let parts = u32::try_from(campaign.runs.len()).unwrap_or(MOST_PARTS).min(MOST_PARTS);
-        let part = Part::new(options.shards.unwrap_or(parts), options.share);
-        say!("{}", emit::script(engine, "campaign", &file, &out, part)?.trim_end());
+        let part = Part::new(options.shards.unwrap_or(parts), share);
+        say!("{}", emit::script(engine, "sweep", file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
-    carry_out(&campaign, out, options.share, options.shard)
+    carry_out(&campaign, out, share, options.shard)
 }
 
 /// Runs the outstanding runs of a campaign, or of one part of it, in `out`, and makes its tables when all are
@@ -267,6 +266,22 @@ fn conclude(
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
 
+/// The bearing of a scene in words: its name, or its elements.
+fn in_words(scene: &Scene) -> String {
+    let b = &scene.bearing;
+    let elements = format!(
+        "{} rolling elements of {} mm on a pitch circle of {:.1} mm",
+        b.rollers,
+        b.roller_diameter_mm,
+        0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm)
+    );
+    let model = if scene.model == ModelScene::Full { "in finite elements" } else { "by the reduced model" };
+    match b.designation.as_str() {
+        "" => format!("a bearing of {elements}, {model},"),
+        name => format!("a {name} ({elements}), {model},"),
+    }
+}
+
 /// Content of the campaign's page.
 fn index(folder: &Folder, campaign: &Campaign, rows: &[Row], written: &Written) -> CampaignIndex {
     let run = |row: &Row| {
@@ -291,8 +306,11 @@ fn index(folder: &Folder, campaign: &Campaign, rows: &[Row], written: &Written) 
         files.push((tables::SIGNALS, "a row for each sample of the accelerations"));
     }
     files.push((CAMPAIGN, "the campaign, as it was run"));
+    let varies = campaign.fields.iter().any(|field| field.starts_with("bearing"));
+    let scene = campaign.runs.iter().find_map(|run| run.scene.as_ref().ok()).filter(|_| !varies);
     CampaignIndex {
         name: campaign.name.clone(),
+        bearing: scene.map(in_words),
         fields: campaign.fields.clone(),
         runs: rows.iter().map(run).collect(),
         files: files.into_iter().map(|(file, what)| (file.to_owned(), what.to_owned())).collect(),

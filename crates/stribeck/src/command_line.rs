@@ -1,4 +1,7 @@
-//! The command line: a mistake in it is answered with an example of its command.
+//! The command line: a mistake in it is answered with the line that was probably meant, or else with an example
+//! of its command.
+
+mod meant;
 
 use std::borrow::Cow;
 use std::io::Write;
@@ -19,9 +22,15 @@ pub fn parse<C: Parser>() -> C {
     let parsed = command.try_get_matches().and_then(|matches| C::from_arg_matches(&matches));
     parsed.unwrap_or_else(|error| {
         let words: Vec<String> = std::env::args().skip(1).collect();
-        let example = example(&C::command(), &words);
+        let program = C::command();
+        let meant = meant::meant(&program, &words).map(|line| format!("try: {}", shown(&line)));
+        let meant_one = meant.is_some();
+        let example = meant.or_else(|| example(&program, &words));
         let mistake = error.use_stderr();
-        let error = without_trailing(error);
+        let mut error = without_trailing(error);
+        if meant_one {
+            error.remove(ContextKind::SuggestedSubcommand);
+        }
         let plain = error.render().to_string();
         match harmless(&plain) {
             Cow::Borrowed(_) => drop(error.print()),
@@ -33,6 +42,17 @@ pub fn parse<C: Parser>() -> C {
         }
         std::process::exit(if mistake { 2 } else { 0 })
     })
+}
+
+/// A command line as a shell takes it.
+fn shown(words: &[String]) -> String {
+    let program = if std::env::var_os(REPOSITORY).is_some() { "cargo xtask" } else { "stribeck" };
+    let plain = |c: char| c.is_alphanumeric() || "-_.,:/=+%@~".contains(c);
+    let quoted = |word: &String| match word.chars().all(plain) && !word.is_empty() {
+        true => harmless(word).into_owned(),
+        false => format!("'{}'", harmless(word).replace('\'', "'\\''")),
+    };
+    std::iter::once(program.to_owned()).chain(words.iter().map(quoted)).collect::<Vec<_>>().join(" ")
 }
 
 /// The example in the help of the command that `words` begin with.

@@ -78,12 +78,7 @@ pub(crate) fn write(asked: &[PathBuf], reading: &Reading, out: &Path, place: &Pl
 /// The folder of a run or ensemble; `None` for a file.
 fn folder(asked: &Path, place: &Place) -> Result<Option<PathBuf>> {
     let path = place.locate_run(asked);
-    ensure!(
-        path.extension().is_none_or(|end| end != "ron") || !path.is_file(),
-        "`{0}` is a scene, and no run of it: `{1} simulate {0}` makes one, which has its name",
-        asked.display(),
-        place.program
-    );
+    place.refuse_scene(&path)?;
     if path.is_file() {
         return Ok(None);
     }

@@ -8,7 +8,7 @@ use crate::Command;
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Simulate a bearing", &["demo", "new", "plan", "simulate", "lab"]),
     ("Diagnose records", &["analyse", "compare", "machine", "detect"]),
-    ("Many runs", &["sweep", "campaign", "infer"]),
+    ("Many runs", &["sweep", "infer"]),
     ("For other programs", &["export", "fmu", "stiffness"]),
     (
         "Runs, names, checks",

@@ -90,7 +90,15 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         (None, Some(file)) => {
             ensure!(
                 !options.reading.is_given(),
-                "options of a record were given, and no record: `--record FILE` names it"
+                "options of a record were given, and no record: `--record {}` names it",
+                file.display()
+            );
+            ensure!(
+                file.extension().is_some_and(|end| end == "ron") || !file.is_file(),
+                "`{0}` is no file of an inference: for the cause of a measured record, `{1} infer --record {0} \
+                 --bearing … --speed-rpm …`",
+                file.display(),
+                place.program
             );
             (place.locate(file), None)
         }

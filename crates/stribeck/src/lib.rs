@@ -66,7 +66,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
-    self as analyse, self as campaign, self as compare, self as demo, self as detect, self as export,
+    self as analyse, self as compare, self as demo, self as detect, self as export,
     self as infer, self as machine_fit, self as sweep,
 };
 pub use limits::Limits;
@@ -127,11 +127,11 @@ pub enum Command {
     /// Writes the report of a run again
     #[command(after_help = "Example: stribeck report mine --pdf")]
     Report(report::Options),
-    /// Runs many scenes made from one, and makes a data set of them; starts and continues
-    #[command(after_help = "Example: stribeck campaign starts.ron --out runs/starts")]
-    Campaign(campaign::Options),
-    /// Runs a scene with several values of some fields: a campaign in one line
-    #[command(after_help = "Example: stribeck sweep mine.ron --set operation.load_n=1000,2000,4000")]
+    /// Runs a scene with several values of some fields, or a campaign file; also `campaign`
+    #[command(
+        visible_alias = "campaign",
+        after_help = "Example: stribeck sweep mine.ron --set operation.load_n=1000,2000,4000"
+    )]
     Sweep(sweep::Options),
     /// Infers unknown fields of a scene from observed numbers, with their intervals
     #[command(after_help = "Example: stribeck infer unknown.ron")]
@@ -198,7 +198,6 @@ impl Command {
         matches!(
             self,
             Self::Demo(_)
-                | Self::Campaign(_)
                 | Self::Sweep(_)
                 | Self::Infer(_)
                 | Self::Machine(_)
@@ -221,7 +220,6 @@ impl Command {
             Self::New(options) => new::run(options, place),
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
-            Self::Campaign(options) => campaign::run(options, place),
             Self::Sweep(options) => sweep::run(options, place),
             Self::Infer(options) => infer::run(options, place),
             Self::Machine(options) => machine_fit::run(options, place),

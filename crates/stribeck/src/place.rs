@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
-use anyhow::{Result, anyhow, bail};
+use anyhow::{Result, anyhow, bail, ensure};
 use stribeck_scene::advice::doubts_of_material;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
@@ -132,8 +132,26 @@ impl Place {
         if !path.exists() && below_root.exists() { below_root } else { path.to_owned() }
     }
 
-    /// The folder of a run, given as a path or by its name below `runs/`.
+    /// Refuses the file of a scene where a run or a record is asked for.
+    ///
+    /// # Errors
+    /// What makes a run of it.
+    pub(crate) fn refuse_scene(&self, path: &Path) -> Result<()> {
+        ensure!(
+            path.extension().is_none_or(|end| end != "ron") || !path.is_file(),
+            "`{0}` is a scene, and no run of it: `{1} simulate {0}` makes one, which has its name",
+            path.display(),
+            self.program
+        );
+        Ok(())
+    }
+
+    /// The folder of a run, given as a path, by its name below `runs/`, or by the scene file of that name.
     pub fn locate_run(&self, run: &Path) -> PathBuf {
+        let of_scene = self.runs().join(run.file_stem().unwrap_or_default());
+        if run.extension().is_some_and(|end| end == "ron") && run.is_file() && of_scene.is_dir() {
+            return of_scene;
+        }
         let by_name = self.runs().join(run);
         if !run.exists() && by_name.exists() { by_name } else { self.locate(run) }
     }

@@ -12,9 +12,7 @@ use crate::out::{is_quiet, tell};
 
 /// A bar is redrawn this often.
 const REDRAW: Duration = Duration::from_millis(100);
-/// A log gets a line after this part of the run …
-const LOG_PART: f64 = 0.05;
-/// … or after this time, whichever is first.
+/// A log gets a line this often.
 const LOG_PAUSE: Duration = Duration::from_secs(10);
 
 /// Shows how far a run has come.
@@ -57,12 +55,8 @@ impl Meter {
         }
         let since = now - self.shown;
         let complete = part >= 1.0 && self.shown_part < 1.0;
-        let due = if self.on_terminal {
-            since >= REDRAW
-        } else {
-            part - self.shown_part >= LOG_PART || since >= LOG_PAUSE
-        };
-        if !(new_phase || complete || due) {
+        let pause = if self.on_terminal { REDRAW } else { LOG_PAUSE };
+        if !(new_phase || complete && self.on_terminal || since >= pause) {
             return;
         }
         (self.shown, self.shown_part) = (now, part);
@@ -95,13 +89,8 @@ impl Meter {
             0 => format!("{:.0} ms/s", 1e3 * progress.time_s * (done / progress.step as f64) / elapsed),
             elements => format!("{:.1} M element-steps/s", 1e-6 * done * elements as f64 / elapsed),
         };
-        // The imbalance of a long run grows with its heat, and must not be compared with the strain energy.
-        let error = match progress.share_of_heat {
-            Some(share) => format!("{:.3} % of the heat", 100.0 * share),
-            None => format!("{:.3} %", 100.0 * progress.energy_error),
-        };
         format!(
-            "{:5.1} %  {:.2} of {} ms  ETA {}  energy error {error}  {pace}",
+            "{:5.1} %  {:.2} of {} ms  ETA {}  {pace}",
             100.0 * part(progress),
             progress.time_s * 1e3,
             self.duration_ms,
@@ -125,25 +114,20 @@ mod tests {
     use super::*;
 
     #[test]
-    fn by_hand_a_line_holds_time_eta_energy_and_pace() {
+    fn by_hand_a_line_holds_time_eta_and_pace() {
         let meter = Meter::new(30.0);
         let progress = Progress {
             step: 250,
             steps: 1000,
             time_s: 7.5e-3,
-            energy_error: 1.25e-3,
-            share_of_heat: None,
             elements: 100_000,
             phase: "run",
         };
         // 250 steps of 100 000 elements in 10 s: 2.5 million element-steps a second, 30 s left.
-        let expected = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.125 %  2.5 M element-steps/s";
+        let expected = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  2.5 M element-steps/s";
         assert_eq!(meter.line(&progress, 10.0), expected);
-        let reduced = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.125 %  1 ms/s";
+        let reduced = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  1 ms/s";
         assert_eq!(meter.line(&Progress { elements: 0, ..progress }, 10.0), reduced);
-        let warm = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  energy error 0.022 % of the heat  1 ms/s";
-        let hot = Progress { elements: 0, energy_error: 2.1, share_of_heat: Some(2.2e-4), ..progress };
-        assert_eq!(meter.line(&hot, 10.0), warm);
         assert_eq!(meter.line(&Progress { step: 0, phase: "preload", ..progress }, 0.0), "preload …");
     }
 }

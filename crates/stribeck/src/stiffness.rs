@@ -182,9 +182,9 @@ fn print(found: &BearingStiffness) {
         "largest",
         "kxx",
         "kyy",
-        "kxx p-p",
-        "kyy p-p",
-        "shift p-p"
+        "kxx range",
+        "kyy range",
+        "shift"
     );
     say!(
         "{:>9} {:>9} {:>9} {:>7} {:>9} {:>10} {:>10} {:>8} {:>8} {:>10}",
@@ -216,4 +216,5 @@ fn print(found: &BearingStiffness) {
             1e9 * range(&u.x).hypot(range(&u.y))
         );
     }
+    say!("range: most less least over a passage of the elements, of the mean; shift: that of the shaft\u{2019}s centre");
 }

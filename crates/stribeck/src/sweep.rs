@@ -1,4 +1,5 @@
-//! `stribeck sweep`: a few values of a few fields, each with every other, as a campaign with its page.
+//! `stribeck sweep`: many runs of a scene, with tables and a page: a few values of a few fields, each with every
+//! other, by flags, or the campaign of a file.
 
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -7,10 +8,11 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_plans::campaign::Campaign;
 use stribeck_scene::catalogue;
-use stribeck_scene::scene_file::replaced_by_bearing;
+use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_scene::scene_file::{readable, replaced_by_bearing};
 use stribeck_store::run_dir::{Keep, check_folder};
 
-use crate::campaign::{CAMPAIGN, MARKS, SCENES, carry_out};
+use crate::campaign::{self, CAMPAIGN, MARKS, SCENES, carry_out};
 use crate::many_runs::Share;
 use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
@@ -18,30 +20,34 @@ use crate::place::{Place, shown};
 /// Flags of `sweep`.
 #[derive(Debug, clap::Args)]
 pub struct Options {
-    /// Scene file [default: the run of the paper, fixtures/scenes/singh2014.ron]
-    scene: Option<PathBuf>,
+    /// Scene file, whose fields `--set` varies [default: the run of the paper, fixtures/scenes/singh2014.ron]; or,
+    /// without `--set`, a campaign file, such as fixtures/campaigns/quick64.ron
+    file: Option<PathBuf>,
     /// A field and its values, for example --set operation.load_n=1000,2000,4000; with one value the same for
     /// all runs. Several fields run every combination
-    #[arg(long = "set", value_name = "FIELD=V1,V2,…", required = true)]
+    #[arg(long = "set", value_name = "FIELD=V1,V2,…")]
     set: Vec<String>,
-    /// Starts of each combination, drawn from the seed: they show the scatter of the results
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=10_000))]
-    starts: u16,
-    /// Seed of the starts
-    #[arg(long, value_name = "SEED", default_value_t = 1)]
-    seed: u64,
-    /// Files kept of each run once its summary exists
-    #[arg(long, value_enum, default_value_t = Kept::All)]
-    keep: Kept,
-    /// Folder [default: runs/NAME-by-FIELD]; the same command continues; with other values its tables are
-    /// theirs, and runs that are there are used where they occur again
+    /// Starts of each combination, drawn from the seed: they show the scatter of the results [default: 1]
+    #[arg(long, value_name = "N", requires = "set", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    starts: Option<u16>,
+    /// Seed of the starts [default: 1]
+    #[arg(long, value_name = "SEED", requires = "set")]
+    seed: Option<u64>,
+    /// Files kept of each run once its summary exists [default: signals of the reduced model, whose runs are made
+    /// again in seconds, and all of the full one; in a folder of a sweep what that kept]
+    #[arg(long, value_enum, requires = "set")]
+    keep: Option<Kept>,
+    /// Folder [default: runs/NAME-by-FIELD, or runs/NAME of a campaign file]; the same command continues; with other
+    /// values its tables are theirs, and runs that are there are used where they occur again
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     share: Share,
     /// Runs nothing: prints the campaign's file, to be sent to a file and extended
-    #[arg(long)]
+    #[arg(long, requires = "set")]
     print: bool,
+    #[command(flatten)]
+    of_file: campaign::OfFile,
 }
 
 /// Files kept of a run.
@@ -56,6 +62,11 @@ enum Kept {
 }
 
 impl Kept {
+    /// What is kept where nobody says.
+    fn usual(scene: &Scene) -> Self {
+        if scene.model == ModelScene::Full { Self::All } else { Self::Signals }
+    }
+
     /// As a campaign's file has it.
     fn whole(self) -> Keep {
         match self {
@@ -80,6 +91,35 @@ struct Assigned {
 }
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
+    match &options.file {
+        Some(file) if options.set.is_empty() => {
+            let file = place.locate(file);
+            ensure!(
+                !is_scene(&file),
+                "`{0}` is a scene: say which of its fields varies, as in `{1} sweep {0} --set \
+                 operation.load_n=1000,2000,4000`. A single run is `{1} simulate {0}`",
+                shown(&file),
+                place.program
+            );
+            campaign::run(&file, options.out.clone(), options.share, &options.of_file, place)
+        }
+        None if options.set.is_empty() => bail!(
+            "nothing varies: `{0} sweep SCENE.ron --set operation.load_n=1000,2000,4000` runs a scene with some \
+             values of a field, `{0} sweep CAMPAIGN.ron` the campaign of a file",
+            place.program
+        ),
+        _ => vary(options, place),
+    }
+}
+
+/// Whether a file is a scene that can be read.
+fn is_scene(file: &Path) -> bool {
+    Campaign::read(file).is_err() && readable(Some(file), &[] as &[&str]).is_ok()
+}
+
+/// Runs a scene with the values of `--set`.
+fn vary(options: &Options, place: &Place) -> Result<ExitCode> {
+    let starts = options.starts.unwrap_or(1);
     let assigned = options.set.iter().map(|text| Assigned::parse(text)).collect::<Result<Vec<_>>>()?;
     let (swept, fixed): (Vec<&Assigned>, Vec<&Assigned>) = assigned.iter().partition(|a| a.values.len() > 1);
     let Some(first) = swept.first() else {
@@ -96,7 +136,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     if let Some((_, twice)) = twice {
         bail!("`{0}` is set twice: give all its values at once, `--set {0}=V1,V2,…`", twice.field);
     }
-    let count = swept.iter().map(|a| a.values.len()).product::<usize>() * usize::from(options.starts);
+    let count = swept.iter().map(|a| a.values.len()).product::<usize>() * usize::from(starts);
     ensure!(
         count <= MOST_RUNS,
         "{count} runs: a sweep makes {MOST_RUNS} at most. Take fewer values or starts, or a campaign with a \
@@ -104,19 +144,20 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     );
     let scene = read_each(options, place, &swept, &fixed)?;
     // Another bearing brings its own name.
-    let stem = options.scene.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
+    let stem = options.file.as_deref().and_then(Path::file_stem).map(|stem| stem.to_string_lossy());
     let of_bearing = swept.iter().any(|a| a.field == "bearing");
-    let name = name(stem.filter(|_| of_bearing).as_deref().unwrap_or(&scene), &swept);
+    let name = name(stem.filter(|_| of_bearing).as_deref().unwrap_or(&scene.name), &swept);
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&name));
-    let base = options.scene.as_deref().map(|scene| place.locate(scene));
+    let keep = options.keep.or_else(|| kept_in(&out)).unwrap_or(Kept::usual(&scene));
+    let base = options.file.as_deref().map(|scene| place.locate(scene));
     if options.print {
         // To be sent to a file in the working folder.
-        let text = text(options, &name, base.as_deref(), Path::new("."), (&swept, &fixed))?;
+        let text = text(options, keep, &name, base.as_deref(), Path::new("."), (&swept, &fixed))?;
         Campaign::parse(&text, CAMPAIGN, Path::new(""))?;
         say!("{}", text.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
-    let text = text(options, &name, base.as_deref(), &out, (&swept, &fixed))?;
+    let text = text(options, keep, &name, base.as_deref(), &out, (&swept, &fixed))?;
     let campaign = parse(&text, &out)?;
     tell!(
         "{} of {}{}: {} runs",
@@ -125,7 +166,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         swept[1..].iter().map(|a| format!(" × {} of {}", a.values.len(), a.field)).collect::<String>(),
         campaign.runs.len()
     );
-    make_way(&out, options.keep)?;
+    make_way(&out, keep)?;
     carry_out(&campaign, out, options.share, None)
 }
 
@@ -141,10 +182,10 @@ fn parse(text: &str, out: &Path) -> Result<Campaign> {
 }
 
 /// Reads the scene under each value of each field separately, so that mistakes are reported in the words of
-/// the command line; returns the name of the scene. Replaced fields and assumed dimensions are reported once
+/// the command line; returns the first. Replaced fields and assumed dimensions are reported once
 /// for all values.
-fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&Assigned]) -> Result<String> {
-    let file = options.scene.as_deref();
+fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&Assigned]) -> Result<Scene> {
+    let file = options.file.as_deref();
     let argument = |a: &Assigned, value: &str| format!("{}={value}", a.field);
     let common: Vec<String> = fixed.iter().map(|a| argument(a, &a.values[0])).collect();
     let firsts: Vec<String> = swept.iter().map(|a| argument(a, &a.values[0])).collect();
@@ -164,7 +205,7 @@ fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&As
         if !scene.bearing.assumed.is_empty() {
             notes.extend(catalogue::assumptions(&scene.bearing));
         }
-        first.get_or_insert(scene.name);
+        first.get_or_insert(scene);
     }
     if let (Some(file), false) = (file, fields.is_empty()) {
         let fields = fields.into_iter().collect::<Vec<_>>().join(", ");
@@ -191,13 +232,14 @@ fn name(scene: &str, swept: &[&Assigned]) -> String {
 /// The file of the campaign.
 fn text(
     options: &Options,
+    keep: Kept,
     name: &str,
     base: Option<&Path>,
     out: &Path,
     (swept, fixed): (&[&Assigned], &[&Assigned]),
 ) -> Result<String> {
     let mut text = format!(
-        "{WRITTEN_BY}. `stribeck campaign {CAMPAIGN} --out .` in this folder goes on with it;\n// a copy \
+        "{WRITTEN_BY}. `stribeck sweep {CAMPAIGN} --out .` in this folder goes on with it;\n// a copy \
          elsewhere can be extended.\n(\n    name: {name:?},\n"
     );
     if let Some(base) = base {
@@ -208,8 +250,8 @@ fn text(
     if !common.is_empty() {
         text += &format!("    set: [{}],\n", common.join(", "));
     }
-    text += &format!("    seed: {},\n    starts: {},\n", options.seed, options.starts);
-    text += &format!("    keep: {},\n    variants: grid([\n", word(options.keep.whole()));
+    text += &format!("    seed: {},\n    starts: {},\n", options.seed.unwrap_or(1), options.starts.unwrap_or(1));
+    text += &format!("    keep: {},\n    variants: grid([\n", word(keep.whole()));
     for a in swept {
         let values: Vec<String> = a.values.iter().map(|value| as_ron(&a.field, value)).collect();
         text += &format!("        (field: {:?}, values: [{}]),\n", a.field, values.join(", "));
@@ -258,6 +300,13 @@ pub(crate) fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
     Ok(up.chain(to[common..].iter().copied()).collect())
 }
 
+/// What the sweep in this folder keeps, if there is one.
+fn kept_in(out: &Path) -> Option<Kept> {
+    let text = std::fs::read_to_string(out.join(CAMPAIGN)).ok().filter(|text| text.starts_with(WRITTEN_BY))?;
+    let kept = [Kept::All, Kept::Signals, Kept::Numbers];
+    kept.into_iter().find(|kept| text.contains(&format!("keep: {},", word(kept.whole()))))
+}
+
 /// Removes the tables of an earlier sweep in this folder; its runs stay and are used where their scenes occur
 /// again.
 ///
@@ -266,9 +315,7 @@ pub(crate) fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
 fn make_way(out: &Path, keep: Kept) -> Result<()> {
     let text = std::fs::read_to_string(out.join(CAMPAIGN)).unwrap_or_default();
     if text.starts_with(WRITTEN_BY) {
-        let kept = [Kept::All, Kept::Signals, Kept::Numbers];
-        let before = kept.into_iter().find(|kept| text.contains(&format!("keep: {},", word(kept.whole()))));
-        if let Some(before) = before.filter(|before| *before > keep) {
+        if let Some(before) = kept_in(out).filter(|before| *before > keep) {
             bail!(
                 "runs in `{}` were made with `--keep {}`, and what `--keep {}` asks for besides was \
                  not kept: give the same `--keep`, or another `--out`",

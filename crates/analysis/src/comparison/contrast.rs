@@ -56,7 +56,7 @@ impl Verdict {
         match self {
             Self::Differs => "differs",
             Self::WithinScatter => "within the scatter",
-            Self::Unknown => "one start each",
+            Self::Unknown => "one signal each",
         }
     }
 }

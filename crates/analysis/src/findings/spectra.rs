@@ -82,7 +82,7 @@ pub(super) fn filter(
         (Some(tone), _) => {
             if leading.is_none() {
                 notes.push(format!(
-                    "no facet tone stands {} dB above its surroundings at the leading sensor: the notch is \
+                    "no tone of the rollers’ facets stands {} dB above its surroundings at the leading sensor: the notch is \
                      at that of sensor {}",
                     tones::LEAST_PROMINENCE_DB,
                     tone.sensor
@@ -96,7 +96,7 @@ pub(super) fn filter(
                     format!("the peak at {hz:.0} Hz does not follow the rollers\u{2019} recorded motion")
                 }
                 None => format!(
-                    "no facet tone stands {} dB above its surroundings at any sensor",
+                    "no tone of the rollers’ facets stands {} dB above its surroundings at any sensor",
                     tones::LEAST_PROMINENCE_DB
                 ),
             };
@@ -109,7 +109,7 @@ pub(super) fn filter(
         }
         (None, predicted) => {
             notes.push(format!(
-                "no facet tone stands {} dB above its surroundings at any sensor: the notch is at the \
+                "no tone of the rollers’ facets stands {} dB above its surroundings at any sensor: the notch is at the \
                  predicted one",
                 tones::LEAST_PROMINENCE_DB
             ));

@@ -133,7 +133,7 @@ fn penetration(scene: &ResolvedScene, loads: &Loads) -> Option<String> {
     };
     let model = if scene.written.model == ModelScene::Full { "full" } else { "reduced" };
     Some(format!(
-        "under its largest force contact sinks in by some {percent:.0} % of an element, {ends} ({model} \
+        "under its largest force the penetration of a contact is some {percent:.0} % of an element's size, {ends} ({model} \
          model): take a larger `contact.penalty_scale`, or less `operation.load_n`"
     ))
 }

@@ -188,13 +188,13 @@ const RULES: [Rule; 10] = [
 fn noise_makes_as_much(family: &Family, _: &Case<'_>) -> Option<String> {
     let p = family.noise_p_value;
     (p >= ALPHA)
-        .then(|| format!("noise of this colour makes as much with a probability of {}", probability(p)))
+        .then(|| format!("noise of the same spectrum reaches this with a probability of {}", probability(p)))
 }
 
 fn unrelated_combs_stand_as_high(family: &Family, _: &Case<'_>) -> Option<String> {
     let rank = family.rank.unwrap_or(1.0);
     (rank > MOST_AS_HIGH)
-        .then(|| format!("{:.0} % of unrelated combs in this record stand as high", 100.0 * rank))
+        .then(|| format!("{:.0} % of combs at other spacings stand as high in this record", 100.0 * rank))
 }
 
 fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<String> {
@@ -202,7 +202,7 @@ fn swings_as_in_sound_bearings(family: &Family, case: &Case<'_>) -> Option<Strin
     let knock = if family.name == Defect::Bsf && case.modulated { KNOCK_OF_ELEMENT } else { KNOCK };
     (depth < knock && case.beyond_sound(family).is_none()).then(|| {
         format!(
-            "it is there, but the power of the band swings by {:.0} % only, as sound bearings do",
+            "it is there, but the power of its band varies by {:.0} % of its mean only, as in sound bearings",
             100.0 * depth
         )
     })
@@ -229,8 +229,8 @@ fn no_cage_rolls_so_fast(family: &Family, case: &Case<'_>) -> Option<String> {
     };
     is_beyond.then(|| {
         format!(
-            "it is there, {} % from its place by the lines of the shaft, where neither slip nor a load along \
-             the shaft puts it: another bearing's",
+            "it is there, {} % off the frequency at the speed of the shaft's lines, more than slip or an axial \
+             load explains: another bearing's",
             format!("{:+.1}", 100.0 * (times - 1.0)).replace('-', "−")
         )
     })
@@ -318,7 +318,7 @@ fn claimed(family: Family, case: &Case<'_>) -> Family {
     });
     let depth = family.depth.unwrap_or(0.0);
     let why =
-        format!("{} harmonics stand, the power swings by {:.0} %{other}", family.harmonics, 100.0 * depth);
+        format!("{} harmonics stand out, and its power varies by {:.0} % of its mean{other}", family.harmonics, 100.0 * depth);
     // One element that is damaged comes under the load once a turn of the cage, too.
     let not_told_apart_from = if is_cage { Some(Defect::Bsf) } else { family.not_told_apart_from };
     Family { claimed: true, not_told_apart_from, reason: Reason::Decided(why), ..family }

@@ -67,8 +67,8 @@ impl Beside {
             over: Some(over),
             claimed: true,
             reason: Reason::Decided(format!(
-                "with the mean course in a period of {over} divided out of the power its lines stand, no \
-                 unrelated comb stands as high, and the power swings by {:.0} %",
+                "with the mean course in a period of {over} divided out of the power its lines stand out, no \
+                 comb at another spacing stands as high, and its power varies by {:.0} % of its mean",
                 100.0 * self.depth
             )),
             ..family

@@ -352,7 +352,7 @@ fn skidding_note(family: Option<&Family>, found: &UnexplainedComb) -> Option<Str
     let family = family?;
     let place_hz = family.name.shocks_per_period() * family.expected_hz;
     Some(format!(
-        "{} stands {:+.1} % from its place, farther than rolling without slip allows: beside the speed that \
+        "{} is {:+.1} % off its expected frequency, more than rolling without slip allows: beside the speed that \
          the lines of the shaft give, the cage skids, as it does under little load",
         family.name,
         100.0 * (found.comb.fundamental_hz / place_hz - 1.0)

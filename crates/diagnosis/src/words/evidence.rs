@@ -104,7 +104,8 @@ pub fn what_would_change(findings: &MeasuredFindings) -> Vec<String> {
     for family in findings.families.iter().filter(|f| f.claimed) {
         said.push(format!(
             "{} is claimed as long as each of these holds: probability of a false alarm {} (limit \
-             {}), {:.0} % of unrelated combs as high (limit {:.0} %), power swinging by {:.0} % (limit {:.0} %).",
+             {}), {:.0} % of combs at other spacings as high (limit {:.0} %), power that varies by {:.0} % \
+             of its mean (limit {:.0} %).",
             family.name,
             family.false_alarm(),
             chance(ALPHA),
@@ -150,13 +151,13 @@ fn missing(family: &Family) -> String {
     }
     if let Some(rank) = family.rank.filter(|rank| *rank > MOST_AS_HIGH) {
         lacks.push(format!(
-            "at most {:.0} % of unrelated combs as high ({:.0} % now)",
+            "at most {:.0} % of combs at other spacings as high ({:.0} % now)",
             100.0 * MOST_AS_HIGH,
             100.0 * rank
         ));
     }
     if let Some(depth) = family.depth.filter(|depth| *depth < KNOCK) {
-        lacks.push(format!("power swinging by {:.0} % ({:.0} % now)", 100.0 * KNOCK, 100.0 * depth));
+        lacks.push(format!("power that varies by {:.0} % of its mean ({:.0} % now)", 100.0 * KNOCK, 100.0 * depth));
     }
     if lacks.is_empty() {
         return format!("{} is nearest to a claim: {}.", family.name, family.reason);

@@ -32,13 +32,13 @@ pub fn kilonewtons(force_n: f64) -> String {
     format!("{} kN", significant(1e-3 * force_n, 4))
 }
 
-/// A probability as it is said: `certain`, `40 %`, `1 in 300`, `1 in 2 million`.
+/// A probability as it is said: `100 %`, `40 %`, `1 in 300`, `1 in 2 million`.
 pub fn chance(p: f64) -> String {
     if !p.is_finite() {
         return "unknown".to_owned();
     }
     if p >= 0.995 {
-        return "certain".to_owned();
+        return "100 %".to_owned();
     }
     if p >= 0.01 {
         return format!("{:.0} %", 100.0 * p);
@@ -73,7 +73,7 @@ mod tests {
         assert_eq!([0.0, 0.0312, 9.96, 26.4, 435.4].map(level), ["0", "0.031", "10", "26", "435"]);
         let chances = [1.0, 0.42, 0.031, 3.2e-3, 4.6e-5, 4.6e-7, 1e-12].map(chance);
         let said =
-            ["certain", "42 %", "3 %", "1 in 300", "1 in 20000", "1 in 2 million", "below 1 in a billion"];
+            ["100 %", "42 %", "3 %", "1 in 300", "1 in 20000", "1 in 2 million", "below 1 in a billion"];
         assert_eq!(chances, said);
         assert_eq!((pascals(3e8), pascals(2.5e5)), ("0.30 GPa".into(), "0.25 MPa".into()));
     }

@@ -62,8 +62,8 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     let highest = families.iter().filter(|f| f.knocks()).max_by(|a, b| a.height_db.total_cmp(&b.height_db));
     if let Some(highest) = highest {
         return format!(
-            "The record has knocks, and does not show where: {} stands highest, but unrelated combs stand as \
-             high. A longer record, or one nearer to the bearing, may tell.",
+            "The record has knocks, and does not show where: {} stands highest, but combs at other spacings \
+             stand as high. A longer record, or one nearer to the bearing, may tell.",
             highest.name
         );
     }
@@ -87,7 +87,7 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     if !weak.is_empty() {
         let above_db = families.iter().filter(|f| f.is_there()).filter_map(Family::above_unrelated_db);
         verdict += &format!(
-            " {} can be seen, up to {:.0} dB above unrelated combs, without deep knocks: records of the sound \
+            " {} can be seen, up to {:.0} dB above combs at other spacings, without deep knocks: records of the sound \
              machine (`--baseline`) decide, or the trend.",
             weak.join(" and "),
             above_db.fold(0.0, f64::max)

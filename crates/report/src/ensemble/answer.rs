@@ -99,7 +99,7 @@ fn predicted(summary: &EnsembleSummary) -> String {
         ["energy.share_of_heat", "energy.max_relative_error"].map(|name| summary.number(name));
     let balance = of_heat.map(|s| (s, "the heat")).or(of_strain.map(|s| (s, "the peak strain energy")));
     let energy = balance.map_or(String::new(), |(s, of)| {
-        format!(" Energy balances to {:.2} % of {of} in the worst start.", 100.0 * s.most)
+        format!(" Energy is conserved to {:.2} % of {of} in the worst start.", 100.0 * s.most)
     });
     format!("Adjusted to nothing: {}.{tone}{energy}", said.join("; "))
 }

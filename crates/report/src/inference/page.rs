@@ -134,7 +134,7 @@ fn unknowns(answer: &Answer) -> Markup {
     let fields = &answer.fields;
     html! {
         table {
-            tr { th { "Unknown" } th { "Prior" } th { "Median, or choices" } th { "50 %" } th { (answer.share()) } th { "Width, of the prior" } th { "Expected width after one more round" } th { "After any number of rounds" } }
+            tr { th { "Unknown" } th { "Prior" } th { "Median, or choices" } th { "50 %" } th { (answer.share()) } th { "Width, of the prior" } th { "Expected width after one more round" } th { "Narrowest by more rounds" } }
             @for field in fields {
                 tr {
                     td title=(field.name) { (FieldWords::of(&field.name).words) }

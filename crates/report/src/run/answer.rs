@@ -34,7 +34,8 @@ pub(super) fn first_screen(of: &Subject<'_>, sections: &[Section]) -> Result<Mar
             (picture(sections)?)
             div class="answer" {
                 @if let Some(paper) = &of.paper { p { (paper.not_met()) } }
-                p { strong { "The defect. " } (defect(run, summary)) }
+                // The paper's table has the peaks.
+                p { strong { "The defect. " } (defect(run, summary, of.paper.is_none())) }
                 p {
                     strong { "The signal. " }
                     (physics(summary))
@@ -166,7 +167,7 @@ fn count(number: usize, noun: &str) -> String {
 }
 
 /// Was the defect detected?
-fn defect(run: &Run, summary: &Summary) -> String {
+fn defect(run: &Run, summary: &Summary, with_levels: bool) -> String {
     let faults = run.scene.written.faults();
     if faults.is_empty() {
         return sound(run, summary);
@@ -205,7 +206,7 @@ fn defect(run: &Run, summary: &Summary) -> String {
         if entries == 1 { "1 entry".to_owned() } else { format!("{entries} entries") },
         count(exits, "exit"),
         floor(events, entries + exits),
-        levels(run, summary)
+        if with_levels { levels(run, summary) } else { String::new() }
     )
 }
 

@@ -10,7 +10,7 @@ use stribeck_analysis::findings::{Findings, SensorSignal};
 use stribeck_analysis::paper::{self, Beside};
 use stribeck_analysis::summary::{SensorLevels, Summary};
 use stribeck_diagnosis::words::numbers::significant;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::scene::{ContactFormula, Scene};
 
 use crate::page::{self, Section, cell, charts, grouped, wide_table};
 
@@ -18,6 +18,10 @@ use crate::page::{self, Section, cell, charts, grouped, wide_table};
 pub(super) fn section(case: &PaperCase<'_>, summary: &Summary) -> Section {
     case.section(html! { (numbers::table(summary)) (numbers::readings(summary)) })
 }
+
+/// Why peaks of a contact by a penalty differ from the paper's: the study `paper` varies its stiffness.
+const SOFT: &str = " The paper does not print the stiffness of its contact, and peaks follow it: six times as high where \
+    the penalty is 30 times as stiff. This run has a penalty, not the contact of steel by Hertz.";
 
 /// A run of the paper's bearing, or many starts of it of which one is drawn.
 pub(crate) struct PaperCase<'a> {
@@ -30,6 +34,8 @@ pub(crate) struct PaperCase<'a> {
     levels: &'a SensorLevels,
     sensor: &'a SensorSignal,
     beside: Vec<Beside>,
+    /// What the stiffness of its contact does to peaks, in a sentence.
+    softness: &'static str,
     /// Whether the record is shorter than the paper's: a missing event may then lie after its end.
     short: bool,
 }
@@ -64,7 +70,8 @@ impl<'a> PaperCase<'a> {
         let numbers: Vec<_> = starts.iter().filter_map(of_start).collect();
         let end_s = drawn.start_s + drawn.interval_s * sensor.raw_g.len() as f64;
         let short = end_s < figures::RECORD_S.1 - 2.0 * drawn.interval_s;
-        Some(Self { starts, drawn, number, levels, sensor, beside: paper::beside(&numbers), short })
+        let softness = if scene.contact.formula == ContactFormula::Hertz { "" } else { SOFT };
+        Some(Self { starts, drawn, number, levels, sensor, beside: paper::beside(&numbers), softness, short })
     }
 
     /// Whether a number is missing because the record ends before it can show.
@@ -112,7 +119,10 @@ impl<'a> PaperCase<'a> {
             .filter(|b| b.differs())
             .map(|b| format!("{} (Fig. {})", told(b), b.shown.figure))
             .collect();
-        if off.is_empty() { String::new() } else { format!("Not met: {}.", off.join("; ")) }
+        if off.is_empty() {
+            return String::new();
+        }
+        format!("Not met: {}.{}", off.join("; "), self.softness)
     }
 
     /// Quantities that differ by more than the scatter, the largest difference first, then the others.

@@ -22,6 +22,9 @@ group! {
         /// diameters; negative reduces it, and beyond it preloads the rollers. It is applied to the inner
         /// raceway; absent for 0.
         pub clearance_change_um: f64 = 0.0, within(-1_000.0, 1_000.0), omitted();
+        /// Rolling elements, where no name of the catalogue says what they are. In a file `balls` for `rollers` and
+        /// `ball_diameter_mm` for `roller_diameter_mm` say that they are balls, too.
+        pub element: ElementKind = ElementKind::Roller, omitted();
         /// Number of rolling elements.
         pub rollers: usize = 24, within(3.0, 400.0);
         /// Diameter of a rolling element [mm].
@@ -50,6 +53,16 @@ group! {
         pub width_mm: Option<f64> = None, positive(20_000.0), omitted();
         /// Dimensions that the user did not give and the program assumed; written by the program.
         pub assumed: Vec<Assumed> = Vec::new(), omitted();
+    }
+}
+
+words! {
+    /// A rolling element.
+    pub enum ElementKind: Copy, Eq {
+        /// A cylinder.
+        Roller = "roller",
+        /// A ball: it touches in points in the reduced model, and is a cylinder of the same approach in the full one.
+        Ball = "ball",
     }
 }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::problem::{Place, Problem, SceneError};
 use super::suggest;
+use crate::catalogue;
 
 /// A scene file holds some fifty numbers, and that of a run the mesh of a housing, too; more is something
 /// else.
@@ -46,6 +47,9 @@ fn reason(error: &std::io::Error) -> String {
 /// Remedy for an error of the operating system.
 fn advice(error: &std::io::Error, path: &Path) -> String {
     match error.kind() {
+        ErrorKind::NotFound if names_a_bearing(path) => {
+            format!("`stribeck new --bearing {}` writes a scene of this bearing", path.display())
+        }
         ErrorKind::NotFound => match neighbour(path) {
             Some(near) => format!("did you mean `{near}`?"),
             None => "check the path, which counts from the present folder".to_owned(),
@@ -58,6 +62,11 @@ fn advice(error: &std::io::Error, path: &Path) -> String {
         ErrorKind::NotADirectory => "check the path".to_owned(),
         _ => "the path is right, but the system cannot read from it; try a copy of the file".to_owned(),
     }
+}
+
+/// Whether a path is the name of a bearing, such as 6205.
+fn names_a_bearing(path: &Path) -> bool {
+    path.to_str().is_some_and(|name| !name.ends_with(".ron") && catalogue::parse(name).is_ok())
 }
 
 /// The scene file beside `path` whose name is most like it.
@@ -138,6 +147,8 @@ mod tests {
         ] {
             let error = std::io::Error::from(kind);
             assert!(advice(&error, path).contains(words), "{kind:?}");
+            let of_bearing = advice(&error, Path::new("NU205")).contains("stribeck new --bearing NU205");
+            assert_eq!(of_bearing, kind == ErrorKind::NotFound);
             assert_eq!(kind == ErrorKind::PermissionDenied, reason(&error).contains("not permitted"));
         }
     }

@@ -66,27 +66,34 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     }
     surround(scene, Surrounded { bearing, pitch_mm: known.pitch_mm }, given);
     if known.element == Element::Ball {
-        // By the load, which was chosen for cylinders as long as the balls' ring allows, if the user gave
-        // none.
-        let thickness_mm = tidy(thickness_of_balls(scene));
-        if thickness_mm < THINNEST_MM {
-            let rating_n = scene.static_rating_n();
-            if scene.operation.load_n < rating_n {
-                return Err(format!(
-                    "a cylinder that gives way under `operation.load_n` = {:e} N as the balls of `{}` do \
-                     would be thinner than {THINNEST_MM} mm. Take more load",
-                    scene.operation.load_n, known.name
-                ));
-            }
-            return Err(format!(
-                "the balls of `{}` are pressed flat under `operation.load_n` = {:e} N: its static rating is \
-                 {:.0} N by ISO 76, and no cylinder gives way as they would. Take less load",
-                known.name, scene.operation.load_n, rating_n
-            ));
-        }
-        scene.bearing.thickness_mm = thickness_mm;
+        put_balls(scene, &known.name)?;
     }
     Ok(())
+}
+
+/// Makes the cylinders of a bearing as long as it takes to give way as its balls do: by the load, which was chosen
+/// for cylinders as long as the balls' ring allows, if the user gave none.
+///
+/// # Errors
+/// In words: no cylinder gives way as they would.
+pub(super) fn put_balls(scene: &mut Scene, name: &str) -> Result<(), String> {
+    let thickness_mm = tidy(thickness_of_balls(scene));
+    if thickness_mm >= THINNEST_MM {
+        scene.bearing.thickness_mm = thickness_mm;
+        return Ok(());
+    }
+    let (load_n, rating_n) = (scene.operation.load_n, scene.static_rating_n());
+    Err(if load_n < rating_n {
+        format!(
+            "a cylinder that gives way under `operation.load_n` = {load_n:e} N as the balls of `{name}` do would be \
+             thinner than {THINNEST_MM} mm. Take more load"
+        )
+    } else {
+        format!(
+            "the balls of `{name}` are pressed flat under `operation.load_n` = {load_n:e} N: its static rating is \
+             {rating_n:.0} N by ISO 76, and no cylinder gives way as they would. Take less load"
+        )
+    })
 }
 
 /// The designation of a group of fields that gives no dimension: `bearing: (designation: "NU 205",
@@ -99,8 +106,9 @@ pub(super) fn alone(bearing: &BearingScene, given: &[String]) -> Option<String> 
 }
 
 /// Fields of a bearing that a scene may give beside its name.
-const BESIDE_A_NAME: [&str; 7] = [
+const BESIDE_A_NAME: [&str; 8] = [
     "designation",
+    "element",
     "rollers",
     "diameter_variation_um",
     "diameter_seed",

@@ -9,7 +9,7 @@ use super::named::{self, Surrounded, tidy};
 use super::problem::{Place, Problem};
 use super::sources::{self, Sources};
 use super::wording::number;
-use crate::scene::{Assumed, BearingScene, Scene};
+use crate::scene::{Assumed, BearingScene, ElementKind, Scene};
 use stribeck_theory::catalogue;
 
 /// Diameters of the paper's bearing of which some are given are still its own where its other ones leave such
@@ -143,6 +143,10 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Result<(), Box<Re
         };
     }
     named::surround(scene, Surrounded { bearing, pitch_mm }, given);
+    if scene.bearing.element == ElementKind::Ball && !written("thickness_mm") {
+        let balls = named::put_balls(scene, &scene.name.clone());
+        balls.map_err(|why| Refusal::new("roller_diameter_mm", why, String::new(), String::new()))?;
+    }
     Ok(())
 }
 
@@ -162,7 +166,7 @@ fn bearing(
     // The clearance depends on the bore, which may follow from the raceway in turn.
     let without = main.diameters(0.0).ok_or_else(|| main.lacks())?;
     let bore = main.bore.unwrap_or(without.inner - 2.0 * RING * without.roller);
-    let usual = catalogue::normal_clearance_mm(catalogue::Element::Roller, bore);
+    let usual = catalogue::normal_clearance_mm(b.element.into(), bore);
     let usual = usual.min(0.02 * without.roller.max(0.0));
     let d = main.diameters(usual).ok_or_else(|| main.lacks())?;
     if !(d.roller > 0.0 && d.inner > 0.0) {
@@ -185,12 +189,18 @@ fn bearing(
         b.rollers
     } else {
         assume(Assumed::Rollers);
-        catalogue::usual_elements(d.pitch(), d.roller).max(3)
+        match b.element {
+            ElementKind::Roller => catalogue::usual_elements(d.pitch(), d.roller).max(3),
+            ElementKind::Ball => catalogue::filled(d.pitch(), d.roller).max(3),
+        }
     };
     let length = if written("thickness_mm") {
         b.thickness_mm
     } else {
-        assume(Assumed::Length);
+        // That of balls follows from their load.
+        if b.element == ElementKind::Roller {
+            assume(Assumed::Length);
+        }
         main.width.map_or(d.roller, |width| named::ROLLER_LENGTH * width)
     };
     let first = if written("first_roller_deg") { b.first_roller_deg } else { named::first_roller(rollers) };
@@ -201,6 +211,7 @@ fn bearing(
         outer_ring_thickness_mm: tidy(outer_ring.unwrap_or(thickest(0.5 * d.outer))),
         inner_race_diameter_mm: tidy(d.inner),
         inner_ring_thickness_mm: tidy(inner_ring.unwrap_or(thickest(0.5 * d.inner))),
+        element: b.element,
         rollers,
         roller_diameter_mm: tidy(d.roller),
         diameter_variation_um: b.diameter_variation_um,

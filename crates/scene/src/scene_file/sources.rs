@@ -8,7 +8,7 @@ use super::problem::{Place, Problem, SceneError, place_in_file};
 use super::wording::{list, shown};
 use super::{foreign, named, reading, suggest};
 use crate::catalogue;
-use crate::fields::tree::{self, Content, Node, Source, Step, steps};
+use crate::fields::tree::{self, Content, Key, Node, Source, Step, steps};
 use crate::fields::value::Value;
 use crate::fields::{Shape, Spot, names_in, paths, spot};
 use crate::scene::Scene;
@@ -69,6 +69,25 @@ impl Sources {
     pub(crate) fn open(&mut self, path: &str) {
         if let Some(node) = find(&mut self.tree, path) {
             node.content = Content::Group(Vec::new());
+        }
+    }
+
+    /// Gives fields of the bearing that are called by words of catalogues ([`suggest::ACCEPTED`]) their names here;
+    /// one that says that elements are balls sets `element`, too.
+    pub(crate) fn accept_words_of_catalogues(&mut self) {
+        let Some(node) = find(&mut self.tree, "bearing") else { return };
+        let (source, span) = (node.source, node.span.clone());
+        let Content::Group(fields) = &mut node.content else { return };
+        let mut balls = false;
+        for (key, _) in fields.iter_mut() {
+            if let Some((theirs, ours)) = suggest::ACCEPTED.iter().find(|(theirs, _)| *theirs == key.name) {
+                balls |= theirs.contains("ball");
+                key.name = (*ours).to_owned();
+            }
+        }
+        if balls && fields.iter().all(|(key, _)| key.name != "element") {
+            let ball = Node { content: Content::Atom("ball".to_owned()), span: span.clone(), source };
+            fields.push((Key { name: "element".to_owned(), span }, ball));
         }
     }
 

@@ -44,21 +44,35 @@ const UNITS: &[(&str, &str, f64)] = &[
     ("per_ms", "rate", 1e3),
 ];
 
-/// What catalogues and other programs call a field, and its name here.
-const SYNONYMS: [(&str, &str); 13] = [
+/// Words of catalogues that a file may use in `bearing`, and our names.
+pub(crate) const ACCEPTED: [(&str, &str); 5] = [
     ("balls", "rollers"),
     ("elements", "rollers"),
     ("rolling_elements", "rollers"),
-    ("number_of_balls", "rollers"),
-    ("number_of_rollers", "rollers"),
     ("ball_diameter_mm", "roller_diameter_mm"),
     ("element_diameter_mm", "roller_diameter_mm"),
+];
+
+/// What catalogues and other programs call a field besides, and its name here.
+const SYNONYMS: [(&str, &str); 18] = [
+    ("number_of_balls", "rollers"),
+    ("number_of_rollers", "rollers"),
+    ("number_of_elements", "rollers"),
+    ("Z", "rollers"),
+    ("Dw", "roller_diameter_mm"),
     ("outer_diameter_mm", "outside_mm"),
     ("outside_diameter_mm", "outside_mm"),
+    ("D", "outside_mm"),
     ("inner_diameter_mm", "bore_mm"),
     ("bore_diameter_mm", "bore_mm"),
+    ("d", "bore_mm"),
+    ("B", "width_mm"),
     ("pitch_diameter_mm", "pitch_mm"),
+    ("Dpw", "pitch_mm"),
+    ("kind", "element"),
+    ("type", "element"),
     ("clearance_um", "clearance_change_um"),
+    ("revolutions_per_minute", "speed_rpm"),
 ];
 
 /// A name without its unit, and the unit.
@@ -94,11 +108,16 @@ pub fn nearest<'a, S: AsRef<str>>(found: &str, valid: &'a [S]) -> Option<&'a str
 ///
 /// `siblings` are the names valid in that place, `all` the dotted paths of every field there is.
 pub(crate) fn field(found: &str, siblings: &[&str], all: &[String]) -> Option<String> {
-    let synonym = SYNONYMS.iter().find(|(other, name)| *other == found && siblings.contains(name));
-    if let Some((_, name)) = synonym {
+    let (stem, unit) = split_unit(found);
+    let is_meant = |other: &str| other == found || split_unit(other).0 == stem;
+    let mut synonyms = ACCEPTED.iter().chain(&SYNONYMS);
+    if let Some((_, name)) = synonyms.find(|(other, name)| siblings.contains(name) && is_meant(other)) {
         return Some(format!("did you mean `{name}`?"));
     }
-    let (stem, unit) = split_unit(found);
+    // `rpm` for `speed_rpm`.
+    if let Some(name) = siblings.iter().find(|name| split_unit(name).1.is_some_and(|unit| unit.0 == found)) {
+        return Some(format!("did you mean `{name}`?"));
+    }
     if let Some(name) = siblings.iter().find(|name| split_unit(name).0 == stem) {
         return Some(match (unit, split_unit(name).1) {
             (None, Some(_)) => format!("did you mean `{name}`? The unit is part of the name"),
@@ -153,6 +172,8 @@ mod tests {
             ("balls", "rollers"),
             ("ball_diameter_mm", "roller_diameter_mm"),
             ("outer_diameter_mm", "outside_mm"),
+            ("ball_diameter", "roller_diameter_mm"),
+            ("D", "outside_mm"),
         ] {
             assert_eq!(field(found, &siblings, &[]), Some(format!("did you mean `{ours}`?")));
         }
@@ -166,6 +187,11 @@ mod tests {
     fn refuses_another_unit_and_converts_it() {
         assert_eq!(said("load_kn"), "did you mean `load_n`? 1 in `load_kn` is 1000 in `load_n`");
         assert!(said("gravity_g").contains("9.80665 in `gravity_m_s2`"));
+    }
+
+    #[test]
+    fn refuses_a_unit_alone_and_names_its_field() {
+        assert_eq!(said("rpm"), "did you mean `speed_rpm`?");
     }
 
     #[test]

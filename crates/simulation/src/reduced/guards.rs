@@ -217,13 +217,13 @@ impl Guards {
             [self.limits.penetration_warning_percent, self.limits.penetration_stop_percent].map(|p| 0.01 * p);
         if share > warning && before <= warning {
             info.warn(Topic::Contact.warning(format!(
-                "contact has sunk in by {:.1} % of an element {when}: take a larger `contact.penalty_scale`",
+                "the penetration of a contact has reached {:.1} % of an element's size {when}: take a larger `contact.penalty_scale`",
                 100.0 * share
             )));
         }
         (share > stop).then(|| {
             format!(
-                "contact has sunk in by {:.0} % of an element {when}: take a larger `contact.penalty_scale` \
+                "the penetration of a contact has reached {:.0} % of an element's size {when}: take a larger `contact.penalty_scale` \
                  or less `operation.load_n`",
                 100.0 * share
             )

@@ -42,10 +42,6 @@ pub struct Progress {
     pub steps: u64,
     /// Simulated time [s].
     pub time_s: f64,
-    /// Energy imbalance over the peak strain energy [-].
-    pub energy_error: f64,
-    /// Largest imbalance over the heat [-], where that is more than was ever stored as strain.
-    pub share_of_heat: Option<f64>,
     /// Elements that take part in a step; 0 for a reduced model.
     pub elements: usize,
 }
@@ -53,14 +49,6 @@ pub struct Progress {
 impl Progress {
     /// At the very beginning.
     pub fn begin() -> Self {
-        Self {
-            phase: "mesh",
-            step: 0,
-            steps: 0,
-            time_s: 0.0,
-            energy_error: 0.0,
-            share_of_heat: None,
-            elements: 0,
-        }
+        Self { phase: "mesh", step: 0, steps: 0, time_s: 0.0, elements: 0 }
     }
 }

@@ -206,8 +206,6 @@ impl<M: Motion> Run<M> {
             self.info.simulated_s = sample as f64 * self.info.interval_s;
             progress.step = self.motion.steps();
             progress.time_s = self.motion.time();
-            progress.energy_error = ledger.relative_error;
-            progress.share_of_heat = self.info.energy.share_of_heat();
             let stop = self.motion.look(&mut self.info);
             if stop.is_some() {
                 self.info.status = Status::Diverged;

@@ -334,8 +334,9 @@ fn mean_gap(pulses: &[f64]) -> Option<f64> {
 /// The file of a record, and the scene where it is that of a run.
 pub(super) fn located(asked: &Path, place: &Place) -> Result<(PathBuf, Option<Scene>)> {
     let mut file = place.locate(asked);
-    if !file.exists() {
+    if !file.exists() || file.extension().is_some_and(|end| end == "ron") {
         file = place.locate_run(asked);
+        place.refuse_scene(&file)?;
     }
     if RunDir::is_ensemble(&file) {
         RunDir::open(&file)?;

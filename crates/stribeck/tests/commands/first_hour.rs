@@ -52,7 +52,7 @@ fn behaves_runs_and_an_ensemble_beside_each_other() {
     simulate(&desk, "b", &["--set=operation.load_n=20000"]);
     simulate(&desk, "c", &["--starts=3", "--jobs=1"]);
     let output = desk.succeeds(&["compare", "a", "b"]);
-    says(&output, &["The scenes differ in 1 field: operation.load_n 50000 → 20000", "one start each"]);
+    says(&output, &["The scenes differ in 1 field: operation.load_n 50000 → 20000", "one signal each"]);
     let found = desk.json("a-and-b-compared/compare.json");
     assert_eq!(found["fields"][0]["values"][1], "20000");
     let row = |found: &serde_json::Value, name: &str| {
@@ -115,7 +115,7 @@ fn behaves_a_plan_is_written_for_scripts() {
 }
 
 /// Knocks of an outer raceway of a 6205 at 1200 rpm.
-fn knocks(height: f64, seed: u64) -> Vec<f64> {
+pub(crate) fn knocks(height: f64, seed: u64) -> Vec<f64> {
     let mut noise = Noise::new(seed);
     (0..60_000)
         .map(|n| {

@@ -12,6 +12,7 @@ mod ensemble;
 mod everyday;
 mod first_hour;
 mod fmu;
+mod forty;
 mod infer;
 mod machine;
 mod measured;

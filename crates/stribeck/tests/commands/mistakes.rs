@@ -38,14 +38,14 @@ const NEW: [Mistake; 5] = [
     (&["new", "--bearing=62O5"], &["no bearing `62O5`", "did you mean `6205`", "stribeck bearings"]),
     (&["new", "--load-n=-5"], &["'-5'", "--load-n", "no number above 0"]),
     (&["new", "mine.txt"], &["`mine.txt`", "ends in `.ron`, such as `mine.ron`"]),
-    (&["new", "--load_n=3000"], &["'--load_n'", "'--load-n'", "Example: stribeck new"]),
+    (&["new", "--load_n=3000"], &["'--load_n'", "try: stribeck new --load-n=3000"]),
     (&["new", "--defect=ouder"], &["'ouder'", "outer, inner, roller, none"]),
 ];
 
 /// A folder that is not there, a misspelt flag, two folders, two loudnesses, a file.
 const LIST: [Mistake; 5] = [
     (&["list", "results"], &["no folder `results`", "without one lists `runs`"]),
-    (&["list", "--jsn"], &["'--jsn'", "'--json'", "Example: stribeck list"]),
+    (&["list", "--jsn"], &["'--jsn'", "try: stribeck list --json"]),
     (&["list", "runs", "more"], &["'more'", "stribeck list [OPTIONS] [FOLDER]"]),
     (&["list", "-q", "-v"], &["'--quiet' cannot be used with '--verbose'"]),
     (&["list", "mine.ron"], &["no folder `mine.ron`"]),
@@ -56,7 +56,7 @@ const OPEN: [Mistake; 5] = [
     (&["open"], &["nothing in `runs` has a page", "stribeck simulate"]),
     (&["open", "mine"], &["there is no `mine`", "no runs in `runs`", "stribeck simulate"]),
     (&["open", "report.html"], &["there is no `report.html`", "no runs in `runs`"]),
-    (&["open", "--prnt"], &["'--prnt'", "'--print'", "Example: stribeck open"]),
+    (&["open", "--prnt"], &["'--prnt'", "try: stribeck open --print"]),
     (&["open", ".."], &["`..` holds no run", "stribeck list"]),
 ];
 

@@ -26,11 +26,11 @@ pub(super) const PROPORTION: &str = "bore, outside and width by ISO 15; no catal
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
 pub(super) const BALL_RULE: &str = "bore, outside and width by ISO 15; balls by rule: pitch (bore + \
-    outside)/2, diameter 0.3 (outside − bore). Of six bearings whose balls are known the rule is off by 6 % \
+    outside)/2, diameter 0.3 (outside − bore). Of seven bearings whose balls are known the rule is off by 6 % \
     at most in diameter and by 1.5 % in pitch";
 pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628; balls by the rule of deep \
     groove bearings of the same outside diameter (pitch (bore + outside)/2, diameter 0.3 (outside − bore)), \
-    which is off by 6 % at most in the diameter of six known ones";
+    which is off by 6 % at most in the diameter of seven known ones";
 
 /// Raceway diameters F and E [mm] of cylindrical roller bearings of E design by size, with bore and outside
 /// diameter [mm] by ISO 15, and width [mm] of the narrow and of the wide series, which have the same
@@ -84,8 +84,9 @@ const IN_PROPORTION: u32 = 302;
 /// raceways are the same.
 const FLANGES: [&str; 4] = ["NU", "NJ", "NUP", "N"];
 
-const OTHERS: [Row; 9] = [
+const OTHERS: [Row; 10] = [
     (PAPER, Element::Roller, Some(24), 18.0, 181.98, 0.0, None, SINGH),
+    ("608", Element::Ball, Some(7), 3.969, 15.0, 0.0, Some([8.0, 22.0, 7.0]), BOUNDARY),
     ("6203", Element::Ball, Some(8), 6.746, 28.5, 0.0, Some([17.0, 40.0, 12.0]), CWRU),
     ("6205", Element::Ball, Some(9), 7.94, 39.04, 0.0, Some([25.0, 52.0, 15.0]), CWRU),
     ("6206", Element::Ball, Some(9), 9.525, 46.0, 0.0, Some([30.0, 62.0, 16.0]), BOUNDARY),
@@ -260,7 +261,7 @@ fn cylindrical() -> impl Iterator<Item = CatalogueBearing> {
 pub(super) fn names() -> String {
     let others: Vec<&str> = OTHERS.iter().map(|row| row.0).filter(|name| !name.starts_with('6')).collect();
     format!(
-        "{}, 6000 to 6320, UC204 to UC212, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320",
+        "{}, 608, 6000 to 6320, UC204 to UC212, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320",
         others.join(", "),
         FLANGES.join(", ")
     )
@@ -297,7 +298,7 @@ mod tests {
             }
             compared += 1;
         }
-        assert_eq!(compared, 6);
+        assert_eq!(compared, 7);
     }
 
     /// Rollers of E design have diameters in whole or half millimetres, and lie between bore and outside.

@@ -48,7 +48,7 @@ impl Softness {
             String::new()
         };
         format!(
-            "contact has sunk in by {} {when}: it is softer than the bearing, which has {} of radial \
+            "the penetration of a contact has reached {} {when}: contact is softer than the bearing, which has {} of radial \
              clearance and by Hertz gives way by {} at a contact{depth}. Load zone, times and impulses are \
              those of a softer bearing; `contact.formula: hertz` is as stiff as steel",
             um(penetration),
