@@ -520,7 +520,7 @@ fn envelope(band: &BandEnvelope, family: &Family, findings: &MeasuredFindings) -
         " Red: harmonics of {}{}{}.",
         family.name.shocks_name(),
         if side_hz > 0.0 { format!("; orange: their sidebands of the {side}") } else { String::new() },
-        if highest.is_some() { "; grey: the highest comb of an unrelated fundamental" } else { "" }
+        if highest.is_some() { "; grey: the highest comb at another spacing" } else { "" }
     );
     figure
 }

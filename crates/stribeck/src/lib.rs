@@ -66,8 +66,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
-    self as analyse, self as compare, self as demo, self as detect, self as export,
-    self as infer, self as machine_fit, self as sweep,
+    self as analyse, self as compare, self as demo, self as detect, self as export, self as infer,
+    self as machine_fit, self as sweep,
 };
 pub use limits::Limits;
 pub use out::Loudness;

@@ -1,6 +1,6 @@
 //! Paths of scenes and runs, and the name of the program.
 
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
 use anyhow::{Result, anyhow, bail, ensure};
@@ -153,7 +153,11 @@ impl Place {
             return of_scene;
         }
         let by_name = self.runs().join(run);
-        if !run.exists() && by_name.exists() { by_name } else { self.locate(run) }
+        // A folder of the same name beside `runs/` hides a run only where it is one itself.
+        let is_name = matches!(run.components().collect::<Vec<_>>().as_slice(), [Component::Normal(_)]);
+        let hides =
+            run.is_file() || ["scene.ron", "ensemble.json"].iter().any(|mark| run.join(mark).exists());
+        if by_name.is_dir() && (!run.exists() || is_name && !hides) { by_name } else { self.locate(run) }
     }
 
     /// The run or ensemble below `runs/` whose `run.json` or `ensemble.json` was written last.

@@ -220,7 +220,10 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
 fn record(scene: &ResolvedScene, plan: &Plan) {
     let samples = 1e3 * scene.written.solver.duration_ms / scene.written.output.interval_us;
     say!("  the trace takes {:.3} GB", 8e-9 * samples * channels::names(scene).len() as f64);
-    say!("  the mesh has {:.0} elements a wavelength of surface (Rayleigh) waves at half the sampling rate", plan.elements_per_wavelength);
+    say!(
+        "  the mesh has {:.0} elements a wavelength of surface (Rayleigh) waves at half the sampling rate",
+        plan.elements_per_wavelength
+    );
     let digits = if plan.resolution_hz < 0.1 { 5 } else { 1 };
     say!("  the record resolves {:.digits$} Hz", plan.resolution_hz);
     if let Some(needed) = plan.separating_s {

@@ -116,13 +116,7 @@ mod tests {
     #[test]
     fn by_hand_a_line_holds_time_eta_and_pace() {
         let meter = Meter::new(30.0);
-        let progress = Progress {
-            step: 250,
-            steps: 1000,
-            time_s: 7.5e-3,
-            elements: 100_000,
-            phase: "run",
-        };
+        let progress = Progress { step: 250, steps: 1000, time_s: 7.5e-3, elements: 100_000, phase: "run" };
         // 250 steps of 100 000 elements in 10 s: 2.5 million element-steps a second, 30 s left.
         let expected = " 25.0 %  7.50 of 30 ms  ETA 30.0 s  2.5 M element-steps/s";
         assert_eq!(meter.line(&progress, 10.0), expected);

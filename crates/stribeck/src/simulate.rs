@@ -116,6 +116,12 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             (scene, dir)
         }
     };
+    if scene.solver.time_step_factor > 1.0 {
+        caution!(
+            "`solver.time_step_factor` is {}: steps longer than the critical one diverge",
+            scene.solver.time_step_factor
+        );
+    }
     interrupt.need_not_wait_for(dir.reservation());
     let path = shown(dir.path());
     tell!("{}: {} ms, {threads} threads → {path}", scene.name, scene.solver.duration_ms);

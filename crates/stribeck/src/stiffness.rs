@@ -216,5 +216,7 @@ fn print(found: &BearingStiffness) {
             1e9 * range(&u.x).hypot(range(&u.y))
         );
     }
-    say!("range: most less least over a passage of the elements, of the mean; shift: that of the shaft\u{2019}s centre");
+    say!(
+        "range: most less least over a passage of the elements, of the mean; shift: that of the shaft\u{2019}s centre"
+    );
 }

@@ -250,7 +250,8 @@ fn text(
     if !common.is_empty() {
         text += &format!("    set: [{}],\n", common.join(", "));
     }
-    text += &format!("    seed: {},\n    starts: {},\n", options.seed.unwrap_or(1), options.starts.unwrap_or(1));
+    text +=
+        &format!("    seed: {},\n    starts: {},\n", options.seed.unwrap_or(1), options.starts.unwrap_or(1));
     text += &format!("    keep: {},\n    variants: grid([\n", word(keep.whole()));
     for a in swept {
         let values: Vec<String> = a.values.iter().map(|value| as_ron(&a.field, value)).collect();
@@ -302,7 +303,8 @@ pub(crate) fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
 
 /// What the sweep in this folder keeps, if there is one.
 fn kept_in(out: &Path) -> Option<Kept> {
-    let text = std::fs::read_to_string(out.join(CAMPAIGN)).ok().filter(|text| text.starts_with(WRITTEN_BY))?;
+    let text =
+        std::fs::read_to_string(out.join(CAMPAIGN)).ok().filter(|text| text.starts_with(WRITTEN_BY))?;
     let kept = [Kept::All, Kept::Signals, Kept::Numbers];
     kept.into_iter().find(|kept| text.contains(&format!("keep: {},", word(kept.whole()))))
 }

@@ -317,8 +317,11 @@ fn claimed(family: Family, case: &Case<'_>) -> Family {
         )
     });
     let depth = family.depth.unwrap_or(0.0);
-    let why =
-        format!("{} harmonics stand out, and its power varies by {:.0} % of its mean{other}", family.harmonics, 100.0 * depth);
+    let why = format!(
+        "{} harmonics stand out, and its power varies by {:.0} % of its mean{other}",
+        family.harmonics,
+        100.0 * depth
+    );
     // One element that is damaged comes under the load once a turn of the cage, too.
     let not_told_apart_from = if is_cage { Some(Defect::Bsf) } else { family.not_told_apart_from };
     Family { claimed: true, not_told_apart_from, reason: Reason::Decided(why), ..family }

@@ -157,7 +157,11 @@ fn missing(family: &Family) -> String {
         ));
     }
     if let Some(depth) = family.depth.filter(|depth| *depth < KNOCK) {
-        lacks.push(format!("power that varies by {:.0} % of its mean ({:.0} % now)", 100.0 * KNOCK, 100.0 * depth));
+        lacks.push(format!(
+            "power that varies by {:.0} % of its mean ({:.0} % now)",
+            100.0 * KNOCK,
+            100.0 * depth
+        ));
     }
     if lacks.is_empty() {
         return format!("{} is nearest to a claim: {}.", family.name, family.reason);

@@ -31,8 +31,9 @@ pub(crate) fn lead(scene: &ResolvedScene, duty: Option<&DutyFinding>, simulated_
         "" => String::new(),
         name => format!("{name}: "),
     };
-    // The page calls them balls where the bearing has balls.
-    let as_cylinders = if scene.written.element() == Element::Ball { ", modelled as cylinders," } else { "" };
+    // The page calls them balls where the bearing has balls; those of the reduced model touch in points.
+    let meshed = scene.written.element() == Element::Ball && scene.written.model == ModelScene::Full;
+    let as_cylinders = if meshed { ", modelled as cylinders," } else { "" };
     format!(
         "{name}{} rollers{as_cylinders}{} under {} at {}, {defect}; {:.1} ms, simulated {}.",
         scene.written.rollers_in_place().count(),

@@ -99,7 +99,8 @@ fn behaves_sixteen_bearings_of_catalogues_run_at_the_first_try() {
         (scene(boundary, format!("balls: {balls}, ball_diameter_mm: {mm}"), load), Element::Ball)
     });
     let rollers = ROLLERS.iter().map(|&(boundary, count, mm, inner, load)| {
-        let elements = format!("elements: {count}, roller_diameter_mm: {mm}, inner_race_diameter_mm: {inner}");
+        let elements =
+            format!("elements: {count}, roller_diameter_mm: {mm}, inner_race_diameter_mm: {inner}");
         (scene(boundary, elements, load), Element::Roller)
     });
     let all: Vec<(String, Element)> = balls.chain(rollers).collect();

@@ -128,7 +128,8 @@ fn mended(error: &Error, words: &[String]) -> Option<Vec<String>> {
         }
         ErrorKind::UnknownArgument => {
             let wrong = said(ContextKind::InvalidArg)?;
-            let at = words.iter().position(|word| *word == wrong || word.starts_with(&format!("{wrong}=")))?;
+            let at =
+                words.iter().position(|word| *word == wrong || word.starts_with(&format!("{wrong}=")))?;
             let name = words.iter().find(|word| !word.starts_with('-'))?;
             if wrong.starts_with('-') {
                 let near = said(ContextKind::SuggestedArg);
@@ -275,8 +276,14 @@ mod tests {
             ("resume mine", "simulate --resume mine"),
             ("6205", "bearings 6205"),
             ("simulat mine.ron --sett model=full", "simulate mine.ron --set model=full"),
-            ("simulate mine.ron --rpm 1800 --load_kn=2", "simulate mine.ron --set operation.speed_rpm=1800 --set operation.load_n=2000"),
-            ("new --bearing 6205 --load-kn 2 --speed-hz 25 --fault inner-race", "new --bearing 6205 --load-n 2000 --speed-rpm 1500 --defect inner"),
+            (
+                "simulate mine.ron --rpm 1800 --load_kn=2",
+                "simulate mine.ron --set operation.speed_rpm=1800 --set operation.load_n=2000",
+            ),
+            (
+                "new --bearing 6205 --load-kn 2 --speed-hz 25 --fault inner-race",
+                "new --bearing 6205 --load-n 2000 --speed-rpm 1500 --defect inner",
+            ),
             ("new --load-n 2kN --speed-rpm=25Hz", "new --load-n 2000 --speed-rpm=1500"),
             ("new --length-mm 0,5", "new --length-mm 0.5"),
             ("analyse r.csv --rpm 1797 --fs 25600", "analyse r.csv --speed-rpm 1797 --rate-hz 25600"),

@@ -184,8 +184,11 @@ fn behaves_a_sweep_has_a_page_and_takes_further_values() {
     ]
     .concat();
     desk.succeeds(&fewer);
-    let more =
-        [&["sweep", "quick.ron", "--set=operation.load_n=60000,70000", "--out=few"][..], &SHORT].concat();
+    let more = [
+        &["sweep", "quick.ron", "--keep=all", "--set=operation.load_n=60000,70000", "--out=few"][..],
+        &SHORT,
+    ]
+    .concat();
     desk.refuses(&more, &["made with `--keep numbers`", "give the same `--keep`"]);
     says(&desk.succeeds(&fewer), &["2 runs, 0 of them to be run here"]);
     // Names that a person can read lead to the runs, and commands take them.
