@@ -264,7 +264,7 @@ fn points(name: &str, colour: Colour, y: Vec<f64>) -> Curve {
 
 /// Heights of the families' combs, with the onsets of those that are claimed.
 fn heights(series: &Series) -> Option<Figure> {
-    let axis = Axis::plain("Height of the comb above the background", "dB");
+    let axis = Axis::plain("Height above the background", "dB");
     let mut figure = chart("heights", "How high each family stands", series.records, axis);
     for (family, colour) in series.families.iter().zip(COLOURS) {
         let y: Vec<f64> = family.height_db.iter().map(|db| db.unwrap_or(f64::NAN)).collect();
