@@ -330,7 +330,7 @@ fn claimed(family: Family, case: &Case<'_>) -> Family {
 /// A family that is claimed by what the machine showed when it was sound.
 fn beyond_sound_records(family: Family, sound: &BesideSound) -> Family {
     let why = format!(
-        "{} harmonics stand, {:.1} dB above unrelated combs, where the highest of {} records of the sound machine \
+        "{} harmonics stand, {:.1} dB above combs at other spacings, where the highest of {} records of the sound machine \
          has {:.1} dB; by their scatter such a record has as much with a probability of {}",
         family.harmonics,
         sound.score_db,

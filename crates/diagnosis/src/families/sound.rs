@@ -73,7 +73,7 @@ impl BesideSound {
         let Self { name, score_db, records, as_high, .. } = self;
         let few = format!("; at least {LEAST_SOUND} of them enter the verdict");
         format!(
-            "{name} stands {score_db:.1} dB above unrelated combs, and {as_high} of {records} records of the sound \
+            "{name} stands {score_db:.1} dB above combs at other spacings, and {as_high} of {records} records of the sound \
              machine have a family that stands as far{}",
             if *records < LEAST_SOUND { few.as_str() } else { "" }
         )
