@@ -5,6 +5,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
+use stribeck_analysis::quantity::Quantity;
 use stribeck_analysis::summary::Summary;
 
 use crate::workspace;
@@ -45,23 +46,39 @@ fn page() -> Result<String> {
          A path leads to a number in `summary.json`, to its statistic in that of an ensemble, to the column \
          `summary.PATH` of a campaign, and to a target of an inference. Numbers with an … are in a list, of \
          which an inference takes one item or combines all, as in `median(events.floor_n)`, and campaigns \
-         have no column. \
-         `compare` sets the bold ones side by side, and the page of a campaign draws them over its fields. \
+         have no column. `compare` and the page of a campaign show the bold ones. \
          `cargo xtask quantities --schema` prints the JSON schema of `summary.json`.\n",
     );
+    let quantities = Summary::quantities();
+    let said = |quantity: &Quantity| {
+        let (section, _) = quantity.path.split_once('.').unwrap_or_default();
+        let (_, leaf) = quantity.path.rsplit_once('.').unwrap_or_default();
+        (section.to_owned(), leaf.to_owned(), quantity.about)
+    };
     let mut section = String::new();
-    for quantity in Summary::quantities() {
-        let (first, _) = quantity.path.split_once('.').unwrap_or_default();
-        if section != first {
-            first.clone_into(&mut section);
-            write!(text, "\n## `{section}`\n\n| path | unit | |\n|---|---|---|\n")?;
+    for (n, quantity) in quantities.iter().enumerate() {
+        let mine = said(quantity);
+        // Paths with one name and one sentence share a line.
+        if quantities[..n].iter().any(|before| said(before) == mine) {
+            continue;
         }
-        let mark = if quantity.place.is_some() { "**" } else { "" };
-        let list = if quantity.is_listed { " …" } else { "" };
+        if section != mine.0 {
+            mine.0.clone_into(&mut section);
+            write!(text, "\n## `{section}`\n\n")?;
+        }
+        let alike = quantities[n..].iter().filter(|other| said(other) == mine);
+        let paths: Vec<String> = alike.map(path).collect();
         let unit = quantity.unit();
-        // The sentence has its unit in brackets, which the column beside it says.
+        let bracket = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
         let about = quantity.about_in_markdown().replace(&format!(" [{unit}]"), "");
-        writeln!(text, "| {mark}`{}`{mark}{list} | {unit} | {about} |", quantity.path)?;
+        writeln!(text, "- {}{bracket}: {about}", paths.join(", "))?;
     }
     Ok(text)
+}
+
+/// A path, bold where pages compare the number, with … in a list.
+fn path(quantity: &Quantity) -> String {
+    let mark = if quantity.place.is_some() { "**" } else { "" };
+    let list = if quantity.is_listed { "…" } else { "" };
+    format!("{mark}`{}`{mark}{list}", quantity.path)
 }

@@ -131,8 +131,8 @@ quantities! {
         /// Carrier by the recorded motion [Hz]: the line of the comb next to the mean rate of the facets at
         /// loaded contacts; `None` when no comb was made of it.
         pub predicted_hz: Option<f64>,
-        /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is
-        /// not found, that of the best fit within 1.5 BPFO; `None` when it is not judged.
+        /// Carrier by the fit less the predicted one, in resolutions of the record; when the family is not
+        /// found, that of the best fit within 1.5 BPFO.
         pub offset_resolutions: Option<f64>,
         /// How far the single channels scatter about that offset (standard deviation), in resolutions.
         pub offset_scatter_resolutions: Option<f64>,
@@ -143,16 +143,14 @@ quantities! {
         pub not_told_apart_from: Vec<String>,
         /// How far the score leads that of the best rival; negative when a rival explains more.
         pub lead: Option<f64>,
-        /// Share of the accelerations in the band that the comb explains, mean over sensors and components;
-        /// of their residual once families found earlier are in the fit.
+        /// Share of the accelerations in the band that the comb explains, mean over sensors and components.
         pub explained: Option<f64>,
         /// The same of the forces on the loaded rollers.
         pub explained_forces: Option<f64>,
         /// Largest peak amplitude of its lines [g]; `None` when there is no carrier or no line stands out.
         pub level_g: Option<f64>,
         /// How far the highest peak within half a resolution of the predicted carrier stands above its
-        /// surroundings [dB], over all sensors and components, of a family that was not found; `None` without
-        /// one.
+        /// surroundings [dB], over all sensors and components, of a family that was not found.
         #[serde(default)]
         pub standing_db: Option<f64>,
         /// The verdict in words.

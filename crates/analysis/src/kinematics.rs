@@ -36,9 +36,8 @@ quantities! {
         pub bpfo_hz: Option<f64> => "BPFO of the recorded motion" at 7,
         /// Ball pass frequency of the outer raceway, no slip.
         pub expected_bpfo_hz: f64,
-        /// Spin of a roller relative to the cage under load: mean over all rollers and samples, weighted by
-        /// the force of the outer raceway. Rollers without load, in the defect or outside the load zone, have
-        /// no weight.
+        /// Spin of a roller relative to the cage: mean over rollers and samples, weighted by the force of
+        /// the outer raceway.
         pub roller_spin_hz: Option<f64> => "spin of loaded rollers" at 9,
         /// Spin of a roller relative to the cage, no slip.
         pub expected_roller_spin_hz: f64,

@@ -141,8 +141,7 @@ group! {
         /// Seed of the phases.
         pub seed: u64 = 1, within(0.0, 1e9);
         /// Spectral slope: the power spectral density falls as the wave number to this power. 2 is a random
-        /// walk, 0 the same at all wavelengths of the band; a self-affine profile of the Hurst exponent H has
-        /// 1 + 2H.
+        /// walk; a self-affine profile of the Hurst exponent H has 1 + 2H.
         pub slope: f64 = RANDOM_WALK, within(0.0, 6.0), omitted();
     }
 }

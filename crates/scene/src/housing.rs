@@ -60,8 +60,7 @@ group! {
     pub struct RigidHousingScene {
         /// Mass that moves with the outer ring, on top of the ring's own [kg].
         pub mass_kg: f64 = 0.0, within(0.0, 1e6);
-        /// Damping of its motion by what it stands on, over the mass [1/s]: 2ζω for the damping ratio ζ at the
-        /// angular frequency ω, 1000 for 5 % at 1.6 kHz.
+        /// Damping of its motion by what it stands on, over the mass [1/s]: 2ζω, 1000 for 5 % at 1.6 kHz.
         pub damping_per_s: f64 = 0.0, within(0.0, 1e5), omitted();
     }
 }

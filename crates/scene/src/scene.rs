@@ -40,11 +40,11 @@ group! {
         pub cage: Option<CageScene> = Some(CageScene::default());
         /// The block that carries the load to the outer ring.
         pub adapter: AdapterScene = AdapterScene::default();
-        /// Housing, which holds the outer ring and takes the load; absent for `adapter`.
+        /// Housing, which holds the outer ring and takes the load.
         pub housing: HousingScene = HousingScene::Adapter, omitted();
-        /// The mesh of the outer ring from a file; absent for one that the program makes.
+        /// The mesh of the outer ring from a file; `None` for one that the program makes.
         pub outer_ring_mesh: Option<RingMeshScene> = None, omitted();
-        /// The mesh of the inner ring from a file; absent for one that the program makes.
+        /// The mesh of the inner ring from a file; `None` likewise.
         pub inner_ring_mesh: Option<RingMeshScene> = None, omitted();
         /// Spall on a raceway; `None` is a sound bearing.
         pub defect: Option<DefectScene> = Some(DefectScene::default());

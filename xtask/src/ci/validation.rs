@@ -116,7 +116,7 @@ fn same(old: &str, new: &str) -> bool {
     let (Some(p), Some(q), Some(theirs)) = (number(&a[2]), number(&b[2]), number(&b[3])) else {
         return a == b;
     };
-    let tolerance = b[6].trim_end_matches('%').trim().parse::<f64>().unwrap_or(0.0) / 100.0;
+    let tolerance = b[6].parse::<f64>().unwrap_or(0.0) / 100.0;
     words && (p - q).abs() <= (ROUNDING * tolerance).max(SHOWN) * theirs.abs()
 }
 
@@ -155,33 +155,37 @@ fn render(rows: &[Row]) -> String {
     let mut text = String::from(
         "# Validation\n\nWhat the tests compare with closed forms and with other programs. Written by `cargo \
          xtask ci` from the tests themselves (`crates/testing/src/ledger.rs`), which fail beyond the \
-         tolerance. Whole problems solved by other codes are in [compare](results/compare.md), error against \
-         work in [work_precision](results/work_precision.md), extreme cases in \
-         [stability](results/stability.md).\n",
+         tolerance; an empty cell is that above it. Whole problems solved by other codes are in \
+         [compare](results/compare.md), error against work in [work_precision](results/work_precision.md), \
+         extreme cases in [stability](results/stability.md).\n",
     );
     let mut package = "";
+    let mut before: Option<&Row> = None;
     for row in rows {
         if row.package != package {
             package = &row.package;
             let _ = write!(
                 text,
-                "\n## {}\n\n| quantity | ours | theirs | unit | difference | tolerance | source | test \
-                 |\n|---|---|---|---|---|---|---|---|\n",
+                "\n## {}\n\n| quantity | ours | theirs | unit | difference, % | tolerance, % | source | \
+                 test |\n|---|---|---|---|---|---|---|---|\n",
                 package.trim_start_matches("stribeck-")
             );
         }
+        // Rows of one test below each other name it and its source once.
+        let is_more = before
+            .is_some_and(|b| (&b.package, &b.source, &b.test) == (&row.package, &row.source, &row.test));
+        before = Some(row);
+        let from = if is_more { "| | |".to_owned() } else { format!("| {} | `{}` |", row.source, row.test) };
         let off = (row.ours / row.theirs - 1.0).abs();
         let _ = writeln!(
             text,
-            "| {} | {} | {} | {} | {} % | {} % | {} | `{}` |",
+            "| {} | {} | {} | {} | {} | {} {from}",
             row.quantity,
             digits(row.ours, 5),
             digits(row.theirs, 5),
             row.unit,
             digits(100.0 * off, 2),
             digits(100.0 * row.tolerance, 2),
-            row.source,
-            row.test
         );
     }
     text
@@ -211,7 +215,7 @@ mod tests {
     #[test]
     fn by_hand_rows_are_rendered_with_their_digits() {
         let text = render(&[parse(LINE).expect("a row")]);
-        let row = "| speed of a wave | 5856.1 | 5856 | m/s | 0.0021 % | 0.1 % | Achenbach 1973, §1.3 | \
+        let row = "| speed of a wave | 5856.1 | 5856 | m/s | 0.0021 | 0.1 | Achenbach 1973, §1.3 | \
             `analytic_speed` |";
         assert!(text.contains("## solver") && text.contains(row), "{text}");
         assert_eq!([digits(0.0, 3), digits(1.5e-7, 3), digits(123_456.0, 2)], ["0", "1.50e-7", "123456"]);

@@ -3,78 +3,124 @@
 use std::fmt::Write as _;
 
 use super::tree::{Content, join};
-use super::{Group, Shape, Spot, Words};
+use super::{Field, Group, Shape, Spot, Words};
 use crate::scene::Scene;
 
 /// Every field of a scene with its default, range and description.
 pub fn page() -> String {
-    let mut text = String::from(
+    let text = String::from(
         "# Every field of a scene\n\nWritten by `cargo xtask fields` from the table by which scenes are \
          read; `cargo xtask fields --schema` prints the same as a JSON schema, for editors and other \
-         programs. What a scene does not say has its default; a number outside its range is refused with its \
-         line.\n",
+         programs. What a scene does not say has the default behind the field; a number outside its range is \
+         refused with its line. *Up to* begins above 0.\n",
     );
+    let mut page = Page { text, described: Vec::new() };
     // Writing to a text cannot fail.
-    let _ = section(&mut text, Spot::ROOT, "");
-    text
+    let _ = page.section(Spot::ROOT, "");
+    page.text
 }
 
-/// The fields or words at a path, then those inside.
-fn section(text: &mut String, spot: Spot, path: &str) -> std::fmt::Result {
-    match spot.shape.there() {
-        Shape::Group(group) => {
-            if !path.is_empty() {
-                write!(text, "\n## `{path}`\n\n{}\n", sentence(group.about))?;
-            }
-            rows(text, spot, group)?;
-            for field in group.fields {
-                let at = join(path, field.name);
-                section(text, spot.at(group, field), &at)?;
-            }
-            Ok(())
-        }
-        Shape::Words(words) => of_words(text, spot, words, path),
-        Shape::List(item) => section(text, spot.with(*item), &format!("{path}[0]")),
-        _ => Ok(()),
-    }
+/// The page as far as it is written.
+struct Page {
+    text: String,
+    /// Comment of every kind of value that is described, and its path.
+    described: Vec<(&'static [&'static str], String)>,
 }
 
-/// The words at a path, and the fields behind each.
-fn of_words(text: &mut String, spot: Spot, words: &Words, path: &str) -> std::fmt::Result {
-    write!(text, "\n## `{path}`\n\n{} One of\n\n", sentence(words.about))?;
-    for word in words.words {
-        let brackets = if word.inside.is_some() { "(…)" } else { "" };
-        writeln!(text, "- `{}{brackets}`: {}", word.word, sentence(word.about))?;
-    }
-    for word in words.words {
-        if let Some(Shape::Group(group)) = word.inside {
-            write!(text, "\n### `{path}: {}(…)`\n", word.word)?;
-            rows(text, spot, group)?;
-            for field in group.fields {
-                section(text, spot.at(group, field), &format!("{path}.{}", field.name))?;
+impl Page {
+    /// The fields of the group at a path, and what stands behind its words.
+    fn section(&mut self, spot: Spot, path: &str) -> std::fmt::Result {
+        match spot.shape.there() {
+            Shape::Group(group) => {
+                if !path.is_empty() {
+                    write!(self.text, "\n## `{path}`\n\n")?;
+                    if let Some(before) = self.described(group.about, path) {
+                        return writeln!(self.text, "As `{before}`.");
+                    }
+                    writeln!(self.text, "{}", sentence(group.about))?;
+                }
+                self.fields(spot, group, path)
             }
+            Shape::Words(words) if self.described(words.about, path).is_none() => {
+                for word in words.words {
+                    if let Some(Shape::Group(group)) = word.inside {
+                        write!(self.text, "\n## `{path}: {}(…)`\n", word.word)?;
+                        self.fields(spot, group, path)?;
+                    }
+                }
+                Ok(())
+            }
+            Shape::List(item) => self.section(spot.with(*item), &format!("{path}[0]")),
+            _ => Ok(()),
         }
     }
-    Ok(())
-}
 
-/// A table of fields.
-fn rows(text: &mut String, spot: Spot, group: &'static Group) -> std::fmt::Result {
-    text.push_str("\n| field | default | range | |\n|---|---|---|---|\n");
-    for field in group.fields {
-        let at = spot.at(group, field);
-        let default = match at.default().map(|node| node.content) {
-            Some(Content::Atom(atom)) => format!("`{atom}`"),
-            _ => String::new(),
+    /// The other path at which this was described before; notes this one where there is none.
+    fn described(&mut self, about: &'static [&'static str], path: &str) -> Option<String> {
+        let before = self.described.iter().find(|(described, _)| *described == about);
+        if let Some((_, before)) = before {
+            return (before != path).then(|| before.clone());
+        }
+        self.described.push((about, path.to_owned()));
+        None
+    }
+
+    /// A line for each field of a group with the words that it may have, and what is inside of them.
+    fn fields(&mut self, spot: Spot, group: &'static Group, path: &str) -> std::fmt::Result {
+        let mut shown: Vec<&'static Field> = group.fields.iter().collect();
+        shown.retain(|field| !field.is_internal);
+        self.text.push('\n');
+        for field in &shown {
+            writeln!(self.text, "{}", line(spot, group, field))?;
+            self.words(spot.at(group, field), &join(path, field.name))?;
+        }
+        for field in shown {
+            self.section(spot.at(group, field), &join(path, field.name))?;
+        }
+        Ok(())
+    }
+
+    /// The words that a field may have, under its line.
+    fn words(&mut self, spot: Spot, path: &str) -> std::fmt::Result {
+        let words = match spot.shape.there() {
+            Shape::Words(words) => words,
+            Shape::List(item) => return self.words(spot.with(*item), &format!("{path}[0]")),
+            _ => return Ok(()),
         };
-        let range =
-            at.range.map_or_else(String::new, |(range, unit)| range.in_words(unit, &Scene::default()));
-        writeln!(text, "| `{}` | {default} | {range} | {} |", field.name, sentence(field.about))?;
+        if let Some(before) = self.described(words.about, path) {
+            return writeln!(self.text, "  - as `{before}`");
+        }
+        // What the field's own sentence does not say.
+        if let Some((_, more)) = sentence(words.about).split_once(". ") {
+            writeln!(self.text, "  {more}")?;
+        }
+        for word in words.words {
+            let brackets = if word.inside.is_some() { "(…)" } else { "" };
+            writeln!(self.text, "  - `{}{brackets}`: {}", word.word, sentence(word.about))?;
+        }
+        Ok(())
     }
-    Ok(())
 }
 
-/// A comment on one line without links to code, ready for a cell of a table.
+/// `` - `length_mm` = `10.0`, up to 20000 mm: Circumferential length. ``
+fn line(spot: Spot, group: &'static Group, field: &'static Field) -> String {
+    let at = spot.at(group, field);
+    let mut line = format!("- `{}`", field.name);
+    if let Some(Content::Atom(atom)) = at.default().map(|node| node.content) {
+        line += &format!(" = `{atom}`");
+    }
+    let mut about = sentence(field.about);
+    if let Some((range, unit)) = at.range {
+        let words = range.in_words(unit, &Scene::default()).replace("more than 0, at most ", "up to ");
+        line += &format!(", {words}");
+        // The range has its unit, which the sentence says in brackets.
+        let unit = if unit.is_empty() { "-" } else { unit };
+        about = about.replace(&format!(" [{unit}]"), "");
+    }
+    format!("{line}: {about}")
+}
+
+/// A comment on one line without links to code.
 pub(super) fn sentence(about: &[&str]) -> String {
     let lines: Vec<&str> = about.iter().map(|line| line.trim()).collect();
     let text = lines.join(" ");
@@ -102,13 +148,14 @@ mod tests {
         );
         let text = page();
         for line in [
-            "| `length_mm` | `10.0` | more than 0, at most 20000 mm | Circumferential length [mm], measured \
-             on the raceway. |",
-            "| `stiffness_n_um` | `1000.0` | more than 0, at most 1000000 N/µm |",
+            "- `length_mm` = `10.0`, up to 20000 mm: Circumferential length, measured on the raceway.\n",
+            "- `stiffness_n_um` = `1000.0`, up to 1000000 N/µm: ",
+            "- `poissons_ratio` = `0.3`, 0 or more, less than 0.5: Poisson's ratio.\n",
+            "## `inner_ring_mesh`\n\nAs `outer_ring_mesh`.\n",
             "- `collocated`:",
-            "### `housing: springs(…)`",
-            "### `defects[0].form: spall(…)`",
-            "| `amplitude` | `50.0` | 0 to 1e9 N | Amplitude. |",
+            "## `housing: springs(…)`",
+            "## `defects[0].form: spall(…)`",
+            "- `amplitude` = `50.0`, 0 to 100000 rpm: Amplitude.\n",
         ] {
             assert!(text.contains(line), "{line}\n{text}");
         }

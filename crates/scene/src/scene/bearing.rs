@@ -7,7 +7,7 @@ use crate::fields::{group, words};
 group! {
     /// Rings and rolling elements (paper, Table 1).
     pub struct BearingScene {
-        /// Designation; a scene that says `bearing: "NU 205"` has all numbers from the catalogue
+        /// Designation; `bearing: "NU 205"` has all numbers from the catalogue
         /// ([`catalogue`](crate::catalogue)), and one that gives them may name the bearing here.
         pub designation: String = String::new(), before("\"\"");
         /// Diameter of the outer raceway [mm].
@@ -20,7 +20,7 @@ group! {
         pub inner_ring_thickness_mm: f64 = 10.0, positive(5_000.0);
         /// Change of the diametral clearance by fits, temperature or adjustment [µm], added to that of the
         /// diameters; negative reduces it, and beyond it preloads the rollers. It is applied to the inner
-        /// raceway; absent for 0.
+        /// raceway.
         pub clearance_change_um: f64 = 0.0, within(-1_000.0, 1_000.0), omitted();
         /// Rolling elements, where no name of the catalogue says what they are. In a file `balls` for `rollers` and
         /// `ball_diameter_mm` for `roller_diameter_mm` say that they are balls, too.
@@ -29,9 +29,9 @@ group! {
         pub rollers: usize = 24, within(3.0, 400.0);
         /// Diameter of a rolling element [mm].
         pub roller_diameter_mm: f64 = 18.0, positive(5_000.0);
-        /// Variation of the diameters of rolling elements within their set [µm]: each is drawn from as far
-        /// above and below its nominal value as half of it. Balls of grade 10 vary by 0.5 (V_DwL of
-        /// ISO 3290-1), rollers of grade G2 by 2 (a gauge of ISO 3096).
+        /// Variation of the diameters of rolling elements within their set [µm]: each is drawn from within
+        /// half of it of its nominal value. Balls of grade 10 vary by 0.5 (V_DwL of ISO 3290-1), rollers of
+        /// grade G2 by 2 (ISO 3096).
         pub diameter_variation_um: f64 = 0.0, within(0.0, 100.0), omitted();
         /// Seed of these draws.
         pub diameter_seed: u64 = 1, within(0.0, 1e9), omitted();
@@ -43,7 +43,7 @@ group! {
         /// counter-clockwise.
         pub first_roller_deg: f64 = 94.0, within(-360.0, 360.0);
         /// Pitch diameter [mm], instead of a raceway: a bearing that is not of the catalogue may give this
-        /// and the next three, from which reading a scene completes the fields above; absent afterwards.
+        /// and the next three, from which the fields above follow.
         pub pitch_mm: Option<f64> = None, positive(20_000.0), omitted();
         /// Bore [mm], instead of the inner ring's thickness.
         pub bore_mm: Option<f64> = None, positive(20_000.0), omitted();
@@ -71,9 +71,9 @@ words! {
     pub enum RollerProfile: Copy, Eq {
         /// Cylinders, whose force sets in with a corner where they enter the load.
         Straight = "straight",
-        /// Relieved towards the ends by 0.00035 D ln 1/(1 − (2x/l)²), the reference profile of ISO/TS 16281: a
-        /// light load presses the middle alone, and the force sets in gently. That of real rollers, and what
-        /// `stribeck new` writes.
+        /// Relieved towards the ends by 0.00035 D ln 1/(1 − (2x/l)²), the reference profile of ISO/TS
+        /// 16281: a light load presses the middle alone, and the force sets in gently. What `stribeck new`
+        /// writes.
         Logarithmic = "logarithmic",
     }
 }
@@ -148,8 +148,8 @@ group! {
         pub angle_deg: f64 = 90.0, within(-360.0, 360.0);
         /// Angle between its edges and the raceway [°]; 90 for radial walls, 22 or more under oil.
         pub edge_slope_deg: f64 = 90.0, within(5.0, 90.0), before("90.0");
-        /// Width across the raceway [mm]; `None` for the whole contact. A narrower one takes a part of the contact,
-        /// and stands in the plane as a shallower one (`narrow.rs`).
+        /// Width across the raceway [mm]; `None` for the whole contact. A narrower one stands in the plane
+        /// as a shallower one.
         pub width_mm: Option<f64> = None, positive(20_000.0), omitted();
     }
 }

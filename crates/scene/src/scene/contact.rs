@@ -16,7 +16,7 @@ group! {
         pub points_per_facet: usize = 16, within(1.0, 16.0);
         /// Whose points are evaluated where rollers touch.
         pub passes: ContactPasses = ContactPasses::Two;
-        /// Formula of stiffness and critical damping.
+        /// Formula of stiffness and critical damping, for squares of the size of the mesh.
         pub formula: ContactFormula = ContactFormula::ElementLayer, before("element_layer");
         /// Penalty stiffness as a multiple of that of the formula [-].
         pub penalty_scale: f64 = 0.05, positive(1_000.0);
@@ -36,8 +36,8 @@ words! {
     /// Formula of the stiffness and the critical damping of contact, for squares of the mesh's size.
     pub enum ContactFormula: Copy, Eq {
         /// As soft as the raceways of a steel bearing: penalty and mesh together give way under the largest
-        /// static force as Hertz's contacts do with the layers of the rings (THEORY §6.2), times
-        /// 1/`penalty_scale`, which is 1 here. That of every bearing but the paper's. Damping as below.
+        /// static force as Hertz's contacts do (THEORY §6.2), times 1/`penalty_scale`, which is 1 here.
+        /// That of every bearing but the paper's.
         Hertz = "hertz",
         /// `penalty_scale` × E / element size; critical damping of two equal surface layers on that spring.
         ElementLayer = "element_layer",
@@ -76,7 +76,7 @@ words! {
 }
 
 words! {
-    /// Whose points are evaluated where rollers touch; the seat takes both sides in any case.
+    /// Whose points are evaluated where rollers touch. The seat takes both sides in any case.
     pub enum ContactPasses: Copy, Eq {
         /// Those of both bodies, each with half of the stiffness.
         Two = "two",

@@ -12,32 +12,31 @@ group! {
     pub struct OperationScene {
         /// Load on the top edge of the adapter, downwards, or on another housing [N].
         pub load_n: f64 = 50_000.0, positive(MOST_LOAD_N);
-        /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; absent for
-        /// 270, downwards, with the load zone at the top. Pedestals and mesh housings also accept 90; rigid
-        /// and spring housings any angle.
+        /// Direction in which the load pushes the housing [°], counter-clockwise from the x axis; 270 is
+        /// downwards, with the load zone at the top. Pedestals and mesh housings also accept 90; rigid and
+        /// spring housings any angle.
         pub load_angle_deg: f64 = housing::DOWN_DEG, within(-360.0, 360.0), omitted();
         /// Speed of the inner ring [rpm]; positive clockwise, negative counter-clockwise.
         pub speed_rpm: f64 = 500.0, within(-MOST_SPEED_RPM, MOST_SPEED_RPM);
-        /// Speed of the outer ring with its housing, which must be rigid then [rpm], counted likewise; absent
-        /// for 0.
+        /// Speed of the outer ring with its housing, which must be rigid then [rpm], counted likewise.
         pub outer_speed_rpm: f64 = 0.0, within(-MOST_SPEED_RPM, MOST_SPEED_RPM), omitted();
         /// Gravity, downwards [m/s²].
         pub gravity_m_s2: f64 = 9.81, within(0.0, 1_000.0);
-        /// Course of the speed over time [rpm]; absent for a constant `speed_rpm`.
+        /// Course of the speed over time [rpm]; `None` for a constant `speed_rpm`.
         pub speed_profile: Option<ProfileScene> = None, within(-MOST_SPEED_RPM, MOST_SPEED_RPM), omitted();
-        /// Course of the outer ring's speed over time [rpm]; absent for a constant `outer_speed_rpm`.
+        /// Course of the outer ring's speed over time [rpm]; `None` likewise.
         pub outer_speed_profile: Option<ProfileScene> = None,
             within(-MOST_SPEED_RPM, MOST_SPEED_RPM), omitted();
-        /// Course of the load over time [N]; absent for a constant `load_n`.
+        /// Course of the load over time [N]; `None` likewise.
         pub load_profile: Option<ProfileScene> = None, positive(MOST_LOAD_N), omitted();
-        /// A force that turns with the inner ring, on top of the load; absent for none.
+        /// A force that turns with the inner ring, on top of the load.
         pub rotating_load: Option<RotatingLoadScene> = None, omitted();
     }
 }
 
 words! {
-    /// Course of a speed or load over time ([`duty`](crate::duty)). Values have the unit of the field that
-    /// they vary.
+    /// Course of a speed or load over time ([`duty`](crate::duty)). Values have the unit and the range of
+    /// the field that they vary.
     pub enum ProfileScene {
         /// From the field's value along a straight line to another one, which stays.
         Ramp(of: RampScene) = "ramp",
@@ -47,8 +46,7 @@ words! {
         /// before and behind them. The field itself has no part in it.
         Points(of: Vec<(f64, f64)>) = "points",
         /// The same from a CSV file, whose first line names its columns, `time_ms` and `value`. Its path
-        /// counts from the folder of the scene. When a scene is read its points take the place of the file,
-        /// so a run holds all of its scene.
+        /// counts from the folder of the scene.
         Table(of: String) = "table",
     }
 }

@@ -64,8 +64,7 @@ group! {
         pub hourglass_warning_percent: f64 = 10.0, positive(1e6);
         /// Penetration over the element size above which the run carries a warning [%].
         pub penetration_warning_percent: f64 = 10.0, positive(200.0);
-        /// … and above which it stops [%]; at 200 % contact takes a point as lying on the far side of the
-        /// body, and its force vanishes.
+        /// … and above which it stops [%]; at 200 % its force vanishes.
         pub penetration_stop_percent: f64 = 100.0, positive(200.0);
         /// Area of an element over its area at rest below which the run stops [%].
         pub area_stop_percent: f64 = 20.0, within(0.0, 99.0);

@@ -31,8 +31,8 @@ group! {
 }
 
 group! {
-    /// Structural damping: the loss of a body's material and joints, which hardly depends on frequency. Each
-    /// branch costs memory traffic, all of them about 5 % of the time step for 2 %.
+    /// Structural damping: the loss of a body's material and joints, which hardly depends on frequency. It
+    /// costs about 5 % of the time step for 2 %.
     pub struct StructuralDampingScene {
         /// Damping ratio in the band, a share of critical [%].
         pub ratio_percent: f64 = 2.0, positive(10.0);
@@ -40,8 +40,8 @@ group! {
         pub from_khz: f64 = 2.0, positive(1e4);
         /// Upper end of the band [kHz]; above it the ratio falls as one over the frequency.
         pub to_khz: f64 = 40.0, positive(1e5);
-        /// Maxwell branches beside every element, 1 to 3: over a factor of 20 in frequency the ratio is
-        /// within −49 and +25 % with one, −8 and +4 % with two, 1 % with three.
+        /// Maxwell branches beside every element: over a factor of 20 in frequency the ratio is within −49
+        /// and +25 % with one, −8 and +4 % with two, 1 % with three.
         pub branches: usize = 1, within(1.0, 3.0);
         /// Which bodies.
         pub bodies: Vec<DampedBody> = vec![DampedBody::OuterRing, DampedBody::InnerRing, DampedBody::Adapter];
