@@ -107,7 +107,7 @@ fn behaves_the_first_hour_of_somebody_new() {
     let csv = rows(&|n, x| format!("{:.8},{x:.6}\n", n as f64 / 12_800.0));
     fs::write(desk.0.join("record.csv"), format!("time_s,acc_g\n{csv}")).expect("room");
     let channel = Channel::held("acc", samples.clone()).at_rate(Some(12_800.0));
-    mat5::write(&desk.0.join("record.mat"), &[channel.clone()], &[]).expect("room");
+    mat5::write(&desk.0.join("record.mat"), std::slice::from_ref(&channel), &[]).expect("room");
     wav::write(&desk.0.join("record.wav"), &[channel], &[]).expect("room");
     let head = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", samples.len());
     let head = format!("\u{93}NUMPY\u{1}\u{0}v\u{0}{head:<117}\n");
