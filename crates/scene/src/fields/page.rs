@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use super::tree::{Content, join};
-use super::{Field, Group, Shape, Spot, Words};
+use super::{Field, Group, Shape, Spot};
 use crate::scene::Scene;
 
 /// Every field of a scene with its default, range and description.
