@@ -53,7 +53,7 @@ mod tests {
     fn behaves_the_guide_has_one_place_for_the_lab() {
         let guide = include_str!("../../docs/guide/src/lab.md");
         assert!(with_lab(guide).is_ok_and(|page| page.contains("<iframe src=\"lab/lab.html\"")));
-        assert!(with_lab("no place").is_err());
+        assert!(with_lab("no place").is_err_and(|why| why.to_string().contains("has no")));
     }
 
     #[test]

@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn refuses_periods_that_it_cannot_tell() {
-        assert!(Cycle::new(0.0, 10).is_err());
+        stribeck_testing::assert_refused(Cycle::new(0.0, 10), "greater than 0");
         let mut power = vec![1.0; 300];
         Cycle::new(100.0, 300).unwrap().divide(&mut power, 1.0);
         assert!(power.iter().all(|p| *p == 0.0));

@@ -390,14 +390,18 @@ mod tests {
         assert!(energy(&heard[..9_999]) < 1e-3 * all);
         // 2 ms are 40 samples.
         assert!(energy(&heard[10_040..]) > 0.1 * all && energy(&heard[10_320..]) < 0.01 * all);
-        assert!(plain.ringing(0.0).is_err());
+        stribeck_testing::assert_refused(plain.ringing(0.0), "decay_s");
     }
 
     #[test]
     fn refuses_gains_that_are_none() {
-        assert!(Response::of_gains(&[], &[], 1e4).is_err());
-        assert!(Response::of_gains(&[1.0, 2.0], &[1.0], 1e4).is_err());
-        assert!(Response::of_gains(&[1.0, 2.0], &[1.0, 0.0], 1e4).is_err());
-        assert!(Response::of_gains(&[2.0, 1.0], &[1.0, 1.0], 1e4).is_err());
+        for (hz, gains, words) in [
+            (&[][..], &[][..], "a response by gains needs at least 1"),
+            (&[1.0, 2.0], &[1.0], "gains: 1 values"),
+            (&[1.0, 2.0], &[1.0, 0.0], "gain = 0"),
+            (&[2.0, 1.0], &[1.0, 1.0], "frequencies must ascend"),
+        ] {
+            stribeck_testing::assert_refused(Response::of_gains(hz, gains, 1e4), words);
+        }
     }
 }

@@ -103,6 +103,7 @@ mod tests {
         assert!(check(at::LOAD, 5e4).is_ok());
         let said = |number, value| check(number, value).map_err(|error| error.to_string());
         assert_eq!(said(at::LOAD, f64::NAN), Err("Load = NaN N: must be between 1 and 1000000".to_owned()));
-        assert!(said(at::ARCS, 2.0).is_err() && said(HANDLES.len(), 0.0).is_err());
+        stribeck_testing::assert_refused(check(at::ARCS, 2.0), "must be between 0 and 1");
+        stribeck_testing::assert_refused(check(HANDLES.len(), 0.0), "is unknown");
     }
 }

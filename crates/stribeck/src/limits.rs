@@ -66,7 +66,7 @@ mod tests {
             assert_eq!(bytes(text), Ok(size), "{text}");
         }
         for text in ["", "GB", "-1GB", "0", "12 apples", "nan", "1e3"] {
-            assert!(bytes(text).is_err(), "{text}");
+            stribeck_testing::assert_refused(bytes(text), &format!("`{text}`"));
         }
     }
 }

@@ -29,6 +29,18 @@ pub fn assert_close(ours: f64, theirs: f64, tolerance: f64, what: &str) {
     );
 }
 
+/// Fails unless `result` is an error whose message has `words`.
+#[track_caller]
+pub fn assert_refused<T, E: std::fmt::Display>(result: Result<T, E>, words: &str) {
+    match result {
+        Ok(_) => panic!("accepted, where `{words}` was expected"),
+        Err(why) => {
+            let why = why.to_string();
+            assert!(why.contains(words), "`{words}` is not in: {why}");
+        }
+    }
+}
+
 /// Observed orders of convergence from errors on meshes or with steps that halve each time.
 pub fn orders(errors: &[f64]) -> Vec<f64> {
     errors.windows(2).map(|w| (w[0] / w[1]).log2()).collect()

@@ -285,6 +285,6 @@ mod tests {
     fn refuses_sound_records_alone() {
         let why = fit(&[known(&planted(), 0.0, 1)]).expect_err("no damage").to_string();
         assert!(why.contains("spall of known length"), "{why}");
-        assert!(fit(&[]).is_err());
+        stribeck_testing::assert_refused(fit(&[]), "no record of a machine");
     }
 }

@@ -47,5 +47,5 @@ fn refuses_few_turns_and_turns_back_and_says_why() {
     let why = over_angle(&signal, 1e5, &there_and_back, BPFO, None).unwrap().unwrap_err();
     assert!(why.contains("turns back"), "{why}");
     let still = vec![0.0; signal.len()];
-    assert!(over_angle(&signal, 1e5, &still, BPFO, None).unwrap().is_err());
+    stribeck_testing::assert_refused(over_angle(&signal, 1e5, &still, BPFO, None).unwrap(), "stand still");
 }

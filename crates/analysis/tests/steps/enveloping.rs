@@ -33,6 +33,6 @@ fn planted_knocks_show_their_rate_and_its_multiples() {
 fn refuses_a_short_record_and_says_why() {
     let why = analyse(&knocks(0.03), 1e5, &family()).unwrap().unwrap_err();
     assert!(why.contains("2.7 periods"), "{why}");
-    assert!(analyse(&[], 1e5, &family()).unwrap().is_err());
-    assert!(analyse(&knocks(0.4), 1e5, &[]).unwrap().is_err());
+    stribeck_testing::assert_refused(analyse(&[], 1e5, &family()).unwrap(), "the record is empty");
+    stribeck_testing::assert_refused(analyse(&knocks(0.4), 1e5, &[]).unwrap(), "nothing passes a defect");
 }

@@ -25,5 +25,5 @@ fn refuses_an_attenuation_of_a_short_record() {
     let filter = Filter::new(1e5, PAPER_CENTRE_HZ).unwrap();
     let found = filter.finding(&[1.0; 50], &[1.0; 50], true);
     assert_eq!((found.attenuation_db, found.attenuation_settled_db), (None, None));
-    assert!(Filter::new(8e3, PAPER_CENTRE_HZ).is_err());
+    stribeck_testing::assert_refused(Filter::new(8e3, PAPER_CENTRE_HZ), "below half the sample rate");
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::Command;
 
 use proptest::prelude::*;
-use stribeck_testing::{Scratch, said};
+use stribeck_testing::{Scratch, assert_refused, said};
 
 use super::{Trace, TraceFile, TraceWriter, header};
 use crate::error::Error;
@@ -209,10 +209,16 @@ fn refuses_foreign_files_with_a_reason() {
 fn refuses_wrong_rows_and_names() {
     let file = File::new();
     let mut writer = TraceWriter::create(file.path(), &["time_s", "x"]).expect("writable");
-    assert!(writer.push(&[1.0]).is_err());
+    assert_refused(writer.push(&[1.0]), "a row of 1 values was pushed into 2 channels");
     assert_eq!(writer.rows(), 0);
-    for names in [&[][..], &["a", "a"], &[""], &["a'b"], &["µ"]] {
-        assert!(TraceWriter::create(file.path(), names).is_err(), "{names:?}");
+    for (names, words) in [
+        (&[][..], "one channel at least"),
+        (&["a", "a"], "two channels are called `a`"),
+        (&[""], "printable ASCII"),
+        (&["a'b"], "printable ASCII"),
+        (&["µ"], "printable ASCII"),
+    ] {
+        assert_refused(TraceWriter::create(file.path(), names), words);
     }
 }
 
