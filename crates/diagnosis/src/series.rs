@@ -95,7 +95,9 @@ impl Series {
             |record: &&&MeasuredFindings| record.quality.iter().any(|found| found.kind.spoils_verdicts());
         match records.iter().flatten().filter(spoilt).count() {
             0 => {}
-            some => verdict += &format!(" {some} of {analysed} records are not sound: the page of each says how."),
+            some => {
+                verdict += &format!(" {some} of {analysed} records are not sound: the page of each says how.")
+            }
         }
         Self { records: records.len(), analysed, sound, families, growth, verdict }
     }

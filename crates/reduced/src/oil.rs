@@ -7,7 +7,7 @@
 mod bodies;
 mod eight;
 mod nearest;
-pub(crate) mod resistance;
+mod resistance;
 
 use crate::modal::parameters as modal;
 use serde::{Deserialize, Serialize};

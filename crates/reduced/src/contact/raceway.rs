@@ -3,9 +3,7 @@
 use crate::modal::compliance::{Compliance, Curve};
 use stribeck_simd::lanes::Number;
 
-use crate::oil::resistance::Traction;
-
-use super::{outline::Outline, penetration::Sides, round::Relief};
+use super::{outline::Outline, penetration::Sides, round::Relief, traction::Traction};
 
 /// One raceway.
 #[derive(Debug, Clone)]
