@@ -20,6 +20,7 @@ use crate::{
     law::ContactLaw,
     modes::Structure,
     oil::Lubrication,
+    resistance::Resistance,
     rollers::Rollers,
     seat::Springs,
     sensors::Sensors,
@@ -46,6 +47,8 @@ pub struct Bearing {
     pub(crate) seat: Option<Springs>,
     /// Oil between rollers and raceways.
     pub(crate) oil: Option<Lubrication>,
+    /// What the oil takes from the motion.
+    pub(crate) resistance: Option<Resistance>,
     pub(crate) sensors: Sensors,
     /// Speeds and load.
     pub(crate) operation: Operation,
@@ -72,13 +75,17 @@ impl Bearing {
             arm: radii.roller - 2.0 / 3.0 * sag(&parameters, radii.roller, facets),
             time_step,
         };
-        if let Some((oil, resistance)) = parameters.oil.zip(parameters.oil.and_then(|oil| oil.resistance)) {
+        let resisting = parameters.oil.zip(parameters.oil.and_then(|oil| oil.resistance));
+        if let Some((oil, resistance)) = resisting {
             for (raceway, film) in raceways.iter_mut().zip([oil.outer, oil.inner]) {
                 let (viscosity, relative) = (oil.viscosity, raceway.relative);
                 raceway.traction =
                     Some(Traction::new(&resistance, viscosity, film.least, relative, *thickness));
             }
         }
+        let resistance = resisting.map(|(oil, resistance)| {
+            Resistance::new(&resistance, oil.viscosity, &raceways, radii.roller, *thickness)
+        });
         let oil = parameters.oil.as_ref();
         let oil = oil.map(|oil| {
             let others: Vec<&Outline> = rollers.rims[1..].iter().map(|rim| &rim.outline).collect();
@@ -102,6 +109,7 @@ impl Bearing {
             cage,
             seat,
             oil: oil.transpose()?,
+            resistance,
             sensors: Sensors::new(&reduction),
             operation: Operation::new(&parameters, reduction.load.force),
             housing: None,

@@ -6,7 +6,6 @@ pub mod eight_facets;
 pub mod penetration;
 pub(crate) mod segments;
 
-pub(crate) mod traction;
-
 pub(crate) mod raceway;
 pub(crate) mod round;
+pub(crate) mod traction;

@@ -22,7 +22,7 @@
 //! | What is one step? | `step.rs`, a page of stages in files of `step/` |
 //! | How do rings and housing move? | `modes.rs` |
 //! | How do rollers press on raceways? | `contact/`, the geometry; `law/`, the forces |
-//! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` with `film_forces.rs` |
+//! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` with `film_forces.rs` and `resistance.rs` |
 //! | How are eight rollers taken at once? | `rollers/`, in rows of `row.rs` |
 
 pub mod modal;
@@ -44,6 +44,7 @@ mod law;
 mod modes;
 pub mod oil;
 mod plane;
+mod resistance;
 pub mod roller_force;
 mod rollers;
 mod row;

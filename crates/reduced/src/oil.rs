@@ -7,25 +7,20 @@
 mod bodies;
 mod eight;
 mod nearest;
-mod resistance;
 
 use crate::modal::parameters as modal;
 use serde::{Deserialize, Serialize};
-use stribeck_simd::lanes::LANES;
 use stribeck_surface::Error as SurfaceError;
 use stribeck_surface::film::{FilmLaw, Land, Layer, Oil, Place, Pushed, WIDEST};
 
 use crate::{
     contact::{outline::Outline, raceway::Raceway},
     error::Error,
-    rollers::block::Block,
-    row::Row,
 };
 use bodies::BodySpring;
 pub(crate) use eight::{BlockFilms, SeenRollers};
 pub(crate) use nearest::RollerView;
 use nearest::{Curved, Nearest, Rim};
-use resistance::Resistance;
 
 /// Steps between two looks for a film where there is none.
 const REST: u64 = 128;
@@ -40,8 +35,6 @@ pub(crate) struct Lubrication {
     pub(crate) raceways: [OiledRaceway; 2],
     /// Rims of rollers, in the order of the bearing's.
     rims: Vec<Rim>,
-    /// What it takes from the motion, if anything.
-    pub(crate) resistance: Option<Resistance>,
 }
 
 /// The lands of a raceway, with the law of a film on each.
@@ -148,9 +141,6 @@ impl Lubrication {
                 race("outer raceway", outer, true, oil.outer)?,
                 race("inner raceway", inner, false, oil.inner)?,
             ],
-            resistance: oil.resistance.as_ref().map(|resistance| {
-                Resistance::new(resistance, oil.viscosity, raceways, round.x[0], thickness)
-            }),
             rims: std::iter::once(Rim::Round(round.x[0])).chain(others).collect(),
         })
     }
@@ -171,26 +161,6 @@ impl Lubrication {
             [Rim::Round(radius), ..] => radius,
             _ => 0.0,
         }
-    }
-
-    /// Thicknesses of the thinnest films of eight rollers at both raceways [m], endless where there is none.
-    pub(crate) fn thicknesses(&self, films: &Films, block: &Block) -> [Row; 2] {
-        std::array::from_fn(|k| {
-            let (race, mut rows) = (&self.raceways[k], Row([f64::INFINITY; LANES]));
-            for lane in 0..block.count {
-                let round = (block.films.round() >> lane) & 1 == 1;
-                for (land, law) in race.films.iter().enumerate() {
-                    let film = if round {
-                        block.films.on[k][land].film(lane)
-                    } else {
-                        films.at[k][race.lands() * (block.first + lane) + land]
-                    };
-                    let thick = film.layer.map_or(f64::INFINITY, |layer| law.thickness(&layer));
-                    rows[lane] = rows[lane].min(thick);
-                }
-            }
-            rows
-        })
     }
 
     /// Whether films may be those of rollers with these rims.
@@ -305,9 +275,13 @@ impl OiledRaceway {
     /// Thickness of the thinnest film of a roller [m]; the widest that holds one where there is none.
     pub(crate) fn thickness(&self, films: &[Film], roller: usize) -> f64 {
         let lands = self.films.len();
-        let own = &films[lands * roller..lands * (roller + 1)];
-        let of = |(law, film): (&FilmLaw<BodySpring>, &Film)| film.layer.map(|layer| law.thickness(&layer));
-        self.films.iter().zip(own).filter_map(of).fold(WIDEST, f64::min)
+        self.thinnest(films[lands * roller..lands * (roller + 1)].iter().copied()).min(WIDEST)
+    }
+
+    /// Thickness of the thinnest of the films of a roller on all lands [m], endless where there is none.
+    pub(crate) fn thinnest(&self, films: impl Iterator<Item = Film>) -> f64 {
+        let of = |(law, film): (&FilmLaw<BodySpring>, Film)| film.layer.map(|layer| law.thickness(&layer));
+        self.films.iter().zip(films).filter_map(of).fold(f64::INFINITY, f64::min)
     }
 }
 

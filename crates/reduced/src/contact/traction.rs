@@ -1,4 +1,4 @@
-//! Traction of loaded contacts through oil (THEORY §4.6).
+//! Traction of loaded contacts through oil (THEORY §4.6): a film that flows, up to a limit.
 
 use pulp::Simd;
 use stribeck_simd::lanes::{LANES, Number, Vector};

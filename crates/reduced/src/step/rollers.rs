@@ -90,7 +90,7 @@ impl Bearing {
         let by_oil = oil.add_film_forces(simd, &self.rollers, films, block, drive.rings(), step);
         tally.stored.contact += by_oil.stored;
         let mut moments = by_oil.drive;
-        if let Some(resistance) = &oil.resistance {
+        if let Some(resistance) = &self.resistance {
             let thickness = oil.thicknesses(films, block);
             let resisted = resistance.act(simd, block, &thickness, drive.rings());
             films.heat += dt * resisted.power;

@@ -5,12 +5,13 @@
 //! move past the contact, `u₁` that of the roller and `u₂` that of the raceway, counter-clockwise positive.
 
 use pulp::Simd;
-use stribeck_simd::lanes::{Number, Vector, vector_starts};
+use stribeck_simd::lanes::{LANES, Number, Vector, vector_starts};
 
 use crate::{
     contact::raceway::Raceway,
     drive::RingRotation,
     modal::parameters as modal,
+    oil::{Films, Lubrication},
     rollers::block::Block,
     row::{Row, load, store},
 };
@@ -44,6 +45,24 @@ pub(crate) struct Resisted {
     pub(crate) drive: [f64; 2],
     /// Power lost [W].
     pub(crate) power: f64,
+}
+
+impl Lubrication {
+    /// Thicknesses of the thinnest films of eight rollers at both raceways [m], endless where there is none.
+    pub(crate) fn thicknesses(&self, films: &Films, block: &Block) -> [Row; 2] {
+        std::array::from_fn(|k| {
+            let (race, mut rows) = (&self.raceways[k], Row([f64::INFINITY; LANES]));
+            for lane in 0..block.count {
+                let formed = race.lands() * (block.first + lane);
+                let film = |land: usize| match (block.films.round() >> lane) & 1 {
+                    1 => block.films.on[k][land].film(lane),
+                    _ => films.at[k][formed + land],
+                };
+                rows[lane] = race.thinnest((0..race.lands()).map(film));
+            }
+            rows
+        })
+    }
 }
 
 impl Resistance {
@@ -115,7 +134,6 @@ impl Resistance {
 #[cfg(test)]
 mod tests {
     use pulp::Scalar;
-    use stribeck_simd::lanes::LANES;
 
     use super::*;
 
