@@ -3,7 +3,7 @@
 use std::path::{Component, Path, PathBuf};
 use std::time::SystemTime;
 
-use anyhow::{Result, anyhow, bail, ensure};
+use anyhow::{Result, anyhow, bail};
 use stribeck_scene::advice::doubts_of_material;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
@@ -136,8 +136,9 @@ impl Place {
     ///
     /// # Errors
     /// What makes a run of it.
+    #[cfg(feature = "full")]
     pub(crate) fn refuse_scene(&self, path: &Path) -> Result<()> {
-        ensure!(
+        anyhow::ensure!(
             path.extension().is_none_or(|end| end != "ron") || !path.is_file(),
             "`{0}` is a scene, and no run of it: `{1} simulate {0}` makes one, which has its name",
             path.display(),
