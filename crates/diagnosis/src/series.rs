@@ -96,7 +96,9 @@ impl Series {
         match records.iter().flatten().filter(spoilt).count() {
             0 => {}
             some => {
-                verdict += &format!(" {some} of {analysed} records are not sound: the page of each says how.")
+                verdict += &format!(
+                    " In {some} of {analysed} records a sensor has spoilt samples: the page of each says how."
+                )
             }
         }
         Self { records: records.len(), analysed, sound, families, growth, verdict }

@@ -369,7 +369,7 @@ fn behaves_several_records_are_a_series() {
     let text = said(&output);
     assert!(!output.status.success() && text.contains("1 of 3 records could not be analysed"), "{text}");
     assert_eq!((text.matches("No such file").count(), text.matches("none.mat").count()), (1, 2), "{text}");
-    assert!(text.contains("1 of 2 records are not sound"), "{text}");
+    assert!(text.contains("In 1 of 2 records a sensor has spoilt samples"), "{text}");
     let found: serde_json::Value =
         serde_json::from_slice(&std::fs::read(desk.join("T/findings.json")).unwrap()).unwrap();
     let claimed = |at: usize| {
