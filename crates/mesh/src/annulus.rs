@@ -48,7 +48,7 @@ impl Annulus {
             };
             let radius = grid.row_radius(row as f64);
             for column in 0..n {
-                let (sin, cos) = grid.column_angle(column).sin_cos();
+                let (sin, cos) = libm::sincos(grid.column_angle(column));
                 part.push_node(radius * cos, radius * sin);
                 places.push(Place { column, row: row as f64 });
             }

@@ -50,7 +50,7 @@ impl ArcBlock {
             let radius = self.inner_radius + (self.outer_radius - self.inner_radius) * along;
             let (from, to) = self.span(radius);
             for column in 0..=columns {
-                let (sin, cos) = (from + (to - from) * column as f64 / columns as f64).sin_cos();
+                let (sin, cos) = libm::sincos(from + (to - from) * column as f64 / columns as f64);
                 part.push_node(radius * cos, radius * sin);
             }
         }
@@ -61,7 +61,7 @@ impl ArcBlock {
 
     /// First and last angle of the piece at a radius [rad].
     fn span(&self, radius: f64) -> (f64, f64) {
-        let half = (self.half_width / radius).asin();
+        let half = libm::asin(self.half_width / radius);
         (self.right_line_angle + half, self.left_line_angle - half)
     }
 
@@ -113,7 +113,7 @@ impl ArcBlock {
             );
         }
         // The walls come nearest to each other on the inner arc.
-        let limit = self.inner_radius * (0.5 * turn.min(TAU / 2.0)).sin();
+        let limit = self.inner_radius * libm::sin(0.5 * turn.min(TAU / 2.0));
         if self.half_width < 0.0 {
             return fail("half_width", self.half_width, "at least", 0.0, "a distance has no sign");
         }

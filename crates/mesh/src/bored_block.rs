@@ -45,7 +45,7 @@ impl BoredBlock<'_> {
         count(SHAPE, "bore", n, 16, "a bore is a polygon of many nodes")?;
         count(SHAPE, "rows", self.rows, 1, "divide the wall by the element size")?;
         elements(SHAPE, "rows", self.rows, n)?;
-        let radius = self.bore.iter().map(|[x, y]| x.hypot(*y)).fold(0.0, f64::max);
+        let radius = self.bore.iter().map(|[x, y]| libm::hypot(*x, *y)).fold(0.0, f64::max);
         let least = (1.0 + LEAST_WALL) * radius;
         for (field, value) in [("width", 0.5 * self.width), ("base", self.base), ("top", self.top)] {
             // Written so that NaN is refused too.
@@ -90,7 +90,7 @@ impl BoredBlock<'_> {
         };
         let mut outline: Vec<[f64; 2]> = self.bore.iter().map(end).collect();
         for corner in [[half, self.top], [-half, self.top], [-half, -self.base], [half, -self.base]] {
-            let along = |[x, y]: &[f64; 2]| (x * corner[0] + y * corner[1]) / x.hypot(*y);
+            let along = |[x, y]: &[f64; 2]| (x * corner[0] + y * corner[1]) / libm::hypot(*x, *y);
             let nearest =
                 (0..self.bore.len()).max_by(|&a, &b| along(&self.bore[a]).total_cmp(&along(&self.bore[b])));
             if let Some(nearest) = nearest {
@@ -107,7 +107,7 @@ mod tests {
 
     fn circle(n: usize, radius: f64) -> Vec<[f64; 2]> {
         // The first node lies on the x axis, as those of rings do.
-        let at = |i: usize| (std::f64::consts::TAU * i as f64 / n as f64).sin_cos();
+        let at = |i: usize| libm::sincos(std::f64::consts::TAU * i as f64 / n as f64);
         (0..n).map(at).map(|(s, c)| [radius * c, radius * s]).collect()
     }
 
@@ -117,7 +117,7 @@ mod tests {
         let bore = circle(90, 0.1);
         let block = BoredBlock { bore: &bore, width: 0.3, base: 0.14, top: 0.12, rows: 5 };
         let part = block.part().expect("a block");
-        let polygon = 0.5 * 90.0 * 0.01 * (std::f64::consts::TAU / 90.0).sin();
+        let polygon = 0.5 * 90.0 * 0.01 * libm::sin(std::f64::consts::TAU / 90.0);
         assert!((part.area() / (0.3 * 0.26 - polygon) - 1.0).abs() < 1e-12, "{}", part.area());
         let surface = |name: &str| part.surface(name).expect("named");
         assert!(surface("bore").closed && surface("bore").facets() == 90);

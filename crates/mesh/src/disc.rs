@@ -99,7 +99,7 @@ impl Disc {
 
     /// Length of a facet [m].
     fn facet(&self) -> f64 {
-        2.0 * self.radius * (0.5 * TAU / self.facets as f64).sin()
+        2.0 * self.radius * libm::sin(0.5 * TAU / self.facets as f64)
     }
 
     /// Rim, core and the triangles between them; the first `fixed` rows of nodes, at least one, stay where
@@ -138,7 +138,7 @@ impl Disc {
         for row in 0..=layers {
             let radius = self.radius - row as f64 * facet;
             for column in 0..n {
-                let (sin, cos) = (TAU * column as f64 / n as f64).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * column as f64 / n as f64);
                 part.push_node(radius * cos, radius * sin);
             }
         }
@@ -150,7 +150,7 @@ impl Disc {
     /// Writes the rim nodes out at their final angles, so that they stay on the circle to the last digit.
     fn place_rim(&self, part: &mut Part, rotation: f64) {
         for column in 0..self.facets {
-            let (sin, cos) = (rotation + TAU * column as f64 / self.facets as f64).sin_cos();
+            let (sin, cos) = libm::sincos(rotation + TAU * column as f64 / self.facets as f64);
             (part.x[column], part.y[column]) = (self.radius * cos, self.radius * sin);
         }
     }
@@ -211,7 +211,7 @@ fn push_core(part: &mut Part, grid: &CoreGrid, movable: &mut Vec<bool>) -> impl 
     for (y, half_width) in rows.iter().copied() {
         for x in -half_width..=half_width {
             let node = part.push_node(grid.side * x as f64, grid.side * y as f64);
-            let from_centre = (x as f64).hypot(y as f64);
+            let from_centre = libm::hypot(x as f64, y as f64);
             movable.push(from_centre > 0.0 && from_centre > fixed);
             if x == 0 {
                 middle.push(node);

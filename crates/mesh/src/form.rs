@@ -52,7 +52,7 @@ impl FormDeviation<'_> {
         let nodes = &part.surface(surface).expect("the part has a surface of that name").nodes;
         let mut rim: Vec<[f64; 2]> =
             nodes.iter().map(|&n| [part.x[n as usize], part.y[n as usize]]).collect();
-        let radii: Vec<f64> = part.x.iter().zip(&part.y).map(|(x, y)| x.hypot(*y)).collect();
+        let radii: Vec<f64> = part.x.iter().zip(&part.y).map(|(x, y)| libm::hypot(*x, *y)).collect();
         let of_surface = |fold: fn(f64, f64) -> f64, first: f64| {
             nodes.iter().map(|&n| radii[n as usize]).fold(first, fold)
         };
@@ -101,7 +101,9 @@ impl FormDeviation<'_> {
         let layers = (depth / facet).ceil();
         let reach = facet * (BELOW + layers);
         let near_wall = |(x, y): (&f64, &f64)| {
-            walls.iter().any(|wall| (x - near * wall.cos()).hypot(y - near * wall.sin()) < reach)
+            walls
+                .iter()
+                .any(|wall| libm::hypot(x - near * libm::cos(*wall), y - near * libm::sin(*wall)) < reach)
         };
         let mut movable: Vec<bool> = plain.x.iter().zip(&plain.y).map(near_wall).collect();
         plain.surfaces.iter().flat_map(|(_, s)| &s.nodes).for_each(|&n| movable[n as usize] = false);
@@ -111,7 +113,7 @@ impl FormDeviation<'_> {
     /// New position of a node that takes these shares of the surface's displacement along itself and into the
     /// body.
     fn place(&self, at: [f64; 2], [along, share]: [f64; 2], moves: &Moves) -> [f64; 2] {
-        let angle = at[1].atan2(at[0]);
+        let angle = libm::atan2(at[1], at[0]);
         let by = along * moves.at(angle);
         let depth = (self.depth)(angle + by) * share;
         if by == 0.0 && depth == 0.0 {
@@ -121,14 +123,14 @@ impl FormDeviation<'_> {
             Circle::Inner => 1.0,
             Circle::Outer => -1.0,
         };
-        let radius = at[0].hypot(at[1]) + outwards * depth;
-        let (s, c) = (angle + by).sin_cos();
+        let radius = libm::hypot(at[0], at[1]) + outwards * depth;
+        let (s, c) = libm::sincos(angle + by);
         [radius * c, radius * s]
     }
 
     /// Moves the nodes nearest to corners onto them.
     fn moves(&self, vertices: &[[f64; 2]]) -> Moves {
-        let mut angles: Vec<f64> = vertices.iter().map(|v| v[1].atan2(v[0])).collect();
+        let mut angles: Vec<f64> = vertices.iter().map(|v| libm::atan2(v[1], v[0])).collect();
         angles.sort_by(f64::total_cmp);
         let mut knots: Vec<[f64; 2]> = Vec::new();
         let mut taken = vec![false; angles.len()];

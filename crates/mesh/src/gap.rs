@@ -26,7 +26,7 @@ pub(crate) fn fill(outer: &[[f64; 2]], inner: &[[f64; 2]]) -> Option<Gap> {
     let (outer_angle, inner_angle) = (angles(outer), angles(inner));
     // Edges that lean by several cells are never part of a good filling, and most of the table is such.
     let lean = 4.0 * TAU / n.min(m) as f64;
-    let scale = (outer[1][0] - outer[0][0]).hypot(outer[1][1] - outer[0][1]);
+    let scale = libm::hypot(outer[1][0] - outer[0][0], outer[1][1] - outer[0][1]);
     let corners = |[a, b, c]: [usize; 3]| [a, b, c].map(|i| if i < n { outer[i] } else { inner[i - n] });
     let cost = |triangle| (scale / score(&corners(triangle), POISSON)).powi(8);
     let along_outer = |i: usize, j: usize| [n + j % m, i % n, (i + 1) % n];
@@ -75,7 +75,7 @@ pub(crate) fn fill(outer: &[[f64; 2]], inner: &[[f64; 2]]) -> Option<Gap> {
 
 /// Angles of a loop's points about the origin, rising by a whole turn from the first point back to itself.
 fn angles(points: &[[f64; 2]]) -> Vec<f64> {
-    let mut angles: Vec<f64> = points.iter().map(|[x, y]| y.atan2(*x)).collect();
+    let mut angles: Vec<f64> = points.iter().map(|[x, y]| libm::atan2(*y, *x)).collect();
     for i in 1..angles.len() {
         // A staircase seen from the centre may step back a little, but never by half a turn.
         while angles[i] < angles[i - 1] - PI {

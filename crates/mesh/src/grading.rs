@@ -117,7 +117,7 @@ impl Annulus {
         let mut part = Part::default();
         for Place { column, row } in &lattice.places {
             let radius = grid.row_radius(*row);
-            let (sin, cos) = grid.column_angle(*column).sin_cos();
+            let (sin, cos) = libm::sincos(grid.column_angle(*column));
             part.push_node(radius * cos, radius * sin);
         }
         (part.quads, part.triangles) = (lattice.quads, lattice.triangles);

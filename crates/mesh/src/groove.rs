@@ -55,7 +55,7 @@ impl Groove {
     /// Angle that a wall takes on a circle of the radius `radius` [rad].
     fn wall(&self, radius: f64) -> f64 {
         // A radial wall takes none, whatever the rounding of a tangent.
-        if self.slope == 0.25 * TAU { 0.0 } else { self.depth / (self.slope.tan() * radius) }
+        if self.slope == 0.25 * TAU { 0.0 } else { self.depth / (libm::tan(self.slope) * radius) }
     }
 }
 
@@ -109,7 +109,7 @@ pub(crate) fn cut(
     let plain = part.clone();
     let (angle, radius) = spread(&plan, n, layers);
     for (at, place) in places.iter().enumerate() {
-        let (sin, cos) = (grid.column_angle(place.column) + between_rows(&angle, n, *place)).sin_cos();
+        let (sin, cos) = libm::sincos(grid.column_angle(place.column) + between_rows(&angle, n, *place));
         let r = grid.row_radius(place.row) + between_rows(&radius, n, *place);
         (part.x[at], part.y[at]) = (r * cos, r * sin);
     }
@@ -296,7 +296,7 @@ impl Plan {
             let wall = groove.wall(grid.inner_radius);
             let places = [(a, top), (a + wall, bottom), (b - wall, bottom), (b, top)];
             for (column, (angle, radius)) in cut.walls().into_iter().zip(places) {
-                let (sin, cos) = angle.sin_cos();
+                let (sin, cos) = libm::sincos(angle);
                 let at = column % grid.facets;
                 (part.x[at], part.y[at]) = (radius * cos, radius * sin);
             }
@@ -362,7 +362,7 @@ fn check(grid: &PolarGrid, groove: &Groove) -> Result<f64, Error> {
     let wall = groove.wall(grid.inner_radius);
     let widest = (Groove::WIDEST_WALL * TAU / grid.facets as f64).min(0.4 * sector);
     if wall > widest {
-        let least = (groove.depth / (widest * grid.inner_radius)).atan();
+        let least = libm::atan(groove.depth / (widest * grid.inner_radius));
         let (field, value, relation) = ("slope", groove.slope, "at least");
         let advice = "make the walls steeper, the groove shallower or longer";
         return Err(Error::OutOfRange { shape: SHAPE, field, value, relation, limit: least, advice });

@@ -84,6 +84,8 @@
 //! | How do other programs get a mesh, or we theirs? | `vtu.rs`, `decks.rs` |
 //! | What is refused? | `error.rs` |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod mesh;
 mod outline;
 mod part;

@@ -72,7 +72,7 @@ impl Part {
 
     /// The same part turned about the origin by `angle` [rad], counter-clockwise.
     pub fn rotated(&self, angle: f64) -> Part {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         let mut part = self.clone();
         for (x, y) in part.x.iter_mut().zip(&mut part.y) {
             (*x, *y) = (cos * *x - sin * *y, sin * *x + cos * *y);

@@ -102,11 +102,11 @@ impl Tally {
         for i in 0..n {
             let ([x, y], [x1, y1], [x2, y2]) = (corners[i], corners[(i + 1) % n], corners[(i + n - 1) % n]);
             let (ax, ay, bx, by) = (x1 - x, y1 - y, x2 - x, y2 - y);
-            let angle = (ax * by - ay * bx).atan2(ax * bx + ay * by);
+            let angle = libm::atan2(ax * by - ay * bx, ax * bx + ay * by);
             self.smallest_angle = self.smallest_angle.min(angle);
             self.largest_angle = self.largest_angle.max(angle);
-            shortest = shortest.min(ax.hypot(ay));
-            longest = longest.max(ax.hypot(ay));
+            shortest = shortest.min(libm::hypot(ax, ay));
+            longest = longest.max(libm::hypot(ax, ay));
         }
         self.worst_aspect = self.worst_aspect.max(longest / shortest);
         let length = characteristic_length(corners, self.poisson);

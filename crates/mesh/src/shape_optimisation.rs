@@ -260,7 +260,7 @@ mod tests {
     /// Length of the squares that vibrate as fast as the part does near the groove, over `side`.
     fn assembled_length(part: &Part, groove: &Groove, side: f64) -> f64 {
         let half = 0.5 * groove.length + 12.0 * side;
-        let (sin, cos) = groove.centre_angle.sin_cos();
+        let (sin, cos) = libm::sincos(groove.centre_angle);
         let near = |(x, y): (&f64, &f64)| x * cos + y * sin > 0.0 && (y * cos - x * sin).abs() < half;
         let near: Vec<bool> = part.x.iter().zip(&part.y).map(near).collect();
         let submesh = Submesh::new(part, &near, POISSON, side);

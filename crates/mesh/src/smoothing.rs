@@ -230,7 +230,7 @@ fn longest_edge(corners: &[[f64; 2]]) -> f64 {
     let n = corners.len();
     let edge = |i: usize| {
         let ([x1, y1], [x2, y2]) = (corners[i], corners[(i + 1) % n]);
-        (x2 - x1).hypot(y2 - y1)
+        libm::hypot(x2 - x1, y2 - y1)
     };
     (0..n).map(edge).fold(0.0, f64::max)
 }

@@ -356,7 +356,7 @@ mod tests {
         let grid = Rectangle { x0: 0.0, y0: 0.0, width: 4.0, height: 3.0, columns: 4, rows: 3 };
         let mut part = grid.part().expect("a grid");
         for (i, (x, y)) in part.x.iter_mut().zip(&mut part.y).enumerate() {
-            (*x, *y) = (*x + 0.13 * (3.0 * i as f64).sin(), *y + 0.11 * (5.0 * i as f64).cos());
+            (*x, *y) = (*x + 0.13 * libm::sin(3.0 * i as f64), *y + 0.11 * libm::cos(5.0 * i as f64));
         }
         let (submesh, mut at) = submesh_of(&part);
         let highest = |at: &[[f64; 2]]| submesh.modes_above(0.0, at)[0].square;

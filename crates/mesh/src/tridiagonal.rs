@@ -26,12 +26,12 @@ pub(crate) fn eigenpairs(mut diagonal: Vec<f64>, mut beside: Vec<f64>) -> Vec<(f
                 break;
             }
             let slope = (diagonal[first + 1] - diagonal[first]) / (2.0 * beside[first]);
-            let shift = beside[first] / (slope + slope.hypot(1.0).copysign(slope));
+            let shift = beside[first] / (slope + libm::hypot(slope, 1.0).copysign(slope));
             let mut bulge = diagonal[last] - diagonal[first] + shift;
             let (mut sine, mut cosine, mut carried) = (1.0, 1.0, 0.0);
             for k in (first..last).rev() {
                 let (up, along) = (sine * beside[k], cosine * beside[k]);
-                let length = up.hypot(bulge);
+                let length = libm::hypot(up, bulge);
                 beside[k + 1] = length;
                 if length == 0.0 {
                     // The matrix has decoupled: the remaining part is iterated separately.
@@ -74,8 +74,8 @@ mod tests {
             assert_eq!(pairs.len(), n);
             for (at, (value, vector)) in pairs.iter().enumerate() {
                 let angle = (n - at) as f64 * std::f64::consts::PI / (n + 1) as f64;
-                assert!((value - (2.0 - 2.0 * angle.cos())).abs() < 1e-13, "{n}, {at}: {value}");
-                let shape: Vec<f64> = (1..=n).map(|i| (i as f64 * angle).sin()).collect();
+                assert!((value - (2.0 - 2.0 * libm::cos(angle))).abs() < 1e-13, "{n}, {at}: {value}");
+                let shape: Vec<f64> = (1..=n).map(|i| libm::sin(i as f64 * angle)).collect();
                 let scale = (0.5 * (n + 1) as f64).sqrt();
                 let along: f64 = shape.iter().zip(vector).map(|(a, b)| a * b / scale).sum();
                 assert!((along.abs() - 1.0).abs() < 1e-12, "{n}, {at}: {along}");

@@ -405,7 +405,7 @@ impl Motion<'_> {
         let facets = || (0..surface.facets()).map(|n| surface.facet(n));
         let length = |[a, b]: [u32; 2]| {
             let [[ax, ay], [bx, by]] = [a, b].map(|n| self.position[n as usize]);
-            (bx - ax).hypot(by - ay)
+            libm::hypot(bx - ax, by - ay)
         };
         let area = |[a, b]: [u32; 2]| areas.get(&[a, b]).or_else(|| areas.get(&[b, a])).copied();
         [facets().map(length).collect(), facets().filter_map(area).collect()]
@@ -443,7 +443,7 @@ impl Motion<'_> {
 fn regular(corners: &[[f64; 2]; 4]) -> bool {
     let side: [[f64; 2]; 4] =
         std::array::from_fn(|i| [0, 1].map(|k| corners[(i + 1) % 4][k] - corners[i][k]));
-    let length = side.map(|[x, y]| x.hypot(y));
+    let length = side.map(|[x, y]| libm::hypot(x, y));
     let near = REGULAR * length.into_iter().fold(0.0, f64::max);
     // Opposite sides: they have opposite directions.
     let parallel = |i: usize| {

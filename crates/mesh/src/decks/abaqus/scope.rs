@@ -79,7 +79,7 @@ impl Placement {
     fn of(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = [x + self.shift[0], y + self.shift[1], z + self.shift[2]];
         let Some(([cx, cy], angle)) = self.rotation else { return [x, y, z] };
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         let (dx, dy) = (x - cx, y - cy);
         [cx + cos * dx - sin * dy, cy + sin * dx + cos * dy, z]
     }

@@ -157,7 +157,7 @@ fn step_cards(out: &mut String, mesh: &Mesh, step: &Step) {
         }
     }
     let [gx, gy] = step.gravity;
-    let g = gx.hypot(gy);
+    let g = libm::hypot(gx, gy);
     if g > 0.0 {
         *out += "*DLOAD\n";
         for body in &mesh.bodies {
