@@ -9,9 +9,10 @@ use crate::Error;
 use crate::families::FamilyFinding;
 use crate::kinematics::KinematicsFinding;
 use crate::prediction::Prediction;
-use crate::quantity::{Part, quantities};
 use crate::ring;
 use crate::tones::{self, PredictedLine, Tone};
+use stribeck_diagnosis::quantities;
+use stribeck_diagnosis::quantity::Part;
 
 /// Origin of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

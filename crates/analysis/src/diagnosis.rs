@@ -17,8 +17,8 @@ use stribeck_theory::kinematics::Kinematics;
 use crate::Error;
 use crate::defect;
 use crate::kinematics::{KinematicsFinding, RollerMotion, mean, relative_hz};
-use crate::quantity::quantities;
 use crate::record::Record;
+use stribeck_diagnosis::quantities;
 
 /// Speed of the outer ring of a scene, positive where it turns as the shaft does against it [1/min]; none where
 /// speeds change, and nothing has one frequency.

@@ -25,10 +25,10 @@ use crate::Error;
 use crate::defect::Shocks;
 use crate::enveloping::band_hz;
 use crate::kinematics::{KinematicsFinding, mean};
-use crate::quantity::quantities;
 use crate::record::Record;
 use crate::tones;
 use stribeck_diagnosis::Defect;
+use stribeck_diagnosis::quantities;
 
 /// Steps of the angle that the envelope is averaged over, in a turn: a line at the last harmonic that is
 /// looked for loses less than 2 %.

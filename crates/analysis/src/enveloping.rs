@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::{EnvelopeSpectrum, PeriodCount, PeriodVerdict, Spectrum};
 
 use crate::Error;
-use crate::quantity::quantities;
 use crate::tones::{self, PredictedLine, Tone};
+use stribeck_diagnosis::quantities;
 
 /// Lower end of the band whose envelope is taken [Hz]: above the facet tone, so that its beats are not taken
 /// for knocks.

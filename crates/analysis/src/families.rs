@@ -41,7 +41,7 @@ use self::comb::BasebandComb;
 use self::lines::Spectra;
 use self::trial::{Channels, Trial};
 use crate::Error;
-use crate::quantity::quantities;
+use stribeck_diagnosis::quantities;
 
 /// The least lead of a score that counts: its residual is then 26 % smaller than that of any rival. On
 /// records that were not used to choose it, one false comb in some hundreds leads by it

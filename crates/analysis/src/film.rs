@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 use stribeck_store::run_dir::Run;
 
 use crate::Error;
-use crate::quantity::quantities;
 use crate::record::Record;
+use stribeck_diagnosis::quantities;
 
 /// A film that is no more than this much thicker than its least is that of a loaded contact [-].
 const LOADED: f64 = 0.01;

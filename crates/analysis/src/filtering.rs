@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Notch, Welch, WelchOptions, Window};
 
 use crate::Error;
-use crate::quantity::quantities;
+use stribeck_diagnosis::quantities;
 
 /// Quality factor of the paper's notch.
 pub const QUALITY: f64 = 15.0;

@@ -18,7 +18,7 @@ use std::ops::Range;
 use serde::{Deserialize, Serialize};
 
 use crate::events::span;
-use crate::quantity::Part;
+use stribeck_diagnosis::quantity::Part;
 
 /// Factor of the force of a roller at rest on the floor above which it must have had a speed of approach [-].
 const SUDDENLY_LAID: f64 = 2.0;

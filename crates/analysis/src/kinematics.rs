@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use stribeck_theory::kinematics::Kinematics;
 
-use crate::quantity::quantities;
 use crate::record::{Record, Roller};
+use stribeck_diagnosis::quantities;
 
 /// A roller counts as loaded when its mean force exceeds this fraction of the largest mean.
 const LOADED: f64 = 0.05;

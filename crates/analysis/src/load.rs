@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::running_mean;
 
 use crate::kinematics::mean;
-use crate::quantity::quantities;
 use crate::record::{Record, Roller};
+use stribeck_diagnosis::quantities;
 
 /// Width of an angular bin of the distribution [°].
 const BIN_DEG: f64 = 1.0;

@@ -1,33 +1,15 @@
-//! Every number of `summary.json`, declared in one place.
-//!
-//! The structures of a summary stand in `quantities!`, where one entry is one number: its comment, its name
-//! with the unit at the end, and its type. Behind `=`, in a structure that names its function, is the
-//! expression that measures it. Behind `=>` is its name in words, with which an ensemble's page lists it; a
-//! number with a place, `at`, is a main one, which `compare` sets side by side and a campaign draws over its
-//! fields.
-//!
-//! ```text
-//! quantities! {
-//!     /// Numbers of a record about its mean.
-//!     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-//!     pub struct RecordLevels = of(signal: &Shape) {
-//!         /// Largest distance from the mean [g].
-//!         pub peak_g: f64 = signal.peak => "peak" at 1,
-//!     }
-//! }
-//! ```
+//! Every number of `summary.json`, by its path.
 //!
 //! Reading and writing, the statistics of ensembles, the columns of campaigns, the targets of inferences, the
-//! guide's page (`cargo xtask quantities`) and the schema for other programs follow from that entry.
+//! guide's page (`cargo xtask quantities`) and the schema for other programs follow from the declarations in
+//! `quantities!` ([`stribeck_diagnosis::quantity`]).
 
-pub(crate) mod schema;
+pub mod schema;
 
 use std::slice;
 
 use serde_json::Value;
-use stribeck_diagnosis::Defect;
-use stribeck_scene::scene::DefectRing;
-use stribeck_store::run_info::{MeshInfo, Status};
+use stribeck_diagnosis::quantity::{Entry, Kind, Part};
 
 /// A number of `summary.json`.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,177 +24,6 @@ pub struct Quantity {
     pub place: Option<usize>,
     /// Whether it stands in each item of a list.
     pub is_listed: bool,
-}
-
-/// A field of a structure of the summary.
-#[derive(Debug)]
-pub struct Entry {
-    pub(crate) name: &'static str,
-    pub(crate) about: &'static str,
-    /// How it is written, by serde's words.
-    pub(crate) written: &'static str,
-    pub(crate) kind: Kind,
-    pub(crate) words: Option<&'static str>,
-    pub(crate) place: Option<usize>,
-}
-
-/// Content of a field.
-#[derive(Debug, Clone, Copy)]
-pub enum Kind {
-    /// A number; `null` in a file where it is not finite.
-    Number,
-    /// A whole number.
-    Whole,
-    /// Yes or no.
-    Flag,
-    /// Words.
-    Text,
-    /// A structure.
-    Group(&'static [Entry]),
-    /// Items of one kind.
-    List(&'static Kind),
-    /// One kind, or nothing.
-    Optional(&'static Kind),
-    /// As many of one kind.
-    Several(&'static Kind, usize),
-    /// A pair of numbers, or a name with its number.
-    Pair([&'static Kind; 2]),
-}
-
-impl Kind {
-    /// The kind of each of several, and of what may be missing.
-    fn single(self) -> Self {
-        match self {
-            Self::Optional(kind) | Self::Several(kind, _) | Self::Pair([_, kind]) => kind.single(),
-            kind => kind,
-        }
-    }
-}
-
-/// A type that a summary is made of.
-pub trait Part {
-    /// Its content.
-    const KIND: Kind = Kind::Text;
-}
-
-macro_rules! quantities {
-    (@some) => { None };
-    (@some $known:literal) => { Some($known) };
-    (
-        $(#[doc = $about:literal])+
-        #[derive($($derive:ident),+)]
-        pub struct $group:ident = $of:ident($($arg:ident: $from:ty),+) {
-            $(
-                $(#[doc = $doc:literal])+
-                $(#[serde($($serde:tt)+)])?
-                pub $name:ident: $kind:ty = $value:expr $(=> $words:literal $(at $place:literal)?)?,
-            )+
-        }
-    ) => {
-        quantities! {
-            $(#[doc = $about])+
-            #[derive($($derive),+)]
-            pub struct $group {
-                $(
-                    $(#[doc = $doc])+
-                    $(#[serde($($serde)+)])?
-                    pub $name: $kind $(=> $words $(at $place)?)?,
-                )+
-            }
-        }
-
-        impl $group {
-            /// Measures each number.
-            pub fn $of($($arg: $from),+) -> Self {
-                Self { $($name: $value),+ }
-            }
-        }
-    };
-    (
-        $(#[doc = $about:literal])+
-        #[derive($($derive:ident),+)]
-        pub struct $group:ident {
-            $(
-                $(#[doc = $doc:literal])+
-                $(#[serde($($serde:tt)+)])?
-                pub $name:ident: $kind:ty $(=> $words:literal $(at $place:literal)?)?,
-            )+
-        }
-    ) => {
-        $(#[doc = $about])+
-        #[derive($($derive),+)]
-        pub struct $group {
-            $(
-                $(#[doc = $doc])+
-                $(#[serde($($serde)+)])?
-                pub $name: $kind,
-            )+
-        }
-
-        impl $crate::quantity::Part for $group {
-            const KIND: $crate::quantity::Kind = $crate::quantity::Kind::Group(&[
-                $($crate::quantity::Entry {
-                    name: stringify!($name),
-                    about: concat!($($doc),+),
-                    written: concat!($(stringify!($($serde)+))?),
-                    kind: <$kind as $crate::quantity::Part>::KIND,
-                    words: quantities!(@some $($words)?),
-                    place: quantities!(@some $($($place)?)?),
-                }),+
-            ]);
-        }
-    };
-}
-pub(crate) use quantities;
-
-macro_rules! numbers {
-    ($($kind:ident: $($of:ty),+;)+) => {
-        $($(impl Part for $of {
-            const KIND: Kind = Kind::$kind;
-        })+)+
-    };
-}
-
-numbers! {
-    Number: f64;
-    Whole: u64, u32, i32, usize;
-    Flag: bool;
-}
-
-impl Part for String {}
-impl Part for Status {}
-impl Part for DefectRing {}
-impl Part for Defect {}
-
-impl<T: Part> Part for Option<T> {
-    const KIND: Kind = Kind::Optional(&T::KIND);
-}
-
-impl<T: Part> Part for Vec<T> {
-    const KIND: Kind = Kind::List(&T::KIND);
-}
-
-impl<T: Part, const N: usize> Part for [T; N] {
-    const KIND: Kind = Kind::Several(&T::KIND, N);
-}
-
-impl<A: Part, B: Part> Part for (A, B) {
-    const KIND: Kind = Kind::Pair([&A::KIND, &B::KIND]);
-}
-
-impl Part for MeshInfo {
-    const KIND: Kind = Kind::Group(&[
-        counted("nodes", "Nodes."),
-        counted("quads", "Quadrilaterals."),
-        counted("triangles", "Triangles."),
-        counted("roller_facets", "Facets on one roller."),
-        counted("outer_facets", "Facets on the outer raceway, defect included."),
-        counted("inner_facets", "Facets on the inner raceway."),
-    ]);
-}
-
-const fn counted(name: &'static str, about: &'static str) -> Entry {
-    Entry { name, about, written: "", kind: Kind::Whole, words: None, place: None }
 }
 
 /// The numbers of a structure, in its order.

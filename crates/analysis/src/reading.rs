@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 use serde::{Deserialize, Serialize};
 
-use crate::quantity::quantities;
+use stribeck_diagnosis::quantities;
 
 /// How often each distance between neighbouring peaks occurs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,8 +6,8 @@ use stribeck_scene::dice::Dice;
 use stribeck_scene::scene::{DefectRing, Scene};
 
 use crate::Error;
-use crate::quantity::quantities;
 use stribeck_diagnosis::SHORTEST_S;
+use stribeck_diagnosis::quantities;
 
 /// Longest distance of two events over the time between passages, at which the correlation within one ends.
 const LONGEST: f64 = 0.45;

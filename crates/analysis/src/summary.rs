@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+use stribeck_diagnosis::quantities;
+use stribeck_diagnosis::quantity::{Entry, Kind};
 use stribeck_dsp::{Resolution, statistics};
 use stribeck_scene::scene::DefectRing;
 use stribeck_store::run_info::{EnergyInfo, MeshInfo, RunInfo, Status};
@@ -18,10 +20,26 @@ use crate::floor::FloorContact;
 use crate::kinematics::KinematicsFinding;
 use crate::levels::SignalLevel;
 use crate::load::LoadFinding;
-use crate::quantity::{self, Part as _, Quantity, quantities};
+use crate::quantity::{self, Quantity};
 use crate::reading::CursorReading;
 use crate::records::RecordFinding;
 use crate::tones::Tone;
+
+const WORDS: Kind = Kind::Text;
+
+/// Content of [`MeshInfo`].
+const COUNTS: Kind = Kind::Group(&[
+    counted("nodes", "Nodes."),
+    counted("quads", "Quadrilaterals."),
+    counted("triangles", "Triangles."),
+    counted("roller_facets", "Facets on one roller."),
+    counted("outer_facets", "Facets on the outer raceway, defect included."),
+    counted("inner_facets", "Facets on the inner raceway."),
+]);
+
+const fn counted(name: &'static str, about: &'static str) -> Entry {
+    Entry { name, about, written: "", kind: Kind::Whole, words: None, place: None }
+}
 
 quantities! {
     /// All numbers of a run.
@@ -30,9 +48,9 @@ quantities! {
         /// Name of the scene.
         pub scene: String,
         /// How the run ended.
-        pub status: Status,
+        pub status: Status as WORDS,
         /// Sizes of the mesh.
-        pub mesh: MeshInfo,
+        pub mesh: MeshInfo as COUNTS,
         /// Cost.
         pub run: RunCost,
         /// Energy balance.
@@ -156,10 +174,7 @@ impl Summary {
 
     /// The schema of a `summary.json` that this version writes (JSON Schema, 2020-12).
     pub fn json_schema() -> Value {
-        let mut schema = quantity::schema::of(Self::KIND);
-        schema["$schema"] = "https://json-schema.org/draft/2020-12/schema".into();
-        schema["title"] = concat!("Summary of a run, Stribeck ", env!("CARGO_PKG_VERSION")).into();
-        schema
+        quantity::schema::titled("Summary of a run", quantity::schema::of::<Self>())
     }
 
     /// The main ones, in the order in which they are compared.
@@ -200,7 +215,7 @@ quantities! {
         pub spall: usize,
         /// Whose raceway the spall is on.
         #[serde(default)]
-        pub ring: DefectRing,
+        pub ring: DefectRing as WORDS,
         /// Unloading read from the force [ms].
         pub entry_ms: Option<f64>,
         /// Re-stressing read from the force [ms].

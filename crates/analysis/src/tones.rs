@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use stribeck_dsp::{Peak, Resolution, Spectrum};
 
 use crate::Error;
-use crate::quantity::quantities;
+use stribeck_diagnosis::quantities;
 
 /// A line that follows from the geometry.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -2,75 +2,78 @@
 
 use serde::Serialize;
 
+use crate::quantities;
 use crate::record::quality::Quality;
 use crate::record::zone;
 use crate::{AccelerationUnit, Family, Health, Unexplained};
 
-/// Contents of `findings.json`. A number that the record cannot yield is `null`, with the reason in `notes`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct MeasuredFindings {
-    /// The channel.
-    pub channel: String,
-    /// Its unit, if known.
-    pub unit: Option<String>,
-    /// Sample rate [Hz].
-    pub rate_hz: f64,
-    /// Samples read.
-    pub samples: u64,
-    /// Length of the record [s].
-    pub duration_s: f64,
-    /// Speed of the shaft that was taken [1/min].
-    pub speed_rpm: Option<f64>,
-    /// The user's speed, where the lines of the shaft correct it [1/min].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub speed_given_rpm: Option<f64>,
-    /// Uncertainty of a speed that was found in the record alone [1/min].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub speed_uncertainty_rpm: Option<f64>,
-    /// The bearing, in words.
-    pub bearing: Option<String>,
-    /// Resolution of the envelope spectra: one over the length of a segment [Hz].
-    pub resolution_hz: f64,
-    /// Segments averaged.
-    pub segments: usize,
-    /// Numbers that describe the signal as a whole.
-    pub health: Health,
-    /// Root mean square of the velocity from 10 to 1000 Hz [mm/s], for accelerations in m/s² or g.
-    pub velocity_mm_s: Option<f64>,
-    /// Its zone by ISO 20816-3, where group and foundation of the machine are known.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub zone: Option<zone::Zoned>,
-    /// The defect families; none without speed and bearing.
-    pub families: Vec<Family>,
-    /// A comb that knocks, is no family's of this bearing, and stands higher than all that are.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub unexplained: Option<Unexplained>,
-    /// How far the rolling family that stands farthest above unrelated combs does so [dB]: the scores of sound
-    /// records of a machine calibrate that of a further one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub score_db: Option<f64>,
-    /// Records of the sound machine with as high a score.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sound_as_high: Option<SoundAsHigh>,
-    /// The conclusion in one sentence.
-    pub verdict: String,
-    /// Length of a spall, from two events a passage [mm].
-    pub spall_mm: Option<Interval>,
-    /// Length of a spall longer than half of the distance of two elements, whose exit and the entry of the
-    /// next element are as far apart as these events [mm].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub spall_otherwise_mm: Option<Interval>,
-    /// Time between these events [ms].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub event_spacing_ms: Option<f64>,
-    /// Where a passage has a single event: the spall is shorter than this, if entry and exit both knock [mm].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub spall_below_mm: Option<f64>,
-    /// What sensor, amplifier, converter and recorder did to the samples; none for a sound record. The notes
-    /// have it in words.
-    pub quality: Vec<Quality>,
-    /// Limits of the conclusion.
-    pub notes: Vec<String>,
+quantities! {
+    /// Contents of `findings.json`. A number that the record cannot yield is `null`, with the reason in `notes`.
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct MeasuredFindings {
+        /// The channel.
+        pub channel: String,
+        /// Its unit, if known.
+        pub unit: Option<String>,
+        /// Sample rate [Hz].
+        pub rate_hz: f64,
+        /// Samples read.
+        pub samples: u64,
+        /// Length of the record [s].
+        pub duration_s: f64,
+        /// Speed of the shaft that was taken [1/min].
+        pub speed_rpm: Option<f64>,
+        /// The user's speed, where the lines of the shaft correct it [1/min].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub speed_given_rpm: Option<f64>,
+        /// Uncertainty of a speed that was found in the record alone [1/min].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub speed_uncertainty_rpm: Option<f64>,
+        /// The bearing, in words.
+        pub bearing: Option<String>,
+        /// Resolution of the envelope spectra: one over the length of a segment [Hz].
+        pub resolution_hz: f64,
+        /// Segments averaged.
+        pub segments: usize,
+        /// Numbers that describe the signal as a whole.
+        pub health: Health,
+        /// Root mean square of the velocity from 10 to 1000 Hz [mm/s], for accelerations in m/s² or g.
+        pub velocity_mm_s: Option<f64>,
+        /// Its zone by ISO 20816-3, where group and foundation of the machine are known.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub zone: Option<zone::Zoned>,
+        /// The defect families; none without speed and bearing.
+        pub families: Vec<Family>,
+        /// A comb that knocks, is no family's of this bearing, and stands higher than all that are.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub unexplained: Option<Unexplained>,
+        /// How far the rolling family that stands farthest above unrelated combs does so [dB]: the scores of sound
+        /// records of a machine calibrate that of a further one.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub score_db: Option<f64>,
+        /// Records of the sound machine with as high a score.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub sound_as_high: Option<SoundAsHigh>,
+        /// The conclusion in one sentence.
+        pub verdict: String,
+        /// Length of a spall, from two events a passage [mm].
+        pub spall_mm: Option<Interval>,
+        /// Length of a spall longer than half of the distance of two elements, whose exit and the entry of the
+        /// next element are as far apart as these events [mm].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub spall_otherwise_mm: Option<Interval>,
+        /// Time between these events [ms].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub event_spacing_ms: Option<f64>,
+        /// Where a passage has a single event: the spall is shorter than this, if entry and exit both knock [mm].
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub spall_below_mm: Option<f64>,
+        /// What sensor, amplifier, converter and recorder did to the samples; none for a sound record. The notes
+        /// have it in words.
+        pub quality: Vec<Quality>,
+        /// Limits of the conclusion.
+        pub notes: Vec<String>,
+    }
 }
 
 impl MeasuredFindings {
@@ -80,22 +83,26 @@ impl MeasuredFindings {
     }
 }
 
-/// How many records of the sound machine have as high a score as a record.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct SoundAsHigh {
-    /// Those that have.
-    pub as_high: usize,
-    /// All of them.
-    pub records: usize,
+quantities! {
+    /// How many records of the sound machine have as high a score as a record.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+    pub struct SoundAsHigh {
+        /// Those that have.
+        pub as_high: usize,
+        /// All of them.
+        pub records: usize,
+    }
 }
 
-/// A value with its interval of 90 %.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Interval {
-    /// Best estimate.
-    pub value: f64,
-    /// Lower end.
-    pub low: f64,
-    /// Upper end.
-    pub high: f64,
+quantities! {
+    /// A value with its interval of 90 %.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub struct Interval {
+        /// Best estimate.
+        pub value: f64,
+        /// Lower end.
+        pub low: f64,
+        /// Upper end.
+        pub high: f64,
+    }
 }

@@ -35,6 +35,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod quantity;
+
 mod analysis;
 pub mod families;
 mod findings;

@@ -12,71 +12,80 @@ use statrs::function::gamma::ln_gamma;
 
 use crate::families::limits::ALPHA;
 use crate::families::sound::BEYOND_SOUND;
+use crate::quantities;
 use crate::words::numbers::chance;
 use crate::{Defect, Family, Interval, MeasuredFindings};
 
-/// The verdict on a series of records.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Series {
-    /// Records in all.
-    pub records: usize,
-    /// Those that could be analysed.
-    pub analysed: usize,
-    /// The first ones, which are of the sound machine.
-    pub sound: usize,
-    /// The defect families; none without speed and bearing.
-    pub families: Vec<SeriesFamily>,
-    /// Growth of the spall, where two records at least give a length.
-    pub growth: Option<Growth>,
-    /// The conclusion in one sentence.
-    pub verdict: String,
+quantities! {
+    /// The verdict on a series of records.
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct Series {
+        /// Records in all.
+        pub records: usize,
+        /// Those that could be analysed.
+        pub analysed: usize,
+        /// The first ones, which are of the sound machine.
+        pub sound: usize,
+        /// The defect families; none without speed and bearing.
+        pub families: Vec<SeriesFamily>,
+        /// Growth of the spall, where two records at least give a length.
+        pub growth: Option<Growth>,
+        /// The conclusion in one sentence.
+        pub verdict: String,
+    }
 }
 
-/// One family over the series.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SeriesFamily {
-    /// Whose family it is.
-    pub name: Defect,
-    /// Probability that sound bearings show as much in half of the last `last` records.
-    pub p_value: f64,
-    /// Records at the end of the series by which it is judged.
-    pub last: usize,
-    /// Those of them that claim it.
-    pub last_claiming: usize,
-    /// All records behind those of the sound machine that claim it.
-    pub claiming: usize,
-    /// Whether the series is called a defect of this part.
-    pub claimed: bool,
-    /// The record from which on it stands; `null` where it is not claimed, or the series shows no beginning.
-    pub onset: Option<Onset>,
-    /// Height of its comb above the background in each record [dB]; `null` where it was not looked for.
-    pub height_db: Vec<Option<f64>>,
+quantities! {
+    /// One family over the series.
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct SeriesFamily {
+        /// Whose family it is.
+        pub name: Defect,
+        /// Probability that sound bearings show as much in half of the last `last` records.
+        pub p_value: f64,
+        /// Records at the end of the series by which it is judged.
+        pub last: usize,
+        /// Those of them that claim it.
+        pub last_claiming: usize,
+        /// All records behind those of the sound machine that claim it.
+        pub claiming: usize,
+        /// Whether the series is called a defect of this part.
+        pub claimed: bool,
+        /// The record from which on it stands; `null` where it is not claimed, or the series shows no beginning.
+        pub onset: Option<Onset>,
+        /// Height of its comb above the background in each record [dB]; `null` where it was not looked for.
+        pub height_db: Vec<Option<f64>>,
+    }
 }
 
-/// The first record in which a defect stands, from 1 on, with its interval of 90 %.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Onset {
-    /// The likeliest record.
-    pub record: usize,
-    /// First record of the interval.
-    pub low: usize,
-    /// Last record of the interval.
-    pub high: usize,
+quantities! {
+    /// The first record in which a defect stands, from 1 on, with its interval of 90 %.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+    pub struct Onset {
+        /// The likeliest record.
+        pub record: usize,
+        /// First record of the interval.
+        pub low: usize,
+        /// Last record of the interval.
+        pub high: usize,
+    }
 }
 
-/// Lengths of the spall at both ends of the series.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Growth {
-    /// The first record that gives a length, from 1 on.
-    pub from: usize,
-    /// Its length [mm].
-    pub from_mm: Interval,
-    /// The last record that gives one.
-    pub to: usize,
-    /// Its length [mm].
-    pub to_mm: Interval,
-    /// Whether the last interval lies above the first.
-    pub has_grown: bool,
+quantities! {
+    /// Lengths of the spall at both ends of the series.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub struct Growth {
+        /// The first record that gives a length, from 1 on.
+        pub from: usize,
+        /// Its length [mm].
+        pub from_mm: Interval,
+        /// The last record that gives one.
+        pub to: usize,
+        /// Its length [mm].
+        pub to_mm: Interval,
+        /// Whether the last interval lies above the first.
+        pub has_grown: bool,
+    }
 }
 
 impl Series {

@@ -65,10 +65,10 @@ pub use detection::write_detection;
 pub use ensemble::write_ensemble;
 pub use error::Error;
 pub use joint::write_joint;
-pub use measured::{Baseline, write_measured};
+pub use measured::{Baseline, findings_schema, write_measured};
 pub use run::{write, write_between};
 pub use series::{SeriesFindings, SeriesRecord, write_series};
-pub use sources::write_sources;
+pub use sources::{SourceFindings, SourcesFindings, write_sources};
 
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]

@@ -3,12 +3,14 @@
 use std::path::Path;
 
 use maud::{Markup, html};
+use serde_json::{Value, json};
+use stribeck_analysis::quantity::schema;
 use stribeck_dsp::BandEnvelope;
 use stribeck_store::run_dir::write_atomic;
 
-use crate::page::{self, charts, document, drawn, json, sentence};
+use crate::page::{self, charts, document, drawn, sentence};
 use crate::plot::{Axis, Colour, Cursor, Figure, Level, Mark, Picture, Series};
-use crate::{Error, course, kurtogram, sound};
+use crate::{Error, SeriesFindings, SourcesFindings, course, kurtogram, sound};
 use stribeck_diagnosis::record::quality::Quality;
 use stribeck_diagnosis::words::evidence::{SynchronousMean, synchronous, what_would_change};
 use stribeck_diagnosis::words::numbers::significant;
@@ -26,6 +28,14 @@ pub struct Baseline {
     pub analysis: Analysis,
 }
 
+/// The schema of a `findings.json` that this version writes: of a record, of a series of them, or of a record
+/// with several components.
+pub fn findings_schema() -> Value {
+    let kinds =
+        [schema::of::<MeasuredFindings>(), schema::of::<SeriesFindings>(), schema::of::<SourcesFindings>()];
+    schema::titled("Findings of a measured record", json!({ "anyOf": kinds }))
+}
+
 /// Writes `findings.json` and `report.html` of the record in `file` into `folder`, which is made; over a
 /// `baseline` where there is one.
 ///
@@ -38,7 +48,7 @@ pub fn write_measured(
     baseline: Option<&Baseline>,
 ) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
-    write_atomic(&folder.join("findings.json"), json(&analysis.findings)?.as_bytes())?;
+    write_atomic(&folder.join("findings.json"), page::json(&analysis.findings)?.as_bytes())?;
     let page = page(file, analysis, baseline)?.into_string();
     write_atomic(&folder.join("report.html"), page.as_bytes())?;
     Ok(())

@@ -10,36 +10,41 @@ use stribeck_store::run_dir::write_atomic;
 use crate::Error;
 use crate::page::{cell, document, folded, json, wide_table};
 use crate::plot::{Axis, Band, Colour, Figure, Level, Mark, Series as Curve};
+use stribeck_diagnosis::quantities;
 use stribeck_diagnosis::record::alarm::{Judged, Limit, Quantity, State};
 use stribeck_diagnosis::series::{Onset, Series};
 use stribeck_diagnosis::words::numbers::chance;
 use stribeck_diagnosis::{Defect, Family, Interval, MeasuredFindings};
 
-/// One record of a series.
-#[derive(Debug, Serialize)]
-pub struct SeriesRecord {
-    /// The file.
-    pub file: String,
-    /// Folder of its own page, below that of the series; `null` where it has none.
-    pub folder: Option<String>,
-    /// Its findings; `null` where it could not be analysed.
-    pub findings: Option<MeasuredFindings>,
-    /// Why it could not be.
-    pub error: Option<String>,
-    /// How its levels stand to the limits.
-    pub alarms: Vec<Judged>,
+quantities! {
+    /// One record of a series.
+    #[derive(Debug, Serialize)]
+    pub struct SeriesRecord {
+        /// The file.
+        pub file: String,
+        /// Folder of its own page, below that of the series; `null` where it has none.
+        pub folder: Option<String>,
+        /// Its findings; `null` where it could not be analysed.
+        pub findings: Option<MeasuredFindings>,
+        /// Why it could not be.
+        pub error: Option<String>,
+        /// How its levels stand to the limits.
+        pub alarms: Vec<Judged>,
+    }
 }
 
 /// Highest limit that is drawn, over the highest value.
 const ROOM: f64 = 2.0;
 
-/// Content of `findings.json` of a series.
-#[derive(Debug, Serialize)]
-pub struct SeriesFindings<'a> {
-    /// The verdict on all of them.
-    pub series: &'a Series,
-    /// Each of them, in their order.
-    pub records: &'a [SeriesRecord],
+quantities! {
+    /// Content of `findings.json` of a series.
+    #[derive(Debug, Serialize)]
+    pub struct SeriesFindings {
+        /// The verdict on all of them.
+        pub series: Series,
+        /// Each of them, in their order.
+        pub records: Vec<SeriesRecord>,
+    }
 }
 
 /// Writes `findings.json` and `report.html` of a series of records into `folder`, which must be there;
@@ -47,13 +52,13 @@ pub struct SeriesFindings<'a> {
 ///
 /// # Errors
 /// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
-pub fn write_series(folder: &Path, findings: &SeriesFindings<'_>, limits: &[Limit]) -> Result<(), Error> {
+pub fn write_series(folder: &Path, findings: &SeriesFindings, limits: &[Limit]) -> Result<(), Error> {
     write_atomic(&folder.join("findings.json"), json(findings)?.as_bytes())?;
     write_atomic(&folder.join("report.html"), page(findings, limits)?.into_string().as_bytes())?;
     Ok(())
 }
 
-fn page(findings: &SeriesFindings<'_>, limits: &[Limit]) -> Result<Markup, Error> {
+fn page(findings: &SeriesFindings, limits: &[Limit]) -> Result<Markup, Error> {
     let SeriesFindings { series, records } = findings;
     let html_of = |figures: Vec<Figure>| figures.iter().map(Figure::to_html).collect::<Result<Vec<_>, _>>();
     let of_families = html_of(heights(series).into_iter().chain(lengths(series, records)).collect())?;

@@ -3,13 +3,42 @@
 use std::path::Path;
 
 use maud::html;
-use serde_json::json;
+use serde::Serialize;
 use stribeck_diagnosis::sources::{Component, Sources};
+use stribeck_diagnosis::{MeasuredFindings, quantities};
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::measured::write_measured;
 use crate::page::{document, json as pretty};
+
+quantities! {
+    /// Content of `findings.json` of a record with several components.
+    #[derive(Debug, Serialize)]
+    pub struct SourcesFindings {
+        /// Bearings and gears, as they were given.
+        pub components: Vec<String>,
+        /// The verdict on all of them.
+        pub verdict: String,
+        /// Each bearing.
+        pub bearings: Vec<SourceFindings>,
+    }
+}
+
+quantities! {
+    /// A bearing of such a record.
+    #[derive(Debug, Serialize)]
+    pub struct SourceFindings {
+        /// As it was given.
+        pub component: String,
+        /// Its speed over that of the shaft.
+        pub ratio: f64,
+        /// Folder of its own page, below that of the record.
+        pub folder: String,
+        /// Its findings.
+        pub findings: MeasuredFindings,
+    }
+}
 
 /// Writes `findings.json` and `report.html` of all components into `folder`, and below it the page of each
 /// bearing.
@@ -22,19 +51,19 @@ pub fn write_sources(
     components: &[Component],
     sources: &Sources,
 ) -> Result<(), Error> {
-    let mut entries = Vec::new();
+    let mut bearings = Vec::new();
     for (n, (component, analysis)) in sources.bearings.iter().enumerate() {
         let own = subfolder(n, component);
         write_measured(&folder.join(&own), &format!("{file}: {component}"), analysis, None)?;
-        entries.push(json!({
-            "component": component.to_string(),
-            "ratio": component.ratio,
-            "folder": own,
-            "findings": &analysis.findings,
-        }));
+        bearings.push(SourceFindings {
+            component: component.to_string(),
+            ratio: component.ratio,
+            folder: own,
+            findings: analysis.findings.clone(),
+        });
     }
     let words: Vec<String> = components.iter().map(ToString::to_string).collect();
-    let all = json!({ "components": words, "verdict": sources.verdict, "bearings": entries });
+    let all = SourcesFindings { components: words.clone(), verdict: sources.verdict.to_string(), bearings };
     write_atomic(&folder.join("findings.json"), pretty(&all)?.as_bytes())?;
     let title = format!("{file}: {} components", components.len());
     let page = document(

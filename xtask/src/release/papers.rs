@@ -41,6 +41,7 @@ pub(super) fn write_all(root: &Path, folder: &Path, archives: &[(String, String)
     }
     write(folder, "scene.schema.json", &format!("{:#}\n", stribeck_scene::fields::json_schema()))?;
     write(folder, "summary.schema.json", &format!("{:#}\n", Summary::json_schema()))?;
+    write(folder, "findings.schema.json", &format!("{:#}\n", stribeck_report::findings_schema()))?;
     let changes = std::fs::read_to_string(root.join("CHANGELOG.md")).context("cannot read CHANGELOG.md")?;
     write(folder, "NOTES.md", notes(&changes)?)?;
     let citation = std::fs::read_to_string(root.join("CITATION.cff")).context("cannot read CITATION.cff")?;

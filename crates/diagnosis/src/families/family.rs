@@ -9,61 +9,64 @@ use crate::families::controls::MOST_AS_HIGH;
 use crate::families::limits::{ALPHA, KNOCK, decibel};
 use crate::families::unexplained::UnexplainedComb;
 use crate::families::unrelated::UNRELATED_SPACINGS;
+use crate::quantities;
 use crate::words::numbers::chance;
 
 /// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
 /// same records.
 const SOUND_DEPTHS: f64 = 11.4;
 
-/// One defect family.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Family {
-    /// Whose family it is.
-    pub name: Defect,
-    /// Frequency without slip [Hz].
-    pub expected_hz: f64,
-    /// Frequency at which the family stands highest [Hz]; `null` when it is not there.
-    pub measured_hz: Option<f64>,
-    /// Harmonics of five that noise would not make.
-    pub harmonics: usize,
-    /// Height of its first harmonic above the background of the envelope spectrum [dB].
-    pub level_db: Option<f64>,
-    /// Probability that the record of a sound bearing shows a family as high and as deep: the largest of
-    /// `noise_p_value`, of `rank`, and of the part of sound bearings whose power swings as much at a family.
-    pub p_value: f64,
-    /// Probability that noise of the record's own colour makes a family as high; an upper bound.
-    pub noise_p_value: f64,
-    /// Part of unrelated combs in the same spectrum that stand as high.
-    pub rank: Option<f64>,
-    /// How deep the power is modulated in the band where it is deepest, of those in which the family stands:
-    /// 0 not at all, 1 to zero, 2 short knocks. That of a rolling element counts its sidebands of the cage.
-    pub depth: Option<f64>,
-    /// That band [Hz].
-    pub depth_band_hz: Option<(f64, f64)>,
-    /// Band in which it stands highest [Hz].
-    pub band_hz: Option<(f64, f64)>,
-    /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
-    /// lines ([`BandEnvelope::autocorrelation`]).
-    pub in_passages: bool,
-    /// The family that stands higher, over whose period all numbers of this one are taken
-    /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
-    pub over: Option<Defect>,
-    /// The family whose lines stand at the same places, so that the record cannot distinguish them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub not_told_apart_from: Option<Defect>,
-    /// Whether the record leaves it open: the machine's own lines stand where the family's would.
-    pub undecided: bool,
-    /// Whether this is called a defect.
-    pub claimed: bool,
-    /// Why, or why not.
-    pub reason: Reason,
-    /// Height of the family [dB], for comparison with others.
-    #[serde(skip)]
-    pub(crate) height_db: f64,
-    /// The unrelated combs of the same spectrum that it must stand above: fundamental [Hz] and height [dB];
-    /// for pictures.
-    #[serde(skip)]
-    pub controls: Vec<(f64, f64)>,
+quantities! {
+    /// One defect family.
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct Family {
+        /// Whose family it is.
+        pub name: Defect,
+        /// Frequency without slip [Hz].
+        pub expected_hz: f64,
+        /// Frequency at which the family stands highest [Hz]; `null` when it is not there.
+        pub measured_hz: Option<f64>,
+        /// Harmonics of five that noise would not make.
+        pub harmonics: usize,
+        /// Height of its first harmonic above the background of the envelope spectrum [dB].
+        pub level_db: Option<f64>,
+        /// Probability that the record of a sound bearing shows a family as high and as deep: the largest of
+        /// `noise_p_value`, of `rank`, and of the part of sound bearings whose power swings as much at a family.
+        pub p_value: f64,
+        /// Probability that noise of the record's own colour makes a family as high; an upper bound.
+        pub noise_p_value: f64,
+        /// Part of unrelated combs in the same spectrum that stand as high.
+        pub rank: Option<f64>,
+        /// How deep the power is modulated in the band where it is deepest, of those in which the family stands:
+        /// 0 not at all, 1 to zero, 2 short knocks. That of a rolling element counts its sidebands of the cage.
+        pub depth: Option<f64>,
+        /// That band [Hz].
+        pub depth_band_hz: Option<(f64, f64)>,
+        /// Band in which it stands highest [Hz].
+        pub band_hz: Option<(f64, f64)>,
+        /// Whether its knocks keep their phase while an element passes under the load only, so that it has no
+        /// lines ([`BandEnvelope::autocorrelation`]).
+        pub in_passages: bool,
+        /// The family that stands higher, over whose period all numbers of this one are taken
+        /// ([`BandEnvelopes::over_period`](stribeck_dsp::BandEnvelopes::over_period)).
+        pub over: Option<Defect>,
+        /// The family whose lines stand at the same places, so that the record cannot distinguish them.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub not_told_apart_from: Option<Defect>,
+        /// Whether the record leaves it open: the machine's own lines stand where the family's would.
+        pub undecided: bool,
+        /// Whether this is called a defect.
+        pub claimed: bool,
+        /// Why, or why not.
+        pub reason: Reason,
+        /// Height of the family [dB], for comparison with others.
+        #[serde(skip)]
+        pub(crate) height_db: f64,
+        /// The unrelated combs of the same spectrum that it must stand above: fundamental [Hz] and height [dB];
+        /// for pictures.
+        #[serde(skip)]
+        pub controls: Vec<(f64, f64)>,
+    }
 }
 
 /// Why a family is called a defect, or not; text in files.

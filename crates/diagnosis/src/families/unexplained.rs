@@ -8,18 +8,21 @@ use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
 
 use crate::families::limits::{ALPHA, KNOCK, decibel};
 use crate::families::machine_lines::OwnLines;
+use crate::quantities;
 
-/// The highest comb that nothing in the bearing accounts for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Unexplained {
-    /// Its fundamental [Hz].
-    pub hz: f64,
-    /// The same over the frequency of the shaft.
-    pub order: f64,
-    /// Height of its fourth highest harmonic of five above the background [dB].
-    pub height_db: f64,
-    /// Band in which it stands highest [Hz].
-    pub band_hz: (f64, f64),
+quantities! {
+    /// The highest comb that nothing in the bearing accounts for.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub struct Unexplained {
+        /// Its fundamental [Hz].
+        pub hz: f64,
+        /// The same over the frequency of the shaft.
+        pub order: f64,
+        /// Height of its fourth highest harmonic of five above the background [dB].
+        pub height_db: f64,
+        /// Band in which it stands highest [Hz].
+        pub band_hz: (f64, f64),
+    }
 }
 
 /// A comb and where it stands highest.

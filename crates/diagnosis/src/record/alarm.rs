@@ -6,6 +6,7 @@
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+use crate::quantities;
 use crate::{Defect, MeasuredFindings};
 
 /// Quantity that a limit is set on.
@@ -34,15 +35,17 @@ pub enum Quantity {
     Ftf,
 }
 
-/// Levels of warning and alarm.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Limit {
-    /// Its quantity.
-    pub quantity: Quantity,
-    /// Warning from here.
-    pub warning: f64,
-    /// Alarm from here.
-    pub alarm: f64,
+quantities! {
+    /// Levels of warning and alarm.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub struct Limit {
+        /// Its quantity.
+        pub quantity: Quantity,
+        /// Warning from here.
+        pub warning: f64,
+        /// Alarm from here.
+        pub alarm: f64,
+    }
 }
 
 /// How a value stands to its limit.
@@ -57,16 +60,18 @@ pub enum State {
     Alarm,
 }
 
-/// A value beside its limit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Judged {
-    /// The limit.
-    #[serde(flatten)]
-    pub limit: Limit,
-    /// The value.
-    pub value: f64,
-    /// How it stands.
-    pub state: State,
+quantities! {
+    /// A value beside its limit.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub struct Judged {
+        /// The limit.
+        #[serde(flatten)]
+        pub limit: Limit,
+        /// The value.
+        pub value: f64,
+        /// How it stands.
+        pub state: State,
+    }
 }
 
 /// Part of the records of an unchanged machine that pass the warning, and the alarm.

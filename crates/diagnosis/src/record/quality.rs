@@ -17,6 +17,7 @@ use stribeck_dsp::{Welch, WelchOptions};
 pub(crate) use self::inspection::Inspection;
 pub(crate) use self::spectral::folded;
 use crate::Error;
+use crate::quantities;
 
 /// What is wrong with samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
@@ -40,17 +41,19 @@ pub enum Kind {
     Aliased,
 }
 
-/// A finding on the quality of a record.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Quality {
-    /// What it is.
-    pub kind: Kind,
-    /// Share of the samples that it concerns, from 0 to 1.
-    pub share: f64,
-    /// The first of them [s].
-    pub first_s: f64,
-    /// In words, with what to do.
-    pub words: String,
+quantities! {
+    /// A finding on the quality of a record.
+    #[derive(Debug, Clone, PartialEq, Serialize)]
+    pub struct Quality {
+        /// What it is.
+        pub kind: Kind,
+        /// Share of the samples that it concerns, from 0 to 1.
+        pub share: f64,
+        /// The first of them [s].
+        pub first_s: f64,
+        /// In words, with what to do.
+        pub words: String,
+    }
 }
 
 impl Kind {

@@ -1,28 +1,31 @@
 //! Is a record sound? Values that are not numbers, single samples that stand for themselves, and the numbers
 //! that describe it as a whole, in one pass. What sensor and recorder did to many samples is in `quality`.
 
+use crate::quantities;
 use serde::Serialize;
 
-/// Numbers that describe a signal as a whole; its mean is removed first.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Health {
-    /// Mean [unit].
-    pub mean: f64,
-    /// Root mean square about the mean [unit].
-    pub rms: f64,
-    /// Largest distance from the mean [unit].
-    pub peak: f64,
-    /// Peak over root mean square.
-    pub crest_factor: f64,
-    /// Fourth central moment over the square of the second; 3 for Gaussian noise.
-    pub kurtosis: f64,
-    /// Third central moment over the power 3/2 of the second.
-    pub skewness: f64,
-    /// Largest magnitude over the mean of magnitudes, both about zero.
-    pub impulse_factor: f64,
-    /// Entropy of the density over the logarithm of its number of lines: 1 for white noise, near 0 for one
-    /// line.
-    pub spectral_entropy: f64,
+quantities! {
+    /// Numbers that describe a signal as a whole; its mean is removed first.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub struct Health {
+        /// Mean [unit].
+        pub mean: f64,
+        /// Root mean square about the mean [unit].
+        pub rms: f64,
+        /// Largest distance from the mean [unit].
+        pub peak: f64,
+        /// Peak over root mean square.
+        pub crest_factor: f64,
+        /// Fourth central moment over the square of the second; 3 for Gaussian noise.
+        pub kurtosis: f64,
+        /// Third central moment over the power 3/2 of the second.
+        pub skewness: f64,
+        /// Largest magnitude over the mean of magnitudes, both about zero.
+        pub impulse_factor: f64,
+        /// Entropy of the density over the logarithm of its number of lines: 1 for white noise, near 0 for one
+        /// line.
+        pub spectral_entropy: f64,
+    }
 }
 
 /// Sums and extremes of one pass over the samples.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::quantities;
 use serde::Serialize;
 
 /// Group of a machine.
@@ -37,19 +38,21 @@ pub enum Zone {
     D,
 }
 
-/// The zone of a level.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Zoned {
-    /// Group of the machine.
-    pub group: Group,
-    /// Its support.
-    pub foundation: Foundation,
-    /// Limits between the zones [mm/s RMS].
-    pub limits_mm_s: [f64; 3],
-    /// Root mean square of the velocity [mm/s].
-    pub velocity_mm_s: f64,
-    /// The zone.
-    pub zone: Zone,
+quantities! {
+    /// The zone of a level.
+    #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+    pub struct Zoned {
+        /// Group of the machine.
+        pub group: Group,
+        /// Its support.
+        pub foundation: Foundation,
+        /// Limits between the zones [mm/s RMS].
+        pub limits_mm_s: [f64; 3],
+        /// Root mean square of the velocity [mm/s].
+        pub velocity_mm_s: f64,
+        /// The zone.
+        pub zone: Zone,
+    }
 }
 
 /// Limits A/B, B/C and C/D of the velocity [mm/s RMS]. Source: ISO 20816-3:2022, annex A, tables A.1 and A.2,

@@ -6,6 +6,7 @@ mod numbers;
 mod page;
 mod paper;
 mod records;
+mod schemas;
 #[path = "../synthetic/mod.rs"]
 mod synthetic;
 

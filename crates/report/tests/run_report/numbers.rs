@@ -5,6 +5,7 @@ use stribeck_report as report;
 use stribeck_scene::scene::{FilmScene, Scene};
 use stribeck_store::run_info::Status;
 
+use crate::schemas::agree;
 use crate::synthetic::{
     self, ENTRY_LAG_S, EXIT_LEAD_S, FLOATING_M, IMPULSE_G, INTERVAL_S, NOISE_G, OIL_W, SLIP, SUPPORT_N,
     Scratch, TONE_G, TONE_HZ, WEIGHT_N,
@@ -99,41 +100,6 @@ fn planted_tone_levels_and_notch_of_the_synthetic_run() {
     close(Some(spectrum.grid_hz), 3.0, 0.001, "grid");
     assert!(spectrum.zero_padded && spectrum.segments == 1);
     assert!(summary.notes.iter().any(|n| n.contains("envelope")), "{:?}", summary.notes);
-}
-
-/// Whether a value is what a schema of `Summary::json_schema` allows; the first place where it is not.
-fn agree(schema: &serde_json::Value, value: &serde_json::Value, path: &str) -> Result<(), String> {
-    if let Some(kinds) = schema["anyOf"].as_array() {
-        let refused: Vec<String> = kinds.iter().filter_map(|kind| agree(kind, value, path).err()).collect();
-        return if refused.len() < kinds.len() { Ok(()) } else { Err(refused.join("; ")) };
-    }
-    let kind = match value {
-        serde_json::Value::Null => "null",
-        serde_json::Value::Bool(_) => "boolean",
-        serde_json::Value::Number(number) if !number.is_f64() && schema["type"] == "integer" => "integer",
-        serde_json::Value::Number(_) => "number",
-        serde_json::Value::String(_) => "string",
-        serde_json::Value::Array(_) => "array",
-        serde_json::Value::Object(_) => "object",
-    };
-    let allowed = &schema["type"];
-    let is_allowed = allowed == kind || allowed.as_array().is_some_and(|all| all.iter().any(|a| a == kind));
-    if !is_allowed {
-        return Err(format!("{path} is {kind}, not {allowed}"));
-    }
-    for (name, inner) in value.as_object().into_iter().flatten() {
-        let path = format!("{path}.{name}");
-        agree(schema["properties"].get(name).ok_or(format!("{path} is declared nowhere"))?, inner, &path)?;
-    }
-    for name in schema["required"].as_array().into_iter().flatten() {
-        value.get(name.as_str().unwrap_or_default()).ok_or(format!("{path}.{name} is missing"))?;
-    }
-    let items = value.as_array().map_or(&[][..], Vec::as_slice);
-    if schema["minItems"].as_u64().is_some_and(|n| n != items.len() as u64) {
-        return Err(format!("{path} has {} items", items.len()));
-    }
-    let each = |k: usize| schema["prefixItems"].get(k).unwrap_or(&schema["items"]);
-    items.iter().enumerate().try_for_each(|(k, item)| agree(each(k), item, &format!("{path}[{k}]")))
 }
 
 #[test]

@@ -87,16 +87,16 @@ pub(super) fn run(files: &[PathBuf], asked: &Asked<'_>, mut reading: Reading) ->
     let sound = options.reference.unwrap_or(0);
     let findings: Vec<Option<&MeasuredFindings>> = records.iter().map(|r| r.findings.as_ref()).collect();
     let series = Series::of(&findings, sound);
-    let all = SeriesFindings { series: &series, records: &records };
+    let all = SeriesFindings { series, records };
     write_series(&out, &all, &limits)?;
     if options.json {
         say!("{}", serde_json::to_string_pretty(&all)?);
     } else {
-        say!("{}", series.verdict);
+        say!("{}", all.series.verdict);
         say!("report: {}", shown(&out.join("report.html")));
     }
-    let failed = records.iter().filter(|record| record.findings.is_none()).count();
-    ensure!(failed == 0, "{failed} of {} records could not be analysed", records.len());
+    let failed = all.records.iter().filter(|record| record.findings.is_none()).count();
+    ensure!(failed == 0, "{failed} of {} records could not be analysed", all.records.len());
     Ok(ExitCode::SUCCESS)
 }
 
