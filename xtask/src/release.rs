@@ -114,12 +114,13 @@ fn program(
     epoch: &str,
 ) -> Option<(String, String)> {
     let python = release.python.clone();
-    let library = release.part(&format!("{}: library of FMUs", platform.target), platform.library(&python));
-    let mut build = platform.environment(epoch);
-    build.extend(module.map(|file| ("STRIBECK_LAB_EMBED", file.into())));
-    build.extend(library.as_deref().map(|file| ("STRIBECK_FMU_EMBED", file.into())));
+    let zig = platform.environment(&python, epoch);
+    let mut build = release.part(&format!("{}: tools", platform.target), zig)?;
+    let library = release.part(&format!("{}: library of FMUs", platform.target), platform.library(&build));
+    build.extend(module.map(|file| ("STRIBECK_LAB_EMBED".to_owned(), file.into())));
+    build.extend(library.as_deref().map(|file| ("STRIBECK_FMU_EMBED".to_owned(), file.into())));
     let made = platform
-        .program(&python, &build)
+        .program(&build)
         .and_then(|program| archive::pack(&release.folder, platform, &program, licences, epoch));
     let archive = release.part(&format!("{}: program", platform.target), made);
     if release.wheels && platform.wheel {

@@ -38,7 +38,7 @@ pub(crate) fn make(
     out: &Path,
     python: &str,
     target: Option<&str>,
-    environment: &[(&str, OsString)],
+    environment: &[(String, OsString)],
 ) -> Result<PathBuf> {
     ensure!(
         has(python, "maturin"),

@@ -88,13 +88,13 @@ fn tarred(folder: &Path, name: &str, files: &[(String, Vec<u8>)], epoch: &str) -
 }
 
 #[cfg(unix)]
-fn set_executable(program: &Path) -> Result<()> {
+pub(super) fn set_executable(program: &Path) -> Result<()> {
     use std::os::unix::fs::PermissionsExt;
 
     Ok(std::fs::set_permissions(program, std::fs::Permissions::from_mode(0o755))?)
 }
 
 #[cfg(not(unix))]
-fn set_executable(_: &Path) -> Result<()> {
+pub(super) fn set_executable(_: &Path) -> Result<()> {
     Ok(())
 }
