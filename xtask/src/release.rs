@@ -165,6 +165,18 @@ fn output(command: &mut Command, advice: &str) -> Result<String> {
     String::from_utf8(done.stdout).with_context(|| format!("{tool} writes no text"))
 }
 
+#[cfg(unix)]
+fn set_executable(program: &Path) -> Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+
+    Ok(std::fs::set_permissions(program, std::fs::Permissions::from_mode(0o755))?)
+}
+
+#[cfg(not(unix))]
+fn set_executable(_: &Path) -> Result<()> {
+    Ok(())
+}
+
 /// Lists the files with their sizes, and what is missing.
 fn conclude(release: &Release) -> Result<ExitCode> {
     println!("\n{}", release.folder.display());

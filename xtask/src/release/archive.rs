@@ -8,7 +8,7 @@ use anyhow::{Context, Result};
 use zip::{CompressionMethod, ZipWriter, write::SimpleFileOptions};
 
 use super::platform::Platform;
-use super::{VERSION, output};
+use super::{VERSION, output, set_executable};
 use crate::workspace;
 
 /// Files of the repository beside the program.
@@ -85,16 +85,4 @@ fn tarred(folder: &Path, name: &str, files: &[(String, Vec<u8>)], epoch: &str) -
     output(Command::new("gzip").args(["-9", "--no-name", "--force"]).arg(&archive), "install gzip")?;
     std::fs::remove_dir_all(&stage).ok();
     Ok(format!("{name}.tar.gz"))
-}
-
-#[cfg(unix)]
-pub(super) fn set_executable(program: &Path) -> Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-
-    Ok(std::fs::set_permissions(program, std::fs::Permissions::from_mode(0o755))?)
-}
-
-#[cfg(not(unix))]
-pub(super) fn set_executable(_: &Path) -> Result<()> {
-    Ok(())
 }

@@ -6,7 +6,7 @@ use std::process::Command;
 
 use anyhow::{Result, bail, ensure};
 
-use super::output;
+use super::{output, set_executable};
 use crate::{fmu, workspace};
 
 /// Variables of a build.
@@ -91,7 +91,7 @@ impl<'a> Platform<'a> {
         let stage = workspace::target().join("release-zig");
         std::fs::create_dir_all(&stage)?;
         std::fs::write(stage.join("cargo"), "#!/bin/sh\nexec env -0\n")?;
-        super::archive::set_executable(&stage.join("cargo"))?;
+        set_executable(&stage.join("cargo"))?;
         let before = std::env::var_os("PATH").unwrap_or_default();
         let path = std::env::join_paths([stage].into_iter().chain(std::env::split_paths(&before)))?;
         let mut zigbuild = Command::new(Path::new(scripts.trim()).join("cargo-zigbuild"));
