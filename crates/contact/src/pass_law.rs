@@ -55,7 +55,7 @@ impl PassLaw {
             return onset.map_or([-gap, 1.0], |[depth, slope, _]| [depth, slope]);
         }
         let t = -gap / e;
-        let depth = if t > 30.0 { -gap } else { e * t.exp().ln_1p() };
-        [depth, 1.0 / (1.0 + (-t).exp())]
+        let depth = if t > 30.0 { -gap } else { e * libm::log1p(libm::exp(t)) };
+        [depth, 1.0 / (1.0 + libm::exp(-t))]
     }
 }

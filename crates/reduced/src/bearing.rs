@@ -156,7 +156,7 @@ impl Bearing {
                 .walls
                 .iter()
                 .flatten()
-                .map(|wall| wall.inner[0].hypot(wall.inner[1]))
+                .map(|wall| libm::hypot(wall.inner[0], wall.inner[1]))
                 .fold(0.0, f64::max);
             let of_all = self.rollers.count as f64 * (1.0 / cage.mass).max(arm * arm / cage.inertia);
             let corner = 0.5 * self.law.penalty * cage.corners[0].end;
@@ -196,7 +196,7 @@ impl Bearing {
                 .rollers
                 .starts
                 .iter()
-                .map(|start| [start.vertex_angle.cos(), start.vertex_angle.sin()])
+                .map(|start| [libm::cos(start.vertex_angle), libm::sin(start.vertex_angle)])
                 .collect(),
             spin: vec![self.operation.speeds.roller; n],
             slip: [vec![0.0; n], vec![0.0; n]],
@@ -215,7 +215,7 @@ impl Bearing {
             steps: 0,
         };
         for (i, start) in self.rollers.starts.iter().enumerate() {
-            let (s, c) = start.angle.sin_cos();
+            let (s, c) = libm::sincos(start.angle);
             (state.x[i], state.y[i]) = (path * c, path * s);
         }
         state.seat = self.seat.as_ref().map(|seat| seat.at_rest(r, n));
@@ -228,18 +228,18 @@ impl Bearing {
     pub(crate) fn first_hints(&self, state: &State) -> [Vec<[u32; 2]>; 2] {
         let nearest = |outline: &Outline, d: [f64; 2]| {
             let along = |i: &usize| {
-                (outline.x[*i] * d[0] + outline.y[*i] * d[1]) / outline.x[*i].hypot(outline.y[*i])
+                (outline.x[*i] * d[0] + outline.y[*i] * d[1]) / libm::hypot(outline.x[*i], outline.y[*i])
             };
             (0..outline.len()).max_by(|a, b| along(a).total_cmp(&along(b))).unwrap_or(0) as u32
         };
         let hints = |raceway: &Raceway, turned: f64, outwards: f64| {
             (0..state.x.len())
                 .map(|i| {
-                    let at = state.y[i].atan2(state.x[i]);
+                    let at = libm::atan2(state.y[i], state.x[i]);
                     let own = at - state.angle[i] - self.rollers.starts[i].vertex_angle
                         + if outwards < 0.0 { std::f64::consts::PI } else { 0.0 };
                     let on_race = at - turned;
-                    let of = |angle: f64| [angle.cos(), angle.sin()];
+                    let of = |angle: f64| [libm::cos(angle), libm::sin(angle)];
                     [nearest(&self.rollers.rim(i).outline, of(own)), nearest(&raceway.outline, of(on_race))]
                 })
                 .collect()
@@ -251,7 +251,7 @@ impl Bearing {
 /// Largest distance of a straight facet from the circle through its vertices [m], where facets do not stand
 /// for arcs.
 fn sag(parameters: &Parameters, radius: f64, facets: f64) -> f64 {
-    if parameters.outlines.arcs { 0.0 } else { radius * (1.0 - (std::f64::consts::PI / facets).cos()) }
+    if parameters.outlines.arcs { 0.0 } else { radius * (1.0 - libm::cos(std::f64::consts::PI / facets)) }
 }
 
 /// The outer and the inner raceway.
@@ -319,7 +319,7 @@ const BESIDE: f64 = 0.25;
 /// [m].
 fn nearest_about(outline: &Outline, beside: f64, relative: f64) -> Vec<f64> {
     let place = |i: usize| [outline.x[i], outline.y[i]];
-    let apart = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| (bx - ax).hypot(by - ay);
+    let apart = |[ax, ay]: [f64; 2], [bx, by]: [f64; 2]| libm::hypot(bx - ax, by - ay);
     let out = |i: usize| apart([0.0; 2], place(i));
     let reach = |stands_out: f64| (beside * beside + 2.0 * relative * stands_out.max(0.0)).sqrt();
     let nearest_of_all = (0..outline.len()).map(out).fold(f64::INFINITY, f64::min);

@@ -93,7 +93,7 @@ impl Cage {
             .angles
             .iter()
             .map(|angle| {
-                let (s, c) = angle.sin_cos();
+                let (s, c) = libm::sincos(*angle);
                 let wall = |side: f64| {
                     let end = |radius: f64| {
                         let along = (radius * radius - half * half).sqrt();

@@ -53,7 +53,7 @@ impl Lubrication {
             let (race, seen) = (&self.raceways[k], rollers.view_at_rest(state, i, k, moved));
             let [fx, fy] = race.carried(rim, race.of_roller(&mut films.at[k], i), &seen).force;
             let [x, y] = seen.centre;
-            (fx * x + fy * y) / x.hypot(y)
+            (fx * x + fy * y) / libm::hypot(x, y)
         });
         state.films = Some(films);
         [-outwards[0], outwards[1]]
@@ -75,7 +75,7 @@ impl Lubrication {
             race.gap(rim, race.of_roller(&mut films.at[k], i), &seen)
         });
         state.films = Some(films);
-        let at = state.x[i].hypot(state.y[i]);
+        let at = libm::hypot(state.x[i], state.y[i]);
         Some([at - gaps[1], at + gaps[0]]).filter(|[low, high]| low < high)
     }
 
@@ -241,7 +241,7 @@ impl Rollers {
     /// A roller in the frame of the outer (0) or the inner (1) raceway before the first step, the former
     /// displaced.
     fn view_at_rest(&self, state: &State, i: usize, raceway: usize, moved: [f64; 2]) -> RollerView {
-        let (s, c) = (state.angle[i] + self.starts[i].vertex_angle).sin_cos();
+        let (s, c) = libm::sincos(state.angle[i] + self.starts[i].vertex_angle);
         let [x, y] = [state.x[i], state.y[i]];
         let centre = if raceway == 0 { [x - moved[0], y - moved[1]] } else { [x, y] };
         RollerView { centre, spin: [c, s], velocity: [0.0; 2], turning: 0.0, larger: self.larger[i] }

@@ -30,14 +30,14 @@ impl Housing {
         for k in [a, b] {
             let mut vertices = shapes.chunks_exact(2 * r).map(|vertex| at(vertex, k));
             let [x, y] = vertices.next().ok_or(Error::HousingNotFree)?;
-            let most = UNIFORM * x.hypot(y);
-            if !vertices.all(|[vx, vy]| (vx - x).hypot(vy - y) <= most) {
+            let most = UNIFORM * libm::hypot(x, y);
+            if !vertices.all(|[vx, vy]| libm::hypot(vx - x, vy - y) <= most) {
                 return Err(Error::HousingNotFree);
             }
         }
         let ([ax, ay], [bx, by]) = (at(shapes, a), at(shapes, b));
         let determinant = ax * by - bx * ay;
-        if determinant.abs() < UNIFORM * ax.hypot(ay) * bx.hypot(by) {
+        if determinant.abs() < UNIFORM * libm::hypot(ax, ay) * libm::hypot(bx, by) {
             return Err(Error::HousingNotFree);
         }
         let by_displacement = [[by / determinant, -bx / determinant], [-ay / determinant, ax / determinant]];

@@ -25,6 +25,8 @@
 //! | What do cage, seat and oil do? | `cage/`, `seat/`, `oil/` with `film_forces.rs` and `resistance.rs` |
 //! | How are eight rollers taken at once? | `rollers/`, in rows of `row.rs` |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod modal;
 
 pub mod bearing;

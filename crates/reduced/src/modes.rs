@@ -227,7 +227,7 @@ impl Structure {
         let h = 0.5 * self.mass_damping * dt;
         spent.external += 0.5 * dt * load.power(&state.v);
         for (branch, stretch) in self.branches.iter().zip(&mut state.branches) {
-            let e = (-dt / branch.relaxation_time).exp();
+            let e = libm::exp(-dt / branch.relaxation_time);
             for (u, v) in stretch.iter_mut().zip(&state.v) {
                 *u = e * *u + branch.relaxation_time * (1.0 - e) * v;
             }

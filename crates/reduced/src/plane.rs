@@ -20,7 +20,7 @@ impl Rotation {
     /// By an angle [rad].
     #[inline(always)]
     pub(crate) fn by(angle: f64) -> Self {
-        let (sine, cosine) = angle.sin_cos();
+        let (sine, cosine) = libm::sincos(angle);
         Self { cosine, sine }
     }
 

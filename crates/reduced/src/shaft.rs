@@ -179,7 +179,7 @@ impl Bearing {
     }
 
     fn check(&self, shaft: ShaftPoint) -> Result<(), Error> {
-        let away = shaft.displacement[0].hypot(shaft.displacement[1]);
+        let away = libm::hypot(shaft.displacement[0], shaft.displacement[1]);
         let most = FARTHEST * self.rollers.rims[0].top;
         if away <= most && shaft.velocity.iter().all(|v| v.is_finite()) {
             return Ok(());

@@ -90,7 +90,8 @@ impl Bearing {
             let residual = (0..r).map(|n| (force[n] * step[n]).abs()).sum::<f64>();
             let along =
                 |shapes: &[f64]| shapes.iter().zip(&step).map(|(shape, step)| shape * step).sum::<f64>();
-            let moves = shapes.chunks_exact(2 * r).map(|both| along(&both[..r]).hypot(along(&both[r..])));
+            let moves =
+                shapes.chunks_exact(2 * r).map(|both| libm::hypot(along(&both[..r]), along(&both[r..])));
             let most = moves.fold(0.0, f64::max);
             let back = along(&last) < 0.0;
             if most > farthest && back {
@@ -144,8 +145,8 @@ impl Bearing {
         force: &mut [f64],
     ) {
         let r = self.reduction.padded;
-        let angle = state.y[i].atan2(state.x[i]);
-        let (s, c) = angle.sin_cos();
+        let angle = libm::atan2(state.y[i], state.x[i]);
+        let (s, c) = libm::sincos(angle);
         let moved = self.shapes_under(state, i, [c, s], under);
         let radial: Vec<f64> = (0..r).map(|n| c * under[n] + s * under[r + n]).collect();
         let (at, outer) = self.roller_in_balance(state, i, [c, s], moved);
@@ -185,7 +186,7 @@ impl Bearing {
         let inertia = |rho: f64| {
             mass * (self.operation.speeds.cage * self.operation.speeds.cage * rho - self.rollers.gravity * s)
         };
-        let mut at = state.x[i].hypot(state.y[i]);
+        let mut at = libm::hypot(state.x[i], state.y[i]);
         let balance = |state: &mut State, rho: f64| {
             (state.x[i], state.y[i]) = (rho * c, rho * s);
             let [outer, inner] = self.pressed(state, i, moved);
@@ -256,7 +257,7 @@ impl Bearing {
     /// Normal forces on a roller by outer and inner raceway, the former displaced, and by the oil between
     /// them.
     fn pressed(&self, state: &mut State, i: usize, moved: [f64; 2]) -> [f64; 2] {
-        let (s, c) = (state.angle[i] + self.rollers.starts[i].vertex_angle).sin_cos();
+        let (s, c) = libm::sincos(state.angle[i] + self.rollers.starts[i].vertex_angle);
         let shaft = Rotation::by(state.shaft);
         let centre = [state.x[i], state.y[i]];
         let seen = [centre[0] - moved[0], centre[1] - moved[1]];

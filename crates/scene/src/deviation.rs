@@ -303,7 +303,7 @@ impl Relief {
 
     /// How far below its circle the surface lies at `angle` [rad] from the centre, into the body [m].
     pub fn depth(&self, angle: f64) -> f64 {
-        let waves = self.waves.iter().map(|w| w.amplitude * (w.order * (angle - w.at)).cos());
+        let waves = self.waves.iter().map(|w| w.amplitude * libm::cos(w.order * (angle - w.at)));
         let pieces = self.pieces.iter().map(|piece| {
             let from_middle = (angle - piece.at + PI).rem_euclid(TAU) - PI;
             1e-3 * piece.depth_mm(1e3 * self.radius * from_middle)
@@ -338,7 +338,7 @@ impl Piece {
                 spall.depth_mm
                     * match spall.edge {
                         Edge::Sloped | Edge::Rectangular => down,
-                        Edge::Rounded => 0.5 - 0.5 * (PI * down).cos(),
+                        Edge::Rounded => 0.5 - 0.5 * libm::cos(PI * down),
                     }
             }
             FormScene::Dent(dent) => {
@@ -386,7 +386,7 @@ fn random_waves(roughness: &RoughnessScene, radius: f64, at: f64) -> Vec<Wave> {
     let mut dice = Dice::new(roughness.seed);
     // A power rounds otherwise than a quotient, and scenes without a slope keep their bits.
     let amplitude = |order: f64| {
-        if roughness.slope == RANDOM_WALK { 1.0 / order } else { order.powf(-0.5 * roughness.slope) }
+        if roughness.slope == RANDOM_WALK { 1.0 / order } else { libm::pow(order, -0.5 * roughness.slope) }
     };
     let mut waves: Vec<Wave> = (first..=last)
         .map(|order| {

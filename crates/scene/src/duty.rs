@@ -45,7 +45,7 @@ fn direction(angle_deg: f64) -> [f64; 2] {
         180.0 => [-1.0, 0.0],
         270.0 => [0.0, -1.0],
         angle => {
-            let (s, c) = angle.to_radians().sin_cos();
+            let (s, c) = libm::sincos(angle.to_radians());
             [c, s]
         }
     }

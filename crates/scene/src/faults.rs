@@ -39,7 +39,7 @@ impl Scene {
                 length_mm: spall.length_mm,
                 depth_mm: spall.depth_mm,
                 angle_deg: deviation.angle_deg,
-                edge_slope_deg: spall.depth_mm.atan2(edge).to_degrees(),
+                edge_slope_deg: libm::atan2(spall.depth_mm, edge).to_degrees(),
                 width_mm: None,
             })
         });

@@ -74,12 +74,12 @@ impl Number for f64 {
 
     #[inline(always)]
     fn cube_root(self) -> f64 {
-        self.cbrt()
+        libm::cbrt(self)
     }
 
     #[inline(always)]
     fn arc_tangent(self) -> f64 {
-        self.atan()
+        libm::atan(self)
     }
 
     #[inline(always)]

@@ -77,6 +77,8 @@
 //! | How do values lie in memory, so that eight of them fill a line of cache? | `field.rs` |
 //! | How is work shared out over threads, and kept in their caches from step to step? | `threads.rs` |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod field;
 pub mod lanes;
 #[cfg(not(target_arch = "wasm32"))]

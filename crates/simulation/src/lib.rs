@@ -16,6 +16,8 @@
 //! | How is the reduced bearing? | `reduced.rs`; `reduced/motion.rs`, `reduced/guards.rs` |
 //! | Which nodes does `mesh.vtu` have, and where? | `mesh_file.rs` |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod bearing;
 pub mod error;
 pub mod full;

@@ -106,7 +106,7 @@ impl Model for Reduced {
         let centres = self.start.iter().flat_map(|state| state.x.iter().zip(&state.y));
         for ((body, pocket), (x, y)) in rollers.zip(scene.written.rollers_in_place()).zip(centres) {
             let path = scene.outer_race_radius - scene.roller_radius;
-            let (s, c) = scene.roller_angle(pocket - 1).sin_cos();
+            let (s, c) = libm::sincos(scene.roller_angle(pocket - 1));
             moved[body.nodes.clone()].fill([x - path * c, y - path * s]);
         }
         mesh_file(&self.assembly, &|node| {

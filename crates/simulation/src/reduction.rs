@@ -55,5 +55,5 @@ pub use reduce::ReducedMesh;
 
 /// Unit vector from the origin towards a place.
 fn direction([x, y]: [f64; 2]) -> [f64; 2] {
-    [x / x.hypot(y), y / x.hypot(y)]
+    [x / libm::hypot(x, y), y / libm::hypot(x, y)]
 }

@@ -34,7 +34,7 @@ const DIGITS: f64 = 1e5;
 /// Critical time step [s] under stiffness damping `beta` [s] of all stiffness, from the undamped one [s]
 /// (THEORY §2.7).
 pub fn damped_time_step(undamped: f64, beta: f64) -> f64 {
-    if beta > 0.0 { undamped * undamped / (beta + beta.hypot(undamped)) } else { undamped }
+    if beta > 0.0 { undamped * undamped / (beta + libm::hypot(beta, undamped)) } else { undamped }
 }
 
 impl Dynamics {
@@ -213,7 +213,7 @@ fn probe(dynamics: &Dynamics) -> f64 {
     let mut take = |corners: &[u32]| {
         for (i, &a) in corners.iter().enumerate() {
             let (a, b) = (a as usize, corners[(i + 1) % corners.len()] as usize);
-            shortest = shortest.min((x[b] - x[a]).hypot(y[b] - y[a]));
+            shortest = shortest.min(libm::hypot(x[b] - x[a], y[b] - y[a]));
             farthest = farthest.max(x[a].abs().max(y[a].abs()));
         }
     };

@@ -77,7 +77,7 @@ fn own_frame<const N: usize>(corners: &[[f64; 2]; N]) -> [[f64; 2]; N] {
     } else {
         d(0, 1)
     };
-    let length = axis[0].hypot(axis[1]);
+    let length = libm::hypot(axis[0], axis[1]);
     let (c, s) = (axis[0] / length, axis[1] / length);
     std::array::from_fn(|i| {
         let [x, y] = d(0, i);

@@ -56,7 +56,7 @@ impl NodalLoad {
     pub fn on_edge(slots: &[u32], x: &[f64], y: &[f64], total: [f64; 2]) -> Self {
         let length = |pair: &[u32]| {
             let (a, b) = (pair[0] as usize, pair[1] as usize);
-            (x[b] - x[a]).hypot(y[b] - y[a])
+            libm::hypot(x[b] - x[a], y[b] - y[a])
         };
         let whole: f64 = slots.windows(2).map(length).sum();
         let mut share = vec![0.0; slots.len()];

@@ -92,6 +92,8 @@
 //! | What is refused? | `error.rs` |
 //! | Which loops do the work of a step, and how do nodes lie in memory for them? | `kernel.rs`, `kernel/` |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod material;
 pub mod model;
 

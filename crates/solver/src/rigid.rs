@@ -126,14 +126,14 @@ impl RigidBody {
 
     /// Puts the body where its nodes are, which have been moved without turning.
     pub(crate) fn follow_nodes(&self, at: &mut RigidState, state: &State) {
-        let (s, c) = at.angle.sin_cos();
+        let (s, c) = libm::sincos(at.angle);
         let (n, a) = (self.slots.start, self.arm[0]);
         at.centre = [state.x[n] - (c * a[0] - s * a[1]), state.y[n] - (s * a[0] + c * a[1])];
     }
 
     /// Puts the nodes where the body is, a time step later.
     pub(crate) fn place(&self, at: &RigidState, state: &mut State, dt: f64) {
-        let (s, c) = at.angle.sin_cos();
+        let (s, c) = libm::sincos(at.angle);
         let slots = self.slots.clone();
         let (x, y) = (&mut state.x[slots.clone()], &mut state.y[slots.clone()]);
         let (vx, vy) = (&mut state.vx[slots.clone()], &mut state.vy[slots]);

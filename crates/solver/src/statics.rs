@@ -123,7 +123,7 @@ impl Equilibrator {
                 self.tangent.factorise(&mut self.unknowns, dynamics, forces, statics, &residual)?;
             }
             let mut step = self.tangent.step(&self.unknowns, dynamics, statics, &residual);
-            let too_far = |[x, y]: &[f64; 2]| x.hypot(*y) > statics.longest_step;
+            let too_far = |[x, y]: &[f64; 2]| libm::hypot(*x, *y) > statics.longest_step;
             if old && step.iter().any(too_far) {
                 // A body was held for a smaller force than it has now.
                 self.tangent.factorise(&mut self.unknowns, dynamics, forces, statics, &residual)?;

@@ -73,13 +73,13 @@ impl StructuralDamping {
         )?;
         check("lower end of the damped band [Hz]", from, from > 0.0, "positive")?;
         check("upper end of the damped band [Hz]", to, to > from, "above the lower end")?;
-        let width = (to / from).ln();
+        let width = libm::log(to / from);
         let (least, most) = (LEAST_SPREAD * width, width + BEYOND);
         let fits = (0..SPREADS).filter_map(|i| {
             let spread = least + (most - least) * i as f64 / (SPREADS - 1) as f64;
             // One branch stands in the middle.
             let place = |b: usize| (b as f64 - 0.5 * (branches - 1) as f64) / (branches - 1).max(1) as f64;
-            let frequency = |b: usize| (from * to).sqrt() * (spread * place(b)).exp();
+            let frequency = |b: usize| (from * to).sqrt() * libm::exp(spread * place(b));
             let times: Vec<f64> = (0..branches).map(|b| 1.0 / (TAU * frequency(b))).collect();
             fitted(ratio, [from, to], &times)
         });
@@ -173,7 +173,7 @@ fn relaxed(wt: f64) -> [f64; 2] {
 
 /// Frequencies [Hz] over a band, both ends included.
 fn frequencies([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
-    (0..SAMPLES).map(move |i| from * (to / from).powf(i as f64 / (SAMPLES - 1) as f64))
+    (0..SAMPLES).map(move |i| from * libm::pow(to / from, i as f64 / (SAMPLES - 1) as f64))
 }
 
 /// The branches with these relaxation times [s] that are nearest to a ratio over a band [Hz], and how far off

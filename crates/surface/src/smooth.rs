@@ -64,9 +64,9 @@ pub fn rises(smoothing: Smoothing, at: &Vertices<'_>, corner: &[bool]) -> Vec<Ri
 /// A parabola through the middle of the arc: for 112 facets a turn it is nowhere 0.1 nm off.
 fn arc(at: &Vertices<'_>, f: usize, [cx, cy]: [f64; 2]) -> Rise {
     let ([ax, ay], [bx, by]) = at.ends(f);
-    let (from, to) = ((ax - cx).hypot(ay - cy), (bx - cx).hypot(by - cy));
+    let (from, to) = (libm::hypot(ax - cx, ay - cy), libm::hypot(bx - cx, by - cy));
     let (tx, ty) = (bx - ax, by - ay);
-    let length = tx.hypot(ty);
+    let length = libm::hypot(tx, ty);
     let (mx, my) = (0.5 * (ax + bx) - cx, 0.5 * (ay + by) - cy);
     if (from - to).abs() > LEAN * length || 0.5 * length >= from.min(to) {
         return [0.0; 2];
@@ -91,8 +91,8 @@ fn nagata(at: &Vertices<'_>, corner: &[bool]) -> Vec<Rise> {
     // vertex, shared in proportion to the lengths, as on a circle.
     let share = |f: usize, g: usize, of: usize| {
         let (p, q) = (along(f), along(g));
-        let turn = (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1]);
-        let length = |t: [f64; 2]| t[0].hypot(t[1]);
+        let turn = libm::atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1]);
+        let length = |t: [f64; 2]| libm::hypot(t[0], t[1]);
         turn * length(along(of)) / (length(p) + length(q))
     };
     (0..n)
@@ -107,9 +107,9 @@ fn nagata(at: &Vertices<'_>, corner: &[bool]) -> Vec<Rise> {
                 (None, Some(b)) => (b, b),
                 (None, None) => (0.0, 0.0),
             };
-            let length = along(f)[0].hypot(along(f)[1]);
+            let length = libm::hypot(along(f)[0], along(f)[1]);
             // A curve that turns left (convex) starts to the right of its chord, outwards.
-            [start.tan() * length, -end.tan() * length]
+            [libm::tan(start) * length, -libm::tan(end) * length]
         })
         .collect()
 }

@@ -48,7 +48,7 @@ impl Facet for SplineFacet {
         let foot = self.foot(p);
         let inside = (0.0..=1.0).contains(&foot.place);
         let end = self.patch.curve.value(foot.place.clamp(0.0, 1.0));
-        let distance = if inside { foot.gap.abs() } else { (p[0] - end[0]).hypot(p[1] - end[1]) };
+        let distance = if inside { foot.gap.abs() } else { libm::hypot(p[0] - end[0], p[1] - end[1]) };
         Closest { foot, distance, inside }
     }
 

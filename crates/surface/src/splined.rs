@@ -31,7 +31,7 @@ fn height_to(surface: &Surface, x: &[f64], y: &[f64], facet: usize, patch: &Patc
         let point = patch.point(s, height);
         let mut chord = ChordFacet::new(surface, x, y, facet);
         let Some(foot) = find_foot(&mut chord, surface, x, y, point.at) else { break };
-        height -= foot.gap / foot.normal[0].hypot(foot.normal[1]);
+        height -= foot.gap / libm::hypot(foot.normal[0], foot.normal[1]);
     }
     height
 }

@@ -61,7 +61,7 @@ impl Surface {
             let ([ax, ay], [bx, by]) = at.ends(f);
             [bx - ax, by - ay]
         };
-        let length: Vec<f64> = (0..at.facets()).map(|f| along(f)[0].hypot(along(f)[1])).collect();
+        let length: Vec<f64> = (0..at.facets()).map(|f| libm::hypot(along(f)[0], along(f)[1])).collect();
         if !length.iter().all(|&l| l > 0.0 && l.is_finite()) {
             return Err(Error::BadSurface { name, reason: "has a facet of no length" });
         }
@@ -263,7 +263,7 @@ fn turns(at: &Vertices<'_>, directions: impl Fn(usize) -> [[f64; 2]; 2]) -> Vec<
                 return std::f64::consts::PI;
             }
             let (p, q) = (directions((v + facets - 1) % facets)[1], directions(v % facets)[0]);
-            (p[0] * q[1] - p[1] * q[0]).atan2(p[0] * q[0] + p[1] * q[1])
+            libm::atan2(p[0] * q[1] - p[1] * q[0], p[0] * q[0] + p[1] * q[1])
         })
         .collect()
 }

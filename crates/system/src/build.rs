@@ -66,7 +66,7 @@ impl Plan {
         let facets = touching.iter().flat_map(|s| (0..s.surface.facets()).map(|f| s.surface.facet(f)));
         let shortest_facet = facets
             .map(|ends| ends.map(|n| n as usize))
-            .map(|[a, b]| (model.mesh.x[a] - model.mesh.x[b]).hypot(model.mesh.y[a] - model.mesh.y[b]))
+            .map(|[a, b]| libm::hypot(model.mesh.x[a] - model.mesh.x[b], model.mesh.y[a] - model.mesh.y[b]))
             .fold(f64::INFINITY, f64::min);
         let specs = pairs.iter().map(|pair| spec(pair, &touching)).collect::<Result<Vec<_>, _>>()?;
         let mut contacts = None;

@@ -61,6 +61,8 @@
 //! | What does it take to continue? | `snapshot.rs` |
 //! | Which threads do the work? | `workers.rs` |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 mod build;
 mod error;
 mod forces;

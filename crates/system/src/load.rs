@@ -32,7 +32,7 @@ impl Load {
 
     /// Σ of the magnitudes at a factor of one [N].
     pub(crate) fn magnitude(&self) -> f64 {
-        self.pushes.iter().map(|(_, fx, fy)| fx.hypot(*fy)).sum()
+        self.pushes.iter().map(|(_, fx, fy)| libm::hypot(*fx, *fy)).sum()
     }
 }
 

@@ -84,7 +84,7 @@ impl System {
     pub fn fastest_node(&self) -> (u32, f64) {
         let d = &self.dynamics;
         let s = &d.state;
-        let speed = |n: usize| s.vx[n].hypot(s.vy[n]);
+        let speed = |n: usize| libm::hypot(s.vx[n], s.vy[n]);
         let worse = |a: usize, b: usize| if speed(a) >= speed(b) || speed(a).is_nan() { a } else { b };
         let worst = (0..s.x.len()).filter(|&n| d.mass()[n] > 0.0).reduce(worse).unwrap_or(0);
         (d.layout().node_of_slot[worst].unwrap_or(0), speed(worst))

@@ -149,6 +149,6 @@ impl System {
         let [gx, gy] = self.dynamics.gravity();
         let loads: f64 =
             self.forces.loads.iter().map(|load| load.magnitude() * load.memory.factor.abs()).sum();
-        loads + gx.hypot(gy) * self.dynamics.mass().iter().sum::<f64>()
+        loads + libm::hypot(gx, gy) * self.dynamics.mass().iter().sum::<f64>()
     }
 }

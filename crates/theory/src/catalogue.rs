@@ -86,7 +86,7 @@ const FILLING_DEG: f64 = 186.0;
 /// Number of balls that can be filled into a deep groove bearing while its rings lie against each other:
 /// right for all of the catalogue whose number is known.
 pub fn filled(pitch_mm: f64, diameter_mm: f64) -> usize {
-    let one = 2.0 * (diameter_mm / pitch_mm).min(1.0).asin();
+    let one = 2.0 * libm::asin((diameter_mm / pitch_mm).min(1.0));
     (1.0 + FILLING_DEG.to_radians() / one).round() as usize
 }
 
@@ -171,7 +171,7 @@ impl CatalogueBearing {
 
     /// The most that find room on the pitch circle.
     fn most_elements(&self) -> u32 {
-        (PI / (self.diameter_mm / self.pitch_mm).asin() + 1e-9) as u32
+        (PI / libm::asin(self.diameter_mm / self.pitch_mm) + 1e-9) as u32
     }
 
     fn has_sane_diameters(&self) -> bool {
@@ -293,7 +293,7 @@ impl CatalogueBearing {
                 self.name
             ));
         };
-        let ratio = self.diameter_mm / self.pitch_mm * self.angle_deg.to_radians().cos();
+        let ratio = self.diameter_mm / self.pitch_mm * libm::cos(self.angle_deg.to_radians());
         let half = 0.5 * f64::from(elements);
         Ok(DefectOrders {
             bpfo: half * (1.0 - ratio),

@@ -80,7 +80,7 @@ impl ContactLaw {
                 Law::Power { factors, power: 2.0 / 3.0 }
             }
             ContactLawKind::Palmgren => {
-                let factor = 3.84e-8 * (1e3 * bearing.thickness).powf(-0.8);
+                let factor = 3.84e-8 * libm::pow(1e3 * bearing.thickness, -0.8);
                 Law::Power { factors: [factor; 2], power: 0.9 }
             }
         })
@@ -99,7 +99,7 @@ impl ContactLaw {
                 (approach, steeper * slope / length)
             }
             Law::Power { factors, power } => {
-                let approach = factors[side] * force.powf(*power);
+                let approach = factors[side] * libm::pow(force, *power);
                 (approach, power * approach / force)
             }
         }
@@ -123,7 +123,7 @@ impl ContactLaw {
                 Some((force, stiffness, force * delta - self.complement(force)))
             }
             Law::Power { factors: [outer, inner], power } => {
-                let force = (delta / (outer + inner)).powf(power.recip());
+                let force = libm::pow(delta / (outer + inner), power.recip());
                 Some((force, force / (power * delta), power / (1.0 + power) * force * delta))
             }
         }
@@ -196,9 +196,9 @@ fn relieved(straight: f64, a: f64) -> (f64, f64) {
     }
     let f = straight / (2.0 * a);
     // Never below the root, from where Newton's method does not pass it.
-    let mut y = f + (3.0 * f).cbrt().min(1.0);
+    let mut y = f + libm::cbrt(3.0 * f).min(1.0);
     for _ in 0..50 {
-        let t = y.tanh();
+        let t = libm::tanh(y);
         let square = y * y;
         let series = 1.0 / 3.0 - square * (2.0 / 15.0 - square * (17.0 / 315.0 - square * 62.0 / 2835.0));
         let over = if y < 0.02 { y * square * series } else { y - t };
@@ -208,8 +208,12 @@ fn relieved(straight: f64, a: f64) -> (f64, f64) {
             break;
         }
     }
-    let log_cosh = if y < 1.0 { 0.5 * y.sinh().powi(2).ln_1p() } else { y - LN_2 + (-2.0 * y).exp().ln_1p() };
-    (2.0 * a * log_cosh, y.tanh().recip())
+    let log_cosh = if y < 1.0 {
+        0.5 * libm::log1p(libm::sinh(y).powi(2))
+    } else {
+        y - LN_2 + libm::log1p(libm::exp(-2.0 * y))
+    };
+    (2.0 * a * log_cosh, libm::tanh(y).recip())
 }
 
 /// Mass of a rolling element [kg]: of a ball, or of a cylinder as long as the model is thick.

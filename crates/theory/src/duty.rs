@@ -131,7 +131,7 @@ impl Duty {
     /// Component of the rotating load along a direction [N].
     fn rotating_along(&self, [x, y]: [f64; 2], time_s: f64) -> Option<f64> {
         self.rotating.map(|(force, angle)| {
-            let (s, c) = (angle + self.shaft_rad(time_s)).sin_cos();
+            let (s, c) = libm::sincos(angle + self.shaft_rad(time_s));
             force * (c * x + s * y)
         })
     }
@@ -244,7 +244,9 @@ impl Course {
     pub fn value(&self, at: f64) -> f64 {
         match self {
             Self::Constant(value) => *value,
-            Self::Harmonic { mean, amplitude, omega, phase } => mean + amplitude * (omega * at + phase).sin(),
+            Self::Harmonic { mean, amplitude, omega, phase } => {
+                mean + amplitude * libm::sin(omega * at + phase)
+            }
             Self::Lines(Lines { time, value, .. }) => {
                 let after = time.partition_point(|t| *t <= at);
                 match (after.checked_sub(1), value.get(after)) {
@@ -266,7 +268,7 @@ impl Course {
             Self::Harmonic { mean, amplitude, omega, phase } => {
                 // cos φ − cos(ωt + φ) as a product, which does not cancel.
                 let half = 0.5 * omega * to;
-                mean * to + 2.0 * amplitude / omega * half.sin() * (half + phase).sin()
+                mean * to + 2.0 * amplitude / omega * libm::sin(half) * libm::sin(half + phase)
             }
             Self::Lines(Lines { time, value, integral }) => {
                 let from_first = |at: f64| {
@@ -289,8 +291,8 @@ impl Course {
             _ if width <= 0.0 => self.value(from),
             Self::Harmonic { mean, amplitude, omega, phase } => {
                 let half = 0.5 * omega * width;
-                let flattened = if half > 0.0 { half.sin() / half } else { 1.0 };
-                mean + amplitude * flattened * (omega * (from + 0.5 * width) + phase).sin()
+                let flattened = if half > 0.0 { libm::sin(half) / half } else { 1.0 };
+                mean + amplitude * flattened * libm::sin(omega * (from + 0.5 * width) + phase)
             }
             Self::Lines(Lines { time, .. }) => {
                 // Whole lines by their middle; a corner inside cuts the interval.

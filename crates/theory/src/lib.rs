@@ -28,6 +28,8 @@
 //! | How far do raceways approach each other? | [`contact_law`], [`line_contact`], [`point_contact`] |
 //! | How thick is the oil, how much may a bearing carry? | [`lubrication`], [`load_rating`] |
 
+#![cfg_attr(not(test), deny(clippy::disallowed_methods))]
+
 pub mod bearing;
 pub mod catalogue;
 pub mod duty;

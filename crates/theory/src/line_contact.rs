@@ -74,9 +74,9 @@ impl LineContacts {
 
     /// Approach over line load [m²/N] of bodies that are pressed over a half-width [m].
     fn flexibility(&self, side: usize, half_width: f64) -> f64 {
-        let roller = 2.0 * (4.0 * self.roller / half_width).ln() - 1.0;
+        let roller = 2.0 * libm::log(4.0 * self.roller / half_width) - 1.0;
         let of_ring =
-            |depth: f64| 2.0 * (2.0 * depth / half_width).ln() - self.poisson / (1.0 - self.poisson);
+            |depth: f64| 2.0 * libm::log(2.0 * depth / half_width) - self.poisson / (1.0 - self.poisson);
         self.softness * (roller + self.sides[side].1.map_or(0.0, of_ring))
     }
 
@@ -91,7 +91,7 @@ impl LineContacts {
     /// contacts this meets within 3 % (THEORY §6.2).
     pub fn approach_on_mesh(&self, side: usize, w: f64, facet: f64, stiffness: f64) -> f64 {
         let (radius, _) = self.sides[side];
-        let depth = (0.75 * w / (stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
+        let depth = libm::pow(0.75 * w / (stiffness * (2.0 * radius).sqrt()), 2.0 / 3.0);
         let widened = WIDTH_BY_PENALTY * 2.0 * radius * depth + (WIDTH_BY_FACET * facet).powi(2);
         depth + w * self.flexibility(side, (self.half_width(side, w).powi(2) + widened).sqrt())
     }

@@ -83,7 +83,7 @@ fn least_thickness(
 ) -> f64 {
     let stiff = modulus * radius;
     let (g, u, w) = (pressure_viscosity * modulus, viscosity * speed / stiff, load / stiff);
-    2.65 * radius * g.powf(0.54) * u.powf(0.7) * w.powf(-0.13)
+    2.65 * radius * libm::pow(g, 0.54) * libm::pow(u, 0.7) * libm::pow(w, -0.13)
 }
 
 #[cfg(test)]

@@ -13,8 +13,8 @@ pub const CONFORMITY: f64 = 0.52;
 /// 105, 171–177: fits of the elliptic integrals, within 2 % for balls in grooves.
 pub fn approach(ball_radius: f64, across: f64, groove: f64, load: f64, modulus: f64) -> f64 {
     let Ellipse { ratio, ellipticity, second, radius } = Ellipse::of(ball_radius, across, groove);
-    let first = 1.5277 + 0.6023 * ratio.ln();
-    first * (4.5 / (second * radius) * (load / (PI * ellipticity * modulus)).powi(2)).cbrt()
+    let first = 1.5277 + 0.6023 * libm::log(ratio);
+    first * libm::cbrt(4.5 / (second * radius) * (load / (PI * ellipticity * modulus)).powi(2))
 }
 
 /// Half of the width of this contact across the raceway [m], its larger semi-axis.
@@ -22,7 +22,7 @@ pub fn approach(ball_radius: f64, across: f64, groove: f64, load: f64, modulus: 
 /// Source: as [`approach`], whose D_y is twice this.
 pub fn half_width(ball_radius: f64, across: f64, groove: f64, load: f64, modulus: f64) -> f64 {
     let Ellipse { ellipticity, second, radius, .. } = Ellipse::of(ball_radius, across, groove);
-    (6.0 * ellipticity.powi(2) * second * load * radius / (PI * modulus)).cbrt()
+    libm::cbrt(6.0 * ellipticity.powi(2) * second * load * radius / (PI * modulus))
 }
 
 /// Shape of a contact.
@@ -44,7 +44,7 @@ impl Ellipse {
         let ratio = beside / along;
         Self {
             ratio,
-            ellipticity: 1.0339 * ratio.powf(0.6360),
+            ellipticity: 1.0339 * libm::pow(ratio, 0.6360),
             second: 1.0003 + 0.5968 / ratio,
             radius: 1.0 / (1.0 / along + 1.0 / beside),
         }

@@ -99,7 +99,7 @@ impl TurningRings {
         // In a frame whose y axis points to the middle of the load zone.
         let directions: Vec<[f64; 2]> = (0..self.elements)
             .map(|i| FRAC_PI_2 + TAU * i as f64 / self.elements as f64 + self.sense * cage)
-            .map(|angle| [angle.cos(), angle.sin()])
+            .map(|angle| [libm::cos(angle), libm::sin(angle)])
             .collect();
         let (alone, _) = self.law.approach(0, load_n + self.outwards_n);
         let reach = self.clearance_m.abs() + alone + self.law.approach(1, load_n).0;
@@ -153,7 +153,7 @@ impl TurningRings {
 
     /// A state in fixed axes.
     fn state(&self, shift: [f64; 2], carried: &Carried) -> RingState {
-        let (s, c) = (self.load_zone - FRAC_PI_2).sin_cos();
+        let (s, c) = libm::sincos(self.load_zone - FRAC_PI_2);
         let [xx, xy, yy] = carried.stiffness;
         RingState {
             shift_m: [c * shift[0] - s * shift[1], s * shift[0] + c * shift[1]],
@@ -179,7 +179,7 @@ struct Carried {
 
 impl Carried {
     fn unbalanced(&self) -> f64 {
-        self.left[0].hypot(self.left[1])
+        libm::hypot(self.left[0], self.left[1])
     }
 
     /// Whether the force that is left pushes on along a step; not where the law of contact ends.
@@ -199,6 +199,6 @@ impl Carried {
             [(yy * fx - xy * fy) / determinant, (xx * fy - xy * fx) / determinant]
         };
         let step = solved(trace);
-        if step[0].hypot(step[1]) <= reach { step } else { solved(trace + self.unbalanced() / reach) }
+        if libm::hypot(step[0], step[1]) <= reach { step } else { solved(trace + self.unbalanced() / reach) }
     }
 }

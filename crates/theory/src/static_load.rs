@@ -102,8 +102,10 @@ impl RigidRings {
                     missing or over a defect",
             });
         }
-        let directions: Vec<[f64; 2]> =
-            angles_deg.iter().map(|angle| [angle.to_radians().cos(), angle.to_radians().sin()]).collect();
+        let directions: Vec<[f64; 2]> = angles_deg
+            .iter()
+            .map(|angle| [libm::cos(angle.to_radians()), libm::sin(angle.to_radians())])
+            .collect();
         self.newton(load_n, &directions)
     }
 
@@ -139,7 +141,7 @@ impl RigidRings {
     /// Force [N] that rounding of the displacement leaves: a light load cannot be balanced better.
     fn rounding(&self, shift: [f64; 2], residual: &Residual) -> f64 {
         let [xx, _, yy] = residual.stiffness;
-        2.0 * f64::EPSILON * (xx + yy) * (shift[0].hypot(shift[1]) + self.clearance_m.abs())
+        2.0 * f64::EPSILON * (xx + yy) * (libm::hypot(shift[0], shift[1]) + self.clearance_m.abs())
     }
 
     /// Approach at a roller [m]: the outer ring moves against the roller's direction, less the clearance.
@@ -188,7 +190,7 @@ struct Residual {
 
 impl Residual {
     fn force(&self) -> f64 {
-        self.unbalanced[0].hypot(self.unbalanced[1])
+        libm::hypot(self.unbalanced[0], self.unbalanced[1])
     }
 
     /// Displacement that balances the linearised forces [m], no longer than `reach` [m].
@@ -197,7 +199,11 @@ impl Residual {
         let trace = 1e-9 * (self.stiffness[0] + self.stiffness[2]) + f64::MIN_POSITIVE;
         let step = self.balanced_with(trace);
         // Springs of this stiffness alone would let it go as far as that.
-        if step[0].hypot(step[1]) <= reach { step } else { self.balanced_with(trace + self.force() / reach) }
+        if libm::hypot(step[0], step[1]) <= reach {
+            step
+        } else {
+            self.balanced_with(trace + self.force() / reach)
+        }
     }
 
     /// The same with springs `more` [N/m] in all directions.

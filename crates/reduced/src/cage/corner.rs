@@ -23,7 +23,7 @@ impl Corner {
     /// go along it, with the other side of the corner at a right angle. The wall has facets of the length
     /// `facet` with `points` each, or, collocated, one at either end.
     pub(crate) fn new(d: [f64; 2], facet: f64, points: Option<usize>) -> Self {
-        let distance = d[0].hypot(d[1]);
+        let distance = libm::hypot(d[0], d[1]);
         let (cosine, sine) = ((d[1] / distance).abs().max(1e-3), (d[0] / distance).abs().max(1e-3));
         let (lean, bend) = (sine, 0.5 * cosine * cosine / distance);
         // The cut is depth (cot a + tan a) long, between sides at the angles a and 90° − a to the facet; what

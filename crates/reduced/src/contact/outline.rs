@@ -35,7 +35,7 @@ impl Outline {
         let reversed = |c: usize| repeated(c).into_iter().rev().collect();
         let is_wall = |i: usize| {
             let [[ax, ay], [bx, by]] = [vertices[i % n], vertices[(i + 1) % n]];
-            let (length, radius) = ((bx - ax).hypot(by - ay), (ax + bx).hypot(ay + by));
+            let (length, radius) = (libm::hypot(bx - ax, by - ay), libm::hypot(ax + bx, ay + by));
             (by - ay) * (ax + bx) - (bx - ax) * (ay + by) <= WALL * length * radius
         };
         Self {
@@ -67,7 +67,7 @@ impl Outline {
 
     /// Distances of the vertices from the origin [m].
     pub(crate) fn radii(&self) -> impl Iterator<Item = f64> {
-        self.x.iter().zip(&self.y).map(|(x, y)| x.hypot(*y))
+        self.x.iter().zip(&self.y).map(|(x, y)| libm::hypot(*x, *y))
     }
 
     /// Vertices.

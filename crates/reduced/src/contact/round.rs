@@ -120,14 +120,14 @@ impl Relief {
         let n = outline.len();
         let outwards = if along { 1.0 } else { -1.0 };
         let place = |vertex: usize| [outline.x[vertex], outline.y[vertex]];
-        let depth = |vertex: usize| outwards * (outline.x[vertex].hypot(outline.y[vertex]) - radius);
+        let depth = |vertex: usize| outwards * (libm::hypot(outline.x[vertex], outline.y[vertex]) - radius);
         let mut relief = Self { radius, roller, outwards, pieces: Vec::new(), of_facet: vec![0; n] };
         let mut joins = false;
         for step in 0..n {
             let facet = if along { step } else { n - 1 - step };
             let [a, b] = if along { [facet, outline.next(facet)] } else { [outline.next(facet), facet] };
             let [[ax, ay], [bx, by]] = [place(a), place(b)];
-            let (length, far) = ((bx - ax).hypot(by - ay), (ax + bx).hypot(ay + by));
+            let (length, far) = (libm::hypot(bx - ax, by - ay), libm::hypot(ax + bx, ay + by));
             let around = outwards * ((by - ay) * (ax + bx) - (bx - ax) * (ay + by));
             if around <= WALL * length * far {
                 joins = false;
@@ -136,7 +136,7 @@ impl Relief {
                 let level = (to - from).abs() < ONE_DEPTH;
                 let goes_on = |last: &&mut Piece| {
                     let [x, y] = last.ends[0];
-                    let near = x * bx + y * by > WIDEST * x.hypot(y) * bx.hypot(by);
+                    let near = x * bx + y * by > WIDEST * libm::hypot(x, y) * libm::hypot(bx, by);
                     let depths = [last.depth[0], last.depth[1], to];
                     near && level && depths.iter().all(|depth| (depth - from).abs() < ONE_DEPTH)
                 };
@@ -497,7 +497,7 @@ pub(crate) fn circle_of(outline: &Outline, radius: f64) -> ([f64; 2], f64) {
         // x² + y² = 2 x cx + 2 y cy + r² − c², in units of the radius.
         let (mut matrix, mut right) = ([0.0; 9], [0.0; 3]);
         for (x, y) in outline.x.iter().zip(&outline.y) {
-            if ((x - centre[0]).hypot(y - centre[1]) - found).abs() > within {
+            if (libm::hypot(x - centre[0], y - centre[1]) - found).abs() > within {
                 continue;
             }
             let [x, y] = [x / radius, y / radius];
@@ -510,7 +510,7 @@ pub(crate) fn circle_of(outline: &Outline, radius: f64) -> ([f64; 2], f64) {
         let solved = dense::solve(&matrix, &right);
         centre = [radius * solved[0], radius * solved[1]];
         found = radius * (solved[2] + solved[0] * solved[0] + solved[1] * solved[1]).sqrt();
-        let off = |(x, y): (&f64, &f64)| ((x - centre[0]).hypot(y - centre[1]) - found).abs();
+        let off = |(x, y): (&f64, &f64)| (libm::hypot(x - centre[0], y - centre[1]) - found).abs();
         let mut all: Vec<f64> = outline.x.iter().zip(&outline.y).map(off).collect();
         all.sort_by(f64::total_cmp);
         within = 3.0 * all[all.len() / 2] + ONE_DEPTH;

@@ -47,7 +47,7 @@ impl Traction {
         let root = normal.max(all(0.0)).sqrt();
         let mut thicker = [0.0; LANES];
         (root * all(self.thickens / self.half_width)).store(&mut thicker, 0);
-        let thicker = thicker.map(|exponent| exponent.min(SOLID).exp());
+        let thicker = thicker.map(|exponent| libm::exp(exponent.min(SOLID)));
         all(self.flow * self.half_width) * root * Vector::load(simd, &thicker, 0)
     }
 }

@@ -88,7 +88,7 @@ impl Compliance {
 /// Length 2a [m] of a round contact with the relative radius R [m] under a load F [N] on a penalty k t
 /// [N/m²]: F = ⅔ k t a³/R.
 pub fn contact_length(load: f64, penalty: f64, radius: f64) -> f64 {
-    2.0 * (1.5 * load * radius / penalty).cbrt()
+    2.0 * libm::cbrt(1.5 * load * radius / penalty)
 }
 
 /// The curve C(F), piece by piece.

@@ -10,7 +10,7 @@ pub fn per_angle(vertices: &[[f64; 2]]) -> Vec<f64> {
     (0..n)
         .map(|i| {
             let ([ax, ay], [bx, by]) = (vertices[i], vertices[(i + 1) % n]);
-            let angle = (ax * by - ay * bx).atan2(ax * bx + ay * by);
+            let angle = libm::atan2(ax * by - ay * bx, ax * bx + ay * by);
             if angle > WALL * std::f64::consts::TAU / n as f64 { 1.0 / angle } else { 0.0 }
         })
         .collect()

@@ -26,7 +26,7 @@ impl BodySpring {
     /// Of bodies with the relative radius R [m] on a penalty [N/m²].
     pub(crate) fn new(penalty: f64, radius: f64, compliance: &Compliance) -> Self {
         Self {
-            softness: (4.0 / 3.0 * penalty * (2.0 * radius).sqrt()).powf(-2.0 / 3.0),
+            softness: libm::pow(4.0 / 3.0 * penalty * (2.0 * radius).sqrt(), -2.0 / 3.0),
             curve: compliance.curve(),
             stiffest: compliance.stiffest(penalty, radius),
         }
@@ -61,11 +61,11 @@ impl Spring for BodySpring {
     }
 
     fn force_near(&self, depth: f64, guess: f64) -> f64 {
-        if depth > 0.0 && guess > 0.0 { self.seek(depth, guess.cbrt()) } else { self.force(depth) }
+        if depth > 0.0 && guess > 0.0 { self.seek(depth, libm::cbrt(guess)) } else { self.force(depth) }
     }
 
     fn depth(&self, force: f64) -> (f64, f64) {
-        let root = force.cbrt();
+        let root = libm::cbrt(force);
         let ([given, give], _) = self.curve.approach(force);
         (self.softness * root * root + given, self.softness / (1.5 * root) + give)
     }
@@ -76,7 +76,7 @@ impl Spring for BodySpring {
 
     fn energy(&self, depth: f64) -> f64 {
         let force = self.force(depth);
-        let root = force.cbrt();
+        let root = libm::cbrt(force);
         0.4 * self.softness * force * root * root + self.curve.energy(force)
     }
 }

@@ -220,7 +220,7 @@ impl Block {
         }
         if (self.first..self.first + self.count).contains(&anew) {
             let lane = anew - self.first;
-            let (s, c) = (self.angle[lane] + rollers.starts[anew].vertex_angle).sin_cos();
+            let (s, c) = libm::sincos(self.angle[lane] + rollers.starts[anew].vertex_angle);
             (self.turned[0][lane], self.turned[1][lane]) = (c, s);
         }
     }

@@ -67,18 +67,18 @@ impl Polygon {
         let half = std::f64::consts::PI / facets as f64;
         let rounded = 2.0 * half * ROUNDED;
         let direction = |angle: f64| {
-            let (s, c) = angle.sin_cos();
+            let (s, c) = libm::sincos(angle);
             [c, s]
         };
         let middle = |facet: usize| direction(half * (2 * facet + 1) as f64);
         Self {
-            apothem: radius * half.cos(),
+            apothem: radius * libm::cos(half),
             half,
             rounded,
             middles: (0..facets).map(middle).collect(),
             half_turn: direction(half),
             turn: direction(2.0 * half),
-            sine_sharp: (half - rounded).sin(),
+            sine_sharp: libm::sin(half - rounded),
         }
     }
 
@@ -93,10 +93,10 @@ impl Polygon {
         }
         // Beside a vertex the distance from it is that of a parabola, which is even there and goes on
         // smoothly.
-        let tilt = sine.asin();
+        let tilt = libm::asin(sine);
         let from_vertex = self.half - tilt.abs();
         let smooth = 0.5 * (from_vertex * from_vertex / self.rounded + self.rounded);
-        let (sine, cosine) = (self.half - smooth).copysign(tilt).sin_cos();
+        let (sine, cosine) = libm::sincos((self.half - smooth).copysign(tilt));
         (self.apothem - distance * cosine, [cosine, from_vertex / self.rounded * sine])
     }
 

@@ -241,7 +241,7 @@ fn add_rollers(
         };
         let relief = scene.roller_reliefs.iter().find(|(roller, _)| *roller == i);
         let turned = formed(turned, "rim", Circle::Outer, relief.map(|(_, relief)| relief))?;
-        let (s, c) = angle.sin_cos();
+        let (s, c) = libm::sincos(angle);
         Ok((i, mesh.add(format!("roller {number}"), &turned.translated(path * c, path * s))))
     };
     scene.written.rollers_in_place().map(add).collect()

@@ -76,9 +76,9 @@ fn polygon(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Vec<[f64; 2]> 
         return back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
     }
     let facet = TAU / back.nodes.len() as f64;
-    let radius = (scene.outer_race_radius + scene.outer_ring_thickness) / (0.5 * facet).cos();
+    let radius = (scene.outer_race_radius + scene.outer_ring_thickness) / libm::cos(0.5 * facet);
     (0..back.nodes.len())
-        .map(|i| (i as f64 * facet).sin_cos())
+        .map(|i| libm::sincos(i as f64 * facet))
         .map(|(s, c)| [radius * c, radius * s])
         .collect()
 }

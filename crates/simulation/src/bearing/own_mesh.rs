@@ -139,7 +139,7 @@ impl<'a> OwnMesh<'a> {
 
     /// Distances of the nodes of a surface from the bearing's centre [m].
     fn radii(&self, surface: &Surface) -> Vec<f64> {
-        surface.nodes.iter().map(|&n| self.part.x[n as usize].hypot(self.part.y[n as usize])).collect()
+        surface.nodes.iter().map(|&n| libm::hypot(self.part.x[n as usize], self.part.y[n as usize])).collect()
     }
 
     /// The median of them, and the least; the largest where `sign` is below zero.

@@ -52,7 +52,7 @@ pub fn preload(
         undecided.push(UndecidedMotion { body: bearing.outer, along: None, rotation: true });
     }
     for roller in &bearing.rollers {
-        let (s, c) = scene.roller_angle(roller.pocket).sin_cos();
+        let (s, c) = libm::sincos(scene.roller_angle(roller.pocket));
         undecided.push(UndecidedMotion { body: roller.body, along: Some([-s, c]), rotation: true });
     }
     let mut preload = Preload {

@@ -26,7 +26,7 @@ pub(crate) fn suspend(
     let between =
         |a: u32, b: u32| [mesh.x[b as usize] - mesh.x[a as usize], mesh.y[b as usize] - mesh.y[a as usize]];
     let facets = (0..back.facets()).map(|f| back.facet(f)).map(|[a, b]| between(a, b));
-    let length: Vec<f64> = facets.map(|[x, y]| x.hypot(y)).collect();
+    let length: Vec<f64> = facets.map(|[x, y]| libm::hypot(x, y)).collect();
     let (around, n) = (length.iter().sum::<f64>(), length.len());
     let tie = |(i, &node): (usize, &u32)| {
         let share = 0.5 * (length[i] + length[(i + n - 1) % n]) / around;

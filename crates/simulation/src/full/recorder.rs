@@ -171,5 +171,5 @@ fn velocity(bearing: &BearingSystem, node: u32) -> [f64; 2] {
 fn rim_angle(bearing: &BearingSystem, roller: usize) -> f64 {
     let [[cx, cy], [x, y]] =
         [bearing.rollers[roller].centre, bearing.rollers[roller].rim].map(|n| bearing.system.position(n));
-    (y - cy).atan2(x - cx)
+    libm::atan2(y - cy, x - cx)
 }

@@ -197,7 +197,7 @@ impl Guards {
 
     /// Advice for a run that diverges.
     fn advice(&self) -> String {
-        let astray = self.placed.cage.map_or(0.0, |cage| cage.offset[0].hypot(cage.offset[1]));
+        let astray = self.placed.cage.map_or(0.0, |cage| libm::hypot(cage.offset[0], cage.offset[1]));
         if astray > ASTRAY * self.roller_radius {
             return format!(
                 "The cage has strayed by {:.2} mm, and a wall of a pocket that goes past the middle of its \

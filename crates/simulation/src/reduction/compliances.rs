@@ -42,7 +42,7 @@ impl Size<'_> {
         let e_star = scene.material.youngs_modulus / (2.0 * (1.0 - scene.material.poissons_ratio.powi(2)));
         let q = self.most / scene.thickness;
         let hertz = 4.0 * q * radius / (PI * e_star);
-        let winkler = (1.5 * q * radius / scene.penalty_stiffness).powf(2.0 / 3.0);
+        let winkler = libm::pow(1.5 * q * radius / scene.penalty_stiffness, 2.0 / 3.0);
         (1.3 * (hertz + winkler).sqrt() / spacing).ceil() as usize + 2
     }
 }
@@ -123,7 +123,7 @@ fn beside_grooves(scene: &ResolvedScene) -> f64 {
 
 /// The vertex that lies nearest to an angle.
 fn vertex_at(outline: &[[f64; 2]], angle: f64) -> usize {
-    let (s, c) = angle.sin_cos();
+    let (s, c) = libm::sincos(angle);
     let along = |p: &[f64; 2]| direction(*p)[0] * c + direction(*p)[1] * s;
     (0..outline.len()).max_by(|&a, &b| along(&outline[a]).total_cmp(&along(&outline[b]))).unwrap_or(0)
 }
@@ -131,7 +131,7 @@ fn vertex_at(outline: &[[f64; 2]], angle: f64) -> usize {
 /// Length of the facet behind a vertex [m].
 fn facet(outline: &[[f64; 2]], at: usize) -> f64 {
     let [a, b] = [outline[at], outline[(at + 1) % outline.len()]];
-    (b[0] - a[0]).hypot(b[1] - a[1])
+    libm::hypot(b[0] - a[0], b[1] - a[1])
 }
 
 /// Nodes from `half` before to `half` behind one of a closed surface.

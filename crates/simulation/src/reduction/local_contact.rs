@@ -57,7 +57,7 @@ impl LocalContact<'_> {
     /// Approach of rigid surfaces on the penalty alone at a force [m]: q = k ∫(δ − x²/2R) dx = (4/3) k δ
     /// √(2Rδ).
     pub fn rigid(&self, force: f64) -> f64 {
-        (0.75 * force / (self.penalty * (2.0 * self.radius).sqrt())).powf(2.0 / 3.0)
+        libm::pow(0.75 * force / (self.penalty * (2.0 * self.radius).sqrt()), 2.0 / 3.0)
     }
 
     /// Nodes of both surfaces.

@@ -19,7 +19,7 @@ pub(crate) struct RacewayNode {
 pub(crate) fn nodes(extraction: &Extraction) -> Vec<RacewayNode> {
     let node = |&n: &u32| {
         let [x, y] = extraction.place(n);
-        let [nx, ny] = [x / x.hypot(y), y / x.hypot(y)];
+        let [nx, ny] = [x / libm::hypot(x, y), y / libm::hypot(x, y)];
         let [fx, fy] = extraction.contact_forces[n as usize];
         RacewayNode { slot: extraction.slot(n), normal: [nx, ny], force: nx * fx + ny * fy }
     };

@@ -164,7 +164,7 @@ fn panels(
 /// Vertices of a round roller that is not turned, counter-clockwise [m].
 fn round_rim(radius: f64, facets: usize) -> Vec<[f64; 2]> {
     (0..facets)
-        .map(|i| (TAU * i as f64 / facets as f64).sin_cos())
+        .map(|i| libm::sincos(TAU * i as f64 / facets as f64))
         .map(|(s, c)| [radius * c, radius * s])
         .collect()
 }

@@ -277,21 +277,21 @@ impl Panels {
         let angle_of = |spring: &Spring| {
             let sum = spring.slots.iter().map(|slot| place(*slot));
             let [x, y] = sum.fold([0.0; 2], |[x, y], [px, py]| [x + px, y + py]);
-            y.atan2(x)
+            libm::atan2(y, x)
         };
         let springs: Vec<(&Spring, f64)> =
             parts.springs.iter().map(|spring| (spring, angle_of(spring))).collect();
         // Angles count from the middle of the seat, so that none lies behind a full turn.
-        let [sx, sy] = springs.iter().fold([0.0; 2], |[x, y], (_, a)| [x + a.cos(), y + a.sin()]);
-        let middle = sy.atan2(sx);
+        let [sx, sy] = springs.iter().fold([0.0; 2], |[x, y], (_, a)| [x + libm::cos(*a), y + libm::sin(*a)]);
+        let middle = libm::atan2(sy, sx);
         let from_middle = |angle: f64| {
-            let (s, c) = (angle - middle).sin_cos();
-            s.atan2(c)
+            let (s, c) = libm::sincos(angle - middle);
+            libm::atan2(s, c)
         };
         let all = springs.iter().map(|(_, angle)| from_middle(*angle));
         let [first, last] = all.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], at| [a.min(at), b.max(at)]);
         let [x, y] = place(*parts.springs.first()?.slots.first()?);
-        let width = WIDTH * parts.thickness / x.hypot(y);
+        let width = WIDTH * parts.thickness / libm::hypot(x, y);
         // An odd number of them, counted from the middle: the mirrored seat has mirrored panels.
         let half = (0.5 * (last - first) / width).ceil().clamp(PANELS[0], PANELS[1]);
         let count = 2 * half as usize + 1;
@@ -361,11 +361,11 @@ fn pressing(parts: &Parts<'_>) -> Vec<f64> {
     let mut inwards = vec![0.0; parts.x.len()];
     for (slot, [fx, fy]) in parts.back {
         let [x, y] = [parts.x[*slot as usize], parts.y[*slot as usize]];
-        inwards[*slot as usize] = -(fx * x + fy * y) / x.hypot(y);
+        inwards[*slot as usize] = -(fx * x + fy * y) / libm::hypot(x, y);
     }
     let reach = |spring: &Spring| -> Vec<(usize, f64)> {
         let nodes = spring.slots.iter().zip(spring.direction.chunks_exact(2));
-        let parts = nodes.map(|(slot, d)| (*slot as usize, spring.stiffness * d[0].hypot(d[1])));
+        let parts = nodes.map(|(slot, d)| (*slot as usize, spring.stiffness * libm::hypot(d[0], d[1])));
         parts.filter(|(_, stiffness)| *stiffness > 0.0).collect()
     };
     let mut held = vec![0.0; parts.x.len()];

@@ -198,7 +198,7 @@ impl Guards {
             // A position that is not a number lies in no range either. The root is taken only for the
             // message.
             if !(inner * inner..=outer * outer).contains(&(x * x + y * y)) {
-                let radius = x.hypot(*y);
+                let radius = libm::hypot(*x, *y);
                 let through = if radius < inner { "inner" } else { "outer" };
                 return Some(format!(
                     "roller {number} has gone through the {through} raceway: its centre is {:.3} mm from \
@@ -216,7 +216,7 @@ impl Guards {
         let room = self.cage?;
         self.jam(info, cage.push, when);
         self.slip(info, &room, cage.spin, when);
-        let off = cage.offset[0].hypot(cage.offset[1]);
+        let off = libm::hypot(cage.offset[0], cage.offset[1]);
         let before = info.guards.cage_offset_m;
         info.guards.cage_offset_m = before.max(off);
         if off > room.stop {
@@ -291,7 +291,7 @@ impl CageRoom {
 
 /// The largest of forces [N].
 pub fn largest(forces: impl Iterator<Item = [f64; 2]>) -> f64 {
-    forces.map(|[x, y]| x.hypot(y)).fold(0.0, f64::max)
+    forces.map(|[x, y]| libm::hypot(x, y)).fold(0.0, f64::max)
 }
 
 /// Time of an observation, formatted only for the few samples that need a message.

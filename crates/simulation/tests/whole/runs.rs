@@ -286,7 +286,7 @@ fn survives_an_interruption_with_its_samples() {
 /// anew.
 #[test]
 fn golden_coarse_bearing() {
-    // Sums over wide and narrow vectors and the system's sine and cosine round differently on another
+    // Sums over wide and narrow vectors round differently on another
     // machine, far below this; the preload, whose factorisation does too, is left out. A change of the
     // physics shows in the first digits.
     const TOLERANCE: f64 = 1e-6;

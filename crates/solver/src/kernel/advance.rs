@@ -323,8 +323,8 @@ pub(crate) fn rotate<D: Damping>(
     gravity: [f64; 2],
 ) -> f64 {
     // cos − 1 without cancellation: the angle of a step is about 1e-6.
-    let half = (0.5 * rate * dt).sin();
-    let (c1, s) = (-2.0 * half * half, (rate * dt).sin());
+    let half = libm::sin(0.5 * rate * dt);
+    let (c1, s) = (-2.0 * half * half, libm::sin(rate * dt));
     let [x, y] =
         if D::STIFFNESS { [&mut *nodes.own_x, &mut *nodes.own_y] } else { [&mut *nodes.x, &mut *nodes.y] };
     let mut work = 0.0;

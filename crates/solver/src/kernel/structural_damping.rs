@@ -46,9 +46,9 @@ impl Evaluation {
         let mut all = [BranchStep::default(); MAX_BRANCHES];
         for (to, &Branch { stiffness, relaxation_time }) in all.iter_mut().zip(branches) {
             *to = BranchStep {
-                keep: (-passed / relaxation_time).exp(),
+                keep: libm::exp(-passed / relaxation_time),
                 weight: stiffness / sum,
-                back: 0.5 * (dt / relaxation_time).exp_m1(),
+                back: 0.5 * libm::expm1(dt / relaxation_time),
             };
         }
         Self {
@@ -155,7 +155,7 @@ fn follow<S: Simd>(
 ) {
     let turned = |time: f64| {
         let angles = structural.spin.map(|spin| spin * time);
-        (angles.map(f64::cos), angles.map(f64::sin))
+        (angles.map(libm::cos), angles.map(libm::sin))
     };
     let ((cos, sin), (cos_ahead, sin_ahead)) = (turned(evaluation.since), turned(evaluation.middle));
     let keep = if evaluation.first { 0.0 } else { keep };

@@ -127,7 +127,7 @@ impl Cutter<'_> {
             let (x, y) = (p[0] - centre[0], p[1] - centre[1]);
             (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
         }
-        let (sin, cos) = (0.5 * (2.0 * xy).atan2(xx - yy)).sin_cos();
+        let (sin, cos) = libm::sincos(0.5 * libm::atan2(2.0 * xy, xx - yy));
         [[cos, sin], [1.0, 0.0], [0.0, 1.0]]
     }
 

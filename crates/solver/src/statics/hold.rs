@@ -22,6 +22,6 @@ pub(super) fn hold(d: &Dynamics, slots: &[u32], force: &NodeForces, step: f64) -
         torque += (s.x[n] - body.centre[0]) * py - (s.y[n] - body.centre[1]) * px;
     }
     let gyration = (body.inertia / body.mass).sqrt();
-    let push = (fx.hypot(fy)).max(torque.abs() / gyration);
+    let push = (libm::hypot(fx, fy)).max(torque.abs() / gyration);
     (push / (body.mass * step)).max(LEAST_HOLD)
 }

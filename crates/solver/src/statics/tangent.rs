@@ -235,7 +235,7 @@ fn holds(unknowns: &Unknowns, d: &Dynamics, statics: &Statics, residual: &Residu
                 Some(along) => (along, TRACK_HOLD),
                 None => {
                     let r = [d.state.x[n] - centre[0], d.state.y[n] - centre[1]];
-                    let length = r[0].hypot(r[1]).max(f64::MIN_POSITIVE);
+                    let length = libm::hypot(r[0], r[1]).max(f64::MIN_POSITIVE);
                     ([-r[1] / length, r[0] / length], TURN_HOLD)
                 }
             };

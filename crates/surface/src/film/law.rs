@@ -145,7 +145,7 @@ impl<S: Spring> FilmLaw<S> {
         let above = layer.above;
         let dry = (-gap).max(0.0);
         let thickness = above + self.least;
-        let speed = speed.hypot(SLOWEST);
+        let speed = libm::hypot(speed, SLOWEST);
         let lift = self.wedge * speed * share / thickness;
         let rate = speed * thickness.sqrt() * self.slope;
         let before = layer.force;

@@ -81,7 +81,7 @@ impl Spring for Bed {
     #[inline]
     fn depth(&self, force: f64) -> (f64, f64) {
         if force < self.bend {
-            let root = (force / self.hardness).cbrt();
+            let root = libm::cbrt(force / self.hardness);
             (root * root, 1.0 / (1.5 * self.hardness * root))
         } else {
             (DEEPEST + (force - self.bend) / self.stiffest, 1.0 / self.stiffest)

@@ -87,7 +87,7 @@ impl Land {
             let joints = if land.closed { land.facets } else { land.facets - 1 };
             for f in land.first..land.first + joints {
                 let ([px, py], [qx, qy]) = (direction(f % facets), direction((f + 1) % facets));
-                turn += (px * qy - py * qx).atan2(px * qx + py * qy);
+                turn += libm::atan2(px * qy - py * qx, px * qx + py * qy);
             }
             // Between the middles of the first facet and the last.
             let length: f64 = (0..joints)
@@ -104,7 +104,7 @@ impl Land {
         let at = Vertices { slots: &surface.slots, closed: surface.closed, x, y };
         let distance = |f: usize| {
             let ([ax, ay], [bx, by]) = at.ends(f);
-            (0.5 * (ax + bx) - p[0]).hypot(0.5 * (ay + by) - p[1])
+            libm::hypot(0.5 * (ax + bx) - p[0], 0.5 * (ay + by) - p[1])
         };
         let facets = (self.first..self.first + self.facets).map(|f| f % surface.facets());
         let nearest = facets.min_by(|&a, &b| distance(a).total_cmp(&distance(b))).unwrap_or(self.first);
@@ -249,7 +249,7 @@ impl Arc {
         let (t, n) = (self.tangent, self.normal);
         let at = [0, 1].map(|k| self.origin[k] + along * self.length * t[k] + height * n[k]);
         // Outwards from the curve, which climbs against its chord.
-        let turned = [0, 1].map(|k| (n[k] - slope * t[k]) / slope.hypot(1.0));
+        let turned = [0, 1].map(|k| (n[k] - slope * t[k]) / libm::hypot(slope, 1.0));
         let place = Place { facet: facet as u32, along };
         Point { place, ends: self.ends, at, normal: turned, height, chord: n, length: self.length }
     }

@@ -126,7 +126,7 @@ pub(super) fn cage_part(
     let reach = scene.roller_radius + cage.pocket_clearance;
     let half_width = pocket_half_width(inner, outer, path, reach);
     let pieces = scene.rollers;
-    let gap = 2.0 * (half_width / outer).asin();
+    let gap = 2.0 * libm::asin(half_width / outer);
     let arc = (TAU / pieces as f64 - gap) * outer;
     let mut joined = Part::default();
     for i in 0..pieces {

@@ -112,8 +112,8 @@ impl BearingSystem {
     pub fn nodes_on_back(&self, angles: &[f64]) -> Vec<u32> {
         let off = |node: u32, wanted: f64| {
             let [x, y] = self.system.position(node);
-            let angle = y.atan2(x) - wanted;
-            angle.sin().hypot(1.0 - angle.cos())
+            let angle = libm::atan2(y, x) - wanted;
+            libm::hypot(libm::sin(angle), 1.0 - libm::cos(angle))
         };
         let nearest = |wanted: f64| {
             let nodes = self.back.iter().copied();
