@@ -217,6 +217,17 @@ fn behaves_deepest_groove_stays_in_order() {
     assert!(relative_length(&part, 1e-3) > 0.35);
 }
 
+/// A wall of a groove is shaped until that gains little, and the last digit of a sine decides where it stops. Sum
+/// of the bits of all coordinates, each over its place.
+#[test]
+fn golden_a_groove_has_the_same_digits_on_every_platform() {
+    let sloped = Groove { slope: PI / 4.0, ..Groove::rectangular(-0.2, 0.02, 0.1e-3) };
+    let part = Annulus { grooves: vec![GROOVE, sloped], ..RING }.part().expect("grooves that can be cut");
+    let bits = part.x.iter().chain(&part.y).zip(1_u64..);
+    let sum = bits.fold(0_u64, |sum, (value, place)| sum.wrapping_add(value.to_bits().wrapping_mul(place)));
+    assert_eq!(sum, 12_547_555_927_730_868_083);
+}
+
 /// Each groove as it would be alone, in whatever order they are given; facets between two of them are equally
 /// long.
 #[test]
