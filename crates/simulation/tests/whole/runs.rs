@@ -286,9 +286,8 @@ fn survives_an_interruption_with_its_samples() {
 /// anew.
 #[test]
 fn golden_coarse_bearing() {
-    // Sums over wide and narrow vectors round differently on another
-    // machine, far below this; the preload, whose factorisation does too, is left out. A change of the
-    // physics shows in the first digits.
+    // Sums over wide and narrow vectors round differently on another machine, far below this; the preload,
+    // whose factorisation does too, is left out. A change of the physics shows in the first digits.
     const TOLERANCE: f64 = 1e-6;
     const CHANNELS: [&str; 6] = [
         "sensor.side.ay_m_s2",
