@@ -23,6 +23,7 @@ pub(crate) use stamp::stamp;
 use stribeck_dsp::channel::{Samples, memory};
 
 use crate::recording::{equal_lengths, left_out};
+use crate::time::says_time;
 use crate::units;
 use crate::{Channel, Error, Recording, Result};
 
@@ -124,7 +125,16 @@ pub fn open(path: &Path) -> Result<Recording> {
     {
         first -= 1;
     }
-    let (names, units) = head::names(&start[..first], dialect, columns, names_rows(&rows, dialect));
+    let first_rows = FirstRows::of(&rows, dialect);
+    let (names, units) = head::names(&start[..first], dialect, columns, &first_rows);
+    let names_rows = match &names[..] {
+        [first, rest @ ..] => {
+            first == "column 1"
+                && rest.iter().all(|name| !name.starts_with("column "))
+                && first_rows.leave_the_first(rest)
+        }
+        [] => false,
+    };
     let mut counted = census(path, coding, dialect, first as u64, columns)?;
     if states_size(&start[first..], dialect, columns, counted.1) {
         first += 1;
@@ -175,6 +185,7 @@ pub fn open(path: &Path) -> Result<Recording> {
         let unit = unit.filter(|unit| !unit.is_empty()).or_else(|| units::in_brackets(&name));
         let mut channel = Channel::new(name, rows, column).at_rate(rate_hz).in_unit(unit);
         channel.column = Some(at + 1);
+        channel.is_time = at == 0 && names_rows && census.stamps == 0;
         channels.push(channel);
     }
     // Each column by itself would read the whole file: that of a wide table is read once.
@@ -203,16 +214,20 @@ fn held(path: &Path, channels: &[Channel], rows: u64) -> Result<Vec<Channel>> {
 }
 
 /// Whether the first row counts the columns from 0, as pandas heads a table without names, and the next holds
-/// fractions.
+/// fractions; or from 1, and the next holds nothing else.
 fn counts_columns(rows: &[String], dialect: Dialect) -> bool {
     let [first, second, ..] = rows else { return false };
     let fields = dialect.split(first);
     let named = if fields.first() == Some(&"") { &fields[1..] } else { &fields[..] };
     let fraction =
         |field: &str| field.contains(['.', 'e', 'E']) || dialect.decimal_comma && field.contains(',');
-    !named.is_empty()
-        && named.iter().enumerate().all(|(n, field)| *field == n.to_string())
-        && dialect.split(second).into_iter().any(fraction)
+    let counts = |from: usize| named.iter().zip(from..).all(|(field, n)| *field == n.to_string());
+    let mut below = dialect.split(second).into_iter();
+    match named.len() {
+        0 => false,
+        2.. if counts(1) => below.all(fraction),
+        _ => counts(0) && below.any(fraction),
+    }
 }
 
 /// Whether a line above the table is a row of it with a few fields that are no numbers: names of columns are
@@ -238,19 +253,47 @@ fn is_damaged_row(line: &str, dialect: Dialect, columns: usize) -> bool {
         }
 }
 
-/// Whether the first column names the rows, as R and others write it: it counts them, or holds texts alone.
-fn names_rows(rows: &[&String], dialect: Dialect) -> bool {
-    let fields: Vec<Vec<&str>> = rows.iter().take(SAMPLE).map(|row| dialect.split(row)).collect();
-    // A separator at the end of a row makes no column.
-    if fields.len() < 2 || fields.iter().any(|row| row.len() < 2 || row.last().is_none_or(|f| f.is_empty())) {
-        return false;
+/// What the first rows say about a head that has a name less than they have columns.
+struct FirstRows {
+    /// The first column counts the rows, or holds texts alone.
+    names_rows: bool,
+    /// Columns that rise from row to row.
+    rising: Vec<bool>,
+}
+
+impl FirstRows {
+    fn of(rows: &[&String], dialect: Dialect) -> Self {
+        let fields: Vec<Vec<&str>> = rows.iter().take(SAMPLE).map(|row| dialect.split(row)).collect();
+        // A separator at the end of a row makes no column.
+        if fields.len() < 2
+            || fields.iter().any(|row| row.len() < 2 || row.last().is_none_or(|f| f.is_empty()))
+        {
+            return Self { names_rows: false, rising: Vec::new() };
+        }
+        let column = |at: usize| {
+            fields.iter().map(move |row| row.get(at).map_or(Field::Missing, |field| dialect.field(field)))
+        };
+        let steps = |at: usize, is_step: &dyn Fn(f64, f64) -> bool| {
+            column(at).zip(column(at).skip(1)).all(|pair| match pair {
+                (Field::Number(a), Field::Number(b)) => is_step(a, b),
+                (Field::Stamp(a, more), Field::Stamp(b, rest)) => (a, more) < (b, rest),
+                _ => false,
+            })
+        };
+        let counts = steps(0, &|a, b| a.fract() == 0.0 && b - a == 1.0)
+            && column(0).all(|kind| matches!(kind, Field::Number(_)));
+        Self {
+            names_rows: counts || column(0).all(|kind| kind == Field::Text),
+            rising: (0..fields[0].len()).map(|at| steps(at, &|a, b| a < b)).collect(),
+        }
     }
-    let kinds: Vec<Field> = fields.iter().map(|row| dialect.field(row[0])).collect();
-    let counts = kinds.windows(2).all(|pair| match pair {
-        [Field::Number(a), Field::Number(b)] => a.fract() == 0.0 && b - a == 1.0,
-        _ => false,
-    });
-    counts || kinds.iter().all(|kind| *kind == Field::Text)
+
+    /// Whether names belong to the columns from the second on, as R writes them: the first names the rows, or the
+    /// column behind that of a time rises.
+    fn leave_the_first(&self, names: &[String]) -> bool {
+        let time = names.iter().position(|name| says_time(name));
+        self.names_rows || time.is_some_and(|at| self.rising.get(at + 1) == Some(&true))
+    }
 }
 
 /// Whether the first of `count` rows says the size of the table, `2,16384` or `16384`: one of its whole numbers
@@ -258,13 +301,16 @@ fn names_rows(rows: &[&String], dialect: Dialect) -> bool {
 fn states_size(rows: &[String], dialect: Dialect, columns: usize, count: u64) -> bool {
     let mut rows = rows.iter().filter(|line| !dialect.is_empty(line));
     let (Some(first), true) = (rows.next(), count > 2) else { return false };
-    let whole = |field: &&str| field.parse::<u64>().ok();
+    let whole =
+        |field: &&str| dialect.number(field).filter(|x| x.fract() == 0.0 && *x >= 0.0).map(|x| x as u64);
     let sizes: Option<Vec<u64>> = dialect.split(first).iter().map(whole).collect();
-    let Some(sizes) = sizes.filter(|sizes| sizes.contains(&(count - 1))) else { return false };
+    // Some count the row that says it, too.
+    let is_count = |n: &u64| *n == count || *n == count - 1;
+    let Some(sizes) = sizes.filter(|sizes| sizes.iter().any(is_count)) else { return false };
     let fraction =
         |field: &str| field.contains(['.', 'e', 'E']) || dialect.decimal_comma && field.contains(',');
     let mut below = rows.take(8).map(|row| dialect.split(row).into_iter().any(fraction));
-    below.all(|has| has) || sizes.iter().all(|n| *n == count - 1 || *n == columns as u64)
+    below.all(|has| has) || sizes.iter().all(|n| is_count(n) || *n == columns as u64)
 }
 
 /// Places of the numbers of a row.
@@ -286,7 +332,7 @@ fn is_row_beside_words(line: &str, dialect: Dialect, columns: usize, numbers: &[
 }
 
 /// Fewest samples of rows that are channels.
-const WIDE: usize = 256;
+pub(super) const WIDE: usize = 256;
 
 /// Whether rows are the channels: they are all of the file, few and long, as a vector that was written as a
 /// row.
@@ -301,13 +347,19 @@ fn across(path: &Path, rows: &[&String], dialect: Dialect) -> Result<Recording> 
         _ => f64::NAN,
     };
     let row = |(n, row): (usize, &&String)| {
-        let mut samples = Vec::new();
-        dialect.each(row, |field| samples.push(value(field)));
+        let (mut samples, mut name) = (Vec::new(), None);
+        dialect.each(row, |field| {
+            if samples.is_empty() && name.is_none() && dialect.field(field) == Field::Text {
+                name = Some(field.to_owned());
+            } else {
+                samples.push(value(field));
+            }
+        });
         // A separator at the end of a row makes no sample.
         if row.trim_end().ends_with(dialect.separator) {
             samples.pop();
         }
-        Channel::held(format!("row {}", n + 1), samples)
+        Channel::held(name.unwrap_or_else(|| format!("row {}", n + 1)), samples)
     };
     let channels = rows.iter().enumerate().map(row).collect();
     let notes = vec!["each row is a channel, as the table has fewer rows than columns".to_owned()];

@@ -1,5 +1,6 @@
 //! From stored to physical values: straight lines, polynomials, quotients and tables, one after the other.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use stribeck_dsp::channel::Samples;
@@ -91,11 +92,27 @@ pub(crate) fn along(channel: Channel, curve: Option<Curve>) -> Channel {
     }
 }
 
-/// Samples of which some stored values stand for missing ones.
+/// Stored values that stand for missing samples: some, and all outside of a range.
+#[derive(Debug, Clone)]
+pub(crate) struct Marks {
+    pub(crate) values: Vec<f64>,
+    pub(crate) valid: RangeInclusive<f64>,
+}
+
+impl Marks {
+    fn are_none(&self) -> bool {
+        self.values.is_empty() && self.valid == (f64::NEG_INFINITY..=f64::INFINITY)
+    }
+
+    fn has(&self, x: f64) -> bool {
+        self.values.contains(&x) || !self.valid.contains(&x)
+    }
+}
+
 #[derive(Debug)]
 struct Marked {
     stored: Arc<dyn Samples>,
-    marks: Vec<f64>,
+    marks: Marks,
 }
 
 impl Samples for Marked {
@@ -103,18 +120,18 @@ impl Samples for Marked {
         let mut values = Vec::new();
         self.stored.for_each_block(len, &mut |block| {
             values.clear();
-            values.extend(block.iter().map(|x| if self.marks.contains(x) { f64::NAN } else { *x }));
+            values.extend(block.iter().map(|x| if self.marks.has(*x) { f64::NAN } else { *x }));
             take(&values)
         })
     }
 }
 
 /// `channel` with samples that are no numbers in place of those stored values.
-pub(crate) fn without(channel: Channel, marks: &[f64]) -> Channel {
-    if marks.is_empty() {
+pub(crate) fn without(channel: Channel, marks: &Marks) -> Channel {
+    if marks.are_none() {
         return channel;
     }
-    channel.through(|stored| Marked { stored, marks: marks.to_vec() })
+    channel.through(|stored| Marked { stored, marks: marks.clone() })
 }
 
 #[cfg(test)]

@@ -230,7 +230,7 @@ fn bytes(file: &mut File, at: u64, count: u64) -> Option<Vec<u8>> {
 }
 
 /// Up to eight bytes as a number.
-fn number(bytes: &[u8]) -> u64 {
+pub(crate) fn number(bytes: &[u8]) -> u64 {
     bytes.iter().take(8).rev().fold(0, |sum, byte| sum << 8 | u64::from(*byte))
 }
 

@@ -29,6 +29,7 @@ mod clock_columns;
 mod curve;
 mod hdf5_chunks;
 mod hdf5_links;
+mod hdf5_version5;
 mod literal;
 mod mdf4_records;
 mod number;

@@ -9,16 +9,16 @@ use std::path::{Path, PathBuf};
 
 use hdf5_pure::{
     AttrValue, DType, Dataset, Datatype, DatatypeByteOrder, File, FixedPointLayout, FloatingPointLayout,
-    Group, Layout,
+    FormatError, Group, Layout,
 };
 
 use stribeck_dsp::channel::memory;
 
-use crate::curve::{Curve, along, without};
+use crate::curve::{Curve, Marks, along, without};
 use crate::number::{Kind, Number};
 use crate::recording::left_out;
 use crate::strided::Strided;
-use crate::{Channel, Error, Recording, Result, csv, hdf5_chunks, hdf5_links, shape, units};
+use crate::{Channel, Error, Recording, Result, csv, hdf5_chunks, hdf5_links, hdf5_version5, shape, units};
 
 const FORMAT: &str = "MATLAB 7.3 (HDF5)";
 /// Structs within structs; a forged file may hold itself.
@@ -41,17 +41,26 @@ pub fn open(path: &Path) -> Result<Recording> {
             opened => (opened.map_err(broken)?, false),
         };
         let size = std::fs::metadata(path).map_err(|e| Error::read(path, e))?.len();
-        let mut found = Found {
-            path: path.to_owned(),
-            size,
-            channels: Vec::new(),
-            left_out: 0,
-            too_long: Vec::new(),
-            numbers: 0,
-            notes: Vec::new(),
-            rates: Vec::new(),
+        let all = |file: &File| {
+            let mut found = Found {
+                path: path.to_owned(),
+                size,
+                channels: Vec::new(),
+                left_out: 0,
+                too_long: Vec::new(),
+                numbers: 0,
+                notes: Vec::new(),
+                rates: Vec::new(),
+                is_version_5: false,
+            };
+            found.group(&file.root(), "", &mut Vec::new());
+            found
         };
-        found.group(&file.root(), "", &mut Vec::new());
+        let mut found = all(&file);
+        if found.is_version_5 {
+            let bytes = hdf5_version5::as_version_4(whole(path, "a file of HDF5 2.0")?);
+            found = all(&File::from_bytes(bytes).map_err(broken)?);
+        }
         if unclosed {
             found.notes.push(
                 "the program that wrote the file did not close it, or still writes: what it wrote last may be missing"
@@ -86,14 +95,18 @@ fn in_use(path: &Path) -> Result<File> {
     if let Ok(file) = File::open_swmr(path) {
         return Ok(file);
     }
-    let io = |e| Error::read(path, e);
-    memory::ask(path, "a file that was not closed", std::fs::metadata(path).map_err(io)?.len())?;
-    let bytes = std::fs::read(path).map_err(io)?;
-    File::from_bytes(bytes).map_err(|why| {
+    File::from_bytes(whole(path, "a file that was not closed")?).map_err(|why| {
         let what =
             format!("it was not closed by the program that wrote it, and its structure is not whole: {why}");
         Error::damaged(path, FORMAT, what)
     })
+}
+
+/// All bytes of a file, if memory may hold them.
+fn whole(path: &Path, what: &str) -> Result<Vec<u8>> {
+    let io = |e| Error::read(path, e);
+    memory::ask(path, what, std::fs::metadata(path).map_err(io)?.len())?;
+    std::fs::read(path).map_err(io)
 }
 
 struct Found {
@@ -109,6 +122,8 @@ struct Found {
     notes: Vec<String>,
     /// Sample rates from attributes, each with the prefix of the names that it applies to.
     rates: Vec<(String, f64)>,
+    /// Whether the layout of a set has a number that the library does not know.
+    is_version_5: bool,
 }
 
 impl Found {
@@ -139,6 +154,8 @@ impl Found {
             let full = format!("{prefix}{name}");
             let done = group.dataset(&name).and_then(|set| self.dataset(&set, &full));
             if let Err(why) = done {
+                self.is_version_5 |=
+                    matches!(why, hdf5_pure::Error::Format(FormatError::InvalidLayoutVersion(5)));
                 self.notes.push(left_out(&full, &why.to_string()));
             }
         }
@@ -226,6 +243,7 @@ impl Found {
         let marks = marks(&attributes);
         let unit = ["unit", "units", "Unit", "Units", "unit_string"].into_iter();
         let unit = unit.filter_map(|key| attributes.get(key)?.as_str().map(str::to_owned)).next();
+        let unit = unit.filter(|unit| !unit.trim().is_empty());
         if let Some(why) = self.beyond(dataset, count)? {
             self.notes.push(left_out(name, &why));
             return Ok(());
@@ -336,29 +354,51 @@ fn scale(attributes: &HashMap<String, AttrValue>) -> Option<Curve> {
 }
 
 /// Stored values that stand for missing samples, by netCDF's conventions.
-fn marks(attributes: &HashMap<String, AttrValue>) -> Vec<f64> {
+fn marks(attributes: &HashMap<String, AttrValue>) -> Marks {
+    let of = |name: &str| attributes.get(name).and_then(numbers).unwrap_or_default();
     let names = ["_FillValue", "missing_value", "FillValue", "fill_value"];
-    names.into_iter().filter_map(|name| attributes.get(name).and_then(number)).collect()
+    let limit = |name: &str, end: usize, none: f64| {
+        of(name).first().or(of("valid_range").get(end)).copied().filter(|x| !x.is_nan()).unwrap_or(none)
+    };
+    Marks {
+        values: names.into_iter().flat_map(of).collect(),
+        valid: limit("valid_min", 0, f64::NEG_INFINITY)..=limit("valid_max", 1, f64::INFINITY),
+    }
 }
 
 /// The number of an attribute.
 fn number(value: &AttrValue) -> Option<f64> {
+    match numbers(value)?[..] {
+        [x] => Some(x),
+        _ => None,
+    }
+}
+
+/// The numbers of an attribute, as netCDF and h5py write them.
+fn numbers(value: &AttrValue) -> Option<Vec<f64>> {
+    let of = |x: f64| Some(vec![x]);
     match value {
-        AttrValue::F32(x) => Some(f64::from(*x)),
-        AttrValue::F64(x) => Some(*x),
-        AttrValue::I8(x) => Some(f64::from(*x)),
-        AttrValue::U8(x) => Some(f64::from(*x)),
-        AttrValue::I16(x) => Some(f64::from(*x)),
-        AttrValue::I32(x) => Some(f64::from(*x)),
-        AttrValue::I64(x) => Some(*x as f64),
-        AttrValue::U16(x) => Some(f64::from(*x)),
-        AttrValue::U32(x) => Some(f64::from(*x)),
-        AttrValue::U64(x) => Some(*x as f64),
-        AttrValue::F64Array(all) if all.len() == 1 => all.first().copied(),
-        AttrValue::F32Array(all) if all.len() == 1 => all.first().map(|x| f64::from(*x)),
-        AttrValue::I64Array(all) if all.len() == 1 => all.first().map(|x| *x as f64),
-        AttrValue::I32Array(all) if all.len() == 1 => all.first().map(|x| f64::from(*x)),
-        other => other.as_str()?.trim().parse().ok(),
+        AttrValue::F32(x) => of(f64::from(*x)),
+        AttrValue::F64(x) => of(*x),
+        AttrValue::I8(x) => of(f64::from(*x)),
+        AttrValue::U8(x) => of(f64::from(*x)),
+        AttrValue::I16(x) => of(f64::from(*x)),
+        AttrValue::I32(x) => of(f64::from(*x)),
+        AttrValue::I64(x) => of(*x as f64),
+        AttrValue::U16(x) => of(f64::from(*x)),
+        AttrValue::U32(x) => of(f64::from(*x)),
+        AttrValue::U64(x) => of(*x as f64),
+        AttrValue::F64Array(all) => Some(all.clone()),
+        AttrValue::F32Array(all) => Some(all.iter().map(|x| f64::from(*x)).collect()),
+        AttrValue::I64Array(all) => Some(all.iter().map(|x| *x as f64).collect()),
+        AttrValue::U64Array(all) => Some(all.iter().map(|x| *x as f64).collect()),
+        AttrValue::I32Array(all) => Some(all.iter().map(|x| f64::from(*x)).collect()),
+        AttrValue::U32Array(all) => Some(all.iter().map(|x| f64::from(*x)).collect()),
+        AttrValue::I16Array(all) => Some(all.iter().map(|x| f64::from(*x)).collect()),
+        AttrValue::U16Array(all) => Some(all.iter().map(|x| f64::from(*x)).collect()),
+        AttrValue::I8Array(all) => Some(all.iter().map(|x| f64::from(*x)).collect()),
+        AttrValue::U8Array(all) => Some(all.iter().map(|x| f64::from(*x)).collect()),
+        other => of(other.as_str()?.trim().parse().ok()?),
     }
 }
 
@@ -368,12 +408,11 @@ fn start_s(attributes: &HashMap<String, AttrValue>) -> Option<f64> {
     let mut found: Vec<f64> = attributes
         .iter()
         .filter_map(|(name, value)| {
-            let second = units::start_unit_s(name)?;
             let stamp = || {
                 let (s, ns) = csv::stamp(value.as_str()?)?;
-                Some(s as f64 + 1e-9 * f64::from(ns))
+                units::start_s(name, 0.0).map(|_| s as f64 + 1e-9 * f64::from(ns))
             };
-            number(value).map(|x| x * second).or_else(stamp)
+            number(value).and_then(|x| units::start_s(name, x)).or_else(stamp)
         })
         .collect();
     found.sort_by(f64::total_cmp);

@@ -25,6 +25,13 @@ pub fn open(path: &Path) -> Result<Recording> {
     let mut archive = ZipArchive::new(BufReader::new(file)).map_err(|e| damaged(e.to_string()))?;
     let (mut channels, mut notes) = (Vec::new(), Vec::new());
     let mut asked = 0_u64;
+    if let (false, Some(other)) =
+        (archive.file_names().any(|name| name.ends_with(".npy")), archive.file_names().next())
+    {
+        let seen =
+            format!("it is a zip archive without arrays of NumPy: unpack it first; it holds `{other}`");
+        return Err(Error::Unknown { path: path.to_owned(), seen });
+    }
     for at in 0..archive.len() {
         let mut entry = archive.by_index(at).map_err(|e| damaged(e.to_string()))?;
         let Some(name) = entry.name().strip_suffix(".npy").map(str::to_owned) else { continue };

@@ -29,13 +29,16 @@ impl Recording {
         if start.is_empty() {
             return unknown("it is empty");
         }
+        if let Some((_, what)) = FOREIGN.iter().find(|(magic, _)| begins(magic)) {
+            return unknown(what);
+        }
         let opened = if begins(npy::MAGIC) {
             npy::open(path)
         } else if begins(b"PK") {
             npz::open(path)
         } else if begins(b"RIFF") || begins(b"RF64") || begins(b"BW64") {
             wav::open(path)
-        } else if begins(b"\x89HDF") || (begins(b"MATLAB 7.3") && start.len() > 512) {
+        } else if hdf5_begins(&start) || (begins(b"MATLAB 7.3") && start.len() > 512) {
             mat73::open(path)
         } else if mat5::recognise(&start) {
             mat5::open(path)
@@ -66,6 +69,23 @@ impl Recording {
         Ok(time::told(clock_columns::joined(opened)?)?.told_apart())
     }
 }
+
+/// Whether HDF5 begins, behind a block of the user's at most.
+fn hdf5_begins(start: &[u8]) -> bool {
+    let signature = |at: usize| start.get(at..).is_some_and(|rest| rest.starts_with(b"\x89HDF\r\n\x1a\n"));
+    [0, 512, 1024, 2048].into_iter().any(signature)
+}
+
+/// First bytes of files that are recognised and not read.
+const FOREIGN: [(&[u8], &str); 7] = [
+    (b"\x1f\x8b", "it is packed with gzip: unpack it first, with `gunzip`"),
+    (b"BZh", "it is packed with bzip2: unpack it first, with `bunzip2`"),
+    (b"\xfd7zXZ", "it is packed with xz: unpack it first, with `unxz`"),
+    (b"\x28\xb5\x2f\xfd", "it is packed with zstd: unpack it first, with `unzstd`"),
+    (b"CDF\x01", "it is NetCDF 3: turn it into version 4, with `nccopy -k nc4`"),
+    (b"CDF\x02", "it is NetCDF 3: turn it into version 4, with `nccopy -k nc4`"),
+    (b"OggS", "it is Ogg, which leaves out what ears do not miss: take the WAV or FLAC that it was made of"),
+];
 
 /// How many times its size on disk a record takes in memory that was packed as records are.
 const PACKED: u64 = 64;

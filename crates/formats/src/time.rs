@@ -6,7 +6,7 @@
 
 mod packets;
 
-use crate::units::{self, SLOWEST_S, Unit};
+use crate::units::{self, DATES_S, SLOWEST_S, Unit};
 use crate::{Channel, Recording, Result};
 
 /// Samples that are looked at together.
@@ -17,9 +17,6 @@ const LEAST: usize = 10;
 const RARE: usize = 250;
 /// Rates that differ by less than this part are one: clocks drift.
 const SAME_RATE: f64 = 1e-3;
-/// Seconds from 1970 to 1990, and to 2060.
-const DATES_S: std::ops::Range<f64> = 6.3e8..2.84e9;
-
 /// How a channel rises.
 #[derive(Debug, Default)]
 struct Course {
@@ -34,6 +31,10 @@ struct Course {
     jumped: f64,
     /// Where it first rises otherwise than before.
     change: Option<(f64, f64)>,
+    /// First and last sample that differ from the one before, and how many do.
+    first_new: Option<(f64, f64)>,
+    last_new: (f64, f64),
+    new: usize,
 }
 
 /// A step of time unlike all others.
@@ -106,12 +107,22 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
             continue;
         }
         let rate_hz = course.rate_hz(&channels[n], asked, &mut recording.notes);
+        let mut own = Vec::new();
+        for k in (0..channels.len()).filter(|k| of_clock(&channels[*k]) && !channels[*k].is_time) {
+            own.extend(own_clock(channels, &courses, n, k).map(|(m, course)| (k, m, course)));
+        }
+        for (k, m, course) in &own {
+            let rate_hz = course.rate_hz(&channels[*m], asked, &mut recording.notes);
+            channels[*k].start_s = channels[*k].start_s.or(rate_hz.and_then(|hz| course.start_s(hz)));
+            channels[*k].rate_hz = channels[*k].rate_hz.or(rate_hz);
+        }
         // The clock of another group says how fast, and not when.
         let start_s = rate_hz.filter(|_| channels[n].group == group).and_then(|hz| course.start_s(hz));
-        for channel in channels.iter_mut().filter(|c| c.len == len && c.group == group) {
+        for (k, channel) in channels.iter_mut().enumerate() {
+            if channel.len != len || channel.group != group || own.iter().any(|(of, ..)| *of == k) {
+                continue;
+            }
             channel.start_s = channel.start_s.or(start_s);
-        }
-        for channel in channels.iter_mut().filter(|c| c.len == len && c.group == group) {
             match (channel.rate_hz, rate_hz) {
                 (None, _) => channel.rate_hz = rate_hz,
                 (Some(said), Some(hz)) if (said / hz - 1.0).abs() > SAME_RATE && !channel.is_time => {
@@ -137,6 +148,40 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
         }
     }
     Ok(recording)
+}
+
+/// The clock of one channel among those of a table, where it is another one than `main`: it counts the same time,
+/// and is called after the channel, as `time_tacho` is after `tacho`, or is the last before it with a signal
+/// between it and `main`.
+fn own_clock<'a>(
+    channels: &[Channel],
+    courses: &'a [Option<Course>],
+    main: usize,
+    of: usize,
+) -> Option<(usize, &'a Course)> {
+    let (all, name) = (courses[main].as_ref()?, own_name(&channels[of]).to_lowercase());
+    let counts_same = |n: &usize| {
+        let (clock, unit) = (&channels[*n], unit_of(&channels[*n]));
+        let is_clock = matches!(unit, Unit::Time(..)) || says_time(own_name(clock));
+        let is_other =
+            |c: &Course| c.first.1 != all.first.1 && c.first.1 < all.last.1 && all.first.1 < c.last.1;
+        *n != main
+            && (clock.len, &clock.group) == (channels[of].len, &channels[of].group)
+            && clock.is_time
+            && is_clock
+            && unit == unit_of(&channels[main])
+            && courses[*n].as_ref().is_some_and(is_other)
+    };
+    let is_called = |n: &usize| {
+        own_name(&channels[*n]).to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| word == name)
+    };
+    let clocks = || (0..channels.len()).filter(counts_same);
+    let before = || {
+        let near = clocks().rfind(|n| *n < of)?;
+        (main..near).any(|n| !channels[n].is_time).then_some(near)
+    };
+    let found = clocks().find(is_called).or_else(before)?;
+    Some((found, courses[found].as_ref()?))
 }
 
 /// Sample rates [Hz] that are numbers of their own, each with its struct; contradictory ones are noted and
@@ -169,23 +214,20 @@ fn rates_said(channels: &[Channel], notes: &mut Vec<String>) -> Vec<(String, f64
 fn starts_said(channels: &[Channel]) -> Result<Vec<(String, f64)>> {
     let mut said = Vec::new();
     for channel in channels.iter().filter(|c| c.len == 1) {
-        let of_struct = units::start_unit_s(member(&channel.name)).map(|s| (parent(&channel.name), s));
+        let value = channel.read()?.first().copied().unwrap_or(f64::NAN);
+        let start_s = |name| units::start_s(name, value);
+        let of_struct = start_s(member(&channel.name)).map(|s| (parent(&channel.name), s));
         let of_name = || {
-            let (before, _) = channel.name.match_indices('_').find_map(|(at, _)| {
+            let (before, key) = channel.name.match_indices('_').find_map(|(at, _)| {
                 let (before, key) = (&channel.name[..at], &channel.name[at + 1..]);
                 let is_there = channels.iter().any(|c| c.len > 1 && c.name == before);
-                Some((before, units::start_unit_s(key).filter(|_| is_there)?))
+                (is_there && start_s(key).is_some()).then_some((before, key))
             })?;
-            Some((before, units::start_unit_s(&channel.name[before.len() + 1..])?))
+            Some((before, start_s(key)?))
         };
         // One for all shifts none of them.
-        let Some((of, second)) = of_struct.filter(|(of, _)| !of.is_empty()).or_else(of_name) else {
-            continue;
-        };
-        let value = channel.read()?.first().copied().unwrap_or(f64::NAN) * second;
-        if value.is_finite() {
-            said.push((of.to_owned(), value));
-        }
+        let found = of_struct.filter(|(of, _)| !of.is_empty()).or_else(of_name);
+        said.extend(found.filter(|(_, s)| s.is_finite()).map(|(of, s)| (of.to_owned(), s)));
     }
     Ok(said)
 }
@@ -284,6 +326,11 @@ impl Course {
             self.first = *first;
         }
         self.last = *last;
+        for pair in values.windows(2).filter(|pair| pair[1].1 != pair[0].1) {
+            self.first_new.get_or_insert(pair[1]);
+            self.last_new = pair[1];
+            self.new += 1;
+        }
         let Some(stretch) = Stretch::of(values) else {
             self.uneven += 1;
             self.change.get_or_insert(*first);
@@ -303,10 +350,25 @@ impl Course {
         self.even > self.uneven
     }
 
+    /// Between which samples the rate is counted. Where a stamp stands for several samples, these are the first
+    /// that have theirs: the last stamp may stand for fewer samples than the others.
+    fn ends(&self) -> [(f64, f64); 2] {
+        match self.first_new {
+            Some(first) if self.is_held() && self.last_new.0 > first.0 => [first, self.last_new],
+            _ => [self.first, self.last],
+        }
+    }
+
+    /// Whether a stamp stands for two samples or more, somewhere.
+    fn is_held(&self) -> bool {
+        (self.new as f64) < self.last.0 - self.first.0
+    }
+
     /// When the first sample was taken [s], by times that rise `rate_hz` times a second.
     fn start_s(&self, rate_hz: f64) -> Option<f64> {
-        let step = (self.last.1 - self.first.1 - self.jumped) / (self.last.0 - self.first.0);
-        Some(self.first.1 / (step * rate_hz) - self.first.0 / rate_hz).filter(|s| s.is_finite())
+        let [first, last] = self.ends();
+        let step = (last.1 - first.1 - self.jumped) / (last.0 - first.0);
+        Some(first.1 / (step * rate_hz) - first.0 / rate_hz).filter(|s| s.is_finite())
     }
 
     /// The sample rate [Hz] from times, with notes on irregularities, also on their unit if it is `asked`
@@ -317,7 +379,14 @@ impl Course {
         let at = |(row, value): (f64, f64)| {
             format!("row {} ({value:.6} {spelt}", row + 1.0).trim_end().to_owned() + ")"
         };
+        let [first, last] = self.ends();
+        let (rows, span) = (last.0 - first.0, last.1 - first.1 - self.jumped);
         if let Some(from) = self.change {
+            let each = (self.last.0 - self.first.0) / self.new as f64;
+            if each > 1.5 && from.0 == self.first.0 && span > 0.0 {
+                notes.push(packets::arrive(name, each, rows / (span * second)));
+                return None;
+            }
             let what = if from.0 == self.first.0 {
                 "from the beginning on: give the rate by hand if only the times are uneven, or cut that part \
                  off"
@@ -332,7 +401,6 @@ impl Course {
             notes.push(format!("the times of `{name}` are uneven, or their rate changes, {what}"));
             return None;
         }
-        let (rows, span) = (self.last.0 - self.first.0, self.last.1 - self.first.1 - self.jumped);
         let step = span / rows;
         if let Some(gap) = self.gaps.first() {
             let (missing, more) = ((gap.by / step).round(), self.gaps.len() - 1);
@@ -352,6 +420,9 @@ impl Course {
         // A rate is a round number more often than the digits of times are exact.
         let round = (hz * 10.0).round() / 10.0;
         let hz = if (hz / round - 1.0).abs() < 1e-6 { round } else { hz };
+        // Stamps that stand for several samples say their places to a sample.
+        let round = (hz / 100.0).round() * 100.0;
+        let hz = if self.is_held() && (hz / round - 1.0).abs() < 1.0 / rows { round } else { hz };
         if asked && unit == Unit::Unsaid {
             // Excel counts days from 1900 on, MATLAB from the year 0.
             let date = (20_000.0..80_000.0).contains(&self.first.1) || (7e5..8e5).contains(&self.first.1);

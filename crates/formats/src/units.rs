@@ -110,7 +110,7 @@ const STEPS: [&str; 18] = [
 ];
 
 /// Names of the time at which a channel begins; a unit of time may follow.
-const STARTS: [&str; 12] = [
+const STARTS: [&str; 18] = [
     "t0",
     "tstart",
     "start",
@@ -123,7 +123,16 @@ const STARTS: [&str; 12] = [
     "wfstartoffset",
     "xstart",
     "x0",
+    "begin",
+    "begintime",
+    "timebegin",
+    "starttimestamp",
+    "starttimeutc",
+    "recordingstart",
 ];
+
+/// Names that are times of beginning only with a unit of time behind them.
+const OFFSETS: [&str; 3] = ["offset", "delay", "lag"];
 
 /// Endings of names of channels that rise evenly and are not times.
 const TURNS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
@@ -253,16 +262,25 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
 }
 
-/// The seconds of one of a number under a name, where the name is that of the time at which a channel begins.
-pub(crate) fn start_unit_s(name: &str) -> Option<f64> {
+/// Seconds from 1970 to 1990, and to 2060.
+pub(crate) const DATES_S: std::ops::Range<f64> = 6.3e8..2.84e9;
+
+/// The unit [s] in which a number is a date of our time from 1970 on; it is so in one unit only.
+pub(crate) fn epoch_unit_s(value: f64) -> Option<f64> {
+    [1.0, 1e-3, 1e-6, 1e-9].into_iter().find(|second| DATES_S.contains(&(value * second)))
+}
+
+/// A number [s] under a name, where that is the one of the time at which a channel begins.
+pub(crate) fn start_s(name: &str, value: f64) -> Option<f64> {
     let key: String = name.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect();
     let ends = TIMES.iter().flat_map(|(_, s, names)| names.iter().map(move |name| (*name, *s)));
-    let plain = STARTS.contains(&key.as_str()).then_some(1.0);
-    plain.or_else(|| {
-        ends.filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
-            .find(|(key, _)| STARTS.contains(key))
-            .map(|(_, s)| s)
-    })
+    if STARTS.contains(&key.as_str()) {
+        return Some(value * epoch_unit_s(value).unwrap_or(1.0));
+    }
+    let (_, second) = ends
+        .filter_map(|(unit, s)| Some((key.strip_suffix(unit)?, s)))
+        .find(|(key, _)| STARTS.contains(key) || OFFSETS.contains(key))?;
+    Some(value * second)
 }
 
 /// A step from which on numbers without a unit are no seconds: vibration is sampled faster than a thousand

@@ -65,6 +65,30 @@ fn issue_names_of_rows_shift_no_headings() {
         let channel = sampled(&found, "acc_g");
         assert_eq!((channel.len, channel.column), (COUNT as u64, Some(3)));
     }
+    // Names that are words, numbers that fall or leave some out, a date: time is the column that rises.
+    for name in [
+        &(|n| format!("row{n}")) as &dyn Fn(usize) -> String,
+        &|n| format!("{}", COUNT - n),
+        &|n| format!("{}", 3 * n + n % 2),
+        &|_| "2024-05-01".to_owned(),
+    ] {
+        let text = "time_s acc_g\n".to_owned()
+            + &rows(|n| {
+                let (s, x) = at(n);
+                format!("{} {s:.7} {x:.4}", name(n))
+            });
+        let found = opened(&desk, "r.txt", text.as_bytes());
+        assert_eq!(sampled(&found, "acc_g").column, Some(3));
+        let first = found.channels.iter().find(|c| !c.is_time && c.unit.is_none()).unwrap();
+        assert_eq!(first.name, "acc_g", "{}", found.names());
+    }
+    // A column without a name at the end takes none of the others.
+    let text = "time_s,acc\n".to_owned()
+        + &rows(|n| {
+            let (s, x) = at(n);
+            format!("{s:.7},{x:.4},{n}")
+        });
+    assert_eq!(sampled(&opened(&desk, "a.csv", text.as_bytes()), "acc").column, Some(2));
     // A separator at the end of all rows is no column, and takes no name.
     let text = "n,time_s,acc\n".to_owned()
         + &rows(|n| {
@@ -87,6 +111,9 @@ fn issue_a_first_row_of_sizes_is_no_sample() {
         ("1,4096", &fractions, COUNT),
         ("2,4096", &whole, COUNT),
         ("4096", &alone, COUNT),
+        ("4096.0", &alone, COUNT),
+        // Counts the line that says it, too.
+        ("4097,2", &fractions, COUNT),
         // Neither: samples.
         ("2,4000", &fractions, COUNT + 1),
         ("0,0", &fractions, COUNT + 1),
@@ -173,6 +200,13 @@ fn issue_one_long_row_is_one_channel() {
     let found = opened(&desk, "row.csv", format!("{}\n", text.trim_end_matches(',')).as_bytes());
     assert_eq!((found.channels.len(), found.channels[0].len), (1, count));
     assert_eq!(found.channels[0].read().unwrap()[count as usize - 1], 0.5);
+    // Its name may stand before it.
+    let row = (0..1000).map(|n| format!(",{:.2}", signal(n))).collect::<String>();
+    let found = opened(&desk, "named.csv", format!("acc{row}\nspeed{row}\n").as_bytes());
+    assert_eq!(
+        (found.names(), found.channels[1].len),
+        ("`acc` (1000 samples), `speed` (1000 samples)".into(), 1000)
+    );
     // Fifty rows of ten thousand fields are fifty channels, and so are a hundred.
     for count in [50, 100] {
         let row = (0..10_000).map(|n| format!("{:.2}", signal(n))).collect::<Vec<_>>().join(",") + "\n";
@@ -199,6 +233,19 @@ fn issue_stamps_of_packets_say_the_rate_and_what_lacks() {
         let said = found.notes.join("; ");
         assert!(said.contains(&format!("packets of {size} samples")) && !said.contains("uneven"), "{said}");
     }
+    // A last packet that is cut off moves the rate no more, and neither do stamps of few digits.
+    for (size, digits) in [(50, 6), (37, 5), (1, 3), (1, 4)] {
+        let stamp = |n: usize| (n / size * size) as f64 / RATE_HZ;
+        let text = "time_s,acc\n".to_owned() + &rows(|n| format!("{:.digits$},{:.4}", stamp(n), signal(n)));
+        let rate_hz = sampled(&opened(&desk, "a.csv", text.as_bytes()), "acc").rate_hz.unwrap();
+        assert!((rate_hz / RATE_HZ - 1.0).abs() < 2e-4, "{size}: {rate_hz}");
+    }
+    // Times of arrival say no rate, and what they are.
+    let late = |n: usize| epoch(n, 128) + [0.0, 3.0, 7.0, 4.0, 8.0][n / 128 % 5];
+    let text = "epoch_ms,acc\n".to_owned() + &rows(|n| format!("{},{:.4}", late(n), signal(n)));
+    let found = opened(&desk, "a.csv", text.as_bytes());
+    let said = found.notes.join("; ");
+    assert!(said.contains("packets of about 128 samples"), "{said}");
     let kept = |n: usize| (n / 32) % 20 != 7;
     let text: String =
         (0..COUNT).filter(|n| kept(*n)).map(|n| format!("{},{:.4}\n", epoch(n, 32), signal(n))).collect();
@@ -254,6 +301,24 @@ fn issue_each_channel_begins_when_its_clock_says() {
         (found.channel("tacho").unwrap().start_s, found.channel("acc").unwrap().start_s),
         (Some(0.8), None)
     );
+    // Dates in milliseconds, and lags in a unit of time.
+    for (name, value) in [("tacho_start_timestamp", 1_714_550_400_800.0), ("tacho_offset_ms", 800.0)] {
+        let start = Channel::held(name, vec![value]);
+        stribeck_formats::npz::write(&path, &[channel("tacho", 9), start], &[]).unwrap();
+        let start_s = Recording::open(&path).unwrap().channel("tacho").unwrap().start_s.unwrap();
+        assert!((start_s % 100.0 - 0.8).abs() < 1e-6, "{name}: {start_s}");
+    }
+    // Two clocks in one table: by the name, and by the order.
+    for head in ["time_acc_s,acc,time_tacho_s,tacho", "t_s,acc,t2_s,tacho"] {
+        let text = format!("{head}\n")
+            + &rows(|n| {
+                let (s, x) = at(n);
+                format!("{s:.7},{x:.4},{:.7},{x:.4}", s + 0.03)
+            });
+        let found = opened(&desk, "a.csv", text.as_bytes());
+        let start = |name: &str| sampled(&found, name).start_s.unwrap();
+        assert!(start("acc").abs() < 1e-6 && (start("tacho") - 0.03).abs() < 1e-6, "{head}");
+    }
     // Times that begin later.
     let text = "time_s,acc\n".to_owned() + &rows(|n| format!("{:.7},{:.4}", 2.5 + at(n).0, signal(n)));
     let found = opened(&desk, "a.csv", text.as_bytes());
@@ -301,6 +366,12 @@ fn issue_files_beside_sound_ones_are_named() {
     let desk = Scratch::create("second-beside");
     let why = try_open(&desk, "a.tdms_index", b"TDSh\0\0\0\0").unwrap_err().to_string();
     assert!(why.contains("a.tdms`") && why.contains("open that"), "{why}");
+    for (bytes, words) in
+        [(&b"\x1f\x8b\x08\0rest"[..], "gunzip"), (b"BZh91AY", "bunzip2"), (b"CDF\x01\0\0", "nccopy")]
+    {
+        let why = try_open(&desk, "a.csv", bytes).unwrap_err().to_string();
+        assert!(why.contains(words), "{why}");
+    }
     // Tags before FLAC are looked behind, and what stands there is judged.
     let tag = [&b"ID3\x04\0\0\0\0\0\x0a"[..], &[0; 10], b"fLaC"].concat();
     let why = try_open(&desk, "a.flac", &tag).unwrap_err().to_string();

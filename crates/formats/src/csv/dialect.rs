@@ -1,5 +1,6 @@
 //! How a table is written: separator of columns, decimal sign, first row of numbers.
 
+use super::WIDE;
 use super::stamp::stamp;
 
 /// How a table is written.
@@ -41,9 +42,7 @@ impl Dialect {
         // Strictly: numbers, times and gaps alone. Otherwise some columns may be texts.
         let found = [true, false].into_iter().find_map(|strict| {
             let all = ALL.into_iter().map(|(separator, decimal_comma)| Self { separator, decimal_comma });
-            let mut all = all
-                .filter(|d| strict || d.separator != ' ')
-                .filter_map(|dialect| Some((dialect, dialect.begins(lines, strict)?)));
+            let mut all = all.filter_map(|dialect| Some((dialect, dialect.begins(lines, strict)?)));
             let first = all.next()?;
             if first.0.separator != ',' || first.1 < 2 * AGREE {
                 return Some(first);
@@ -64,14 +63,17 @@ impl Dialect {
             if self.separator != ' ' && !line.contains(self.separator) {
                 return None;
             }
-            let (mut fields, mut numbers, mut texts) = (0, 0, 0);
+            let (mut fields, mut numbers, mut texts, mut is_named) = (0, 0, 0, false);
             self.each(line, |field| {
                 let kind = self.field(field);
+                is_named |= fields == 0 && kind == Field::Text;
                 fields += 1;
                 numbers += usize::from(matches!(kind, Field::Number(_)));
                 texts += usize::from(kind == Field::Text);
             });
-            (numbers > 0 && (texts == 0 || !strict && 2 * texts <= fields)).then_some(fields)
+            // Words between spaces are a sentence, but for the name of a row.
+            let most = if self.separator == ' ' { usize::from(is_named && fields > 2) } else { fields / 2 };
+            (numbers > 0 && (texts == 0 || !strict && texts <= most)).then_some(fields)
         };
         let rows: Vec<Option<usize>> = lines.iter().map(|line| row(line)).collect();
         (0..lines.len()).find(|n| {
@@ -85,7 +87,7 @@ impl Dialect {
                     && behind.filter(|row| *row != Some(columns)).count() < AGREE / 2
             } else {
                 let agree = behind.by_ref().filter(|row| *row == Some(columns)).count();
-                agree >= 2
+                agree >= 2 || columns >= WIDE
             }
         })
     }

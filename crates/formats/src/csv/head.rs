@@ -1,21 +1,21 @@
 //! Names and units of columns from the lines above them.
 
+use super::FirstRows;
 use super::dialect::Dialect;
 use crate::units::{self, is_unit, seconds};
 
-/// Names and units of `columns` columns; both may be empty texts. `names_rows` says that the first column is
-/// that of the rows' names, which R leaves without a heading.
-pub(crate) fn names(
+/// Names and units of `columns` columns; both may be empty texts.
+pub(super) fn names(
     head: &[String],
     dialect: Dialect,
     columns: usize,
-    names_rows: bool,
+    rows: &FirstRows,
 ) -> (Vec<String>, Vec<String>) {
     let fitting: Vec<Vec<String>> = head
         .iter()
         .map(|line| line.trim_start_matches(|c: char| c.is_whitespace() || matches!(c, '#' | '%')))
         .filter(|line| !dialect.is_empty(line))
-        .filter_map(|line| words(line, dialect, columns, names_rows))
+        .filter_map(|line| words(line, dialect, columns, rows))
         .collect();
     // The row of units, where there is one, stands below that of the names.
     let units = (1..fitting.len()).rev().take(4).find(|n| is_row_of_units(&fitting[*n]));
@@ -30,7 +30,7 @@ pub(crate) fn names(
 
 /// The words of a line, where they are as many as there are columns; `# t_ms acc_g` may be split otherwise
 /// than its rows.
-fn words(line: &str, dialect: Dialect, columns: usize, names_rows: bool) -> Option<Vec<String>> {
+fn words(line: &str, dialect: Dialect, columns: usize, rows: &FirstRows) -> Option<Vec<String>> {
     let split = |separator: char| {
         let mut all: Vec<String> =
             Dialect { separator, ..dialect }.split(line).into_iter().map(str::to_owned).collect();
@@ -42,7 +42,7 @@ fn words(line: &str, dialect: Dialect, columns: usize, names_rows: bool) -> Opti
         if all.len() == columns + 1 && all.last().is_some_and(|word| word.eq_ignore_ascii_case("comment")) {
             all.pop();
         }
-        if all.len() + 1 == columns && names_rows {
+        if all.len() + 1 == columns && rows.leave_the_first(&all) {
             all.insert(0, String::new());
         } else if all.len() + 1 == columns && columns > 2 {
             all.push(String::new());

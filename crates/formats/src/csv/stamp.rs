@@ -118,8 +118,11 @@ fn clock(text: &str) -> Option<Time> {
         _ => (upper.as_str(), None),
     };
     let mut parts = text.split(':');
-    let hour: i8 = parts.next()?.parse().ok()?;
-    let minute: i8 = parts.next()?.parse().ok()?;
+    let first: i8 = parts.next()?.parse().ok()?;
+    // Excel writes minutes and seconds where the seconds have a fraction: `01:23.4`.
+    let is_minute = half.is_none() && text.matches(':').count() == 1 && text.contains('.');
+    let (hour, minute) =
+        if is_minute { (first / 60, first % 60) } else { (first, parts.next()?.parse().ok()?) };
     let seconds = parts.next().unwrap_or("0");
     let (second, fraction) = seconds.split_once('.').unwrap_or((seconds, ""));
     // Some write milliseconds behind a third colon.
@@ -154,6 +157,8 @@ mod tests {
             assert_eq!(stamp(text), Some((base.0, nanos)), "{text}");
         }
         assert_eq!(stamp("08:00:00,5"), Some((28_800, 500_000_000)));
+        assert_eq!(stamp("01:23.4"), Some((83, 400_000_000)));
+        assert_eq!(stamp("75:00,5"), Some((4500, 500_000_000)));
         assert_eq!(stamp("78.125 ms"), Some((0, 78_125_000)));
         assert_eq!(stamp("2.5 sec"), Some((2, 500_000_000)));
         assert_eq!(stamp("0 days 00:00:00.000078125"), Some((0, 78_125)));

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use super::{Course, DATES_S, LEAST, own_name, says_time, unit_of};
+use super::{Course, LEAST, SAME_RATE, own_name, says_time, unit_of};
 use crate::units::{self, Unit};
 use crate::{Channel, Result};
 
@@ -61,6 +61,29 @@ impl Packets {
         steps.retain(|step| *step < LACKS * usual);
         steps.iter().sum::<f64>() / steps.len() as f64
     }
+
+    /// Whether stamps are farther from even ones than their last digit: those of arrival, by which the rate is not
+    /// known to [`SAME_RATE`].
+    fn are_uneven(&self, period: f64) -> bool {
+        let mut steps: Vec<f64> = self.starts.windows(2).map(|w| w[1].1 - w[0].1).collect();
+        let mut place = 0.0;
+        let places: Vec<f64> = steps
+            .iter()
+            .map(|step| {
+                place += (step / period).round().max(1.0);
+                place
+            })
+            .collect();
+        let first = self.starts[0].1;
+        let span = self.starts[self.starts.len() - 1].1 - first;
+        let due = |at: f64| first + span * at / place;
+        let off = self.starts[1..].iter().zip(&places).map(|((_, stamp), at)| (stamp - due(*at)).abs());
+        let worst = off.fold(0.0, f64::max);
+        steps.sort_by(f64::total_cmp);
+        let differ = steps.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 1e-6 * period);
+        let digit = differ.fold(f64::INFINITY, f64::min);
+        worst > 1.01 * digit && worst > SAME_RATE * span
+    }
 }
 
 /// Sets the rate of channels whose clock stamps packets, with notes on packets that lack; returns the places of
@@ -85,11 +108,7 @@ pub(super) fn told(
         let first_stamp = packets.starts[0].1;
         let second = match unit {
             Unit::Time(_, second) => second,
-            // Of all units only one makes a date of our time of it.
-            _ => [1.0, 1e-3, 1e-6, 1e-9]
-                .into_iter()
-                .find(|s| DATES_S.contains(&(first_stamp * s)))
-                .unwrap_or(1.0),
+            _ => units::epoch_unit_s(first_stamp).unwrap_or(1.0),
         };
         let gaps: Vec<&[(f64, f64)]> =
             packets.starts.windows(2).filter(|w| w[1].1 - w[0].1 > LACKS * period).collect();
@@ -105,6 +124,12 @@ pub(super) fn told(
         let is_round = (exact_hz / round_hz - 1.0).abs() < digit / span;
         let hz = if is_round { round_hz } else { units::rounded(exact_hz) };
         let name = clock.name.clone();
+        if packets.are_uneven(period) {
+            notes.push(arrive(&name, size, exact_hz));
+            found.push(n);
+            channels[n].is_time = true;
+            continue;
+        }
         notes.push(format!(
             "`{name}` stamps packets of {size} samples, not samples: {hz} Hz by {} packets",
             packets.starts.len()
@@ -129,6 +154,14 @@ pub(super) fn told(
         }
     }
     Ok(found)
+}
+
+/// Why stamps of packets of a size that rise unevenly say no rate, and which they say on average [Hz].
+pub(super) fn arrive(name: &str, size: f64, hz: f64) -> String {
+    format!(
+        "`{name}` stamps packets of about {size:.0} samples, and the stamps rise unevenly, as those of their arrival \
+         do: {hz:.0} Hz on average. Give the rate by hand"
+    )
 }
 
 /// Why a channel that is called a time says no rate.

@@ -108,6 +108,19 @@ fn issue_fill_values_of_netcdf_are_no_numbers() {
     holds(found.channel("acc").unwrap(), COUNT, |n| if is_missing(n) { f64::NAN } else { signal(n) });
 }
 
+/// `_FillValue` is a list of one number where netCDF's own library writes it, and counted as none.
+#[test]
+fn issue_packed_pieces_of_hdf5_2_and_lists_of_marks_are_read() {
+    let found = fixture("packed.h5");
+    for name in ["one", "fixed", "growing"] {
+        holds(found.channel(name).unwrap_or_else(|why| panic!("{why} {:?}", found.notes)), COUNT, signal);
+    }
+    let marked = found.channel("marked").unwrap();
+    holds(marked, COUNT, |n| if [100, 101, 200].contains(&n) { f64::NAN } else { signal(n) });
+    assert_eq!(marked.unit, None);
+    holds(fixture("behind.h5").channel("acc").unwrap(), COUNT, |n| signal(n) as f32 as f64);
+}
+
 /// It was refused in the words of the library, which advised a programmer.
 #[test]
 fn issue_a_file_of_hdf5_that_is_being_written_is_read() {
