@@ -188,6 +188,7 @@ mod tests {
             ("hard", hard.clone(), 2.0),
             ("12 bits", stepped(clip(-0.8, 0.8 - lsb)), 2.0),
             ("dither", hard.iter().map(|x| x + 2e-4 * gaussian(&mut dither)).collect(), 2.0),
+            ("more of it", hard.iter().map(|x| x + 1e-3 * gaussian(&mut dither)).collect(), 2.0),
             ("one side", clip(f64::NEG_INFINITY, 0.8), 1.0),
             ("whole numbers", hard.iter().map(|x| (x * 40_960.0).round().min(32_767.0)).collect(), 2.0),
             ("held fourfold", held, 2.0),
@@ -226,6 +227,14 @@ mod tests {
         let near = |a: f64, b: f64| assert!((a - b).abs() < 2e-4, "{a} {b}");
         near(share(&gap(&|_| 0.0, 800), Kind::Held), part(4800));
         near(share(&gap(&|_| 0.0, 50), Kind::Held), part(300));
+        near(share(&gap(&|_| 0.0, 20), Kind::Held), part(120));
+        // A few zeros at a time, and zeros in a signal that never comes near them.
+        let often = |every: usize, length: usize| {
+            (0..COUNT).map(|n| if n % every < length { 0.0 } else { x[n] }).collect::<Vec<f64>>()
+        };
+        near(share(&often(1000, 8), Kind::Held), part(8 * COUNT.div_ceil(1000)));
+        let offset: Vec<f64> = gap(&|_| -9.81, 800).iter().map(|x| x + 9.81).collect();
+        near(share(&offset, Kind::Held), part(4800));
         near(share(&gap(&|at| x[at - 1], 800), Kind::Held), part(4806));
         near(share(&gap(&|_| -999.0, 800), Kind::Held), part(4800));
         near(share(&gap(&|_| 1e6, 800), Kind::Held), part(4800));

@@ -114,8 +114,10 @@ impl Screening {
     fn marks(&self) -> Vec<String> {
         let origin = self.origin.unwrap_or(0.0);
         let sides = [(&self.highest, &self.lowest, 1.0), (&self.lowest, &self.highest, -1.0)];
+        // Where all others are equal it is a converter of two levels.
         let is_mark = |this: &Extreme, other: &Extreme| {
-            this.total > 1 && this.next.is_some_and(|next| this.value - next > FAR * (next + other.value))
+            let range = this.next.map_or(0.0, |next| next + other.value);
+            this.total > 1 && range > 0.0 && this.value - this.next.unwrap_or(0.0) > FAR * range
         };
         let found = sides.into_iter().filter(|(this, other, _)| is_mark(this, other));
         found
@@ -273,6 +275,8 @@ mod tests {
         // What a converter rounds has equal peaks, and knocks stand far out.
         let rounded: Vec<f64> = clean.iter().map(|x| x.round()).collect();
         assert!(!notes(&rounded).contains("exactly"), "{}", notes(&rounded));
+        let signs: Vec<f64> = clean.iter().map(|x| x.signum()).collect();
+        assert!(!notes(&signs).contains("exactly"), "{}", notes(&signs));
     }
 
     /// A spike of one sample, or of a few places, on any side; in the first one, too.

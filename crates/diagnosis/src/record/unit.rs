@@ -45,7 +45,14 @@ impl MotionUnit {
 
 /// A symbol with one spelling of seconds and powers, without what says how it was averaged: `m/s2`, `g`.
 fn spelled(symbol: &str) -> String {
-    let plain = symbol.trim().trim_matches(['[', ']', '(', ')']).replace(['·', '^', '*', ' ', '_'], "");
+    // `Acceleration (g)`, and `M/S2` of programs without small letters.
+    let symbol = symbol.trim();
+    let within = symbol.strip_suffix([')', ']']).and_then(|text| text.rsplit_once(['(', '[']));
+    let within = within.filter(|(name, _)| name.chars().filter(|c| c.is_alphabetic()).count() > 3);
+    let symbol = within.map_or(symbol, |(_, unit)| unit);
+    let is_capital = symbol.contains("/S") && !symbol.contains(char::is_lowercase);
+    let symbol = if is_capital { symbol.to_lowercase() } else { symbol.to_owned() };
+    let plain = symbol.replace(['[', ']', '(', ')', '·', '.', '^', '*', ' ', '_'], "");
     let plain = plain.replace("sec", "s").replace("⁻²", "-2").replace("⁻¹", "-1").replace('²', "2");
     let plain = plain.replace('\u{2212}', "-");
     let averaged = ["rms", "RMS", "peak", "Peak", "pk-pk", "pkpk", "pk", "0-p", "p-p"];
@@ -83,11 +90,11 @@ impl AccelerationUnit {
             (Some("mm"), _) => Some(Self::MillimetrePerSecondSquared),
             (Some("in" | "inch"), _) => Some(Self::InchPerSecondSquared),
             (Some("ft"), _) => Some(Self::FootPerSecondSquared),
-            (_, "g" | "G" | "gn" | "g0" | "g's" | "gs" | "G's" | "Gs" | "gee" | "gees") => {
+            (_, "g" | "G" | "gn" | "g0" | "g's" | "gs" | "G's" | "Gs" | "gee" | "gees" | "gravity") => {
                 Some(Self::Gravity)
             }
-            (_, "mg" | "mG" | "mgn") => Some(Self::MilliGravity),
-            (_, "ug" | "µg" | "μg") => Some(Self::MicroGravity),
+            (_, "mg" | "mG" | "mgn" | "millig" | "milli-g") => Some(Self::MilliGravity),
+            (_, "ug" | "µg" | "μg" | "microg" | "micro-g") => Some(Self::MicroGravity),
             _ => None,
         }
     }
@@ -151,6 +158,14 @@ mod tests {
             ("g peak", AccelerationUnit::Gravity),
             ("Gal", AccelerationUnit::CentimetrePerSecondSquared),
             ("in/s2", AccelerationUnit::InchPerSecondSquared),
+            ("m/(s^2)", AccelerationUnit::MetrePerSecondSquared),
+            ("m.s-2", AccelerationUnit::MetrePerSecondSquared),
+            ("M/S2", AccelerationUnit::MetrePerSecondSquared),
+            ("Acceleration (g)", AccelerationUnit::Gravity),
+            ("Acceleration [m/s²]", AccelerationUnit::MetrePerSecondSquared),
+            ("gravity", AccelerationUnit::Gravity),
+            ("milli-g", AccelerationUnit::MilliGravity),
+            ("micro g", AccelerationUnit::MicroGravity),
         ] {
             assert_eq!(AccelerationUnit::parse(spelled), Some(unit), "{spelled}");
         }
@@ -164,7 +179,9 @@ mod tests {
         ] {
             assert_eq!(MotionUnit::parse(spelled), Some(MotionUnit::Velocity(m_s)), "{spelled}");
         }
-        for other in ["V", "mV", "um", "mil", "counts", "dB", "s", "rms", "mm", "N/s"] {
+        for other in
+            ["V", "mV", "um", "mil", "counts", "dB", "s", "rms", "mm", "N/s", "V/S", "dB (g)", "mV/g"]
+        {
             assert_eq!(MotionUnit::parse(other), None, "{other}");
         }
         for other in ["mm/s", "m/s", "V", "s2", ""] {

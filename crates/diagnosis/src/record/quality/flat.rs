@@ -12,7 +12,11 @@ pub(super) struct Run {
 }
 
 /// Shortest stretch that is kept [samples]: a converter that resolves the signal makes none as long.
-const SHORTEST: u64 = 32;
+const SHORTEST: u64 = 16;
+/// Shortest one of those of which there are many, where samples all differ, and how many.
+const SHORT: u64 = 6;
+const MANY: usize = 8;
+const MOST_SHORT: usize = 4096;
 /// How many times as long as nearly all runs of equal samples a stretch is in which there is no signal.
 const UNUSUAL: u64 = 16;
 /// Stretches kept; further ones are as these.
@@ -25,6 +29,8 @@ const LENGTHS: usize = 1 << 12;
 pub(super) struct Flat {
     run: Option<(Run, bool)>,
     kept: Vec<Run>,
+    /// Those that are too short to mean anything alone.
+    short: Vec<Run>,
     /// Runs by their length, those at an extreme apart: what a limiter makes says nothing about the converter.
     lengths: Vec<u64>,
     all: u64,
@@ -55,6 +61,8 @@ impl Flat {
         }
         if run.count >= SHORTEST && self.kept.len() < KEPT {
             self.kept.push(run);
+        } else if (SHORT..SHORTEST).contains(&run.count) && self.short.len() < MOST_SHORT {
+            self.short.push(run);
         }
     }
 
@@ -72,7 +80,9 @@ impl Flat {
     /// The stretches without a signal in a record of `count` samples.
     pub(super) fn stretches(&self, count: u64) -> Vec<Run> {
         let least = SHORTEST.max(UNUSUAL * self.natural());
-        let long = self.kept.iter().filter(|run| run.count >= least);
+        let are_many = self.natural() == 1 && (MANY..MOST_SHORT).contains(&self.short.len());
+        let short = self.short.iter().filter(|_| are_many);
+        let long = self.kept.iter().filter(|run| run.count >= least).chain(short);
         long.map(|run| Run { to_end: run.from + run.count == count, ..*run }).collect()
     }
 }

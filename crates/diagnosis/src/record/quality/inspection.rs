@@ -116,7 +116,8 @@ impl Inspection {
         self.lines.interrupt();
         let few = self.values.few_levels();
         let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
-        let mut found: Vec<Quality> = self.clipped(few.is_some(), &at_rail, &ends).into_iter().collect();
+        let mut found: Vec<Quality> =
+            self.clipped(few.is_some(), &at_rail, &[&ends[..], &gaps].concat()).into_iter().collect();
         found.extend(ends.iter().map(|run| self.dead(run)));
         if few.is_none() {
             found.extend(self.held(&gaps));
@@ -144,8 +145,8 @@ impl Inspection {
         let mut stays = Stays::default();
         for run in self.flat.stretches(self.count) {
             let at_end = run.to_end || run.from_start;
-            // A mark of missing samples is no rail.
-            let is_rail = self.values.is_extreme(run.value) && !self.values.is_far(run.value);
+            // What fills gaps lies apart, where zero is no value of the signal, too.
+            let is_rail = self.values.is_extreme(run.value) && !self.values.is_apart(run.value);
             if at_end && run.count as f64 > least {
                 stays.ends.push(run);
             } else if is_rail && !at_end && !few_levels {
@@ -158,10 +159,10 @@ impl Inspection {
     }
 
     /// Samples at the ends of the range; a long stay there is clipping, too.
-    fn clipped(&self, few_levels: bool, at_rail: &[Run], ends: &[Run]) -> Option<Quality> {
+    fn clipped(&self, few_levels: bool, at_rail: &[Run], others: &[Run]) -> Option<Quality> {
         let (low, high) = self.values.clipped(self.flat.natural(), few_levels);
-        // A channel that stands at its largest value to the end is dead, and not clipped.
-        let stands = |rail: &Rail| ends.iter().any(|run| run.value == rail.value);
+        // A channel that stands at its largest value to the end, or in gaps, is not clipped.
+        let stands = |rail: &Rail| others.iter().any(|run| run.value == rail.value);
         let rails: Vec<Rail> = [low, high].into_iter().flatten().filter(|rail| !stands(rail)).collect();
         let held: u64 = at_rail.iter().map(|run| run.count).sum();
         let samples = held.max(rails.iter().map(|rail| rail.samples).sum());
@@ -335,8 +336,12 @@ fn stretches(count: usize) -> String {
     if count == 1 { "1 stretch".to_owned() } else { format!("{count} stretches") }
 }
 
-/// A value with six digits.
+/// A value with six digits, a whole number with all of its.
 fn spelt(value: f64) -> String {
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-    format!("{rounded}")
+    match value.abs() {
+        1e15.. => format!("{rounded:e}"),
+        _ if value.fract() == 0.0 => format!("{value}"),
+        _ => format!("{rounded}"),
+    }
 }

@@ -140,13 +140,22 @@ impl Rails {
     /// Whether an extreme lies farther from all other values than these from each other, as marks of missing
     /// samples do.
     pub(super) fn is_far(&self, value: f64) -> bool {
-        let Some((low, high)) = self.extremes else { return false };
-        let band = |x: f64| (((x - self.low) / self.width) as usize).min(BANDS - 1);
-        let own = if self.bands.is_empty() { return false } else { band(value) };
+        self.distance(value).is_some_and(|over_range| over_range > 2.0)
+    }
+
+    /// Whether no values lie near an extreme: a limiter's rail has its neighbours.
+    pub(super) fn is_apart(&self, value: f64) -> bool {
+        self.distance(value).is_some_and(|over_range| over_range > 0.1)
+    }
+
+    /// How far an extreme lies from all other values, over the range of these.
+    fn distance(&self, value: f64) -> Option<f64> {
+        let (low, high) = self.extremes.filter(|_| !self.bands.is_empty())?;
+        let own = (((value - self.low) / self.width) as usize).min(BANDS - 1);
         let others = || (0..BANDS).filter(|n| self.bands[*n].samples > 0 && n.abs_diff(own) > 1);
-        let (Some(least), Some(most)) = (others().next(), others().next_back()) else { return false };
+        let (least, most) = (others().next()?, others().next_back()?);
         let gap = if value == high { own.saturating_sub(most) } else { least.saturating_sub(own) };
-        (value == high || value == low) && gap > 2 * (most - least + 1)
+        (value == high || value == low).then(|| gap as f64 / (most - least + 1) as f64)
     }
 
     /// How many values make up 99 of 100 runs, where they are [`FEW`] at most.
