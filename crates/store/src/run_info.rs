@@ -100,6 +100,8 @@ pub enum Topic {
     Pictures,
     /// The files of the run.
     Files,
+    /// A checkpoint that the disk refused: nothing in the results depends on it.
+    Checkpoint,
 }
 
 impl Topic {

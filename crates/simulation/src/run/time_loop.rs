@@ -258,7 +258,7 @@ impl<M: Motion> Run<M> {
             saved.failed = true;
             let at = 1e3 * self.motion.time();
             let words = format!("no checkpoint at {at:.3} ms, the run went on: {error}");
-            self.info.warn(Topic::Files.warning(words));
+            self.info.warn(Topic::Checkpoint.warning(words));
         }
         saved.sample = self.info.samples;
         saved.wall_s = (host.wall_s)();

@@ -16,7 +16,7 @@ use stribeck_formats::parquet::{Column, Values, write_table};
 use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::{Keep, RunDir};
-use stribeck_store::run_info::Status;
+use stribeck_store::run_info::{Status, Topic};
 use stribeck_store::trace::TraceFile;
 use stribeck_theory::kinematics::Kinematics;
 
@@ -91,7 +91,7 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 let path = folder.0.run(scene);
                 let info = RunDir::open(&path)?.read_info()?;
                 if info.status == Status::Diverged {
-                    (row.status, row.reason) = ("diverged", info.stop_reason);
+                    (row.status, row.reason) = ("diverged", info.stop_reason.clone());
                 }
                 let summary = summary_of(&path)?;
                 // Those outside of lists, without clocks.
@@ -101,7 +101,10 @@ pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Re
                 row.numbers.insert("energy.max_relative_error".into(), info.energy.max_relative_error);
                 // An overflow is no number, and a column without numbers is none.
                 row.numbers.retain(|_, number| number.is_finite());
-                row.warnings = Some(info.warnings.join("\n")).filter(|text| !text.is_empty());
+                // What a disk refused is no property of the run.
+                let of_run = info.warned().filter(|(topic, _)| *topic != Some(Topic::Checkpoint));
+                let warnings: Vec<&str> = of_run.map(|(_, words)| words.as_str()).collect();
+                row.warnings = (!warnings.is_empty()).then(|| warnings.join("\n"));
                 row.program = Some(format!("{} ({})", info.version, info.commit));
                 let machine = RunDir::open(&path)?.machine();
                 let samples = if machine.exists() { TraceFile::open(machine)?.len() } else { info.samples };

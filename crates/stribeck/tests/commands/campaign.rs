@@ -123,6 +123,22 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
 }
 
+/// A full disk put the path of a folder and a warning into the data set.
+#[test]
+fn issue_what_a_disk_refused_is_not_in_the_tables() {
+    let desk = desk("campaign-refused", CAMPAIGN);
+    assert!(run(&desk, &["--out=A"]).status.success());
+    let path = runs(&desk.join("A"))[3].join("run.json");
+    let mut info: serde_json::Value = serde_json::from_slice(&fs::read(&path).expect("a run")).expect("JSON");
+    for (list, what) in [("warnings", "no checkpoint at 0.300 ms"), ("warned_of", "checkpoint")] {
+        info[list].as_array_mut().expect("a list").push(what.into());
+    }
+    fs::write(&path, info.to_string()).expect("writable");
+    fs::remove_file(desk.join("A/runs.parquet")).expect("a table");
+    assert!(run(&desk, &["--out=A"]).status.success());
+    assert_eq!(&tables(&desk.join("A")), unbroken());
+}
+
 /// The campaign with `keep: what`.
 fn keeping(what: &str) -> String {
     CAMPAIGN.replace("    variants:", &format!("    keep: {what},\n    variants:"))
