@@ -23,6 +23,9 @@ pub fn holds_cage(scene: &Scene) -> String {
 /// diamond, from light polymers to tungsten. Source: Ashby, Materials Selection in Mechanical Design (2011), app. A.
 const MODULI_GPA: std::ops::RangeInclusive<f64> = 1.0..=1100.0;
 const DENSITIES_KG_M3: std::ops::RangeInclusive<f64> = 500.0..=20_000.0;
+/// Other units of density [kg/m³].
+const DENSITY_UNITS: [(f64, &str); 5] =
+    [(1e3, "g/cm³"), (1e9, "kg/mm³"), (1e12, "t/mm³"), (27_679.9, "lb/in³"), (16.0185, "lb/ft³")];
 
 /// Values of the material that no solid of a bearing has, with the likely meaning.
 pub fn doubts_of_material(scene: &Scene) -> Vec<String> {
@@ -30,7 +33,10 @@ pub fn doubts_of_material(scene: &Scene) -> Vec<String> {
     // Of all usual units only one makes a solid of it, if any.
     let meant = |value: f64, solid: &std::ops::RangeInclusive<f64>, units: &[(f64, &str)]| {
         let unit = units.iter().find(|(factor, _)| solid.contains(&(value * factor)));
-        unit.map_or(String::new(), |(factor, unit)| format!("; {value} {unit} are {}", value * factor))
+        let digits = |x: f64| format!("{x:.3e}").parse().unwrap_or(x);
+        unit.map_or(String::new(), |(factor, unit)| {
+            format!("; {value} {unit} are {}", digits(value * factor))
+        })
     };
     let mut doubts = Vec::new();
     if !MODULI_GPA.contains(&youngs_modulus_gpa) {
@@ -41,7 +47,7 @@ pub fn doubts_of_material(scene: &Scene) -> Vec<String> {
         ));
     }
     if !DENSITIES_KG_M3.contains(&density_kg_m3) {
-        let meant = meant(density_kg_m3, &DENSITIES_KG_M3, &[(1e3, "g/cm³"), (1e12, "t/mm³")]);
+        let meant = meant(density_kg_m3, &DENSITIES_KG_M3, &DENSITY_UNITS);
         doubts.push(format!(
             "`material.density_kg_m3` is {density_kg_m3}: no solid of bearings has {density_kg_m3} kg/m³, steel has \
              7850{meant}"
@@ -79,6 +85,13 @@ mod tests {
         scene.material.youngs_modulus_gpa = 0.21;
         let told = doubts_of_material(&scene).join("; ");
         assert!(told.contains("7.85 g/cm³ are 7850") && told.contains("0.21 TPa are 210"), "{told}");
+        for (value, told) in
+            [(7.85e-9, "t/mm³ are 7850"), (7.85e-6, "kg/mm³ are 7850"), (0.2836, "lb/in³ are 7850")]
+        {
+            scene.material.density_kg_m3 = value;
+            let all = doubts_of_material(&scene).join("; ");
+            assert!(all.contains(told), "{all}");
+        }
         // Silicon nitride, and a polymer.
         (scene.material.density_kg_m3, scene.material.youngs_modulus_gpa) = (3200.0, 310.0);
         assert_eq!(doubts_of_material(&scene), Vec::<String>::new());
