@@ -32,23 +32,32 @@ pub struct MeshFacts {
     pub element_time_step_s: f64,
 }
 
-/// Expected tones, resolution and cost of a scene.
+/// Noise of contact on a mesh.
 #[derive(Debug, Clone)]
-pub struct Plan {
+pub struct ContactNoise {
     /// Predicted lines: name and frequency [Hz].
     pub lines: Vec<(String, f64)>,
     /// The lumped model of the strongest of them on chords.
     pub lumped: Lumped,
     /// Sag of a roller's facets, of the outer and of the inner raceway's [m].
     pub sag_m: [f64; 3],
-    /// Static load sharing.
-    pub loads: Loads,
     /// Hertz half-width under the largest static force at the outer raceway [m].
     pub half_width_m: f64,
-    /// Oil under the most loaded roller, on the outer and on the inner raceway; `None` without oil.
-    pub films: Option<[LoadedFilm; 2]>,
     /// Length of a roller's facets [m].
     pub facet_m: f64,
+    /// Record that separates the closest two of the lines, Hann window [s]; `None` when they coincide.
+    pub separating_s: Option<f64>,
+}
+
+/// Expected tones, resolution and cost of a scene.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// What the mesh adds to the signal; `None` in the reduced model on arcs, whose contact has no mesh.
+    pub noise: Option<ContactNoise>,
+    /// Static load sharing.
+    pub loads: Loads,
+    /// Oil under the most loaded roller, on the outer and on the inner raceway; `None` without oil.
+    pub films: Option<[LoadedFilm; 2]>,
     /// Elements, and the time step by the stiffest of them alone [s]; with contact and the whole mesh it may
     /// differ by a fifth either way.
     pub elements: usize,
@@ -56,12 +65,10 @@ pub struct Plan {
     pub time_step_s: f64,
     /// Steps of the whole run.
     pub steps: f64,
-    /// Elements in a Rayleigh wave at the half of the sampling rate [-].
-    pub elements_per_wavelength: f64,
+    /// Elements in a Rayleigh wave at the half of the sampling rate [-]; `None` where no ring deforms.
+    pub elements_per_wavelength: Option<f64>,
     /// Resolution of a spectrum of the whole record [Hz].
     pub resolution_hz: f64,
-    /// Record that separates the closest two of the lines, Hann window [s]; `None` when they coincide.
-    pub separating_s: Option<f64>,
     /// Family whose ten periods are the least for an envelope, and the record that holds them [s]: that of
     /// the defect, of several the slowest, without one BPFO; `None` where the rings do not turn against each
     /// other.
@@ -83,6 +90,64 @@ const HANN_WIDTHS: f64 = 2.0;
 /// `smooth-narrow`).
 const ONSET_STEPS: f64 = 1.9;
 
+impl ContactNoise {
+    fn of(
+        scene: &ResolvedScene,
+        prediction: &Prediction,
+        counts: &MeshInfo,
+        largest_n: f64,
+    ) -> Result<Self, Error> {
+        let sag = |radius: f64, facets: usize| radius * (1.0 - (PI / facets as f64).cos());
+        let (radius, facets) = (scene.roller_radius, counts.roller_facets);
+        let effective = scene.outer_contact_radius();
+        let mut hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
+        hz.sort_by(f64::total_cmp);
+        let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let width = largest_n / scene.thickness * effective / (PI * scene.material.contact_modulus());
+        Ok(Self {
+            lines: prediction.facet_lines.clone(),
+            lumped: Lumped::of(scene)?,
+            sag_m: [
+                sag(radius, facets),
+                sag(scene.outer_race_radius, counts.outer_facets),
+                sag(scene.inner_race_radius, counts.inner_facets),
+            ],
+            half_width_m: (4.0 * width).sqrt(),
+            facet_m: 2.0 * PI * radius / facets as f64,
+            separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
+        })
+    }
+
+    /// Number, phase and length of facets that are in contact themselves.
+    fn on_facets(&self, scene: &ResolvedScene) -> Vec<String> {
+        let facets = scene.written.mesh.roller_facets;
+        let mut advice = Vec::new();
+        if facets.is_multiple_of(2) {
+            advice.push(format!(
+                "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels \
+                 the fundamental",
+                facets + 1
+            ));
+        }
+        if scene.written.mesh.roller_copies == RollerCopies::Rotated || facets.is_multiple_of(scene.rollers) {
+            advice.push(
+                "rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a \
+                count that is no multiple of the rollers is quieter"
+                    .into(),
+            );
+        }
+        if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.roller_radius {
+            advice.push(format!(
+                "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several \
+                 times shorter, refinement does not lower the tone",
+                1e3 * self.facet_m,
+                2e3 * self.half_width_m
+            ));
+        }
+        advice
+    }
+}
+
 impl Plan {
     /// The plan of a scene whose mesh is `mesh`.
     ///
@@ -91,46 +156,31 @@ impl Plan {
     pub fn of(scene: &ResolvedScene, mesh: &MeshFacts) -> Result<Self, Error> {
         let counts = &mesh.counts;
         let prediction = Prediction::of(scene, counts);
-        let lumped = Lumped::of(scene)?;
         let kinematics = &prediction.kinematics;
         let material = &scene.material;
-        let sag = |radius: f64, facets: f64| radius * (1.0 - (PI / facets).cos());
-        let radius = scene.roller_radius;
         let loads = Loads::of(scene)?;
-        let effective = scene.outer_contact_radius();
-        let half_width_m =
-            (4.0 * loads.largest_n / scene.thickness * effective / (PI * material.contact_modulus())).sqrt();
-
+        let is_reduced = scene.written.model != ModelScene::Full;
+        let has_no_mesh = is_reduced && scene.written.contact.surface != ContactSurface::Facet;
+        let is_rigid = is_reduced && scene.written.housing.is_rigid();
         let (duration_s, interval_s) = (scene.duration, scene.interval);
         let time_step_s = scene.written.solver.time_step_factor * mesh.element_time_step_s;
         let per_sample = (interval_s / time_step_s).ceil().max(1.0);
         let shear = (material.shear_modulus() / material.density).sqrt();
-        let mut hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
-        hz.sort_by(f64::total_cmp);
-        let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-        let facets = counts.roller_facets as f64;
         let families = scene.written.faults().into_iter().map(|on| Shocks::of(on, kinematics));
         let slowest = families.min_by(|a, b| a.hz.total_cmp(&b.hz));
         let slowest = slowest.unwrap_or_else(|| Shocks::of(RollingSurface::Outer, kinematics));
+        let noise = || ContactNoise::of(scene, &prediction, counts, loads.largest_n);
         let mut plan = Self {
-            lines: prediction.facet_lines.clone(),
-            lumped,
-            sag_m: [
-                sag(radius, facets),
-                sag(scene.outer_race_radius, counts.outer_facets as f64),
-                sag(scene.inner_race_radius, counts.inner_facets as f64),
-            ],
+            noise: if has_no_mesh { None } else { Some(noise()?) },
             dangers: loads::dangers(scene, &loads),
             loads,
-            half_width_m,
             films: scene.loaded_films()?,
-            facet_m: 2.0 * PI * radius / facets,
             elements: counts.quads + counts.triangles,
             time_step_s: interval_s / per_sample,
             steps: per_sample * (duration_s / interval_s).round(),
-            elements_per_wavelength: RAYLEIGH * shear * 2.0 * interval_s / scene.element_size,
+            elements_per_wavelength: (!is_rigid)
+                .then(|| RAYLEIGH * shear * 2.0 * interval_s / scene.element_size),
             resolution_hz: 1.0 / duration_s,
-            separating_s: (closest > 0.01).then(|| HANN_WIDTHS / closest),
             envelope: Some(slowest)
                 .filter(|shocks| shocks.hz > 0.0)
                 .map(|shocks| (shocks.name(), PeriodCount::ENOUGH / shocks.hz)),
@@ -148,26 +198,28 @@ impl Plan {
 
     /// How much the gap opens from one contact point to the next at the edge of the most loaded contact of a
     /// roller with the outer raceway [m] (THEORY §4.2).
-    fn point_step_m(&self, scene: &ResolvedScene, points_per_facet: usize) -> f64 {
+    fn point_step_m(&self, scene: &ResolvedScene, facet_m: f64, points_per_facet: usize) -> f64 {
         let radius = scene.outer_contact_radius();
         let load = self.loads.largest_n / scene.thickness;
         let depth = (0.75 * load / (scene.penalty_stiffness * (2.0 * radius).sqrt())).powf(2.0 / 3.0);
-        (2.0 * depth / radius).sqrt() * self.facet_m / points_per_facet as f64
+        (2.0 * depth / radius).sqrt() * facet_m / points_per_facet as f64
     }
 
     /// Recommendations from the study of contact noise (docs/results/noise.md).
     fn advise(&mut self, scene: &ResolvedScene) {
-        let mut advice = self.on_contact(scene);
-        advice.extend(self.on_oil(scene));
-        if scene.written.contact.surface == ContactSurface::Facet {
-            advice.extend(self.on_facets(scene));
+        let mut advice = self.on_oil(scene);
+        if let Some(noise) = &self.noise {
+            advice.splice(0..0, self.on_contact(scene, noise));
+            if scene.written.contact.surface == ContactSurface::Facet {
+                advice.extend(noise.on_facets(scene));
+            }
         }
         advice.extend(self.on_spectra(scene));
         self.advice = advice;
     }
 
     /// Surface, interpolation, method and onset of the contacts.
-    fn on_contact(&self, scene: &ResolvedScene) -> Vec<String> {
+    fn on_contact(&self, scene: &ResolvedScene, noise: &ContactNoise) -> Vec<String> {
         let c = &scene.written.contact;
         let mut advice = Vec::new();
         if c.surface == ContactSurface::Facet {
@@ -192,8 +244,8 @@ impl Plan {
                     .into(),
             );
         }
-        let onset_m = ONSET_STEPS * self.point_step_m(scene, c.points_per_facet);
-        let points_hz = c.points_per_facet as f64 * self.lumped.frequency_hz;
+        let onset_m = ONSET_STEPS * self.point_step_m(scene, noise.facet_m, c.points_per_facet);
+        let points_hz = c.points_per_facet as f64 * noise.lumped.frequency_hz;
         let audible = points_hz < 0.5 / scene.interval;
         // The reduced model integrates the penetration exactly, without points.
         let in_points = scene.written.model == ModelScene::Full && c.method == ContactMethod::Integrated;
@@ -231,46 +283,17 @@ impl Plan {
         advice
     }
 
-    /// Number, phase and length of facets that are in contact themselves.
-    fn on_facets(&self, scene: &ResolvedScene) -> Vec<String> {
-        let facets = scene.written.mesh.roller_facets;
-        let mut advice = Vec::new();
-        if facets.is_multiple_of(2) {
-            advice.push(format!(
-                "on chords, an odd `mesh.roller_facets` ({}) meets both raceways in turn and nearly cancels \
-                 the fundamental",
-                facets + 1
-            ));
-        }
-        if scene.written.mesh.roller_copies == RollerCopies::Rotated || facets.is_multiple_of(scene.rollers) {
-            advice.push(
-                "rollers pass their vertices all in phase: `mesh.roller_copies=translated` with a \
-                count that is no multiple of the rollers is quieter"
-                    .into(),
-            );
-        }
-        if self.sag_m[0] > 0.1 * self.half_width_m.powi(2) / scene.roller_radius {
-            advice.push(format!(
-                "facets of {:.2} mm are as long as the contact is wide ({:.2} mm): until they are several \
-                 times shorter, refinement does not lower the tone",
-                1e3 * self.facet_m,
-                2e3 * self.half_width_m
-            ));
-        }
-        advice
-    }
-
     /// The resolution of the spectra in frequency and of their top in space.
     fn on_spectra(&self, scene: &ResolvedScene) -> Vec<String> {
         let mut advice = Vec::new();
-        if self.elements_per_wavelength < 8.0 {
+        if let Some(few) = self.elements_per_wavelength.filter(|n| *n < 8.0) {
             advice.push(format!(
-                "{:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not \
-                 read the top of the spectrum",
-                self.elements_per_wavelength
+                "{few:.1} elements in a wave at half the sampling rate: a smaller `mesh.size_mm`, or do not \
+                 read the top of the spectrum"
             ));
         }
-        if let Some(needed) = self.separating_s.filter(|s| *s > scene.duration) {
+        let separating_s = self.noise.as_ref().and_then(|noise| noise.separating_s);
+        if let Some(needed) = separating_s.filter(|s| *s > scene.duration) {
             advice.push(format!(
                 "the closest lines merge in {:.0} ms; {:.0} ms separate them",
                 1e3 * scene.duration,
@@ -335,10 +358,11 @@ mod tests {
         scene.mesh.roller_facets = 112;
         let of =
             |scene: &Scene| Plan::of(&scene.resolve(), &facts()).expect("a scene with a load distribution");
+        let noise = |plan: &Plan| plan.noise.clone().expect("a mesh");
         let plan = of(&scene);
         // 3.54 µm of sag and 4671.5 Hz at 112 facets, whatever the rest of the mesh.
-        assert!((plan.sag_m[0] - 3.54e-6).abs() < 0.01e-6, "{plan:?}");
-        assert!((plan.lumped.frequency_hz - 4671.7).abs() < 1.0);
+        assert!((noise(&plan).sag_m[0] - 3.54e-6).abs() < 0.01e-6, "{plan:?}");
+        assert!((noise(&plan).lumped.frequency_hz - 4671.7).abs() < 1.0);
         assert!((plan.resolution_hz - 33.3).abs() < 0.1);
         // 10 µs in steps of at most 0.98 · 60 ns: 171 of them, 3000 times.
         assert_eq!((plan.steps, plan.elements), (513_000.0, 15_800));
@@ -353,8 +377,10 @@ mod tests {
         let sounding = of(&scene);
         assert!(sounding.advice.iter().any(|a| a.contains("onset_um") && a.contains("37.4 kHz")));
         let reduced = Scene { model: ModelScene::Reduced(Default::default()), ..scene.clone() };
-        assert!(of(&reduced).advice.iter().all(|a| !a.contains("onset_um")), "there are no points");
-        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * sounding.point_step_m(&scene.resolve(), 8);
+        let round = of(&reduced);
+        assert!(round.noise.is_none() && round.advice.iter().all(|a| !a.contains("contact.")), "{round:?}");
+        let step_m = |plan: &Plan, scene: &Scene| plan.point_step_m(&scene.resolve(), noise(plan).facet_m, 8);
+        scene.contact.onset_um = 1.01e6 * ONSET_STEPS * step_m(&sounding, &scene);
         let quiet = of(&scene);
         assert!(quiet.advice.iter().all(|a| !a.contains("contact.")), "{:?}", quiet.advice);
         scene.film = Some(FilmScene { roughness_um: 1.0, ..FilmScene::default() });
@@ -371,7 +397,7 @@ mod tests {
         // THEORY §4.2, on the paper's mesh: the penalty is in proportion to its size.
         scene.mesh.size_mm = 0.5;
         let loads = Loads { largest_n: 10950.0, ..quiet.loads.clone() };
-        let step = Plan { loads, ..quiet }.point_step_m(&scene.resolve(), 8);
+        let step = step_m(&Plan { loads, ..quiet }, &scene);
         assert!((step - 4.1e-6).abs() < 0.1e-6, "{step}");
     }
 }

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, ensure};
 use stribeck_analysis::paper;
-use stribeck_analysis::plan::{MeshFacts, Plan};
+use stribeck_analysis::plan::{ContactNoise, MeshFacts, Plan};
 use stribeck_scene::housing::HousingScene;
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_scene::scene::ModelScene;
@@ -59,7 +59,9 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     say!("{}", scene.written.name);
     loads(&plan);
-    contact_noise(&scene, &plan);
+    if let Some(noise) = &plan.noise {
+        contact_noise(&scene, noise);
+    }
     oil_and_families(&scene, &plan);
     record(&scene, &plan);
     for danger in &plan.dangers {
@@ -88,8 +90,7 @@ fn loads(plan: &Plan) {
         loads.largest_n
     );
     say!(
-        "  Hertz pressure of its line contacts: {outer:.0} MPa at the outer, {inner:.0} MPa at the inner \
-         raceway"
+        "  Hertz pressure of its contacts: {outer:.0} MPa at the outer, {inner:.0} MPa at the inner raceway"
     );
     say!(
         "  static safety s₀ = C₀/P₀ = {:.1}, with C₀ = {:.1} kN by ISO 76 from these dimensions",
@@ -164,31 +165,34 @@ fn long(scene: &ResolvedScene, trial: &Trial) -> Option<String> {
 }
 
 /// Lines that facets make, and how strong.
-fn contact_noise(scene: &ResolvedScene, plan: &Plan) {
+fn contact_noise(scene: &ResolvedScene, noise: &ContactNoise) {
     say!("  lines of contact noise, without slip");
-    for (name, hz) in &plan.lines {
+    for (name, hz) in &noise.lines {
         say!("    {hz:9.1} Hz  {name}");
     }
-    let [roller, outer, inner] = plan.sag_m.map(|s| 1e6 * s);
+    let [roller, outer, inner] = noise.sag_m.map(|s| 1e6 * s);
     say!("  sag of the facets: rollers {roller:.2} µm, outer raceway {outer:.2} µm, inner {inner:.2} µm");
     say!(
         "  under the largest force a Hertz contact is {:.2} mm wide, on facets of {:.2} mm",
-        2e3 * plan.half_width_m,
-        1e3 * plan.facet_m
+        2e3 * noise.half_width_m,
+        1e3 * noise.facet_m
     );
     say!(
         "  chords, lumped model: {:.0} g at {:.0} Hz (width of the contact leaves {:.2}, phases of the \
          rollers {:.2}){}",
-        plan.lumped.level_g,
-        plan.lumped.frequency_hz,
-        plan.lumped.smoothing.abs(),
-        plan.lumped.phases,
+        noise.lumped.level_g,
+        noise.lumped.frequency_hz,
+        noise.lumped.smoothing.abs(),
+        noise.lumped.phases,
         if paper::is_scene_of(&scene.written) {
             "; docs/results/noise.md has two to five times as much"
         } else {
             ""
         }
     );
+    if let Some(needed) = noise.separating_s {
+        say!("  {:.0} ms separate the closest two lines", 1e3 * needed);
+    }
 }
 
 /// Film of the most loaded contact, and frequencies of defects.
@@ -220,15 +224,13 @@ fn oil_and_families(scene: &ResolvedScene, plan: &Plan) {
 fn record(scene: &ResolvedScene, plan: &Plan) {
     let samples = 1e3 * scene.written.solver.duration_ms / scene.written.output.interval_us;
     say!("  the trace takes {:.3} GB", 8e-9 * samples * channels::names(scene).len() as f64);
-    say!(
-        "  the mesh has {:.0} elements a wavelength of surface (Rayleigh) waves at half the sampling rate",
-        plan.elements_per_wavelength
-    );
+    if let Some(elements) = plan.elements_per_wavelength {
+        say!(
+            "  the mesh has {elements:.0} elements a wavelength of surface (Rayleigh) waves at half the sampling rate"
+        );
+    }
     let digits = if plan.resolution_hz < 0.1 { 5 } else { 1 };
     say!("  the record resolves {:.digits$} Hz", plan.resolution_hz);
-    if let Some(needed) = plan.separating_s {
-        say!("  {:.0} ms separate the closest two lines", 1e3 * needed);
-    }
     match plan.envelope {
         Some((family, record_s)) => {
             say!("  {:.0} ms hold ten periods of {family}, the least for an envelope", 1e3 * record_s);

@@ -25,6 +25,14 @@ pub fn half_width(ball_radius: f64, across: f64, groove: f64, load: f64, modulus
     libm::cbrt(6.0 * ellipticity.powi(2) * second * load * radius / (PI * modulus))
 }
 
+/// Largest pressure of this contact [Pa]: 3/2 of its mean over the ellipse.
+///
+/// Source: as [`approach`].
+pub fn pressure(ball_radius: f64, across: f64, groove: f64, load: f64, modulus: f64) -> f64 {
+    let half = half_width(ball_radius, across, groove, load, modulus);
+    1.5 * load * Ellipse::of(ball_radius, across, groove).ellipticity / (PI * half * half)
+}
+
 /// Shape of a contact.
 struct Ellipse {
     /// Of the radii of curvature across and along the raceway.
@@ -81,5 +89,9 @@ mod tests {
         let circle = (3.0 * load * ball / (4.0 * 0.5 * modulus)).cbrt();
         let ours = half_width(ball, far, -far, load, modulus);
         assert!((ours / circle - 1.0).abs() < FIT, "{ours:e} {circle:e}");
+        // Its pressure is that of eq. 4.24, p₀³ = 6WE*²/π³R².
+        let highest = (6.0 * load * (0.5 * modulus / ball).powi(2)).cbrt() / PI;
+        let ours = pressure(ball, far, -far, load, modulus);
+        assert!((ours / highest - 1.0).abs() < 2.0 * FIT, "{ours:e} {highest:e}");
     }
 }

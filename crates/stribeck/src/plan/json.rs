@@ -1,17 +1,16 @@
 //! A plan as JSON, for scripts.
 
 use serde_json::{Map, Value, json};
-use stribeck_analysis::plan::Plan;
+use stribeck_analysis::plan::{ContactNoise, Plan};
 use stribeck_scene::resolved::ResolvedScene;
 use stribeck_simulation::run::channels;
 
 use super::trial::{Cost, Trial};
 
-/// The plan; `cost` is `null` where nothing was tried.
+/// The plan; `cost` is `null` where nothing was tried, `contact_noise` where contact has no mesh.
 pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> Value {
     let loads = &plan.loads;
     let k = &scene.written.kinematics();
-    let lines: Map<String, Value> = plan.lines.iter().map(|(name, hz)| (name.clone(), json!(hz))).collect();
     let mut warnings = plan.dangers.clone();
     if let Some(trial) = trial {
         warnings.extend(trial.info.warnings.iter().cloned());
@@ -36,13 +35,7 @@ pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> V
             "ftf": k.cage_hz,
             "shaft": k.shaft_hz,
         },
-        "contact_noise": {
-            "lines_hz": lines,
-            "sag_um": plan.sag_m.map(|m| 1e6 * m),
-            "half_width_um": 1e6 * plan.half_width_m,
-            "facet_um": 1e6 * plan.facet_m,
-            "level_g": plan.lumped.level_g,
-        },
+        "contact_noise": plan.noise.as_ref().map(contact_noise),
         "films": plan.films.map(|films| films.map(|film| json!({
             "thickness_um": 1e6 * film.thickness,
             "lambda": film.lambda,
@@ -50,7 +43,7 @@ pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> V
         "record": {
             "duration_ms": scene.written.solver.duration_ms,
             "resolution_hz": plan.resolution_hz,
-            "separating_ms": plan.separating_s.map(|s| 1e3 * s),
+            "separating_ms": plan.noise.as_ref().and_then(|noise| noise.separating_s).map(|s| 1e3 * s),
             "envelope_ms": plan.envelope.map(|(_, s)| 1e3 * s),
             "envelope_family": plan.envelope.map(|(name, _)| name),
             "elements_per_wavelength": plan.elements_per_wavelength,
@@ -61,6 +54,17 @@ pub(super) fn of(scene: &ResolvedScene, plan: &Plan, trial: Option<&Trial>) -> V
         "cost": trial.map(cost),
         "warnings": warnings,
         "advice": plan.advice,
+    })
+}
+
+fn contact_noise(noise: &ContactNoise) -> Value {
+    let lines: Map<String, Value> = noise.lines.iter().map(|(name, hz)| (name.clone(), json!(hz))).collect();
+    json!({
+        "lines_hz": lines,
+        "sag_um": noise.sag_m.map(|m| 1e6 * m),
+        "half_width_um": 1e6 * noise.half_width_m,
+        "facet_um": 1e6 * noise.facet_m,
+        "level_g": noise.lumped.level_g,
     })
 }
 
