@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::fields::group;
 use crate::fields::value::Value;
-use crate::housing::RigidHousingScene;
+use crate::housing::{HousingScene, RigidHousingScene};
 use crate::scene::{BearingScene, Scene};
 use crate::scene_file::{self, Kind, SceneError, without_mark};
 
@@ -106,6 +106,19 @@ group! {
         pub range_m_s2: f64 = 490.0, positive(1e7);
         /// Bits of the converter.
         pub bits: usize = 24, within(2.0, 32.0);
+    }
+}
+
+impl Scene {
+    /// Lets the record of a machine have no more samples a second than the run, where the user gave it no rate;
+    /// `given` has the paths of written fields.
+    pub(crate) fn record_no_faster(&mut self, given: &[String]) {
+        let most_hz = most_rate_hz(self);
+        let HousingScene::Machine(machine) = &mut self.housing else { return };
+        // A file that is read later has a rate of its own.
+        if machine.file.is_empty() && !given.iter().any(|path| path == "housing.sensor.rate_hz") {
+            machine.sensor.rate_hz = machine.sensor.rate_hz.min(most_hz);
+        }
     }
 }
 
@@ -229,7 +242,6 @@ pub fn third_octaves(lowest_hz: f64, highest_hz: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::housing::HousingScene;
     use stribeck_testing::Scratch;
 
     const BASE: &str = "bearing: \"6205\", model: reduced(), film: None, defect: None";
@@ -273,6 +285,23 @@ mod tests {
         assert!(misspelt.contains("mas_kg") && misspelt.contains("motor.ron:2"), "{misspelt}");
         let outside = said(Some("(gains: [(hz: -3, gain: 1)])"));
         assert!(outside.contains("hz"), "{outside}");
+    }
+
+    /// A run of 20 kHz was refused for the 25.6 kHz of a sensor of which its scene said nothing.
+    #[test]
+    fn issue_a_record_is_sampled_no_faster_than_its_run() {
+        let rate_hz = |text: &str, overrides: &[&str]| {
+            let scene = Scene::parse(&format!("({BASE}, {text})"), "mine").expect("a scene");
+            machine(&scene.with_overrides(overrides).expect("a scene")).sensor.rate_hz
+        };
+        assert_eq!(rate_hz("housing: machine(), output: (interval_us: 50)", &[]), 20_000.0);
+        assert_eq!(rate_hz("housing: machine()", &["output.interval_us=50"]), 20_000.0);
+        assert_eq!(rate_hz("output: (interval_us: 50)", &["housing=machine()"]), 20_000.0);
+        assert_eq!(rate_hz("housing: machine()", &[]), 25_600.0);
+        let given =
+            format!("({BASE}, housing: machine(sensor: (rate_hz: 25600)), output: (interval_us: 50))");
+        let refused = Scene::parse(&given, "mine").expect_err("more than there are").to_string();
+        assert!(refused.contains("housing.sensor.rate_hz"), "{refused}");
     }
 
     /// A scene without a machine has not a word of it, and one with a machine runs as a rigid housing of its mass.

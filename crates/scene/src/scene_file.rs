@@ -92,7 +92,7 @@ impl Scene {
     pub fn with_overrides<S: AsRef<str>>(&self, overrides: &[S]) -> Result<Self, SceneError> {
         let mut sources = Sources::of_scene(self);
         sources.set_all(overrides)?;
-        let is_papers = own::is_papers(&self.bearing) && !names_bearing(overrides);
+        let is_papers = own::is_papers(&self.bearing) && !sources.is_named;
         complete(sources, is_papers.then(|| written_by(overrides)))?.check(Path::new(""))
     }
 
@@ -225,13 +225,6 @@ fn scene_of(sources: &Sources) -> Result<Scene, SceneError> {
     sources.scene().ok_or_else(|| Problem::new(too_large, sources.place("")).into())
 }
 
-/// Whether one of `overrides` is the name of a bearing.
-fn names_bearing<S: AsRef<str>>(overrides: &[S]) -> bool {
-    overrides.iter().filter_map(|text| text.as_ref().split_once('=')).any(|(path, value)| {
-        path.trim() == "bearing" && (!value.contains('(') || named::designation(value).is_some())
-    })
-}
-
 /// Some editors write a byte order mark first, which RON does not accept.
 pub fn without_mark(text: &str) -> &str {
     text.strip_prefix('\u{feff}').unwrap_or(text)
@@ -262,9 +255,10 @@ fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<
     if let Some(name) = &name {
         named::put(&mut scene, name, &given).map_err(|why| unknown_bearing(why, sources.place("bearing")))?;
     }
+    scene.record_no_faster(&given);
     sources.take(&scene);
     sources.set_all(overrides)?;
-    let has_name = name.is_some() || names_bearing(overrides);
+    let has_name = name.is_some() || sources.is_named;
     complete(sources, (!has_name).then_some(given))
 }
 

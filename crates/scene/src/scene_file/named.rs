@@ -4,7 +4,9 @@
 //! Dimensions that no catalogue prints are in proportion to the paper's bearing: the mesh has as many facets,
 //! contact the same pressure.
 
-use stribeck_theory::catalogue::{Boundary, CatalogueBearing, Element, PAPER, normal_clearance_mm};
+use stribeck_theory::catalogue::{
+    Boundary, CatalogueBearing, Element, PAPER, beyond_a_plane, normal_clearance_mm, plain,
+};
 use stribeck_theory::line_contact::LineContacts;
 use stribeck_theory::point_contact;
 
@@ -235,7 +237,11 @@ pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, all: &[String]) 
     let given = |path: &str| all.iter().any(|written| written == path);
     let is_hertz = scene.contact.formula == ContactFormula::Hertz;
     match replaced {
-        "housing" => house(scene, &given),
+        "housing" => {
+            house(scene, &given);
+            scene.record_no_faster(all);
+        }
+        "output.interval_us" => scene.record_no_faster(all),
         "model" => modes(scene, &given),
         "contact.formula" => as_stiff_as_hertz(scene, all),
         "contact.penalty_scale" if !given("contact.formula") && is_hertz => {
@@ -297,6 +303,9 @@ pub(super) fn as_stiff_as_hertz(scene: &mut Scene, given: &[String]) {
 /// Rings and rolling elements of a bearing in the catalogue.
 fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
     let name = &known.name;
+    if let Some(why) = beyond_a_plane(&plain(name)).filter(|_| known.boundary.is_none()) {
+        return Err(format!("`{name}` is {why}"));
+    }
     if known.angle_deg != 0.0 {
         return Err(format!(
             "`{name}` has a contact angle of {}°, and a plane model has none: its rows share the load along \

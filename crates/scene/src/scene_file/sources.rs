@@ -40,13 +40,15 @@ pub(crate) struct Sources {
     pub(crate) text: String,
     arguments: Vec<String>,
     pub(crate) tree: Node,
+    /// Whether an argument has named the bearing.
+    pub(crate) is_named: bool,
 }
 
 impl Sources {
     /// A scene in memory, which nobody wrote.
     pub(crate) fn of_scene(scene: &Scene) -> Self {
         let (file, text, arguments) = (String::new(), String::new(), Vec::new());
-        Self { kind: &SCENE, file, text, arguments, tree: scene.write() }
+        Self { kind: &SCENE, file, text, arguments, tree: scene.write(), is_named: false }
     }
 
     /// What a file of this kind says, its fields alone.
@@ -55,7 +57,7 @@ impl Sources {
     /// When the text is no tree of fields and values.
     pub(crate) fn of_text(text: &str, file: &str, kind: &'static Kind) -> Result<Self, SceneError> {
         let (file, text, tree) = (file.to_owned(), text.to_owned(), Node::group([]));
-        let mut sources = Self { kind, file, text, arguments: Vec::new(), tree };
+        let mut sources = Self { kind, file, text, arguments: Vec::new(), tree, is_named: false };
         sources.tree = tree::parse(&sources.text).map_err(|why| reading::broken(why, &sources))?;
         Ok(sources)
     }
@@ -158,18 +160,8 @@ impl Sources {
         if path == "bearing"
             && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
         {
-            let refuse = |why| {
-                let is_unreadable = catalogue::parse(&name).is_err();
-                vec![Problem { is_unreadable, ..super::unknown_bearing(why, place.clone()) }]
-            };
-            let mut scene = self.scene().unwrap_or_default();
-            named::put(&mut scene, &name, given).map_err(refuse)?;
-            self.take(&scene);
-            let source = Source::Argument(number);
-            if let Some(bearing) = find(&mut self.tree, path) {
-                bearing.place_all(source, &(at..argument.len()));
-            }
-            return Ok(());
+            let scene = self.scene().unwrap_or_default();
+            return self.name(scene, &name, given, Source::Argument(number), at..argument.len());
         }
         let node = if matches!(spot.shape.there(), Shape::Text) && !Node::atom(value.trim()).is_quoted() {
             // The shell has already eaten the user's quotes.
@@ -183,11 +175,40 @@ impl Sources {
         if !found.is_empty() {
             return Err(found);
         }
+        let written = node.entries(path).into_iter().map(|(path, ..)| path);
+        let written: Vec<String> = given.iter().cloned().chain(written).collect();
         put(&mut self.tree, path, node);
         if let Some(mut scene) = self.scene() {
+            if path == "bearing"
+                && let Some(name) = named::alone(&scene.bearing, &written)
+            {
+                return self.name(scene, &name, &written, Source::Argument(number), at..argument.len());
+            }
             // Sizes that follow from the bearing, as for `housing=pedestal()`.
             named::follow_bearing(&mut scene, path, given);
             self.take(&scene);
+        }
+        Ok(())
+    }
+
+    /// Makes the bearing of a scene that of a name, which an argument has at `span`.
+    fn name(
+        &mut self,
+        mut scene: Scene,
+        name: &str,
+        given: &[String],
+        source: Source,
+        span: Range<usize>,
+    ) -> Result<(), Vec<Problem>> {
+        named::put(&mut scene, name, given).map_err(|why| {
+            let is_unreadable = catalogue::parse(name).is_err();
+            let place = self.place_at(source, span.clone());
+            vec![Problem { is_unreadable, ..super::unknown_bearing(why, place) }]
+        })?;
+        self.take(&scene);
+        self.is_named = true;
+        if let Some(bearing) = find(&mut self.tree, "bearing") {
+            bearing.place_all(source, &span);
         }
         Ok(())
     }
