@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use anyhow::{Result, anyhow};
 use serde_json::{Value, json};
 use stribeck_scene::catalogue;
-use stribeck_theory::catalogue::CatalogueBearing;
+use stribeck_theory::catalogue::{CatalogueBearing, beyond_a_plane, plain};
 
 use crate::out::say;
 
@@ -131,4 +131,7 @@ fn one(bearing: &CatalogueBearing) {
         ),
     }
     say!("  source: {}", bearing.source);
+    if let Some(why) = beyond_a_plane(&plain(&bearing.name)).filter(|_| bearing.boundary.is_none()) {
+        say!("  its frequencies alone: it is {why}");
+    }
 }

@@ -111,7 +111,7 @@ const BEARINGS: [Mistake; 5] = [
     (&["bearings", "NU 205 elements=13"], &["`NU 205 elements`", "a comma parts a name"]),
     (&["bearings", "NU 205, elements=many"], &["`many` of the bearing is no number"]),
     (&["bearings", "NU 205, elements=1"], &["3 to 200 rolling elements, not 1"]),
-    (&["bearings", "22205"], &["`22205` is a spherical roller bearing", "does not have"]),
+    (&["bearings", "51105"], &["`51105` is a thrust bearing", "no radial load"]),
 ];
 
 #[test]

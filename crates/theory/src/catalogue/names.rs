@@ -32,7 +32,8 @@ pub(super) fn find(
         let found =
             fitting.fold(None, |best, next| if next.name.len() > longest(best) { Some(next) } else { best });
         if let Some(found) = found {
-            return Ok(found.clone());
+            let angle_deg = angle_of(asked, found).unwrap_or(found.angle_deg);
+            return Ok(CatalogueBearing { angle_deg, ..found.clone() });
         }
     }
     if let Some(why) = asked.iter().find_map(|asked| beyond_a_plane(asked)) {
@@ -43,6 +44,16 @@ pub(super) fn find(
         ref near => format!(", did you mean {}?", near.join(" or ")),
     };
     Err(format!("no bearing `{name}` is known{meant}; {advice}, or one of {}", tables::names()))
+}
+
+/// Contact angle [°] by the letter behind an angular contact bearing's number. A digit behind it makes it a
+/// clearance.
+fn angle_of(asked: &str, found: &CatalogueBearing) -> Option<f64> {
+    let rest = asked.strip_prefix(&plain(&found.name)).filter(|_| found.name.starts_with('7'))?;
+    let angles = [("AC", 25.0), ("A", 30.0), ("B", 40.0), ("C", 15.0)];
+    let (letters, angle) = angles.into_iter().find(|(letters, _)| rest.starts_with(letters))?;
+    let behind = rest[letters.len()..].chars().next();
+    behind.is_none_or(|c| !c.is_ascii_digit()).then_some(angle)
 }
 
 /// Names that are one letter or digit away from what was asked, at most four.
@@ -67,8 +78,8 @@ fn fits(asked: &str, bearing: &CatalogueBearing) -> bool {
     })
 }
 
-/// Why a plane model cannot have a bearing of this kind, where the name shows the kind.
-fn beyond_a_plane(whole: &str) -> Option<&'static str> {
+/// Why a plane model cannot have a bearing of this kind, where the name, letters and digits alone, shows the kind.
+pub fn beyond_a_plane(whole: &str) -> Option<&'static str> {
     // Seals and shields begin with a digit of their own.
     let asked = ["2RS", "2Z"].iter().filter_map(|seal| whole.split_once(seal)).map(|(own, _)| own).next();
     let asked = asked.unwrap_or(whole);

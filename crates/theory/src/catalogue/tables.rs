@@ -26,11 +26,17 @@ pub(super) const PROPORTION: &str = "bore, outside and width by ISO 15; no catal
 const BOUNDARY: &str =
     "ISO 15 boundary dimensions for the pitch, (bore + outside)/2; balls as commonly fitted";
 pub(super) const BALL_RULE: &str = "bore, outside and width by ISO 15; balls by rule: pitch (bore + \
-    outside)/2, diameter 0.3 (outside − bore). Of seven bearings whose balls are known the rule is off by 6 % \
+    outside)/2, diameter 0.3 (outside − bore), but no more than 0.8 of the width. Of seven bearings whose balls are known the rule is off by 6 % \
     at most in diameter and by 1.5 % in pitch";
 pub(super) const INSERT_RULE: &str = "bore and outside of UC inserts by ISO 9628; balls by the rule of deep \
     groove bearings of the same outside diameter (pitch (bore + outside)/2, diameter 0.3 (outside − bore)), \
     which is off by 6 % at most in the diameter of seven known ones";
+
+const BEYOND_RULE: &str = "bore and outside by ISO 15; rolling elements by rule: pitch (bore + outside)/2, \
+    diameter a usual part of (outside − bore), a usual contact angle. No bearing of this kind is known here to try \
+    the rule on: give `diameter_mm`, `pitch_mm` and `angle_deg` where you have them";
+const LIGHT: &str = "raceway diameter F of NU bearings of series 10, makers' catalogues; pitch by rule, (bore + \
+    outside)/2, so that d = pitch − F";
 
 /// Raceway diameters F and E [mm] of cylindrical roller bearings of E design by size, with bore and outside
 /// diameter [mm] by ISO 15, and width [mm] of the narrow and of the wide series, which have the same
@@ -76,6 +82,11 @@ const CYLINDRICAL: [Cylindrical; 38] = [
     (320, 127.5, 191.5, [100.0, 215.0], [47.0, 73.0]),
 ];
 
+/// Raceway diameter F [mm] of cylindrical roller bearings of series 10, from number 5 on; bore, outside diameter and
+/// width are those of the ball bearings of series 60.
+const LIGHT_SERIES: [f64; 16] =
+    [30.5, 36.5, 42.0, 47.0, 52.5, 57.5, 64.5, 69.5, 74.5, 80.0, 85.0, 91.5, 96.5, 103.0, 108.0, 113.0];
+
 /// The size whose raceways are printed nowhere: 15 + 27·(24.2 − 17)/30 and 15 + 27·(40.2 − 17)/30 mm, to a
 /// tenth.
 const IN_PROPORTION: u32 = 302;
@@ -97,87 +108,135 @@ const OTHERS: [Row; 10] = [
     ("NICE", Element::Ball, Some(8), 5.969, 31.623, 0.0, None, MFPT),
 ];
 
-/// Outside diameter and width [mm] of deep groove ball bearings by ISO 15, by series and the number of their
-/// bore.
-const DEEP_GROOVE: [(u32, [[f64; 2]; 21]); 3] = [
-    (
-        60,
-        [
-            [26.0, 8.0],
-            [28.0, 8.0],
-            [32.0, 9.0],
-            [35.0, 10.0],
-            [42.0, 12.0],
-            [47.0, 12.0],
-            [55.0, 13.0],
-            [62.0, 14.0],
-            [68.0, 15.0],
-            [75.0, 16.0],
-            [80.0, 16.0],
-            [90.0, 18.0],
-            [95.0, 18.0],
-            [100.0, 18.0],
-            [110.0, 20.0],
-            [115.0, 20.0],
-            [125.0, 22.0],
-            [130.0, 22.0],
-            [140.0, 24.0],
-            [145.0, 24.0],
-            [150.0, 24.0],
+/// Deep groove ball bearings whose designations begin alike, by the number of their bore from `first` on: outside
+/// diameters and widths [mm] by ISO 15.
+struct Series {
+    begins: &'static str,
+    first: usize,
+    outside: &'static [f64],
+    width: &'static [f64],
+}
+
+/// Outside diameters [mm] of the series of diameters 0, 2 and 3, numbers 0 to 20.
+const OUTSIDE: [[f64; 21]; 3] = [
+    [
+        26.0, 28.0, 32.0, 35.0, 42.0, 47.0, 55.0, 62.0, 68.0, 75.0, 80.0, 90.0, 95.0, 100.0, 110.0, 115.0,
+        125.0, 130.0, 140.0, 145.0, 150.0,
+    ],
+    [
+        30.0, 32.0, 35.0, 40.0, 47.0, 52.0, 62.0, 72.0, 80.0, 85.0, 90.0, 100.0, 110.0, 120.0, 125.0, 130.0,
+        140.0, 150.0, 160.0, 170.0, 180.0,
+    ],
+    [
+        35.0, 37.0, 42.0, 47.0, 52.0, 62.0, 72.0, 80.0, 90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0,
+        160.0, 170.0, 180.0, 190.0, 200.0, 215.0,
+    ],
+];
+
+const DEEP_GROOVE: [Series; 9] = [
+    Series {
+        begins: "60",
+        first: 0,
+        outside: &OUTSIDE[0],
+        width: &[
+            8.0, 8.0, 9.0, 10.0, 12.0, 12.0, 13.0, 14.0, 15.0, 16.0, 16.0, 18.0, 18.0, 18.0, 20.0, 20.0,
+            22.0, 22.0, 24.0, 24.0, 24.0,
         ],
-    ),
-    (
-        62,
-        [
-            [30.0, 9.0],
-            [32.0, 10.0],
-            [35.0, 11.0],
-            [40.0, 12.0],
-            [47.0, 14.0],
-            [52.0, 15.0],
-            [62.0, 16.0],
-            [72.0, 17.0],
-            [80.0, 18.0],
-            [85.0, 19.0],
-            [90.0, 20.0],
-            [100.0, 21.0],
-            [110.0, 22.0],
-            [120.0, 23.0],
-            [125.0, 24.0],
-            [130.0, 25.0],
-            [140.0, 26.0],
-            [150.0, 28.0],
-            [160.0, 30.0],
-            [170.0, 32.0],
-            [180.0, 34.0],
+    },
+    Series {
+        begins: "62",
+        first: 0,
+        outside: &OUTSIDE[1],
+        width: &[
+            9.0, 10.0, 11.0, 12.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0, 24.0, 25.0,
+            26.0, 28.0, 30.0, 32.0, 34.0,
         ],
-    ),
-    (
-        63,
-        [
-            [35.0, 11.0],
-            [37.0, 12.0],
-            [42.0, 13.0],
-            [47.0, 14.0],
-            [52.0, 15.0],
-            [62.0, 17.0],
-            [72.0, 19.0],
-            [80.0, 21.0],
-            [90.0, 23.0],
-            [100.0, 25.0],
-            [110.0, 27.0],
-            [120.0, 29.0],
-            [130.0, 31.0],
-            [140.0, 33.0],
-            [150.0, 35.0],
-            [160.0, 37.0],
-            [170.0, 39.0],
-            [180.0, 41.0],
-            [190.0, 43.0],
-            [200.0, 45.0],
-            [215.0, 47.0],
+    },
+    Series {
+        begins: "63",
+        first: 0,
+        outside: &OUTSIDE[2],
+        width: &[
+            11.0, 12.0, 13.0, 14.0, 15.0, 17.0, 19.0, 21.0, 23.0, 25.0, 27.0, 29.0, 31.0, 33.0, 35.0, 37.0,
+            39.0, 41.0, 43.0, 45.0, 47.0,
         ],
-    ),
+    },
+    Series {
+        begins: "622",
+        first: 0,
+        outside: &OUTSIDE[1],
+        width: &[14.0, 14.0, 14.0, 16.0, 18.0, 18.0, 20.0, 23.0, 23.0, 23.0, 23.0, 25.0, 28.0, 31.0, 31.0],
+    },
+    Series {
+        begins: "623",
+        first: 0,
+        outside: &OUTSIDE[2],
+        width: &[17.0, 17.0, 17.0, 19.0, 21.0, 24.0, 27.0, 31.0, 33.0, 36.0, 40.0],
+    },
+    Series {
+        begins: "64",
+        first: 3,
+        outside: &[62.0, 72.0, 80.0, 90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 180.0, 190.0],
+        width: &[17.0, 19.0, 21.0, 23.0, 25.0, 27.0, 29.0, 31.0, 33.0, 35.0, 37.0, 42.0, 45.0],
+    },
+    Series {
+        begins: "68",
+        first: 0,
+        outside: &[
+            19.0, 21.0, 24.0, 26.0, 32.0, 37.0, 42.0, 47.0, 52.0, 58.0, 65.0, 72.0, 78.0, 85.0, 90.0, 95.0,
+            100.0, 110.0, 115.0, 120.0, 125.0,
+        ],
+        width: &[
+            5.0, 5.0, 5.0, 5.0, 7.0, 7.0, 7.0, 7.0, 7.0, 7.0, 7.0, 9.0, 10.0, 10.0, 10.0, 10.0, 10.0, 13.0,
+            13.0, 13.0, 13.0,
+        ],
+    },
+    Series {
+        begins: "69",
+        first: 0,
+        outside: &[
+            22.0, 24.0, 28.0, 30.0, 37.0, 42.0, 47.0, 55.0, 62.0, 68.0, 72.0, 80.0, 85.0, 90.0, 100.0, 105.0,
+            110.0, 120.0, 125.0, 130.0, 140.0,
+        ],
+        width: &[
+            6.0, 6.0, 7.0, 7.0, 9.0, 9.0, 9.0, 10.0, 12.0, 12.0, 12.0, 13.0, 13.0, 13.0, 16.0, 16.0, 16.0,
+            18.0, 18.0, 18.0, 20.0,
+        ],
+    },
+    Series {
+        begins: "160",
+        first: 2,
+        outside: &[
+            32.0, 35.0, 42.0, 47.0, 55.0, 62.0, 68.0, 75.0, 80.0, 90.0, 95.0, 100.0, 110.0, 115.0, 125.0,
+            130.0, 140.0, 145.0, 150.0,
+        ],
+        width: &[
+            8.0, 8.0, 8.0, 8.0, 9.0, 9.0, 9.0, 10.0, 10.0, 11.0, 11.0, 11.0, 13.0, 13.0, 14.0, 14.0, 16.0,
+            16.0, 16.0,
+        ],
+    },
+];
+
+/// Bearings that a plane model does not have, by what their designations begin with: series of outside diameters,
+/// first number, element, its diameter over (outside − bore), contact angle [°]. Makers print neither: the last two
+/// are usual ones (own).
+const BEYOND_A_PLANE: [(&str, usize, usize, Element, f64, f64); 16] = [
+    ("12", 1, 0, Element::Ball, 0.25, 10.0),
+    ("13", 2, 0, Element::Ball, 0.25, 10.0),
+    ("22", 1, 0, Element::Ball, 0.25, 13.0),
+    ("23", 2, 0, Element::Ball, 0.25, 15.0),
+    ("70", 0, 0, Element::Ball, 0.3, 15.0),
+    ("72", 1, 0, Element::Ball, 0.3, 40.0),
+    ("73", 2, 0, Element::Ball, 0.3, 40.0),
+    ("32", 1, 0, Element::Ball, 0.3, 30.0),
+    ("33", 2, 0, Element::Ball, 0.3, 30.0),
+    ("213", 2, 4, Element::Roller, 0.27, 9.0),
+    ("222", 1, 5, Element::Roller, 0.28, 10.0),
+    ("223", 2, 8, Element::Roller, 0.28, 13.0),
+    ("302", 1, 2, Element::Roller, 0.26, 14.0),
+    ("303", 2, 2, Element::Roller, 0.26, 12.0),
+    ("320", 0, 4, Element::Roller, 0.26, 15.0),
+    ("322", 1, 4, Element::Roller, 0.26, 14.0),
 ];
 
 /// Width of the outer ring of UC inserts [mm] with bores of 20 to 60 mm.
@@ -192,37 +251,55 @@ fn bore_mm(number: usize) -> f64 {
 }
 
 /// Ball and pitch diameter [mm] by the rule of [`BALL_RULE`].
-pub(super) fn balls_mm(bore: f64, outside: f64) -> [f64; 2] {
-    [0.3 * (outside - bore), 0.5 * (bore + outside)]
+pub(super) fn balls_mm([bore, outside, width]: [f64; 3]) -> [f64; 2] {
+    [(0.3 * (outside - bore)).min(0.8 * width), 0.5 * (bore + outside)]
 }
 
 /// All bearings that have a name here.
 pub fn all() -> Vec<CatalogueBearing> {
     let others = OTHERS.iter().copied().map(of_row);
-    others.chain(deep_groove()).chain(inserts()).chain(cylindrical()).collect()
+    others.chain(deep_groove()).chain(inserts()).chain(cylindrical()).chain(beyond_a_plane()).collect()
 }
 
 fn deep_groove() -> impl Iterator<Item = CatalogueBearing> {
     let listed = |name: &str| OTHERS.iter().any(|row| row.0 == name);
-    let of_series = |(series, sizes): &'static (u32, [[f64; 2]; 21])| {
-        sizes.iter().enumerate().map(move |(number, &[outside, width])| {
-            let bore = bore_mm(number);
-            by_rule(format!("{series}{number:02}"), [bore, outside, width], BALL_RULE)
+    let of_series = |series: &'static Series| {
+        series.outside.iter().zip(series.width).enumerate().map(move |(at, (&outside, &width))| {
+            let number = series.first + at;
+            let name = format!("{}{number:02}", series.begins);
+            by_rule(name, [bore_mm(number), outside, width], BALL_RULE)
         })
     };
     DEEP_GROOVE.iter().flat_map(of_series).filter(move |bearing| !listed(&bearing.name))
 }
 
+fn beyond_a_plane() -> impl Iterator<Item = CatalogueBearing> {
+    BEYOND_A_PLANE.iter().flat_map(|&(begins, series, first, element, share, angle_deg)| {
+        OUTSIDE[series].iter().enumerate().skip(first).map(move |(number, &outside)| {
+            let bore = bore_mm(number);
+            CatalogueBearing {
+                name: format!("{begins}{number:02}"),
+                element,
+                elements: None,
+                diameter_mm: share * (outside - bore),
+                pitch_mm: 0.5 * (bore + outside),
+                angle_deg,
+                boundary: None,
+                source: BEYOND_RULE.to_owned(),
+            }
+        })
+    })
+}
+
 fn inserts() -> impl Iterator<Item = CatalogueBearing> {
-    let sixty_two = DEEP_GROOVE[1].1;
     INSERT_WIDTH.into_iter().enumerate().map(move |(at, width)| {
         let number = at + 4;
-        by_rule(format!("UC2{number:02}"), [bore_mm(number), sixty_two[number][0], width], INSERT_RULE)
+        by_rule(format!("UC2{number:02}"), [bore_mm(number), OUTSIDE[1][number], width], INSERT_RULE)
     })
 }
 
 fn by_rule(name: String, [bore_mm, outside_mm, width_mm]: [f64; 3], source: &str) -> CatalogueBearing {
-    let [diameter_mm, pitch_mm] = balls_mm(bore_mm, outside_mm);
+    let [diameter_mm, pitch_mm] = balls_mm([bore_mm, outside_mm, width_mm]);
     CatalogueBearing {
         name,
         element: Element::Ball,
@@ -236,32 +313,55 @@ fn by_rule(name: String, [bore_mm, outside_mm, width_mm]: [f64; 3], source: &str
 }
 
 fn cylindrical() -> impl Iterator<Item = CatalogueBearing> {
-    FLANGES.iter().flat_map(|flanges| {
-        [0, 1].into_iter().flat_map(move |wide| {
-            CYLINDRICAL.iter().map(move |&(size, f, e, [bore_mm, outside_mm], widths)| {
-                let source = if size == IN_PROPORTION { PROPORTION } else { E_TYPE };
-                // 210 in its narrow series, 2210 in its wide one.
-                let name = format!("{flanges} {}{size}", if wide == 1 { "2" } else { "" });
-                CatalogueBearing {
-                    name,
-                    element: Element::Roller,
-                    elements: None,
-                    diameter_mm: 0.5 * (e - f),
-                    pitch_mm: 0.5 * (e + f),
-                    angle_deg: 0.0,
-                    boundary: Some(Boundary { bore_mm, outside_mm, width_mm: widths[wide] }),
-                    source: source.to_owned(),
-                }
-            })
+    FLANGES.iter().flat_map(|&flanges| e_design(flanges).chain(light_series(flanges)))
+}
+
+fn e_design(flanges: &'static str) -> impl Iterator<Item = CatalogueBearing> {
+    [0, 1].into_iter().flat_map(move |wide| {
+        CYLINDRICAL.iter().map(move |&(size, f, e, [bore, outside], widths)| {
+            let source = if size == IN_PROPORTION { PROPORTION } else { E_TYPE };
+            // 210 in its narrow series, 2210 in its wide one.
+            let name = format!("{flanges} {}{size}", if wide == 1 { "2" } else { "" });
+            of_raceways(name, [f, e], [bore, outside, widths[wide]], source)
         })
     })
+}
+
+fn light_series(flanges: &'static str) -> impl Iterator<Item = CatalogueBearing> {
+    const FIRST: usize = 5;
+    LIGHT_SERIES.iter().enumerate().map(move |(at, &f)| {
+        let number = FIRST + at;
+        let (bore, outside) = (bore_mm(number), OUTSIDE[0][number]);
+        let boundary = [bore, outside, DEEP_GROOVE[0].width[number]];
+        of_raceways(format!("{flanges} 10{number:02}"), [f, bore + outside - f], boundary, LIGHT)
+    })
+}
+
+fn of_raceways(
+    name: String,
+    [f, e]: [f64; 2],
+    [bore_mm, outside_mm, width_mm]: [f64; 3],
+    source: &str,
+) -> CatalogueBearing {
+    CatalogueBearing {
+        name,
+        element: Element::Roller,
+        elements: None,
+        diameter_mm: 0.5 * (e - f),
+        pitch_mm: 0.5 * (e + f),
+        angle_deg: 0.0,
+        boundary: Some(Boundary { bore_mm, outside_mm, width_mm }),
+        source: source.to_owned(),
+    }
 }
 
 /// Content of [`all`], in words.
 pub(super) fn names() -> String {
     let others: Vec<&str> = OTHERS.iter().map(|row| row.0).filter(|name| !name.starts_with('6')).collect();
     format!(
-        "{}, 608, 6000 to 6320, UC204 to UC212, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320",
+        "{}, 608, 6000 to 6320, 62200 to 62214, 62300 to 62310, 6403 to 6415, 6800 to 6920, 16002 to 16020, UC204 to \
+         UC212, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320, 1005 to 1020; for their frequencies \
+         alone also self-aligning, angular contact, spherical and tapered ones such as 1205, 7205, 22210, 30205",
         others.join(", "),
         FLANGES.join(", ")
     )
@@ -286,8 +386,8 @@ mod tests {
         let known = OTHERS.iter().filter(|row| row.1 == Element::Ball && row.5 == 0.0);
         let mut compared = 0;
         for &(name, _, elements, diameter, pitch, _, boundary, _) in known {
-            let Some([bore, outside, _]) = boundary else { continue };
-            let [ball, circle] = balls_mm(bore, outside);
+            let Some(boundary) = boundary else { continue };
+            let [ball, circle] = balls_mm(boundary);
             assert!((ball / diameter - 1.0).abs() < 0.06, "{name}: {ball} {diameter}");
             // The insert's bore is smaller than that of a deep groove bearing with its balls.
             let allowed = if name.starts_with("UER") { 0.035 } else { 0.015 };
