@@ -14,5 +14,6 @@ pub(crate) mod second;
 pub mod sidebands;
 pub mod sound;
 pub mod unexplained;
+pub(crate) mod unknown_bearing;
 pub(crate) mod unrelated;
 pub(crate) mod verdict;

@@ -63,7 +63,7 @@ const BESIDE_CAGE: i32 = 2;
 /// A comb that stands higher than a family by this factor, 6 dB, is no part of it.
 const FAR_HIGHER: f64 = 4.0;
 /// Probability of a false alarm at which such a comb is named.
-const NAMED: f64 = 1e-9;
+pub(crate) const NAMED: f64 = 1e-9;
 
 /// The highest comb of each band that is no multiple of the shaft or the cage, no multiple or fraction of a
 /// family, no sideband of a higher one, is far beyond noise, and knocks. `of_others` says whether a frequency

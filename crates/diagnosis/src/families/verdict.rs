@@ -26,6 +26,7 @@ use crate::families::rules::{Around, claimed_first, decide, first, shared_out, w
 use crate::families::sidebands::is_modulated_by_the_cage;
 use crate::families::sound::{BesideSound, farthest};
 use crate::families::unexplained::{self, AboveNoise, Unexplained, UnexplainedComb};
+use crate::families::unknown_bearing;
 use crate::families::unrelated::SLIP;
 use crate::record::pass::Record;
 use crate::{Defect, Machine};
@@ -107,14 +108,15 @@ impl Candidates {
         lines_hz: Option<f64>,
         by_shaft: bool,
     ) -> Result<Self, String> {
-        let (orders, shaft_hz) = orders_and_speed(machine)?;
+        let (orders, shaft_hz) = orders_and_speed(machine).map_err(|why| {
+            let knocks = machine.speed_rpm.filter(|_| machine.bearing.is_none()).and_then(|rpm| {
+                let own = own_lines(machine, rpm / 60.0, OWN_LINES / record.segment_s());
+                unknown_bearing::sentence(&whitened(record), &own)
+            });
+            [Some(why), knocks].into_iter().flatten().collect::<Vec<_>>().join(". ")
+        })?;
         let (record_s, segment_s) = (record.duration_s(), record.segment_s());
-        // A band without noise (a simulated record, a filter) has no background to stand above.
-        let whitened: Vec<(&BandEnvelope, Whitened)> = record
-            .bands
-            .iter()
-            .filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?)))
-            .collect();
+        let whitened = whitened(record);
         // Load and sensor stand still, so the cage's frequency is that of its rotation in space.
         let place_of_cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
         let places = [orders.bpfo, orders.bpfi, orders.bsf].map(|order| order * shaft_hz);
@@ -277,6 +279,13 @@ fn own_lines(machine: &Machine, shaft_hz: f64, width_hz: f64) -> OwnLines {
         shafts_hz: in_hz(&machine.around.shafts),
         meshes_hz: in_hz(&machine.around.meshes),
     }
+}
+
+/// The bands with their spectra over the background; one without noise (a simulated record, a filter) has no
+/// background to stand above.
+fn whitened(record: &Record) -> Vec<(&BandEnvelope, Whitened)> {
+    let bands = record.bands.iter();
+    bands.filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?))).collect()
 }
 
 /// The combs of families that are more than noise.
