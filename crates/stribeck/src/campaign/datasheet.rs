@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use stribeck_analysis::quantity::stem_and_unit;
+use stribeck_analysis::quantity::{Quantity, stem_and_unit};
+use stribeck_analysis::summary::Summary;
 use stribeck_plans::campaign::Campaign;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::run_dir::Keep;
@@ -54,16 +55,67 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
     for limit in limits(&scenes) {
         page += &format!("- {limit}\n");
     }
+    let quantities = Summary::quantities();
     for (table, columns) in [(RUNS, &written.runs), (EVENTS, &written.events), (SIGNALS, &written.signals)] {
         if !columns.is_empty() {
-            page += &format!("\n## Columns of `{table}`\n\n| column | unit |\n|---|---|\n");
+            page += &format!("\n## Columns of `{table}`\n\n| column | unit | what it is |\n|---|---|---|\n");
         }
         for column in columns {
-            page += &format!("| `{column}` | {} |\n", stem_and_unit(column).1);
+            let unit = stem_and_unit(column).1;
+            page += &format!("| `{column}` | {unit} | {} |\n", meaning(column, &quantities));
         }
     }
     page += &format!("\n## The campaign\n\n```ron\n{}\n```\n", campaign.text.trim_end());
     page
+}
+
+/// Columns that are neither numbers of a summary nor fields that vary.
+const OWN_COLUMNS: [(&str, &str); 29] = [
+    ("run", "Number of the run in the campaign"),
+    ("variant", "Number of its scene"),
+    ("start", "Number of its random start"),
+    ("split", "Part of the data: `train`, `validation` or `test`"),
+    ("status", "How the run ended"),
+    ("reason", "Why it did not complete"),
+    ("warnings", "What its guards have warned of, a line each"),
+    ("scene_hash", "Name of its folder below `runs/`"),
+    ("bearing", "Designation"),
+    ("model", "`full` or `reduced`"),
+    ("fault_location", "Damaged part, `healthy` without one"),
+    ("fault_type", "Form of the damage"),
+    ("fault_count", "Faults of the scene"),
+    ("fault_size_mm", "Length along the raceway"),
+    ("fault_depth_mm", "Depth"),
+    ("fault_angle_deg", "Place at the start"),
+    ("deviation_type", "Waves, roughness and other diameters"),
+    ("claimed", "Family that the verdict claims on the record; `none`, or `undecided`"),
+    ("shaft_speed_rpm", "Speed of the shaft at the start"),
+    ("load_n", "Load at the start"),
+    ("sampling_rate_hz", "Samples a second"),
+    ("n_samples", "Samples of the record"),
+    ("bpfo_hz", "Frequency of the outer raceway without slip"),
+    ("bpfi_hz", "Frequency of the inner raceway without slip"),
+    ("bsf_hz", "Spin of an element without slip; a spot strikes twice as often"),
+    ("ftf_hz", "Turns of the cage without slip"),
+    ("time_s", "Time since the start of the run"),
+    ("ring", "Part that has the spall"),
+    ("floor_by", "What stopped the roller at the floor of the spall: `film` or `metal`"),
+];
+
+/// What a column holds, in a sentence.
+fn meaning(column: &str, quantities: &[Quantity]) -> String {
+    let of_event = format!("events.{column}");
+    let path = column.strip_prefix("summary.").unwrap_or(&of_event);
+    if let Some(quantity) = quantities.iter().find(|quantity| quantity.path == path) {
+        return quantity.about_in_markdown();
+    }
+    let own = OWN_COLUMNS.iter().find(|(name, _)| *name == column).map(|(_, what)| *what);
+    let what = own.unwrap_or(match column.split_once('.') {
+        Some(("scene", _)) => "Value of this field of the scene",
+        Some(("sensor", _)) => "Acceleration at a sensor",
+        _ => "",
+    });
+    what.to_owned()
 }
 
 /// Content of the campaign, by name.

@@ -405,10 +405,10 @@ fn behaves_a_run_that_diverges_has_a_row_and_no_signals() {
     assert!(!of.is_empty() && of.iter().all(|run| *run <= 2.0), "{of:?}");
     let sheet = fs::read_to_string(desk.join("A/DATASHEET.md")).expect("a page");
     let columns = sheet.split("## Columns of `signals.parquet`").nth(1).expect("its columns");
-    for words in ["| `run` |  |", "| `split` |  |", "| `time_s` | s |"] {
+    for words in ["| `run` |  | Number", "| `split` |  | Part", "| `time_s` | s | Time"] {
         assert!(columns.contains(words), "`{words}` is not in\n{columns}");
     }
-    for words in ["| runs with warnings | ", "one that diverged has no signals", "| `warnings` |  |"] {
+    for words in ["| runs with warnings | ", "one that diverged has no signals", "| `warnings` |  | What"] {
         assert!(sheet.contains(words), "`{words}` is not in\n{sheet}");
     }
 }

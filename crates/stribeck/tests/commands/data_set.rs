@@ -117,6 +117,9 @@ fn behaves_the_tables_hold_the_truth_and_every_event() {
     ] {
         assert!(sheet.contains(words), "`{words}` is not in\n{sheet}");
     }
+    for line in sheet.lines().filter(|line| line.starts_with("| `")) {
+        assert!(!line.ends_with("|  |"), "a column without its meaning: {line}");
+    }
     // Nothing of what this campaign does not hold.
     for words in ["Full model", "signals.parquet", "## Columns of `signals"] {
         assert!(!sheet.contains(words), "`{words}` is in\n{sheet}");
