@@ -275,8 +275,9 @@ impl Study<'_> {
         let due = rounds.runs().due(Keep::Numbers, wanted(), interrupt)?;
         if !due.is_empty() {
             rounds.runs().make(Keep::Numbers, &due, options.share, interrupt, &|jobs| {
-                let round = round.shown();
-                tell!("{}, {round}: {} runs to be made, {}", inference.name, due.len(), jobs.shown());
+                let (name, round, all) = (&inference.name, round.shown(), inference.budget.runs);
+                let (now, shown) = (due.len(), jobs.shown());
+                tell!("{name}, {round}: {now} runs to be made, of {all} in all rounds, {shown}; ETA is that of the round");
             });
         }
         let mut told = false;
