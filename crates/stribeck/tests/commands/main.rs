@@ -27,3 +27,4 @@ mod second_round;
 mod sources;
 mod validate;
 mod vectors;
+mod walk;
