@@ -26,13 +26,13 @@ pub(crate) fn sentence(bands: &[(&BandEnvelope, Whitened)], own: &OwnLines) -> O
     let cage = cage.filter(|comb| comb.p_value * (bands.len() as f64) < NAMED);
     // Every second or third line of a comb may stand higher than the others.
     let (_, spectrum) = &bands[highest.band];
-    let stands = |part: &u32| {
-        let hz = highest.comb.fundamental_hz / f64::from(*part);
+    let parts = [2.0, 3.0, 4.0].map(|part| highest.comb.fundamental_hz / part);
+    let whole = parts.iter().filter(|hz| !own.holds(**hz)).filter_map(|hz| {
         let near = CombTest::FOUR_OF_FIVE.search(spectrum, hz - spectrum.grid_hz(), hz + spectrum.grid_hz());
-        near.is_ok_and(|comb| comb.p_value < NAMED && !own.holds(hz))
-    };
-    let part = [4, 3, 2].into_iter().find(stands).unwrap_or(1);
-    let hz = highest.comb.fundamental_hz / f64::from(part);
+        near.ok().filter(|comb| comb.p_value < NAMED)
+    });
+    let whole = whole.max_by(|a, b| a.height.total_cmp(&b.height));
+    let hz = whole.map_or(highest.comb.fundamental_hz, |comb| comb.fundamental_hz);
     let order = hz / shaft_hz;
     let fitting = bearings(order, cage.map(|comb| comb.fundamental_hz / shaft_hz));
     Some(format!("Something knocks at {hz:.2} Hz, {order:.3} times the shaft: {fitting}"))

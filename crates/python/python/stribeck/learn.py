@@ -164,7 +164,8 @@ def from_campaign(
         raise FileNotFoundError(f"{folder} has no signals.parquet: a campaign with `keep: signals`, or `all`, makes one")
     runs = pandas.read_parquet(folder / "runs.parquet").set_index("run")
     signals = pandas.read_parquet(folder / "signals.parquet")
-    names = [name for name in signals.columns if name.startswith("sensor.") and name.endswith("ay_m_s2")]
+    # A machine has one sensor in one direction; others are on the ring, in two.
+    names = [name for name in signals.columns if name.startswith("sensor.") and name.endswith((".a_m_s2", ".ay_m_s2"))]
     named = sensor if sensor is not None else next(iter(names), None)
     if named not in signals.columns:
         raise ValueError(f"no sensor {named!r} in {folder}; there are {', '.join(names)}")

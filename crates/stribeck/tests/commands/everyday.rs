@@ -326,7 +326,7 @@ fn issue_an_ensemble_is_described_by_its_starts() {
 #[test]
 fn issue_hints_are_those_of_their_command() {
     let desk = Desk::with_scene("hints");
-    let unknown = desk.run(&["bearings", "6404"]);
+    let unknown = desk.run(&["bearings", "6504"]);
     assert!(!unknown.status.success());
     let known = desk.run(&["bearings", "NU312"]);
     assert!(known.status.success(), "{}", said(&known));
