@@ -387,15 +387,16 @@ const SERIES: [f64; 9] = [
 fn inverse_cosine<N: Number>(square: N) -> N {
     let of = |value: f64| square.constant(value);
     let one = of(1.0);
-    // The series is off by 4·10⁻⁹ there.
-    if of(0.15).bits_below(square) != 0 {
-        return one / (one - square).max(of(1e-4)).sqrt();
-    }
     let mut sum = of(12155.0 / 65536.0);
     for next in SERIES {
         sum = sum.times_plus(square, of(next));
     }
-    sum
+    // The series is off by 4·10⁻⁹ there. Each lane chooses for itself, whatever lies beside it.
+    let far = of(0.15);
+    if far.bits_below(square) == 0 {
+        return sum;
+    }
+    far.choose_below(square, one / (one - square).max(of(1e-4)).sqrt(), sum)
 }
 
 impl Part {
@@ -428,6 +429,12 @@ impl RoundParts {
             whole = whole + length;
         }
         [area, whole]
+    }
+
+    /// Has all of them listed anew in the next step: how far they are known beyond a contact depends on when
+    /// they were listed, and counts where a contact grows farther than the force to start from says.
+    pub(crate) fn forget(&mut self) {
+        self.fences = Default::default();
     }
 
     /// Rollers whose contacts may reach beyond their pieces, a bit for each.
@@ -719,6 +726,34 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// One over the cosine in each lane, whatever lies beside it: vectors of any width give the same.
+    struct EachForItself;
+
+    impl WithSimd for EachForItself {
+        type Output = ();
+
+        #[inline(always)]
+        fn with_simd<S: Simd>(self, simd: S) {
+            let squares = Row([0.0, 0.01, 0.1, 0.149, 0.151, 0.3, 0.9, 0.05]);
+            for at in vector_starts(simd) {
+                let mut found = Row::default();
+                inverse_cosine(Vector::<S>::load(simd, &squares, at)).store(&mut found, at);
+                for lane in at..at + Vector::<S>::LEN {
+                    let square = squares[lane];
+                    let mut alone = Row::default();
+                    inverse_cosine(Vector::all(simd, square)).store(&mut alone, at);
+                    assert_eq!(found[lane].to_bits(), alone[at].to_bits(), "{square}");
+                    assert!((found[lane] * (1.0 - square).sqrt() - 1.0).abs() < 5e-9, "{square}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn issue_a_roller_beside_another_rounds_as_alone() {
+        Arch::new().dispatch(EachForItself);
     }
 
     #[test]

@@ -213,10 +213,11 @@ impl Block {
     /// it step by step rounds.
     pub(crate) fn begin(&mut self, rollers: &Rollers, anew: usize) {
         self.sums = Default::default();
-        // A roller that is clear of the outer raceway moves along it nevertheless.
-        let on_outer = &mut self.contacts[0];
-        for lane in lanes(self.bits & !on_outer.near) {
-            on_outer.hints[lane][1] = self.facet[lane];
+        // A resumed run begins here: it has no pieces, and the facets of the outer raceway that rollers are
+        // over, not those where pieces were listed last.
+        self.contacts.iter_mut().for_each(|contacts| contacts.pieces.forget());
+        for lane in lanes(self.bits) {
+            self.contacts[0].hints[lane][1] = self.facet[lane];
         }
         if (self.first..self.first + self.count).contains(&anew) {
             let lane = anew - self.first;
@@ -256,8 +257,7 @@ impl Block {
                 state.passive[k][i] = contacts.passive.map(|column| column[lane]);
                 state.hints[k][i] = contacts.hints[lane];
             }
-            // Not that of the contact, which goes on only when its parts are listed: a continued run lists
-            // them earlier.
+            // As `begin` has it.
             state.hints[0][i][1] = self.facet[lane];
             for (side, walls) in self.walls.iter().enumerate() {
                 state.wall_slip[i][side] = walls.slip[lane];

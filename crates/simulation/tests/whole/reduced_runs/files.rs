@@ -35,6 +35,14 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
     assert!(again.from_cache);
 }
 
+/// Round rollers over spalls and dents, whose contacts outgrow in a step what was known of the raceway.
+#[test]
+fn issue_round_rollers_over_defects_in_pieces_write_the_same_bytes() {
+    let folder = Scratch::create("reduced-pitted-pieces");
+    let scene = of("pitted.ron", &["solver.duration_ms=6"]);
+    assert_goes_on_with_the_same_bytes(&scene, &folder, 37);
+}
+
 /// A penalty that depends on the full model's step is that of another reduction when the step changes.
 #[test]
 fn issue_a_penalty_by_the_time_step_has_reductions_of_its_own() {
