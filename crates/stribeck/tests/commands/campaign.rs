@@ -6,10 +6,10 @@ use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use crate::common::{QUICK, STRIBECK, command};
+use crate::common::{Desk, QUICK, STRIBECK, command};
 use stribeck_formats::Recording;
 use stribeck_testing::{
-    Noise, Scratch,
+    Noise,
     peer::{absent, python_with},
     said, says,
 };
@@ -26,18 +26,18 @@ const CAMPAIGN: &str = "(
     ]),
 )";
 
-fn desk(name: &str, campaign: &str) -> Scratch {
-    let desk = Scratch::create(name);
+fn desk(name: &str, campaign: &str) -> Desk {
+    let desk = Desk::new(name);
     fs::copy(QUICK, desk.join("quick.ron")).expect("a scene");
     fs::write(desk.join("campaign.ron"), campaign).expect("a campaign");
     desk
 }
 
-fn campaign(desk: &Scratch, words: &[&str]) -> Command {
+fn campaign(desk: &Desk, words: &[&str]) -> Command {
     command(desk, &[&["campaign", "campaign.ron"], words].concat())
 }
 
-fn run(desk: &Scratch, words: &[&str]) -> Output {
+fn run(desk: &Desk, words: &[&str]) -> Output {
     campaign(desk, words).output().expect("it starts")
 }
 
@@ -403,7 +403,7 @@ fn behaves_a_run_that_diverges_has_a_row_and_no_signals() {
     says(&done, &["diverged", "(limit 0.00001 %)", "2 of 4 runs are complete"]);
     let of = column(&desk.join("A/signals.parquet"), "run");
     assert!(!of.is_empty() && of.iter().all(|run| *run <= 2.0), "{of:?}");
-    let sheet = fs::read_to_string(desk.join("A/DATASHEET.md")).expect("a page");
+    let sheet = desk.text("A/DATASHEET.md");
     let columns = sheet.split("## Columns of `signals.parquet`").nth(1).expect("its columns");
     for words in ["| `run` |  | Number", "| `split` |  | Part", "| `time_s` | s | Time"] {
         assert!(columns.contains(words), "`{words}` is not in\n{columns}");

@@ -1,6 +1,7 @@
 //! The program in a folder of its own.
 
 use std::fs;
+use std::ops::Deref;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
 
@@ -25,16 +26,43 @@ pub(crate) const COARSE: [&str; 4] = [
     "--set=output.frames=None",
 ];
 
-/// The program with these words, to be started in a folder.
-pub(crate) fn command(desk: &Scratch, words: &[&str]) -> Command {
-    let mut command = Command::new(STRIBECK);
-    command.current_dir(desk.path()).args(words).stdin(Stdio::null());
-    command
+/// The words of a line, among which `'…'` is one, or words one by one.
+pub(crate) trait Line {
+    fn words(&self) -> Vec<&str>;
 }
 
-/// What the program says to these words in a folder.
-pub(crate) fn stribeck(desk: &Scratch, words: &[&str]) -> Output {
-    command(desk, words).output().expect("it starts")
+impl Line for str {
+    fn words(&self) -> Vec<&str> {
+        let parts = self.split('\'').enumerate();
+        parts
+            .flat_map(|(n, part)| if n % 2 == 0 { part.split_whitespace().collect() } else { vec![part] })
+            .collect()
+    }
+}
+
+impl Line for [&str] {
+    fn words(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl<const N: usize> Line for [&str; N] {
+    fn words(&self) -> Vec<&str> {
+        self.to_vec()
+    }
+}
+
+impl Line for Vec<&str> {
+    fn words(&self) -> Vec<&str> {
+        self.clone()
+    }
+}
+
+/// The program with the words of a line, to be started in a folder.
+pub(crate) fn command(desk: &Scratch, line: &(impl Line + ?Sized)) -> Command {
+    let mut command = Command::new(STRIBECK);
+    command.current_dir(desk.path()).args(line.words()).stdin(Stdio::null());
+    command
 }
 
 /// Sends what Ctrl-C sends.
@@ -61,7 +89,15 @@ pub(crate) fn complete(scene: &Scene, folder: &Path) -> RunInfo {
 }
 
 /// A folder of a user, and what is done there.
-pub(crate) struct Desk(pub(crate) Scratch);
+pub(crate) struct Desk(Scratch);
+
+impl Deref for Desk {
+    type Target = Scratch;
+
+    fn deref(&self) -> &Scratch {
+        &self.0
+    }
+}
 
 impl Desk {
     /// An empty folder.
@@ -76,21 +112,27 @@ impl Desk {
         desk
     }
 
-    pub(crate) fn run(&self, words: &[&str]) -> Output {
-        stribeck(&self.0, words)
+    pub(crate) fn run(&self, line: &(impl Line + ?Sized)) -> Output {
+        command(self, line).output().expect("it starts")
     }
 
     #[track_caller]
-    pub(crate) fn succeeds(&self, words: &[&str]) -> Output {
-        let output = self.run(words);
-        assert!(output.status.success(), "{words:?}: {}", said(&output));
+    pub(crate) fn succeeds(&self, line: &(impl Line + ?Sized)) -> Output {
+        let output = self.run(line);
+        assert!(output.status.success(), "{:?}: {}", line.words(), said(&output));
         output
     }
 
+    /// Succeeds, and says this.
     #[track_caller]
-    pub(crate) fn refuses(&self, words: &[&str], told: &[&str]) {
-        let output = self.run(words);
-        assert!(!output.status.success(), "{words:?}: {}", said(&output));
+    pub(crate) fn says(&self, line: &(impl Line + ?Sized), told: &[&str]) {
+        says(&self.succeeds(line), told);
+    }
+
+    #[track_caller]
+    pub(crate) fn refuses(&self, line: &(impl Line + ?Sized), told: &[&str]) {
+        let output = self.run(line);
+        assert!(!output.status.success(), "{:?}: {}", line.words(), said(&output));
         says(&output, told);
     }
 

@@ -4,10 +4,9 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::stribeck;
+use crate::common::Desk;
 use serde_json::Value;
 use stribeck_formats::Recording;
-use stribeck_testing::{Scratch, said};
 
 /// Four bearings of the reduced model: a spall, a dent beside a missing roller, waves, and none of these.
 const CAMPAIGN: &str = "(
@@ -25,10 +24,9 @@ const CAMPAIGN: &str = "(
     ])]),
 )";
 
-fn run(desk: &Scratch, keep: &str, words: &[&str]) {
+fn run(desk: &Desk, keep: &str, words: &[&str]) {
     fs::write(desk.join("campaign.ron"), CAMPAIGN.replace("KEEP", keep)).expect("a campaign");
-    let done = stribeck(desk, &[&["campaign", "campaign.ron"], words].concat());
-    assert!(done.status.success(), "{}", said(&done));
+    desk.succeeds(&[&["campaign", "campaign.ron"], words].concat());
 }
 
 fn numbers(table: &Path, column: &str) -> Vec<f64> {
@@ -57,7 +55,7 @@ fn summaries(campaign: &Path) -> Vec<(f64, Value)> {
 
 #[test]
 fn behaves_the_tables_hold_the_truth_and_every_event() {
-    let desk = Scratch::create("data-set");
+    let desk = Desk::new("data-set");
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/reduced.ron");
     fs::copy(scenes, desk.join("reduced.ron")).expect("a scene");
     run(&desk, "numbers", &["--out=A"]);
@@ -102,7 +100,7 @@ fn behaves_the_tables_hold_the_truth_and_every_event() {
         );
     }
 
-    let sheet = fs::read_to_string(desk.join("A/DATASHEET.md")).expect("a page");
+    let sheet = desk.text("A/DATASHEET.md");
     for words in [
         "| model | reduced: 4 |",
         "healthy: 2; outer_race (spall): 1; rolling_element+missing_rolling_element (dent+missing): 1",

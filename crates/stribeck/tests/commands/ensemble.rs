@@ -5,8 +5,8 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
-use crate::common::{COARSE, QUICK, STRIBECK, command, ctrl_c, stribeck};
-use stribeck_testing::{Scratch, said, says};
+use crate::common::{COARSE, Desk, QUICK, STRIBECK, command, ctrl_c};
+use stribeck_testing::{said, says};
 
 /// A very coarse bearing, from rest, for half a millisecond.
 fn coarse() -> Vec<&'static str> {
@@ -16,7 +16,7 @@ fn coarse() -> Vec<&'static str> {
 /// Whatever takes longer has hung.
 const PATIENCE: Duration = Duration::from_secs(180);
 
-fn simulate(desk: &Scratch, words: &[&str]) -> Output {
+fn simulate(desk: &Desk, words: &[&str]) -> Output {
     let mut command = command(desk, &coarse());
     command.args(words).output().expect("it starts")
 }
@@ -26,17 +26,17 @@ fn succeeds(output: &Output) {
     assert!(output.status.success(), "{}", said(output));
 }
 
-fn bytes(desk: &Scratch, name: &str) -> Vec<u8> {
+fn bytes(desk: &Desk, name: &str) -> Vec<u8> {
     fs::read(desk.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-fn summary(desk: &Scratch, run: &str) -> serde_json::Value {
+fn summary(desk: &Desk, run: &str) -> serde_json::Value {
     serde_json::from_slice(&bytes(desk, &format!("{run}/summary.json"))).expect("valid")
 }
 
 #[test]
 fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes() {
-    let desk = Scratch::create("seeds");
+    let desk = Desk::new("seeds");
     succeeds(&simulate(&desk, &["--starts=3", "--jobs=2", "--out=A"]));
     succeeds(&simulate(&desk, &["--starts=3", "--jobs=1", "--seed=1", "--out=B"]));
     succeeds(&simulate(&desk, &["--starts=2", "--seed=2", "--out=C", "--no-report"]));
@@ -46,7 +46,7 @@ fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes(
     assert!(traces("C")[0] != traces("A")[0], "another seed, the same bytes");
     assert!(!desk.join("C/report.html").exists());
 
-    succeeds(&stribeck(&desk, &["simulate", "A/start-002/scene.ron", "--out=alone", "--no-report"]));
+    succeeds(&desk.run("simulate A/start-002/scene.ron --out=alone --no-report"));
     for name in ["trace.npy", "energy.npy", "scene.ron"] {
         assert!(
             bytes(&desk, &format!("alone/{name}")) == bytes(&desk, &format!("A/start-002/{name}")),
@@ -59,9 +59,9 @@ fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes(
     let page = bytes(&desk, "A/report.html");
     fs::remove_file(desk.join("A/report.html")).expect("removable");
     fs::remove_file(desk.join("A/summary.json")).expect("removable");
-    succeeds(&stribeck(&desk, &["report", "A"]));
+    succeeds(&desk.run("report A"));
     assert!(bytes(&desk, "A/report.html") == page);
-    succeeds(&stribeck(&desk, &["report", "A/start-001"]));
+    succeeds(&desk.run("report A/start-001"));
     assert_eq!(summary(&desk, "A/start-001")["scene"], "quick-start-001");
 
     let numbers = summary(&desk, "A");
@@ -71,7 +71,7 @@ fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes(
 }
 
 /// Interrupts by Ctrl-C as soon as one start is complete and another under way.
-fn interrupt(desk: &Scratch, mut command: Command, folder: &str) -> Output {
+fn interrupt(desk: &Desk, mut command: Command, folder: &str) -> Output {
     let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("it starts");
     let began = Instant::now();
     let complete = |n: usize| {
@@ -88,7 +88,7 @@ fn interrupt(desk: &Scratch, mut command: Command, folder: &str) -> Output {
 
 #[test]
 fn survives_an_interruption_and_goes_on_with_what_is_missing() {
-    let desk = Scratch::create("interrupted");
+    let desk = Desk::new("interrupted");
     let longer = "--set=solver.duration_ms=1.0";
     succeeds(&simulate(&desk, &["--starts=3", "--jobs=1", "--out=whole", "--no-report", longer]));
     let mut command = command(&desk, &coarse());
@@ -105,7 +105,7 @@ fn survives_an_interruption_and_goes_on_with_what_is_missing() {
     assert_eq!(summary_then["ensemble"]["levels"]["start_g"]["count"].as_u64(), Some(1));
 
     // More starts at the same time.
-    succeeds(&stribeck(&desk, &["simulate", "--resume", "pieces", "--starts=4", "--jobs=2"]));
+    succeeds(&desk.run("simulate --resume pieces --starts=4 --jobs=2"));
     for n in 1..=3 {
         for name in ["trace.npy", "energy.npy", "scene.ron"] {
             let [a, b] = ["whole", "pieces"].map(|run| bytes(&desk, &format!("{run}/start-{n:03}/{name}")));
@@ -119,15 +119,15 @@ fn survives_an_interruption_and_goes_on_with_what_is_missing() {
 
     // Longer ones.
     let set = "--set=solver.duration_ms=1.1";
-    succeeds(&stribeck(&desk, &["simulate", "--resume", "pieces", set, "--no-report"]));
-    let long = stribeck(&desk, &["simulate", "pieces/start-003/scene.ron", "--out=long", "--no-report"]);
+    succeeds(&desk.run(&["simulate", "--resume", "pieces", set, "--no-report"]));
+    let long = desk.run("simulate pieces/start-003/scene.ron --out=long --no-report");
     succeeds(&long);
     assert!(bytes(&desk, "long/trace.npy") == bytes(&desk, "pieces/start-003/trace.npy"));
 }
 
 #[test]
 fn refuses_flags_that_do_not_go_together() {
-    let desk = Scratch::create("flags");
+    let desk = Desk::new("flags");
     succeeds(&simulate(&desk, &["--starts=1", "--out=E", "--no-report"]));
     succeeds(&simulate(&desk, &["--out=one", "--no-report"]));
     let before = bytes(&desk, "E/ensemble.json");
@@ -144,12 +144,12 @@ fn refuses_flags_that_do_not_go_together() {
         (&["simulate", "--resume=E", "--set=mesh.size_mm=3"], &["solver.duration_ms"]),
         (&["simulate", "--resume=E", "--set=solver.duration_ms=0.1"], &["longer, not shorter"]),
     ] {
-        let output = stribeck(&desk, words);
+        let output = desk.run(words);
         assert!(!output.status.success(), "{words:?}");
         says(&output, answers);
     }
-    succeeds(&stribeck(&desk, &["simulate", "--resume=E", "--starts=2", "--no-report"]));
-    says(&stribeck(&desk, &["simulate", "--resume=E", "--starts=1"]), &["larger, not smaller"]);
+    succeeds(&desk.run("simulate --resume=E --starts=2 --no-report"));
+    says(&desk.run("simulate --resume=E --starts=1"), &["larger, not smaller"]);
     assert!(before != bytes(&desk, "E/ensemble.json"));
 
     // An ensemble that is there is kept, as a run is; --overwrite waits for the new one.
@@ -167,19 +167,19 @@ fn refuses_flags_that_do_not_go_together() {
 /// lost.
 #[test]
 fn survives_starts_that_diverge() {
-    let desk = Scratch::create("diverge");
+    let desk = Desk::new("diverge");
     let output = simulate(&desk, &["--starts=2", "--jobs=2", "--out=D", "--set=solver.time_step_factor=1.3"]);
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
     says(&output, &["start 1 diverged and does not count", "no start is complete", "report: D/report.html"]);
     assert_eq!(summary(&desk, "D")["starts"][1]["ended"], "diverged");
     // Nothing is left to do: the same steps would diverge again.
-    says(&stribeck(&desk, &["simulate", "--resume", "D"]), &["0 to run"]);
+    says(&desk.run("simulate --resume D"), &["0 to run"]);
 }
 
 /// A limit on the length of files stands for a full disk: the traces do not fit.
 #[test]
 fn survives_a_full_disk_and_goes_on_when_there_is_space() {
-    let desk = Scratch::create("full");
+    let desk = Desk::new("full");
     // A megabyte of samples: mesh and checkpoint are smaller.
     let longer = ["--set=solver.duration_ms=1.0", "--set=output.interval_us=1"];
     let program = Path::new(STRIBECK);
@@ -193,7 +193,7 @@ fn survives_a_full_disk_and_goes_on_when_there_is_space() {
         .expect("a shell");
     assert!(!output.status.success(), "{}", said(&output));
     says(&output, &["start 1 (1 of 2): failed", "2 of 2 starts are not at their end", "--resume F"]);
-    succeeds(&stribeck(&desk, &["simulate", "--resume", "F"]));
-    succeeds(&stribeck(&desk, &["simulate", "F/start-001/scene.ron", "--out=whole", "--no-report"]));
+    succeeds(&desk.run("simulate --resume F"));
+    succeeds(&desk.run("simulate F/start-001/scene.ron --out=whole --no-report"));
     assert!(bytes(&desk, "F/start-001/trace.npy") == bytes(&desk, "whole/trace.npy"));
 }

@@ -21,7 +21,7 @@ impl Desk {
     /// Starts a coarse simulation of `quick.ron`.
     fn simulation(&self, words: &[&str]) -> Command {
         let own = ["simulate", "quick.ron", "--threads=1", "--no-report"];
-        command(&self.0, &[&own, &COARSE[..], words].concat())
+        command(self, &[&own, &COARSE[..], words].concat())
     }
 
     /// Simulates to the end.
@@ -34,7 +34,7 @@ impl Desk {
     fn interrupt(&self, mut command: Command, file: &str) -> Output {
         let child = command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().expect("it starts");
         let began = Instant::now();
-        while !self.0.join(file).exists() {
+        while !self.join(file).exists() {
             assert!(began.elapsed() < PATIENCE, "the run does not come on");
             std::thread::sleep(Duration::from_millis(2));
         }
@@ -45,14 +45,14 @@ impl Desk {
     }
 
     fn bytes(&self, run: &str, name: &str) -> Vec<u8> {
-        let path = self.0.join(run).join(name);
+        let path = self.join(run).join(name);
         fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
     }
 
     /// Every file of a run, with its name.
     fn files(&self, run: &str) -> Vec<(PathBuf, Vec<u8>)> {
         let mut files = Vec::new();
-        let mut folders = vec![self.0.join(run)];
+        let mut folders = vec![self.join(run)];
         while let Some(folder) = folders.pop() {
             for path in fs::read_dir(folder).expect("readable").flatten().map(|entry| entry.path()) {
                 if path.is_dir() {
@@ -67,7 +67,7 @@ impl Desk {
     }
 
     fn exists(&self, path: &str) -> bool {
-        self.0.join(path).exists()
+        self.join(path).exists()
     }
 }
 
@@ -91,10 +91,9 @@ fn invariant_a_finished_run_outlives_the_next_one() {
     says(&interrupted, &["still holds the earlier run", "simulate --resume A.new"]);
     assert!(desk.files("A") == before, "an interrupted run changed the one that it was to replace");
     says(&desk.simulation(&deeper).arg("--overwrite").output().expect("it starts"), &["A.new", "--resume"]);
-    let report = desk.run(&["report", "A.new"]);
-    assert!(report.status.success(), "{}", said(&report));
+    desk.succeeds("report A.new");
 
-    fs::remove_dir_all(desk.0.join("A.new")).expect("removable");
+    fs::remove_dir_all(desk.join("A.new")).expect("removable");
     desk.complete(&["--set=defect.depth_mm=0.3", "--out", "A", "--overwrite"]);
     desk.complete(&["--set=defect.depth_mm=0.3", "--out", "B"]);
     assert!(desk.bytes("A", "trace.npy") == desk.bytes("B", "trace.npy"));
@@ -118,7 +117,7 @@ fn invariant_runs_without_a_folder_are_numbered_even_when_they_start_together() 
     for run in ["runs/quick-2", "runs/quick-3", "runs/quick-4"] {
         assert!(desk.bytes("runs/quick", "trace.npy") == desk.bytes(run, "trace.npy"), "{run}");
     }
-    assert_eq!(fs::read_dir(desk.0.join("runs")).expect("readable").count(), 4);
+    assert_eq!(fs::read_dir(desk.join("runs")).expect("readable").count(), 4);
 }
 
 #[test]
@@ -130,7 +129,7 @@ fn invariant_several_runs_share_a_tree_of_folders() {
         STRIBECK,
         COARSE.join(" ") + " --threads=1 --no-report"
     );
-    let output = Command::new("sh").args(["-c", &line]).current_dir(desk.0.path()).output().expect("a shell");
+    let output = Command::new("sh").args(["-c", &line]).current_dir(desk.path()).output().expect("a shell");
     assert!(output.status.success(), "{}", said(&output));
     for depth in ["0.1", "0.2", "0.3"] {
         let scene = String::from_utf8(desk.bytes(&format!("deep/{depth}"), "scene.ron")).expect("text");
@@ -154,7 +153,7 @@ fn invariant_ctrl_c_before_the_first_step_ends_at_once_and_leaves_nothing() {
     let desk = Desk::with_scene("early");
     // The paper's scene takes seconds to be meshed and preloaded.
     let output =
-        desk.interrupt(command(&desk.0, &["simulate", "--threads=1", "--out", "deep/A"]), "deep/A/.lock");
+        desk.interrupt(command(&desk, &["simulate", "--threads=1", "--out", "deep/A"]), "deep/A/.lock");
     says(&output, &["before the first step"]);
     assert!(!said(&output).contains("run …"), "it went on to the first step");
     assert!(!desk.exists("deep"), "a run that never began left a folder");
@@ -165,9 +164,8 @@ fn invariant_a_report_is_of_the_scene_that_was_run_and_says_what_is_missing() {
     let desk = Desk::with_scene("report");
     desk.complete(&["--out", "A"]);
     let trace = desk.bytes("A", "trace.npy");
-    fs::write(desk.0.join("A/trace.npy"), &trace[..trace.len() / 2]).expect("writable");
-    let output = desk.run(&["report", "A"]);
-    assert!(output.status.success(), "{}", said(&output));
+    fs::write(desk.join("A/trace.npy"), &trace[..trace.len() / 2]).expect("writable");
+    let output = desk.succeeds("report A");
     says(&output, &["warning: `trace.npy` holds", "of the 20 samples", "cut off"]);
     let page = String::from_utf8(desk.bytes("A", "report.html")).expect("text");
     assert!(page.contains("of the 20 samples"), "the report does not say that samples are missing");
@@ -175,8 +173,8 @@ fn invariant_a_report_is_of_the_scene_that_was_run_and_says_what_is_missing() {
     let scene = String::from_utf8(desk.bytes("A", "scene.ron")).expect("text");
     let edited = scene.replace("speed_rpm: ", "speed_rpm: 1");
     assert_ne!(edited, scene);
-    fs::write(desk.0.join("A/scene.ron"), edited).expect("writable");
-    let output = desk.run(&["report", "A"]);
+    fs::write(desk.join("A/scene.ron"), edited).expect("writable");
+    let output = desk.run("report A");
     assert_eq!(output.status.code(), Some(1));
     says(&output, &["changed after the run", "Put the run's own `scene.ron` back"]);
 }
@@ -184,18 +182,17 @@ fn invariant_a_report_is_of_the_scene_that_was_run_and_says_what_is_missing() {
 #[test]
 fn invariant_the_program_says_what_it_is_and_needs_no_files() {
     let desk = Desk::with_scene("words");
-    says(&desk.run(&["--version"]), &["stribeck 0."]);
-    says(&desk.run(&["--help"]), &["rolling element bearings", "simulate", "report", "plan"]);
+    says(&desk.run("--version"), &["stribeck 0."]);
+    says(&desk.run("--help"), &["rolling element bearings", "simulate", "report", "plan"]);
     // Without a scene the bearing of the paper, here on a coarse mesh.
-    let plan = desk.run(&["plan", "--set=mesh.size_mm=2.0", BEGINNING]);
-    assert!(plan.status.success(), "{}", said(&plan));
+    let plan = desk.succeeds(&["plan", "--set=mesh.size_mm=2.0", BEGINNING]);
     says(&plan, &["singh2014", "roller_vertices"]);
-    let diverging = desk.run(&["plan", "quick.ron", "--set", "solver.time_step_factor=1.2"]);
+    let diverging = desk.run("plan quick.ron --set solver.time_step_factor=1.2");
     assert_eq!(diverging.status.code(), Some(1));
     says(&diverging, &["solver.time_step_factor", "below 1"]);
-    says(&desk.run(&["simulate", "--threads", "two"]), &["'two'", "whole number from 1 to 1024"]);
-    says(&desk.run(&["report"]), &["stribeck simulate"]);
-    assert!(!desk.0.join("runs").exists());
+    says(&desk.run("simulate --threads two"), &["'two'", "whole number from 1 to 1024"]);
+    says(&desk.run("report"), &["stribeck simulate"]);
+    assert!(!desk.join("runs").exists());
 }
 
 /// A housing for another bearing is an error at the line of the scene that names it, and no command leaves a
@@ -204,23 +201,21 @@ fn invariant_the_program_says_what_it_is_and_needs_no_files() {
 fn refuses_the_mesh_of_another_bearing_where_the_scene_names_it() {
     let desk = Desk::with_scene("another-housing");
     let block = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/housings/pillow_block.msh");
-    fs::copy(block, desk.0.join("block.msh")).expect("a mesh");
+    fs::copy(block, desk.join("block.msh")).expect("a mesh");
     let text =
         "(\n  bearing: \"NU 203\", film: None, defect: None,\n  housing: mesh(file: \"block.msh\"),\n)";
-    fs::write(desk.0.join("other.ron"), text).expect("writable");
+    fs::write(desk.join("other.ron"), text).expect("writable");
     for words in [
         &["simulate", "other.ron"][..],
         &["simulate", "other.ron", "--starts=2"],
         &["validate", "other.ron"],
         &["plan", "other.ron"],
     ] {
-        let output = desk.run(words);
-        assert!(!output.status.success(), "{words:?}");
-        says(
-            &output,
+        desk.refuses(
+            words,
             &["bore does not fit the outer ring", "other.ron:3:23", "housing: mesh(file: \"block.msh\")"],
         );
-        assert!(!desk.0.join("runs").exists(), "{words:?}");
+        assert!(!desk.join("runs").exists(), "{words:?}");
     }
     let set = desk.run(&[
         "simulate",
@@ -241,55 +236,42 @@ fn behaves_a_reduced_run_from_its_plan_to_a_deck() {
         (load_n: 3000, speed_rpm: 1500),
         mesh: (size_mm: 1, roller_facets: 48), contact: (penalty_scale: 0.3), solver: (duration_ms: 0.2), \
         output: (frames: None))";
-    fs::write(desk.0.join("mine.ron"), text).expect("writable");
-    let run = desk.run(&["simulate", "mine.ron", "--no-report", "--threads=1"]);
-    assert!(run.status.success(), "{}", said(&run));
+    fs::write(desk.join("mine.ron"), text).expect("writable");
+    desk.succeeds("simulate mine.ron --no-report --threads=1");
     for (format, has) in [("k", "roller 13"), ("inp", "ROLLER_13"), ("msh", "roller 13")] {
-        let output = desk.run(&["export", "mine", "--to", format]);
-        assert!(output.status.success(), "{format}: {}", said(&output));
-        let deck = fs::read_to_string(desk.0.join(format!("runs/mine/mesh.{format}"))).expect("a deck");
+        desk.succeeds(&["export", "mine", "--to", format]);
+        let deck = fs::read_to_string(desk.join(format!("runs/mine/mesh.{format}"))).expect("a deck");
         assert!(deck.contains(has), "{format}");
     }
     // The reduced model has no elements in motion, and decks for Radioss have names of their own.
-    says(&desk.run(&["export", "mine", "--to=radioss"]), &["`model: reduced`", "`model: full`"]);
+    says(&desk.run("export mine --to=radioss"), &["`model: reduced`", "`model: full`"]);
     let full = ["export", "mine.ron", "--to=radioss", "--set=model=full"];
     says(&desk.run(&full), &["`contact.surface`", "`surface: facet`"]);
     let full = [&full[..], &["--set=contact.surface=facet"]].concat();
     says(&desk.run(&[&full[..], &["--out=full.rad"]].concat()), &["`_0000.rad`"]);
     says(&desk.run(&full), &["mine_0000.rad"]);
-    let starter = fs::read_to_string(desk.0.join("mine_0000.rad")).expect("a deck");
+    let starter = desk.text("mine_0000.rad");
     for has in ["# left out: friction", "\nroller 13\n", "/INTER/TYPE3/27\n", "# node "] {
         assert!(starter.contains(has), "{has}");
     }
-    assert!(desk.0.join("mine_0002.rad").exists());
+    assert!(desk.join("mine_0002.rad").exists());
     // There are no frames to export, and only the full model makes some.
-    says(&desk.run(&["export", "mine", "--to=pvd"]), &["`model: full`", "`output: (frames: ())`"]);
+    says(&desk.run("export mine --to=pvd"), &["`model: full`", "`output: (frames: ())`"]);
     // Dampers that allow far shorter steps than the scene has.
     let stiff = ["mine.ron", "--set=housing=springs(damping_n_s_m: 1e6)", "--no-report", "--out=stiff"];
-    let stiff = desk.run(&[&["simulate"][..], &stiff].concat());
-    assert!(stiff.status.success(), "{}", said(&stiff));
-    let info = fs::read_to_string(desk.0.join("stiff/run.json")).expect("run.json");
+    desk.succeeds(&[&["simulate"][..], &stiff].concat());
+    let info = desk.text("stiff/run.json");
     let steps = info.lines().find_map(|line| line.trim().strip_prefix("\"steps\": ")).expect("steps");
-    let plan = desk.run(&["plan", "mine.ron", "--set=housing=springs(damping_n_s_m: 1e6)"]);
+    let plan = desk.run("plan mine.ron '--set=housing=springs(damping_n_s_m: 1e6)'");
     says(&plan, &[&format!(", {} steps of 0.0", steps.trim_end_matches(',')), "the run takes about"]);
-    let long = desk.run(&[
-        "plan",
-        "mine.ron",
-        "--set=housing=springs(damping_n_s_m: 1e6)",
-        "--set=solver.duration_ms=1e5",
-    ]);
+    let long =
+        desk.run("plan mine.ron '--set=housing=springs(damping_n_s_m: 1e6)' --set=solver.duration_ms=1e5");
     says(&long, &["takes hours", "`housing.damping_n_s_m`"]);
     // Its steps are 200 times shorter than the scene says: it is tried for two seconds, and does not stop.
     assert!(!said(&long).contains("stops at once"), "{}", said(&long));
 
-    let other = desk.run(&[
-        "plan",
-        "mine.ron",
-        "--set=model=full",
-        "--set=bearing=NU 203, elements=11",
-        "--set=mesh.size_mm=1",
-    ]);
-    assert!(other.status.success(), "{}", said(&other));
+    let other = desk
+        .succeeds("plan mine.ron --set=model=full '--set=bearing=NU 203, elements=11' --set=mesh.size_mm=1");
     says(
         &other,
         &[
@@ -309,27 +291,21 @@ fn issue_an_ensemble_is_described_by_its_starts() {
     desk.complete(&["--starts=2", "--jobs=1", "--out=runs/ens"]);
     let told = ["`runs/ens` is an ensemble", "2 starts", "`runs/ens/start-001`"];
     for words in [&["export", "ens", "--to=csv"][..], &["export", "--to=csv"], &["analyse", "runs/ens"]] {
-        let refused = desk.run(words);
-        assert!(!refused.status.success(), "{words:?}: {}", said(&refused));
-        says(&refused, &told);
+        desk.refuses(words, &told);
     }
     // Where there is a run of its own, that is exported, however old.
     desk.complete(&["--out=runs/one"]);
-    let more = desk.run(&["simulate", "--resume=runs/ens", "--starts=3", "--jobs=1", "--no-report"]);
-    assert!(more.status.success(), "{}", said(&more));
-    let exported = desk.run(&["export", "--to=csv"]);
-    assert!(exported.status.success(), "{}", said(&exported));
-    says(&exported, &["runs/one/trace.csv"]);
+    desk.succeeds("simulate --resume=runs/ens --starts=3 --jobs=1 --no-report");
+    desk.says("export --to=csv", &["runs/one/trace.csv"]);
 }
 
 /// `bearings` named an option that it does not have, and said "inf ms" of what does not turn.
 #[test]
 fn issue_hints_are_those_of_their_command() {
     let desk = Desk::with_scene("hints");
-    let unknown = desk.run(&["bearings", "6504"]);
+    let unknown = desk.run("bearings 6504");
     assert!(!unknown.status.success());
-    let known = desk.run(&["bearings", "NU312"]);
-    assert!(known.status.success(), "{}", said(&known));
+    let known = desk.succeeds("bearings NU312");
     says(&known, &["NU 312", "`\"NU 312, elements=…\"`"]);
     assert!(![&unknown, &known].iter().any(|output| said(output).contains("--bearing")));
     let still = desk.run(&["plan", "quick.ron", "--set=operation.speed_rpm=0", BEGINNING]);
@@ -337,8 +313,8 @@ fn issue_hints_are_those_of_their_command() {
     says(&still, &["nothing turns"]);
     // From 300 to 1200 rpm; families were those of 300 beside lines of facets at the mean.
     let ramp = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/ramp.ron");
-    fs::copy(ramp, desk.0.join("ramp.ron")).expect("a scene");
-    let ramp = desk.run(&["plan", "ramp.ron", "--no-trial"]);
+    fs::copy(ramp, desk.join("ramp.ron")).expect("a scene");
+    let ramp = desk.run("plan ramp.ron --no-trial");
     says(&ramp, &["families at the mean speed, without slip: BPFO 135.", "shaft 12.50"]);
 }
 
@@ -352,11 +328,11 @@ fn survives_an_output_that_is_closed_or_full() {
         writer
     };
     for words in [&["bearings"][..], &["bearings", "NU205"], &["plan", "--set=mesh.size_mm=2", BEGINNING]] {
-        let output = command(&desk.0, words).stdout(closed()).output().expect("it starts");
+        let output = command(&desk, words).stdout(closed()).output().expect("it starts");
         assert!(output.status.success() && output.stderr.is_empty(), "{words:?}: {}", said(&output));
     }
     if let Ok(full) = fs::File::options().write(true).open("/dev/full") {
-        let output = command(&desk.0, &["bearings", "NU205"]).stdout(full).output().expect("it starts");
+        let output = command(&desk, &["bearings", "NU205"]).stdout(full).output().expect("it starts");
         assert_eq!(output.status.code(), Some(1), "{}", said(&output));
         says(&output, &["error: what the command says could not be written to standard output"]);
     }

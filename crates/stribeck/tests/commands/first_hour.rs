@@ -33,7 +33,7 @@ fn behaves_the_first_look_shows_its_spall() {
     let desk = Desk::new("first-look");
     let scene = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/first_look.ron");
     desk.succeeds(&["simulate", scene, "-q", "--no-report", "--set=solver.duration_ms=400"]);
-    let found = json(&desk.succeeds(&["analyse", "first_look", "--json"]));
+    let found = json(&desk.succeeds("analyse first_look --json"));
     let claimed: Vec<&str> = found["families"]
         .as_array()
         .expect("families")
@@ -51,7 +51,7 @@ fn behaves_runs_and_an_ensemble_beside_each_other() {
     simulate(&desk, "a", &[]);
     simulate(&desk, "b", &["--set=operation.load_n=20000"]);
     simulate(&desk, "c", &["--starts=3", "--jobs=1"]);
-    let output = desk.succeeds(&["compare", "a", "b"]);
+    let output = desk.succeeds("compare a b");
     says(&output, &["The scenes differ in 1 field: operation.load_n 50000 → 20000", "one signal each"]);
     let found = desk.json("a-and-b-compared/compare.json");
     assert_eq!(found["fields"][0]["values"][1], "20000");
@@ -66,13 +66,10 @@ fn behaves_runs_and_an_ensemble_beside_each_other() {
     }
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
 
-    says(
-        &desk.succeeds(&["compare", "a", "a", "--out=same"]),
-        &["The scenes are the same", "No number differs"],
-    );
+    says(&desk.succeeds("compare a a --out=same"), &["The scenes are the same", "No number differs"]);
 
     // The run is one of the ensemble's scene, and has its forces within their scatter or not, which is said.
-    desk.succeeds(&["compare", "c", "a", "b", "--out=all"]);
+    desk.succeeds("compare c a b --out=all");
     let found = desk.json("all/compare.json");
     assert_eq!(
         (found["sides"][0]["kind"].as_str(), found["sides"][0]["signals"].as_u64()),
@@ -81,22 +78,22 @@ fn behaves_runs_and_an_ensemble_beside_each_other() {
     let force = row(&found, "support_n").expect("a force");
     assert!(force["values"][0]["deviation"].is_number() && force["against_first"][1]["low"].is_number());
     // The same command writes its page again.
-    desk.succeeds(&["compare", "c", "a", "b", "--out=all"]);
+    desk.succeeds("compare c a b --out=all");
 }
 
 #[test]
 fn refuses_what_cannot_be_compared() {
     let desk = Desk::with_scene("compare-refused");
     simulate(&desk, "a", &[]);
-    fs::create_dir(desk.0.join("other")).expect("a folder");
-    fs::write(desk.0.join("other/thesis.txt"), "text").expect("writable");
-    desk.refuses(&["compare", "a", "bb"], &["`bb` is no file and no run", "`a`"]);
-    desk.refuses(&["compare", "a", "quick.ron"], &["is a scene, and no run of it", "stribeck simulate"]);
-    desk.refuses(&["compare", "a", "runs"], &["is a folder, and no run"]);
-    desk.refuses(&["compare", "a", "a", "--channel=left"], &["no sensor channel contains `left`", "sensor."]);
-    desk.refuses(&["compare", "a", "a", "--out=other"], &["thesis.txt"]);
+    fs::create_dir(desk.join("other")).expect("a folder");
+    fs::write(desk.join("other/thesis.txt"), "text").expect("writable");
+    desk.refuses("compare a bb", &["`bb` is no file and no run", "`a`"]);
+    desk.refuses("compare a quick.ron", &["is a scene, and no run of it", "stribeck simulate"]);
+    desk.refuses("compare a runs", &["is a folder, and no run"]);
+    desk.refuses("compare a a --channel=left", &["no sensor channel contains `left`", "sensor."]);
+    desk.refuses("compare a a --out=other", &["thesis.txt"]);
     desk.refuses(&[&["compare"][..], &["a"; 9]].concat(), &["9 sides were given", "compare fewer"]);
-    assert!(!desk.0.join("other/compare.json").exists());
+    assert!(!desk.join("other/compare.json").exists());
 }
 
 /// A plan for a script; the same numbers as for a person, and without a trial no cost.
@@ -111,7 +108,7 @@ fn behaves_a_plan_is_written_for_scripts() {
     let of = |path: &str| coarse.pointer(path).and_then(serde_json::Value::as_f64).expect(path);
     assert!(of("/cost/run/quiet_s") > 0.0 && of("/cost/run/busy_s") >= of("/cost/run/quiet_s"));
     assert!((of("/cost/steps") * of("/cost/step_us") / 300.0 - 1.0).abs() < 1e-6, "{coarse}");
-    desk.refuses(&["plan", "absent.ron", "--json"], &["absent.ron"]);
+    desk.refuses("plan absent.ron --json", &["absent.ron"]);
 }
 
 /// Knocks of an outer raceway of a 6205 at 1200 rpm.
@@ -130,7 +127,7 @@ fn planted_a_sound_and_a_damaged_record() {
     let desk = Desk::new("compare-records");
     for (name, height) in [("sound.mat", 0.0), ("damaged.mat", 3.0)] {
         let channel = Channel::held("housing", knocks(height, 7)).in_unit(Some("g".to_owned()));
-        mat5::write(&desk.0.join(name), &[channel], &[]).expect("writable");
+        mat5::write(&desk.join(name), &[channel], &[]).expect("writable");
     }
     let machine = ["--bearing=6205", "--speed-rpm=1200", "--rate-hz=12800", "--unit=g"];
     let output = desk.succeeds(&[&["compare", "sound.mat", "damaged.mat"][..], &machine].concat());
@@ -158,7 +155,7 @@ fn planted_a_sound_and_a_damaged_record() {
     let output = over("absent.mat", &[]);
     assert!(!output.status.success());
     says(&output, &["--baseline absent.mat"]);
-    desk.refuses(&["analyse", "damaged.mat", "--baseline-rpm=900"], &["--baseline <FILE>"]);
+    desk.refuses("analyse damaged.mat --baseline-rpm=900", &["--baseline <FILE>"]);
 }
 
 #[test]
@@ -170,7 +167,7 @@ fn behaves_a_sweep_has_a_page_and_takes_further_values() {
     };
     says(&sweep("20000,30000"), &["2 of operation.load_n: 2 runs", "2 of 2 runs are complete", "index.html"]);
     let folder = "runs/quick-by-load_n";
-    let runs = || fs::read_dir(desk.0.join(folder).join("runs")).expect("runs").count();
+    let runs = || fs::read_dir(desk.join(folder).join("runs")).expect("runs").count();
     assert_eq!(runs(), 2);
     says(&sweep("20000,30000,40000"), &["3 runs, 1 of them to be run here", "3 of 3 runs are complete"]);
     assert_eq!(runs(), 3);
@@ -192,7 +189,7 @@ fn behaves_a_sweep_has_a_page_and_takes_further_values() {
     desk.refuses(&more, &["made with `--keep numbers`", "give the same `--keep`"]);
     says(&desk.succeeds(&fewer), &["2 runs, 0 of them to be run here"]);
     // Names that a person can read lead to the runs, and commands take them.
-    let named = |name: &str| desk.0.join(folder).join("by_name").join(name);
+    let named = |name: &str| desk.join(folder).join("by_name").join(name);
     assert!(
         named("2-load_n=30000").join("summary.json").exists()
             || named("2-load_n=30000").join("run.json").exists()
@@ -203,15 +200,15 @@ fn behaves_a_sweep_has_a_page_and_takes_further_values() {
     for words in ["Root mean square over the load", "<code>operation.load_n</code>", "runs.parquet"] {
         assert!(page.contains(words), "{words}");
     }
-    let table = Recording::open(desk.0.join(folder).join("runs.parquet")).expect("a table");
+    let table = Recording::open(desk.join(folder).join("runs.parquet")).expect("a table");
     assert!(table.channels.iter().any(|c| c.name == "summary.levels.record.kurtosis"), "{}", table.names());
     // Its file is a campaign like any other.
     let campaign = format!("{folder}/campaign.ron");
     says(&desk.succeeds(&["campaign", &campaign, "--out", folder]), &["3 runs, 0 of them to be run here"]);
     // Three bearings, one warning.
-    let printed = desk.succeeds(&["sweep", "quick.ron", "--set=bearing=NU 205,NU 206,NU 207", "--print"]);
+    let printed = desk.succeeds("sweep quick.ron '--set=bearing=NU 205,NU 206,NU 207' --print");
     assert_eq!(said(&printed).matches("warning:").count(), 1, "{}", said(&printed));
-    let printed = desk.succeeds(&["sweep", "quick.ron", "--set=defect.ring=outer,inner", "--print"]);
+    let printed = desk.succeeds("sweep quick.ron --set=defect.ring=outer,inner --print");
     says(&printed, &["scene: \"quick.ron\"", "values: [outer, inner]"]);
 }
 
@@ -223,7 +220,7 @@ fn refuses_what_is_no_sweep() {
     refuses(&["--set=defect.length_mm=2,4000"], &["longer than the whole raceway"]);
     refuses(&["--set=operation.load_n=1,2", "--set=operation.load_n=3,4"], &["is set twice"]);
     refuses(&["--set=operation.load_n 1,2"], &["has no `=`"]);
-    assert!(!desk.0.join("runs").exists(), "a refused sweep left a folder");
+    assert!(!desk.join("runs").exists(), "a refused sweep left a folder");
 }
 
 #[test]
@@ -232,15 +229,15 @@ fn behaves_a_run_is_heard() {
     simulate(&desk, "a", &[]);
     // Channels, samples a second, bits.
     let format = |name: &str| {
-        let bytes = fs::read(desk.0.join(name)).expect(name);
+        let bytes = fs::read(desk.join(name)).expect(name);
         let half = |n: usize| u32::from(u16::from_le_bytes([bytes[n], bytes[n + 1]]));
         [half(22), half(24) | half(26) << 16, half(34)]
     };
-    says(&desk.succeeds(&["export", "a", "--to=wav"]), &["are a click", "sound.wav"]);
+    says(&desk.succeeds("export a --to=wav"), &["are a click", "sound.wav"]);
     assert_eq!(format("runs/a/sound.wav"), [1, 48_000, 16]);
-    desk.succeeds(&["export", "a", "--to=wav", "--slow=500", "--rate-hz=44100", "--out=slow.wav"]);
+    desk.succeeds("export a --to=wav --slow=500 --rate-hz=44100 --out=slow.wav");
     assert_eq!(format("slow.wav"), [1, 44_100, 16]);
-    let slow = Recording::open(desk.0.join("slow.wav")).expect("a sound");
+    let slow = Recording::open(desk.join("slow.wav")).expect("a sound");
     let samples = slow.channels[0].read().expect("samples");
     // 30 samples at 100 kHz, 500 times slower.
     assert_eq!(samples.len(), (0.3e-3_f64 * 500.0 * 44_100.0).round() as usize);
@@ -250,19 +247,16 @@ fn behaves_a_run_is_heard() {
     desk.succeeds(&["export", "a", "--to=wav", sensor, "--channel=ay_m_s2", "--out=recorded.wav"]);
     assert_eq!(format("recorded.wav")[1..], [50_000, 16]);
 
-    desk.refuses(&["export", "a", "--to=wav", "--slow=0.5"], &["1 to 1000 times slower"]);
-    desk.refuses(&["export", "a", "--to=csv", "--slow=2"], &["use it with `--to wav`"]);
-    desk.refuses(&["export", "a", "--to=wav", "--channel=left"], &["no channel contains `left`"]);
-    desk.refuses(
-        &["export", "a", "--to=wav", "--sensor=rate_hz=50000, bits=16"],
-        &["the range must be above 0"],
-    );
+    desk.refuses("export a --to=wav --slow=0.5", &["1 to 1000 times slower"]);
+    desk.refuses("export a --to=csv --slow=2", &["use it with `--to wav`"]);
+    desk.refuses("export a --to=wav --channel=left", &["no channel contains `left`"]);
+    desk.refuses("export a --to=wav '--sensor=rate_hz=50000, bits=16'", &["the range must be above 0"]);
 }
 
 #[test]
 fn behaves_a_scene_of_ones_own_is_written_once() {
     let desk = Desk::new("new");
-    let made = desk.succeeds(&["new", "--bearing=SKF NU 205 ECP", "--load-n=3000", "--defect=inner"]);
+    let made = desk.succeeds("new '--bearing=SKF NU 205 ECP' --load-n=3000 --defect=inner");
     says(&made, &["nu205-inner.ron", "BPFI", "stribeck simulate nu205-inner.ron"]);
     let text = desk.text("nu205-inner.ron");
     for line in [
@@ -276,20 +270,20 @@ fn behaves_a_scene_of_ones_own_is_written_once() {
     ] {
         assert!(text.contains(line), "{line}: {text}");
     }
-    desk.refuses(&["new", "nu205-inner.ron"], &["is there already and is kept"]);
-    desk.refuses(&["new", "--bearing=6x05"], &["no bearing `6x05`", "stribeck bearings"]);
-    desk.refuses(&["new", "--load-n=1e9"], &["--load-n", "at most 7886 N", "static rating"]);
-    desk.refuses(&["new", "--speed-rpm=1e7"], &["--speed-rpm", "51221 rpm"]);
-    desk.refuses(&["new", "--duration-s=0.001"], &["--duration-s", "0.112 to 100 s"]);
+    desk.refuses("new nu205-inner.ron", &["is there already and is kept"]);
+    desk.refuses("new --bearing=6x05", &["no bearing `6x05`", "stribeck bearings"]);
+    desk.refuses("new --load-n=1e9", &["--load-n", "at most 7886 N", "static rating"]);
+    desk.refuses("new --speed-rpm=1e7", &["--speed-rpm", "51221 rpm"]);
+    desk.refuses("new --duration-s=0.001", &["--duration-s", "0.112 to 100 s"]);
     assert_eq!(desk.text("nu205-inner.ron"), text);
-    assert_eq!(fs::read_dir(desk.0.path()).expect("readable").count(), 1);
+    assert_eq!(fs::read_dir(desk.path()).expect("readable").count(), 1);
 }
 
 /// Answers that were led into the command were not read.
 #[test]
 fn issue_answers_from_a_pipe_are_read() {
     let desk = Desk::new("piped");
-    let mut command = command(&desk.0, &["new", "piped.ron"]);
+    let mut command = command(&desk, &["new", "piped.ron"]);
     let mut child =
         command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
     let answers = b"NU 205\n3000\n1200\ninner\n1.5\n";
@@ -331,38 +325,35 @@ fn issue_a_sound_bearing_of_ones_own_is_judged_sound() {
 #[test]
 fn behaves_runs_are_listed_opened_and_removed_after_asking() {
     let desk = Desk::with_scene("shelf");
-    says(&desk.succeeds(&["list"]), &["no runs in `runs`"]);
-    desk.refuses(&["open"], &["has a page"]);
+    says(&desk.succeeds("list"), &["no runs in `runs`"]);
+    desk.refuses("open", &["has a page"]);
     simulate(&desk, "a", &[]);
     simulate(&desk, "b", &["--starts=2", "--jobs=1"]);
-    let listed = json(&desk.succeeds(&["list", "--json"]));
+    let listed = json(&desk.succeeds("list --json"));
     let mut kinds: Vec<&str> =
         listed.as_array().expect("a list").iter().filter_map(|i| i["kind"].as_str()).collect();
     kinds.sort_unstable();
     assert_eq!(kinds, ["ensemble", "run"]);
-    says(&desk.succeeds(&["list"]), &["complete, 0.3 ms", "2 starts of 0.3 ms", "no page"]);
-    desk.refuses(&["open", "a"], &["has no page yet", "stribeck report"]);
-    desk.succeeds(&["report", "a", "-q"]);
-    says(&desk.succeeds(&["open", "--print"]), &["runs/a/report.html"]);
+    says(&desk.succeeds("list"), &["complete, 0.3 ms", "2 starts of 0.3 ms", "no page"]);
+    desk.refuses("open a", &["has no page yet", "stribeck report"]);
+    desk.succeeds("report a -q");
+    says(&desk.succeeds("open --print"), &["runs/a/report.html"]);
     assert!(desk.text("runs/a/report.html").contains("data:audio/wav;base64,"), "the run cannot be heard");
 
-    fs::create_dir(desk.0.join("runs/thesis")).expect("a folder");
-    fs::write(desk.0.join("runs/thesis/draft.txt"), "text").expect("writable");
-    desk.refuses(&["rm", "a"], &["nothing was removed", "--yes"]);
-    desk.refuses(&["rm", "thesis", "--yes"], &["holds no run", "Nothing was removed"]);
-    desk.refuses(&["rm", "aa", "--yes"], &["did you mean `a`?"]);
+    fs::create_dir(desk.join("runs/thesis")).expect("a folder");
+    fs::write(desk.join("runs/thesis/draft.txt"), "text").expect("writable");
+    desk.refuses("rm a", &["nothing was removed", "--yes"]);
+    desk.refuses("rm thesis --yes", &["holds no run", "Nothing was removed"]);
+    desk.refuses("rm aa --yes", &["did you mean `a`?"]);
     // One that cannot be removed keeps the others.
-    desk.refuses(&["rm", "a", "quick.ron", "--yes"], &["`quick.ron` holds no run"]);
-    std::os::unix::fs::symlink("a", desk.0.join("runs/link")).expect("a link");
-    desk.refuses(&["rm", "link", "--yes"], &["is a link"]);
-    assert!(desk.0.join("runs/a/trace.npy").exists() && desk.0.join("runs/thesis/draft.txt").exists());
-    fs::write(desk.0.join("runs/b/notes.txt"), "mine").expect("writable");
-    says(
-        &desk.succeeds(&["rm", "a", "b", "--yes"]),
-        &["stays, as it is not of Stribeck: notes.txt", "removed"],
-    );
-    assert!(desk.0.join("runs/b/notes.txt").exists() && !desk.0.join("runs/b/ensemble.json").exists());
-    assert!(!desk.0.join("runs/a").exists() && !desk.0.join("runs/b/start-001").exists());
+    desk.refuses("rm a quick.ron --yes", &["`quick.ron` holds no run"]);
+    std::os::unix::fs::symlink("a", desk.join("runs/link")).expect("a link");
+    desk.refuses("rm link --yes", &["is a link"]);
+    assert!(desk.join("runs/a/trace.npy").exists() && desk.join("runs/thesis/draft.txt").exists());
+    fs::write(desk.join("runs/b/notes.txt"), "mine").expect("writable");
+    says(&desk.succeeds("rm a b --yes"), &["stays, as it is not of Stribeck: notes.txt", "removed"]);
+    assert!(desk.join("runs/b/notes.txt").exists() && !desk.join("runs/b/ensemble.json").exists());
+    assert!(!desk.join("runs/a").exists() && !desk.join("runs/b/start-001").exists());
 }
 
 #[test]
@@ -373,25 +364,25 @@ fn behaves_shells_readers_and_scripts_get_what_they_take() {
     {
         says(&desk.succeeds(&["completions", shell]), &[word, "compare", "sweep"]);
     }
-    desk.succeeds(&["man", "pages"]);
+    desk.succeeds("man pages");
     for page in ["stribeck.1", "stribeck-compare.1", "stribeck-simulate.1"] {
         assert!(desk.text(&format!("pages/{page}")).contains(".TH"), "{page}");
     }
-    let all = json(&desk.succeeds(&["bearings", "--json"]));
+    let all = json(&desk.succeeds("bearings --json"));
     let known =
         all.as_array().expect("a list").iter().find(|b| b["name"] == "6205").expect("of the catalogue");
     assert!((known["bpfo"].as_f64().expect("an order") - 3.585).abs() < 5e-3, "{known}");
-    assert_eq!(json(&desk.succeeds(&["bearings", "NU 205, elements=13", "--json"]))["elements"], 13);
-    desk.refuses(&["bearings", "6999", "--json"], &["no bearing `6999`"]);
+    assert_eq!(json(&desk.succeeds("bearings 'NU 205, elements=13' --json"))["elements"], 13);
+    desk.refuses("bearings 6999 --json", &["no bearing `6999`"]);
 }
 
 #[test]
 fn behaves_the_demonstration_leaves_pages_sound_and_a_verdict() {
     let desk = Desk::new("demo");
-    let shown = desk.succeeds(&["demo"]);
+    let shown = desk.succeeds("demo");
     says(&shown, &["$ stribeck simulate stribeck-demo/bearing.ron", "shows a defect of the outer raceway"]);
     for file in ["run/report.html", "verdict/report.html", "sound.wav", "record.csv"] {
-        assert!(desk.0.join("stribeck-demo").join(file).is_file(), "{file}");
+        assert!(desk.join("stribeck-demo").join(file).is_file(), "{file}");
     }
-    desk.refuses(&["demo"], &["is there already and is kept"]);
+    desk.refuses("demo", &["is there already and is kept"]);
 }

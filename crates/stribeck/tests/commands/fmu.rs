@@ -4,13 +4,12 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::process::Command;
 
-use crate::common::stribeck;
+use crate::common::Desk;
 use serde_json::Value;
 use stribeck_formats::Recording;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::reduced::{on_shaft, prepared};
 use stribeck_testing::{
-    Scratch,
     peer::{absent, python_with},
     said,
 };
@@ -56,7 +55,7 @@ fn peer_fmpy_runs_a_rotor_on_our_fmu() {
     const MASS_KG: f64 = 10.0;
     const UNBALANCE_KG_M: f64 = 0.1;
     let (Some(fmu), Some(python)) = (fmu(), python_with(&["fmpy"])) else { return };
-    let desk = Scratch::create("fmu");
+    let desk = Desk::new("fmu");
     let scene = Scene::read(SCENE).expect("a sound scene");
     let load = scene.operation.load_n;
     let turns = scene.kinematics();
@@ -85,8 +84,7 @@ fn peer_fmpy_runs_a_rotor_on_our_fmu() {
     assert!((y / -moved - 1.0).abs() < PLACE, "{y:e} {moved:e}");
 
     let stribeck = |words: &[&str]| {
-        let output = stribeck(&desk, words);
-        assert!(output.status.success(), "{}", said(&output));
+        desk.succeeds(words);
     };
     stribeck(&["stiffness", SCENE, &format!("--loads-n={load}"), "--speeds-rpm=300", "--out=k"]);
     let stiffness = &json(&desk.join("k/stiffness.json"))["points"][0]["stiffness_n_m"]["yy"]["mean"];

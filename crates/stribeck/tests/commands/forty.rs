@@ -105,22 +105,22 @@ fn behaves_the_first_hour_of_somebody_new() {
         samples.iter().enumerate().map(|(n, x)| form(n, *x)).collect()
     };
     let csv = rows(&|n, x| format!("{:.8},{x:.6}\n", n as f64 / 12_800.0));
-    fs::write(desk.0.join("record.csv"), format!("time_s,acc_g\n{csv}")).expect("room");
+    fs::write(desk.join("record.csv"), format!("time_s,acc_g\n{csv}")).expect("room");
     let channel = Channel::held("acc", samples.clone()).at_rate(Some(12_800.0));
-    mat5::write(&desk.0.join("record.mat"), std::slice::from_ref(&channel), &[]).expect("room");
-    wav::write(&desk.0.join("record.wav"), &[channel], &[]).expect("room");
+    mat5::write(&desk.join("record.mat"), std::slice::from_ref(&channel), &[]).expect("room");
+    wav::write(&desk.join("record.wav"), &[channel], &[]).expect("room");
     let head = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({},), }}", samples.len());
     let head = format!("\u{93}NUMPY\u{1}\u{0}v\u{0}{head:<117}\n");
     let mut npy: Vec<u8> = head.chars().map(|c| c as u8).collect();
     npy.extend(samples.iter().flat_map(|x| x.to_le_bytes()));
-    fs::write(desk.0.join("record.npy"), npy).expect("room");
-    fs::write(desk.0.join("catalogue.ron"), CATALOGUE_WORDS).expect("room");
+    fs::write(desk.join("record.npy"), npy).expect("room");
+    fs::write(desk.join("catalogue.ron"), CATALOGUE_WORDS).expect("room");
     let mut wrong = Vec::new();
     for (line, then) in FORTY {
         let program = format!("'{STRIBECK}'");
         let typed = line.replacen("stribeck", &program, 1);
         let mut shell = Command::new("sh");
-        let shell = shell.current_dir(desk.0.path()).args(["-c", &typed]).stdin(Stdio::null());
+        let shell = shell.current_dir(desk.path()).args(["-c", &typed]).stdin(Stdio::null());
         let output = shell.output().expect("a shell");
         let (answer, works) = (said(&output), output.status.success());
         let is_right = match then {
@@ -134,7 +134,7 @@ fn behaves_the_first_hour_of_somebody_new() {
         if line.starts_with("stribeck new mine.ron") {
             // A second of it takes longer than all the others.
             let text = desk.text("mine.ron").replace("duration_ms: 1000", "duration_ms: 60");
-            fs::write(desk.0.join("mine.ron"), text).expect("room");
+            fs::write(desk.join("mine.ron"), text).expect("room");
         }
     }
     assert!(wrong.is_empty(), "{} of {}\n{}", wrong.len(), FORTY.len(), wrong.join("\n"));

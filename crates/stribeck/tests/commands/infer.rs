@@ -5,25 +5,25 @@ use std::path::Path;
 use std::process::{Command, Output, Stdio};
 use std::time::Duration;
 
-use crate::common::command;
+use crate::common::{Desk, command};
 use serde_json::Value;
 use stribeck_formats::Recording;
-use stribeck_testing::{Noise, Scratch, said, says};
+use stribeck_testing::{Noise, said, says};
 
 /// A small reduced bearing: its load and the length of its defect from three numbers of a run.
 const QUICK: &str = include_str!("../../../../fixtures/infer/quick.ron");
 
-fn desk(name: &str, text: &str) -> Scratch {
-    let desk = Scratch::create(name);
+fn desk(name: &str, text: &str) -> Desk {
+    let desk = Desk::new(name);
     fs::write(desk.join("targets.ron"), text).expect("the file of an inference");
     desk
 }
 
-fn infer(desk: &Scratch, words: &[&str]) -> Command {
+fn infer(desk: &Desk, words: &[&str]) -> Command {
     command(desk, &[&["infer", "targets.ron"], words].concat())
 }
 
-fn run(desk: &Scratch, words: &[&str]) -> Output {
+fn run(desk: &Desk, words: &[&str]) -> Output {
     infer(desk, words).output().expect("it starts")
 }
 
@@ -37,7 +37,7 @@ fn draws(folder: &Path) -> Vec<u8> {
 
 /// The same inference with targets that a run of `length_mm` and `load_n` has, and more or fewer runs.
 fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
-    let desk = Scratch::create("infer-truth");
+    let desk = Desk::new("infer-truth");
     let set = QUICK.lines().filter_map(|line| line.trim().strip_prefix('"')?.strip_suffix("\","));
     let set: Vec<String> =
         set.filter(|line| line.contains('=')).map(|line| line.replace("\\\"", "\"")).collect();
@@ -48,8 +48,7 @@ fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
     command.args([format!("--set=defect.length_mm={length_mm}"), format!("--set=operation.load_n={load_n}")]);
     let done = command.output().expect("it starts");
     assert!(done.status.success(), "{}", said(&done));
-    let summary: Value =
-        serde_json::from_slice(&fs::read(desk.join("truth/summary.json")).expect("a summary")).expect("JSON");
+    let summary = desk.json("truth/summary.json");
     let number = |path: &str| {
         let quantity = stribeck_plans::inference::Quantity::parse(path).expect("a path");
         quantity.number(&summary).unwrap_or_else(|| panic!("{path} has no number"))
@@ -99,7 +98,7 @@ fn planted_load_and_length_are_found_from_a_run_with_both() {
     }
     let draws = stribeck_formats::parquet::open(&desk.join("A/posterior.parquet")).expect("a table");
     let Recording { .. } = draws;
-    let page = fs::read_to_string(desk.join("A/report.html")).expect("a page");
+    let page = desk.text("A/report.html");
     for word in ["What each unknown can have been", "What no scene makes", "Calibration"] {
         assert!(page.contains(word), "{word}");
     }

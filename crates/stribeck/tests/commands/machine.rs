@@ -12,8 +12,8 @@ const PLANTED: &str = "(gains: [(hz: 60, gain: 0.004), (hz: 800, gain: 0.02), (h
 /// A 6205 with a spall, behind the planted path.
 fn desk(name: &str) -> Desk {
     let desk = Desk::new(name);
-    desk.succeeds(&["new", "mine.ron", "--yes", "--bearing=6205", "--load-n=200", "--speed-rpm=1797"]);
-    std::fs::write(desk.0.join("planted.ron"), PLANTED).expect("room");
+    desk.succeeds("new mine.ron --yes --bearing=6205 --load-n=200 --speed-rpm=1797");
+    std::fs::write(desk.join("planted.ron"), PLANTED).expect("room");
     desk
 }
 
@@ -35,24 +35,11 @@ fn planted_the_machine_of_two_runs_is_found_again() {
         let csv = format!("--out={name}.csv");
         desk.succeeds(&["export", name, "--machine", "--to=csv", &csv]);
     }
-    let judged = desk.succeeds(&["analyse", "spalled"]);
+    let judged = desk.succeeds("analyse spalled");
     says(&judged, &["BPFO"]);
-    desk.succeeds(&[
-        "machine",
-        "sound.csv",
-        "spalled.csv",
-        "--defect=none",
-        "--defect=outer:0.8",
-        "--bearing=6205",
-        "--speed-rpm=1797",
-        "--load-n=200",
-        "--unit=m/s^2",
-        "--channel=machine",
-        "--out=found.ron",
-    ]);
-    let machine = |name: &str| {
-        stribeck_scene::machine::MachineScene::read(&desk.0.join(name)).expect("a machine").gains
-    };
+    desk.succeeds("machine sound.csv spalled.csv --defect=none --defect=outer:0.8 --bearing=6205 --speed-rpm=1797 --load-n=200 --unit=m/s^2 --channel=machine --out=found.ron");
+    let machine =
+        |name: &str| stribeck_scene::machine::MachineScene::read(&desk.join(name)).expect("a machine").gains;
     let (planted, found) = (machine("planted.ron"), machine("found.ron"));
     let mut off: Vec<f64> = found
         .iter()
@@ -99,12 +86,6 @@ fn refuses_what_has_no_machine() {
     let desk = desk("no-machine");
     let rigid = "--set=housing=rigid(mass_kg: 10)";
     desk.refuses(&["detect", "mine.ron", rigid], &["has no machine", "--machine FILE"]);
-    desk.refuses(
-        &["machine", "a.csv", "--defect=none", "--bearing=6205"],
-        &["sound bearings", "--defect outer:0.53"],
-    );
-    desk.refuses(
-        &["machine", "a.csv", "b.csv", "--defect=none", "--bearing=6205"],
-        &["2 records and 1 states"],
-    );
+    desk.refuses("machine a.csv --defect=none --bearing=6205", &["sound bearings", "--defect outer:0.53"]);
+    desk.refuses("machine a.csv b.csv --defect=none --bearing=6205", &["2 records and 1 states"]);
 }

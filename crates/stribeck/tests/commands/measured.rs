@@ -2,9 +2,9 @@
 
 use std::process::Command;
 
-use crate::common::stribeck;
+use crate::common::Desk;
 use stribeck_formats::{Channel, Recording, mat5};
-use stribeck_testing::{Noise, Scratch, peer::python_with, said, says};
+use stribeck_testing::{Noise, peer::python_with, said, says};
 
 /// Knocks of an outer raceway of a 6205 at 1200 rpm.
 fn knocks(rate_hz: f64) -> Vec<f64> {
@@ -20,7 +20,7 @@ fn knocks(rate_hz: f64) -> Vec<f64> {
 /// The first number whose name has `rpm` in it was the speed, `max_rpm` beside `rpm`, too, and 0 was one.
 #[test]
 fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
-    let desk = Scratch::create("measured-rpm");
+    let desk = Desk::new("measured-rpm");
     for (numbers, says) in [
         (&[("max_rpm", 6000.0), ("rpm", 1200.0)][..], "the speed of 1200 rpm is that of `rpm`"),
         (&[("rpm_a", 1200.0), ("rpm_b", 0.0)], "the speed of 1200 rpm is that of `rpm_a`"),
@@ -33,26 +33,20 @@ fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
         channels.extend(numbers.iter().map(|(name, rpm)| Channel::held(*name, vec![*rpm])));
         mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
         let words = ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing"];
-        let text = said(&stribeck(&desk, &words));
+        let text = said(&desk.run(&words));
         assert!(text.contains(says), "{text}");
     }
 }
 
 #[test]
 fn planted_a_record_gives_a_verdict_findings_and_a_page() {
-    let desk = Scratch::create("measured");
+    let desk = Desk::new("measured");
     let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
     mat5::write(&desk.join("a.mat"), &[channel, Channel::held("shaft_rpm", vec![1200.0])], &[]).unwrap();
-    let output = stribeck(
-        &desk,
-        &["analyse", "a.mat", "--rate-hz", "12800", "--bearing", "6205", "--channel", "housing"],
-    );
-    let text = said(&output);
-    assert!(output.status.success(), "{text}");
+    let text = said(&desk.succeeds("analyse a.mat --rate-hz 12800 --bearing 6205 --channel housing"));
     assert!(text.contains("a defect of the outer raceway (BPFO at 71.50 Hz"), "{text}");
     assert!(text.contains("the speed of 1200 rpm is that of `shaft_rpm`"), "{text}");
-    let findings = std::fs::read_to_string(desk.join("a-analysis/findings.json")).unwrap();
-    let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
+    let findings = desk.json("a-analysis/findings.json");
     assert_eq!(findings["families"][0]["name"], "BPFO");
     assert_eq!(findings["families"][0]["claimed"], true);
     // A passage has one knock, which is no length.
@@ -64,7 +58,7 @@ fn planted_a_record_gives_a_verdict_findings_and_a_page() {
     for key in ["expected_hz", "measured_hz", "harmonics", "level_db", "p_value"] {
         assert!(findings["families"][0][key].is_number(), "{key}");
     }
-    let page = std::fs::read_to_string(desk.join("a-analysis/report.html")).unwrap();
+    let page = desk.text("a-analysis/report.html");
     for shown in ["Squared envelope spectrum about BPFO", "Enhanced envelope spectrum", "id=\"spectrogram\""]
     {
         assert!(page.contains(shown), "{shown}");
@@ -73,15 +67,14 @@ fn planted_a_record_gives_a_verdict_findings_and_a_page() {
 
 #[test]
 fn refuses_a_record_with_what_to_give() {
-    let desk = Scratch::create("measured-refused");
+    let desk = Desk::new("measured-refused");
     let table: String = (0..2000).map(|n| format!("{},{}\n", f64::from(n).sin(), n % 7)).collect();
     std::fs::write(desk.join("a.csv"), format!("x,y\n{table}")).unwrap();
     std::fs::write(desk.join("b.csv"), "x,y\n1,2\n3,oops\n").unwrap();
     let timed: String =
         (0..2000).map(|n| format!("{},{}\n", f64::from(n) / 25_600.0, f64::from(n).sin())).collect();
     std::fs::write(desk.join("t.csv"), format!("time_s,x\n{timed}")).unwrap();
-    let agrees = stribeck(&desk, &["analyse", "t.csv", "--rate-hz", "25600"]);
-    assert!(agrees.status.success(), "{}", said(&agrees));
+    desk.succeeds("analyse t.csv --rate-hz 25600");
     for (words, says) in [
         (
             vec!["analyse", "t.csv", "--rate-hz", "12000"],
@@ -94,14 +87,13 @@ fn refuses_a_record_with_what_to_give() {
         (vec!["analyse", "b.csv", "--rate-hz", "100", "--channel", "y"], "1024 are the least"),
         (vec!["analyse", "c.csv"], "`c.csv` cannot be read"),
     ] {
-        let output = stribeck(&desk, &words);
-        assert!(!output.status.success() && said(&output).contains(says), "{words:?}: {}", said(&output));
+        desk.refuses(&words, &[says]);
     }
 }
 
 #[test]
 fn behaves_a_run_is_exported_and_read_back() {
-    let desk = Scratch::create("exported");
+    let desk = Desk::new("exported");
     std::fs::copy(
         concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron"),
         desk.join("quick.ron"),
@@ -118,13 +110,11 @@ fn behaves_a_run_is_exported_and_read_back() {
         "--set=output.frames=(from_ms: 0.1, to_ms: 0.2, every_us: 50.0, half_width_mm: 12.0)",
         "--set=solver.duration_ms=0.5",
     ];
-    let output = stribeck(&desk, &coarse);
-    assert!(output.status.success(), "{}", said(&output));
+    desk.succeeds(&coarse);
     let trace = Recording::open(desk.join("runs/quick/trace.npy")).unwrap();
     let name = trace.channels.iter().map(|c| c.name.clone()).find(|n| n.ends_with("ay_m_s2")).unwrap();
     for (format, end) in [("csv", "csv"), ("npz", "npz"), ("mat", "mat"), ("uff", "uff"), ("wav64", "wav")] {
-        let output = stribeck(&desk, &["export", "quick", "--to", format, "--channel", &name]);
-        assert!(output.status.success(), "{format}: {}", said(&output));
+        desk.succeeds(&["export", "quick", "--to", format, "--channel", &name]);
         let path = desk.join(format!("runs/quick/trace.{end}"));
         let found = Recording::open(&path).unwrap();
         let read = found
@@ -142,54 +132,38 @@ fn behaves_a_run_is_exported_and_read_back() {
         [&["--channel=roller.1"][..], &["--sensor=", "--channel=ay"], &["--sensor=rate_hz=20000"], &[]]
     {
         let words = [&["export", "quick", "--to=csv", "--out=tables/some.csv"], more].concat();
-        let output = stribeck(&desk, &words);
-        assert!(output.status.success(), "{more:?}: {}", said(&output));
+        desk.succeeds(&words);
         let table = Recording::open(desk.join("tables/some.csv")).unwrap();
         assert_eq!(table.channel("time_s").unwrap().read().unwrap()[0], first, "{more:?}");
     }
     // A file of another kind is not written over, and a run neither.
     for out in ["runs/quick/scene.ron", "runs/quick/trace.npy", "runs", "quick.ron"] {
         let before = std::fs::read(desk.join(out)).ok();
-        let output = stribeck(&desk, &["export", "quick", "--to=csv", "--out", out]);
+        let output = desk.run(&["export", "quick", "--to=csv", "--out", out]);
         assert!(!output.status.success(), "{out}");
         says(&output, &["is there and is no `.csv` file"]);
         assert_eq!(std::fs::read(desk.join(out)).ok(), before, "{out}");
     }
-    let output = stribeck(&desk, &["export", "quick", "--to=pvd", "--out=runs/quick"]);
+    let output = desk.run("export quick --to=pvd --out=runs/quick");
     says(&output, &["is the folder of a run"]);
     for word in ["pvd", "vtu"] {
-        let output = stribeck(&desk, &["export", "quick", "--to", word]);
-        assert!(output.status.success(), "{}", said(&output));
+        let output = desk.succeeds(&["export", "quick", "--to", word]);
         says(&output, &["runs/quick/paraview/frames.pvd"]);
     }
-    let index = std::fs::read_to_string(desk.join("runs/quick/paraview/frames.pvd")).unwrap();
+    let index = desk.text("runs/quick/paraview/frames.pvd");
     assert_eq!(index.matches("<DataSet").count(), 3, "{index}");
     let grid = std::fs::read(desk.join("runs/quick/paraview/frame-00000.vtu")).unwrap();
     assert!(String::from_utf8_lossy(&grid[..4000.min(grid.len())]).contains("von_mises_pa"));
     vtkhdf_is_read_by_vtk(&desk);
-    let output = stribeck(
-        &desk,
-        &[
-            "export",
-            "quick",
-            "--to",
-            "npz",
-            "--out",
-            "s.npz",
-            "--sensor",
-            "rate_hz=50000, bits=16, range=5000",
-        ],
-    );
-    assert!(output.status.success(), "{}", said(&output));
+    desk.succeeds("export quick --to npz --out s.npz --sensor 'rate_hz=50000, bits=16, range=5000'");
     assert_eq!(Recording::open(desk.join("s.npz")).unwrap().channels[0].rate_hz, Some(50_000.0));
-    let output = stribeck(&desk, &["export", "quick", "--to", "csv", "--channel", "nothing"]);
+    let output = desk.run("export quick --to csv --channel nothing");
     assert!(said(&output).contains("no channel contains `nothing`"), "{}", said(&output));
 }
 
 /// VTK 9.7.2 steps through the file, where the interpreter in STRIBECK_PYTHON (or python3) has it.
-fn vtkhdf_is_read_by_vtk(desk: &Scratch) {
-    let output = stribeck(desk, &["export", "quick", "--to", "vtkhdf"]);
-    assert!(output.status.success(), "{}", said(&output));
+fn vtkhdf_is_read_by_vtk(desk: &Desk) {
+    desk.succeeds("export quick --to vtkhdf");
     let file = desk.join("runs/quick/frames.vtkhdf");
     assert!(std::fs::read(&file).unwrap().starts_with(b"\x89HDF"));
     let Some(python) = python_with(&["vtkmodules.vtkIOHDF"]) else { return };
@@ -201,7 +175,7 @@ fn vtkhdf_is_read_by_vtk(desk: &Scratch) {
 
 #[test]
 fn planted_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle() {
-    let desk = Scratch::create("ridge");
+    let desk = Desk::new("ridge");
     let mut noise = Noise::new(8);
     let rate_hz = 12_800.0;
     // From 1200 to 1500 rpm in 24 s, an outer raceway of a 6205 knocking, and a weak line of the shaft.
@@ -221,13 +195,13 @@ fn planted_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle()
     let words = |speed: &'static str, out: &'static str| {
         ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing", speed, out]
     };
-    let output = stribeck(&desk, &words("--speed-rpm=1100..1700", "--out=followed"));
+    let output = desk.run(&words("--speed-rpm=1100..1700", "--out=followed"));
     let text = said(&output);
     assert!(output.status.success(), "{text}");
     assert!(text.contains("a defect of the outer raceway"), "{text}");
     assert!(text.contains("taken over the angle of the shaft"), "{text}");
     // Held at its mean the speed smears the family.
-    let output = stribeck(&desk, &words("--speed-rpm=1350", "--out=held"));
+    let output = desk.run(&words("--speed-rpm=1350", "--out=held"));
     let level = |folder: &str| {
         let findings = std::fs::read(desk.join(folder).join("findings.json")).unwrap();
         let findings: serde_json::Value = serde_json::from_slice(&findings).unwrap();
@@ -235,13 +209,13 @@ fn planted_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle()
     };
     assert!(level("followed") > level("held") + 10.0, "{} {}", level("followed"), level("held"));
     assert!(output.status.success(), "{}", said(&output));
-    let output = stribeck(&desk, &words("--speed-rpm=2000..2400", "--out=none"));
+    let output = desk.run(&words("--speed-rpm=2000..2400", "--out=none"));
     assert!(said(&output).contains("no line stands out between 2000 and 2400 rpm"), "{}", said(&output));
 }
 
 #[test]
 fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
-    let desk = Scratch::create("measured-tacho");
+    let desk = Desk::new("measured-tacho");
     let rate_hz = 12_800.0;
     // 18 t + 0.3 t² turns: the record lasts 5.12 s, the tachometer 6.25 s.
     let turns = |n: usize| 18.0 * n as f64 / rate_hz + 0.3 * (n as f64 / rate_hz).powi(2);
@@ -252,12 +226,16 @@ fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
     let channels = channels.map(|(name, samples)| Channel::held(name, samples));
     mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
     for tacho in ["tacho", "n_rpm"] {
-        let output = stribeck(
-            &desk,
-            &["analyse", "a.mat", "--channel=acc", "--tacho", tacho, "--bearing=6205", "--out", tacho],
-        );
-        let text = said(&output);
-        assert!(output.status.success(), "{text}");
+        let text = said(&desk.succeeds(&[
+            "analyse",
+            "a.mat",
+            "--channel=acc",
+            "--tacho",
+            tacho,
+            "--bearing=6205",
+            "--out",
+            tacho,
+        ]));
         assert!(text.contains("the record was taken over the angle of the shaft"), "{text}");
         let findings = std::fs::read_to_string(desk.join(format!("{tacho}/findings.json"))).unwrap();
         let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
@@ -269,7 +247,7 @@ fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
 
 #[test]
 fn behaves_limits_are_given_or_follow_from_sound_records() {
-    let desk = Scratch::create("alarm");
+    let desk = Desk::new("alarm");
     let mut noise = Noise::new(10);
     let mut words = vec!["analyse".to_owned()];
     for n in 0..6 {
@@ -282,7 +260,7 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
     words.extend(["--rate-hz=12800", "--unit=m/s²", "--out=T", "--channel=housing"].map(str::to_owned));
     let run = |more: &[&str]| {
         let all: Vec<&str> = words.iter().map(String::as_str).chain(more.iter().copied()).collect();
-        stribeck(&desk, &all)
+        desk.run(&all)
     };
     let output = run(&["--reference=4", "--alarm=kurtosis=1.5..9"]);
     let text = said(&output);
@@ -290,8 +268,7 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
     assert!(text.contains("5.mat: rms 1.1") && text.contains("ALARM"), "{text}");
     assert!(!text.contains("4.mat: rms"), "{text}");
     assert!(text.contains("4.mat: kurtosis 1.") && text.contains("WARNING, from 1.5000"), "{text}");
-    let found: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(desk.join("T/findings.json")).unwrap()).unwrap();
+    let found = desk.json("T/findings.json");
     let rms = |at: usize| {
         found["records"][at]["alarms"]
             .as_array()
@@ -303,7 +280,7 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
     };
     assert_eq!((rms(4)["state"].as_str(), rms(5)["state"].as_str()), (Some("good"), Some("alarm")));
     assert!(found["records"][5]["findings"]["velocity_mm_s"].is_number());
-    let page = std::fs::read_to_string(desk.join("T/report.html")).unwrap();
+    let page = desk.text("T/report.html");
     assert!(page.contains("Alarm bands"));
     for (more, says) in [
         ("--reference=2", "at least 3"),
@@ -319,7 +296,7 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
 /// `--reference` gave no limits for families, because none stands out in a sound record.
 #[test]
 fn issue_sound_records_give_limits_for_each_family() {
-    let desk = Scratch::create("alarm-families");
+    let desk = Desk::new("alarm-families");
     let mut noise = Noise::new(11);
     let mut words = vec!["analyse".to_owned()];
     for n in 0..7 {
@@ -333,10 +310,8 @@ fn issue_sound_records_give_limits_for_each_family() {
             .map(str::to_owned),
     );
     let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    let output = stribeck(&desk, &words);
-    assert!(output.status.success(), "{}", said(&output));
-    let found: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(desk.join("T/findings.json")).unwrap()).unwrap();
+    desk.succeeds(&words);
+    let found = desk.json("T/findings.json");
     let state = |at: usize, name: &str| {
         let alarms = found["records"][at]["alarms"].as_array().unwrap();
         let judged =
@@ -351,7 +326,7 @@ fn issue_sound_records_give_limits_for_each_family() {
 
 #[test]
 fn behaves_several_records_are_a_series() {
-    let desk = Scratch::create("trend");
+    let desk = Desk::new("trend");
     let mut noise = Noise::new(9);
     let sound: Vec<f64> = (0..100_000).map(|_| noise.uniform()).collect();
     // The second one is cut off at half of its largest value.
@@ -365,13 +340,12 @@ fn behaves_several_records_are_a_series() {
     let words =
         ["analyse", "before.mat", "after.mat", "none.mat", "--rate-hz=12800", "--bearing=6205", "--out=T"];
     // The others are analysed, and the missing one is reported once.
-    let output = stribeck(&desk, &words);
+    let output = desk.run(&words);
     let text = said(&output);
     assert!(!output.status.success() && text.contains("1 of 3 records could not be analysed"), "{text}");
     assert_eq!((text.matches("No such file").count(), text.matches("none.mat").count()), (1, 2), "{text}");
     assert!(text.contains("In 1 of 2 records a sensor has spoilt samples"), "{text}");
-    let found: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(desk.join("T/findings.json")).unwrap()).unwrap();
+    let found = desk.json("T/findings.json");
     let claimed = |at: usize| {
         let families = found["records"][at]["findings"]["families"].as_array().unwrap();
         families
@@ -385,7 +359,7 @@ fn behaves_several_records_are_a_series() {
         found["records"][2]["findings"].is_null()
             && found["records"][2]["error"].as_str().unwrap().contains("none.mat")
     );
-    let page = std::fs::read_to_string(desk.join("T/report.html")).unwrap();
+    let page = desk.text("T/report.html");
     assert!(page.contains("2-after/report.html"));
     assert!(desk.join("T/1-before/findings.json").exists());
 }
@@ -395,7 +369,7 @@ fn behaves_several_records_are_a_series() {
 /// rate whose names are times.
 #[test]
 fn planted_a_folder_is_a_series_with_an_onset() {
-    let desk = Scratch::create("series");
+    let desk = Desk::new("series");
     let mut noise = Noise::new(12);
     let knocks = knocks(12_800.0);
     let loud = |n: usize| if n < 7 { 0.0 } else { 0.2 * (n - 5) as f64 };
@@ -419,7 +393,7 @@ fn planted_a_folder_is_a_series_with_an_onset() {
         let rate: &[&str] = if folder == "names" { &["--rate-hz=12800"] } else { &[] };
         let words = ["analyse", folder, "--bearing=6205", "--speed-rpm=1200", "--reference=4", "--out"];
         let out = format!("{folder}-out");
-        let output = stribeck(&desk, &[&words[..], &[&out], rate].concat());
+        let output = desk.run(&[&words[..], &[&out], rate].concat());
         let text = said(&output);
         assert!(output.status.success(), "{text}");
         let read = std::fs::read(desk.join(&out).join("findings.json")).unwrap();
@@ -432,17 +406,12 @@ fn planted_a_folder_is_a_series_with_an_onset() {
         let page = std::fs::read_to_string(desk.join(&out).join("report.html")).unwrap();
         assert!(page.contains("from record 7 on"), "{folder}");
     }
-    let output = stribeck(&desk, &["analyse", ".", "--bearing=6205"]);
-    assert!(
-        !output.status.success() && said(&output).contains("folder of files of signals"),
-        "{}",
-        said(&output)
-    );
+    desk.refuses("analyse . --bearing=6205", &["folder of files of signals"]);
 }
 
 #[test]
 fn planted_channels_of_one_machine_make_one_verdict() {
-    let desk = Scratch::create("together");
+    let desk = Desk::new("together");
     let mut noise = Noise::new(9);
     let knocks = knocks(12_800.0);
     let far: Vec<f64> = knocks.iter().map(|x| 0.2 * x + 0.2 * noise.uniform()).collect();
@@ -452,14 +421,13 @@ fn planted_channels_of_one_machine_make_one_verdict() {
     mat5::write(&desk.join("one.mat"), &channels[..1], &[]).unwrap();
     let of = |file: &str| {
         let words = ["analyse", file, "--together", "--rate-hz=12800", "--bearing=6205", "--speed-rpm=1200"];
-        let output = stribeck(&desk, &[&words[..], &["--out=J"]].concat());
+        let output = desk.run(&[&words[..], &["--out=J"]].concat());
         (output.status.success(), said(&output))
     };
     let (done, text) = of("both.mat");
     assert!(done && text.contains("2 channels together show a defect of the outer raceway"), "{text}");
     assert!(text.contains("drive_end is nearest"), "{text}");
-    let joint: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(desk.join("J/joint.json")).unwrap()).unwrap();
+    let joint = desk.json("J/joint.json");
     assert_eq!(joint["families"][0]["nearest"], "drive_end");
     assert!(desk.join("J/joint.html").exists() && desk.join("J/2-fan_end/findings.json").exists());
     let (done, text) = of("one.mat");
@@ -475,28 +443,26 @@ fn table(head: &str, rate_hz: f64, time: impl Fn(f64) -> String) -> String {
 /// The time column was diagnosed, and showed no defect; one in milliseconds was read in seconds.
 #[test]
 fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
-    let desk = Scratch::create("measured-times");
+    let desk = Desk::new("measured-times");
     let text = table("t,a\n[ms],[g]\n", 12_800.0, |t| format!("{:.7}", t * 1e3));
     std::fs::write(desk.join("a.csv"), text).unwrap();
     for more in [&[][..], &["--rate-hz=12800"]] {
         let words = [&["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"], more].concat();
-        let output = stribeck(&desk, &words);
-        assert!(output.status.success(), "{}", said(&output));
+        let output = desk.succeeds(&words);
         says(&output, &["a defect of the outer raceway (BPFO at 71.5"]);
     }
-    let named = stribeck(&desk, &["analyse", "a.csv", "--channel", "t"]);
-    assert!(!named.status.success() && said(&named).contains("it is no signal"), "{}", said(&named));
+    desk.refuses("analyse a.csv --channel t", &["it is no signal"]);
     // In milliseconds without a word of it no rate follows, and the one that is given decides.
     std::fs::write(desk.join("b.csv"), table("", 12_800.0, |t| format!("{:.4}", 1e3 * t))).unwrap();
     let words = ["analyse", "b.csv", "--bearing=6205", "--speed-rpm=1200"];
-    let output = stribeck(&desk, &words);
+    let output = desk.run(&words);
     assert!(!output.status.success(), "{}", said(&output));
     let either = "12.8 Hz if these are seconds, 12800 Hz if they are milliseconds: no rate follows";
     says(&output, &["does not say how fast it was sampled: give `--rate-hz`", either]);
-    let output = stribeck(&desk, &[&words[..], &["--rate-hz=12800"]].concat());
+    let output = desk.run(&[&words[..], &["--rate-hz=12800"]].concat());
     says(&output, &["a defect of the outer raceway", either]);
     // The message on a rate that is too low names a sufficient one.
-    let output = stribeck(&desk, &[&words[..], &["--rate-hz=12.8"]].concat());
+    let output = desk.run(&[&words[..], &["--rate-hz=12.8"]].concat());
     says(
         &output,
         &["cannot tell whether there is a defect", "harmonics of 71.7 Hz: sample at 610 Hz or faster"],
@@ -505,30 +471,30 @@ fn issue_a_column_of_times_is_no_signal_and_says_the_rate() {
 
 #[test]
 fn issue_a_wrong_rate_in_a_file_can_be_overruled() {
-    let desk = Scratch::create("measured-force");
+    let desk = Desk::new("measured-force");
     let text = table("t [s],acc\n", 12_800.0, |t| format!("{t:.7}"));
     std::fs::write(desk.join("a.csv"), text).unwrap();
     // Twice the rate is twice the speed.
     let words = ["analyse", "a.csv", "--bearing=6205", "--speed-rpm=2400", "--rate-hz=25600"];
-    let output = stribeck(&desk, &words);
+    let output = desk.run(&words);
     assert!(!output.status.success() && said(&output).contains("`--force-rate`"), "{}", said(&output));
-    let output = stribeck(&desk, &[&words[..], &["--force-rate"]].concat());
+    let output = desk.run(&[&words[..], &["--force-rate"]].concat());
     says(&output, &["a defect of the outer raceway (BPFO at 142.9", "the file says 12800 Hz"]);
 }
 
 #[test]
 fn issue_a_gap_in_the_times_is_noted() {
-    let desk = Scratch::create("measured-gap");
+    let desk = Desk::new("measured-gap");
     let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { t + 0.5 }));
     std::fs::write(desk.join("a.csv"), text).unwrap();
-    let output = stribeck(&desk, &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    let output = desk.run("analyse a.csv --bearing=6205 --speed-rpm=1200");
     says(
         &output,
         &["note: the times of `t [s]` have a gap after row 51200 (3.999922 s): missing samples: 6400"],
     );
     let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { 2.0 * t - 4.0 }));
     std::fs::write(desk.join("a.csv"), text).unwrap();
-    let output = stribeck(&desk, &["analyse", "a.csv", "--bearing=6205", "--speed-rpm=1200"]);
+    let output = desk.run("analyse a.csv --bearing=6205 --speed-rpm=1200");
     assert!(!output.status.success());
     says(
         &output,
@@ -539,11 +505,11 @@ fn issue_a_gap_in_the_times_is_noted() {
 /// One sample of 1000 hid a defect that stands by 30 dB, without a word.
 #[test]
 fn issue_a_sample_that_hides_a_defect_is_reported() {
-    let desk = Scratch::create("measured-spurious");
+    let desk = Desk::new("measured-spurious");
     let mut samples = knocks(12_800.0);
     samples[33_333] = -1000.0;
     mat5::write(&desk.join("a.mat"), &[Channel::held("x", samples).at_rate(Some(12_800.0))], &[]).unwrap();
-    let output = stribeck(&desk, &["analyse", "a.mat", "--channel=x", "--bearing=6205", "--speed-rpm=1200"]);
+    let output = desk.run("analyse a.mat --channel=x --bearing=6205 --speed-rpm=1200");
     says(
         &output,
         &[
@@ -557,24 +523,20 @@ fn issue_a_sample_that_hides_a_defect_is_reported() {
 /// What we export as `.mat` did not say its rate when it was analysed.
 #[test]
 fn roundtrip_an_exported_record_says_its_rate() {
-    let desk = Scratch::create("measured-export");
+    let desk = Desk::new("measured-export");
     let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
     mat5::write(&desk.join("ex.mat"), &[channel], &[]).unwrap();
     let words = ["analyse", "ex.mat", "--channel=housing", "--bearing=6205", "--speed-rpm=1200"];
-    says(&stribeck(&desk, &words), &["a defect of the outer raceway"]);
+    says(&desk.run(&words), &["a defect of the outer raceway"]);
     // A limit of the velocity asks for the unit that it needs.
     let limited = [&words[..], &["--alarm=velocity=2.8..7.1"]].concat();
-    says(
-        &stribeck(&desk, &limited),
-        &["velocity: the samples have no unit of an acceleration; give `--unit g`"],
-    );
+    says(&desk.run(&limited), &["velocity: the samples have no unit of an acceleration; give `--unit g`"]);
     for (scale, says) in
         [("0", "`0`: must be a number above 0 or below 0"), ("nan", "`nan`: must be"), ("x", "`x`: must be")]
     {
-        let output = stribeck(&desk, &[&words[..], &["--scale", scale]].concat());
-        assert!(!output.status.success() && said(&output).contains(says), "{scale}: {}", said(&output));
+        desk.refuses(&[&words[..], &["--scale", scale]].concat(), &[says]);
     }
-    assert!(stribeck(&desk, &[&words[..], &["--scale", "-0.5"]].concat()).status.success());
+    desk.succeeds(&[&words[..], &["--scale", "-0.5"]].concat());
 }
 
 /// Two knocks 2.5 ms apart each time an element of a 6205 at 1200 rpm passes, never quite on time.
@@ -599,7 +561,7 @@ fn edges(rate_hz: f64) -> Vec<f64> {
 /// what the formula says and one and a half times as much (THEORY §7.9), with less of an interval.
 #[test]
 fn planted_a_length_by_a_simulated_scene_of_the_bearing() {
-    let desk = Scratch::create("simulated-length");
+    let desk = Desk::new("simulated-length");
     let channel = Channel::held("housing", edges(51_200.0)).at_rate(Some(51_200.0));
     mat5::write(&desk.join("a.mat"), &[channel], &[]).unwrap();
     let scene = "(bearing: \"6205\", model: reduced(step_us: 5.0), housing: rigid(), film: None, mesh: \
@@ -607,8 +569,7 @@ fn planted_a_length_by_a_simulated_scene_of_the_bearing() {
     std::fs::write(desk.join("rigid.ron"), scene).unwrap();
     let words = ["analyse", "a.mat", "--rate-hz=51200", "--bearing=6205", "--speed-rpm=1200", "--load-n=100"];
     let spall = |more: &[&str], out: &str| {
-        let output = stribeck(&desk, &[&words[..], more, &["--out", out]].concat());
-        assert!(output.status.success(), "{}", said(&output));
+        desk.succeeds(&[&words[..], more, &["--out", out]].concat());
         let findings = std::fs::read_to_string(desk.join(out).join("findings.json")).unwrap();
         let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
         ["value", "low", "high"].map(|key| findings["spall_mm"][key].as_f64().expect("a length"))
@@ -617,6 +578,5 @@ fn planted_a_length_by_a_simulated_scene_of_the_bearing() {
     assert!(computed[1] < simulated[0] && simulated[0] < computed[2], "{simulated:?} {computed:?}");
     assert!(simulated[1] < simulated[0] && simulated[0] < simulated[2], "{simulated:?}");
     assert!(simulated[2] - simulated[1] < computed[2] - computed[1], "{simulated:?} {computed:?}");
-    let refused = stribeck(&desk, &[&words[..], &["--simulate=none.ron"]].concat());
-    assert!(!refused.status.success() && said(&refused).contains("none.ron"), "{}", said(&refused));
+    desk.refuses(&[&words[..], &["--simulate=none.ron"]].concat(), &["none.ron"]);
 }

@@ -3,8 +3,8 @@
 
 use std::fs;
 
-use crate::common::stribeck;
-use stribeck_testing::{Scratch, said};
+use crate::common::Desk;
+use stribeck_testing::said;
 
 /// A line after the program's name, and words of the answer: the value as it was given, and the way out.
 type Mistake = (&'static [&'static str], &'static [&'static str]);
@@ -117,10 +117,10 @@ const BEARINGS: [Mistake; 5] = [
 #[test]
 fn refuses_the_likeliest_mistakes_with_the_way_out() {
     let all = [COMPARE, SWEEP, NEW, LIST, OPEN, RM, PLAN, COMPLETIONS, MAN, EXPORT, BEARINGS];
-    let desk = Scratch::create("mistakes");
+    let desk = Desk::new("mistakes");
     let mut wrong = Vec::new();
     for (words, told) in all.iter().flatten() {
-        let output = stribeck(&desk, words);
+        let output = desk.run(*words);
         let answer = said(&output);
         let missing: Vec<_> = told.iter().filter(|part| !answer.contains(**part)).collect();
         // 1 where a command refuses, 2 for a command line that cannot be parsed.

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::process::Command;
 
-use crate::common::stribeck;
+use crate::common::Desk;
 use serde_json::Value;
 use stribeck_formats::Recording;
-use stribeck_testing::{Scratch, peer::python_with, said, says};
+use stribeck_testing::{peer::python_with, said};
 
 /// A sound NU 205 in a rigid housing without gravity, whose contact is as stiff as steel rather than as
 /// quick: half of ROSS's rotor moves with the ring.
@@ -24,13 +24,13 @@ const SOUND: &str = "(
     output: (interval_us: 50, frames: None),
 )";
 
-fn desk(name: &str) -> Scratch {
-    let desk = Scratch::create(name);
+fn desk(name: &str) -> Desk {
+    let desk = Desk::new(name);
     fs::write(desk.join("sound.ron"), SOUND).expect("a scene");
     desk
 }
 
-fn json(desk: &Scratch, name: &str) -> Value {
+fn json(desk: &Desk, name: &str) -> Value {
     serde_json::from_str(&fs::read_to_string(desk.join(name)).expect(name)).expect(name)
 }
 
@@ -38,12 +38,11 @@ fn json(desk: &Scratch, name: &str) -> Value {
 fn behaves_stiffness_as_table_json_and_for_ross() {
     let desk = desk("stiffness");
     let words = ["stiffness", "sound.ron", "--loads-n", "1000,3000", "--speeds-rpm", "300,600,1200"];
-    let output = stribeck(&desk, &words);
-    assert!(output.status.success(), "{}", said(&output));
+    desk.succeeds(&words);
     let found = json(&desk, "sound-stiffness/stiffness.json");
     let points = found["points"].as_array().expect("points");
     assert_eq!(points.len(), 6);
-    let table = fs::read_to_string(desk.join("sound-stiffness/stiffness.csv")).expect("a table");
+    let table = desk.text("sound-stiffness/stiffness.csv");
     assert_eq!(table.lines().count(), 1 + 6 * 64);
     // The mean of a column of the table is that of the file.
     let rows =
@@ -56,7 +55,7 @@ fn behaves_stiffness_as_table_json_and_for_ross() {
     assert_eq!(element["frequency"].as_array().map(Vec::len), Some(3));
     assert_eq!(element["kyy"][0], points[3]["stiffness_n_m"]["yy"]["mean"]);
     // The same command overwrites its own files.
-    assert!(stribeck(&desk, &words).status.success());
+    desk.succeeds(&words);
 }
 
 #[test]
@@ -71,9 +70,7 @@ fn refuses_stiffness_that_cannot_be() {
         (vec!["--contact", "oil"], ["line", "palmgren"]),
         (vec!["--set", "operation.speed_rpm=0"], ["do not turn", "--speeds-rpm"]),
     ] {
-        let output = stribeck(&desk, &[&["stiffness", "sound.ron"][..], &words].concat());
-        assert!(!output.status.success(), "{words:?}: {}", said(&output));
-        says(&output, &told);
+        desk.refuses(&[&["stiffness", "sound.ron"][..], &words].concat(), &told);
     }
 }
 
@@ -100,8 +97,7 @@ fn peer_ross_runs_a_rotor_on_our_stiffness() {
     const OTHER_LAW: f64 = 0.25;
     let Some(python) = python_with(&["ross"]) else { return };
     let desk = desk("rotor");
-    let output = stribeck(&desk, &["stiffness", "sound.ron", "--loads-n=3000", "--speeds-rpm=300"]);
-    assert!(output.status.success(), "{}", said(&output));
+    desk.succeeds("stiffness sound.ron --loads-n=3000 --speeds-rpm=300");
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/ross_rotor.py");
     let folder = desk.join("sound-stiffness");
     let answer = Command::new(python)
@@ -124,8 +120,7 @@ fn peer_ross_runs_a_rotor_on_our_stiffness() {
         let theirs = answer["unbalance_m"][at].as_f64().expect("a number");
         assert!(theirs > rigid * 0.999 && theirs < rigid * (1.0 + SHAFT), "{key}: {theirs:e} {rigid:e}");
     }
-    let output = stribeck(&desk, &["simulate", "sound.ron", "--out=run", "--no-report", "--threads=1"]);
-    assert!(output.status.success(), "{}", said(&output));
+    desk.succeeds("simulate sound.ron --out=run --no-report --threads=1");
     let trace = Recording::open(desk.join("run/trace.npy")).expect("a trace");
     let samples = trace.channel("sensor.side.ax_m_s2").and_then(|c| c.read()).expect("a channel");
     let bpfo_hz = point["bpfo_hz"].as_f64().expect("a number");

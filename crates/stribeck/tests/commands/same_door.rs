@@ -4,9 +4,9 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::common::stribeck;
+use crate::common::Desk;
 use serde_json::Value;
-use stribeck_testing::{Scratch, peer::python_with, said};
+use stribeck_testing::{peer::python_with, said};
 
 /// An outer raceway of a NU 205 with a spall, long enough for forty passages.
 const SCENE: &str = r#"(
@@ -53,10 +53,9 @@ fn claimed(families: &Value) -> Vec<(String, f64)> {
 fn peer_a_simulated_record_gives_the_verdict_of_its_run_through_every_format() {
     // pandas 3.1.1, numpy 2.4.6, scipy.io 1.17.1, pyuff 2.5.8, pyarrow 26.0.1 and soundfile 0.14.0, where the
     // interpreter in STRIBECK_PYTHON (or python3) has them.
-    let desk = Scratch::create("same-door");
+    let desk = Desk::new("same-door");
     std::fs::write(desk.join("spalled.ron"), SCENE).unwrap();
-    let output = stribeck(&desk, &["simulate", "spalled.ron"]);
-    assert!(output.status.success(), "{}", said(&output));
+    desk.succeeds("simulate spalled.ron");
     let diagnosis = &read(&desk.join("runs/spalled/summary.json"))["diagnosis"];
     let reported = claimed(&diagnosis["families"]);
     assert!(reported.iter().map(|f| f.0.as_str()).eq(["BPFO"]), "{diagnosis}");
@@ -66,11 +65,18 @@ fn peer_a_simulated_record_gives_the_verdict_of_its_run_through_every_format() {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/peers/pass_on.py");
     for (format, module) in FORMATS {
         let file = format!("trace.{format}");
-        let output = stribeck(
-            &desk,
-            &["export", "spalled", "--to", format, "--channel", channel, "--sensor", SENSOR, "--out", &file],
-        );
-        assert!(output.status.success(), "{format}: {}", said(&output));
+        desk.succeeds(&[
+            "export",
+            "spalled",
+            "--to",
+            format,
+            "--channel",
+            channel,
+            "--sensor",
+            SENSOR,
+            "--out",
+            &file,
+        ]);
         let mut files = vec![file.clone()];
         if let Some(python) = python_with(&[module]) {
             let copy = format!("theirs.{format}");
@@ -94,8 +100,7 @@ fn peer_a_simulated_record_gives_the_verdict_of_its_run_through_every_format() {
                 "--out",
                 &out,
             ];
-            let output = stribeck(&desk, &words);
-            assert!(output.status.success(), "{file}: {}", said(&output));
+            desk.succeeds(&words);
             let findings = read(&desk.join(&out).join("findings.json"));
             let found = claimed(&findings["families"]);
             assert_eq!(found.len(), reported.len(), "{file}: {findings}");

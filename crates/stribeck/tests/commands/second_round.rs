@@ -4,9 +4,9 @@
 use std::fs;
 use std::process::Command;
 
-use crate::common::{STRIBECK, stribeck};
+use crate::common::{Desk, STRIBECK};
 use stribeck_formats::{Channel, npz};
-use stribeck_testing::{Noise, Scratch, said, says};
+use stribeck_testing::{Noise, said, says};
 
 const RATE_HZ: f64 = 12_800.0;
 
@@ -29,7 +29,7 @@ fn run_up() -> (Vec<f64>, Vec<f64>) {
 /// comb named.
 #[test]
 fn issue_a_tachometer_that_starts_later_is_laid_where_its_clock_says() {
-    let desk = Scratch::create("late-tachometer");
+    let desk = Desk::new("late-tachometer");
     let (record, tacho) = run_up();
     let later = (0.8 * RATE_HZ) as usize;
     let channels = |start_s: f64| {
@@ -42,15 +42,15 @@ fn issue_a_tachometer_that_starts_later_is_laid_where_its_clock_says() {
     };
     let words = ["analyse", "a.npz", "--channel=acc", "--tacho=tacho", "--bearing=6205", "--out=o"];
     npz::write(&desk.join("a.npz"), &channels(2.8), &[]).expect("room");
-    let told = stribeck(&desk, &words);
+    let told = desk.run(&words);
     says(&told, &["a defect of the outer raceway", "`tacho` begins 0.8000 s after `acc`"]);
     npz::write(&desk.join("a.npz"), &channels(90.0), &[]).expect("room");
-    says(&stribeck(&desk, &words), &["have no time in common", "88.000 s after"]);
+    says(&desk.run(&words), &["have no time in common", "88.000 s after"]);
 }
 
 #[test]
 fn issue_a_velocity_has_its_zone_and_a_voltage_a_reason() {
-    let desk = Scratch::create("zones");
+    let desk = Desk::new("zones");
     let mut noise = Noise::new(2);
     let sine = (0..1 << 15).map(|n| (std::f64::consts::TAU * 100.0 * f64::from(n) / RATE_HZ).sin());
     let samples: Vec<f64> = sine.map(|x| 4.0 * 2.0_f64.sqrt() * x + 1e-3 * noise.uniform()).collect();
@@ -58,8 +58,8 @@ fn issue_a_velocity_has_its_zone_and_a_voltage_a_reason() {
     npz::write(&desk.join("a.npz"), &[acc], &[]).expect("room");
     let asked = |unit: &str| {
         let words = ["analyse", "a.npz", "--iso-group=2", "--foundation=rigid", "--out=o", "-q", unit];
-        let told = said(&stribeck(&desk, &words));
-        (told, fs::read_to_string(desk.join("o/findings.json")).expect("written"))
+        let told = said(&desk.run(&words));
+        (told, desk.text("o/findings.json"))
     };
     let (told, findings) = asked("--unit=mm/s");
     assert!(told.contains("zone C") && findings.contains("\"zone\": \"C\""), "{told}");
@@ -72,7 +72,7 @@ fn issue_a_velocity_has_its_zone_and_a_voltage_a_reason() {
 
 #[test]
 fn issue_names_in_files_and_of_files_do_not_steer_a_terminal() {
-    let desk = Scratch::create("escapes");
+    let desk = Desk::new("escapes");
     let name = "\u{1b}[31mACC\u{7} \u{202e}gpj";
     let rows: String =
         (0..2000).map(|n| format!("{:.6},{},1\n", f64::from(n) / RATE_HZ, (n * 37) % 101)).collect();
@@ -87,7 +87,7 @@ fn issue_names_in_files_and_of_files_do_not_steer_a_terminal() {
         &["rm", "y\u{1b}[2J", "-y"],
         &["list", "--\u{1b}[2J"],
     ] {
-        let told = said(&stribeck(&desk, words));
+        let told = said(&desk.run(words));
         let steers = |c: char| c.is_control() && c != '\n' && c != '\t' || c == '\u{202e}';
         assert!(!told.contains(steers), "{words:?}: {told:?}");
         assert!(
@@ -101,7 +101,7 @@ fn issue_names_in_files_and_of_files_do_not_steer_a_terminal() {
 
 #[test]
 fn issue_a_speed_that_no_shaft_has_is_out_of_range_at_once() {
-    let desk = Scratch::create("speeds");
+    let desk = Desk::new("speeds");
     let mut noise = Noise::new(4);
     let acc: Vec<f64> = (0..4096).map(|_| noise.uniform()).collect();
     let named = Channel::held("rpm", vec![1e9]);
@@ -110,7 +110,7 @@ fn issue_a_speed_that_no_shaft_has_is_out_of_range_at_once() {
     let began = std::time::Instant::now();
     for words in [&["--speed-rpm=1e9"][..], &["--speed-rpm=1..1e9"], &[]] {
         let words = [&["analyse", "a.npz", "--bearing=6205", "--out=o"], words].concat();
-        says(&stribeck(&desk, &words), &["shafts turn 0.001 to 1000000 times a minute"]);
+        says(&desk.run(&words), &["shafts turn 0.001 to 1000000 times a minute"]);
     }
     // Families far beyond half the rate take no time.
     let words = [
@@ -120,7 +120,7 @@ fn issue_a_speed_that_no_shaft_has_is_out_of_range_at_once() {
         "--speed-rpm=1e5",
         "--out=o",
     ];
-    says(&stribeck(&desk, &words), &["far above half of the 12800 samples a second"]);
+    says(&desk.run(&words), &["far above half of the 12800 samples a second"]);
     assert!(began.elapsed().as_secs_f64() < 30.0, "{:?}", began.elapsed());
 }
 
@@ -128,7 +128,7 @@ fn issue_a_speed_that_no_shaft_has_is_out_of_range_at_once() {
 #[cfg(target_os = "linux")]
 #[test]
 fn refuses_a_file_larger_than_memory_in_words_and_not_by_an_abort() {
-    let desk = Scratch::create("bombs");
+    let desk = Desk::new("bombs");
     // Two numbers in three bits: ten million zeros in some kilobytes.
     let head = "{'descr': '<f8', 'fortran_order': False, 'shape': (30000000,), }";
     let head = format!("{head:<117}\n");
@@ -150,7 +150,7 @@ fn refuses_a_file_larger_than_memory_in_words_and_not_by_an_abort() {
         says(&told, &["array `acc` would take 480.0 MB", "`--max-memory` allows more"]);
     }
     says(&limited(4_000_000, "--max-memory 2GB"), &["is constant"]);
-    let refused = stribeck(&desk, &["analyse", "a.npz", "--max-memory=much"]);
+    let refused = desk.run("analyse a.npz --max-memory=much");
     says(&refused, &["is no size of memory, such as 500MB"]);
 }
 
@@ -158,7 +158,7 @@ fn refuses_a_file_larger_than_memory_in_words_and_not_by_an_abort() {
 #[cfg(target_os = "linux")]
 #[test]
 fn survives_a_limit_on_the_size_of_files_with_words() {
-    let desk = Scratch::create("file-limit");
+    let desk = Desk::new("file-limit");
     fs::copy(crate::common::QUICK, desk.join("quick.ron")).expect("room");
     let line = format!(
         "ulimit -f 4; exec {STRIBECK} simulate quick.ron --threads 1 --no-report --set solver.duration_ms=0.3"

@@ -4,18 +4,18 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::process::Output;
 
-use crate::common::stribeck;
-use stribeck_testing::{Noise, Scratch, said, says};
+use crate::common::Desk;
+use stribeck_testing::{Noise, said, says};
 
-fn analyse(desk: &Scratch, words: &[&str]) -> Output {
-    stribeck(desk, &[&["analyse"], words].concat())
+fn analyse(desk: &Desk, words: &[&str]) -> Output {
+    desk.run(&[&["analyse"], words].concat())
 }
 
 /// Two and a half seconds of a gear with 23 teeth at 25 Hz and of a 6205 on its shaft whose outer raceway
 /// knocks, in m/s².
-fn desk(name: &str) -> Scratch {
+fn desk(name: &str) -> Desk {
     const RATE_HZ: f64 = 12_800.0;
-    let desk = Scratch::create(name);
+    let desk = Desk::new(name);
     let mut noise = Noise::new(7);
     let mut text = "time_s,a_m_s2\n".to_owned();
     for n in 0..32_768 {
@@ -46,7 +46,7 @@ fn planted_components_of_a_record_are_distinguished() {
         &output,
         &["NU 205 at 2.5 times the shaft: The record does not decide about BSF and FTF", "shows no other"],
     );
-    let text = fs::read_to_string(desk.join("record-analysis/findings.json")).expect("findings");
+    let text = desk.text("record-analysis/findings.json");
     let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     assert_eq!(found["bearings"].as_array().map(Vec::len), Some(2));
     assert_eq!(found["bearings"][0]["findings"]["zone"]["group"], "medium");

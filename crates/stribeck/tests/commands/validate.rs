@@ -5,13 +5,13 @@ use std::ops::Deref;
 use std::process::Command;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-use crate::common::{Desk, STRIBECK, stribeck};
+use crate::common::{Desk, STRIBECK};
 use serde_json::Value;
 use stribeck_analysis::agreement::Agreement;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::Run;
 use stribeck_store::trace::{Trace, TraceWriter};
-use stribeck_testing::{Scratch, said, says};
+use stribeck_testing::{said, says};
 
 /// The paper's bearing, coarse, dry and short.
 const SCENE: &str = "(
@@ -32,7 +32,7 @@ const VALIDATE: [&str; 5] = ["validate", "scene.ron", "--starts=2", "--jobs=2", 
 /// A folder with the scene.
 fn desk(name: &str) -> Desk {
     let desk = Desk::new(name);
-    fs::write(desk.0.join("scene.ron"), SCENE).unwrap();
+    fs::write(desk.join("scene.ron"), SCENE).unwrap();
     desk
 }
 
@@ -68,7 +68,7 @@ fn validated() -> Validated {
 
 /// The scene of the shared reduced run, and that run.
 fn reduced(desk: &Desk) -> (Scene, impl Fn() -> Run) {
-    let path = desk.0.join("runs/coarse-validation/reduced/start-001");
+    let path = desk.join("runs/coarse-validation/reduced/start-001");
     (Scene::read(path.join("scene.ron")).unwrap(), move || Run::read(&path).unwrap())
 }
 
@@ -103,7 +103,7 @@ fn behaves_other_modes_are_compared_with_the_full_runs_that_are_there() {
     const FULL: &str = "--full=runs/coarse-validation/full";
     let fewer = desk.succeeds(&with(&["--set=model.modes_khz=10", FULL, "--out=others/fewer"]));
     says(&fewer, &["2 runs to make", "forces on the rollers"]);
-    assert!(!desk.0.join("others/fewer/full").exists());
+    assert!(!desk.join("others/fewer/full").exists());
     let lighter = with(&["--set=operation.load_n=40000", FULL, "--out=others/lighter"]);
     desk.refuses(&lighter, &["full/start-001", "another scene, seed or duration", "`--full`"]);
     let same = with(&["--full=runs/coarse-validation/reduced"]);
@@ -119,11 +119,10 @@ fn behaves_the_page_of_a_reduced_run_states_the_measured_error() {
     assert!(page.contains("differs in operation.load_n (45000 here, 50000 there)"), "{page}");
     // From the folder that holds both, too, where its name has no folder before it.
     let mut report = Command::new(STRIBECK);
-    let report =
-        report.current_dir(desk.0.join("runs")).args(["report", "near"]).output().expect("it starts");
+    let report = report.current_dir(desk.join("runs")).args(["report", "near"]).output().expect("it starts");
     assert!(report.status.success(), "{}", said(&report));
     assert_eq!(desk.text("runs/near/report.html"), page);
-    desk.succeeds(&["simulate", "scene.ron", "--out=alone/run", "--threads=1"]);
+    desk.succeeds("simulate scene.ron --out=alone/run --threads=1");
     assert!(desk.text("alone/run/report.html").contains("no validation of a scene like it"));
 }
 
@@ -149,8 +148,8 @@ fn invariant_a_run_agrees_with_itself() {
 fn invariant_a_run_agrees_with_the_means_of_its_samples() {
     let desk = validated();
     let (scene, _) = reduced(&desk);
-    let full = desk.0.join("runs/coarse-validation/full/start-001");
-    let coarse = fivefold(&full, &desk.0.join("coarse"));
+    let full = desk.join("runs/coarse-validation/full/start-001");
+    let coarse = fivefold(&full, &desk.join("coarse"));
     let thinned = Agreement::of(&scene, &[[Run::read(&full).unwrap(), coarse]]).unwrap();
     for name in ["forces_percent", "load_percent"] {
         let off = thinned.rows.iter().find(|row| row.name == name).unwrap();
@@ -169,7 +168,7 @@ fn invariant_a_run_agrees_with_the_means_of_its_samples() {
 fn by_hand_a_change_of_two_per_cent_is_reported() {
     let desk = validated();
     let (scene, own) = reduced(&desk);
-    let (path, louder) = (desk.0.join("runs/coarse-validation/reduced/start-001"), desk.0.join("louder"));
+    let (path, louder) = (desk.join("runs/coarse-validation/reduced/start-001"), desk.join("louder"));
     fs::create_dir(&louder).unwrap();
     for name in ["scene.ron", "run.json", "energy.npy"] {
         fs::copy(path.join(name), louder.join(name)).unwrap();
@@ -226,9 +225,9 @@ fn refuses_scenes_that_the_reduced_model_cannot_have() {
     let of = |set| ["validate", "scene.ron", "--set", set, "--starts=1"];
     desk.refuses(&of("solver.start=sudden"), &["`solver.start` is `sudden`", "the reduced model"]);
     desk.refuses(&of("solver.duration_ms=1.9"), &["solver.duration_ms", "1.9", "at least 2"]);
-    desk.refuses(&["validate"], &["<SCENE>"]);
+    desk.refuses("validate", &["<SCENE>"]);
     // A run may take half an hour: all of this is refused before the first.
-    assert!(!desk.0.join("runs").exists());
+    assert!(!desk.join("runs").exists());
 }
 
 /// Its page had plots without a line in them.
@@ -252,10 +251,9 @@ fn refuses_to_compare_a_run_that_diverged() {
 /// lay in a folder.
 #[test]
 fn issue_no_command_writes_over_a_run_or_among_foreign_files() {
-    let desk = Scratch::create("products");
+    let desk = Desk::new("products");
     fs::write(desk.join("scene.ron"), SCENE).unwrap();
-    let made = stribeck(&desk, &["simulate", "scene.ron", "--set=solver.duration_ms=0.3", "--out=runs/mine"]);
-    assert!(made.status.success(), "{}", said(&made));
+    desk.succeeds("simulate scene.ron --set=solver.duration_ms=0.3 --out=runs/mine");
     let campaign = "(name: \"c\", scene: \"scene.ron\", set: [\"solver.duration_ms=0.3\"], variants: grid([
         (field: \"operation.load_n\", values: [20000]),
     ]))";
@@ -280,7 +278,7 @@ fn issue_no_command_writes_over_a_run_or_among_foreign_files() {
         for (out, words) in
             [("runs/mine", ["a complete run", "runs/mine-2"]), ("thesis", ["campaign.ron", "--out"])]
         {
-            let refused = stribeck(&desk, &[command, &["--out", out]].concat());
+            let refused = desk.run(&[command, &["--out", out]].concat());
             assert!(!refused.status.success(), "{command:?} {out}: {}", said(&refused));
             says(&refused, &words);
         }
@@ -293,10 +291,8 @@ fn issue_no_command_writes_over_a_run_or_among_foreign_files() {
         (&["campaign", "c.ron", "--out=runs/c"], "1 of 1"),
     ] {
         for _ in 0..2 {
-            says(&stribeck(&desk, command), &[words]);
+            says(&desk.run(command), &[words]);
         }
     }
-    let refused = stribeck(&desk, &["simulate", "scene.ron", "--out=runs/c"]);
-    assert!(!refused.status.success());
-    says(&refused, &["files of something else", "--out"]);
+    desk.refuses("simulate scene.ron --out=runs/c", &["files of something else", "--out"]);
 }
