@@ -78,7 +78,10 @@ fn motion<'a>(scene: &ResolvedScene, assembly: &'a Assembly, bearing: &BearingSy
     let load = scene.duty.load_n(0.0);
     let sensors = bearing.nodes_on_back(&scene.sensor_angles).into_iter().zip(&s.output.sensors);
     let sensors = sensors.map(|(node, sensor)| (format!("sensor {}", sensor.name), node));
-    let centres = bearing.rollers.iter().map(|r| (format!("centre of roller {}", r.pocket + 1), r.centre));
+    let kept_of_rollers = bearing.rollers.iter().flat_map(|r| {
+        let part = |of: &str, node| (format!("{of} of roller {}", r.pocket + 1), node);
+        [part("centre", r.centre), part("rim", r.rim)]
+    });
     let standing = std::iter::once(bearing.outer).chain(bearing.housing);
     let rollers = bearing.rollers.iter().map(|roller| roller.body);
     let rollers = rollers.filter(|_| s.solver.damping_frame == DampingFrame::Absolute);
@@ -106,7 +109,7 @@ fn motion<'a>(scene: &ResolvedScene, assembly: &'a Assembly, bearing: &BearingSy
         duration: scene.duration,
         time_step: scene.interval / steps,
         interval: scene.interval,
-        kept: sensors.chain(centres).collect(),
+        kept: sensors.chain(kept_of_rollers).collect(),
         remarks: remarks(scene, assembly),
     }
 }

@@ -251,7 +251,7 @@ fn behaves_a_reduced_run_from_its_plan_to_a_deck() {
     says(&desk.run(&[&full[..], &["--out=full.rad"]].concat()), &["`_0000.rad`"]);
     says(&desk.run(&full), &["mine_0000.rad"]);
     let starter = desk.text("mine_0000.rad");
-    for has in ["# left out: friction", "\nroller 13\n", "/INTER/TYPE3/27\n", "# node "] {
+    for has in ["# left out: friction", "\nroller 13\n", "/INTER/TYPE3/27\n", "rim of roller 13"] {
         assert!(starter.contains(has), "{has}");
     }
     assert!(desk.join("mine_0002.rad").exists());
