@@ -11,10 +11,9 @@ const OF_DEPTH: f64 = 0.5;
 /// Reference of penetrations [m]: a contact with a larger penetration is softer than the bearing itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Softness {
-    /// Half of the diametral clearance.
-    radial_clearance: f64,
-    /// Approach of one contact of the most loaded roller between rigid rings, by Hertz.
-    hertz: f64,
+    /// What steel gives way by, in words, and by how much: the approach of the most loaded contact between
+    /// rigid rings, by Hertz; where nothing carries in equilibrium, half of the diametral clearance.
+    steel: (&'static str, f64),
     /// Depth of the shallowest spall; infinite without one.
     depth: f64,
     /// Whether contact gives way as Hertz's does, or less.
@@ -23,20 +22,24 @@ pub(super) struct Softness {
 
 impl Softness {
     pub(super) fn of(scene: &ResolvedScene) -> Self {
-        // Rollers that carry nothing in equilibrium leave the clearance alone.
         let [_, most] = scene.duty.load_range_n(scene.duration);
         let load =
             RigidRings::new(scene, scene.contact_law).distribute(most, &scene.written.angles_to_load_deg());
         let hertz = load.map_or(0.0, |load| 0.5 * load.max_approach_m());
+        let steel = if hertz > 0.0 {
+            ("by Hertz the most loaded one gives way by", hertz)
+        } else {
+            ("the radial clearance is", 0.5 * scene.clearance)
+        };
         let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
         let contact = &scene.written.contact;
         let is_steel = contact.formula == ContactFormula::Hertz && contact.penalty_scale >= 1.0;
-        Self { radial_clearance: 0.5 * scene.clearance, hertz, depth, is_steel }
+        Self { steel, depth, is_steel }
     }
 
     /// Penetration above which there is a warning [m].
     pub(super) fn limit(&self) -> f64 {
-        let soft = if self.is_steel { f64::INFINITY } else { self.radial_clearance.max(self.hertz) };
+        let soft = if self.is_steel { f64::INFINITY } else { self.steel.1 };
         soft.min(OF_DEPTH * self.depth)
     }
 
@@ -47,13 +50,13 @@ impl Softness {
         } else {
             String::new()
         };
+        let (steel, by) = self.steel;
         format!(
-            "the penetration of a contact has reached {} {when}: contact is softer than the bearing, which has {} of radial \
-             clearance and by Hertz gives way by {} at a contact{depth}. Load zone, times and impulses are \
-             those of a softer bearing; `contact.formula: hertz` is as stiff as steel",
+            "the penetration of a contact has reached {} {when}: contact is softer than the bearing, {steel} \
+             {}{depth}. Load zone, times and impulses are those of a softer bearing; `contact.formula: hertz` is \
+             as stiff as steel",
             um(penetration),
-            um(self.radial_clearance),
-            um(self.hertz),
+            um(by),
         )
     }
 }
