@@ -184,7 +184,7 @@ pub fn in_words(detection: &Detection) -> String {
             )
         }
         Smallest::Below(mm) => format!(
-            "Even the shortest spall that was tried, {mm:.2} mm, is found in {}, {of}: shorter ones are found, too.",
+            "Even the shortest spall that was tried, {mm:.2} mm, is found in {}, {of}. Shorter ones were not tried (`--lengths`).",
             counted(detection.lengths.first(), *record_s)
         ),
         Smallest::Above(mm) => format!(

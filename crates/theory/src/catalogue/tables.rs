@@ -109,7 +109,7 @@ const OTHERS: [Row; 10] = [
 ];
 
 /// Deep groove ball bearings whose designations begin alike, by the number of their bore from `first` on: outside
-/// diameters and widths [mm] by ISO 15.
+/// diameters and widths [mm] by ISO 15. The bore of a miniature is its number in millimetres.
 struct Series {
     begins: &'static str,
     first: usize,
@@ -217,6 +217,39 @@ const DEEP_GROOVE: [Series; 9] = [
     },
 ];
 
+const MINIATURE: [Series; 5] = [
+    Series {
+        begins: "60",
+        first: 4,
+        outside: &[12.0, 14.0, 17.0, 19.0, 22.0, 24.0],
+        width: &[4.0, 5.0, 6.0, 6.0, 7.0, 7.0],
+    },
+    Series {
+        begins: "62",
+        first: 3,
+        outside: &[10.0, 13.0, 16.0, 19.0, 22.0, 24.0, 26.0],
+        width: &[4.0, 5.0, 5.0, 6.0, 7.0, 8.0, 8.0],
+    },
+    Series {
+        begins: "63",
+        first: 3,
+        outside: &[13.0, 16.0, 19.0, 22.0, 26.0, 28.0, 30.0],
+        width: &[5.0, 5.0, 6.0, 7.0, 9.0, 9.0, 10.0],
+    },
+    Series {
+        begins: "68",
+        first: 3,
+        outside: &[7.0, 9.0, 11.0, 13.0, 14.0, 16.0, 17.0],
+        width: &[2.0, 2.5, 3.0, 3.5, 3.5, 4.0, 4.0],
+    },
+    Series {
+        begins: "69",
+        first: 3,
+        outside: &[8.0, 11.0, 13.0, 15.0, 17.0, 19.0, 20.0],
+        width: &[3.0, 4.0, 4.0, 5.0, 5.0, 6.0, 6.0],
+    },
+];
+
 /// Bearings that a plane model does not have, by what their designations begin with: series of outside diameters,
 /// first number, element, its diameter over (outside − bore), contact angle [°]. Makers print neither: the last two
 /// are usual ones (own).
@@ -263,14 +296,17 @@ pub fn all() -> Vec<CatalogueBearing> {
 
 fn deep_groove() -> impl Iterator<Item = CatalogueBearing> {
     let listed = |name: &str| OTHERS.iter().any(|row| row.0 == name);
-    let of_series = |series: &'static Series| {
-        series.outside.iter().zip(series.width).enumerate().map(move |(at, (&outside, &width))| {
-            let number = series.first + at;
-            let name = format!("{}{number:02}", series.begins);
-            by_rule(name, [bore_mm(number), outside, width], BALL_RULE)
-        })
+    let numbered = |series: &'static Series| {
+        let sizes = series.outside.iter().zip(series.width).enumerate();
+        sizes.map(|(at, (&outside, &width))| (series.begins, series.first + at, outside, width))
     };
-    DEEP_GROOVE.iter().flat_map(of_series).filter(move |bearing| !listed(&bearing.name))
+    let usual = DEEP_GROOVE.iter().flat_map(numbered).map(|(begins, number, outside, width)| {
+        by_rule(format!("{begins}{number:02}"), [bore_mm(number), outside, width], BALL_RULE)
+    });
+    let miniature = MINIATURE.iter().flat_map(numbered).map(|(begins, number, outside, width)| {
+        by_rule(format!("{begins}{number}"), [number as f64, outside, width], BALL_RULE)
+    });
+    usual.chain(miniature).filter(move |bearing| !listed(&bearing.name))
 }
 
 fn beyond_a_plane() -> impl Iterator<Item = CatalogueBearing> {
@@ -359,7 +395,7 @@ fn of_raceways(
 pub(super) fn names() -> String {
     let others: Vec<&str> = OTHERS.iter().map(|row| row.0).filter(|name| !name.starts_with('6')).collect();
     format!(
-        "{}, 608, 6000 to 6320, 62200 to 62214, 62300 to 62310, 6403 to 6415, 6800 to 6920, 16002 to 16020, UC204 to \
+        "{}, 604 to 609, 623 to 639, 683 to 699, 6000 to 6320, 62200 to 62214, 62300 to 62310, 6403 to 6415, 6800 to 6920, 16002 to 16020, UC204 to \
          UC212, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320, 1005 to 1020; for their frequencies \
          alone also self-aligning, angular contact, spherical and tapered ones such as 1205, 7205, 22210, 30205",
         others.join(", "),
