@@ -38,11 +38,13 @@ fn number(word: &str) -> Option<f64> {
 }
 
 /// Whether two words say the same: letters are equal, numbers within their scatter, but for those of differences
-/// and of times, whose unit is the next word.
+/// and of times, whose unit is the next word. Levels are within 6 dB.
 fn are_alike(a: &str, b: &str, unit: &str) -> bool {
     let is_free = a.starts_with(['+', '−']) || a.starts_with("(+") || a.starts_with("(−");
-    let is_time = ["s", "threads", "thread"].contains(&unit.trim_matches(['(', ')', ',']));
+    let unit = unit.trim_matches(['(', ')', ',']);
+    let is_time = ["s", "threads", "thread"].contains(&unit);
     match (number(a), number(b)) {
+        (Some(x), Some(y)) if unit == "dB" => (x - y).abs() <= 6.0,
         (Some(x), Some(y)) => is_free || is_time || (x - y).abs() <= SCATTER * x.abs().max(y.abs()),
         _ => a == b,
     }

@@ -8,6 +8,10 @@ use super::When;
 /// Contact that sinks in by more than this share of the defect's depth moves its edges.
 const OF_DEPTH: f64 = 0.5;
 
+/// Contact that sinks in by more than this times what steel gives way by in equilibrium is soft: a load that is put
+/// on at once presses twice as much.
+const SOFTER: f64 = 2.0;
+
 /// Reference of penetrations [m]: a contact with a larger penetration is softer than the bearing itself.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Softness {
@@ -39,7 +43,7 @@ impl Softness {
 
     /// Penetration above which there is a warning [m].
     pub(super) fn limit(&self) -> f64 {
-        let soft = if self.is_steel { f64::INFINITY } else { self.steel.1 };
+        let soft = if self.is_steel { f64::INFINITY } else { SOFTER * self.steel.1 };
         soft.min(OF_DEPTH * self.depth)
     }
 
