@@ -62,7 +62,7 @@ fn in_their_order(desk: &Desk, words: &str) -> String {
     let path = desk.join("printed");
     let open = || File::options().append(true).create(true).open(&path).expect("a file");
     let words: Vec<&str> = words.split(' ').collect();
-    let ended = command(&desk, &words).stdout(open()).stderr(open()).status().expect("it starts");
+    let ended = command(desk, &words).stdout(open()).stderr(open()).status().expect("it starts");
     let printed = fs::read_to_string(&path).expect("a text");
     assert!(ended.success(), "{words:?}: {printed}");
     fs::remove_file(&path).expect("it is ours");
