@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use stribeck_diagnosis::{Analysis, Machine, MeasuredFindings};
-use stribeck_dsp::channel::Channel;
+use stribeck_diagnosis::{Machine, MeasuredFindings};
 use stribeck_testing::Noise;
 use stribeck_theory::catalogue::{CatalogueBearing, Element};
 
-const RATE_HZ: f64 = 12_800.0;
+use crate::signals::{RATE_HZ, RING, analysed, claimed, judged, machine};
+
 const SAMPLES: usize = 131_072;
 /// No whole number.
 const SHAFT_HZ: f64 = 23.71;
@@ -25,28 +25,12 @@ fn knocks(order: f64, multiples: &[u32]) -> Vec<f64> {
         multiples.iter().map(|k| 0.3 * (f64::from(*k) * turn + f64::from(*k)).sin()).sum()
     };
     let mut signal: Vec<f64> = (0..SAMPLES).map(|n| noise.uniform() + turns(n)).collect();
-    for k in 0..(SAMPLES as f64 / RATE_HZ * order * SHAFT_HZ) as usize {
-        let at = (k as f64 + 0.01 * noise.uniform()) / (order * SHAFT_HZ);
-        let first = (at * RATE_HZ).ceil().max(0.0) as usize;
-        for (n, x) in signal.iter_mut().enumerate().skip(first).take(150) {
-            let since = n as f64 / RATE_HZ - at;
-            *x += 5.0 * (-since / 1e-3).exp() * (TAU * 3_000.0 * since).sin();
-        }
-    }
+    RING.add_all(&mut signal, &mut noise, order * SHAFT_HZ, |_| 5.0);
     signal
 }
 
-fn analysed(samples: Vec<f64>, rpm: f64) -> MeasuredFindings {
-    analysed_with(CatalogueBearing::parse("6205").unwrap(), samples, rpm)
-}
-
 fn analysed_with(bearing: CatalogueBearing, samples: Vec<f64>, rpm: f64) -> MeasuredFindings {
-    let machine = Machine { speed_rpm: Some(rpm), bearing: Some(bearing), ..Machine::default() };
-    Analysis::of(&Channel::held("test", samples), RATE_HZ, &machine).unwrap().findings
-}
-
-fn claimed(findings: &MeasuredFindings) -> Vec<&'static str> {
-    findings.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect()
+    judged(samples, &Machine { bearing: Some(bearing), ..machine(rpm) })
 }
 
 /// Of 95 damaged bearings whose speed was given twice as high 88 had no verdict, because the comb of the

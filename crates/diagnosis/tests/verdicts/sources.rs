@@ -13,6 +13,8 @@ use stribeck_dsp::channel::Channel;
 use stribeck_testing::Noise;
 use stribeck_theory::catalogue::CatalogueBearing;
 
+use crate::signals::Ring;
+
 const RATE_HZ: f64 = 20_000.0;
 const SAMPLES: usize = 1 << 16;
 const RATIO: f64 = 2.5;
@@ -31,21 +33,6 @@ type Truth = [Option<&'static str>; 2];
 fn components() -> Vec<Component> {
     let texts = ["bearing=6205, ratio=1", "bearing=NU 205, elements=13, ratio=2.5", "gear=23, ratio=1"];
     texts.iter().map(|text| Component::parse(text, CatalogueBearing::parse).expect("a component")).collect()
-}
-
-/// Knocks `hz` times a second that ring at `ring_hz`, each late or early by up to 1 % of a period, as strong
-/// as `strength` says at their time.
-fn knocks(signal: &mut [f64], noise: &mut Noise, hz: f64, ring_hz: f64, strength: &dyn Fn(f64) -> f64) {
-    let mut k = 0.0;
-    while k / hz < signal.len() as f64 / RATE_HZ {
-        let at = (k + 0.01 * noise.uniform()) / hz;
-        let first = (at * RATE_HZ).ceil().max(0.0) as usize;
-        for (n, x) in signal.iter_mut().enumerate().skip(first).take(120) {
-            let since = n as f64 / RATE_HZ - at;
-            *x += strength(at) * (-since / 0.8e-3).exp() * (TAU * ring_hz * since).sin();
-        }
-        k += 1.0;
-    }
 }
 
 /// A record and its sources; `uniform` of the noise lies between −1 and 1.
@@ -81,16 +68,17 @@ fn record(draw: u64) -> (Vec<f64>, f64, Truth) {
         let orders = component.bearing().expect("a bearing").orders().expect("frequencies");
         let own_hz = shaft_hz * component.ratio;
         // A slower cage brings the outer raceway's family down, and the inner one's up by as much.
+        let ring = Ring { rate_hz: RATE_HZ, hz: ring_hz[at], decay_s: 0.8e-3, samples: 120 };
         let lost_hz = slip[at] * orders.bpfo * own_hz;
         match truth[at] {
             Some("BPFO") => {
                 let hz = orders.bpfo * own_hz - lost_hz;
-                knocks(&mut signal, &mut noise, hz, ring_hz[at], &|_| strength[at]);
+                ring.add_all(&mut signal, &mut noise, hz, |_| strength[at]);
             }
             Some(_) => {
                 let hz = orders.bpfi * own_hz + lost_hz;
                 let loaded = |t: f64| strength[at] * (0.6 + 0.6 * (TAU * own_hz * t).cos()).max(0.0);
-                knocks(&mut signal, &mut noise, hz, ring_hz[at], &loaded);
+                ring.add_all(&mut signal, &mut noise, hz, loaded);
             }
             None => (),
         }
