@@ -85,7 +85,8 @@ fn decoded(bytes: Vec<u8>) -> String {
     text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text)
 }
 
-fn bytes_of(file: &Path, most: u64) -> Result<Vec<u8>, String> {
+/// The bytes of a file of at most `most`, or why there are none.
+pub(crate) fn bytes_of(file: &Path, most: u64) -> Result<Vec<u8>, String> {
     let open = || -> std::io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         if std::fs::metadata(file)?.is_dir() {
@@ -266,7 +267,7 @@ impl Assembled {
 
 #[cfg(test)]
 mod tests {
-    use stribeck_testing::Scratch;
+    use stribeck_testing::{Scratch, assert_refused};
 
     use super::*;
 
@@ -362,7 +363,7 @@ mod tests {
         std::fs::write(folder.join("a.msh"), &binary).expect("written");
         let text = read(&folder.join("a.msh"), 1000).expect("read");
         assert_eq!(bytes(&text).as_deref(), Ok(binary.as_slice()));
-        assert!(bytes("base64:*").is_err());
+        assert_refused(bytes("base64:*"), "its bytes are damaged in the scene");
         std::fs::write(folder.join("a.inp"), b"*HEADING\nAu\xdfenring\n").expect("written");
         assert_eq!(read(&folder.join("a.inp"), 1000).as_deref(), Ok("*HEADING\nAu\u{df}enring\n"));
         let wide: Vec<u8> = "\u{feff}*NODE\n".encode_utf16().flat_map(u16::to_le_bytes).collect();

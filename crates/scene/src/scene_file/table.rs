@@ -10,8 +10,6 @@
 //! The first line names the columns, of which two are read: `time_ms` and `value` of a speed or a load,
 //! `position_mm` and `depth_um` of a surface. Text after `#` is a comment.
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use super::problem::{Problem, SceneError, place_in_file};
@@ -22,6 +20,7 @@ use crate::deviation::{FormScene, PointScene};
 use crate::housing::HousingScene;
 use crate::machine::MachineScene;
 use crate::mesh_text;
+use crate::mesh_text::bytes_of;
 use crate::scene::{ProfileScene, Scene};
 
 /// Longest table [bytes].
@@ -137,7 +136,9 @@ impl Table<'_> {
     /// Its points, from the file of that name; `folder` is where its path counts from.
     fn read(&self, folder: &Path, name: &str, sources: &Sources) -> Result<Vec<(f64, f64)>, SceneError> {
         let file = folder.join(name);
-        let text = text_of(&file, MAX_BYTES).map_err(|why| {
+        let bytes = bytes_of(&file, MAX_BYTES);
+        let utf8 = |bytes| String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned());
+        let text = bytes.and_then(utf8).map_err(|why| {
             let place = sources.place(self.path);
             let mut problem = Problem::new(format!("cannot read the table `{}`: {why}", shown(name)), place);
             self.path.clone_into(&mut problem.field);
@@ -229,22 +230,6 @@ impl Table<'_> {
         }
         Ok(points)
     }
-}
-
-fn text_of(file: &Path, most: u64) -> Result<String, String> {
-    let open = || -> std::io::Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        if std::fs::metadata(file)?.is_dir() {
-            return Err(std::io::Error::other("it is a folder"));
-        }
-        File::open(file)?.take(most + 1).read_to_end(&mut bytes)?;
-        Ok(bytes)
-    };
-    let bytes = open().map_err(|why| why.to_string())?;
-    if bytes.len() as u64 > most {
-        return Err(format!("it is larger than {most} bytes, the limit"));
-    }
-    String::from_utf8(bytes).map_err(|_| "it is not UTF-8 text".to_owned())
 }
 
 /// An error of a table, with its place.

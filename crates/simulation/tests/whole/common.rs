@@ -6,7 +6,10 @@ use stribeck_scene::scene::{GradingScene, Scene};
 use stribeck_simulation::run::host::{Host, Progress};
 use stribeck_simulation::{resume, simulate};
 use stribeck_store::run_info::{RunInfo, Status};
-use stribeck_store::{run_dir::RunDir, trace::Trace};
+use stribeck_store::{
+    run_dir::{Run, RunDir},
+    trace::Trace,
+};
 use stribeck_testing::Scratch;
 
 /// The paper's bearing, coarse: 2 mm elements, with rollers of 88 facets so that they still roll.
@@ -79,4 +82,36 @@ pub(crate) fn assert_goes_on_with_the_same_bytes(
 /// Its recorded channels.
 pub(crate) fn trace(folder: &Scratch, name: &str) -> Trace {
     Trace::read(folder.join(name).join("trace.npy")).expect("a trace")
+}
+
+/// A small bearing on a coarse mesh, dry and quiet by mass damping.
+pub(crate) fn small(more: &str) -> Scene {
+    let text = format!(
+        "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.25), film: None, defect: None,
+          mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None),
+          contact: (surface: arc, penalty_scale: 1, friction: 0.05),
+          solver: (duration_ms: 2, mass_damping_per_s: 2000, structural_damping: None), {more})"
+    );
+    Scene::parse(&text, "here").expect("a sound scene")
+}
+
+/// A whole run in `folder`, which says how it comes on.
+pub(crate) fn run_watched(
+    scene: &Scene,
+    threads: usize,
+    folder: &Scratch,
+    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
+) -> RunInfo {
+    let dir = RunDir::create(folder.path()).expect("the folder is new");
+    simulate(scene, &dir, &host(threads), watch).expect("the scene is sound")
+}
+
+/// A sampled channel of a run.
+pub(crate) fn column(run: &Run, name: &str) -> Vec<f64> {
+    run.trace.channel(name).expect("readable").unwrap_or_else(|| panic!("the trace has no `{name}`"))
+}
+
+/// The same of a trace.
+pub(crate) fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
+    trace.get(name).unwrap_or_else(|| panic!("the trace has no `{name}`"))
 }

@@ -1,28 +1,12 @@
 //! Speed and load over time in whole runs: the other sense of rotation, starts from rest, runs in pieces.
 
-use std::{f64::consts::TAU, ops::ControlFlow};
+use std::f64::consts::TAU;
 
-use crate::common::{assert_goes_on_with_the_same_bytes, coarse, host};
-use stribeck_scene::scene::{HarmonicScene, PocketWalls, ProfileScene, RampScene, Scene};
-use stribeck_simulation::simulate;
-use stribeck_store::{
-    run_dir::{Run, RunDir},
-    run_info::{RunInfo, Status},
-};
+use crate::common::{assert_goes_on_with_the_same_bytes, coarse, column, run};
+use stribeck_scene::scene::{HarmonicScene, PocketWalls, ProfileScene, RampScene};
+use stribeck_store::{run_dir::Run, run_info::Status};
 use stribeck_testing::Scratch;
 use stribeck_theory::kinematics::Kinematics;
-
-fn run(scene: &Scene, folder: &Scratch, name: &str) -> (RunInfo, Run) {
-    let dir = RunDir::create(folder.join(name)).expect("the folder is new");
-    let info =
-        simulate(scene, &dir, &host(2), &mut |_| ControlFlow::Continue(())).expect("the scene is sound");
-    let read = Run::read(folder.join(name)).expect("a finished run can be read");
-    (info, read)
-}
-
-fn column(run: &Run, name: &str) -> Vec<f64> {
-    run.trace.channel(name).expect("readable").unwrap_or_else(|| panic!("the trace has no `{name}`"))
-}
 
 /// Turned back, with rollers at mirrored places, the bearing is its mirror image about the y axis.
 #[test]
@@ -37,8 +21,10 @@ fn invariant_a_bearing_that_turns_back_is_the_mirror_image() {
     back.operation.speed_rpm = -500.0;
     // Roller 1 at 94°; now at 86°, and the others with it.
     back.bearing.first_roller_deg = 86.0;
-    let ((info, there), (other_info, back)) = (run(&there, &folder, "there"), run(&back, &folder, "back"));
-    assert_eq!((info.status, other_info.status), (Status::Complete, Status::Complete));
+    let [there, back] = [(&there, "there"), (&back, "back")].map(|(scene, name)| {
+        assert_eq!(run(scene, &folder, name, 2).status, Status::Complete);
+        Run::read(folder.join(name)).expect("a finished run can be read")
+    });
     for i in 1..=24_usize {
         let other = (25 - i) % 24 + 1;
         let channels =

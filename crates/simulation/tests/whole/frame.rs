@@ -2,20 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use crate::common::small;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::reduction::{ReducedMesh, modal_bearing};
 use stribeck_testing::ledger::compare;
-
-/// A small bearing on a coarse mesh, dry and quiet by mass damping.
-fn small(more: &str) -> Scene {
-    let text = format!(
-        "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.25), film: None, defect: None,
-          mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None),
-          contact: (surface: arc, penalty_scale: 1, friction: 0.05),
-          solver: (duration_ms: 2, mass_damping_per_s: 2000, structural_damping: None), {more})"
-    );
-    Scene::parse(&text, "here").expect("a sound scene")
-}
 
 /// Of a frame on springs so soft that the ring stays round: both move together, in either direction, without
 /// resistance, or against each other with ω² = k (1/m + 1/M). Dampers of c take c (1/m + 1/M) of such a

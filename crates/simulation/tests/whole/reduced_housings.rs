@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::{run, trace};
+use crate::common::{run, small, trace};
 use stribeck_scene::scene::{ContactSurface, ModelScene, PocketWalls, ReducedScene, Scene};
 use stribeck_store::{
     run_info::{Status, Topic},
@@ -11,17 +11,6 @@ use stribeck_store::{
 };
 use stribeck_testing::{Scratch, ledger::compare, side_by_side};
 use stribeck_theory::kinematics::Kinematics;
-
-/// A small bearing on a coarse mesh, dry and quiet by mass damping.
-fn small(more: &str) -> Scene {
-    let text = format!(
-        "(bearing: \"NU 205\", model: reduced(modes_khz: 30, step_us: 0.25), film: None, defect: None,
-          mesh: (size_mm: 0.7, roller_facets: 64), output: (frames: None),
-          contact: (surface: arc, penalty_scale: 1, friction: 0.05),
-          solver: (duration_ms: 2, mass_damping_per_s: 2000, structural_damping: None), {more})"
-    );
-    Scene::parse(&text, "here").expect("a sound scene")
-}
 
 /// The shaft speeds up from rest beside an outer ring whose speed falls through rest: the cage goes by the
 /// weighted mean of both. Source: rolling without slip between two rings that turn, (ω_i D_i + ω_o D_o)/(D_i

@@ -3,7 +3,7 @@
 
 use std::f64::consts::TAU;
 
-use crate::common::{assert_goes_on_with_the_same_bytes, run, trace};
+use crate::common::{assert_goes_on_with_the_same_bytes, channel, run, trace};
 use stribeck_scene::scene::{ModelScene, ReducedScene, Scene};
 use stribeck_store::{
     run_info::{RunInfo, Status},
@@ -27,10 +27,6 @@ fn complete(scene: &Scene, folder: &Scratch, name: &str) -> RunInfo {
     let info = run(scene, folder, name, 1);
     assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
     info
-}
-
-fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
-    trace.get(name).unwrap_or_else(|| panic!("the trace has no `{name}`"))
 }
 
 fn median(mut values: Vec<f64>) -> f64 {

@@ -7,7 +7,7 @@ mod motion;
 
 use std::{f64::consts::TAU, fs};
 
-use crate::common::{assert_goes_on_with_the_same_bytes, fine_where_it_rolls, run, trace};
+use crate::common::{assert_goes_on_with_the_same_bytes, channel, fine_where_it_rolls, run, trace};
 use stribeck_reduced::{
     bearing::Bearing,
     motion::{BearingInMotion, Saved},
@@ -53,8 +53,4 @@ fn guided(duration_ms: f64) -> Scene {
 fn of(file: &str, fields: &[&str]) -> Scene {
     let scenes = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/");
     Scene::read_with(format!("{scenes}{file}"), fields).expect("valid")
-}
-
-fn channel<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
-    trace.get(name).unwrap_or_else(|| panic!("the trace has no `{name}`"))
 }

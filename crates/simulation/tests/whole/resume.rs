@@ -1,12 +1,8 @@
 //! Runs that end early and go on: the same bytes as an unbroken run, and clear words when that is impossible.
 
-use std::{
-    fs,
-    ops::ControlFlow,
-    path::{Path, PathBuf},
-};
+use std::{fs, ops::ControlFlow, path::Path};
 
-use crate::common::{coarse, host};
+use crate::common::{coarse, host, run_watched};
 use proptest::prelude::*;
 use stribeck_scene::scene::{Scene, Start};
 use stribeck_simulation::run::host::{Host, Progress};
@@ -35,25 +31,8 @@ fn sudden() -> Scene {
     scene
 }
 
-/// A folder of its own for every run, removed at the end.
-struct Folder(Scratch);
-
-impl Folder {
-    fn new() -> Self {
-        Self(Scratch::new("resume"))
-    }
-
-    fn path(&self) -> &Path {
-        self.0.path()
-    }
-
-    fn file(&self, name: &str) -> PathBuf {
-        self.0.join(name)
-    }
-
-    fn bytes(&self, name: &str) -> Vec<u8> {
-        fs::read(self.file(name)).expect("readable")
-    }
+fn bytes(folder: &Scratch, name: &str) -> Vec<u8> {
+    fs::read(folder.join(name)).expect("readable")
 }
 
 /// Breaks a run off after a number of samples of its own, counting the steps of the coarse scene.
@@ -65,16 +44,6 @@ fn until(samples: usize) -> impl FnMut(&Progress) -> ControlFlow<()> {
     }
 }
 
-fn start(
-    scene: &Scene,
-    threads: usize,
-    folder: &Folder,
-    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
-) -> RunInfo {
-    let dir = RunDir::create(folder.path()).expect("the folder is new");
-    simulate(scene, &dir, &host(threads), watch).expect("the scene is sound")
-}
-
 fn go_on(
     folder: &Path,
     threads: usize,
@@ -84,25 +53,25 @@ fn go_on(
 }
 
 /// Message of a refused continuation.
-fn refusal(folder: &Folder) -> String {
+fn refusal(folder: &Scratch) -> String {
     go_on(folder.path(), 1, &mut |_| ControlFlow::Continue(())).expect_err("it cannot go on").to_string()
 }
 
 /// A run that was broken off after two samples.
-fn broken_off() -> Folder {
-    let folder = Folder::new();
-    let info = start(&sudden(), 1, &folder, &mut until(2));
+fn broken_off() -> Scratch {
+    let folder = Scratch::new("resume");
+    let info = run_watched(&sudden(), 1, &folder, &mut until(2));
     assert_eq!((info.status, info.samples), (Status::Interrupted, 2));
     folder
 }
 
-fn assert_same_files(whole: &Folder, pieces: &Folder, how: &str) {
+fn assert_same_files(whole: &Scratch, pieces: &Scratch, how: &str) {
     for name in ["trace.npy", "energy.npy"] {
-        assert!(whole.bytes(name) == pieces.bytes(name), "{how}: another {name}");
+        assert!(bytes(&whole, name) == bytes(&pieces, name), "{how}: another {name}");
     }
     let mut frames = 0;
-    for frame in fs::read_dir(whole.file("frames")).into_iter().flatten().flatten() {
-        let other = pieces.file("frames").join(frame.file_name());
+    for frame in fs::read_dir(whole.join("frames")).into_iter().flatten().flatten() {
+        let other = pieces.join("frames").join(frame.file_name());
         assert!(fs::read(frame.path()).ok() == fs::read(&other).ok(), "{how}: another {}", other.display());
         frames += 1;
     }
@@ -114,13 +83,13 @@ fn assert_same_files(whole: &Folder, pieces: &Folder, how: &str) {
 #[test]
 fn invariant_a_run_in_pieces_writes_the_same_bytes() {
     let scene = coarse(0.5);
-    let whole = Folder::new();
-    let unbroken = start(&scene, 1, &whole, &mut until(0));
+    let whole = Scratch::new("resume");
+    let unbroken = run_watched(&scene, 1, &whole, &mut until(0));
     assert_eq!(unbroken.status, Status::Complete);
     let steps_per_sample = unbroken.steps_planned / 50;
 
-    let pieces = Folder::new();
-    let info = start(&scene, 1, &pieces, &mut until(1));
+    let pieces = Scratch::new("resume");
+    let info = run_watched(&scene, 1, &pieces, &mut until(1));
     assert_eq!((info.status, info.steps), (Status::Interrupted, steps_per_sample));
     let mut breaks = vec![info.samples];
     for (threads, samples) in [(2, 6), (1, 14), (2, 8)] {
@@ -143,10 +112,10 @@ fn invariant_a_run_in_pieces_writes_the_same_bytes() {
 /// start.
 #[test]
 fn invariant_a_run_made_longer_writes_the_bytes_of_a_long_one() {
-    let (short, long) = (Folder::new(), Folder::new());
-    let info = start(&coarsest(0.3), 1, &short, &mut until(0));
+    let (short, long) = (Scratch::new("resume"), Scratch::new("resume"));
+    let info = run_watched(&coarsest(0.3), 1, &short, &mut until(0));
     assert_eq!((info.status, info.samples), (Status::Complete, 30));
-    let unbroken = start(&coarsest(0.5), 2, &long, &mut until(0));
+    let unbroken = run_watched(&coarsest(0.5), 2, &long, &mut until(0));
     let longer = |ms: f64| {
         let dir = RunDir::reopen(short.path()).expect("a run");
         extend(&dir, ms, &host(2), &mut until(0))
@@ -155,11 +124,11 @@ fn invariant_a_run_made_longer_writes_the_bytes_of_a_long_one() {
     assert!(words.contains("0.3 ms") && words.contains("not shorter"), "{words}");
     let words = longer(0.3).expect_err("nothing to do").to_string();
     assert!(words.contains("it is complete"), "{words}");
-    assert_eq!(info.samples, TraceFile::open(short.file("trace.npy")).expect("a trace").len());
+    assert_eq!(info.samples, TraceFile::open(short.join("trace.npy")).expect("a trace").len());
 
     let info = longer(0.5).expect("it goes on");
     assert_same_files(&long, &short, "made longer");
-    assert!(long.bytes("scene.ron") == short.bytes("scene.ron"));
+    assert!(bytes(&long, "scene.ron") == bytes(&short, "scene.ron"));
     assert_eq!((info.steps_planned, &info.scene_hash), (unbroken.steps_planned, &unbroken.scene_hash));
     assert_eq!((info.status, info.samples, info.energy), (Status::Complete, 50, unbroken.energy));
     assert_eq!(info.resumed_at_s, [30.0 * info.interval_s]);
@@ -169,14 +138,14 @@ fn invariant_a_run_made_longer_writes_the_bytes_of_a_long_one() {
 #[test]
 fn invariant_a_damaged_run_json_does_not_block_a_checkpoint() {
     for damage in [Some(&b"{"[..]), None] {
-        let (whole, folder) = (Folder::new(), broken_off());
-        start(&sudden(), 1, &whole, &mut until(0));
+        let (whole, folder) = (Scratch::new("resume"), broken_off());
+        run_watched(&sudden(), 1, &whole, &mut until(0));
         match damage {
-            Some(bytes) => fs::write(folder.file("run.json"), bytes).expect("writable"),
-            None => fs::remove_file(folder.file("run.json")).expect("it was there"),
+            Some(bytes) => fs::write(folder.join("run.json"), bytes).expect("writable"),
+            None => fs::remove_file(folder.join("run.json")).expect("it was there"),
         }
         let info = go_on(folder.path(), 1, &mut until(0)).expect("it goes on");
-        assert!(whole.bytes("trace.npy") == folder.bytes("trace.npy"), "another trace");
+        assert!(bytes(&whole, "trace.npy") == bytes(&folder, "trace.npy"), "another trace");
         let [warning] = info.warnings.as_slice() else { panic!("{:?}", info.warnings) };
         assert!(warning.contains("run.json") && warning.contains("anew from the checkpoint"), "{warning}");
     }
@@ -196,22 +165,22 @@ fn copy(from: &Path, to: &Path) {
 #[test]
 fn survives_a_kill_and_goes_on_from_its_last_checkpoint() {
     let scene = coarsest(1.25);
-    let whole = Folder::new();
-    let killed = [(3, Folder::new()), (104, Folder::new())];
+    let whole = Scratch::new("resume");
+    let killed = [(3, Scratch::new("resume")), (104, Scratch::new("resume"))];
     let mut seen = 0;
-    start(&scene, 2, &whole, &mut |progress| {
+    run_watched(&scene, 2, &whole, &mut |progress| {
         seen += usize::from(progress.phase == "run");
         for (_, left) in killed.iter().filter(|(sample, _)| *sample == seen) {
             fs::create_dir_all(left.path()).expect("writable");
             copy(whole.path(), left.path());
-            copy(&whole.file("frames"), &left.file("frames"));
+            copy(&whole.join("frames"), &left.join("frames"));
         }
         ControlFlow::Continue(())
     });
     for ((_, left), from) in killed.iter().zip([0.0, 100.0]) {
         // As if more had reached the disk before the end.
         for name in ["trace.npy", "energy.npy"] {
-            fs::write(left.file(name), [left.bytes(name), vec![7; 5000]].concat()).expect("writable");
+            fs::write(left.join(name), [bytes(&left, name), vec![7; 5000]].concat()).expect("writable");
         }
         let info = go_on(left.path(), 1, &mut until(0)).expect("it goes on");
         assert_eq!(info.resumed_at_s, [from * info.interval_s]);
@@ -223,15 +192,15 @@ fn survives_a_kill_and_goes_on_from_its_last_checkpoint() {
 #[test]
 fn refuses_a_checkpoint_cut_anywhere() {
     let folder = broken_off();
-    let (whole, trace) = (folder.bytes("checkpoint"), folder.bytes("trace.npy"));
+    let (whole, trace) = (bytes(&folder, "checkpoint"), bytes(&folder, "trace.npy"));
     let steps = (whole.len() - HEADER) / 60;
     for length in (0..HEADER + 5).chain((HEADER..whole.len()).step_by(steps)).chain([whole.len() - 1]) {
-        fs::write(folder.file("checkpoint"), &whole[..length]).expect("writable");
+        fs::write(folder.join("checkpoint"), &whole[..length]).expect("writable");
         let words = refusal(&folder);
         assert!(words.contains("checkpoint") && words.contains("start it anew"), "cut at {length}: {words}");
     }
-    assert!(trace == folder.bytes("trace.npy"), "a refused run lost samples");
-    fs::write(folder.file("checkpoint"), &whole).expect("writable");
+    assert!(trace == bytes(&folder, "trace.npy"), "a refused run lost samples");
+    fs::write(folder.join("checkpoint"), &whole).expect("writable");
     assert_eq!(go_on(folder.path(), 1, &mut until(0)).expect("whole again").status, Status::Complete);
 }
 
@@ -239,12 +208,12 @@ fn refuses_a_checkpoint_cut_anywhere() {
 #[test]
 fn refuses_a_damaged_checkpoint() {
     let folder = broken_off();
-    let whole = folder.bytes("checkpoint");
+    let whole = bytes(&folder, "checkpoint");
     let steps = (whole.len() - HEADER) / 60;
     for at in (0..HEADER).chain((HEADER..whole.len()).step_by(steps)) {
         let mut damaged = whole.clone();
         damaged[at] ^= 0x41;
-        fs::write(folder.file("checkpoint"), &damaged).expect("writable");
+        fs::write(folder.join("checkpoint"), &damaged).expect("writable");
         let words = refusal(&folder);
         assert!(words.contains("checkpoint") && words.contains("start it anew"), "byte {at}: {words}");
     }
@@ -255,7 +224,7 @@ fn refuses_a_damaged_checkpoint() {
 #[test]
 fn refuses_a_forged_checkpoint() {
     let folder = broken_off();
-    let whole = folder.bytes("checkpoint");
+    let whole = bytes(&folder, "checkpoint");
     let dir = RunDir::open(folder.path()).expect("a run");
     let damage = (0..whole.len() - HEADER, proptest::collection::vec(any::<u8>(), 0..12), 0_usize..20);
     let config = ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(150) };
@@ -272,7 +241,7 @@ fn refuses_a_forged_checkpoint() {
         forged.extend((content.len() as u64).to_le_bytes());
         forged.extend(crc32fast::hash(&content).to_le_bytes());
         forged.extend(content);
-        fs::write(folder.file("checkpoint"), forged).expect("writable");
+        fs::write(folder.join("checkpoint"), forged).expect("writable");
         if let Err(error) = saved_until(&dir) {
             let words = error.to_string();
             prop_assert!(words.contains("checkpoint") && words.contains("start it anew"), "{}", words);
@@ -286,12 +255,12 @@ fn refuses_a_forged_checkpoint() {
 #[test]
 fn refuses_what_cannot_go_on_and_says_why() {
     let folder = broken_off();
-    let checkpoint = folder.bytes("checkpoint");
-    let with = |name: &str, bytes: &[u8]| {
-        let before = folder.bytes(name);
-        fs::write(folder.file(name), bytes).expect("writable");
+    let checkpoint = bytes(&folder, "checkpoint");
+    let with = |name: &str, other: &[u8]| {
+        let before = bytes(&folder, name);
+        fs::write(folder.join(name), other).expect("writable");
         let words = refusal(&folder);
-        fs::write(folder.file(name), before).expect("writable");
+        fs::write(folder.join(name), before).expect("writable");
         words
     };
     let says = |words: String, expected: &[&str]| {
@@ -313,7 +282,7 @@ fn refuses_what_cannot_go_on_and_says_why() {
     let other = coarse(0.2);
     says(with("scene.ron", other.to_ron().as_bytes()), &["another scene", "scene.ron", "new run"]);
 
-    let text = String::from_utf8(folder.bytes("run.json")).expect("text");
+    let text = String::from_utf8(bytes(&folder, "run.json")).expect("text");
     says(
         with("run.json", text.replace("interrupted", "complete").as_bytes()),
         &["it is complete", "duration_ms"],
@@ -323,17 +292,17 @@ fn refuses_what_cannot_go_on_and_says_why() {
         &["diverge again", "run.json"],
     );
 
-    let trace = folder.bytes("trace.npy");
+    let trace = bytes(&folder, "trace.npy");
     says(with("trace.npy", &trace[..trace.len() - 8]), &["trace.npy", "holds 1 samples", "counts 2", "anew"]);
-    says(with("trace.npy", &folder.bytes("energy.npy")), &["trace.npy", "other channels"]);
+    says(with("trace.npy", &bytes(&folder, "energy.npy")), &["trace.npy", "other channels"]);
 
     let held = RunDir::reopen(folder.path()).expect("free");
     says(refusal(&folder), &["another run", &std::process::id().to_string()]);
     drop(held);
 
-    fs::remove_file(folder.file("checkpoint")).expect("it was there");
+    fs::remove_file(folder.join("checkpoint")).expect("it was there");
     says(refusal(&folder), &["no checkpoint", "before its first step", "scene.ron"]);
-    let nothing = Folder::new();
+    let nothing = Scratch::new("resume");
     says(refusal(&nothing), &["is not a run", "scene.ron"]);
     assert!(!nothing.path().exists(), "a refused resume made a folder");
 }
@@ -342,10 +311,10 @@ fn refuses_what_cannot_go_on_and_says_why() {
 /// checkpoints are still written, and no time runs backwards.
 #[test]
 fn survives_a_clock_that_jumps() {
-    let whole = Folder::new();
-    start(&coarsest(1.25), 1, &whole, &mut until(0));
+    let whole = Scratch::new("resume");
+    run_watched(&coarsest(1.25), 1, &whole, &mut until(0));
     for jump in [-1e9, 1e9, f64::NAN, 0.0] {
-        let folder = Folder::new();
+        let folder = Scratch::new("resume");
         let calls = std::cell::Cell::new(0);
         let clock = || {
             calls.set(calls.get() + 1);
@@ -358,7 +327,7 @@ fn survives_a_clock_that_jumps() {
         let info = simulate(&coarsest(1.25), &dir, &host, &mut |progress| {
             if progress.phase == "run" {
                 saved.push(
-                    fs::metadata(folder.file("checkpoint")).and_then(|m| m.modified()).expect("there is one"),
+                    fs::metadata(folder.join("checkpoint")).and_then(|m| m.modified()).expect("there is one"),
                 );
             }
             ControlFlow::Continue(())
@@ -376,10 +345,10 @@ fn survives_a_clock_that_jumps() {
 /// Where no checkpoint can be written the run continues, with one warning.
 #[test]
 fn survives_a_checkpoint_that_cannot_be_written() {
-    let folder = Folder::new();
+    let folder = Scratch::new("resume");
     // From the first sample on a folder in the place of the file stands for a disk that refuses it.
-    let (checkpoint, mut stop) = (folder.file("checkpoint"), until(3));
-    let info = start(&sudden(), 1, &folder, &mut |progress| {
+    let (checkpoint, mut stop) = (folder.join("checkpoint"), until(3));
+    let info = run_watched(&sudden(), 1, &folder, &mut |progress| {
         if progress.phase == "run" && checkpoint.is_file() {
             fs::remove_file(&checkpoint).and_then(|()| fs::create_dir(&checkpoint)).expect("writable");
             fs::write(checkpoint.join("in the way"), "").expect("writable");

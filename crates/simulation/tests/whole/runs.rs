@@ -2,39 +2,23 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::{coarse, fine_where_it_rolls, host};
+use crate::common::{coarse, column, fine_where_it_rolls, run_watched};
 use stribeck_scene::scene::{
     CageScene, DampedBody, DampingFrame, PocketWalls, RollerCopies, Scene, Start, StructuralDampingScene,
 };
 use stribeck_simulation::bearing::assembly::{Assembly, BearingSystem, Roller};
-use stribeck_simulation::run::host::Progress;
-use stribeck_simulation::simulate;
 use stribeck_store::{
-    run_dir::{Run, RunDir},
+    run_dir::Run,
     run_info::{RunInfo, Status},
     trace::Trace,
 };
 use stribeck_testing::{Scratch, ledger, side_by_side};
-
-fn run_watched(
-    scene: &Scene,
-    threads: usize,
-    folder: &Scratch,
-    watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
-) -> RunInfo {
-    let dir = RunDir::create(folder.path()).expect("the folder is new");
-    simulate(scene, &dir, &host(threads), watch).expect("the scene is sound")
-}
 
 fn run(scene: &Scene, threads: usize) -> (RunInfo, Run) {
     let folder = Scratch::new("runs");
     let info = run_watched(scene, threads, &folder, &mut |_| ControlFlow::Continue(()));
     let read = Run::read(folder.path()).expect("a finished run can be read");
     (info, read)
-}
-
-fn column(run: &Run, name: &str) -> Vec<f64> {
-    run.trace.channel(name).expect("readable").unwrap_or_else(|| panic!("the trace has no `{name}`"))
 }
 
 /// Channels and energy ledger.

@@ -133,6 +133,12 @@ pub(crate) fn step_and_balance(d: &mut Dynamics, forces: &mut [&mut dyn Force]) 
     }
 }
 
+/// Mechanical energy and heat of damping [J] at the positions before a step, which it takes.
+pub(crate) fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
+    let now = step_and_balance(d, &mut []);
+    [now.mechanical(), d.heat.at_last_positions()]
+}
+
 /// Static equilibrium of one body whose nodes are `slots`; `tolerance` is the unbalanced force allowed [N].
 pub(crate) fn equilibrate(
     d: &mut Dynamics,

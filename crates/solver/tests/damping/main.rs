@@ -32,12 +32,6 @@ fn all(d: &Dynamics) -> Vec<u32> {
     massive(d).into_iter().map(|s| s as u32).collect()
 }
 
-/// Mechanical energy and heat of damping [J] at the positions before a step, which it takes.
-fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
-    let now = step_and_balance(d, &mut []);
-    [now.mechanical(), d.heat.at_last_positions()]
-}
-
 #[test]
 fn conserves_the_ledger_of_mass_damping() {
     // What vibrates becomes heat, at every step and at every frequency that the mesh has.

@@ -20,12 +20,6 @@ fn damp(d: &mut Dynamics, beta: f64, factor: f64) {
     d.set_time_step(factor * critical).expect("a positive time step");
 }
 
-/// Mechanical energy and heat of damping [J] at the positions before a step, which it takes.
-fn step_and_count(d: &mut Dynamics) -> [f64; 2] {
-    let now = step_and_balance(d, &mut []);
-    [now.mechanical(), d.heat.at_last_positions()]
-}
-
 #[test]
 fn invariant_the_edge_of_stability_is_where_it_is_predicted() {
     // Ω² + 2βω²Δt = 4: just below nothing grows, just above a disturbance of the highest mode does.

@@ -2,11 +2,11 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use crate::common::{Desk, QUICK, STRIBECK, command};
+use crate::common::{Desk, QUICK, STRIBECK};
 use stribeck_formats::Recording;
 use stribeck_testing::{
     Noise,
@@ -27,18 +27,10 @@ const CAMPAIGN: &str = "(
 )";
 
 fn desk(name: &str, campaign: &str) -> Desk {
-    let desk = Desk::new(name);
+    let desk = Desk::of(name, &["campaign", "campaign.ron"]);
     fs::copy(QUICK, desk.join("quick.ron")).expect("a scene");
     fs::write(desk.join("campaign.ron"), campaign).expect("a campaign");
     desk
-}
-
-fn campaign(desk: &Desk, words: &[&str]) -> Command {
-    command(desk, &[&["campaign", "campaign.ron"], words].concat())
-}
-
-fn run(desk: &Desk, words: &[&str]) -> Output {
-    campaign(desk, words).output().expect("it starts")
 }
 
 /// What a campaign makes of its runs.
@@ -53,9 +45,7 @@ fn unbroken() -> &'static [Vec<u8>; 4] {
     static MADE: OnceLock<[Vec<u8>; 4]> = OnceLock::new();
     MADE.get_or_init(|| {
         let desk = desk("campaign-unbroken", CAMPAIGN);
-        let whole = run(&desk, &["--out=A"]);
-        assert!(whole.status.success(), "{}", said(&whole));
-        says(&whole, &["8 of 8 runs are complete"]);
+        desk.says("--out=A", &["8 of 8 runs are complete"]);
         tables(&desk.join("A"))
     })
 }
@@ -71,13 +61,12 @@ fn put_unbroken(folder: &Path) {
 #[test]
 fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     let desk = desk("campaign-kills", CAMPAIGN);
-    let whole = run(&desk, &["--out=A", "--jobs=2", "--threads=2"]);
-    assert!(whole.status.success(), "{}", said(&whole));
-    says(&whole, &["8 of 8 runs are complete"]);
+    desk.says("--out=A --jobs=2 --threads=2", &["8 of 8 runs are complete"]);
     assert_eq!(&tables(&desk.join("A")), unbroken(), "with two threads each");
     let mut noise = Noise::new(3);
     for _ in 0..10 {
-        let mut child = campaign(&desk, &["--out=B", "--jobs=2"])
+        let mut child = desk
+            .command(&["--out=B", "--jobs=2"])
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
@@ -86,23 +75,21 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
         child.kill().expect("it can be killed");
         child.wait().expect("it ends");
     }
-    let last = run(&desk, &["--out=B", "--resume"]);
+    let last = desk.run("--out=B --resume");
     assert!(last.status.success(), "{}", said(&last));
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
     // Three parts; those that end first leave the tables to the last.
     for part in ["--shard=2/3", "--shard=1/3"] {
-        let early = run(&desk, &["--out=C", part]);
+        let early = desk.run(&["--out=C", part]);
         says(&early, &["this part is done", "runs of others are not at their end"]);
         assert!(early.status.success() && !desk.join("C/runs.parquet").exists());
     }
-    assert!(run(&desk, &["--out=C", "--shard=3/3"]).status.success());
+    desk.succeeds("--out=C --shard=3/3");
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("C")));
     // Eight parts that begin at the same time in a folder that is not there yet.
     let parts: Vec<_> = (1..=8)
         .map(|part| {
-            campaign(&desk, &["--out=D", "--jobs=1", &format!("--shard={part}/8")])
-                .spawn()
-                .expect("it starts")
+            desk.command(&["--out=D", "--jobs=1", &format!("--shard={part}/8")]).spawn().expect("it starts")
         })
         .collect();
     for mut part in parts {
@@ -118,7 +105,7 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     for path in [&left, &own] {
         fs::write(path, "half").expect("it can be written");
     }
-    says(&run(&desk, &["--out=A"]), &["0 of them to be run", "8 of 8"]);
+    says(&desk.run("--out=A"), &["0 of them to be run", "8 of 8"]);
     assert!(!left.exists() && own.exists());
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
 }
@@ -127,7 +114,7 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
 #[test]
 fn issue_what_a_disk_refused_is_not_in_the_tables() {
     let desk = desk("campaign-refused", CAMPAIGN);
-    assert!(run(&desk, &["--out=A"]).status.success());
+    desk.succeeds("--out=A");
     let path = runs(&desk.join("A"))[3].join("run.json");
     let mut info: serde_json::Value = serde_json::from_slice(&fs::read(&path).expect("a run")).expect("JSON");
     for (list, what) in [("warnings", "no checkpoint at 0.300 ms"), ("warned_of", "checkpoint")] {
@@ -135,7 +122,7 @@ fn issue_what_a_disk_refused_is_not_in_the_tables() {
     }
     fs::write(&path, info.to_string()).expect("writable");
     fs::remove_file(desk.join("A/runs.parquet")).expect("a table");
-    assert!(run(&desk, &["--out=A"]).status.success());
+    desk.succeeds("--out=A");
     assert_eq!(&tables(&desk.join("A")), unbroken());
 }
 
@@ -172,7 +159,7 @@ fn numbers(table: PathBuf) -> Vec<(String, Vec<u64>)> {
 fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
     let desk = desk("campaign-kept", &keeping("signals"));
     put_unbroken(&desk.join("all"));
-    assert!(run(&desk, &["--out=signals", "--jobs=2"]).status.success());
+    desk.succeeds("--out=signals --jobs=2");
     for table in ["runs.parquet", "signals.parquet"] {
         assert!(
             numbers(desk.join("all").join(table)) == numbers(desk.join("signals").join(table)),
@@ -184,16 +171,15 @@ fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
     }
     // Nothing is run again, and the tables are made of the remaining runs; by parts, too.
     let before = tables(&desk.join("signals"));
-    says(&run(&desk, &["--out=signals"]), &["0 of them to be run", "8 of 8"]);
+    says(&desk.run("--out=signals"), &["0 of them to be run", "8 of 8"]);
     assert_eq!(before, tables(&desk.join("signals")));
     for part in ["--shard=2/3", "--shard=1/3", "--shard=3/3"] {
-        assert!(run(&desk, &["--out=parts", part]).status.success());
+        desk.succeeds(&["--out=parts", part]);
     }
     assert_eq!(before, tables(&desk.join("parts")));
 
     fs::write(desk.join("campaign.ron"), keeping("numbers")).expect("a campaign");
-    let done = run(&desk, &["--out=numbers"]);
-    assert!(done.status.success(), "{}", said(&done));
+    desk.succeeds("--out=numbers");
     for table in ["runs.parquet", "events.parquet"] {
         assert!(
             numbers(desk.join("all").join(table)) == numbers(desk.join("numbers").join(table)),
@@ -212,7 +198,7 @@ fn invariant_what_is_kept_of_runs_does_not_change_the_tables() {
 #[test]
 fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
     let desk = desk("campaign-kept-kills", &keeping("signals"));
-    assert!(run(&desk, &["--out=A", "--jobs=2"]).status.success());
+    desk.succeeds("--out=A --jobs=2");
     let provenance = |folder: &str| -> Vec<(PathBuf, Vec<u8>)> {
         let finished = runs(&desk.join(folder)).into_iter().filter(|run| run.join("signals.npy").exists());
         finished.map(|run| (run.clone(), fs::read(run.join("run.json")).expect("a run"))).collect()
@@ -220,7 +206,8 @@ fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
     let mut noise = Noise::new(5);
     let mut finished = Vec::new();
     for _ in 0..10 {
-        let mut child = campaign(&desk, &["--out=B", "--jobs=2"])
+        let mut child = desk
+            .command(&["--out=B", "--jobs=2"])
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
@@ -232,7 +219,7 @@ fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
             finished = provenance("B");
         }
     }
-    assert!(run(&desk, &["--out=B"]).status.success());
+    desk.succeeds("--out=B");
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
     // Seconds of wall clock in `run.json` would differ.
     let last = provenance("B");
@@ -242,7 +229,7 @@ fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
     // Killed when the run had ended, when its numbers were made, and when its signals were written beside.
     let whole = desk.join("whole");
     fs::write(desk.join("campaign.ron"), CAMPAIGN).expect("a campaign");
-    assert!(run(&desk, &["--out=whole"]).status.success());
+    desk.succeeds("--out=whole");
     fs::write(desk.join("campaign.ron"), keeping("signals")).expect("a campaign");
     for (at, gone) in [&["summary.json", "signals.npy"][..], &["signals.npy"], &[]].into_iter().enumerate() {
         let run = &runs(&desk.join("B"))[at];
@@ -252,7 +239,7 @@ fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
         }
         gone.iter().for_each(|name| fs::remove_file(run.join(name)).expect("there"));
     }
-    says(&run(&desk, &["--out=B"]), &["0 of them to be run", "8 of 8"]);
+    says(&desk.run("--out=B"), &["0 of them to be run", "8 of 8"]);
     assert_eq!(tables(&desk.join("A")), tables(&desk.join("B")));
     assert_eq!(provenance("B"), last);
     for kept in runs(&desk.join("B")) {
@@ -263,9 +250,8 @@ fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
 #[test]
 fn refuses_to_keep_what_it_does_not_know() {
     let desk = desk("campaign-kept-refused", &keeping("most"));
-    let refused = run(&desk, &["--out=A"]);
-    assert!(!refused.status.success() && !desk.join("A").exists());
-    says(&refused, &["campaign.ron:6:", "`keep`", "`most`", "`all`", "`signals`", "`numbers`"]);
+    desk.refuses("--out=A", &["campaign.ron:6:", "`keep`", "`most`", "`all`", "`signals`", "`numbers`"]);
+    assert!(!desk.join("A").exists());
 }
 
 #[test]
@@ -275,7 +261,7 @@ fn refuses_fields_that_no_scene_has_before_anything_runs() {
         ("mesh.size_mm=4.0", "mesh.sise_mm=4.0", "campaign.ron:4:11"),
     ] {
         let desk = desk("campaign-misspelt", &CAMPAIGN.replace(right, wrong));
-        let refused = run(&desk, &["--out=A"]);
+        let refused = desk.run("--out=A");
         assert!(!refused.status.success() && !desk.join("A").exists(), "{}", said(&refused));
         let field = wrong.split('=').next().expect("a field");
         let did_you_mean = format!("did you mean `{}`?", right.split('=').next().expect("a field"));
@@ -296,9 +282,8 @@ fn refuses_values_that_no_field_takes_before_anything_runs() {
         ),
     ] {
         let desk = desk("campaign-misspelt-value", &CAMPAIGN.replace("[outer, inner]", wrong));
-        let refused = run(&desk, &["--out=A"]);
-        assert!(!refused.status.success() && !desk.join("A").exists(), "{}", said(&refused));
-        says(&refused, &words);
+        desk.refuses("--out=A", &words);
+        assert!(!desk.join("A").exists());
     }
 }
 
@@ -309,18 +294,12 @@ fn behaves_variants_that_cannot_be_are_rows_with_their_reason() {
         "(field: \"bearing.roller_diameter_mm\", values: [18.0, 19.0]),",
     );
     let desk = desk("campaign-refused", &text);
-    let done = run(&desk, &["--out=A"]);
-    assert!(done.status.success(), "{}", said(&done));
-    says(&done, &["refused", "2 of 4 runs are complete"]);
+    desk.says("--out=A", &["refused", "2 of 4 runs are complete"]);
     // When none can be, the command fails.
     fs::write(desk.join("campaign.ron"), text.replace("[18.0, 19.0]", "[19.0]")).expect("a campaign");
-    let none = run(&desk, &["--out=B"]);
-    assert!(!none.status.success());
-    says(&none, &["0 of 2 runs are complete"]);
+    desk.refuses("--out=B", &["0 of 2 runs are complete"]);
     // Another campaign's folder is left alone.
-    let other = run(&desk, &["--out=A"]);
-    assert!(!other.status.success());
-    says(&other, &["holds another campaign", "--out"]);
+    desk.refuses("--out=A", &["holds another campaign", "--out"]);
 }
 
 /// The numbers of a table's column.
@@ -337,11 +316,12 @@ fn behaves_a_run_that_fails_at_set_up_is_a_row_and_the_others_go_on() {
         "(field: \"material.youngs_modulus_gpa\", values: [0.05, 207]),",
     );
     let desk = desk("campaign-set-up", &text);
-    let done = run(&desk, &["--out=A", "--jobs=1"]);
-    assert!(done.status.success(), "{}", said(&done));
-    says(&done, &["run 1", "failed", "no static load distribution", "2 of 4 runs are complete"]);
+    desk.says(
+        "--out=A --jobs=1",
+        &["run 1", "failed", "no static load distribution", "2 of 4 runs are complete"],
+    );
     // Once more, nothing is tried again.
-    says(&run(&desk, &["--out=A"]), &["0 of them to be run", "2 of 4 runs are complete"]);
+    says(&desk.run("--out=A"), &["0 of them to be run", "2 of 4 runs are complete"]);
 }
 
 #[test]
@@ -350,8 +330,8 @@ fn behaves_equal_scenes_are_run_once_and_what_two_programs_have_run_stays() {
     let desk = desk("campaign-equal", &text.replace("count: 8", "count: 24"));
     // Programs that find the same runs due, and take them up at their own pace.
     let programs: Vec<_> =
-        (0..2).map(|_| campaign(&desk, &["--out=A", "--jobs=1"]).spawn().expect("it starts")).collect();
-    let whole = run(&desk, &["--out=B", "--jobs=2"]);
+        (0..2).map(|_| desk.command(&["--out=A", "--jobs=1"]).spawn().expect("it starts")).collect();
+    let whole = desk.run("--out=B --jobs=2");
     says(&whole, &["24 runs, 4 of them to be run here", "24 of 24 runs are complete"]);
     assert!(!said(&whole).contains("another program"), "{}", said(&whole));
     for mut program in programs {
@@ -362,7 +342,7 @@ fn behaves_equal_scenes_are_run_once_and_what_two_programs_have_run_stays() {
         runs(&desk.join(folder)).iter().map(|run| fs::read(run.join("run.json")).expect("a run")).collect()
     };
     let before = times("A");
-    assert!(run(&desk, &["--out=A"]).status.success());
+    desk.succeeds("--out=A");
     assert_eq!((times("A"), before.len()), (before, 4));
     assert_eq!(
         fs::read(desk.join("A/runs.parquet")).expect("a table"),
@@ -377,19 +357,17 @@ fn refuses_a_folder_whose_table_or_scene_was_changed() {
         table(\"t.csv\"))";
     let desk = desk("campaign-changed", text);
     fs::write(desk.join("t.csv"), "operation.load_n\n10000\n20000\n").expect("a table");
-    assert!(run(&desk, &["--out=A"]).status.success());
+    desk.succeeds("--out=A");
     let before = tables(&desk.join("A"));
     fs::write(desk.join("t.csv"), "operation.load_n\n10000\n30000\n").expect("a table");
-    let changed = run(&desk, &["--out=A"]);
-    assert!(!changed.status.success());
-    says(&changed, &["other scenes", "run 2", "--out"]);
+    desk.refuses("--out=A", &["other scenes", "run 2", "--out"]);
     assert_eq!(before, tables(&desk.join("A")));
     // The same values, written in another way, are the same campaign.
     fs::write(desk.join("t.csv"), "operation.load_n\n1e4\n20000.0\n").expect("a table");
-    assert!(run(&desk, &["--out=A"]).status.success());
+    desk.succeeds("--out=A");
     // A folder of an earlier version has no list, and gets one.
     fs::remove_file(desk.join("A/scenes.txt")).expect("it is there");
-    assert!(run(&desk, &["--out=A"]).status.success() && desk.join("A/scenes.txt").exists());
+    assert!(desk.run("--out=A").status.success() && desk.join("A/scenes.txt").exists());
 }
 
 #[test]
@@ -399,7 +377,7 @@ fn behaves_a_run_that_diverges_has_a_row_and_no_signals() {
         "(field: \"guards.energy_stop_percent\", values: [25, 0.00001]),",
     );
     let desk = desk("campaign-diverged", &text);
-    let done = run(&desk, &["--out=A"]);
+    let done = desk.run("--out=A");
     says(&done, &["diverged", "(limit 0.00001 %)", "2 of 4 runs are complete"]);
     let of = column(&desk.join("A/signals.parquet"), "run");
     assert!(!of.is_empty() && of.iter().all(|run| *run <= 2.0), "{of:?}");
@@ -420,7 +398,7 @@ fn behaves_scripts_for_engines_name_every_part() {
         ("slurm", ["--array=1-16", "$SLURM_ARRAY_TASK_ID/16", "--cpus-per-task=1\n", "--threads 1\n"]),
         ("hq", ["--array=1-16", "$HQ_TASK_ID/16", "--cpus=1 ", "--threads 1'"]),
     ] {
-        let output = run(&desk, &["--emit", engine, "--shards=16"]);
+        let output = desk.run(&["--emit", engine, "--shards=16"]);
         assert!(output.status.success(), "{}", said(&output));
         says(&output, &words);
         // A part that fails is one that the engine says has failed.
@@ -429,20 +407,20 @@ fn behaves_scripts_for_engines_name_every_part() {
     }
     // Eight runs are eight parts by default, and parts get the flags of the command.
     let limits = ["--threads=4", "--jobs=2", "--memory-gb=1.5"];
-    let told = |engine| run(&desk, &[&["--emit", engine][..], &limits].concat());
+    let told = |engine| desk.run(&[&["--emit", engine][..], &limits].concat());
     let to_program = "/8 --jobs 2 --threads 4 --memory-gb 1.5";
     says(&told("slurm"), &["--array=1-8", "--cpus-per-task=4", "--mem=1431M", to_program]);
     says(&told("hq"), &["--array=1-8", "--cpus=4", to_program]);
-    says(&run(&desk, &["--emit=hq", "--jobs=2"]), &["--jobs 2 --threads 2", "--cpus=2"]);
-    says(&run(&desk, &["--shards=3"]), &["--emit"]);
+    says(&desk.run("--emit=hq --jobs=2"), &["--jobs 2 --threads 2", "--cpus=2"]);
+    says(&desk.run("--shards=3"), &["--emit"]);
     // Whatever a folder is called, a shell takes its name and runs nothing of it.
     let out = "--out=it's `touch ran` $(touch ran)";
-    let script = String::from_utf8(run(&desk, &["--emit=slurm", out]).stdout).expect("a text");
+    let script = String::from_utf8(desk.run(&["--emit=slurm", out]).stdout).expect("a text");
     let line = script.lines().last().expect("a command").replace(STRIBECK, "echo");
     let echoed = Command::new("sh").current_dir(desk.path()).args(["-c", &line]).output().expect("a shell");
     says(&echoed, &["it's `touch ran` $(touch ran) --shard /8"]);
     assert!(!desk.join("ran").exists());
-    says(&run(&desk, &["--shard=4/3"]), &["I from 1 to N"]);
+    says(&desk.run("--shard=4/3"), &["I from 1 to N"]);
 }
 
 #[test]
@@ -481,9 +459,7 @@ fn peer_hyperqueue_runs_the_parts_to_the_same_bytes() {
     let output = Command::new(&python).current_dir(desk.path()).args(words).output().expect("it starts");
     says(&output, &["done"]);
     // The same command completes the run that the lost worker left unfinished.
-    let last = run(&desk, &["--out=B"]);
-    assert!(last.status.success(), "{}", said(&last));
-    says(&last, &["8 of 8 runs are complete"]);
+    desk.says("--out=B", &["8 of 8 runs are complete"]);
     assert_eq!(unbroken(), &tables(&desk.join("B")));
 }
 

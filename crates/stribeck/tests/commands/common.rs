@@ -89,31 +89,44 @@ pub(crate) fn complete(scene: &Scene, folder: &Path) -> RunInfo {
 }
 
 /// A folder of a user, and what is done there.
-pub(crate) struct Desk(Scratch);
+pub(crate) struct Desk {
+    folder: Scratch,
+    /// With which every line begins.
+    begins: &'static [&'static str],
+}
 
 impl Deref for Desk {
     type Target = Scratch;
 
     fn deref(&self) -> &Scratch {
-        &self.0
+        &self.folder
     }
 }
 
 impl Desk {
     /// An empty folder.
     pub(crate) fn new(name: &str) -> Self {
-        Self(Scratch::create(name))
+        Self::of(name, &[])
+    }
+
+    /// An empty folder for one command.
+    pub(crate) fn of(name: &str, begins: &'static [&'static str]) -> Self {
+        Self { folder: Scratch::create(name), begins }
     }
 
     /// A folder with a scene in it.
     pub(crate) fn with_scene(name: &str) -> Self {
         let desk = Self::new(name);
-        fs::copy(QUICK, desk.0.join("quick.ron")).expect("a scene");
+        fs::copy(QUICK, desk.join("quick.ron")).expect("a scene");
         desk
     }
 
+    pub(crate) fn command(&self, line: &(impl Line + ?Sized)) -> Command {
+        command(self, &[self.begins, &line.words()].concat())
+    }
+
     pub(crate) fn run(&self, line: &(impl Line + ?Sized)) -> Output {
-        command(self, line).output().expect("it starts")
+        self.command(line).output().expect("it starts")
     }
 
     #[track_caller]
@@ -137,7 +150,7 @@ impl Desk {
     }
 
     pub(crate) fn text(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).unwrap_or_else(|why| panic!("{name}: {why}"))
+        fs::read_to_string(self.folder.join(name)).unwrap_or_else(|why| panic!("{name}: {why}"))
     }
 
     pub(crate) fn json(&self, name: &str) -> serde_json::Value {

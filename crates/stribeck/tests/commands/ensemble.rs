@@ -30,10 +30,6 @@ fn bytes(desk: &Desk, name: &str) -> Vec<u8> {
     fs::read(desk.join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
 }
 
-fn summary(desk: &Desk, run: &str) -> serde_json::Value {
-    serde_json::from_slice(&bytes(desk, &format!("{run}/summary.json"))).expect("valid")
-}
-
 #[test]
 fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes() {
     let desk = Desk::new("seeds");
@@ -46,7 +42,7 @@ fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes(
     assert!(traces("C")[0] != traces("A")[0], "another seed, the same bytes");
     assert!(!desk.join("C/report.html").exists());
 
-    succeeds(&desk.run("simulate A/start-002/scene.ron --out=alone --no-report"));
+    desk.succeeds("simulate A/start-002/scene.ron --out=alone --no-report");
     for name in ["trace.npy", "energy.npy", "scene.ron"] {
         assert!(
             bytes(&desk, &format!("alone/{name}")) == bytes(&desk, &format!("A/start-002/{name}")),
@@ -59,12 +55,12 @@ fn invariant_a_seed_draws_the_same_starts_and_each_runs_alone_to_the_same_bytes(
     let page = bytes(&desk, "A/report.html");
     fs::remove_file(desk.join("A/report.html")).expect("removable");
     fs::remove_file(desk.join("A/summary.json")).expect("removable");
-    succeeds(&desk.run("report A"));
+    desk.succeeds("report A");
     assert!(bytes(&desk, "A/report.html") == page);
-    succeeds(&desk.run("report A/start-001"));
-    assert_eq!(summary(&desk, "A/start-001")["scene"], "quick-start-001");
+    desk.succeeds("report A/start-001");
+    assert_eq!(desk.json("A/start-001/summary.json")["scene"], "quick-start-001");
 
-    let numbers = summary(&desk, "A");
+    let numbers = desk.json("A/summary.json");
     let peak = &numbers["ensemble"]["levels"]["start_g"];
     assert!(peak["low"].as_f64() < peak["mean"].as_f64() && peak["mean"].as_f64() < peak["high"].as_f64());
     assert_eq!((peak["count"].as_u64(), peak["of"].as_u64()), (Some(3), Some(3)));
@@ -100,12 +96,12 @@ fn survives_an_interruption_and_goes_on_with_what_is_missing() {
         fs::metadata(desk.join("pieces/start-001/trace.npy")).and_then(|m| m.modified()).expect("there");
 
     // Complete starts are readable, and count.
-    let summary_then = summary(&desk, "pieces");
+    let summary_then = desk.json("pieces/summary.json");
     assert_eq!(summary_then["starts"][0]["ended"], "complete");
     assert_eq!(summary_then["ensemble"]["levels"]["start_g"]["count"].as_u64(), Some(1));
 
     // More starts at the same time.
-    succeeds(&desk.run("simulate --resume pieces --starts=4 --jobs=2"));
+    desk.succeeds("simulate --resume pieces --starts=4 --jobs=2");
     for n in 1..=3 {
         for name in ["trace.npy", "energy.npy", "scene.ron"] {
             let [a, b] = ["whole", "pieces"].map(|run| bytes(&desk, &format!("{run}/start-{n:03}/{name}")));
@@ -119,9 +115,8 @@ fn survives_an_interruption_and_goes_on_with_what_is_missing() {
 
     // Longer ones.
     let set = "--set=solver.duration_ms=1.1";
-    succeeds(&desk.run(&["simulate", "--resume", "pieces", set, "--no-report"]));
-    let long = desk.run("simulate pieces/start-003/scene.ron --out=long --no-report");
-    succeeds(&long);
+    desk.succeeds(&["simulate", "--resume", "pieces", set, "--no-report"]);
+    desk.succeeds("simulate pieces/start-003/scene.ron --out=long --no-report");
     assert!(bytes(&desk, "long/trace.npy") == bytes(&desk, "pieces/start-003/trace.npy"));
 }
 
@@ -148,7 +143,7 @@ fn refuses_flags_that_do_not_go_together() {
         assert!(!output.status.success(), "{words:?}");
         says(&output, answers);
     }
-    succeeds(&desk.run("simulate --resume=E --starts=2 --no-report"));
+    desk.succeeds("simulate --resume=E --starts=2 --no-report");
     says(&desk.run("simulate --resume=E --starts=1"), &["larger, not smaller"]);
     assert!(before != bytes(&desk, "E/ensemble.json"));
 
@@ -171,7 +166,7 @@ fn survives_starts_that_diverge() {
     let output = simulate(&desk, &["--starts=2", "--jobs=2", "--out=D", "--set=solver.time_step_factor=1.3"]);
     assert_eq!(output.status.code(), Some(1), "{}", said(&output));
     says(&output, &["start 1 diverged and does not count", "no start is complete", "report: D/report.html"]);
-    assert_eq!(summary(&desk, "D")["starts"][1]["ended"], "diverged");
+    assert_eq!(desk.json("D/summary.json")["starts"][1]["ended"], "diverged");
     // Nothing is left to do: the same steps would diverge again.
     says(&desk.run("simulate --resume D"), &["0 to run"]);
 }
@@ -193,7 +188,7 @@ fn survives_a_full_disk_and_goes_on_when_there_is_space() {
         .expect("a shell");
     assert!(!output.status.success(), "{}", said(&output));
     says(&output, &["start 1 (1 of 2): failed", "2 of 2 starts are not at their end", "--resume F"]);
-    succeeds(&desk.run("simulate --resume F"));
-    succeeds(&desk.run("simulate F/start-001/scene.ron --out=whole --no-report"));
+    desk.succeeds("simulate --resume F");
+    desk.succeeds("simulate F/start-001/scene.ron --out=whole --no-report");
     assert!(bytes(&desk, "F/start-001/trace.npy") == bytes(&desk, "whole/trace.npy"));
 }

@@ -2,10 +2,10 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output, Stdio};
+use std::process::Stdio;
 use std::time::Duration;
 
-use crate::common::{Desk, command};
+use crate::common::Desk;
 use serde_json::Value;
 use stribeck_formats::Recording;
 use stribeck_testing::{Noise, said, says};
@@ -14,17 +14,9 @@ use stribeck_testing::{Noise, said, says};
 const QUICK: &str = include_str!("../../../../fixtures/infer/quick.ron");
 
 fn desk(name: &str, text: &str) -> Desk {
-    let desk = Desk::new(name);
+    let desk = Desk::of(name, &["infer", "targets.ron"]);
     fs::write(desk.join("targets.ron"), text).expect("the file of an inference");
     desk
-}
-
-fn infer(desk: &Desk, words: &[&str]) -> Command {
-    command(desk, &[&["infer", "targets.ron"], words].concat())
-}
-
-fn run(desk: &Desk, words: &[&str]) -> Output {
-    infer(desk, words).output().expect("it starts")
 }
 
 fn answer(folder: &Path) -> Value {
@@ -41,7 +33,7 @@ fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
     let set = QUICK.lines().filter_map(|line| line.trim().strip_prefix('"')?.strip_suffix("\","));
     let set: Vec<String> =
         set.filter(|line| line.contains('=')).map(|line| line.replace("\\\"", "\"")).collect();
-    let mut command = command(&desk, &["simulate", "--out=truth"]);
+    let mut command = desk.command(&["simulate", "--out=truth"]);
     for field in &set {
         command.args(["--set", field]);
     }
@@ -70,9 +62,7 @@ fn with_targets(length_mm: f64, load_n: f64, budget: &str) -> String {
 #[test]
 fn planted_load_and_length_are_found_from_a_run_with_both() {
     let desk = desk("infer-found", &with_targets(4.1, 700.0, "runs: 60, first: 12, round: 9, check: 4"));
-    let done = run(&desk, &["--out=A", "--calibrate=40"]);
-    assert!(done.status.success(), "{}", said(&done));
-    says(&done, &["defect.length_mm", "operation.load_n", "report: A/report.html"]);
+    desk.says("--out=A --calibrate=40", &["defect.length_mm", "operation.load_n", "report: A/report.html"]);
     let answer = answer(&desk.join("A"));
     for (field, truth, most) in [("defect.length_mm", 4.1, 0.6), ("operation.load_n", 700.0, 0.8)] {
         let found =
@@ -108,11 +98,11 @@ fn planted_load_and_length_are_found_from_a_run_with_both() {
 fn survives_kills_and_any_split_with_the_draws_of_an_unbroken_inference() {
     let desk =
         desk("infer-kills", &QUICK.replace("runs: 48, first: 12, round: 6", "runs: 28, first: 9, round: 5"));
-    let whole = run(&desk, &["--out=A", "--jobs=2", "--threads=2"]);
-    assert!(whole.status.success(), "{}", said(&whole));
+    desk.succeeds("--out=A --jobs=2 --threads=2");
     let mut noise = Noise::new(5);
     for _ in 0..5 {
-        let mut child = infer(&desk, &["--out=B", "--jobs=2"])
+        let mut child = desk
+            .command(&["--out=B", "--jobs=2"])
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn()
@@ -121,13 +111,12 @@ fn survives_kills_and_any_split_with_the_draws_of_an_unbroken_inference() {
         child.kill().expect("it can be killed");
         child.wait().expect("it ends");
     }
-    let last = run(&desk, &["--out=B", "--jobs=1"]);
-    assert!(last.status.success(), "{}", said(&last));
+    desk.succeeds("--out=B --jobs=1");
     assert_eq!(draws(&desk.join("A")), draws(&desk.join("B")));
     // Two parts at once, in a folder that is not there yet.
     let parts: Vec<_> = ["--shard=1/2", "--shard=2/2"]
         .map(|part| {
-            infer(&desk, &["--out=C", part, "--jobs=1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
+            desk.command(&["--out=C", part, "--jobs=1"]).stdout(Stdio::null()).stderr(Stdio::null()).spawn()
         })
         .into_iter()
         .map(|child| child.expect("it starts"))
@@ -142,7 +131,7 @@ fn survives_kills_and_any_split_with_the_draws_of_an_unbroken_inference() {
 fn refuses_what_no_run_has_and_another_folder() {
     let lost = QUICK.replace("levels.impulse_g", "levels.impuls_g");
     let desk = desk("infer-lost", &lost);
-    let done = run(&desk, &["--out=A"]);
+    let done = desk.run("--out=A");
     assert!(!done.status.success());
     says(
         &done,
@@ -154,9 +143,7 @@ fn refuses_what_no_run_has_and_another_folder() {
     );
     assert!(!desk.join("A/runs").exists(), "runs were made before the target was looked for");
     fs::write(desk.join("targets.ron"), QUICK).expect("it can be written");
-    let done = run(&desk, &["--out=A"]);
-    assert!(!done.status.success());
-    says(&done, &["holds another inference", "--out"]);
-    let script = run(&desk, &["--emit=slurm", "--shards=4"]);
+    desk.refuses("--out=A", &["holds another inference", "--out"]);
+    let script = desk.run("--emit=slurm --shards=4");
     says(&script, &["#SBATCH --array=1-4", " infer ", "--shard $SLURM_ARRAY_TASK_ID/4"]);
 }

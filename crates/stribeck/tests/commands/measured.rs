@@ -17,6 +17,13 @@ fn knocks(rate_hz: f64) -> Vec<f64> {
         .collect()
 }
 
+/// Writes a record of `housing` at 12.8 kHz, beside numbers.
+fn write(desk: &Desk, file: &str, samples: Vec<f64>, numbers: &[(&str, f64)]) {
+    let mut channels = vec![Channel::held("housing", samples).at_rate(Some(12_800.0))];
+    channels.extend(numbers.iter().map(|(name, number)| Channel::held(*name, vec![*number])));
+    mat5::write(&desk.join(file), &channels, &[]).unwrap();
+}
+
 /// The first number whose name has `rpm` in it was the speed, `max_rpm` beside `rpm`, too, and 0 was one.
 #[test]
 fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
@@ -29,9 +36,7 @@ fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
             "`rpm_a` is 1200 and `rpm_b` is 900: neither is taken for the speed; give `--speed-rpm`",
         ),
     ] {
-        let mut channels = vec![Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0))];
-        channels.extend(numbers.iter().map(|(name, rpm)| Channel::held(*name, vec![*rpm])));
-        mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
+        write(&desk, "a.mat", knocks(12_800.0), numbers);
         let words = ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing"];
         let text = said(&desk.run(&words));
         assert!(text.contains(says), "{text}");
@@ -41,8 +46,7 @@ fn issue_the_speed_is_that_of_rpm_and_not_of_another_number() {
 #[test]
 fn planted_a_record_gives_a_verdict_findings_and_a_page() {
     let desk = Desk::new("measured");
-    let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
-    mat5::write(&desk.join("a.mat"), &[channel, Channel::held("shaft_rpm", vec![1200.0])], &[]).unwrap();
+    write(&desk, "a.mat", knocks(12_800.0), &[("shaft_rpm", 1200.0)]);
     let text = said(&desk.succeeds("analyse a.mat --rate-hz 12800 --bearing 6205 --channel housing"));
     assert!(text.contains("a defect of the outer raceway (BPFO at 71.50 Hz"), "{text}");
     assert!(text.contains("the speed of 1200 rpm is that of `shaft_rpm`"), "{text}");
@@ -190,27 +194,20 @@ fn planted_a_speed_that_varies_is_followed_and_the_record_taken_over_the_angle()
                 + 3.0 * (-since / 1e-3).exp() * (std::f64::consts::TAU * 3_000.0 * since).sin()
         })
         .collect();
-    let channel = Channel::held("housing", samples).at_rate(Some(rate_hz));
-    mat5::write(&desk.join("a.mat"), &[channel], &[]).unwrap();
+    write(&desk, "a.mat", samples, &[]);
     let words = |speed: &'static str, out: &'static str| {
         ["analyse", "a.mat", "--rate-hz=12800", "--bearing=6205", "--channel=housing", speed, out]
     };
-    let output = desk.run(&words("--speed-rpm=1100..1700", "--out=followed"));
-    let text = said(&output);
-    assert!(output.status.success(), "{text}");
-    assert!(text.contains("a defect of the outer raceway"), "{text}");
-    assert!(text.contains("taken over the angle of the shaft"), "{text}");
+    let told = ["a defect of the outer raceway", "taken over the angle of the shaft"];
+    desk.says(&words("--speed-rpm=1100..1700", "--out=followed"), &told);
     // Held at its mean the speed smears the family.
-    let output = desk.run(&words("--speed-rpm=1350", "--out=held"));
+    desk.succeeds(&words("--speed-rpm=1350", "--out=held"));
     let level = |folder: &str| {
-        let findings = std::fs::read(desk.join(folder).join("findings.json")).unwrap();
-        let findings: serde_json::Value = serde_json::from_slice(&findings).unwrap();
-        findings["families"][0]["level_db"].as_f64().unwrap()
+        desk.json(&format!("{folder}/findings.json"))["families"][0]["level_db"].as_f64().unwrap()
     };
     assert!(level("followed") > level("held") + 10.0, "{} {}", level("followed"), level("held"));
-    assert!(output.status.success(), "{}", said(&output));
-    let output = desk.run(&words("--speed-rpm=2000..2400", "--out=none"));
-    assert!(said(&output).contains("no line stands out between 2000 and 2400 rpm"), "{}", said(&output));
+    let none = desk.run(&words("--speed-rpm=2000..2400", "--out=none"));
+    says(&none, &["no line stands out between 2000 and 2400 rpm"]);
 }
 
 #[test]
@@ -226,59 +223,39 @@ fn issue_a_tachometer_outlasts_its_record_or_says_the_speed() {
     let channels = channels.map(|(name, samples)| Channel::held(name, samples));
     mat5::write(&desk.join("a.mat"), &channels, &[]).unwrap();
     for tacho in ["tacho", "n_rpm"] {
-        let text = said(&desk.succeeds(&[
-            "analyse",
-            "a.mat",
-            "--channel=acc",
-            "--tacho",
-            tacho,
-            "--bearing=6205",
-            "--out",
-            tacho,
-        ]));
-        assert!(text.contains("the record was taken over the angle of the shaft"), "{text}");
-        let findings = std::fs::read_to_string(desk.join(format!("{tacho}/findings.json"))).unwrap();
-        let findings: serde_json::Value = serde_json::from_str(&findings).unwrap();
+        let line = format!("analyse a.mat --channel=acc --tacho {tacho} --bearing=6205 --out {tacho}");
+        desk.says(line.as_str(), &["the record was taken over the angle of the shaft"]);
+        let findings = desk.json(&format!("{tacho}/findings.json"));
         // The mean speed of the record: 18 + 0.3 · 5.12 turns a second, to a turn of 100.
         let rpm = findings["speed_rpm"].as_f64().unwrap();
         assert!((rpm / (60.0 * (18.0 + 0.3 * 5.12)) - 1.0).abs() < 0.01, "{tacho}: {rpm}");
     }
 }
 
+/// Whether a level of a record is within its limits.
+fn state<'a>(found: &'a serde_json::Value, at: usize, quantity: &str) -> &'a str {
+    let alarms = found["records"][at]["alarms"].as_array().unwrap();
+    let judged = alarms.iter().find(|alarm| alarm["quantity"] == quantity);
+    judged.unwrap_or_else(|| panic!("{quantity}: {alarms:?}"))["state"].as_str().unwrap()
+}
+
 #[test]
 fn behaves_limits_are_given_or_follow_from_sound_records() {
     let desk = Desk::new("alarm");
     let mut noise = Noise::new(10);
-    let mut words = vec!["analyse".to_owned()];
     for n in 0..6 {
         let loud = if n == 5 { 2.0 } else { 1.0 + 0.01 * f64::from(n) };
         let samples: Vec<f64> = (0..40_000).map(|_| loud * noise.uniform()).collect();
-        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
-        mat5::write(&desk.join(format!("{n}.mat")), &[channel], &[]).unwrap();
-        words.push(format!("{n}.mat"));
+        write(&desk, &format!("{n}.mat"), samples, &[]);
     }
-    words.extend(["--rate-hz=12800", "--unit=m/s²", "--out=T", "--channel=housing"].map(str::to_owned));
-    let run = |more: &[&str]| {
-        let all: Vec<&str> = words.iter().map(String::as_str).chain(more.iter().copied()).collect();
-        desk.run(&all)
-    };
-    let output = run(&["--reference=4", "--alarm=kurtosis=1.5..9"]);
-    let text = said(&output);
-    assert!(output.status.success(), "{text}");
+    let line =
+        "analyse 0.mat 1.mat 2.mat 3.mat 4.mat 5.mat --rate-hz=12800 --unit=m/s² --out=T --channel=housing";
+    let text = said(&desk.succeeds(format!("{line} --reference=4 --alarm=kurtosis=1.5..9").as_str()));
     assert!(text.contains("5.mat: rms 1.1") && text.contains("ALARM"), "{text}");
     assert!(!text.contains("4.mat: rms"), "{text}");
     assert!(text.contains("4.mat: kurtosis 1.") && text.contains("WARNING, from 1.5000"), "{text}");
     let found = desk.json("T/findings.json");
-    let rms = |at: usize| {
-        found["records"][at]["alarms"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .find(|a| a["quantity"] == "rms")
-            .unwrap()
-            .clone()
-    };
-    assert_eq!((rms(4)["state"].as_str(), rms(5)["state"].as_str()), (Some("good"), Some("alarm")));
+    assert_eq!((state(&found, 4, "rms"), state(&found, 5, "rms")), ("good", "alarm"));
     assert!(found["records"][5]["findings"]["velocity_mm_s"].is_number());
     let page = desk.text("T/report.html");
     assert!(page.contains("Alarm bands"));
@@ -288,8 +265,7 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
         ("--alarm=rms=1", "NAME=WARNING..ALARM"),
         ("--speed-rpm=1500..1400", "must ascend"),
     ] {
-        let output = run(&[more]);
-        assert!(!output.status.success() && said(&output).contains(says), "{more}: {}", said(&output));
+        desk.refuses(format!("{line} {more}").as_str(), &[says]);
     }
 }
 
@@ -298,30 +274,19 @@ fn behaves_limits_are_given_or_follow_from_sound_records() {
 fn issue_sound_records_give_limits_for_each_family() {
     let desk = Desk::new("alarm-families");
     let mut noise = Noise::new(11);
-    let mut words = vec!["analyse".to_owned()];
     for n in 0..7 {
         let samples = if n == 6 { knocks(12_800.0) } else { (0..100_000).map(|_| noise.uniform()).collect() };
-        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
-        mat5::write(&desk.join(format!("{n}.mat")), &[channel], &[]).unwrap();
-        words.push(format!("{n}.mat"));
+        write(&desk, &format!("{n}.mat"), samples, &[]);
     }
-    words.extend(
-        ["--rate-hz=12800", "--bearing=6205", "--speed-rpm=1200", "--reference=6", "--out=T"]
-            .map(str::to_owned),
+    desk.succeeds(
+        "analyse 0.mat 1.mat 2.mat 3.mat 4.mat 5.mat 6.mat --rate-hz=12800 --bearing=6205 --speed-rpm=1200 \
+         --reference=6 --out=T",
     );
-    let words: Vec<&str> = words.iter().map(String::as_str).collect();
-    desk.succeeds(&words);
     let found = desk.json("T/findings.json");
-    let state = |at: usize, name: &str| {
-        let alarms = found["records"][at]["alarms"].as_array().unwrap();
-        let judged =
-            alarms.iter().find(|a| a["quantity"] == name).unwrap_or_else(|| panic!("{name}: {alarms:?}"));
-        judged["state"].as_str().unwrap().to_owned()
-    };
     for name in ["BPFO", "BPFI", "BSF", "FTF"] {
-        assert_eq!(state(0, name), "good", "a record of the reference");
+        assert_eq!(state(&found, 0, name), "good", "a record of the reference");
     }
-    assert_eq!(state(6, "BPFO"), "alarm");
+    assert_eq!(state(&found, 6, "BPFO"), "alarm");
 }
 
 #[test]
@@ -334,8 +299,7 @@ fn behaves_several_records_are_a_series() {
     let rail = 0.5 * whole.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let clipped = whole.iter().map(|x| x.clamp(-rail, rail)).collect();
     for (name, samples) in [("before.mat", sound), ("after.mat", clipped)] {
-        let channel = Channel::held("housing", samples).at_rate(Some(12_800.0));
-        mat5::write(&desk.join(name), &[channel, Channel::held("shaft_rpm", vec![1200.0])], &[]).unwrap();
+        write(&desk, name, samples, &[("shaft_rpm", 1200.0)]);
     }
     let words =
         ["analyse", "before.mat", "after.mat", "none.mat", "--rate-hz=12800", "--bearing=6205", "--out=T"];
@@ -524,8 +488,7 @@ fn issue_a_sample_that_hides_a_defect_is_reported() {
 #[test]
 fn roundtrip_an_exported_record_says_its_rate() {
     let desk = Desk::new("measured-export");
-    let channel = Channel::held("housing", knocks(12_800.0)).at_rate(Some(12_800.0));
-    mat5::write(&desk.join("ex.mat"), &[channel], &[]).unwrap();
+    write(&desk, "ex.mat", knocks(12_800.0), &[]);
     let words = ["analyse", "ex.mat", "--channel=housing", "--bearing=6205", "--speed-rpm=1200"];
     says(&desk.run(&words), &["a defect of the outer raceway"]);
     // A limit of the velocity asks for the unit that it needs.

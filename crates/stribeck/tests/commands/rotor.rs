@@ -5,7 +5,6 @@ use std::fs;
 use std::process::Command;
 
 use crate::common::Desk;
-use serde_json::Value;
 use stribeck_formats::Recording;
 use stribeck_testing::{peer::python_with, said};
 
@@ -30,16 +29,12 @@ fn desk(name: &str) -> Desk {
     desk
 }
 
-fn json(desk: &Desk, name: &str) -> Value {
-    serde_json::from_str(&fs::read_to_string(desk.join(name)).expect(name)).expect(name)
-}
-
 #[test]
 fn behaves_stiffness_as_table_json_and_for_ross() {
     let desk = desk("stiffness");
     let words = ["stiffness", "sound.ron", "--loads-n", "1000,3000", "--speeds-rpm", "300,600,1200"];
     desk.succeeds(&words);
-    let found = json(&desk, "sound-stiffness/stiffness.json");
+    let found = desk.json("sound-stiffness/stiffness.json");
     let points = found["points"].as_array().expect("points");
     assert_eq!(points.len(), 6);
     let table = desk.text("sound-stiffness/stiffness.csv");
@@ -50,7 +45,7 @@ fn behaves_stiffness_as_table_json_and_for_ross() {
     let mean = rows.map(|k| k.expect("a number")).sum::<f64>() / 64.0;
     let said = points[0]["stiffness_n_m"]["yy"]["mean"].as_f64().expect("a number");
     assert!((mean / said - 1.0).abs() < 1e-8, "{mean} {said}");
-    let ross = json(&desk, "sound-stiffness/ross_3000n.json");
+    let ross = desk.json("sound-stiffness/ross_3000n.json");
     let element = ross.as_object().and_then(|all| all.values().next()).expect("an element");
     assert_eq!(element["frequency"].as_array().map(Vec::len), Some(3));
     assert_eq!(element["kyy"][0], points[3]["stiffness_n_m"]["yy"]["mean"]);
@@ -107,9 +102,9 @@ fn peer_ross_runs_a_rotor_on_our_stiffness() {
         .output()
         .expect("it starts");
     assert!(answer.status.success(), "{}", said(&answer));
-    let answer = json(&desk, "sound-stiffness/answer.json");
+    let answer = desk.json("sound-stiffness/answer.json");
     let number = |key: &str| answer[key].as_f64().expect("a number");
-    let point = &json(&desk, "sound-stiffness/stiffness.json")["points"][0];
+    let point = &desk.json("sound-stiffness/stiffness.json")["points"][0];
     for (axis, key) in [("xx", "kxx"), ("yy", "kyy")] {
         let ours = point["stiffness_n_m"][axis]["mean"].as_f64().expect("a number");
         assert!((number(key) / ours - 1.0).abs() < 1e-9, "{key}: {} {ours}", number(key));

@@ -2,20 +2,15 @@
 
 use std::f64::consts::TAU;
 use std::fs;
-use std::process::Output;
 
 use crate::common::Desk;
-use stribeck_testing::{Noise, said, says};
-
-fn analyse(desk: &Desk, words: &[&str]) -> Output {
-    desk.run(&[&["analyse"], words].concat())
-}
+use stribeck_testing::Noise;
 
 /// Two and a half seconds of a gear with 23 teeth at 25 Hz and of a 6205 on its shaft whose outer raceway
 /// knocks, in m/s².
 fn desk(name: &str) -> Desk {
     const RATE_HZ: f64 = 12_800.0;
-    let desk = Desk::new(name);
+    let desk = Desk::of(name, &["analyse", "record.csv"]);
     let mut noise = Noise::new(7);
     let mut text = "time_s,a_m_s2\n".to_owned();
     for n in 0..32_768 {
@@ -32,22 +27,17 @@ fn desk(name: &str) -> Desk {
 #[test]
 fn planted_components_of_a_record_are_distinguished() {
     let desk = desk("components");
-    let words =
-        ["record.csv", "--speed-rpm=1500", "--unit=g", "--iso-group=2", "--foundation=rigid", "--component"];
-    let words =
-        [&words[..], &["bearing=6205", "--component=bearing=NU 205, elements=13, ratio=2.5"]].concat();
-    let output = analyse(&desk, &[&words[..], &["--component", "gear=23"]].concat());
-    assert!(output.status.success(), "{}", said(&output));
-    says(
-        &output,
-        &["6205 at 1 times the shaft: The record shows a defect of the outer raceway", "velocity: zone"],
+    desk.says(
+        "--speed-rpm=1500 --unit=g --iso-group=2 --foundation=rigid --component bearing=6205 \
+         '--component=bearing=NU 205, elements=13, ratio=2.5' --component gear=23",
+        &[
+            "6205 at 1 times the shaft: The record shows a defect of the outer raceway",
+            "velocity: zone",
+            "NU 205 at 2.5 times the shaft: The record does not decide about BSF and FTF",
+            "shows no other",
+        ],
     );
-    says(
-        &output,
-        &["NU 205 at 2.5 times the shaft: The record does not decide about BSF and FTF", "shows no other"],
-    );
-    let text = desk.text("record-analysis/findings.json");
-    let found: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let found = desk.json("record-analysis/findings.json");
     assert_eq!(found["bearings"].as_array().map(Vec::len), Some(2));
     assert_eq!(found["bearings"][0]["findings"]["zone"]["group"], "medium");
     assert!(desk.join("record-analysis/1-6205/report.html").exists());
@@ -56,21 +46,16 @@ fn planted_components_of_a_record_are_distinguished() {
 #[test]
 fn refuses_components_and_zones_that_cannot_be() {
     let desk = desk("components-refused");
-    for (words, told) in [
-        (vec!["--component", "6205"], ["no component", "gear=23"]),
-        (
-            vec!["--component", "gear=23", "--speed-rpm", "1500"],
-            ["none of the components is a bearing", "6205"],
-        ),
-        (vec!["--component", "bearing=6205"], ["no speed is known", "--tacho"]),
-        (vec!["--component", "bearing=6205", "--bearing", "6205"], ["--bearing", "cannot be used"]),
-        (vec!["--component", "bearing=6205, ratio=-1"], ["above 0", "ratio"]),
-        (vec!["--iso-group", "2"], ["--foundation", "required"]),
-        (vec!["--iso-group", "3", "--foundation", "rigid"], ["3", "1..=2"]),
-        (vec!["--iso-group", "1", "--foundation", "soft"], ["soft", "flexible"]),
+    for (line, told) in [
+        ("--component 6205", ["no component", "gear=23"]),
+        ("--component gear=23 --speed-rpm 1500", ["none of the components is a bearing", "6205"]),
+        ("--component bearing=6205", ["no speed is known", "--tacho"]),
+        ("--component bearing=6205 --bearing 6205", ["--bearing", "cannot be used"]),
+        ("--component 'bearing=6205, ratio=-1'", ["above 0", "ratio"]),
+        ("--iso-group 2", ["--foundation", "required"]),
+        ("--iso-group 3 --foundation rigid", ["3", "1..=2"]),
+        ("--iso-group 1 --foundation soft", ["soft", "flexible"]),
     ] {
-        let output = analyse(&desk, &[&["record.csv"][..], &words].concat());
-        assert!(!output.status.success(), "{words:?}: {}", said(&output));
-        says(&output, &told);
+        desk.refuses(line, &told);
     }
 }
