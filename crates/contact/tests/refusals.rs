@@ -1,28 +1,20 @@
 //! Inputs that contact refuses, and its messages.
 
-use stribeck_contact::{Contacts, Error, Law, Method, PairSpec, Sides, Surface};
-
-#[track_caller]
-fn says<T>(result: Result<T, Error>, words: &[&str]) {
-    let Err(error) = result else { panic!("accepted") };
-    let text = error.to_string();
-    for word in words {
-        assert!(text.contains(word), "`{word}` is missing in: {text}");
-    }
-}
+use stribeck_contact::{Contacts, Law, Method, PairSpec, Sides, Surface};
+use stribeck_testing::refuses;
 
 #[test]
 fn refuses_impossible_laws() {
     for stiffness in [0.0, -1e14, f64::NAN, f64::INFINITY] {
-        says(Law::penalty(stiffness), &["penalty stiffness [Pa/m]", &stiffness.to_string(), "positive"]);
+        refuses(Law::penalty(stiffness), &["penalty stiffness [Pa/m]", &stiffness.to_string(), "positive"]);
     }
     let law = Law::penalty(1e14).expect("a positive stiffness");
     for ratio in [-0.1, 2.1, f64::NAN] {
-        says(law.with_damping(ratio, 1.0), &["contact damping ratio", "between 0 and 2"]);
+        refuses(law.with_damping(ratio, 1.0), &["contact damping ratio", "between 0 and 2"]);
     }
-    says(law.with_damping(0.1, 0.0), &["surface mass [kg/m²] = 0", "positive"]);
+    refuses(law.with_damping(0.1, 0.0), &["surface mass [kg/m²] = 0", "positive"]);
     for friction in [-0.1, 10.1, f64::NAN] {
-        says(law.with_friction(friction), &["friction coefficient", "between 0 and 10"]);
+        refuses(law.with_friction(friction), &["friction coefficient", "between 0 and 10"]);
     }
     assert!(law.with_friction(0.0).and_then(|l| l.with_damping(0.0, 1.0)).is_ok());
 }
@@ -47,25 +39,25 @@ fn refuses_pairs_that_do_not_exist_or_have_no_points() {
         Contacts::new(surfaces, &[pair], thickness, &x[..positions], &y[..positions])
     };
     assert!(made([0, 1], Method::Collocated, 0.01, 4).is_ok());
-    says(made([0, 2], Method::Collocated, 0.01, 4), &["contact pair 0", "not in the list"]);
-    says(made([1, 1], Method::Collocated, 0.01, 4), &["contact pair 0", "twice"]);
+    refuses(made([0, 2], Method::Collocated, 0.01, 4), &["contact pair 0", "not in the list"]);
+    refuses(made([1, 1], Method::Collocated, 0.01, 4), &["contact pair 0", "twice"]);
     for points in [0, 33, usize::MAX] {
-        says(made([0, 1], Method::Integrated { points }, 0.01, 4), &["contact pair 0", "1 to 32"]);
+        refuses(made([0, 1], Method::Integrated { points }, 0.01, 4), &["contact pair 0", "1 to 32"]);
     }
     for thickness in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        says(made([0, 1], Method::Collocated, thickness, 4), &["thickness [m]", "positive"]);
+        refuses(made([0, 1], Method::Collocated, thickness, 4), &["thickness [m]", "positive"]);
     }
-    says(made([0, 1], Method::Collocated, 0.01, 3), &["`side`", "no position"]);
+    refuses(made([0, 1], Method::Collocated, 0.01, 3), &["`side`", "no position"]);
 }
 
 #[test]
 fn refuses_surfaces_without_facets() {
     let (x, y) = ([0.0, 1.0, 1.0, f64::NAN], [0.0, 0.0, 0.0, 0.0]);
     let surface = |slots: &[u32], closed| Surface::new("rim", slots.to_vec(), closed, &x, &y);
-    says(surface(&[], false), &["`rim`", "at least one facet"]);
-    says(surface(&[0], false), &["`rim`", "at least one facet"]);
-    says(surface(&[0, 1], true), &["`rim`", "three when closed"]);
-    says(surface(&[0, 1, 2], false), &["`rim`", "no length"]);
-    says(surface(&[0, 3], false), &["`rim`", "no length"]);
+    refuses(surface(&[], false), &["`rim`", "at least one facet"]);
+    refuses(surface(&[0], false), &["`rim`", "at least one facet"]);
+    refuses(surface(&[0, 1], true), &["`rim`", "three when closed"]);
+    refuses(surface(&[0, 1, 2], false), &["`rim`", "no length"]);
+    refuses(surface(&[0, 3], false), &["`rim`", "no length"]);
     assert_eq!(surface(&[0, 1], false).expect("one facet").facets(), 1);
 }

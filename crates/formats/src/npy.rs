@@ -294,6 +294,7 @@ pub(crate) fn encode(samples: &[f64]) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stribeck_testing::assert_refused;
 
     #[test]
     fn refuses_an_array_of_three_dimensions_with_its_shape() {
@@ -337,6 +338,6 @@ mod tests {
         let fields: Vec<(&str, usize)> =
             layout.fields.iter().map(|field| (field.name.as_str(), field.place)).collect();
         assert_eq!((fields, layout.record), (vec![("time_s", 0), ("a", 8), ("b c", 16)], 24));
-        assert!(Layout::of(&file(&header("dfd"))).is_err());
+        assert_refused(Layout::of(&file(&header("dfd"))), "is no name with a type");
     }
 }

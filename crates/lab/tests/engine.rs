@@ -17,7 +17,7 @@ use stribeck_simulation::{
     simulate,
 };
 use stribeck_store::run_dir::RunDir;
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, assert_refused};
 
 /// The paper's bearing, coarse.
 fn coarse(duration_ms: f64) -> Scene {
@@ -82,7 +82,7 @@ fn roundtrip_content_in_bytes() {
     let [a, b] = [&back, &content].map(|c| c.modal.reduction.sensors[0].residual[7][1]);
     assert!((a - b).abs() <= 1e-7 * b.abs(), "{a} {b}");
     for end in [0, 100, bytes.len() / 2, bytes.len() - 1] {
-        assert!(Content::from_bytes(&bytes[..end]).is_err(), "cut at {end}");
+        assert_refused(Content::from_bytes(&bytes[..end]), "the file is damaged, or of another version");
     }
 }
 
@@ -181,7 +181,7 @@ fn refuses_handles_that_no_bearing_has() {
     let folder = Scratch::create("lab-refused");
     let content = content(&folder);
     let mut engine = engine(&content);
-    assert!(engine.ask(at::SPEED, f64::NAN).is_err());
+    assert_refused(engine.ask(at::SPEED, f64::NAN), "must be between -30000 and 30000");
     // Walls that leave no floor: the handles stay as they were, and the bearing runs on.
     engine.ask(at::SPALL_LENGTH, 0.2).expect("in range");
     engine.ask(at::SPALL_DEPTH, 2.0).expect("in range");

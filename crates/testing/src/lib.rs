@@ -32,13 +32,15 @@ pub fn assert_close(ours: f64, theirs: f64, tolerance: f64, what: &str) {
 /// Fails unless `result` is an error whose message has `words`.
 #[track_caller]
 pub fn assert_refused<T, E: std::fmt::Display>(result: Result<T, E>, words: &str) {
-    match result {
-        Ok(_) => panic!("accepted, where `{words}` was expected"),
-        Err(why) => {
-            let why = why.to_string();
-            assert!(why.contains(words), "`{words}` is not in: {why}");
-        }
-    }
+    refuses(result, &[words]);
+}
+
+/// Fails unless `result` is an error whose message has all of these words.
+#[track_caller]
+pub fn refuses<T, E: std::fmt::Display>(result: Result<T, E>, words: &[&str]) {
+    let Err(why) = result else { panic!("accepted, where {words:?} were expected") };
+    let why = why.to_string();
+    words.iter().for_each(|word| assert!(why.contains(word), "`{word}` is not in: {why}"));
 }
 
 /// Observed orders of convergence from errors on meshes or with steps that halve each time.

@@ -195,6 +195,7 @@ mod tests {
         let mut lines = "Welcome\n@{\"wall_s\": 2.0, \"cpu_s\": 1.5}\n".as_bytes();
         let time: Time = answer(&mut lines, Path::new("none")).expect("one marked line");
         assert_eq!((time.wall_s, time.cpu_s), (2.0, 1.5));
-        assert!(answer::<Time>(&mut lines, Path::new("none")).is_err(), "the program has ended");
+        let ended = answer::<Time>(&mut lines, Path::new("none")).unwrap_err().to_string();
+        assert!(ended.contains("it ended without a word"), "{ended}");
     }
 }

@@ -1,6 +1,6 @@
 //! TDMS of LabVIEW: scales, segments in which a channel pauses, and rates of channels, groups and files.
 
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, assert_refused};
 
 use crate::{COUNT, RATE_HZ, holds, notes, opened, signal};
 
@@ -154,7 +154,7 @@ fn issue_scales_of_tdms_are_applied_or_named() {
         ("NI_Scale[0]_Thermocouple_Thermocouple_Type", Is::Word(10073)),
     ];
     let found = read(sensor);
-    assert!(found.channel("g/acc").is_err());
+    assert_refused(found.channel("g/acc"), "has no channel `g/acc`");
     notes(&found, &["`g/acc` is left out", "Thermocouple"]);
     holds(found.channel("g/plain").unwrap(), COUNT, stored);
 }

@@ -3,6 +3,7 @@
 use stribeck_infer::{
     Calibration, Curves, Emulator, Output, Posterior, PosteriorOptions, Prior, Runs, Scale, Target, sobol,
 };
+use stribeck_testing::refuses;
 
 fn columns() -> Vec<Output> {
     vec![
@@ -17,12 +18,6 @@ fn runs() -> Runs {
     Runs { points, outputs, ..Runs::default() }
 }
 
-#[track_caller]
-fn says<T, E: std::fmt::Display>(result: Result<T, E>, words: &[&str]) {
-    let text = result.err().expect("a refusal").to_string();
-    assert!(words.iter().all(|word| text.contains(word)), "{text}");
-}
-
 #[test]
 fn refuses_priors_that_are_no_distributions() {
     let cases: [(Prior, &[&str]); 6] = [
@@ -34,7 +29,7 @@ fn refuses_priors_that_are_no_distributions() {
         (Prior::Choices(0), &["choices = 0", "1 at least"]),
     ];
     for (prior, words) in cases {
-        says(prior.check(), words);
+        refuses(prior.check(), words);
     }
 }
 
@@ -45,19 +40,22 @@ fn refuses_runs_that_do_not_fit_together() {
         change(&mut runs);
         Emulator::fit(&runs, &columns(), 0)
     };
-    says(fit(|runs| runs.points[3] = vec![0.1]), &["point 3 has 1 numbers, expected 2"]);
-    says(fit(|runs| runs.points[3][1] = 1.5), &["coordinate 1 of row 3 = 1.5", "0 to 1"]);
-    says(fit(|runs| runs.points[3][1] = f64::NAN), &["coordinate 1 of row 3 = NaN"]);
-    says(fit(|runs| runs.outputs[5][1] = Some(-2.0)), &["output `b`", "row 5 = -2", "positive", "`Linear`"]);
-    says(fit(|runs| runs.outputs[5][0] = Some(f64::INFINITY)), &["output `a`", "row 5 = inf", "finite"]);
-    says(fit(|runs| runs.outputs[5] = vec![None]), &["row of outputs 5 has 1 numbers, expected 2"]);
-    says(fit(|runs| runs.outputs.truncate(4)), &["table 0 has 4 numbers, expected 12"]);
-    says(fit(|runs| runs.simulations = vec![0; 5]), &["list of simulations 0 has 5 numbers, expected 12"]);
+    refuses(fit(|runs| runs.points[3] = vec![0.1]), &["point 3 has 1 numbers, expected 2"]);
+    refuses(fit(|runs| runs.points[3][1] = 1.5), &["coordinate 1 of row 3 = 1.5", "0 to 1"]);
+    refuses(fit(|runs| runs.points[3][1] = f64::NAN), &["coordinate 1 of row 3 = NaN"]);
+    refuses(
+        fit(|runs| runs.outputs[5][1] = Some(-2.0)),
+        &["output `b`", "row 5 = -2", "positive", "`Linear`"],
+    );
+    refuses(fit(|runs| runs.outputs[5][0] = Some(f64::INFINITY)), &["output `a`", "row 5 = inf", "finite"]);
+    refuses(fit(|runs| runs.outputs[5] = vec![None]), &["row of outputs 5 has 1 numbers, expected 2"]);
+    refuses(fit(|runs| runs.outputs.truncate(4)), &["table 0 has 4 numbers, expected 12"]);
+    refuses(fit(|runs| runs.simulations = vec![0; 5]), &["list of simulations 0 has 5 numbers, expected 12"]);
     let few = |runs: &mut Runs| {
         runs.points = vec![vec![0.5, 0.5]; 12];
     };
-    says(fit(few), &["1 different points in 2 dimensions", "at least 4"]);
-    says(fit(|runs| *runs = Runs::default()), &["0 different points"]);
+    refuses(fit(few), &["1 different points in 2 dimensions", "at least 4"]);
+    refuses(fit(|runs| *runs = Runs::default()), &["0 different points"]);
 }
 
 #[test]
@@ -67,11 +65,11 @@ fn refuses_targets_that_cannot_be_asked_for() {
         emulator.log_likelihood(&[0.5, 0.5], &[Target { output, value, tolerance }])
     };
     assert!(ask(1, Some(1.5), 0.0).unwrap().is_finite());
-    says(ask(7, Some(1.0), 0.0), &["target 0", "`7`", "outputs 0 to 1"]);
-    says(ask(1, Some(-1.0), 0.0), &["target 0", "`b`", "value = -1", "positive"]);
-    says(ask(0, Some(f64::NAN), 0.0), &["`a`", "value = NaN"]);
-    says(ask(0, Some(1.0), -0.1), &["`a`", "tolerance = -0.1"]);
-    says(emulator.log_likelihood(&[0.5], &[]), &["point 0 has 1 numbers, expected 2"]);
+    refuses(ask(7, Some(1.0), 0.0), &["target 0", "`7`", "outputs 0 to 1"]);
+    refuses(ask(1, Some(-1.0), 0.0), &["target 0", "`b`", "value = -1", "positive"]);
+    refuses(ask(0, Some(f64::NAN), 0.0), &["`a`", "value = NaN"]);
+    refuses(ask(0, Some(1.0), -0.1), &["`a`", "tolerance = -0.1"]);
+    refuses(emulator.log_likelihood(&[0.5], &[]), &["point 0 has 1 numbers, expected 2"]);
 }
 
 #[test]
@@ -79,14 +77,14 @@ fn refuses_options_out_of_range() {
     let emulator = Emulator::fit(&runs(), &columns(), 0).unwrap();
     let priors = [Prior::Uniform { from: 0.0, to: 1.0 }; 2];
     let draws = |draws| Posterior::of(&emulator, &priors, &[], PosteriorOptions { draws, seed: 1 });
-    says(draws(3), &["draws = 3", "50 to 16384"]);
+    refuses(draws(3), &["draws = 3", "50 to 16384"]);
     let one = Posterior::of(&emulator, &priors[..1], &[], PosteriorOptions::default());
-    says(one, &["list of priors", "1 numbers, expected 2"]);
-    says(emulator.interval(&[0.5, 0.5], 0, 1.0), &["share = 1", "below 1"]);
+    refuses(one, &["list of priors", "1 numbers, expected 2"]);
+    refuses(emulator.interval(&[0.5, 0.5], 0, 1.0), &["share = 1", "below 1"]);
     let none = Calibration::of(&emulator, &priors, &[], &[], PosteriorOptions::default());
-    says(none, &["truths = 0", "1 at least"]);
-    says(Curves::fit(&[vec![1.0]], 0.9, 5), &["curves = 1", "2 at least"]);
-    says(Curves::fit(&[vec![1.0], vec![1.0, 2.0]], 0.9, 5), &["curve 1 has 2 numbers, expected 1"]);
+    refuses(none, &["truths = 0", "1 at least"]);
+    refuses(Curves::fit(&[vec![1.0]], 0.9, 5), &["curves = 1", "2 at least"]);
+    refuses(Curves::fit(&[vec![1.0], vec![1.0, 2.0]], 0.9, 5), &["curve 1 has 2 numbers, expected 1"]);
 }
 
 /// Outputs that no run, or only a few, yield are not emulated, and say so instead of inventing a number.

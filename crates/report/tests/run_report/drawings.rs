@@ -1,6 +1,7 @@
 //! Figures by themselves, as SVG and as pixels.
 
 use stribeck_report::plot::{Axis, Band, Colour, Figure, Mark, Series, png};
+use stribeck_testing::assert_refused;
 
 #[test]
 fn behaves_everything_asked_for_is_in_the_picture() {
@@ -35,5 +36,5 @@ fn behaves_letters_leave_ink() {
     };
     assert!(drawing("")[1..4] == *b"PNG");
     assert!(drawing("µ g²/Hz").len() > drawing("").len() + 100);
-    assert!(png("bad", "<svg").is_err());
+    assert_refused(png("bad", "<svg"), "figure `bad` cannot be drawn");
 }

@@ -601,8 +601,19 @@ mod tests {
         for good in ["1.0", "None", "(a: 1)", "[1, 2]", "\"x\"", "Some((a: (b: 2)))", " -3e4 "] {
             assert!(parse(good).is_ok(), "{good}");
         }
-        for bad in ["", "1, 2", "(a: 1", "1), b: (2", "\"x", "[1 2]", ")", "r#x", "(a: 1, 2)"] {
-            assert!(parse(bad).is_err(), "{bad}");
+        for (bad, at, stop) in [
+            ("", 0..0, Stop::Empty),
+            ("1, 2", 1..2, Stop::Expected("the end of the text")),
+            ("(a: 1", 5..5, Stop::Ends),
+            ("1), b: (2", 1..2, Stop::Expected("the end of the text")),
+            ("\"x", 2..2, Stop::Ends),
+            ("[1 2]", 3..4, Stop::Expected("`,` or `]`")),
+            (")", 0..1, Stop::NoValue),
+            ("r#x", 0..1, Stop::NoValue),
+            ("(a: 1, 2)", 7..8, Stop::Expected("the name of a field")),
+        ] {
+            let broken = parse(bad).expect_err(bad);
+            assert_eq!((broken.range, broken.kind), (at, stop), "{bad}");
         }
     }
 

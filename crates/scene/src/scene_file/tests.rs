@@ -9,7 +9,7 @@ mod own;
 mod written;
 
 use proptest::prelude::*;
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, assert_refused};
 
 use super::sources::SCENE;
 use super::{Place, Problem, SceneError, read_as};
@@ -162,7 +162,8 @@ fn refuses_broken_text_and_locates_it() {
     assert!(problem.message.contains("twice"), "{problem}");
     let problem = only(parse("(output: (sensors: [(name: \"a\")]))"));
     assert!(problem.message.contains("no field `angle_deg`"), "{problem}");
-    assert!(parse("() trailing").is_err());
+    let problem = only(parse("() trailing"));
+    assert!(problem.message.contains("the end of the text is expected here"), "{problem}");
 }
 
 #[test]
@@ -287,7 +288,8 @@ fn behaves_an_override_may_repair_a_file_or_break_it() {
     let folder = Scratch::create("scene");
     let path = folder.join("x.ron");
     std::fs::write(&path, "(mesh: (size_mm: -1.0))").expect("writable");
-    assert!(Scene::read(&path).is_err());
+    let problem = only(Scene::read(&path));
+    assert!(matches!(problem.place, Place::File { .. }), "{problem}");
     assert_eq!(Scene::read_with(&path, &["mesh.size_mm=2.0"]).expect("repaired").mesh.size_mm, 2.0);
     let problem = only(Scene::read_with(&path, &["mesh=(size_mm: -2.0)"]));
     assert!(matches!(problem.place, Place::CommandLine { .. }), "{problem}");
@@ -313,9 +315,10 @@ fn refuses_files_that_are_no_scene() {
 
 #[test]
 fn refuses_deep_nesting() {
-    assert!(parse(&"(".repeat(100_000)).is_err());
-    assert!(parse(&format!("(bearing: {}", "[".repeat(100_000))).is_err());
-    assert!(Scene::default().with_overrides(&[format!("bearing={}", "(a:".repeat(50_000))]).is_err());
+    assert_refused(parse(&"(".repeat(100_000)), "too many brackets in each other");
+    assert_refused(parse(&format!("(bearing: {}", "[".repeat(100_000))), "too many brackets in each other");
+    let deep = Scene::default().with_overrides(&[format!("bearing={}", "(a:".repeat(50_000))]);
+    assert_refused(deep, "which is not one complete value");
 }
 
 #[test]

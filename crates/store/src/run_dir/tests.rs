@@ -1,6 +1,6 @@
 use std::path::Path;
 
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, assert_refused};
 
 use super::*;
 use crate::run_info::{EnergyInfo, MeshInfo, Status};
@@ -262,7 +262,7 @@ fn issue_what_is_made_of_runs_takes_no_folder_of_others() {
         "{error}"
     );
     std::fs::remove_file(path.join(TRACE)).expect("it is there");
-    assert!(check_folder(&path, MARKS).is_err(), "`run.json` is still there");
+    assert_refused(check_folder(&path, MARKS), "holds a run without samples");
     let other = folder.join("other");
     std::fs::create_dir_all(&other).expect("writable");
     std::fs::write(other.join(".hidden"), "").expect("writable");
@@ -294,7 +294,7 @@ fn refuses_missing_and_broken_runs() {
     let file = folder.join(SCENE);
     let error = RunDir::create(file.join("x")).expect_err("below a file").to_string();
     assert!(error.contains("--out"), "{error}");
-    assert!(write_atomic(&file.join("x"), b"").is_err());
+    assert_refused(write_atomic(&file.join("x"), b""), "cannot write");
     assert!(partial_files(folder.path()).is_empty());
 }
 
@@ -325,7 +325,7 @@ fn survives_many_writers_of_one_file() {
     assert!(partial_files(folder.path()).is_empty());
     // A target that cannot be replaced leaves nothing either.
     std::fs::create_dir_all(folder.join("taken/within")).expect("writable");
-    assert!(write_atomic(&folder.join("taken"), b"x").is_err());
+    assert_refused(write_atomic(&folder.join("taken"), b"x"), "cannot write");
     assert!(partial_files(folder.path()).is_empty());
 }
 
