@@ -2,6 +2,7 @@
 
 use stribeck_diagnosis::speed::tacho::{Turns, of, of_angle, pulses, turns};
 use stribeck_dsp::channel::Channel;
+use stribeck_testing::{Noise, assert_refused};
 
 #[test]
 fn planted_pulses_give_the_speed_between_samples() {
@@ -29,10 +30,7 @@ fn planted_an_angle_gives_pulses_and_the_mean_speed() {
     assert!((found.pulses[59] - turn).abs() < 1e-2, "{} {turn}", found.pulses[59]);
     let back = Channel::held("shaft.angle_rad", vec![0.0, 1.0, 0.5]);
     assert!(of_angle(&back, 1.0).unwrap_err().to_string().contains("turns back"));
-    stribeck_testing::assert_refused(
-        of_angle(&Channel::held("shaft.angle_rad", vec![0.0; 9]), 1.0),
-        "a twentieth of a turn",
-    );
+    assert_refused(of_angle(&Channel::held("shaft.angle_rad", vec![0.0; 9]), 1.0), "a twentieth of a turn");
 }
 
 /// Pulses of a tenth of a turn at 1200 rpm, 12 800 samples a second, `n` turns; `keep` says whether turn
@@ -67,12 +65,9 @@ fn planted_missing_and_double_pulses_are_bridged_and_noted() {
 
 #[test]
 fn planted_noise_and_sparks_are_no_pulses() {
-    let mut state = 1_u32;
-    let mut noise = || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(state >> 8) / f64::from(1 << 24) - 0.5
-    };
-    let mut samples: Vec<f64> = wheel(40, |_| true).into_iter().map(|x| 5.0 * x + 1.5 * noise()).collect();
+    let mut noise = Noise::new(1);
+    let mut samples: Vec<f64> =
+        wheel(40, |_| true).into_iter().map(|x| 5.0 * x + 0.75 * noise.uniform()).collect();
     samples[5000] = 90.0;
     let found = turns(&Channel::held("tacho", samples), 12_800.0).unwrap();
     assert!((found.rpm / 1200.0 - 1.0).abs() < 1e-3 && found.count >= 38, "{found:?}");
@@ -80,14 +75,9 @@ fn planted_noise_and_sparks_are_no_pulses() {
 
 #[test]
 fn refuses_a_tachometer_that_is_none() {
-    let mut state = 1_u32;
-    let mut noise = || {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        f64::from(state >> 8) / f64::from(1 << 24)
-    };
-    let samples = (0..20_000).map(|_| noise()).collect();
-    let why = turns(&Channel::held("tacho", samples), 12_800.0).unwrap_err().to_string();
-    assert!(why.contains("no speed follows"), "{why}");
+    let mut noise = Noise::new(1);
+    let samples = (0..20_000).map(|_| noise.share()).collect();
+    assert_refused(turns(&Channel::held("tacho", samples), 12_800.0), "no speed follows");
 }
 
 #[test]

@@ -13,8 +13,8 @@ use stribeck_dsp::channel::Channel;
 use stribeck_report as report;
 use stribeck_store::run_info::Status;
 use stribeck_testing::Noise;
+use stribeck_testing::Scratch;
 use stribeck_theory::catalogue::CatalogueBearing;
-use synthetic::Scratch;
 
 /// Time that scripts get [ms of the browser's own clock].
 const BUDGET_MS: u32 = 20_000;
@@ -107,8 +107,8 @@ fn title_in(browser: &Path, page: &Path, profile: &Path, dark: bool, size: &str)
 fn behaves_a_browser_draws_every_figure_without_an_error() {
     let Some(browser) = browser() else { return };
     let folder = Scratch::new("browser");
-    synthetic::write(&folder.0, Status::Complete, 3000);
-    report::write(&folder.0).expect("a report");
+    synthetic::write(folder.path(), Status::Complete, 3000);
+    report::write(folder.path()).expect("a report");
     draws_all(&browser, &folder);
 }
 
@@ -116,8 +116,8 @@ fn behaves_a_browser_draws_every_figure_without_an_error() {
 fn behaves_a_browser_draws_every_figure_of_an_ensemble() {
     let Some(browser) = browser() else { return };
     let folder = Scratch::new("browser-ensemble");
-    synthetic::write_ensemble(&folder.0, &[0.8, 1.0, 1.2], 3);
-    report::write_ensemble(&folder.0).expect("a report");
+    synthetic::write_ensemble(folder.path(), &[0.8, 1.0, 1.2], 3);
+    report::write_ensemble(folder.path()).expect("a report");
     draws_all(&browser, &folder);
 }
 
@@ -142,8 +142,8 @@ fn behaves_a_browser_draws_every_figure_of_a_measured_record() {
     };
     let of = |height: f64| Analysis::of(&knocks(height), 12_800.0, &machine).expect("a signal");
     let baseline = report::Baseline { name: "sound.mat".to_owned(), analysis: of(0.0) };
-    report::write_measured(&folder.0, "damaged.mat", &of(2.0), Some(&baseline)).expect("a page");
-    let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
+    report::write_measured(folder.path(), "damaged.mat", &of(2.0), Some(&baseline)).expect("a page");
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("a page");
     for words in
         ["id=\"kurtogram\"", "id=\"waterfall\"", "In grey behind it: sound.mat", "new since sound.mat"]
     {
@@ -152,11 +152,11 @@ fn behaves_a_browser_draws_every_figure_of_a_measured_record() {
     let Some(browser) = browser() else { return };
     draws_all(&browser, &folder);
     let hands = probed(&folder, HANDS_ON_A_SPECTRUM);
-    let said = title_of(&browser, &hands, &folder.0.join("profile"), false);
+    let said = title_of(&browser, &hands, &folder.join("profile"), false);
     assert_eq!(said, "failed= errors=");
     // On a phone nothing stands out beyond the screen, wide tables move by themselves.
     let phone = probed(&folder, HANDS_ON_A_PHONE);
-    let said = title_in(&browser, &phone, &folder.0.join("profile"), false, "390,844");
+    let said = title_in(&browser, &phone, &folder.join("profile"), false, "390,844");
     assert_eq!(said, "failed= errors=");
 }
 
@@ -166,10 +166,10 @@ fn behaves_a_browser_draws_every_figure_of_a_measured_record() {
 fn behaves_buttons_keys_and_clicks_move_the_page_of_a_run() {
     let Some(browser) = browser() else { return };
     let folder = Scratch::new("browser-hands");
-    synthetic::write(&folder.0, Status::Complete, 3000);
-    report::write(&folder.0).expect("a report");
+    synthetic::write(folder.path(), Status::Complete, 3000);
+    report::write(folder.path()).expect("a report");
     let probed = probed(&folder, HANDS_ON_A_RUN);
-    let said = title_of(&browser, &probed, &folder.0.join("profile"), false);
+    let said = title_of(&browser, &probed, &folder.join("profile"), false);
     assert_eq!(said, "failed= errors=");
 }
 
@@ -263,7 +263,7 @@ const hands = () => {
 
 /// The report in `folder` with scripts that watch it and do what hands would.
 fn probed(folder: &Scratch, hands: &str) -> PathBuf {
-    let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("a page");
     let watched = page.replacen("<head>", &format!("<head>{WATCH}"), 1).replacen(
         "</body>",
         &format!("{hands}{}</body>", if hands == PROBE { "" } else { HANDS }),
@@ -271,18 +271,18 @@ fn probed(folder: &Scratch, hands: &str) -> PathBuf {
     );
     assert_ne!(watched.len(), page.len());
     // Snap's Chromium sees no hidden folders and no /tmp of ours; the folder of the run is as good as any.
-    let probed = folder.0.join("probed.html");
+    let probed = folder.join("probed.html");
     std::fs::write(&probed, watched).expect("a writable folder");
     probed
 }
 
 /// Opens the report in `folder`, by day and by night.
 fn draws_all(browser: &Path, folder: &Scratch) {
-    let page = std::fs::read_to_string(folder.0.join("report.html")).expect("a page");
+    let page = std::fs::read_to_string(folder.join("report.html")).expect("a page");
     let figures = page.matches("<figure id=").count();
     let probed = probed(folder, PROBE);
     for dark in [false, true] {
-        let said = title_of(browser, &probed, &folder.0.join("profile"), dark);
+        let said = title_of(browser, &probed, &folder.join("profile"), dark);
         assert_eq!(said, format!("figures={figures} undrawn= errors="), "dark: {dark}");
     }
 }

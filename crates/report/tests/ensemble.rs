@@ -11,13 +11,13 @@ use stribeck_report as report;
 use stribeck_scene::ensemble::start;
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_info::Status;
-use synthetic::Scratch;
+use stribeck_testing::{Scratch, assert_has, assert_refused};
 
 /// Five starts: three complete, as loud as given; one diverged; one that could not be run.
 fn ensemble(name: &str, gains: [f64; 3]) -> (Scratch, EnsembleSummary) {
     let folder = Scratch::new(name);
-    synthetic::write_ensemble(&folder.0, &gains, 5);
-    let summary = report::write_ensemble(&folder.0).expect("a report");
+    synthetic::write_ensemble(folder.path(), &gains, 5);
+    let summary = report::write_ensemble(folder.path()).expect("a report");
     (folder, summary)
 }
 
@@ -32,9 +32,7 @@ fn planted_numbers_of_three_starts_that_differ_by_their_gain() {
     assert_eq!((summary.count(Ended::Complete), summary.count(Ended::Diverged)), (3, 1));
     assert_eq!((summary.starts[4].ended, summary.starts[3].ended), (Ended::Failed, Ended::Diverged));
     let said = summary.notes.join("\n");
-    for words in ["start 4 diverged", "energy imbalance", "start 5 failed", "no equilibrium"] {
-        assert!(said.contains(words), "`{words}` is missing in: {said}");
-    }
+    assert_has(&said, &["start 4 diverged", "energy imbalance", "start 5 failed", "no equilibrium"]);
 
     // Start angles move impulses between samples, so that peaks differ by a little more than the gains.
     let peak = summary.number("levels.exit_g").expect("three");
@@ -48,7 +46,7 @@ fn planted_numbers_of_three_starts_that_differ_by_their_gain() {
     assert!((peak.high.expect("three") - peak.mean - half).abs() < 1e-6 * half, "{peak:?}");
 
     // The same under its name in summary.json, for whoever reads it with other tools.
-    let file = json(&folder.0);
+    let file = json(folder.path());
     assert_eq!(file["ensemble"]["levels"]["exit_g"]["mean"].as_f64(), Some(peak.mean));
     assert_eq!(file["ensemble"]["levels"]["exit_g"]["low"].as_f64(), peak.low);
     assert_eq!(file["starts"].as_array().map(Vec::len), Some(5));
@@ -70,7 +68,7 @@ fn planted_numbers_of_three_starts_that_differ_by_their_gain() {
 #[test]
 fn behaves_the_page_says_first_what_is_chosen_and_how_much_starts_scatter() {
     let (folder, _) = ensemble("page", [0.9, 1.0, 1.1]);
-    let page = fs::read_to_string(folder.0.join("report.html")).expect("a page");
+    let page = fs::read_to_string(folder.join("report.html")).expect("a page");
     let place = |words: &str| page.find(words).unwrap_or_else(|| panic!("`{words}` is missing"));
     let order = [
         "3 of 5 starts are complete",
@@ -94,7 +92,7 @@ fn behaves_the_page_says_first_what_is_chosen_and_how_much_starts_scatter() {
         ["levels", "acceleration", "spectrum", "spectrum-zoom", "events", "force-1", "paper-2", "paper-8c"]
     {
         for form in ["svg", "png"] {
-            let file = folder.0.join("figures").join(format!("{figure}.{form}"));
+            let file = folder.join("figures").join(format!("{figure}.{form}"));
             assert!(file.exists(), "{} is missing", file.display());
         }
     }
@@ -105,51 +103,50 @@ fn behaves_the_page_says_first_what_is_chosen_and_how_much_starts_scatter() {
 fn invariant_the_same_starts_give_the_same_page() {
     let (folder, _) = ensemble("again", [0.9, 1.0, 1.1]);
     let names = ["report.html", "summary.json", "figures/levels.svg", "figures/spectrum.png"];
-    let bytes = || names.map(|name| fs::read(folder.0.join(name)).expect("readable"));
+    let bytes = || names.map(|name| fs::read(folder.join(name)).expect("readable"));
     let before = bytes();
     for name in ["report.html", "summary.json"] {
-        fs::remove_file(folder.0.join(name)).expect("removable");
+        fs::remove_file(folder.join(name)).expect("removable");
     }
-    fs::remove_dir_all(folder.0.join("figures")).expect("removable");
-    report::write_ensemble(&folder.0).expect("a report");
+    fs::remove_dir_all(folder.join("figures")).expect("removable");
+    report::write_ensemble(folder.path()).expect("a report");
     assert!(bytes() == before, "another page from the same files");
 }
 
 #[test]
 fn survives_starts_that_are_cut_off_or_changed() {
     let (folder, _) = ensemble("damaged", [0.9, 1.0, 1.1]);
-    let trace = folder.0.join("start-001/trace.npy");
+    let trace = folder.join("start-001/trace.npy");
     let bytes = fs::read(&trace).expect("readable");
     fs::write(&trace, &bytes[..bytes.len() / 2]).expect("writable");
     // A start that was made of another scene, and one whose scene is no scene.
     let other = Scene::default().with_overrides(&["operation.load_n=40000"]).expect("valid");
-    fs::remove_dir_all(folder.0.join("start-002")).expect("removable");
-    synthetic::write_scene(&folder.0.join("start-002"), &start(&other, 5, 2), Status::Complete, 300, 1.0);
-    fs::write(folder.0.join("start-003/scene.ron"), "(mesh: (size_mm: -1").expect("writable");
-    let summary = report::write_ensemble(&folder.0).expect("a report");
+    fs::remove_dir_all(folder.join("start-002")).expect("removable");
+    synthetic::write_scene(&folder.join("start-002"), &start(&other, 5, 2), Status::Complete, 300, 1.0);
+    fs::write(folder.join("start-003/scene.ron"), "(mesh: (size_mm: -1").expect("writable");
+    let summary = report::write_ensemble(folder.path()).expect("a report");
     assert_eq!(summary.count(Ended::Complete), 0);
     let said = summary.notes.join("\n");
-    for words in [
-        "start 1 failed",
-        "cut off",
-        "start 2 failed",
-        "differs in more than what is drawn",
-        "start 3 failed",
-    ] {
-        assert!(said.contains(words), "`{words}` is missing in: {said}");
-    }
+    assert_has(
+        &said,
+        &[
+            "start 1 failed",
+            "cut off",
+            "start 2 failed",
+            "differs in more than what is drawn",
+            "start 3 failed",
+        ],
+    );
     assert_eq!(summary.ensemble, Merged::Nothing);
 }
 
 #[test]
 fn refuses_an_ensemble_whose_scene_was_changed() {
     let (folder, _) = ensemble("changed", [0.9, 1.0, 1.1]);
-    let scene = folder.0.join("scene.ron");
+    let scene = folder.join("scene.ron");
     let text = fs::read_to_string(&scene).expect("readable");
     fs::write(&scene, text.replace("load_n: 50000.0", "load_n: 40000.0")).expect("writable");
-    let error = report::write_ensemble(&folder.0).expect_err("changed").to_string();
-    assert!(error.contains("was changed after the run"), "{error}");
-    fs::write(folder.0.join("ensemble.json"), "{\"seed\": ").expect("writable");
-    let error = report::write_ensemble(&folder.0).expect_err("cut").to_string();
-    assert!(error.contains("ensemble.json"), "{error}");
+    assert_refused(report::write_ensemble(folder.path()), "was changed after the run");
+    fs::write(folder.join("ensemble.json"), "{\"seed\": ").expect("writable");
+    assert_refused(report::write_ensemble(folder.path()), "ensemble.json");
 }

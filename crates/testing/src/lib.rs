@@ -39,8 +39,13 @@ pub fn assert_refused<T, E: std::fmt::Display>(result: Result<T, E>, words: &str
 #[track_caller]
 pub fn refuses<T, E: std::fmt::Display>(result: Result<T, E>, words: &[&str]) {
     let Err(why) = result else { panic!("accepted, where {words:?} were expected") };
-    let why = why.to_string();
-    words.iter().for_each(|word| assert!(why.contains(word), "`{word}` is not in: {why}"));
+    assert_has(&why.to_string(), words);
+}
+
+/// Fails unless a text has all of these words.
+#[track_caller]
+pub fn assert_has(text: &str, words: &[&str]) {
+    words.iter().for_each(|word| assert!(text.contains(word), "`{word}` is not in: {text}"));
 }
 
 /// Observed orders of convergence from errors on meshes or with steps that halve each time.

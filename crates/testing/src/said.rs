@@ -10,6 +10,5 @@ pub fn said(output: &Output) -> String {
 /// Fails unless its output contains all of these words.
 #[track_caller]
 pub fn says(output: &Output, words: &[&str]) {
-    let said = said(output);
-    words.iter().for_each(|word| assert!(said.contains(word), "`{word}` is missing in: {said}"));
+    crate::assert_has(&said(output), words);
 }

@@ -233,6 +233,7 @@ mod tests {
 
     use super::*;
     use stribeck_surface::Law;
+    use stribeck_testing::Noise;
 
     const DT: f64 = 1e-4;
     const THICKNESS: f64 = 0.02;
@@ -277,11 +278,8 @@ mod tests {
 
     /// Random states about contact, of points that stick and of points that slide.
     fn states() -> Vec<State> {
-        let mut seed = 1882_u64;
-        let mut random = |scale: f64| {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            scale * ((seed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
-        };
+        let mut noise = Noise::new(1882);
+        let mut random = |scale: f64| scale * noise.uniform();
         (0..50 * LANES)
             .map(|_| {
                 [

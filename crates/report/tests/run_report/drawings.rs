@@ -1,7 +1,7 @@
 //! Figures by themselves, as SVG and as pixels.
 
 use stribeck_report::plot::{Axis, Band, Colour, Figure, Mark, Series, png};
-use stribeck_testing::assert_refused;
+use stribeck_testing::{assert_has, assert_refused};
 
 #[test]
 fn behaves_everything_asked_for_is_in_the_picture() {
@@ -11,10 +11,10 @@ fn behaves_everything_asked_for_is_in_the_picture() {
     figure.marks.push(Mark { x: 5.08e-3, label: "exit 1".into(), colour: Colour::Orange, dashed: true });
     figure.bands.push(Band { from: 0.0, to: 7e-3, label: "transient".into() });
     let svg = figure.to_svg().unwrap();
-    for wanted in ["&lt;raw&gt;", "Time", "a_y [g]", "5 ms", "25 ms", "exit 1", "transient", "side", "−100"]
-    {
-        assert!(svg.contains(wanted), "{wanted} is missing");
-    }
+    assert_has(
+        &svg,
+        &["&lt;raw&gt;", "Time", "a_y [g]", "5 ms", "25 ms", "exit 1", "transient", "side", "−100"],
+    );
     assert!(svg.len() < 200_000, "{} bytes", svg.len());
 }
 

@@ -16,7 +16,7 @@ use std::path::Path;
 use stribeck_analysis::summary::Summary;
 use stribeck_report as report;
 use stribeck_store::run_info::Status;
-use synthetic::Scratch;
+use stribeck_testing::Scratch;
 
 /// The whole record of the paper, 30 ms at 100 kHz.
 const SAMPLES: usize = 3000;
@@ -32,7 +32,7 @@ fn read(folder: &Path, name: &str) -> String {
 
 fn whole(name: &str) -> (Scratch, Summary) {
     let folder = Scratch::new(name);
-    synthetic::write(&folder.0, Status::Complete, SAMPLES);
-    let summary = report::write(&folder.0).expect("a report");
+    synthetic::write(folder.path(), Status::Complete, SAMPLES);
+    let summary = report::write(folder.path()).expect("a report");
     (folder, summary)
 }

@@ -6,9 +6,11 @@ use stribeck_scene::scene::{FilmScene, Scene};
 use stribeck_store::run_info::Status;
 
 use crate::schemas::agree;
+use stribeck_testing::{Scratch, assert_has};
+
 use crate::synthetic::{
     self, ENTRY_LAG_S, EXIT_LEAD_S, FLOATING_M, IMPULSE_G, INTERVAL_S, NOISE_G, OIL_W, SLIP, SUPPORT_N,
-    Scratch, TONE_G, TONE_HZ, WEIGHT_N,
+    TONE_G, TONE_HZ, WEIGHT_N,
 };
 use crate::{SAMPLES, close, read, whole};
 
@@ -105,7 +107,7 @@ fn planted_tone_levels_and_notch_of_the_synthetic_run() {
 #[test]
 fn golden_the_summary_has_its_stable_names() {
     let (folder, summary) = whole("names");
-    let text = read(&folder.0, "summary.json");
+    let text = read(folder.path(), "summary.json");
     let json: serde_json::Value = serde_json::from_str(&text).expect("JSON");
     let declared: Vec<String> = Summary::quantities().into_iter().map(|quantity| quantity.path).collect();
     let page = include_str!("../../../../docs/guide/src/quantities.md");
@@ -160,12 +162,12 @@ fn roundtrip_oil_films_of_the_synthetic_run() {
     const ROUNDING: f64 = 1e-9;
     let folder = Scratch::new("dry");
     let scene = Scene { film: None, ..Scene::default() };
-    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
-    assert!(report::write(&folder.0).expect("a report").film.is_none());
+    synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1.0);
+    assert!(report::write(folder.path()).expect("a report").film.is_none());
     let folder = Scratch::new("oil");
     let scene = Scene { film: Some(FilmScene::default()), ..Scene::default() };
-    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
-    let film = report::write(&folder.0).expect("a report").film.expect("oil");
+    synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1.0);
+    let film = report::write(folder.path()).expect("a report").film.expect("oil");
     for (ring, what) in ["outer", "inner"].into_iter().enumerate() {
         close(film.floating_um[ring], 1e6 * FLOATING_M[ring], ROUNDING, what);
         close(film.largest_n[ring], [0.0, WEIGHT_N][ring], ROUNDING, what);
@@ -174,10 +176,8 @@ fn roundtrip_oil_films_of_the_synthetic_run() {
         close(Some(film.lambda[ring]), loaded.thickness / 0.3e-6, ROUNDING, what);
     }
     close(film.heat_j, OIL_W * (SAMPLES - 1) as f64 * INTERVAL_S, ROUNDING, "heat");
-    let page = read(&folder.0, "report.html");
-    for words in ["Oil film of rollers without load", "30.0 and 45.0 µm", "0.0 and 0.4 N"] {
-        assert!(page.contains(words), "{words}");
-    }
+    let page = read(folder.path(), "report.html");
+    assert_has(&page, &["Oil film of rollers without load", "30.0 and 45.0 µm", "0.0 and 0.4 N"]);
 }
 
 /// A quarter of a turn of a load that turns with the shaft, from where it adds to the other: its mean along
@@ -190,13 +190,13 @@ fn analytic_rollers_carry_what_a_rotating_load_does_over_the_record() {
     let scene = Scene::default()
         .with_overrides(&["operation.rotating_load=(force_n: 10000, angle_deg: 270)"])
         .expect("a sound scene");
-    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
-    let load = report::write(&folder.0).expect("a report").load;
+    synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1.0);
+    let load = report::write(folder.path()).expect("a report").load;
     let wanted = SUPPORT_N + 10e3 * std::f64::consts::FRAC_2_PI;
     close(Some(load.expected_n), wanted, SAMPLED * wanted, "load and weight");
     close(load.relative_error, SUPPORT_N / wanted - 1.0, SAMPLED, "difference");
     assert!(
-        read(&folder.0, "report.html").contains(" rollers under 50.01 to 60 kN at "),
+        read(folder.path(), "report.html").contains(" rollers under 50.01 to 60 kN at "),
         "the range on record"
     );
 }

@@ -7,8 +7,9 @@ use stribeck_scene::housing::{HousingScene, RigidHousingScene};
 use stribeck_scene::scene::{ContactSurface, Scene};
 use stribeck_store::run_info::Status;
 
-use crate::synthetic::{self, Scratch};
+use crate::synthetic;
 use crate::{SAMPLES, read, whole};
+use stribeck_testing::{Scratch, assert_has};
 
 /// Largest page that mails and reviews still take.
 const PAGE_LIMIT_BYTES: u64 = 15_000_000;
@@ -20,7 +21,7 @@ const MOVING_LIMIT_BYTES: usize = 60_000;
 #[test]
 fn behaves_the_page_holds_every_figure_and_needs_no_network() {
     let (folder, _) = whole("page");
-    let page = read(&folder.0, "report.html");
+    let page = read(folder.path(), "report.html");
     assert!((page.len() as u64) < PAGE_LIMIT_BYTES, "{} bytes", page.len());
     for figure in [
         "acceleration",
@@ -56,12 +57,12 @@ fn behaves_the_page_holds_every_figure_and_needs_no_network() {
         "energy-error",
     ] {
         assert!(page.contains(&format!("<figure id=\"{figure}\"")), "{figure} is not in the page");
-        let picture = read(&folder.0, &format!("figures/{figure}.svg"));
+        let picture = read(folder.path(), &format!("figures/{figure}.svg"));
         assert!(
             picture.starts_with("<svg") && picture.trim_end().ends_with("</svg>"),
             "{figure}.svg is broken"
         );
-        let pixels = fs::read(folder.0.join(format!("figures/{figure}.png"))).expect("a picture");
+        let pixels = fs::read(folder.join(format!("figures/{figure}.png"))).expect("a picture");
         assert!(pixels.starts_with(b"\x89PNG"), "{figure}.png is broken");
     }
     // The moving bearing is no file of its own.
@@ -83,7 +84,7 @@ fn behaves_the_page_holds_every_figure_and_needs_no_network() {
 #[test]
 fn behaves_the_page_begins_with_the_answer() {
     let (folder, _) = whole("answer");
-    let page = read(&folder.0, "report.html");
+    let page = read(folder.path(), "report.html");
     let places = [
         "The defect. ",
         "The mesh. ",
@@ -111,14 +112,12 @@ fn behaves_a_quiet_sound_bearing_has_digits_and_no_words_on_defects() {
         ..Scene::default()
     };
     let scene = scene.with_overrides(&["operation.load_angle_deg=0"]).expect("a sound scene");
-    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1e-3);
-    let summary = report::write(&folder.0).expect("a report");
-    let page = read(&folder.0, "report.html");
+    synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1e-3);
+    let summary = report::write(folder.path()).expect("a report");
+    let page = read(folder.path(), "report.html");
     let gap = summary.levels.phases.gap_g.expect("a level");
     assert!(gap > 0.04 && gap < 0.07, "{gap}");
-    for words in ["reaches 0.0", "along the radius there"] {
-        assert!(page.contains(words), "{words}");
-    }
+    assert_has(&page, &["reaches 0.0", "along the radius there"]);
     for words in [
         "reaches 0 g",
         "to 0 g",
@@ -143,15 +142,16 @@ fn behaves_arcs_without_a_facet_tone_have_no_notch_and_the_page_says_why() {
         let folder = Scratch::new(name);
         let mut scene = Scene::default();
         scene.contact.surface = surface;
-        synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
-        let mut info: serde_json::Value = serde_json::from_str(&read(&folder.0, "run.json")).expect("JSON");
+        synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1.0);
+        let mut info: serde_json::Value =
+            serde_json::from_str(&read(folder.path(), "run.json")).expect("JSON");
         for facets in ["roller_facets", "outer_facets", "inner_facets"] {
             let count = info["mesh"][facets].as_u64().expect("a number");
             info["mesh"][facets] = (count + count / 3).into();
         }
-        fs::write(folder.0.join("run.json"), info.to_string()).expect("writable");
-        let summary = report::write(&folder.0).expect("a report");
-        (read(&folder.0, "report.html"), summary, folder)
+        fs::write(folder.join("run.json"), info.to_string()).expect("writable");
+        let summary = report::write(folder.path()).expect("a report");
+        (read(folder.path(), "report.html"), summary, folder)
     };
     let (page, summary, _folder) = of("arcs", ContactSurface::Arc);
     assert!(summary.notch.is_none() && summary.levels.between_filtered_g.is_none());
@@ -175,9 +175,9 @@ fn behaves_arcs_without_a_facet_tone_have_no_notch_and_the_page_says_why() {
 #[test]
 fn invariant_the_same_directory_gives_the_same_bytes() {
     let (folder, _) = whole("bytes");
-    let first = read(&folder.0, "report.html");
-    report::write(&folder.0).expect("a second report");
-    assert!(first == read(&folder.0, "report.html"), "the page changed");
+    let first = read(folder.path(), "report.html");
+    report::write(folder.path()).expect("a second report");
+    assert!(first == read(folder.path(), "report.html"), "the page changed");
 }
 
 /// A 6205 has balls, and its page and pictures call them so; names of channels and fields stay.
@@ -185,13 +185,11 @@ fn invariant_the_same_directory_gives_the_same_bytes() {
 fn issue_the_page_of_a_ball_bearing_speaks_of_balls() {
     let folder = Scratch::new("balls");
     let scene = Scene::parse("(bearing: \"6205\", model: full)", "here").expect("a bearing of the catalogue");
-    synthetic::write_scene(&folder.0, &scene, Status::Complete, SAMPLES, 1.0);
-    report::write(&folder.0).expect("a report");
-    let page = read(&folder.0, "report.html");
+    synthetic::write_scene(folder.path(), &scene, Status::Complete, SAMPLES, 1.0);
+    report::write(folder.path()).expect("a report");
+    let page = read(folder.path(), "report.html");
     let text = page.split("<pre>").next().expect("what is before the scene");
-    for words in ["9 balls, modelled as cylinders,", "Largest ball force", ">Ball</th>"] {
-        assert!(text.contains(words), "{words}");
-    }
+    assert_has(text, &["9 balls, modelled as cylinders,", "Largest ball force", ">Ball</th>"]);
     // What is left are names: of channels, fields, figures and their parts.
     let odd = ["a roller ", "rollers ", " roller 1", "Rollers", "the roller", ">Roller"];
     for words in odd {
@@ -199,7 +197,7 @@ fn issue_the_page_of_a_ball_bearing_speaks_of_balls() {
             text.find(words).map(|at| text[at.saturating_sub(60)..].chars().take(140).collect::<String>());
         assert_eq!(found, None, "{words}");
     }
-    let picture = read(&folder.0, "figures/spin.svg");
+    let picture = read(folder.path(), "figures/spin.svg");
     assert!(picture.contains("balls") && !picture.contains("rollers"), "the picture's words");
     assert!(page.contains("roller_diameter_mm"), "the scene keeps its fields");
 }

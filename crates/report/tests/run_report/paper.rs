@@ -6,7 +6,7 @@ use crate::{close, read, whole};
 #[test]
 fn behaves_every_number_of_the_paper_has_a_row_without_a_blank() {
     let (folder, summary) = whole("paper");
-    let page = read(&folder.0, "report.html");
+    let page = read(folder.path(), "report.html");
     for row in &summary.paper {
         for cell in [&row.quantity, &row.paper, &row.ours, &row.difference, &row.why] {
             assert!(!cell.trim().is_empty(), "{row:?}");
@@ -77,7 +77,7 @@ fn behaves_every_number_of_the_paper_has_a_row_without_a_blank() {
 #[test]
 fn planted_the_paper_is_answered_figure_by_figure() {
     let (folder, summary) = whole("figures");
-    let page = read(&folder.0, "report.html");
+    let page = read(folder.path(), "report.html");
     let section = &page[page.find("id=\"numbers\"").expect("a section")..];
     assert!(section.contains("ours is “bottom” at 270°"), "the sensor is not said");
     let bottom = summary.levels.sensors.iter().find(|s| s.sensor == "bottom").expect("a sensor at 270°");

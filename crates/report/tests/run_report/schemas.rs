@@ -10,7 +10,7 @@ use stribeck_testing::Noise;
 use stribeck_theory::catalogue::CatalogueBearing;
 
 use crate::read;
-use crate::synthetic::Scratch;
+use stribeck_testing::Scratch;
 
 /// Whether a value is what a schema allows; the first place where it is not.
 pub(crate) fn agree(schema: &Value, value: &Value, path: &str) -> Result<(), String> {
@@ -62,7 +62,7 @@ fn record(rail: f64) -> Channel {
 #[test]
 fn roundtrip_findings_follow_their_schema() {
     let folder = Scratch::new("schema");
-    let of = |name: &str| folder.0.join(name);
+    let of = |name: &str| folder.join(name);
     let machine = Machine {
         speed_rpm: Some(1200.0),
         bearing: Some(CatalogueBearing::parse("6205").expect("known")),

@@ -4,7 +4,7 @@
 mod mesh;
 
 use std::f64::consts::TAU;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use stribeck_scene::ensemble::start;
 use stribeck_scene::scene::Scene;
@@ -12,6 +12,7 @@ use stribeck_store::run_dir::Ensemble;
 use stribeck_store::run_dir::RunDir;
 use stribeck_store::run_info::{EnergyInfo, RunInfo, Status};
 use stribeck_store::trace::TraceWriter;
+use stribeck_testing::Noise;
 use stribeck_theory::kinematics::Crossing;
 
 /// Standard acceleration of gravity [m/s²].
@@ -40,34 +41,6 @@ pub(crate) const WEIGHT_N: f64 = 0.39;
 pub(crate) const OIL_W: f64 = 0.5;
 /// Sampling interval [s].
 pub(crate) const INTERVAL_S: f64 = 1e-5;
-
-/// A folder that is removed at the end of a test.
-pub(crate) struct Scratch(pub(crate) PathBuf);
-
-impl Scratch {
-    /// An empty folder of this name.
-    pub(crate) fn new(name: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("stribeck-analysis-{}-{name}", std::process::id()));
-        std::fs::remove_dir_all(&path).ok();
-        Self(path)
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        std::fs::remove_dir_all(&self.0).ok();
-    }
-}
-
-/// Uniform noise in −1 to 1 that is the same on every machine.
-pub(crate) struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2.0 * ((self.0 >> 40) as f64 / (1u64 << 24) as f64) - 1.0
-    }
-}
 
 /// What `run.json` says.
 pub(crate) fn info(status: Status, samples: usize) -> RunInfo {
@@ -179,14 +152,14 @@ fn write_trace(dir: &RunDir, scene: &Scene, samples: usize, gain: f64) {
         }
     }
     let mut writer = TraceWriter::create(dir.trace(), &names).expect("a writable folder");
-    let mut noise = Noise(3);
+    let mut noise = Noise::new(3);
     let crossings = crossings(scene);
     for n in 0..samples {
         let t = n as f64 * INTERVAL_S;
         let mut row = vec![t];
         for (number, _) in scene.output.sensors.iter().enumerate() {
             let ay = gain * G * acceleration_g(t, number, &crossings, &mut noise);
-            let instant = ay + 2000.0 * G * noise.next();
+            let instant = ay + 2000.0 * G * noise.uniform();
             row.extend([0.3 * ay, ay, 0.3 * instant, instant]);
         }
         rollers(scene, t, &crossings, &mut row);
@@ -215,7 +188,7 @@ fn acceleration_g(t: f64, sensor: usize, crossings: &[Crossing], noise: &mut Noi
         .filter(|&since| since >= 0.0)
         .map(|since| IMPULSE_G * (-since / 0.25e-3).exp() * (TAU * 9000.0 * since).cos())
         .sum();
-    strength * (tone + impulse + NOISE_G * noise.next())
+    strength * (tone + impulse + NOISE_G * noise.uniform())
 }
 
 /// Motion and forces of all rollers: the upper ones share the load by the cosine, those in the defect carry

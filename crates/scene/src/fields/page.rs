@@ -139,6 +139,7 @@ pub(super) fn sentence(about: &[&str]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use stribeck_testing::assert_has;
 
     #[test]
     fn invariant_every_number_of_a_scene_is_on_the_page_with_its_range() {
@@ -147,17 +148,18 @@ mod tests {
             "see `Scene` and [m/s²], a\\|b"
         );
         let text = page();
-        for line in [
-            "- `length_mm` = `10.0`, up to 20000 mm: Circumferential length, measured on the raceway.\n",
-            "- `stiffness_n_um` = `1000.0`, up to 1000000 N/µm: ",
-            "- `poissons_ratio` = `0.3`, 0 or more, less than 0.5: Poisson's ratio.\n",
-            "## `inner_ring_mesh`\n\nAs `outer_ring_mesh`.\n",
-            "- `collocated`:",
-            "## `housing: springs(…)`",
-            "## `defects[0].form: spall(…)`",
-            "- `amplitude` = `50.0`, 0 to 100000 rpm: Amplitude.\n",
-        ] {
-            assert!(text.contains(line), "{line}\n{text}");
-        }
+        assert_has(
+            &text,
+            &[
+                "- `length_mm` = `10.0`, up to 20000 mm: Circumferential length, measured on the raceway.\n",
+                "- `stiffness_n_um` = `1000.0`, up to 1000000 N/µm: ",
+                "- `poissons_ratio` = `0.3`, 0 or more, less than 0.5: Poisson's ratio.\n",
+                "## `inner_ring_mesh`\n\nAs `outer_ring_mesh`.\n",
+                "- `collocated`:",
+                "## `housing: springs(…)`",
+                "## `defects[0].form: spall(…)`",
+                "- `amplitude` = `50.0`, 0 to 100000 rpm: Amplitude.\n",
+            ],
+        );
     }
 }

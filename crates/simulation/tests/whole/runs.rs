@@ -12,7 +12,7 @@ use stribeck_store::{
     run_info::{RunInfo, Status},
     trace::Trace,
 };
-use stribeck_testing::{Scratch, ledger, side_by_side};
+use stribeck_testing::{Scratch, assert_has, ledger, side_by_side};
 
 fn run(scene: &Scene, threads: usize) -> (RunInfo, Run) {
     let folder = Scratch::new("runs");
@@ -245,9 +245,7 @@ fn survives_a_run_that_diverges() {
     let (info, run) = run(&scene, 1);
     assert_eq!(info.status, Status::Diverged);
     let reason = info.stop_reason.expect("a diverged run says why");
-    for word in ["step", "ms", "x =", "time_step_factor"] {
-        assert!(reason.contains(word), "`{word}` is missing in: {reason}");
-    }
+    assert_has(&reason, &["step", "ms", "x =", "time_step_factor"]);
     assert_eq!(run.trace.len(), info.samples);
     assert_eq!(run.info.status, Status::Diverged);
 }

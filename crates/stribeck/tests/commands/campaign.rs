@@ -2,9 +2,9 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::sync::OnceLock;
-use std::time::Duration;
+use stribeck_testing::assert_has;
 
 use crate::common::{Desk, QUICK, STRIBECK};
 use stribeck_formats::Recording;
@@ -65,15 +65,7 @@ fn survives_ten_kills_and_any_split_with_the_bytes_of_an_unbroken_campaign() {
     assert_eq!(&tables(&desk.join("A")), unbroken(), "with two threads each");
     let mut noise = Noise::new(3);
     for _ in 0..10 {
-        let mut child = desk
-            .command(&["--out=B", "--jobs=2"])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("it starts");
-        std::thread::sleep(Duration::from_millis(200 + (400.0 * noise.uniform().abs()) as u64));
-        child.kill().expect("it can be killed");
-        child.wait().expect("it ends");
+        desk.kill("--out=B --jobs=2", 200.0 + 400.0 * noise.uniform().abs());
     }
     let last = desk.run("--out=B --resume");
     assert!(last.status.success(), "{}", said(&last));
@@ -206,15 +198,7 @@ fn survives_kills_while_samples_are_removed_and_repeats_no_run() {
     let mut noise = Noise::new(5);
     let mut finished = Vec::new();
     for _ in 0..10 {
-        let mut child = desk
-            .command(&["--out=B", "--jobs=2"])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("it starts");
-        std::thread::sleep(Duration::from_millis(200 + (400.0 * noise.uniform().abs()) as u64));
-        child.kill().expect("it can be killed");
-        child.wait().expect("it ends");
+        desk.kill("--out=B --jobs=2", 200.0 + 400.0 * noise.uniform().abs());
         if desk.join("B/runs").exists() {
             finished = provenance("B");
         }
@@ -383,12 +367,11 @@ fn behaves_a_run_that_diverges_has_a_row_and_no_signals() {
     assert!(!of.is_empty() && of.iter().all(|run| *run <= 2.0), "{of:?}");
     let sheet = desk.text("A/DATASHEET.md");
     let columns = sheet.split("## Columns of `signals.parquet`").nth(1).expect("its columns");
-    for words in ["| `run` |  | Number", "| `split` |  | Part", "| `time_s` | s | Time"] {
-        assert!(columns.contains(words), "`{words}` is not in\n{columns}");
-    }
-    for words in ["| runs with warnings | ", "one that diverged has no signals", "| `warnings` |  | What"] {
-        assert!(sheet.contains(words), "`{words}` is not in\n{sheet}");
-    }
+    assert_has(columns, &["| `run` |  | Number", "| `split` |  | Part", "| `time_s` | s | Time"]);
+    assert_has(
+        &sheet,
+        &["| runs with warnings | ", "one that diverged has no signals", "| `warnings` |  | What"],
+    );
 }
 
 #[test]

@@ -4,6 +4,7 @@ use std::fs;
 use std::ops::Deref;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
+use std::time::Duration;
 
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::run::host::Host;
@@ -127,6 +128,15 @@ impl Desk {
 
     pub(crate) fn run(&self, line: &(impl Line + ?Sized)) -> Output {
         self.command(line).output().expect("it starts")
+    }
+
+    /// Starts it, and kills it after so many milliseconds, as `kill -9` does.
+    pub(crate) fn kill(&self, line: &str, after_ms: f64) {
+        let mut command = self.command(line);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("it starts");
+        std::thread::sleep(Duration::from_millis(after_ms as u64));
+        child.kill().expect("it can be killed");
+        child.wait().expect("it ends");
     }
 
     #[track_caller]

@@ -17,7 +17,7 @@ use stribeck_scene::{
     scene::{DefectRing, Scene},
 };
 use stribeck_store::run_dir::Run;
-use stribeck_testing::{Scratch, said, side_by_side};
+use stribeck_testing::{Scratch, assert_has, said, side_by_side};
 use stribeck_theory::kinematics::Kinematics;
 
 fn scene(file: &str, set: &[&str]) -> Scene {
@@ -89,10 +89,10 @@ fn analytic_bpfo_and_its_multiples_follow_the_tacho_of_a_ramp() {
     let mean = lengths.iter().sum::<f64>() / lengths.len() as f64;
     assert!((mean / 10.0 - 1.0).abs() < 0.05, "{mean} mm");
     let page = std::fs::read_to_string(folder.join("run").join("report.html")).expect("a page");
-    for words in ["at 300 to 1200 rpm", "Speed and load", "Envelope line over the angle", "The speed changes"]
-    {
-        assert!(page.contains(words), "`{words}` is not in the report");
-    }
+    assert_has(
+        &page,
+        &["at 300 to 1200 rpm", "Speed and load", "Envelope line over the angle", "The speed changes"],
+    );
     assert!(!page.contains("Family of facet lines") && summary.notch.is_none());
     multiples_stand_in_the_mean_of_some_starts(&folder.join("run"));
 }
@@ -188,14 +188,15 @@ fn analytic_bpfo_follows_the_difference_of_two_speeds() {
     assert!(summary.events.len() > 20 && 10 * passed.len() > 9 * summary.events.len());
     assert!(passed.iter().all(|late| late.abs() < PLAY), "{passed:?}");
     let page = std::fs::read_to_string(folder.join("run").join("report.html")).expect("a page");
-    for words in [
-        "300 to 1500 rpm of the inner and 600 rpm counter-clockwise of the outer ring",
-        "Turns of the shaft against the outer ring",
-        "have no order while the ratio of the speeds changes",
-        "FTF against the outer ring",
-    ] {
-        assert!(page.contains(words), "`{words}` is not in the report");
-    }
+    assert_has(
+        &page,
+        &[
+            "300 to 1500 rpm of the inner and 600 rpm counter-clockwise of the outer ring",
+            "Turns of the shaft against the outer ring",
+            "have no order while the ratio of the speeds changes",
+            "FTF against the outer ring",
+        ],
+    );
     let analysed = command(&folder, &["analyse", "run"]).output().expect("it starts");
     let words = " % over the record, by the recorded angle of the shaft against the outer ring";
     assert!(said(&analysed).contains(words), "{}", said(&analysed));

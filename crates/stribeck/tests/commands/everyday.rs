@@ -6,7 +6,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 
 use crate::common::{COARSE, Desk, STRIBECK, command, ctrl_c};
-use stribeck_testing::{said, says};
+use stribeck_testing::{assert_has, said, says};
 
 /// Its length, when it is to come to its end [ms].
 const SHORT: &str = "--set=solver.duration_ms=0.2";
@@ -251,9 +251,7 @@ fn behaves_a_reduced_run_from_its_plan_to_a_deck() {
     says(&desk.run(&[&full[..], &["--out=full.rad"]].concat()), &["`_0000.rad`"]);
     says(&desk.run(&full), &["mine_0000.rad"]);
     let starter = desk.text("mine_0000.rad");
-    for has in ["# left out: friction", "\nroller 13\n", "/INTER/TYPE3/27\n", "rim of roller 13"] {
-        assert!(starter.contains(has), "{has}");
-    }
+    assert_has(&starter, &["# left out: friction", "\nroller 13\n", "/INTER/TYPE3/27\n", "rim of roller 13"]);
     assert!(desk.join("mine_0002.rad").exists());
     // There are no frames to export, and only the full model makes some.
     says(&desk.run("export mine --to=pvd"), &["`model: full`", "`output: (frames: ())`"]);

@@ -7,7 +7,7 @@ use std::process::{Output, Stdio};
 
 use crate::common::{COARSE, Desk, command};
 use stribeck_formats::{Channel, Recording, mat5};
-use stribeck_testing::{Noise, said, says};
+use stribeck_testing::{Noise, assert_has, said, says};
 
 /// A very coarse bearing, from rest, for 0.3 ms.
 const SHORT: [&str; 5] = {
@@ -61,9 +61,7 @@ fn behaves_runs_and_an_ensemble_beside_each_other() {
     let force = row(&found, "support_n").expect("a force");
     assert_eq!(force["against_first"][0]["verdict"], "unknown");
     let page = desk.text("a-and-b-compared/report.html");
-    for words in ["What was changed", "Signals over time", "Force of all rollers on the outer ring"] {
-        assert!(page.contains(words), "{words}");
-    }
+    assert_has(&page, &["What was changed", "Signals over time", "Force of all rollers on the outer ring"]);
     assert!(!page.contains("src=\"http") && !page.contains("href=\"http"), "the page needs a network");
 
     says(&desk.succeeds("compare a a --out=same"), &["The scenes are the same", "No number differs"]);
@@ -197,9 +195,7 @@ fn behaves_a_sweep_has_a_page_and_takes_further_values() {
     let by_name = format!("{folder}/by_name/3-load_n=40000");
     says(&desk.succeeds(&["report", &by_name]), &["report.html"]);
     let page = desk.text(&format!("{folder}/index.html"));
-    for words in ["Root mean square over the load", "<code>operation.load_n</code>", "runs.parquet"] {
-        assert!(page.contains(words), "{words}");
-    }
+    assert_has(&page, &["Root mean square over the load", "<code>operation.load_n</code>", "runs.parquet"]);
     let table = Recording::open(desk.join(folder).join("runs.parquet")).expect("a table");
     assert!(table.channels.iter().any(|c| c.name == "summary.levels.record.kurtosis"), "{}", table.names());
     // Its file is a campaign like any other.
@@ -259,17 +255,18 @@ fn behaves_a_scene_of_ones_own_is_written_once() {
     let made = desk.succeeds("new '--bearing=SKF NU 205 ECP' --load-n=3000 --defect=inner");
     says(&made, &["nu205-inner.ron", "BPFI", "stribeck simulate nu205-inner.ron"]);
     let text = desk.text("nu205-inner.ron");
-    for line in [
-        "designation: \"NU 205\"",
-        "clearance_change_um: -10.0",
-        "roller_profile: logarithmic",
-        "diameter_variation_um: 2.0",
-        "load_n: 3000.0",
-        "ring: inner",
-        "// ",
-    ] {
-        assert!(text.contains(line), "{line}: {text}");
-    }
+    assert_has(
+        &text,
+        &[
+            "designation: \"NU 205\"",
+            "clearance_change_um: -10.0",
+            "roller_profile: logarithmic",
+            "diameter_variation_um: 2.0",
+            "load_n: 3000.0",
+            "ring: inner",
+            "// ",
+        ],
+    );
     desk.refuses("new nu205-inner.ron", &["is there already and is kept"]);
     desk.refuses("new --bearing=6x05", &["no bearing `6x05`", "stribeck bearings"]);
     desk.refuses("new --load-n=1e9", &["--load-n", "at most 7886 N", "static rating"]);
@@ -290,15 +287,16 @@ fn issue_answers_from_a_pipe_are_read() {
     child.stdin.take().expect("a pipe").write_all(answers).expect("written");
     assert!(child.wait().expect("it ends").success());
     let text = desk.text("piped.ron");
-    for line in [
-        "\"NU 205\"",
-        "load_n: 3000.0",
-        "speed_rpm: 1200.0",
-        "ring: inner, length_mm: 1.5",
-        "duration_ms: 1000.0",
-    ] {
-        assert!(text.contains(line), "{line}: {text}");
-    }
+    assert_has(
+        &text,
+        &[
+            "\"NU 205\"",
+            "load_n: 3000.0",
+            "speed_rpm: 1200.0",
+            "ring: inner, length_mm: 1.5",
+            "duration_ms: 1000.0",
+        ],
+    );
 }
 
 /// Sound bearings made tens of g by their facets, and were called damaged; so were rollers without a profile, which

@@ -3,12 +3,11 @@
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
-use std::time::Duration;
 
 use crate::common::Desk;
 use serde_json::Value;
 use stribeck_formats::Recording;
-use stribeck_testing::{Noise, said, says};
+use stribeck_testing::{Noise, assert_has, said, says};
 
 /// A small reduced bearing: its load and the length of its defect from three numbers of a run.
 const QUICK: &str = include_str!("../../../../fixtures/infer/quick.ron");
@@ -89,9 +88,7 @@ fn planted_load_and_length_are_found_from_a_run_with_both() {
     let draws = stribeck_formats::parquet::open(&desk.join("A/posterior.parquet")).expect("a table");
     let Recording { .. } = draws;
     let page = desk.text("A/report.html");
-    for word in ["What each unknown can have been", "What no scene makes", "Calibration"] {
-        assert!(page.contains(word), "{word}");
-    }
+    assert_has(&page, &["What each unknown can have been", "What no scene makes", "Calibration"]);
 }
 
 #[test]
@@ -101,15 +98,7 @@ fn survives_kills_and_any_split_with_the_draws_of_an_unbroken_inference() {
     desk.succeeds("--out=A --jobs=2 --threads=2");
     let mut noise = Noise::new(5);
     for _ in 0..5 {
-        let mut child = desk
-            .command(&["--out=B", "--jobs=2"])
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .expect("it starts");
-        std::thread::sleep(Duration::from_millis(200 + (800.0 * noise.uniform().abs()) as u64));
-        child.kill().expect("it can be killed");
-        child.wait().expect("it ends");
+        desk.kill("--out=B --jobs=2", 200.0 + 800.0 * noise.uniform().abs());
     }
     desk.succeeds("--out=B --jobs=1");
     assert_eq!(draws(&desk.join("A")), draws(&desk.join("B")));

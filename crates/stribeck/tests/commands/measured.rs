@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::common::Desk;
 use stribeck_formats::{Channel, Recording, mat5};
-use stribeck_testing::{Noise, peer::python_with, said, says};
+use stribeck_testing::{Noise, assert_has, peer::python_with, said, says};
 
 /// Knocks of an outer raceway of a 6205 at 1200 rpm.
 fn knocks(rate_hz: f64) -> Vec<f64> {
@@ -63,10 +63,10 @@ fn planted_a_record_gives_a_verdict_findings_and_a_page() {
         assert!(findings["families"][0][key].is_number(), "{key}");
     }
     let page = desk.text("a-analysis/report.html");
-    for shown in ["Squared envelope spectrum about BPFO", "Enhanced envelope spectrum", "id=\"spectrogram\""]
-    {
-        assert!(page.contains(shown), "{shown}");
-    }
+    assert_has(
+        &page,
+        &["Squared envelope spectrum about BPFO", "Enhanced envelope spectrum", "id=\"spectrogram\""],
+    );
 }
 
 #[test]

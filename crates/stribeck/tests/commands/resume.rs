@@ -10,7 +10,7 @@ use std::{
 };
 
 use crate::common::{QUICK, STRIBECK};
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, assert_has};
 
 /// The coarse bearing, from rest: long enough to be killed in the middle, short enough for a test.
 const SCENE: [&str; 5] =
@@ -97,10 +97,10 @@ fn survives_kills_and_full_disks_without_loss() {
         .expect("a shell");
     let said = words(&limited);
     assert!(!limited.status.success(), "the run ended well without space: {said}");
-    for word in ["trace.npy", "rows stay readable", "free some space", "continue the run from its checkpoint"]
-    {
-        assert!(said.contains(word), "`{word}` is missing in: {said}");
-    }
+    assert_has(
+        &said,
+        &["trace.npy", "rows stay readable", "free some space", "continue the run from its checkpoint"],
+    );
 
     let finished = resume(&killed, "2");
     assert!(finished.status.success(), "{}", words(&finished));
@@ -117,9 +117,7 @@ fn refuses_a_folder_that_cannot_be_written_at_once() {
         simulate(Path::new("/proc/stribeck"), "1").stderr(Stdio::piped()).output().expect("it starts");
     let said = words(&output);
     assert!(!output.status.success(), "{said}");
-    for word in ["/proc/stribeck", "Nothing was changed", "--out"] {
-        assert!(said.contains(word), "`{word}` is missing in: {said}");
-    }
+    assert_has(&said, &["/proc/stribeck", "Nothing was changed", "--out"]);
 }
 
 #[test]

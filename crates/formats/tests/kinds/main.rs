@@ -1,16 +1,17 @@
-//! Kinds of binary files whose units, scales, shapes or rates were once lost, each as a tiny input of our
-//! own: TDMS, MDF, MATLAB 4 and 5, NumPy, Parquet and HDF5; and files of all formats with bytes changed.
+//! Kinds of files whose numbers, units, scales, shapes or rates were once lost in silence, or which were refused,
+//! each as a tiny input of our own; damaged files, and files of all formats with bytes changed.
 
+mod clocks_and_sizes;
+mod damaged;
 mod hdf5;
 mod mdf;
 mod mutations;
 mod numeric_arrays;
 mod parquet_columns;
 mod tdms;
+mod texts_and_sounds;
 
-use std::path::PathBuf;
-
-use stribeck_formats::{Channel, Recording};
+use stribeck_formats::{Channel, Error, Recording};
 use stribeck_testing::Scratch;
 
 const RATE_HZ: f64 = 12_800.0;
@@ -21,10 +22,14 @@ fn signal(n: usize) -> f64 {
     ((n * 37 % 101) as f64 - 50.0) / 50.0
 }
 
-fn opened(desk: &Scratch, name: &str, bytes: &[u8]) -> Recording {
-    let path: PathBuf = desk.join(name);
+fn try_open(desk: &Scratch, name: &str, bytes: &[u8]) -> Result<Recording, Error> {
+    let path = desk.join(name);
     std::fs::write(&path, bytes).unwrap();
-    Recording::open(&path).unwrap_or_else(|why| panic!("{name}: {why}"))
+    Recording::open(&path)
+}
+
+fn opened(desk: &Scratch, name: &str, bytes: &[u8]) -> Recording {
+    try_open(desk, name, bytes).unwrap_or_else(|why| panic!("{name}: {why}"))
 }
 
 /// Asserts that a channel holds what `expected` says, to a part in a million.

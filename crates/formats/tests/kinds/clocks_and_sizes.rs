@@ -1,30 +1,15 @@
-//! A second round of what people's files hold: clocks, sizes, stamps of packets, and packings, each as a small
-//! input of our own.
+//! Clocks, sizes, stamps of packets, and packings of people's files.
 
 use std::io::Write;
-use std::path::PathBuf;
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use stribeck_formats::{Channel, Error, Recording};
-use stribeck_testing::Scratch;
+use stribeck_testing::{Scratch, assert_refused};
 
-const RATE_HZ: f64 = 12_800.0;
+use crate::{RATE_HZ, opened, signal, try_open};
+
 const COUNT: usize = 4096;
-
-fn signal(n: usize) -> f64 {
-    ((n * 37 % 101) as f64 - 50.0) / 50.0
-}
-
-fn try_open(desk: &Scratch, name: &str, bytes: &[u8]) -> Result<Recording, Error> {
-    let path: PathBuf = desk.join(name);
-    std::fs::write(&path, bytes).unwrap();
-    Recording::open(&path)
-}
-
-fn opened(desk: &Scratch, name: &str, bytes: &[u8]) -> Recording {
-    try_open(desk, name, bytes).unwrap_or_else(|why| panic!("{name}: {why}"))
-}
 
 fn rows(row: impl Fn(usize) -> String) -> String {
     (0..COUNT).map(|n| row(n) + "\n").collect()
@@ -369,13 +354,11 @@ fn issue_files_beside_sound_ones_are_named() {
     for (bytes, words) in
         [(&b"\x1f\x8b\x08\0rest"[..], "gunzip"), (b"BZh91AY", "bunzip2"), (b"CDF\x01\0\0", "nccopy")]
     {
-        let why = try_open(&desk, "a.csv", bytes).unwrap_err().to_string();
-        assert!(why.contains(words), "{why}");
+        assert_refused(try_open(&desk, "a.csv", bytes), words);
     }
     // Tags before FLAC are looked behind, and what stands there is judged.
     let tag = [&b"ID3\x04\0\0\0\0\0\x0a"[..], &[0; 10], b"fLaC"].concat();
-    let why = try_open(&desk, "a.flac", &tag).unwrap_err().to_string();
-    assert!(why.contains("FLAC"), "{why}");
+    assert_refused(try_open(&desk, "a.flac", &tag), "FLAC");
 }
 
 /// The head of a `.npy` array of `count` doubles.

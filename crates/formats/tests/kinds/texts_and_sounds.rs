@@ -1,21 +1,9 @@
 //! Kinds of files that once gave wrong numbers in silence or were refused, each as a tiny input of our own.
 
-use std::path::PathBuf;
-
 use stribeck_formats::{Channel, Recording, uff58};
 use stribeck_testing::Scratch;
 
-const RATE_HZ: f64 = 12_800.0;
-
-fn signal(n: usize) -> f64 {
-    ((n * 37 % 101) as f64 - 50.0) / 50.0
-}
-
-fn opened(desk: &Scratch, name: &str, bytes: &[u8]) -> Recording {
-    let path: PathBuf = desk.join(name);
-    std::fs::write(&path, bytes).unwrap();
-    Recording::open(&path).unwrap_or_else(|why| panic!("{name}: {why}"))
-}
+use crate::{RATE_HZ, opened, signal};
 
 /// Rows of times in milliseconds and of a signal, behind a head.
 fn table(head: &str, separator: char, comma: bool, end: &str) -> String {

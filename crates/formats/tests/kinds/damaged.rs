@@ -3,24 +3,11 @@
 use stribeck_formats::Recording;
 use stribeck_testing::Scratch;
 
-fn opened(desk: &Scratch, name: &str, bytes: &[u8]) -> Recording {
-    let path = desk.join(name);
-    std::fs::write(&path, bytes).unwrap();
-    Recording::open(&path).unwrap_or_else(|why| panic!("{name}: {why}"))
-}
+use crate::{notes, opened, signal};
 
 fn small(name: &str) -> Vec<u8> {
     let path = format!("{}/../../fixtures/signals/small/{name}", env!("CARGO_MANIFEST_DIR"));
     std::fs::read(&path).unwrap_or_else(|why| panic!("{path}: {why}"))
-}
-
-fn signal(n: usize) -> f64 {
-    ((n * 37 % 101) as f64 - 50.0) / 50.0
-}
-
-#[track_caller]
-fn says(found: &Recording, words: &str) {
-    assert!(found.notes.iter().any(|note| note.contains(words)), "{words}: {:?}", found.notes);
 }
 
 #[test]
@@ -37,7 +24,7 @@ fn issue_a_damaged_row_of_a_text_costs_its_fields() {
     let found = damaged(0, "0.5|1e9x|-1.00");
     assert_eq!((found.channels.len(), found.channels[2].len), (3, 100), "{:?}", found.notes);
     assert!(found.channels[1].read().unwrap()[0].is_nan());
-    says(&found, "`1e9x` in line 1");
+    notes(&found, &["`1e9x` in line 1"]);
     // A quote without its other half takes no field along.
     let found = damaged(40, "\"40\"0.5\"|\"-0.5\"|\"0.5\"");
     let all: Vec<Vec<f64>> = found.channels.iter().map(|c| c.read().unwrap()).collect();
@@ -45,7 +32,7 @@ fn issue_a_damaged_row_of_a_text_costs_its_fields() {
     // Surplus cells of a row are noted.
     let found = damaged(40, "\"40.5\"|\"-0.5\"|\"0.5\"|\"41.5\"");
     assert_eq!((found.channels.len(), found.channels[0].len), (3, 100));
-    says(&found, "rows with more than 3 fields: 1, the first in line 41");
+    notes(&found, &["rows with more than 3 fields: 1, the first in line 41"]);
     // One line that ends otherwise than the others.
     let old = good.join("\r") + "\r\n\r";
     let found = opened(&desk, "b.csv", old.as_bytes());
@@ -63,18 +50,18 @@ fn issue_a_cut_universal_file_is_read_up_to_there() {
     let (first, second) = (held(&found, "x0"), held(&found, "x1"));
     assert!(first.len() == 48 && (first[7] - signal(7)).abs() < 1e-12);
     assert!(second.len() < 48 && second.len() > 30, "{}", second.len());
-    says(&found, "it was cut off");
+    notes(&found, &["it was cut off"]);
     // It ends in its head: the first remains.
     let head = lines.iter().rposition(|line| line.trim() == "58").unwrap();
     let found = opened(&desk, "b.uff", (lines[..head + 4].join("\n") + "\n").as_bytes());
     assert_eq!((found.channels.len(), held(&found, "x0").len()), (1, 48));
-    says(&found, "it is left out");
+    notes(&found, &["it is left out"]);
     // A line too many.
     let mut more = lines.clone();
     more.insert(lines.len() - 3, lines[lines.len() - 3]);
     let found = opened(&desk, "c.uff", (more.join("\n") + "\n").as_bytes());
     assert_eq!(held(&found, "x1").len(), 48);
-    says(&found, "more follow");
+    notes(&found, &["more follow"]);
     // A number with a digit too many is that number, not the part of it in its columns.
     let wide = text.replacen("-6.00000000000e-02", "-6.000000000000e-02", 1);
     assert_ne!(wide, text);
@@ -92,7 +79,7 @@ fn refuses_binary_universal_data_that_lack_bytes() {
     short.drain(end..end + 5);
     let found = opened(&desk, "b.uff", &short);
     assert_eq!(found.channels.len(), 1, "{}", found.names());
-    says(&found, "no delimiter");
+    notes(&found, &["no delimiter"]);
 }
 
 #[test]
@@ -108,7 +95,7 @@ fn issue_a_tdms_file_that_was_not_closed_is_read_up_to_there() {
         let found = opened(&desk, "b.tdms", &good[..cut]);
         let read = found.channel("g/acc").unwrap().read().unwrap();
         assert_eq!(read, all[..count], "cut at {cut}");
-        says(&found, "not closed, or is cut off");
+        notes(&found, &["not closed, or is cut off"]);
     }
 }
 
@@ -134,5 +121,5 @@ fn peer_rows_of_daqmx_become_channels_by_their_scales() {
     let found = opened(&desk, "b.tdms", &good[..good.len() - 20]);
     let lens = ["g/a", "g/b", "g/c"].map(|name| found.channel(name).unwrap().len);
     assert_eq!(lens, [48, 48, 24 + 19], "{:?}", found.notes);
-    says(&found, "cut off");
+    notes(&found, &["cut off"]);
 }
