@@ -25,6 +25,15 @@ const LARGEST: u64 = 14_000_000;
 /// Oldest system that a wheel made with zig runs on: glibc 2.17.
 const POLICY: &str = "manylinux2014";
 
+/// What Python looks up in the module on Windows, and what maturin has the linker export instead of it: the module's
+/// whole name.
+const WINDOWS_EXPORTS: &str = r#".globl "PyInit_stribeck._stribeck"
+"PyInit_stribeck._stribeck":
+    jmp PyInit__stribeck
+.section .drectve,"yni"
+.ascii " -export:PyInit__stribeck"
+"#;
+
 /// Builds the wheel of this machine and says where it is.
 pub(crate) fn build(options: &Options) -> Result<ExitCode> {
     let wheel = make(&workspace::root().join(&options.out), &options.python, None, &[])?;
@@ -57,6 +66,12 @@ pub(crate) fn make(
         maturin.env("CARGO_ZIGBUILD_PYTHON_PATH", python);
     } else {
         println!("no ziglang: the wheel runs on systems as new as this one");
+    }
+    if target.is_some_and(|target| target.contains("windows")) {
+        let exports = workspace::target().join("windows_exports.s");
+        std::fs::write(&exports, WINDOWS_EXPORTS)
+            .with_context(|| format!("cannot write `{}`", exports.display()))?;
+        maturin.args(["--", "-C", &format!("link-arg={}", exports.display())]);
     }
     let done = maturin.status().context("cannot start maturin")?;
     ensure!(done.success(), "maturin could not build the wheel; see its output above");
