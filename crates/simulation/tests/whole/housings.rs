@@ -2,7 +2,7 @@
 
 use std::{f64::consts::TAU, ops::ControlFlow};
 
-use crate::common::{assert_goes_on_with_the_same_bytes, host};
+use crate::common::{assert_goes_on_with_the_same_bytes, column, host};
 use stribeck_scene::scene::Scene;
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::simulate;
@@ -69,6 +69,35 @@ fn analytic_every_housing_hands_its_load_to_the_rollers() {
         assert!((carried / info.expected_support_n - 1.0).abs() < 0.02, "{housing} {angle}: {carried}");
         let sits = scene.housing.has_seat();
         assert_eq!(run.trace.names().iter().any(|name| name == "seat.fx_n"), sits, "{housing}");
+    }
+}
+
+/// A sensor of a rigid ring shows along each axis the force of the rollers on it, over its mass.
+/// Source: Newton's second law; load and weight are constant.
+#[test]
+fn analytic_a_rigid_ring_is_moved_by_its_rollers_along_each_axis() {
+    // Of sums over the steps of an interval, which are equal but for rounding.
+    const ROUNDING: f64 = 1e-9;
+    let scene = scene(&[RIGID, "operation.load_angle_deg=35"]);
+    let folder = Scratch::new("housing-axes");
+    assert_eq!(run(&scene, &folder).status, Status::Complete);
+    let run = Run::read(folder.path()).expect("a finished run can be read");
+    let less_its_mean = |channel: Vec<f64>| {
+        let mean = channel.iter().sum::<f64>() / channel.len() as f64;
+        channel.into_iter().map(|x| x - mean).collect::<Vec<f64>>()
+    };
+    for axis in ["x", "y"] {
+        let shown = less_its_mean(column(&run, &format!("sensor.side.a{axis}_m_s2")));
+        // Recorded are the forces of the raceway on the rollers.
+        let mut force = vec![0.0; shown.len()];
+        for i in 1..=scene.bearing.rollers {
+            let on_roller = column(&run, &format!("roller.{i}.outer_f{axis}_n"));
+            force.iter_mut().zip(on_roller).for_each(|(sum, f)| *sum -= f);
+        }
+        let force = less_its_mean(force);
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let correlation = dot(&force, &shown) / (dot(&force, &force) * dot(&shown, &shown)).sqrt();
+        assert!((correlation - 1.0).abs() < ROUNDING, "{axis}: {correlation}");
     }
 }
 
