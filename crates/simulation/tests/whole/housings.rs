@@ -73,7 +73,7 @@ fn analytic_every_housing_hands_its_load_to_the_rollers() {
 }
 
 /// A sensor of a rigid ring shows along each axis the force of the rollers on it, over its mass.
-/// Source: Newton's second law; load and weight are constant.
+/// Source: Newton (1687), the second law; load and weight are constant.
 #[test]
 fn analytic_a_rigid_ring_is_moved_by_its_rollers_along_each_axis() {
     // Of sums over the steps of an interval, which are equal but for rounding.
