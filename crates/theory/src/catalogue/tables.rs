@@ -253,7 +253,7 @@ const MINIATURE: [Series; 5] = [
 /// Bearings that a plane model does not have, by what their designations begin with: series of outside diameters,
 /// first number, element, its diameter over (outside − bore), contact angle [°]. Makers print neither: the last two
 /// are usual ones (own).
-const BEYOND_A_PLANE: [(&str, usize, usize, Element, f64, f64); 16] = [
+const BEYOND_A_PLANE: [(&str, usize, usize, Element, f64, f64); 20] = [
     ("12", 1, 0, Element::Ball, 0.25, 10.0),
     ("13", 2, 0, Element::Ball, 0.25, 10.0),
     ("22", 1, 0, Element::Ball, 0.25, 13.0),
@@ -268,12 +268,18 @@ const BEYOND_A_PLANE: [(&str, usize, usize, Element, f64, f64); 16] = [
     ("223", 2, 8, Element::Roller, 0.28, 13.0),
     ("302", 1, 2, Element::Roller, 0.26, 14.0),
     ("303", 2, 2, Element::Roller, 0.26, 12.0),
+    ("313", 2, 5, Element::Roller, 0.26, 28.0),
     ("320", 0, 4, Element::Roller, 0.26, 15.0),
     ("322", 1, 4, Element::Roller, 0.26, 14.0),
+    ("323", 2, 3, Element::Roller, 0.26, 12.0),
+    ("330", 0, 5, Element::Roller, 0.26, 13.0),
+    ("332", 1, 5, Element::Roller, 0.26, 13.0),
 ];
 
-/// Width of the outer ring of UC inserts [mm] with bores of 20 to 60 mm.
+/// Width of the outer ring of UC inserts [mm] with bores of 20 to 60 mm. Smaller bores have the outer ring and the
+/// balls of the first.
 const INSERT_WIDTH: [f64; 9] = [17.0, 17.0, 19.0, 20.0, 21.0, 22.0, 24.0, 25.0, 27.0];
+const FIRST_INSERT: usize = 4;
 
 /// Bore [mm] of the number in a designation, ISO 15.
 fn bore_mm(number: usize) -> f64 {
@@ -328,9 +334,12 @@ fn beyond_a_plane() -> impl Iterator<Item = CatalogueBearing> {
 }
 
 fn inserts() -> impl Iterator<Item = CatalogueBearing> {
-    INSERT_WIDTH.into_iter().enumerate().map(move |(at, width)| {
-        let number = at + 4;
-        by_rule(format!("UC2{number:02}"), [bore_mm(number), OUTSIDE[1][number], width], INSERT_RULE)
+    (1..FIRST_INSERT + INSERT_WIDTH.len()).map(|number| {
+        let size = number.max(FIRST_INSERT);
+        let boundary = [bore_mm(size), OUTSIDE[1][size], INSERT_WIDTH[size - FIRST_INSERT]];
+        let of_size = by_rule(format!("UC2{number:02}"), boundary, INSERT_RULE);
+        let boundary = of_size.boundary.map(|boundary| Boundary { bore_mm: bore_mm(number), ..boundary });
+        CatalogueBearing { boundary, ..of_size }
     })
 }
 
@@ -395,7 +404,7 @@ fn of_raceways(
 pub(super) fn names() -> String {
     let others: Vec<&str> = OTHERS.iter().map(|row| row.0).filter(|name| !name.starts_with('6')).collect();
     format!(
-        "{}, 604 to 609, 623 to 639, 683 to 699, 6000 to 6320, 62200 to 62214, 62300 to 62310, 6403 to 6415, 6800 to 6920, 16002 to 16020, UC204 to \
+        "{}, 604 to 609, 623 to 639, 683 to 699, 6000 to 6320, 62200 to 62214, 62300 to 62310, 6403 to 6415, 6800 to 6920, 16002 to 16020, UC201 to \
          UC212, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320, 1005 to 1020; for their frequencies \
          alone also self-aligning, angular contact, spherical and tapered ones such as 1205, 7205, 22210, 30205",
         others.join(", "),
