@@ -375,9 +375,14 @@ mod tests {
             ("6310-2Z", "6310"),
             ("UC206", "UC206"),
             ("UC205-16", "UC205"),
+            ("UC203", "UC203"),
+            ("625-2Z", "625"),
+            ("6232RS", "623"),
         ] {
             assert_eq!(CatalogueBearing::parse(text).map(|known| known.name), Ok(name.to_owned()), "{text}");
         }
+        let needles = CatalogueBearing::parse("HK 1210").unwrap_err();
+        assert!(needles.contains("no bearing `HK 1210` is known"), "{needles}");
         let own = CatalogueBearing::parse("elements=9, diameter_mm=7.94, pitch_mm=39.04").unwrap();
         assert!((own.orders().unwrap().bpfo - 3.585).abs() < 1e-3);
         assert!(CatalogueBearing::parse("NU 312").unwrap().orders().unwrap_err().contains("elements=…"));
@@ -396,6 +401,7 @@ mod tests {
             ("7205 C", "7205", 15.0, "contact angle"),
             ("7205 C3", "7205", 40.0, "contact angle"),
             ("32010 X", "32010", 15.0, "tapered"),
+            ("31308 J2", "31308", 28.0, "tapered"),
         ] {
             let known = CatalogueBearing::parse(text).unwrap_or_else(|why| panic!("{why}"));
             assert_eq!((known.name.as_str(), known.angle_deg), (name, angle_deg), "{text}");

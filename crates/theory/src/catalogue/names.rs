@@ -8,6 +8,9 @@ const MAKERS: [&str; 14] = [
     "LDK",
 ];
 
+/// Needle roller bearings, which are not here: `HK 1210` is no 1210 of a maker HK.
+const NEEDLES: [&str; 9] = ["HK", "BK", "NK", "NKI", "NKIS", "NA", "RNA", "K", "AXK"];
+
 /// Letters and digits alone, in capitals.
 pub fn plain(text: &str) -> String {
     text.chars().filter(char::is_ascii_alphanumeric).collect::<String>().to_uppercase()
@@ -21,7 +24,9 @@ pub(super) fn find(
     advice: &str,
 ) -> Result<CatalogueBearing, String> {
     // A maker may stand before: `Rexnord ZA-2115`, `SKF6205`.
-    let behind_maker = name.split_once(' ').filter(|(maker, _)| maker.chars().all(char::is_alphabetic));
+    let behind_maker = name.split_once(' ').filter(|(maker, _)| {
+        maker.chars().all(char::is_alphabetic) && !NEEDLES.contains(&maker.to_uppercase().as_str())
+    });
     let mut asked: Vec<String> =
         [Some(name), behind_maker.map(|(_, rest)| rest)].into_iter().flatten().map(plain).collect();
     let whole = plain(name);

@@ -276,9 +276,9 @@ const BEYOND_A_PLANE: [(&str, usize, usize, Element, f64, f64); 20] = [
     ("332", 1, 5, Element::Roller, 0.26, 13.0),
 ];
 
-/// Width of the outer ring of UC inserts [mm] with bores of 20 to 60 mm. Smaller bores have the outer ring and the
+/// Width of the outer ring of UC inserts [mm] with bores of 20 to 70 mm. Smaller bores have the outer ring and the
 /// balls of the first.
-const INSERT_WIDTH: [f64; 9] = [17.0, 17.0, 19.0, 20.0, 21.0, 22.0, 24.0, 25.0, 27.0];
+const INSERT_WIDTH: [f64; 11] = [17.0, 17.0, 19.0, 20.0, 21.0, 22.0, 24.0, 25.0, 27.0, 28.0, 30.0];
 const FIRST_INSERT: usize = 4;
 
 /// Bore [mm] of the number in a designation, ISO 15.
@@ -405,7 +405,7 @@ pub(super) fn names() -> String {
     let others: Vec<&str> = OTHERS.iter().map(|row| row.0).filter(|name| !name.starts_with('6')).collect();
     format!(
         "{}, 604 to 609, 623 to 639, 683 to 699, 6000 to 6320, 62200 to 62214, 62300 to 62310, 6403 to 6415, 6800 to 6920, 16002 to 16020, UC201 to \
-         UC212, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320, 1005 to 1020; for their frequencies \
+         UC214, or {} with 202 to 220, 302 to 320, 2202 to 2220, 2302 to 2320, 1005 to 1020; for their frequencies \
          alone also self-aligning, angular contact, spherical and tapered ones such as 1205, 7205, 22210, 30205",
         others.join(", "),
         FLANGES.join(", ")
