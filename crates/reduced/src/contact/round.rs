@@ -56,7 +56,7 @@ struct Seen<N> {
     depth: [N; 2],
 }
 
-/// Pieces under eight rollers, each as far as its contact may reach, kept from step to step.
+/// Pieces under eight rollers, each as far as its contact may reach, kept from step to step of a sample.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RoundParts {
     parts: Vec<Part>,
