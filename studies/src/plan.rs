@@ -32,6 +32,7 @@ pub(crate) struct Plan {
 pub(crate) struct Group {
     /// The table that they are in.
     pub(crate) table: String,
+    /// Their scene; `{}` is the name of each variant.
     #[serde(default)]
     scene: Option<String>,
     /// Beginning of all names.
@@ -69,7 +70,7 @@ impl Plan {
     pub(crate) fn variants(&self, group: &Group) -> Vec<Variant> {
         let variant = |(name, own): &(String, Vec<String>)| Variant {
             name: format!("{}{name}", group.prefix),
-            scene: group.scene.clone().unwrap_or_else(|| self.scene.clone()),
+            scene: group.scene.as_ref().unwrap_or(&self.scene).replace("{}", name),
             set: self.set.iter().chain(&group.set).chain(own).cloned().collect(),
         };
         group.variants.iter().map(variant).collect()

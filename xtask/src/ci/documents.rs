@@ -7,51 +7,11 @@ use anyhow::{Context, Result};
 use clap::Parser;
 use stribeck_scene::scene::Scene;
 
-use super::{layers, markdown, sources, test_names};
+use super::{markdown, sources};
 use crate::Cli;
 
 fn read(root: &Path, name: &str) -> Result<String> {
     std::fs::read_to_string(root.join(name)).with_context(|| format!("cannot read {name}"))
-}
-
-/// Every crate is in ARCHITECTURE; crates, files and tests that it names exist.
-pub(crate) fn check_architecture(root: &Path) -> Result<Vec<String>> {
-    let text = read(root, "docs/ARCHITECTURE.md")?;
-    let mut complaints = compare_crates(&text, &layers::crates(root)?.into_iter().collect());
-    let mut files = Vec::new();
-    for folder in ["crates", "studies", "xtask", "fixtures"] {
-        files.extend(sources::rust_files(&root.join(folder))?);
-    }
-    let tests: BTreeSet<String> = test_names::all(root)?.into_iter().map(|test| test.name).collect();
-    for name in markdown::code(&text) {
-        let missing = if name.ends_with(".rs") && !name.contains([' ', '{']) {
-            !files.iter().any(|file| file.ends_with(name))
-        } else {
-            test_names::has_prefix(name) && !tests.contains(name)
-        };
-        if missing {
-            complaints.push(format!("ARCHITECTURE names `{name}`: there is none"));
-        }
-    }
-    Ok(complaints)
-}
-
-/// Names of crates in `text` against those that exist.
-fn compare_crates(text: &str, exist: &BTreeSet<String>) -> Vec<String> {
-    let mut named = BTreeSet::new();
-    for prefix in ["crates/", "stribeck-", "stribeck_"] {
-        for (at, _) in text.match_indices(prefix) {
-            let rest = &text[at + prefix.len()..];
-            let end = rest.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(rest.len());
-            named.insert(rest[..end].to_owned());
-        }
-    }
-    named.remove("");
-    let unknown =
-        named.difference(exist).map(|name| format!("ARCHITECTURE names the crate `{name}`: there is none"));
-    let silent =
-        exist.difference(&named).map(|name| format!("ARCHITECTURE says nothing about `crates/{name}`"));
-    unknown.chain(silent).collect()
 }
 
 /// Every section of THEORY that the crates cite exists.
@@ -136,7 +96,7 @@ fn documents(root: &Path) -> Result<Vec<String>> {
             entries.flatten().map(|entry| format!("{folder}/{}", entry.file_name().to_string_lossy()));
         names.extend(files.filter(|name| name.ends_with(".md")));
     }
-    names.extend(layers::crates(root)?.iter().map(|name| format!("crates/{name}/README.md")));
+    names.extend(sources::crates(root)?.iter().map(|name| format!("crates/{name}/README.md")));
     names.retain(|name| root.join(name).exists());
     names.sort();
     Ok(names)
@@ -195,14 +155,6 @@ mod tests {
     #[test]
     fn behaves_words_in_quotation_marks_are_one() {
         assert_eq!(words(r#" export a  --path "mass=1, damping=0.1; mass=2""#).len(), 4);
-    }
-
-    #[test]
-    fn behaves_crates_and_architecture_agree() {
-        let exist = BTreeSet::from(["mesh".to_owned(), "solver".to_owned()]);
-        assert!(compare_crates("`crates/mesh`, stribeck-solver", &exist).is_empty());
-        let complaints = compare_crates("crates/mesh and crates/mush", &exist);
-        assert_eq!(complaints.len(), 2, "{complaints:?}");
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result};
 
-use super::{layers, sources};
+use super::sources;
 
 /// Prefixes of test names, as the table in CONTRIBUTING explains them.
 const PREFIXES: [&str; 14] = [
@@ -39,7 +39,7 @@ pub(super) struct Test {
 /// All tests of the workspace.
 pub(super) fn all(root: &Path) -> Result<Vec<Test>> {
     let mut found = Vec::new();
-    for folder in layers::folders(root)? {
+    for folder in sources::folders(root)? {
         for file in sources::rust_files(&root.join(folder))? {
             let text =
                 std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
@@ -80,7 +80,7 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>> {
 }
 
 /// Whether a name begins as that of a test.
-pub(super) fn has_prefix(name: &str) -> bool {
+fn has_prefix(name: &str) -> bool {
     PREFIXES.iter().any(|prefix| name.starts_with(prefix))
 }
 
