@@ -494,7 +494,7 @@ mod tests {
 
     #[test]
     fn behaves_every_answer_makes_a_scene_that_can_be() {
-        for bearing in ["6205", "NU 205", "NU 205, elements=12", "6305", "6320", "NU 2320"] {
+        for bearing in ["6205", "NU 205", "NU 205, elements=12", "6305", "6322", "NU 2320"] {
             for defect in [Where::Outer, Where::Inner, Where::Roller, Where::None] {
                 let of = answers(bearing, defect);
                 let scene = Scene::parse(&text(&name(&of), &of), "new.ron").expect(bearing);

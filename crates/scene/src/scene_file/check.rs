@@ -49,9 +49,12 @@ fn tried(finding: &Finding, found: &[Finding], scene: &Scene, written: Option<&o
     let mut finding = finding.clone();
     let this = finding.clone();
     for remedy in &mut finding.remedies {
-        // Leaving a group out is a remedy of its own.
+        // Leaving a group out is a remedy of its own, and the dimensions of the paper's bearing are none of
+        // another.
         let is_plain = |spot: &Spot| spot.shape.counts() || !matches!(spot.shape, Shape::Optional(_));
-        let at = spot(&remedy.field, None).filter(|spot| is_plain(spot) && !remedy.field.contains('['));
+        let of_another = remedy.field.starts_with("bearing.") && !scene.bearing.designation.is_empty();
+        let at = spot(&remedy.field, None)
+            .filter(|spot| is_plain(spot) && !remedy.field.contains('[') && !of_another);
         let default = at.and_then(Spot::plain_default).map(|value| Proposal::new(value, "the default"));
         let values = remedy.values.drain(..).chain(default);
         let left = |value: &Proposal| {

@@ -170,6 +170,8 @@ fn issue_beside_dimensions_of_another_bearing_the_papers_are_no_remedy() {
             }
         }
     }
+    let named = only(parse("(bearing: (designation: \"6205\", roller_diameter_mm: -2.0))"));
+    assert!(named.message.contains("outside its range") && !named.suggestion.contains("18"), "{named}");
     // An outer raceway beyond all ranges follows from these two.
     repairs_work(
         &["bearing.roller_diameter_mm=1e4", "bearing.inner_race_diameter_mm=1e-3"].map(str::to_owned),
