@@ -170,6 +170,8 @@ struct Limits {
     pitch_mm: f64,
     /// Defects pass as often in a turn, the slowest of inner and outer raceway and of the elements.
     passing: f64,
+    /// Turns between the family of a raceway and the nearest multiple of the shaft.
+    off_shaft: f64,
 }
 
 /// Pitch diameter times speed [mm/min] of the fastest bearings, of machine tools.
@@ -179,6 +181,10 @@ const SLOWEST_MM_RPM: f64 = 10.0;
 /// Periods of the defect in a record, the least for an envelope, and the longest record [s].
 const PERIODS: f64 = 10.0;
 const LONGEST_S: f64 = 100.0;
+/// Resolutions between a family and a multiple of the shaft, twice those that the verdict asks for, and the longest
+/// record that is made for them [s].
+const RESOLUTIONS: f64 = 3.0;
+const PATIENCE_S: f64 = 5.0;
 
 impl Limits {
     fn of(bearing: &str) -> Result<Self> {
@@ -188,6 +194,11 @@ impl Limits {
             rating_n: scene.static_rating_n(),
             pitch_mm: 0.5 * (scene.bearing.outer_race_diameter_mm + scene.bearing.inner_race_diameter_mm),
             passing: k.bpfo_hz.min(k.bpfi_hz).min(2.0 * k.bsf_hz) / k.shaft_hz,
+            off_shaft: [k.bpfo_hz, k.bpfi_hz]
+                .map(|hz| hz / k.shaft_hz)
+                .map(|turns| (turns - turns.round()).abs())
+                .into_iter()
+                .fold(f64::INFINITY, f64::min),
         })
     }
 
@@ -198,9 +209,12 @@ impl Limits {
         if tenth < USUAL_N { (tenth / digits).round() * digits } else { USUAL_N }
     }
 
-    /// A second, or twenty passages where those take longer [s].
+    /// A second, or longer where twenty passages take it, or where a raceway's family lies so near to a multiple
+    /// of the shaft that a second does not tell them apart [s].
     fn usual_duration_s(self, speed_rpm: f64) -> f64 {
-        (2.0 * PERIODS * 60.0 / (self.passing * speed_rpm)).ceil().clamp(1.0, LONGEST_S)
+        let turn_s = 60.0 / speed_rpm;
+        let apart_s = (RESOLUTIONS * turn_s / self.off_shaft).min(PATIENCE_S);
+        (2.0 * PERIODS * turn_s / self.passing).max(apart_s).ceil().clamp(1.0, LONGEST_S)
     }
 
     /// Whether the bearing carries a load.
@@ -521,6 +535,10 @@ mod tests {
         says(limits.speed(0.1), "1.7 to");
         says(limits.duration(1500.0, 0.01), "0.112 to 100 s");
         says(limits.duration(1500.0, 1e9), "0.112 to 100 s");
+        // BPFO of a 6203 is 3.05 turns: of a second of 25 turns a spectrum does not tell it from the third
+        // multiple of the shaft.
+        assert_eq!(limits.usual_duration_s(1500.0), 1.0);
+        assert_eq!(Limits::of("6203").expect("known").usual_duration_s(1500.0), 3.0);
         // A scene written without flags is valid for small and slow bearings, too.
         let small = Limits::of("6000").expect("known");
         assert!(small.load(small.usual_load_n()).is_ok(), "{small:?}");

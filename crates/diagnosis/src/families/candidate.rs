@@ -13,6 +13,9 @@ use crate::record::bands::{HIGHEST_HZ, LOWEST};
 /// Periods that a segment must hold.
 const PERIODS: f64 = 10.0;
 
+/// The longest record that is asked for [s].
+const LONGEST_S: f64 = 100.0;
+
 /// Where a family stands highest.
 pub(crate) struct Standing {
     /// Number of the band.
@@ -72,10 +75,17 @@ pub(crate) fn search(
     }
     let ranges = own.ranges_without(low, high);
     if ranges.is_empty() || own.holds(comb_hz) {
-        let why = "undecided: its place is within a resolution of a multiple of the shaft or the cage; a longer \
-                   record would tell them apart";
+        let needed_s = segment_s * own.width_hz / own.off_shaft_hz(comb_hz);
+        let longer = if own.is_of_shaft(comb_hz) && (record_s..LONGEST_S).contains(&needed_s) {
+            format!("one of {:.1} s", (10.0 * needed_s).ceil() / 10.0)
+        } else {
+            "a longer one".to_owned()
+        };
         let hidden = Family { undecided: true, ..expected };
-        return Candidate { family: hidden, standing: None, found: Vec::new() }.because(why.to_owned());
+        return Candidate { family: hidden, standing: None, found: Vec::new() }.because(format!(
+            "undecided: a record so short does not tell its place from a multiple of the shaft or the cage; {longer} \
+             would"
+        ));
     }
     let found: Vec<(usize, Comb)> = bands
         .iter()
