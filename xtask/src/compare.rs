@@ -4,6 +4,7 @@
 //! reported and left out. Ours is timed again before every run of another, so that both meet the same
 //! machine.
 
+mod bearing;
 mod block;
 mod environment;
 mod measure;
@@ -67,6 +68,8 @@ pub(crate) fn run(options: &Options) -> Result<ExitCode> {
         let problem = squeeze::problem(&environment.folder)?;
         measured.push(measure(problem, &on_disc, &environment, rounds, &mut absent)?);
     }
+
+    measured.extend(bearing::measured(&root)?);
 
     let page = tables::page(rounds, &measured, &absent);
     println!("{page}");

@@ -44,7 +44,7 @@ pub(super) fn page(rounds: usize, measured: &[Measured], absent: &[Absent]) -> S
     // Of blocks of several sizes the first is shown; the others are in the file of all runs.
     let kind = |m: &Measured| m.title.split(' ').next().map(str::to_owned);
     let is_first = |(n, m): &(usize, &Measured)| measured[..*n].iter().all(|before| kind(before) != kind(m));
-    measured.iter().enumerate().filter(is_first).for_each(|(_, m)| table(&mut page, m));
+    measured.iter().enumerate().filter(is_first).for_each(|(_, m)| page.push_str(&of_problem(m)));
     if !absent.is_empty() {
         let _ = writeln!(page, "\n## Left out\n");
         for a in absent {
@@ -54,7 +54,9 @@ pub(super) fn page(rounds: usize, measured: &[Measured], absent: &[Absent]) -> S
     page
 }
 
-fn table(page: &mut String, measured: &Measured) {
+/// The section of one problem.
+pub(super) fn of_problem(measured: &Measured) -> String {
+    let mut page = String::new();
     let all = measured.entries.iter().flat_map(|e| &e.rounds);
     let ours = Spread::of(all.map(|r| r.ours.cpu));
     let _ = writeln!(
@@ -70,7 +72,8 @@ fn table(page: &mut String, measured: &Measured) {
         digits(ours.least),
         digits(ours.median)
     );
-    measured.entries.iter().for_each(|e| row(page, e));
+    measured.entries.iter().for_each(|e| row(&mut page, e));
+    page
 }
 
 /// Their time over ours, of each pair of runs.
