@@ -59,6 +59,7 @@ pub mod machine;
 pub mod mesh_text;
 mod narrow;
 pub mod paper;
+mod quality;
 pub mod records;
 pub mod resolved;
 pub mod ring_mesh;

@@ -197,11 +197,12 @@ impl ResolvedScene {
         let material = Material::from(&scene.material);
         let element_size = 1e-3 * scene.mesh.size_mm;
         let contact = ContactNumbers::of(scene, &material, element_size);
+        let deviations = scene.deviations();
         let relief = |on: RollingSurface| {
             let [diameter_mm, facet_mm] = rolling_circle(scene, on);
-            Relief::of(&scene.defects, on, 0.5e-3 * diameter_mm, facet_mm)
+            Relief::of(&deviations, on, 0.5e-3 * diameter_mm, facet_mm)
         };
-        let larger = larger_by(b);
+        let larger = larger_by(b, scene.diameter_variation_um());
         let of_roller = |i: usize| {
             let formed = relief(RollingSurface::Roller(i + 1));
             let relief = match larger.get(i) {
@@ -290,8 +291,8 @@ impl ResolvedScene {
 }
 
 /// By how much the radius of each rolling element exceeds the nominal one [m]; none where all are alike.
-fn larger_by(bearing: &BearingScene) -> Vec<f64> {
-    let half = 0.5e-6 * bearing.diameter_variation_um;
+fn larger_by(bearing: &BearingScene, variation_um: f64) -> Vec<f64> {
+    let half = 0.5e-6 * variation_um;
     let mut dice = Dice::new(bearing.diameter_seed);
     let count = if half > 0.0 { bearing.rollers } else { 0 };
     (0..count).map(|_| half * (dice.share() - 0.5)).collect()

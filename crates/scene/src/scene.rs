@@ -15,7 +15,7 @@ pub use crate::records::RecordsScene;
 pub use crate::ring_mesh::RingMeshScene;
 pub use bearing::{
     AdapterScene, Assumed, BearingScene, CageScene, DefectRing, DefectScene, ElementKind, MaterialScene,
-    PocketWalls, RollerProfile,
+    PocketWalls, Quality, RollerProfile,
 };
 pub use contact::{
     ContactFormula, ContactInterpolation, ContactMethod, ContactPasses, ContactScene, ContactSurface,

@@ -1,5 +1,6 @@
 //! `stribeck new`: a scene of one's own, by six answers or by flags, with comments, that runs as it is.
 
+use std::f64::consts::TAU;
 use std::fmt::Display;
 use std::io::{BufRead, IsTerminal, Write};
 use std::path::{Path, PathBuf};
@@ -7,7 +8,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_scene::catalogue;
-use stribeck_scene::deviation::{HOLLOW_FACETS, RoughnessScene};
+use stribeck_scene::deviation::HOLLOW_FACETS;
 #[cfg(feature = "full")]
 use stribeck_scene::scene::DefectRing;
 use stribeck_scene::scene::Scene;
@@ -397,23 +398,17 @@ fn spall_of_an_element_mm(answers: &Answers) -> f64 {
     f64::max(USUAL_SPALL_MM, (10.0 * least).ceil() / 10.0)
 }
 
-/// Roughness of honed raceways over the width of a contact and more [µm], of those of balls, which are finished
-/// finer, half of it: its root mean square, and its shortest waves as far as the mesh of a large bearing has them.
-fn roughness(bearing: &str) -> String {
-    let scene = of_bearing(bearing);
-    let rq_um = match scene.element() {
-        Element::Ball => 0.05,
-        Element::Roller => 0.1,
+/// A force that turns with the shaft [N]: the unbalance of a rotor whose weight is the load, of the grade (ISO
+/// 21940-11) of general machinery, above 3000 rpm of turbines, and above 15 000 rpm of spindles.
+fn unbalance_n(load_n: f64, speed_rpm: f64) -> f64 {
+    let grade_mm_s = match speed_rpm {
+        ..=3000.0 => 6.3,
+        ..=15_000.0 => 2.5,
+        _ => 1.0,
     };
-    let shortest_mm = (10.0 * WAVE_ELEMENTS * scene.mesh.size_mm).ceil() / 10.0;
-    let usual_mm = RoughnessScene::default().shortest_mm;
-    let waves =
-        if shortest_mm > usual_mm { format!(", shortest_mm: {shortest_mm:?}") } else { String::new() };
-    format!("rq_um: {rq_um:?}{waves}")
+    let share = 1e-3 * grade_mm_s * TAU / 60.0 * speed_rpm / 9.81;
+    (10.0 * share * load_n).round().max(1.0) / 10.0
 }
-
-/// Elements in the shortest wave of a raceway's roughness.
-const WAVE_ELEMENTS: f64 = 4.5;
 
 /// A scene of a bearing in the catalogue, with all else by default.
 fn of_bearing(bearing: &str) -> Scene {
@@ -428,19 +423,19 @@ fn clearance_change_um(bearing: &str) -> f64 {
     mounted_clearance_change_um(inner_mm - 2.0 * b.inner_ring_thickness_mm, inner_mm, pitch_mm).round()
 }
 
-/// What tells its rolling elements from perfect ones.
-fn elements(bearing: &str) -> &'static str {
+/// What a scene of balls or rollers says of bearing and operation besides.
+fn of_element(bearing: &str) -> [&'static str; 2] {
     match of_bearing(bearing).element() {
-        Element::Ball => {
-            "\n        // Balls of a set differ in diameter: these are of grade 10.\n        \
-             diameter_variation_um: 0.5,"
-        }
-        Element::Roller => {
+        Element::Ball => [
+            "",
+            "\n        // Oil floats the cage. The weight of a dry one would shift the balls.\n        \
+             gravity_m_s2: 0,",
+        ],
+        Element::Roller => [
             "\n        // Ends relieved as those of real rollers. Straight ones enter the load with a knock.\n        \
-             roller_profile: logarithmic,\n        \
-             // Rollers of a set differ in diameter: these are of grade G2.\n        \
-             diameter_variation_um: 2.0,"
-        }
+             roller_profile: logarithmic,",
+            "",
+        ],
     }
 }
 
@@ -471,21 +466,22 @@ fn text(name: &str, answers: &Answers) -> String {
     };
     let of_an_element = if *defect == Where::Roller {
         format!(
-            "\n        (on: roller(1), form: spall(length_mm: {}, depth_mm: 0.05)),",
+            "\n    defects: [(on: roller(1), form: spall(length_mm: {}, depth_mm: 0.05))],",
             spall_of_an_element_mm(answers)
         )
     } else {
         String::new()
     };
+    let [profile, weights] = of_element(bearing);
     SCENE
-        .replace("<defect>", &format!("    // {comment}\n    defect: {spall},"))
-        .replace("<roughness>", &roughness(bearing))
-        .replace("<of an element>", &of_an_element)
+        .replace("<defect>", &format!("    // {comment}\n    defect: {spall},{of_an_element}"))
         .replace("<state>", state)
         .replace("<file>", name)
         .replace("<bearing>", bearing)
-        .replace("<elements>", elements(bearing))
+        .replace("<profile>", profile)
+        .replace("<weights>", weights)
         .replace("<change>", &format!("{:?}", clearance_change_um(bearing)))
+        .replace("<unbalance>", &format!("{:?}", unbalance_n(*load_n, *speed_rpm)))
         .replace("<load>", &format!("{load_n:?}"))
         .replace("<speed>", &format!("{speed_rpm:?}"))
         .replace("<duration>", &format!("{:?}", 1e3 * duration_s))

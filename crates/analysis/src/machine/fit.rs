@@ -30,6 +30,8 @@ const LEAST_SHARE: f64 = 0.05;
 /// Part of the sample rate up to which records are compared: recorders filter what is above.
 const COMPARED: f64 = 0.45;
 
+/// Lowest frequency of a fitted path below its lowest third octave, as a ratio.
+const SLOWER: f64 = 10.0;
 /// Range of the fitted recorder over the largest sample of the records.
 const ROOM: f64 = 10.0;
 
@@ -99,9 +101,14 @@ pub fn fit(records: &[Known]) -> Result<MachineScene, Error> {
     }
     let peak = records.iter().flat_map(|known| &known.measured).fold(0.0_f64, |most, x| most.max(x.abs()));
     let gains = hz.iter().zip(&path.gains).map(|(&hz, g)| GainScene { hz, gain: rounded((0.5 * g).exp()) });
+    let gains: Vec<GainScene> = gains.collect();
+    // Below the fitted octaves it yields as a spring does.
+    let below = gains
+        .first()
+        .map(|first| GainScene { hz: first.hz / SLOWER, gain: rounded(first.gain / (SLOWER * SLOWER)) });
     let levels = hz.iter().zip(&path.background);
     let machine = MachineScene {
-        gains: gains.collect(),
+        gains: below.into_iter().chain(gains).collect(),
         background: levels.map(|(&hz, p)| BackgroundScene { hz, rms_m_s2: rounded(p.sqrt()) }).collect(),
         sensor: MachineSensorScene {
             rate_hz: records[0].rate_hz,

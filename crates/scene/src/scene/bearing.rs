@@ -29,11 +29,14 @@ group! {
         pub rollers: usize = 24, within(3.0, 400.0);
         /// Diameter of a rolling element [mm].
         pub roller_diameter_mm: f64 = 18.0, positive(5_000.0);
-        /// Variation of the diameters of rolling elements within their set [µm]: each is drawn from within
-        /// half of it of its nominal value. Balls of grade 10 vary by 0.5 (V_DwL of ISO 3290-1), rollers of
-        /// grade G2 by 2 (ISO 3096).
+        /// Tolerance class, from which raceways have waves and rolling elements differ in diameter: what `stribeck
+        /// new` writes. `None` for perfect ones.
+        pub quality: Option<Quality> = None, omitted();
+        /// Variation of the diameters of rolling elements within their set [µm], before that of `quality`: each is
+        /// drawn from within half of it of its nominal value. Balls of grade 10 vary by 0.5 (V_DwL of ISO 3290-1),
+        /// rollers of grade G2 by 2 (ISO 3096).
         pub diameter_variation_um: f64 = 0.0, within(0.0, 100.0), omitted();
-        /// Seed of these draws.
+        /// Seed of these draws, and of the waves of `quality`.
         pub diameter_seed: u64 = 1, within(0.0, 1e9), omitted();
         /// Profile of rollers along their length, in the reduced model.
         pub roller_profile: RollerProfile = RollerProfile::Straight, omitted();
@@ -63,6 +66,18 @@ words! {
         Roller = "roller",
         /// A ball: it touches in points in the reduced model, and is a cylinder of the same approach in the full one.
         Ball = "ball",
+    }
+}
+
+words! {
+    /// A tolerance class of ISO 492.
+    pub enum Quality: Copy, Eq {
+        /// Normal: most bearings.
+        Normal = "normal",
+        /// Class 6.
+        P6 = "p6",
+        /// Class 5, of spindles.
+        P5 = "p5",
     }
 }
 

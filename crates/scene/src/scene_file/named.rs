@@ -108,10 +108,11 @@ pub(super) fn alone(bearing: &BearingScene, given: &[String]) -> Option<String> 
 }
 
 /// Fields of a bearing that a scene may give beside its name.
-const BESIDE_A_NAME: [&str; 8] = [
+const BESIDE_A_NAME: [&str; 9] = [
     "designation",
     "element",
     "rollers",
+    "quality",
     "diameter_variation_um",
     "diameter_seed",
     "roller_profile",
@@ -125,6 +126,7 @@ fn beside_the_name(said: &BearingScene, of_name: BearingScene, given: &[String])
     let rollers = if written("rollers") { said.rollers } else { of_name.rollers };
     BearingScene {
         rollers,
+        quality: said.quality,
         diameter_variation_um: said.diameter_variation_um,
         diameter_seed: said.diameter_seed,
         roller_profile: said.roller_profile,

@@ -214,6 +214,7 @@ fn bearing(
         element: b.element,
         rollers,
         roller_diameter_mm: tidy(d.roller),
+        quality: b.quality,
         diameter_variation_um: b.diameter_variation_um,
         diameter_seed: b.diameter_seed,
         roller_profile: b.roller_profile,

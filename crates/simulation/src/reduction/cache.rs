@@ -47,6 +47,7 @@ pub fn reference(scene: &Scene) -> Scene {
     let mut bearing = scene.bearing.clone();
     // With two of them as far from the middle as they can be, or with one in it.
     let is_over_one = groove.is_some_and(|groove| spacings(scene, &groove) % 2.0 >= 1.0);
+    bearing.quality = None;
     bearing.first_roller_deg = middle + if is_over_one { 0.0 } else { 180.0 / bearing.rollers as f64 };
     let mut mesh = scene.mesh.clone();
     mesh.roller_phase_deg = 0.0;

@@ -261,7 +261,7 @@ fn behaves_a_scene_of_ones_own_is_written_once() {
             "designation: \"NU 205\"",
             "clearance_change_um: -10.0",
             "roller_profile: logarithmic",
-            "diameter_variation_um: 2.0",
+            "quality: normal",
             "load_n: 3000.0",
             "ring: inner",
             "// ",
