@@ -65,7 +65,7 @@ impl Scene {
                 // Between those of the orders 1 and 2.
                 longest_mm: 0.75 * std::f64::consts::PI * diameter_mm,
                 shortest_mm: WAVE_ELEMENTS * self.mesh.size_mm,
-                seed: 2 * b.diameter_seed - 1 + number,
+                seed: (2 * b.diameter_seed + number).wrapping_sub(1),
                 ..RoughnessScene::default()
             };
             all.push(DeviationScene { on, form: FormScene::Roughness(waves), ..DeviationScene::default() });

@@ -3,6 +3,7 @@
 use crate::Defect;
 use crate::families::family::Family;
 use crate::families::unexplained::Unexplained;
+use crate::families::unrelated::SLIP;
 
 /// A frequency beside that of rolling without slip, in words.
 fn beside(hz: f64, without_slip_hz: f64) -> String {
@@ -14,6 +15,13 @@ fn beside(hz: f64, without_slip_hz: f64) -> String {
             format!("{percent:.1} % {side} that of rolling without slip")
         }
     }
+}
+
+/// Whether a comb may be that of a family, or its second or third harmonic.
+fn may_be_of(family: &Family, hz: f64) -> bool {
+    let comb_hz = family.name.shocks_per_period() * family.expected_hz;
+    let times = (hz / comb_hz).round();
+    (1.0..=3.0).contains(&times) && (hz / (times * comb_hz) - 1.0).abs() < SLIP
 }
 
 /// The verdict in words.
@@ -53,6 +61,13 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
         return format!("The record shows {}.", claimed.join(" and "));
     }
     if let Some(other) = unexplained {
+        if let Some(hidden) = families.iter().find(|f| f.undecided && may_be_of(f, other.hz)) {
+            return format!(
+                "The record knocks at {:.2} Hz, {:.3} times the shaft, where {} lies beside a multiple of the shaft: \
+                 a measured speed or a longer record would tell them apart.",
+                other.hz, other.order, hidden.name
+            );
+        }
         return format!(
             "The record knocks at {:.2} Hz, {:.3} times the shaft, which is no family of this bearing: slip, \
              speed or bearing is not what was given, or another part of the machine knocks.",
@@ -108,5 +123,24 @@ pub(crate) fn probability(p: f64) -> String {
         format!("{p:.1}")
     } else {
         format!("{p:.3}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A ball of a 6203 knocks 3.99 times a turn of the shaft: the record was said to knock at no frequency of the
+    /// bearing.
+    #[test]
+    fn issue_knocks_beside_a_multiple_of_the_shaft_are_not_those_of_no_family() {
+        let bsf = Family { undecided: true, ..Family::expected(Defect::Bsf, 49.861) };
+        let says = |family: &Family, hz: f64| {
+            let other = Unexplained { hz, order: hz / 25.0, height_db: 20.0, band_hz: (1e3, 2e3) };
+            conclude(std::slice::from_ref(family), Some(&other))
+        };
+        assert!(says(&bsf, 99.47).contains("where BSF lies beside a multiple of the shaft"));
+        assert!(says(&bsf, 90.0).contains("no family of this bearing"));
+        assert!(says(&Family::expected(Defect::Bsf, 49.861), 99.47).contains("no family of this bearing"));
     }
 }
