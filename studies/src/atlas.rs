@@ -57,6 +57,10 @@ const DEFECTS: [(&str, &str, &[&str]); 8] = [
 /// Bearing time for a spot on one rolling element, which is under the load a part of every turn of the cage
 /// only [ms].
 const ROLLER_MS: f64 = 2400.0;
+/// Resolutions between a family and a multiple of the shaft, by which a record with slip tells them apart, and the
+/// longest record that is made for them [ms].
+const RESOLUTIONS: f64 = 2.0;
+const LONGEST_MS: f64 = 8000.0;
 /// Passages of rollers over the outer raceway in a run of the full model.
 const PASSAGES: f64 = 1.5;
 /// White noise that is laid over records, its rms over that of the record.
@@ -82,6 +86,7 @@ pub(crate) fn measure(runner: &Runner<'_>, rows: &mut Rows) -> Result<()> {
             reduced.push(variant);
         }
     }
+
     let (reduced, full) = (runner.run(&reduced)?, runner.run(&full)?);
     let (mut right, mut rightly, mut by_full, mut in_noise, mut falsely) = (0, 0, 0, 0, 0);
     for (bearing, defect, wanted, name) in cases {
@@ -118,10 +123,16 @@ fn variant(host: &Host, bearing: &str, defect: &str, list: &str) -> Result<(Vari
     if !is_papers {
         variant = variant.with(format!("bearing={bearing}"));
     }
-    if defect == "roller-spall" {
-        variant = variant.with(format!("solver.duration_ms={ROLLER_MS}"));
-    }
     let plain = Scene::read_with(host.root().join(SCENE), &variant.set)?;
+    let k = plain.kinematics();
+    let (least_ms, knocks_hz) = match defect {
+        "roller-spall" => (ROLLER_MS, vec![2.0 * k.bsf_hz]),
+        _ => (plain.solver.duration_ms, vec![k.bpfo_hz, k.bpfi_hz]),
+    };
+    let off_shaft = |hz: &f64| (hz - (hz / k.shaft_hz).round() * k.shaft_hz).abs();
+    let nearest_hz = knocks_hz.iter().map(off_shaft).fold(f64::INFINITY, f64::min);
+    let duration_ms = (1e3 * RESOLUTIONS / nearest_hz).ceil().min(LONGEST_MS).max(least_ms);
+    variant = variant.with(format!("solver.duration_ms={duration_ms}"));
     let roller = plain.bearing.roller_diameter_mm;
     // A cage of the paper's proportions: its corners touch rollers above their middles, so that they guide
     // it.

@@ -466,7 +466,7 @@ class Signals(unittest.TestCase):
         self.assertAlmostEqual(orders["bpfo"], 3.5848, delta=2e-3)
         self.assertAlmostEqual(orders["bsf"], 4.7135 / 2, delta=2e-3)
         self.assertAlmostEqual(orders["ftf"], 0.39828, delta=2e-3)
-        with self.assertRaisesRegex(ValueError, "6000 to 6320"):
+        with self.assertRaisesRegex(ValueError, "6000 to 6322"):
             stribeck.defect_orders("620S")
 
     def test_knocks_are_found_and_called_what_they_are(self):
