@@ -179,8 +179,8 @@ fn faults(reduced: &Finished, full: Option<&Finished>, wanted: &[&str]) -> Vec<S
     };
     for family in diagnosis.families.iter().filter(|family| family.name != Defect::Ftf) {
         match (wanted.contains(&family.name.name()), family.claimed) {
-            (true, false) => faults.push(format!("{} not claimed: {}", family.name, family.reason)),
-            (false, true) => faults.push(format!("{} claimed, and there is none", family.name)),
+            (true, false) => faults.push(format!("{} not claimed", family.name)),
+            (false, true) => faults.push(format!("{} wrongly claimed", family.name)),
             (true, true) => faults.extend(misplaced(family, diagnosis)),
             (false, false) => {}
         }
