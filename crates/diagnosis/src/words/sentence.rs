@@ -63,8 +63,8 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     if let Some(other) = unexplained {
         if let Some(hidden) = families.iter().find(|f| f.undecided && may_be_of(f, other.hz)) {
             return format!(
-                "The record knocks at {:.2} Hz, {:.3} times the shaft, where {} lies beside a multiple of the shaft: \
-                 a measured speed or a longer record would tell them apart.",
+                "The record knocks at {:.2} Hz, {:.3} times the shaft, where {} lies beside one of the machine's own \
+                 lines: a measured speed or a longer record would tell them apart.",
                 other.hz, other.order, hidden.name
             );
         }
@@ -139,7 +139,7 @@ mod tests {
             let other = Unexplained { hz, order: hz / 25.0, height_db: 20.0, band_hz: (1e3, 2e3) };
             conclude(std::slice::from_ref(family), Some(&other))
         };
-        assert!(says(&bsf, 99.47).contains("where BSF lies beside a multiple of the shaft"));
+        assert!(says(&bsf, 99.47).contains("where BSF lies beside one of the machine's own lines"));
         assert!(says(&bsf, 90.0).contains("no family of this bearing"));
         assert!(says(&Family::expected(Defect::Bsf, 49.861), 99.47).contains("no family of this bearing"));
     }
