@@ -12,7 +12,6 @@ use crate::{Finished, Host, Rows};
 /// Findings of `stribeck analyse` on a record.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Found {
-    /// Families that are claimed.
     pub(crate) claimed: Vec<String>,
     /// Length of the spall from two events a passage: value, lower and upper end [mm].
     pub(crate) spall_mm: Option<[f64; 3]>,
@@ -27,9 +26,6 @@ pub(crate) struct Found {
 }
 
 /// Runs `stribeck analyse` and reads its findings.
-///
-/// # Errors
-/// When it does not start, refuses the file, or leaves no findings.
 pub(crate) fn analyse(host: &Host, file: &Path, words: &[String], out: &Path, family: &str) -> Result<Found> {
     let mut command = host.stribeck()?;
     let done = command.arg("analyse").arg(file).args(words).arg("--out").arg(out).output();

@@ -112,9 +112,6 @@ impl Drawing {
 }
 
 /// Draws a picture beside the page of a study.
-///
-/// # Errors
-/// When it cannot be drawn or written.
 pub(crate) fn draw(study: &str, figure: &Figure) -> Result<()> {
     crate::write(&crate::results().join(format!("{study}-{}.svg", figure.id)), &figure.to_svg()?)
 }

@@ -31,11 +31,9 @@ pub fn root() -> PathBuf {
     root.unwrap_or(&package).to_owned()
 }
 
-/// One run of a study.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Job<'a> {
     pub(crate) scene: &'a Scene,
-    /// Where its files go.
     pub(crate) folder: &'a Path,
     /// The folder holds the beginning of this run: it is continued.
     pub(crate) begun: bool,
@@ -54,9 +52,6 @@ pub struct Host {
 
 impl Host {
     /// Listens for Ctrl-C from now on; once a process.
-    ///
-    /// # Errors
-    /// When something else listens already.
     pub fn new() -> Result<Self> {
         Ok(Self { root: root(), began: Instant::now(), interrupt: Interrupt::listen()? })
     }
@@ -89,9 +84,6 @@ impl Host {
     }
 
     /// Applies `work` to every item, `jobs` of them at a time; results in the order of the items.
-    ///
-    /// # Errors
-    /// At Ctrl-C.
     pub(crate) fn each<T: Sync, R: Send + Sync>(
         &self,
         items: &[T],
@@ -116,9 +108,6 @@ impl Host {
 
     /// The program `stribeck`, for studies of whole processes: this one has its commands below one of its
     /// own.
-    ///
-    /// # Errors
-    /// When it cannot be found.
     pub(crate) fn stribeck(&self) -> Result<Command> {
         let mut command = Command::new(std::env::current_exe().context("where is this program?")?);
         command.arg("stribeck");

@@ -153,7 +153,6 @@ fn pictures(runner: &Runner<'_>, family: &str, sensor: &str, groups: &[Impulses<
     Ok(())
 }
 
-/// The first impulse of a run at one of its sensors.
 fn impulse(run: &Finished, sensor: usize) -> Option<Impulse> {
     let read = run.trace()?;
     let exit_s = Prediction::of(&read.scene, &read.info.mesh).passages().first()?.exit_s;

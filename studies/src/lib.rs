@@ -149,10 +149,6 @@ impl Study {
 
     /// Runs the outstanding variants and writes the answer; with `page_only` only its page, from the kept
     /// table.
-    ///
-    /// # Errors
-    /// When a variant is not a valid scene, a page cannot be written, or at an interruption; finished runs
-    /// are kept.
     pub fn run(&self, host: &Host, page_only: bool) -> Result<Answer> {
         let mut answer = Answer::default();
         if !page_only {
@@ -188,9 +184,6 @@ fn results() -> PathBuf {
 }
 
 /// Writes the table of a study and its page, whose path it returns.
-///
-/// # Errors
-/// When they cannot be written.
 pub fn publish(study: &str, rows: &Rows) -> Result<PathBuf> {
     write(&results().join(format!("{study}.csv")), &rows.to_csv())?;
     Ok(write_page(study)?.0)

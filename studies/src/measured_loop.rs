@@ -22,7 +22,6 @@ pub struct Options {
 
 /// Fields that all runs share.
 const SCENE: &str = "fixtures/scenes/studies/loop.ron";
-/// The bearing of the rig.
 const BEARING: &str = "6205";
 /// Sample rate of the records [Hz].
 const RATE_HZ: f64 = 51_200.0;

@@ -21,7 +21,6 @@ pub(crate) struct Plan {
     set: Vec<String>,
     /// Runs that share a table.
     pub(crate) groups: Vec<Group>,
-    /// Pictures of the numbers.
     #[serde(default)]
     pub(crate) figures: Vec<Drawing>,
 }
@@ -56,9 +55,6 @@ pub(crate) type Kernel = (&'static str, fn(&Finished) -> Option<f64>);
 
 impl Plan {
     /// Reads the plan of a study.
-    ///
-    /// # Errors
-    /// When there is none, or it is none.
     pub(crate) fn read(study: &str) -> Result<Self> {
         let path = package().join("plans").join(format!("{study}.ron"));
         let text =
@@ -66,7 +62,6 @@ impl Plan {
         ron::from_str(&text).with_context(|| path.display().to_string())
     }
 
-    /// The variants of a group.
     pub(crate) fn variants(&self, group: &Group) -> Vec<Variant> {
         let variant = |(name, own): &(String, Vec<String>)| Variant {
             name: format!("{}{name}", group.prefix),
@@ -89,9 +84,6 @@ impl Plan {
     }
 
     /// Runs all groups and puts the numbers of their columns into `rows`; the runs of each group.
-    ///
-    /// # Errors
-    /// As [`Runner::run`], or when a column is not known.
     pub(crate) fn run(
         &self,
         runner: &Runner<'_>,

@@ -92,10 +92,6 @@ pub struct Reference {
 
 impl Reference {
     /// Takes the model's bodies; held components do not move.
-    ///
-    /// # Errors
-    /// When the model is one that the solver refuses, has rigid bodies or prescribed rotations, or
-    /// `bulk_viscosity` is negative.
     pub fn new(model: &Model, choice: Choice) -> Result<Self> {
         let viscosity = choice.bulk_viscosity;
         ensure!(

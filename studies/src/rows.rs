@@ -42,7 +42,6 @@ impl Rows {
         self.get(table, variant, quantity)?.parse().ok()
     }
 
-    /// The variants of a table, in their order.
     pub(crate) fn variants(&self, table: &str) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
         for [of, variant, ..] in &self.0 {
@@ -53,7 +52,6 @@ impl Rows {
         names
     }
 
-    /// The quantities of a variant, in their order.
     pub(crate) fn quantities(&self, table: &str, variant: &str) -> Vec<String> {
         let of = self.0.iter().filter(|[t, v, ..]| t == table && v == variant);
         of.map(|row| row[2].clone()).collect()
@@ -66,9 +64,6 @@ impl Rows {
     }
 
     /// Reads the file of a study.
-    ///
-    /// # Errors
-    /// When it cannot be read or is no such table.
     pub(crate) fn read(path: &Path) -> Result<Self> {
         let text =
             std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))?;
@@ -80,7 +75,6 @@ impl Rows {
         Ok(Self(rows.collect::<Result<_>>()?))
     }
 
-    /// The text of the file.
     pub(crate) fn to_csv(&self) -> String {
         let rows = self.0.iter().map(|row| row.each_ref().map(|field| quoted(field)).join(","));
         std::iter::once(HEAD.to_owned()).chain(rows).map(|line| line + "\n").collect()

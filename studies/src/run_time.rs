@@ -31,7 +31,6 @@ const FROM_MS: f64 = 1.0;
 /// Results of one start.
 #[derive(Debug, Clone, Copy)]
 struct Measured {
-    /// Its number.
     start: usize,
     /// Processor time of a simulated millisecond [s].
     seconds: f64,

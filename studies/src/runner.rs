@@ -36,7 +36,6 @@ pub struct Flags {
 }
 
 impl Flags {
-    /// Whether a variant of this name is to be run.
     pub(crate) fn wants(&self, name: &str) -> bool {
         self.only.is_empty() || self.only.iter().any(|text| name.contains(text.as_str()))
     }
@@ -68,9 +67,7 @@ pub(crate) struct Variant {
 /// A variant that has been run, or could not be.
 #[derive(Debug)]
 pub(crate) struct Finished {
-    /// The variant.
     pub(crate) variant: Variant,
-    /// Its folder.
     pub(crate) folder: PathBuf,
     /// The scene that it stands for, in SI.
     pub(crate) scene: ResolvedScene,
@@ -140,16 +137,12 @@ impl Finished {
 }
 
 impl<'a> Runner<'a> {
-    /// A runner for the study of this name.
     pub(crate) fn new(study: &'static str, flags: &Flags, host: &'a Host) -> Self {
         Self { study, folder: host.root().join("runs/study").join(study), flags: flags.clone(), host }
     }
 
     /// Runs every variant that has not been run and returns all that have been, in their order. A variant
     /// that fails has its reason in the table and does not end the study.
-    ///
-    /// # Errors
-    /// When a variant is not a valid scene, or at Ctrl-C; finished runs are kept.
     pub(crate) fn run(&self, variants: &[Variant]) -> Result<Vec<Finished>> {
         let planned: Vec<Planned> =
             variants.iter().map(|variant| self.plan(variant)).collect::<Result<_>>()?;
@@ -205,7 +198,6 @@ struct Planned {
     failed: OnceLock<String>,
 }
 
-/// How far a variant is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
     /// Not run, or run from another scene.

@@ -67,7 +67,6 @@ impl Case {
     }
 }
 
-/// Adds cases to the rows.
 fn put(rows: &mut Rows, chapter: &str, cases: Vec<Case>) {
     for Case { done, energy, verdict, seen } in cases {
         rows.value(chapter, &done, "energy imbalance", energy);

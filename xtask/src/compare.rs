@@ -42,10 +42,8 @@ pub(crate) struct Options {
     python: String,
 }
 
-/// Columns and rows of the blocks.
 const BLOCKS: [(usize, usize); 2] = [(210, 125), (420, 250)];
 
-/// Rounds of a quick comparison.
 const QUICK_ROUNDS: usize = 3;
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {

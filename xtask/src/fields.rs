@@ -20,7 +20,6 @@ pub(crate) struct Options {
     schema: bool,
 }
 
-/// Writes the page.
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     if options.schema {
         println!("{:#}", json_schema());

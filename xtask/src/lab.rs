@@ -33,7 +33,6 @@ pub(crate) fn with_module(command: stribeck::Command) -> Result<stribeck::Comman
     })
 }
 
-/// Builds the module and says where it is.
 pub(crate) fn build_module(options: &Options) -> Result<ExitCode> {
     let mut module = build()?;
     if options.embed {

@@ -143,7 +143,6 @@ fn epoch(root: &Path) -> Result<String> {
     Ok(output(&mut git, "name the time of the release in SOURCE_DATE_EPOCH")?.trim().to_owned())
 }
 
-/// Checksums of all files.
 fn sums(folder: &Path) -> Result<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)?
         .flatten()

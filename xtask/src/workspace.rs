@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-/// The root of the repository.
 pub(crate) fn root() -> PathBuf {
     // Cargo sets this variable for a program that it runs; the compiled-in path is for a binary started
     // by hand.

@@ -76,9 +76,6 @@ pub struct Seen<'a> {
 }
 
 /// All lines at the leading sensor.
-///
-/// # Errors
-/// [`Error::Signal`] when the spectrum cannot be searched.
 pub fn ledger(
     scene: &ResolvedScene,
     prediction: &Prediction,

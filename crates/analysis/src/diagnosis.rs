@@ -109,9 +109,6 @@ pub fn analysis(
 }
 
 /// The same of what the sensor of the scene's machine records; `None` where the scene has none.
-///
-/// # Errors
-/// As [`analysis`].
 pub fn analysis_at_the_machine(run: &Run, expected: &Kinematics) -> Result<Option<Analysis>, Error> {
     match crate::machine::of_run(run)? {
         Some(record) => {
@@ -123,9 +120,6 @@ pub fn analysis_at_the_machine(run: &Run, expected: &Kinematics) -> Result<Optio
 
 /// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always
 /// has some. Its seed is fixed.
-///
-/// # Errors
-/// As [`analysis`].
 pub fn analysis_in_noise(
     scene: &ResolvedScene,
     record: &Record<'_>,

@@ -224,9 +224,6 @@ pub fn moved(defect: Defect, motion: &KinematicsFinding) -> Option<f64> {
 /// Order spectrum of the squared envelope of `signal_g` [g⁴], with orders as frequencies, and the lines at
 /// the orders of `family`; the reason when there is none. `turns` is the angle of the shaft against the outer
 /// ring at each sample.
-///
-/// # Errors
-/// [`Error::Signal`] when a finite signal is refused.
 pub fn over_angle(
     signal_g: &[f64],
     sample_rate_hz: f64,

@@ -45,9 +45,6 @@ quantities! {
 
 /// Envelope spectrum [g⁴] and finding; `None` with the reason when the record holds too few periods of
 /// `lines`, whose first is the fundamental.
-///
-/// # Errors
-/// [`Error::Signal`] when a finite signal is refused.
 pub fn analyse(
     signal_g: &[f64],
     sample_rate_hz: f64,

@@ -189,9 +189,6 @@ pub(crate) fn too_early(samples: usize, interval_s: f64, bpfo_hz: f64) -> Option
 
 /// Judges every candidate by the accelerations, all as long as the tracks, and by the forces on the rollers,
 /// over the last [`MOST_PERIODS`] of the record.
-///
-/// # Errors
-/// [`Error::Signal`] when the spectrum of a finite channel is refused.
 pub fn identify(
     motion: &RecordedMotion,
     candidates: &[Candidate],

@@ -35,9 +35,6 @@ quantities! {
 
 impl FilmFinding {
     /// `None` for a scene without oil, or one whose loaded films are not to be had.
-    ///
-    /// # Errors
-    /// [`Error::Run`] when the trace cannot be read.
     pub fn measure(run: &Run, record: &Record<'_>) -> Result<Option<Self>, Error> {
         let Ok(Some(loaded)) = run.scene.loaded_films() else { return Ok(None) };
         let rollers: Vec<usize> = run.scene.written.rollers_in_place().collect();

@@ -180,9 +180,6 @@ impl Findings {
     }
 
     /// The same with the forces of the first `most` passages, for pictures.
-    ///
-    /// # Errors
-    /// As [`Findings::of`].
     pub fn with_crossings(mut self, record: &Record<'_>, most: usize) -> Result<Self, Error> {
         let (events, filter) = (&self.summary.events, self.filter.as_ref());
         self.crossings = crossing_forces(record, &self.prediction, events, filter, most)?;

@@ -57,9 +57,6 @@ pub struct Force {
 impl Force {
     /// The force of the rolling elements on the outer ring in the direction of a machine's sensor, without the
     /// beginning of the run.
-    ///
-    /// # Errors
-    /// When the run cannot be read.
     pub fn of_run(run: &Run, direction_deg: f64) -> Result<Self, Error> {
         let record = Record::whole(run)?;
         let (s, c) = direction_deg.to_radians().sin_cos();
@@ -103,7 +100,6 @@ pub fn record(machine: &MachineScene, bearing: &BearingScene, force: &Force) -> 
     Ok(MachineRecord { rate_hz: sensor.rate_hz, from_s: force.from_s, samples })
 }
 
-/// The path of a machine.
 fn path(machine: &MachineScene, bearing: &BearingScene, highest_hz: f64) -> Result<Response, Error> {
     let mut paths = Vec::new();
     if !machine.gains.is_empty() {

@@ -92,7 +92,6 @@ fn number(part: &str, quantity: &str, paper: f64, ours: Option<f64>, unit: &str,
     }
 }
 
-/// A row of words.
 fn words(part: &str, quantity: &str, paper: &str, ours: String, difference: &str, why: &str) -> PaperRow {
     PaperRow {
         part: part.into(),

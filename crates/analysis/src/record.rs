@@ -71,7 +71,6 @@ pub fn against<'a>(shaft: &'a [f64], outer: Option<&[f64]>) -> Cow<'a, [f64]> {
     }
 }
 
-/// Whether a channel is one of these rollers'.
 fn of_rollers(numbers: &[usize]) -> impl Fn(&str) -> bool {
     let of_one = OF_ROLLER.iter().chain(&OIL_OF_ROLLER);
     let name = |number| of_one.clone().map(move |what| format!("roller.{number}.{what}"));
@@ -82,9 +81,6 @@ fn of_rollers(numbers: &[usize]) -> impl Fn(&str) -> bool {
 impl<'a> Record<'a> {
     /// All samples up to the first that is not finite in any channel; of a record of more than two million
     /// the last ones. Channels of rollers and sensors, which are most, stay on disk.
-    ///
-    /// # Errors
-    /// [`Error::Run`] when the trace cannot be read.
     pub fn new(run: &'a Run) -> Result<Self, Error> {
         Self::between(run, f64::NEG_INFINITY..f64::INFINITY)
     }
@@ -117,9 +113,6 @@ impl<'a> Record<'a> {
     }
 
     /// The same with all channels in memory, which a long record may not fit into.
-    ///
-    /// # Errors
-    /// As [`Record::new`].
     pub fn whole(run: &'a Run) -> Result<Self, Error> {
         Self::with(run, 0..run.trace.len(), |_| true)
     }
@@ -131,9 +124,6 @@ impl<'a> Record<'a> {
     }
 
     /// Some of the samples, with those channels in memory whose name is `wanted`: one pass over the file.
-    ///
-    /// # Errors
-    /// As [`Record::new`].
     pub fn part(&self, samples: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Self, Error> {
         let [start, end] = [samples.start, samples.end].map(|at| self.first + at.min(self.len));
         let held = self.run.trace.read(start..end, wanted)?;
@@ -142,26 +132,17 @@ impl<'a> Record<'a> {
     }
 
     /// Some of the samples, with these rollers in memory.
-    ///
-    /// # Errors
-    /// As [`Record::new`].
     pub fn with_rollers(&self, numbers: &[usize], samples: Range<usize>) -> Result<Self, Error> {
         self.part(samples, of_rollers(numbers))
     }
 
     /// The first sample of the run, which may lie before this record, with these rollers in memory.
-    ///
-    /// # Errors
-    /// As [`Record::new`].
     pub fn at_start(&self, numbers: &[usize]) -> Result<Self, Error> {
         Self::with(self.run, 0..1, of_rollers(numbers))
     }
 
     /// Hands every roller whose channels are there to `visit`, in the order of their numbers. A few are in
     /// memory at a time.
-    ///
-    /// # Errors
-    /// As [`Record::new`].
     pub fn each_roller(&self, mut visit: impl FnMut(&Roller<'_>)) -> Result<(), Error> {
         let of_one = 8 * (OF_ROLLER.len() + OIL_OF_ROLLER.len()) * self.len.max(1);
         for numbers in self.roller_numbers().chunks((ROLLERS_AT_ONCE_BYTES / of_one).max(1)) {

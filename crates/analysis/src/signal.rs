@@ -45,9 +45,6 @@ pub fn line_between(signal: &[f64], sample_rate_hz: f64, from_hz: f64, to_hz: f6
 }
 
 /// Density [unit²/Hz] of the first `seconds` of a signal on a grid [Hz]; `None` when the signal is shorter.
-///
-/// # Errors
-/// [`Error::Signal`] when a finite signal is refused.
 pub fn density_of_start(
     signal: &[f64],
     sample_rate_hz: f64,

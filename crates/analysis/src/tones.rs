@@ -155,9 +155,6 @@ pub struct NearestLine {
 /// The line of `spectrum`, a density [g²/Hz], that is nearest to `expected_hz`, whatever makes it: within
 /// [`REACH`], or within the width of a line at −6 dB where that is more. Peaks as far below the
 /// highest one as the side lobes of its window do not count as lines.
-///
-/// # Errors
-/// [`Error::Signal`] when the spectrum cannot be searched.
 pub fn nearest(spectrum: &Spectrum, expected_hz: f64) -> Result<NearestLine, Error> {
     let grid_hz = spectrum.resolution().grid_hz;
     let reach = (REACH * expected_hz).max(spectrum.resolution().width_6db_hz);

@@ -113,7 +113,6 @@ impl Memory {
         memory
     }
 
-    /// Forgets all candidates.
     pub(crate) fn clear(&mut self) {
         self.candidates.clear();
         self.nearest.clear();

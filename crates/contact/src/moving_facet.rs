@@ -39,7 +39,6 @@ impl<F: Facet> MovingFacet<F> {
         point.velocity(&self.motion)
     }
 
-    /// Adds a force on a point.
     #[inline(always)]
     pub(crate) fn push_point(&mut self, point: &FacetPoint<f64>, f: [f64; 2]) {
         point.push(f, &mut self.forces);

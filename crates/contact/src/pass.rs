@@ -28,7 +28,6 @@ use crate::{
 /// Most nodes that a facet depends on.
 const MOST_NODES: usize = 6;
 
-/// One pass of a pair.
 #[derive(Debug, Clone)]
 pub(crate) struct Pass {
     pub(crate) secondary: usize,
@@ -45,7 +44,6 @@ pub(crate) struct Pass {
 /// Scratch space of a search.
 #[derive(Debug, Clone)]
 struct Room {
-    /// The memory before it.
     before: Memory,
     /// Facets nearest to the points of one.
     found: Vec<u32>,

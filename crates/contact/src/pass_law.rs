@@ -22,7 +22,6 @@ pub(crate) const MOST_STEPS_APART: f64 = 400.0;
 /// The law of a pass; the static preload takes the penalty alone.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PassLaw {
-    /// Law of the pair.
     pub(crate) law: Law,
     /// Thickness times the share of this pass [m].
     pub(crate) thickness: f64,

@@ -37,7 +37,6 @@ pub(crate) struct Points {
     pub(crate) height: Vec<f64>,
     /// Length of surface that the point stands for [m].
     pub(crate) weight: Vec<f64>,
-    /// Pattern of each facet.
     pub(crate) of_facet: Vec<Pattern>,
     /// Most points of one facet.
     pub(crate) most: usize,
@@ -162,7 +161,6 @@ impl Pattern {
         }
     }
 
-    /// Its points.
     #[inline(always)]
     pub(crate) fn range(self) -> Range<usize> {
         self.first as usize..(self.first + self.points) as usize

@@ -52,9 +52,6 @@ impl Analysis {
 
     /// As [`Analysis::of`]; `quality` is that of the samples as they were measured ([`quality::of`]), where the
     /// channel was made of them, or nothing for simulated ones, which no sensor has spoilt.
-    ///
-    /// # Errors
-    /// As [`Analysis::of`].
     pub fn of_inspected(
         channel: &Channel,
         rate_hz: f64,

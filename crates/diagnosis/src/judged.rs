@@ -25,7 +25,6 @@ const RACEWAYS: [Defect; 2] = [Defect::Bpfo, Defect::Bpfi];
 pub(crate) struct Judged {
     /// The machine at the speed, and with the number of rolling elements, that was taken.
     pub(crate) machine: Machine,
-    /// The speed, and where it is from.
     pub(crate) speed: Settled,
     /// The record, not the user, gives the speed.
     pub(crate) is_corrected: bool,
@@ -35,7 +34,6 @@ pub(crate) struct Judged {
     pub(crate) families: Vec<Family>,
     /// Envelope spectra over the period of the defect that stands highest; none without a defect.
     pub(crate) over: Vec<BandEnvelope>,
-    /// The verdict in words.
     pub(crate) verdict: String,
 }
 

@@ -189,7 +189,6 @@ pub fn analyse(
     Ok(Sources { bearings, verdict: all.join(" ") })
 }
 
-/// A claim of one bearing.
 #[derive(Debug, Clone, Copy)]
 struct Claim {
     bearing: usize,

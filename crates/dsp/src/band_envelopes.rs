@@ -150,9 +150,6 @@ impl BandEnvelopes {
     /// `frequency_hz`, which removes what repeats with it. A modulation of that course remains at its own
     /// frequency, without sidebands of the removed lines. A band in which a period holds fewer than four
     /// samples is left out.
-    ///
-    /// # Errors
-    /// [`Error::NotPositive`].
     pub fn over_period(mut self, frequency_hz: f64) -> Result<Self> {
         self.cycle = Some(Cycle::new(frequency_hz, self.work.squared.len())?);
         Ok(self)
@@ -182,9 +179,6 @@ impl BandEnvelopes {
     }
 
     /// Adds a segment.
-    ///
-    /// # Errors
-    /// [`Error::WrongLength`], [`Error::NotFinite`].
     pub fn add(&mut self, segment: &[f64]) -> Result<()> {
         check_len("segment", segment.len(), self.segment)?;
         check_signal(segment, 1, "an envelope")?;

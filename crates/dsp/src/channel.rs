@@ -34,9 +34,6 @@ const BLOCK: usize = 1 << 15;
 /// Where the samples of a channel lie.
 pub trait Samples: Any + Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
     /// Passes the first `len` samples to `take`, a block at a time, in order, until `take` returns false.
-    ///
-    /// # Errors
-    /// When they cannot be read.
     fn for_each_block(&self, len: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()>;
 }
 

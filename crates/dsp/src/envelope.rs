@@ -121,9 +121,6 @@ pub struct EnvelopeSpectrum {
 impl EnvelopeSpectrum {
     /// Plans for records of `record` samples. `band_hz` limits the signal first (low and high end [Hz]), as
     /// [`Envelope::in_band`] does; `None` takes all of it.
-    ///
-    /// # Errors
-    /// Those of [`Envelope::in_band`] and [`Welch::new`].
     pub fn new(sample_rate_hz: f64, record: usize, band_hz: Option<(f64, f64)>) -> Result<Self> {
         let options = WelchOptions {
             window: Window::Hann,
@@ -151,9 +148,6 @@ impl EnvelopeSpectrum {
 
     /// Writes the squared envelope spectrum of `signal` into `out`, which [`EnvelopeSpectrum::blank`] made.
     /// Does not allocate.
-    ///
-    /// # Errors
-    /// Those of [`Envelope::process`] and [`Welch::process`].
     pub fn process(&mut self, signal: &[f64], out: &mut Spectrum) -> Result<()> {
         self.envelope.process(signal, &mut self.squared)?;
         self.squared.iter_mut().for_each(|a| *a *= *a);

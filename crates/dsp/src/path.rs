@@ -85,9 +85,6 @@ pub fn coloured_like(signal: &[f64], density: &[f64]) -> Result<Vec<f64>> {
 }
 
 /// A signal at a lower rate `to_hz`, without its mean, faded in and out.
-///
-/// # Errors
-/// As [`Path::through`].
 pub fn at_rate(signal: &[f64], rate_hz: f64, to_hz: f64) -> Result<Vec<f64>> {
     shaped(signal, rate_hz, to_hz, |_| Complex::new(1.0, 0.0))
 }

@@ -167,9 +167,6 @@ impl Response {
     /// The same with ringing behind it that dies away to 1/e in `decay_s` [s] and leaves every magnitude as it is: what
     /// the many modes of a structure do to a knock. Four all-passes of delays that are in no simple ratio (M. R.
     /// Schroeder, Natural sounding artificial reverberation, J. Audio Eng. Soc. 10 (1962) 219–223).
-    ///
-    /// # Errors
-    /// [`Error::NotPositive`].
     pub fn ringing(self, decay_s: f64) -> Result<Self> {
         check_positive("decay_s", decay_s)?;
         Ok(Self(Form::Ringing(Box::new(self), decay_s)))
@@ -238,9 +235,6 @@ impl Response {
     /// The input of the response, from its output: each line over the response, regularised as
     /// H*/(|H|² + ε²) with ε a twentieth of the median magnitude in the band, so that noise is not magnified
     /// where the response passes little.
-    ///
-    /// # Errors
-    /// As [`Response::through`].
     pub fn undo(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Undone> {
         self.check(signal, sample_rate_hz)?;
         let (low, high) = self.overlap(signal.len(), sample_rate_hz);

@@ -30,9 +30,6 @@ pub struct Spectrograph {
 
 impl Spectrograph {
     /// Plans with the options of [`Welch`], whose averaging is not used: each segment stands for itself.
-    ///
-    /// # Errors
-    /// Those of [`Welch::new`].
     pub fn new(sample_rate_hz: f64, options: &WelchOptions) -> Result<Self> {
         let options = WelchOptions { averaging: Averaging::Mean, ..options.clone() };
         let welch = Welch::new(sample_rate_hz, options.segment, &options)?;
@@ -106,9 +103,6 @@ pub fn spectrogram(signal: &[f64], sample_rate_hz: f64, options: &WelchOptions) 
 /// `scipy.signal.spectrogram` in its mode `magnitude`: the magnitude of the short-time transform [unit/√Hz
 /// for a density, unit for a power spectrum], which counts one side only, so that the square is half of
 /// [`spectrogram`]'s one-sided values.
-///
-/// # Errors
-/// Those of [`spectrogram`].
 pub fn magnitude_spectrogram(
     signal: &[f64],
     sample_rate_hz: f64,

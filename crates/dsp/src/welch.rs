@@ -75,9 +75,6 @@ impl Welch {
     }
 
     /// Plans with [`WelchOptions::for_grid`].
-    ///
-    /// # Errors
-    /// Those of [`WelchOptions::for_grid`] and [`Welch::new`].
     pub fn for_grid(sample_rate_hz: f64, record: usize, grid_hz: f64) -> Result<Self> {
         Self::new(sample_rate_hz, record, &WelchOptions::for_grid(sample_rate_hz, record, grid_hz)?)
     }
@@ -93,9 +90,6 @@ impl Welch {
     }
 
     /// Estimates into a new spectrum. Allocates only that.
-    ///
-    /// # Errors
-    /// Those of [`Welch::process`].
     pub fn estimate(&mut self, signal: &[f64]) -> Result<Spectrum> {
         let mut out = self.blank();
         self.process(signal, &mut out)?;

@@ -16,9 +16,6 @@ const LEAST: usize = 10;
 
 /// The recording with its first four columns as one of times, where they are a time of the day that rises and no
 /// column has a name.
-///
-/// # Errors
-/// As [`Channel::read`].
 pub(crate) fn joined(mut recording: Recording) -> Result<Recording> {
     let channels = &recording.channels;
     let len = channels.first().map_or(0, |channel| channel.len);

@@ -40,7 +40,6 @@ const FEWEST_PLAIN: u64 = 4;
 /// One in this many fields of a column may be something other than a number.
 const FEW: u64 = 100;
 
-/// One column of a table in a file.
 #[derive(Debug, Clone)]
 pub(crate) struct Column {
     path: PathBuf,

@@ -21,9 +21,6 @@ pub(crate) struct Stream {
 }
 
 /// Opens a file; channels are called `1`, `2`, … and their samples stay in the file.
-///
-/// # Errors
-/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let info = reader(path)?.streaminfo();
     let mut most = memory::most_bytes() / 8;
@@ -80,9 +77,6 @@ impl Samples for Stream {
 }
 
 /// Where FLAC begins behind a tag ID3, which players of music put before it; `None` for a file without one.
-///
-/// # Errors
-/// [`Error::Io`].
 pub(crate) fn behind_tag(path: &Path) -> Result<Option<u64>> {
     let io = |e| Error::read(path, e);
     let mut file = File::open(path).map_err(io)?;

@@ -40,10 +40,8 @@ struct Set {
     bytes: usize,
 }
 
-/// One stored chunk.
 #[derive(Debug, Clone, Copy)]
 struct Chunk {
-    /// Its place along the samples.
     place: u64,
     at: u64,
     size: u64,

@@ -108,7 +108,6 @@ impl Source<'_> {
         Some(members)
     }
 
-    /// The messages of a header with their kinds.
     fn messages(&mut self, at: u64) -> Option<Vec<(u16, Vec<u8>)>> {
         let head = self.at(at, 16)?;
         let is_new = head.starts_with(b"OHDR");

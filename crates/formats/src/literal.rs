@@ -1,7 +1,6 @@
 //! Literals of Python as NumPy writes them into its headers: texts, whole numbers, words, tuples, lists and
 //! dictionaries.
 
-/// A literal.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Literal {
     Text(String),
@@ -14,7 +13,6 @@ pub(crate) enum Literal {
 /// Lists in lists, at most.
 const DEEPEST: usize = 16;
 
-/// The literal at the beginning of a text.
 pub(crate) fn parse(text: &str) -> Option<Literal> {
     Literal::next(&mut text.chars().peekable(), 0)
 }

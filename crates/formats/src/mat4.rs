@@ -17,7 +17,6 @@ const HEADER: u64 = 20;
 /// Longest name.
 const NAME: u32 = 64;
 
-/// Header of a matrix.
 struct Header {
     big_endian: bool,
     /// Storage of numbers, and the kind of matrix: 0 numbers, 1 text, 2 sparse.
@@ -80,9 +79,6 @@ pub(crate) fn recognise(start: &[u8]) -> bool {
 }
 
 /// Opens a file. Samples stay in it.
-///
-/// # Errors
-/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let io = |e| Error::read(path, e);
     let mut file = BufReader::new(File::open(path).map_err(io)?);

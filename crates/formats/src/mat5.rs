@@ -42,9 +42,6 @@ pub(crate) fn recognise(start: &[u8]) -> bool {
 
 /// Opens a file. Real vectors that are not deflated stay in the file. Members of structs are called
 /// `name.member`, cells `name{1}`; texts and other values that are not real numbers are left out.
-///
-/// # Errors
-/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let io = |e| Error::read(path, e);
     let damaged = |what: String| Error::damaged(path, FORMAT, what);
@@ -199,14 +196,12 @@ struct Element<'a> {
     data: &'a [u8],
 }
 
-/// Channels found so far.
 struct Found {
     big_endian: bool,
     channels: Vec<Channel>,
     notes: Vec<String>,
 }
 
-/// Head of an array.
 struct Head<'a> {
     class: u32,
     complex: bool,

@@ -29,9 +29,6 @@ const COLUMNS: u64 = 4096;
 const MOST: u64 = 1 << 25;
 
 /// Opens a file.
-///
-/// # Errors
-/// [`Error::Damaged`].
 pub fn open(path: &Path) -> Result<Recording> {
     // A damaged file must not take the program along, whatever the library thinks of it.
     let read = std::panic::catch_unwind(|| {
@@ -366,7 +363,6 @@ fn marks(attributes: &HashMap<String, AttrValue>) -> Marks {
     }
 }
 
-/// The number of an attribute.
 fn number(value: &AttrValue) -> Option<f64> {
     match numbers(value)?[..] {
         [x] => Some(x),

@@ -27,7 +27,6 @@ pub(crate) struct Stretch {
     pub(crate) packing: Packing,
 }
 
-/// How records are stored.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Packing {
     Plain,

@@ -16,7 +16,6 @@ const FORMAT: &str = "NumPy .npy";
 /// Longest header that is read.
 const MAX_HEADER: usize = 1 << 20;
 
-/// Content of a header.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layout {
     /// Fields of a record that are read; a plain array has one without a name.
@@ -30,7 +29,6 @@ pub(crate) struct Layout {
     pub(crate) notes: Vec<String>,
 }
 
-/// A field of a record.
 #[derive(Debug, Clone, PartialEq)]
 struct Field {
     name: String,

@@ -16,9 +16,6 @@ const FORMAT: &str = "NumPy .npz";
 
 /// Opens an archive. Arrays that are stored without compression stay in the file; texts and other values that
 /// are not real numbers are left out with a note.
-///
-/// # Errors
-/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let file = File::open(path).map_err(|e| Error::read(path, e))?;
     let damaged = |what: String| Error::damaged(path, FORMAT, what);
@@ -76,9 +73,6 @@ pub fn open(path: &Path) -> Result<Recording> {
 
 /// Writes each channel as an array under its name, stored without compression so that it can be mapped;
 /// `rate_hz` when the first has a rate; `notes` as one text.
-///
-/// # Errors
-/// [`Error::Io`].
 pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> {
     let io = |e| Error::write(path, e);
     let zipped = |e: zip::result::ZipError| Error::write(path, e.into());

@@ -89,9 +89,6 @@ pub struct Writer {
 impl Writer {
     /// Begins a file with columns of these names and kinds; their values do not matter. `notes` are written
     /// beside it, each under its name.
-    ///
-    /// # Errors
-    /// [`Error::Io`], [`Error::DoesNotFit`].
     pub fn create(path: &Path, columns: &[Column], notes: &[(String, String)]) -> Result<Self> {
         let refused = |e: ParquetError| refused(path, &e);
         let fields: std::result::Result<Vec<_>, ParquetError> =
@@ -154,9 +151,6 @@ impl Writer {
     }
 
     /// Ends the file.
-    ///
-    /// # Errors
-    /// [`Error::Io`].
     pub fn finish(self) -> Result<()> {
         let Self { path, file, .. } = self;
         file.close().map_err(|e| refused(&path, &e))?;
@@ -165,9 +159,6 @@ impl Writer {
 }
 
 /// Writes one table.
-///
-/// # Errors
-/// As [`Writer`].
 pub fn write_table(path: &Path, columns: &[Column], notes: &[(String, String)]) -> Result<()> {
     let mut writer = Writer::create(path, columns, notes)?;
     writer.add(columns)?;
@@ -190,9 +181,6 @@ pub fn write(path: &Path, channels: &[Channel], notes: &[String]) -> Result<()> 
 
 /// Opens a table: its columns of numbers are channels, others are left out with a note. A missing number
 /// becomes NaN. Values stay in the file.
-///
-/// # Errors
-/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let file = File::open(path).map_err(|e| Error::read(path, e))?;
     let damaged = |e: ParquetError| Error::damaged(path, FORMAT, e.to_string());

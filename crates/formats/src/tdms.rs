@@ -30,14 +30,12 @@ const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
 const DAQMX: u32 = 1 << 7;
 
-/// The value of a property.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Property {
     Number(f64),
     Text(String),
 }
 
-/// Metadata of a channel.
 #[derive(Debug, Clone, Default)]
 struct Object {
     /// Storage of its numbers; `None` for values that are not real numbers.
@@ -65,9 +63,6 @@ struct Object {
 }
 
 /// Opens a file; a channel is called `group/channel`. Samples stay in the file.
-///
-/// # Errors
-/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let io = |e| Error::read(path, e);
     let mut file = BufReader::new(File::open(path).map_err(io)?);

@@ -56,9 +56,6 @@ struct Stretch {
 
 /// Marks the channels that are no signals, and sets the rate of the others from the file: as a number beside
 /// them, or by the times.
-///
-/// # Errors
-/// As [`Channel::for_each_block`], for times.
 pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
     let channels = &mut recording.channels;
     let mut courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;

@@ -24,9 +24,6 @@ pub(crate) fn recognise(start: &[u8]) -> bool {
 }
 
 /// Opens a file: each evenly sampled real function is a channel, held in memory.
-///
-/// # Errors
-/// [`Error::Damaged`], [`Error::Io`].
 pub fn open(path: &Path) -> Result<Recording> {
     let (mut channels, mut notes): (Vec<Channel>, Vec<String>) = (Vec::new(), Vec::new());
     let mut broken = None;
@@ -63,7 +60,6 @@ pub fn open(path: &Path) -> Result<Recording> {
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels, notes })
 }
 
-/// One dataset of a file.
 enum Found {
     Function(Dataset),
     /// Another one than 58: its number.

@@ -137,7 +137,6 @@ const OFFSETS: [&str; 3] = ["offset", "delay", "lag"];
 /// Endings of names of channels that rise evenly and are not times.
 const TURNS: [&str; 5] = ["rad", "deg", "rpm", "hz", "rev"];
 
-/// Meaning of a unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Unit {
     /// Time: its usual spelling, and how many seconds it has.
@@ -225,7 +224,6 @@ const FREQUENCIES: [(&str, f64); 12] = [
     ("ksa/s", 1e3),
 ];
 
-/// The hertz of a unit of frequency.
 pub(crate) fn hertz(word: &str) -> Option<f64> {
     let word = bare(word);
     FREQUENCIES.iter().find(|(unit, _)| *unit == word).map(|(_, hz)| *hz)

@@ -66,9 +66,6 @@ pub struct Conflict {
 
 impl Conflict {
     /// Of targets, sought over the prior and from the draws of the posterior.
-    ///
-    /// # Errors
-    /// As [`Posterior::of`].
     pub fn of(
         emulator: &Emulator,
         priors: &[Prior],

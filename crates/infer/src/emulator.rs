@@ -225,7 +225,6 @@ impl Emulator {
         Ok(())
     }
 
-    /// The probability that an output exists at points.
     pub(crate) fn exists(&self, output: usize, points: &[Vec<f64>]) -> Vec<f64> {
         self.columns[output].existence.predict(points)
     }

@@ -104,7 +104,6 @@ impl Posterior {
     }
 }
 
-/// Priors for an emulator.
 pub(crate) fn check(emulator: &Emulator, priors: &[Prior]) -> Result<(), Error> {
     if priors.len() != emulator.dimensions() {
         let (found, expected) = (priors.len(), emulator.dimensions());

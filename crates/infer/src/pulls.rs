@@ -34,9 +34,6 @@ pub struct Pull {
 }
 
 /// All pulls, target by target and field by field, of the draws of a posterior.
-///
-/// # Errors
-/// As [`Posterior::of`].
 pub fn pulls(
     emulator: &Emulator,
     priors: &[Prior],

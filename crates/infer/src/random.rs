@@ -6,7 +6,6 @@ use rand_pcg::{
 };
 use statrs::distribution::{ContinuousCDF, Normal};
 
-/// One sequence of random numbers.
 #[derive(Debug, Clone)]
 pub(crate) struct Random(Pcg64Mcg);
 

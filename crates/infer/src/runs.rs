@@ -52,7 +52,6 @@ pub struct Target {
 }
 
 impl Scale {
-    /// The number on this scale.
     pub(crate) fn forward(self, value: f64) -> f64 {
         match self {
             Self::Linear => value,
@@ -118,7 +117,6 @@ impl Runs {
         Ok(())
     }
 
-    /// Number of the simulation of a row.
     pub(crate) fn simulation(&self, row: usize) -> usize {
         self.simulations.get(row).copied().unwrap_or(row)
     }

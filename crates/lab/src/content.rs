@@ -86,9 +86,6 @@ fn wide_pairs(table: Vec<[f32; 2]>) -> Vec<[f64; 2]> {
 impl Content {
     /// As bytes. What sensors measure beyond the modes is kept in single precision; all that the bearing's
     /// motion depends on is kept as it is.
-    ///
-    /// # Errors
-    /// When there is no memory for them.
     pub fn to_bytes(&self) -> Result<Vec<u8>, Error> {
         let mut content = self.clone();
         let reduction = &mut content.modal.reduction;
@@ -110,9 +107,6 @@ impl Content {
     }
 
     /// From bytes.
-    ///
-    /// # Errors
-    /// [`Error::Content`] when they are not those of a bearing.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let (mut content, singles): (Self, Singles) = postcard::from_bytes(bytes)?;
         let reduction = &mut content.modal.reduction;

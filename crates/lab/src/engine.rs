@@ -40,9 +40,6 @@ pub struct Engine {
 
 impl Engine {
     /// The bearing of the scene at its start.
-    ///
-    /// # Errors
-    /// When oil finds no smooth surface to lie on.
     pub fn new(content: Content) -> Result<Self, Error> {
         let dt = content.interval / content.steps_per_sample as f64;
         let handles = content.handles;
@@ -68,9 +65,6 @@ impl Engine {
     }
 
     /// Asks for a value of a handle; [`apply`](Self::apply) turns all that were asked for.
-    ///
-    /// # Errors
-    /// When it is beyond the range of the handle.
     pub fn ask(&mut self, handle: usize, value: f64) -> Result<(), Error> {
         handles::check(handle, value)?;
         self.asked[handle] = value;
@@ -79,9 +73,6 @@ impl Engine {
 
     /// Applies the requested handles: the bearing runs on, or restarts where one of them needs it. Returns
     /// whether it restarts.
-    ///
-    /// # Errors
-    /// When there is no such bearing or it has no equilibrium; the handles are then as they were.
     pub fn apply(&mut self) -> Result<bool, Error> {
         let anew = (0..HANDLES.len()).any(|n| !HANDLES[n].live && self.asked[n] != self.now[n]);
         let done = if anew { self.restart() } else { self.go_on() };
@@ -98,9 +89,6 @@ impl Engine {
     }
 
     /// Restarts with the requested handles.
-    ///
-    /// # Errors
-    /// As [`apply`](Self::apply).
     pub fn restart(&mut self) -> Result<(), Error> {
         if self.asked == self.content.handles {
             *self = Self::new(self.content.clone())?;
@@ -116,9 +104,6 @@ impl Engine {
     }
 
     /// Goes on from a state of a run of the scene.
-    ///
-    /// # Errors
-    /// When the bytes are no state of this bearing.
     pub fn go_on_from(&mut self, bytes: &[u8]) -> Result<(), Error> {
         let state = postcard::from_bytes(bytes)?;
         let saved = Saved::first(self.motion.bearing(), state);
@@ -191,9 +176,6 @@ impl Engine {
     /// Steps until there are `samples` samples, which are then in [`samples`](Self::samples). Where the cage
     /// has left its place between the raceways, there are fewer, the run restarts after them, and the reason
     /// is returned: a run of the program ends there.
-    ///
-    /// # Errors
-    /// When the run has diverged.
     pub fn run(&mut self, samples: usize) -> Result<Option<String>, Error> {
         self.samples.clear();
         self.samples.reserve(samples * PER_SAMPLE);

@@ -70,7 +70,6 @@ pub(crate) extern "C" fn lab_go_on_from() -> u32 {
     })
 }
 
-/// Asks for a value of a handle.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_ask(handle: usize, value: f64) -> u32 {
     with_engine(|engine| engine.ask(handle, value).map(|()| 0))
@@ -82,7 +81,6 @@ pub(crate) extern "C" fn lab_apply() -> u32 {
     with_engine(|engine| engine.apply().map(u32::from))
 }
 
-/// Restarts the run.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_restart() -> u32 {
     with_engine(|engine| engine.restart().map(|()| 0))
@@ -100,13 +98,11 @@ pub(crate) extern "C" fn lab_run(samples: usize) -> u32 {
     })
 }
 
-/// Samples of the last run.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_samples() -> *const f64 {
     hand_over(|engine| engine.samples().to_vec())
 }
 
-/// The bearing at present.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn lab_picture() -> *const f64 {
     hand_over(|engine| engine.picture().to_vec())

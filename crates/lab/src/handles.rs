@@ -80,9 +80,6 @@ pub mod at {
 }
 
 /// Whether a handle may have a value.
-///
-/// # Errors
-/// With the handle, the value and its range.
 pub fn check(number: usize, value: f64) -> Result<(), Error> {
     let Some(handle) = HANDLES.get(number) else { return Err(Error::UnknownHandle(number)) };
     let Handle { name, unit, least, most, .. } = *handle;

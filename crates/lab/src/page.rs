@@ -59,9 +59,6 @@ pub fn is_module(bytes: &[u8]) -> bool {
 /// The page of some scenes, which all run in modes there. `module` is this crate, compiled for
 /// `wasm32-unknown-unknown`; `runs` is where reductions may be kept; `command` is what would make the page
 /// again.
-///
-/// # Errors
-/// When a scene cannot be meshed, preloaded or reduced, or a lab cannot show it.
 pub fn page(scenes: &[Scene], module: &[u8], runs: Option<&Path>, command: &str) -> Result<Page, Error> {
     let bundled: Vec<Bundled> =
         scenes.iter().map(|scene| bundle::bundle(scene, runs)).collect::<Result<_, _>>()?;
@@ -94,9 +91,6 @@ pub fn page(scenes: &[Scene], module: &[u8], runs: Option<&Path>, command: &str)
 }
 
 /// Data of a scene in a page. `runs` as for [`page`].
-///
-/// # Errors
-/// As [`page`].
 pub fn content(scene: &Scene, runs: Option<&Path>) -> Result<Content, Error> {
     Ok(bundle::bundle(scene, runs)?.content)
 }

@@ -24,7 +24,6 @@ const LOAD_RAMP: f64 = 0.002;
 /// `stribeck-scene`).
 const OF_FILMS: f64 = 0.7;
 
-/// The spall of some handles.
 pub(crate) fn spall(handles: &Handles) -> Option<Spall> {
     let ring = handles[at::SPALL_RING].round();
     (ring > 0.0).then(|| Spall {
@@ -38,9 +37,6 @@ pub(crate) fn spall(handles: &Handles) -> Option<Spall> {
 
 /// The bearing of some handles, under a load and at a speed that follow `duty`. A handle that stands where
 /// the scene has it changes no bit.
-///
-/// # Errors
-/// When a raceway has no room for the spall.
 pub(crate) fn modal(content: &Content, to: &Handles, duty: Option<Duty>) -> Result<ModalBearing, Error> {
     let mut modal = content.modal.clone();
     let was = &content.handles;

@@ -18,7 +18,6 @@ pub const BEFORE_ROLLERS: usize = 18;
 /// oil.
 pub const PER_ROLLER: usize = 11;
 
-/// Appends a sample.
 pub(crate) fn sample(motion: &BearingInMotion, watched: usize, mean: &[Vec<f64>; 2], to: &mut Vec<f64>) {
     let acceleration = motion.sensors().first().map_or([0.0; 2], |sensor| sensor.mean);
     let (mut outer, mut inner, mut largest, mut sum) = (0.0, 0.0, 0.0_f64, [0.0; 2]);
@@ -36,7 +35,6 @@ pub(crate) fn sample(motion: &BearingInMotion, watched: usize, mean: &[Vec<f64>;
     to.extend([centre[0], centre[1], largest]);
 }
 
-/// Writes a picture.
 pub(crate) fn picture(motion: &BearingInMotion, energies: &Energies, imbalance: f64, to: &mut Vec<f64>) {
     to.clear();
     let ([x, y], angle) = motion.cage().unwrap_or_default();

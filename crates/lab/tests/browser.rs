@@ -82,7 +82,6 @@ fn coarse_page(module: &[u8]) -> &'static str {
     MADE.get_or_init(|| page_of(&coarse(), module))
 }
 
-/// The page of a scene.
 fn page_of(scene: &Scene, module: &[u8]) -> String {
     page::page(std::slice::from_ref(scene), module, None, "stribeck lab").expect("a sound scene").html
 }

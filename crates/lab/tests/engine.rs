@@ -39,7 +39,6 @@ fn engine(content: &Content) -> Engine {
     Engine::new(content.clone()).expect("a bearing")
 }
 
-/// Mean of a column of samples.
 fn mean(samples: &[f64], column: usize) -> f64 {
     let rows = samples.len() / PER_SAMPLE;
     samples.iter().skip(column).step_by(PER_SAMPLE).sum::<f64>() / rows as f64

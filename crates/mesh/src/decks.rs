@@ -98,9 +98,6 @@ impl Deck {
 
     /// Reads a file of this format, which is binary or of any encoding: anything but UTF-8 is taken for
     /// Latin-1.
-    ///
-    /// # Errors
-    /// As [`Deck::read`].
     pub fn read_bytes(self, bytes: &[u8]) -> Result<ReadDeck, DeckError> {
         let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).unwrap_or(bytes);
         if self == Self::Gmsh {

@@ -71,9 +71,6 @@ impl Disc {
     ///
     /// All layers but the last are as thick as the facets are long; [`Disc::part`] lets them grow where that
     /// makes the smallest cells larger.
-    ///
-    /// # Errors
-    /// Those of [`Disc::part`], and more layers than [`Disc::most_layers`].
     pub fn part_with_layers(&self, layers: usize) -> Result<Part, Error> {
         self.check()?;
         let most = self.most_layers();

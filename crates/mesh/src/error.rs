@@ -5,105 +5,58 @@
 /// Lengths are in metres and angles in radians, as in the fields that the messages name.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "messages say what happened and name their fields")]
 pub enum Error {
-    /// A dimension is zero, negative, infinite or not a number.
     #[error(
         "{shape}: `{field}` is {value}, but it must be a finite number above zero; check its sign and its \
          unit (metres)"
     )]
-    NotPositive {
-        /// The requested shape.
-        shape: &'static str,
-        /// The field that is wrong.
-        field: &'static str,
-        /// The field's value.
-        value: f64,
-    },
-    /// A coordinate or an angle is infinite or not a number.
+    NotPositive { shape: &'static str, field: &'static str, value: f64 },
     #[error(
         "{shape}: `{field}` is {value}, but it must be a finite number; check the calculation that gave it"
     )]
-    NotFinite {
-        /// The requested shape.
-        shape: &'static str,
-        /// The field that is wrong.
-        field: &'static str,
-        /// The field's value.
-        value: f64,
-    },
-    /// A count is too small or too large to make the shape.
+    NotFinite { shape: &'static str, field: &'static str, value: f64 },
     #[error("{shape}: `{field}` is {value}, but it must lie between {least} and {most}; {advice}")]
     Count {
-        /// The requested shape.
         shape: &'static str,
-        /// The field that is wrong.
         field: &'static str,
-        /// The field's value.
         value: usize,
-        /// Smallest count that works.
         least: usize,
-        /// Largest count that works.
         most: usize,
-        /// Remedy.
         advice: &'static str,
     },
-    /// A dimension does not go together with the others.
     #[error("{shape}: `{field}` is {value:.9}, but it must be {relation} {limit:.9}; {advice}")]
     OutOfRange {
-        /// The requested shape.
         shape: &'static str,
-        /// The field that is wrong.
         field: &'static str,
-        /// The field's value.
         value: f64,
         /// How the field must compare with the limit: `above`, `below`, `at most`.
         relation: &'static str,
-        /// The limit.
         limit: f64,
-        /// Remedy.
         advice: &'static str,
     },
-    /// Two fields that exclude each other.
     #[error("{shape}: `{field}` does not go together with `{other}`; {advice}")]
-    Conflict {
-        /// The requested shape.
-        shape: &'static str,
-        /// One field.
-        field: &'static str,
-        /// The other field, with its value.
-        other: &'static str,
-        /// Remedy.
-        advice: &'static str,
-    },
-    /// No arrangement of the nodes was found in which every element has a positive Jacobian.
+    Conflict { shape: &'static str, field: &'static str, other: &'static str, advice: &'static str },
     #[error(
         "{shape}: element {element} stays inside out (its smallest corner area is {area:e} m²); {advice}"
     )]
     Tangled {
-        /// The requested shape.
         shape: &'static str,
-        /// The element, quadrilaterals first.
         element: usize,
         /// Smallest signed corner area [m²].
         area: f64,
-        /// Remedy.
         advice: &'static str,
     },
-    /// An array of output data does not fit the mesh.
     #[error(
         "output array `{name}` has {found} entries, but the mesh has {expected} {of}; give one entry for each"
     )]
     ArrayLength {
-        /// Name of the array.
         name: String,
-        /// Entries given.
         found: usize,
-        /// Entries needed.
         expected: usize,
         /// Owner of the entries: `nodes` or `elements`.
         of: &'static str,
     },
-    /// The sink refused the file.
     #[error(
         "the mesh file could not be written: {0}; check the free space and the permissions of its folder"
     )]

@@ -209,7 +209,6 @@ impl Lattice {
         Row { nodes: (first..self.places.len() as u32).collect(), columns }
     }
 
-    /// A row of nodes and the cells between it and the one before.
     fn add_row(&mut self, near: &Row, depth: impl Fn(usize) -> f64) -> Row {
         let far = self.push_row(near.columns.clone(), depth);
         for i in 0..near.nodes.len() {

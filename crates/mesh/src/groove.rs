@@ -72,9 +72,6 @@ const FADES: usize = 2;
 const LEAST_RADIAL: usize = 32;
 
 /// The circle that grooves are cut into; `None` without any.
-///
-/// # Errors
-/// When they are not all in the same.
 pub(crate) fn circle_of(grooves: &[Groove]) -> Result<Option<Circle>, Error> {
     let Some(first) = grooves.first() else { return Ok(None) };
     if grooves.iter().any(|groove| groove.circle != first.circle) {

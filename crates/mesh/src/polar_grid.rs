@@ -18,7 +18,6 @@ pub(crate) struct PolarGrid {
     pub(crate) inner_radius: f64,
     /// Radius of the circle of the last row [m].
     pub(crate) outer_radius: f64,
-    /// Columns.
     pub(crate) facets: usize,
     /// Rows of elements, equally thick.
     pub(crate) layers: usize,

@@ -21,7 +21,6 @@ pub(crate) const SHARPNESS: [f64; 3] = [3.0, 30.0, 300.0];
 /// Step of central differences, relative to the side of a square.
 const STEP: f64 = 1e-6;
 
-/// Most steps of the search.
 const STEPS: usize = 150;
 
 /// The search ends when a step lowers the cost by less than this share of it.

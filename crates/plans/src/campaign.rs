@@ -130,9 +130,6 @@ impl Campaign {
     }
 
     /// The campaign of a `text` that is to lie in `folder` as a file called `name`.
-    ///
-    /// # Errors
-    /// As [`Campaign::read`].
     pub fn parse(text: &str, name: &str, folder: &Path) -> Result<Self, SceneError> {
         let (file, place): (Text, _) = File::read(name, text, &CAMPAIGN)?;
         let refuse = |field: &str, what: String| Err(place.refuse(field, format!("`{field}` {what}")));

@@ -52,7 +52,6 @@ impl<'a> File<'a> {
         Ok((read, Self { name, text, tree }))
     }
 
-    /// A value as it is written.
     pub(crate) fn written(&self, value: &Written) -> String {
         self.text[value.0.clone()].to_owned()
     }
@@ -65,14 +64,12 @@ impl<'a> File<'a> {
         }
     }
 
-    /// Refuses the value at a path.
     pub(crate) fn refuse(&self, path: &str, why: String) -> SceneError {
         let mut problem = Problem::new(why, self.place(path));
         path.clone_into(&mut problem.field);
         problem.into()
     }
 
-    /// A problem of the value at a path.
     pub(crate) fn shown(&self, mut problem: Problem, path: &str) -> SceneError {
         problem.place = self.place(path);
         problem.into()

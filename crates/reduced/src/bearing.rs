@@ -38,14 +38,12 @@ pub struct Bearing {
     pub(crate) structure: Structure,
     /// The outer and the inner raceway.
     pub(crate) raceways: [Raceway; 2],
-    /// The law of contact.
     pub(crate) law: ContactLaw,
     /// Rollers.
     pub rollers: Rollers,
     pub(crate) cage: Option<Cage>,
     /// Seat of the outer ring, where it may open and slip.
     pub(crate) seat: Option<Springs>,
-    /// Oil between rollers and raceways.
     pub(crate) oil: Option<Lubrication>,
     /// What the oil takes from the motion.
     pub(crate) resistance: Option<Resistance>,

@@ -10,9 +10,7 @@ use crate::plane::{Rotation, Vec2};
 /// Speeds and load of one step.
 #[derive(Clone, Copy)]
 pub(crate) struct Drive {
-    /// The outer ring, where it turns.
     pub(crate) outer: Option<RingRotation>,
-    /// The inner ring.
     pub(crate) inner: RingRotation,
     /// Load beyond that of the preload, along it and a quarter of a turn ahead, in shares of it.
     pub(crate) load: [f64; 2],
@@ -26,7 +24,6 @@ impl Drive {
     }
 }
 
-/// A ring in rotation.
 #[derive(Clone, Copy)]
 pub(crate) struct RingRotation {
     /// Angular velocity [rad/s].
@@ -77,12 +74,10 @@ impl<'a> LoadChange<'a> {
     }
 }
 
-/// How the bearing is operated.
 #[derive(Debug, Clone)]
 pub(crate) struct Operation {
     /// Angular velocities at the start.
     pub(crate) speeds: Speeds,
-    /// Whether the outer ring turns.
     outer_turns: bool,
     /// Speeds and load, where they change.
     pub(crate) duty: Option<Duty>,

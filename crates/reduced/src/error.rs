@@ -3,12 +3,11 @@
 /// Everything that can go wrong before a reduced bearing takes its first step.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "messages say what happened and name their fields")]
 pub enum Error {
-    /// Oil finds no smooth surface to lie on.
     #[error("contact: {0}")]
     Surface(#[from] stribeck_surface::Error),
 
-    /// Start positions in equilibrium cannot be found.
     #[error(
         "the reduced bearing has no equilibrium to start from: {residual_n:.2e} N are left after \
          {iterations} iterations. Look at `operation.load_n` and the clearance, take a larger \
@@ -17,11 +16,9 @@ pub enum Error {
     NoEquilibrium {
         /// Unbalanced force [N].
         residual_n: f64,
-        /// Newton iterations.
         iterations: usize,
     },
 
-    /// The housing is guided, or holds its ring on one side only.
     #[error(
         "the shaft cannot be moved in this housing: it is guided along its edge and carries the ring on the \
          side of the load only. Take `housing: rigid()` or `housing: springs(…)`, which stand still in every \
@@ -29,11 +26,9 @@ pub enum Error {
     )]
     HousingNotFree,
 
-    /// The outer ring turns about a centre that is displaced.
     #[error("the shaft cannot be moved where the outer ring turns: take `operation.outer_speed_rpm: 0`")]
     OuterRingTurns,
 
-    /// The shaft is farther away than a bearing can carry.
     #[error(
         "the shaft is {um:.1} µm from the centre of its housing: at most {most_um:.0} µm, half the radius of \
          a roller. Displacements are in metres; a coupled rotor may be unstable, with communication steps that \
@@ -46,7 +41,6 @@ pub enum Error {
         most_um: f64,
     },
 
-    /// A communication step in which the bearing takes no two steps.
     #[error(
         "the communication step is {us:.3} µs: at least {least_us:.3} µs, two steps of the bearing. Take a \
          longer one, or a smaller `model.step_us` in the scene"
@@ -58,11 +52,9 @@ pub enum Error {
         least_us: f64,
     },
 
-    /// A state of another bearing.
     #[error("the state belongs to another bearing than this one")]
     OtherBearing,
 
-    /// Forces are no numbers any more.
     #[error(
         "the bearing diverged at {time:.6} s: take a smaller `model.step_us`, or shorter communication steps"
     )]

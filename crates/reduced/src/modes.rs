@@ -34,7 +34,6 @@ pub(crate) struct Modes {
     pub(crate) drag: Vec<Row>,
     /// Tensions of the seat's springs beyond those of the preload [N]; empty where there is no seat.
     pub(crate) tension: Vec<Row>,
-    /// Responses of the seat to rollers.
     pub(crate) responses: RollerResponses,
 }
 
@@ -82,7 +81,6 @@ pub(crate) struct Structure {
     /// Mass damping [1/s] and stiffness damping [s].
     pub(crate) mass_damping: f64,
     stiffness_damping: f64,
-    /// Branches of the structural damping.
     pub(crate) branches: Vec<Branch>,
 }
 

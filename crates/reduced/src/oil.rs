@@ -28,10 +28,8 @@ const REST: u64 = 128;
 /// Steps between two looks at a film that is too pressed to change.
 const FIXED: u64 = 4;
 
-/// The oil of a bearing.
 #[derive(Debug, Clone)]
 pub(crate) struct Lubrication {
-    /// Of the outer and the inner raceway.
     pub(crate) raceways: [OiledRaceway; 2],
     /// Rims of rollers, in the order of the bearing's.
     rims: Vec<Rim>,
@@ -78,7 +76,6 @@ impl Films {
 pub(crate) struct FilmStep {
     pub(crate) step: u64,
     pub(crate) dt: f64,
-    /// Whether energy is computed.
     pub(crate) last: bool,
     /// Whether the seat responds to them.
     pub(crate) felt: bool,
@@ -145,7 +142,6 @@ impl Lubrication {
         })
     }
 
-    /// The rim of this number.
     pub(crate) fn rim(&self, number: u32) -> &Rim {
         &self.rims[number as usize]
     }
@@ -163,7 +159,6 @@ impl Lubrication {
         }
     }
 
-    /// Whether films may be those of rollers with these rims.
     pub(crate) fn fits(&self, films: &Films, rim_of: &[u32]) -> bool {
         self.raceways.iter().zip(&films.at).all(|(race, films)| {
             let lands = race.films.len();
@@ -266,7 +261,6 @@ impl OiledRaceway {
         self.films.len()
     }
 
-    /// The films of a roller among those of all.
     pub(crate) fn of_roller<'a>(&self, films: &'a mut [Film], roller: usize) -> &'a mut [Film] {
         let lands = self.films.len();
         &mut films[lands * roller..lands * (roller + 1)]

@@ -14,7 +14,6 @@ pub(crate) struct Rotation<N = f64> {
 }
 
 impl Rotation {
-    /// None.
     pub(crate) const NONE: Self = Self { cosine: 1.0, sine: 0.0 };
 
     /// By an angle [rad].
@@ -53,7 +52,6 @@ impl<N: Number> Rotation<N> {
     }
 }
 
-/// Scalar product.
 #[inline(always)]
 pub(crate) fn dot(a: Vec2, b: Vec2) -> f64 {
     a[0] * b[0] + a[1] * b[1]

@@ -25,7 +25,6 @@ const SHEAR: f64 = 2.014;
 /// Drag coefficient of a cylinder across a flow, Reynolds numbers 10³ to 10⁵ (Hoerner 1965).
 const DRAG: f64 = 1.1;
 
-/// Resistance of oil in a bearing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Resistance {
     /// η L [N s/m].

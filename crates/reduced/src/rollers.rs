@@ -38,13 +38,11 @@ pub struct Rollers {
     pub(crate) gravity: f64,
 }
 
-/// The rim of a roller.
 #[derive(Debug, Clone)]
 pub(crate) struct Rim {
     pub(crate) outline: Outline,
     /// Radius of the circle around it [m].
     pub(crate) top: f64,
-    /// Whether it is round.
     pub(crate) is_round: bool,
 }
 

@@ -20,9 +20,6 @@ const FILE: &str = "validation.json";
 const MOST_LISTED: usize = 6;
 
 /// Writes `validation.json` and `report.html` into `folder`.
-///
-/// # Errors
-/// [`Error::Run`] when a file cannot be written, [`Error::Drawing`].
 pub fn write_agreement(folder: &Path, agreement: &Agreement) -> Result<(), Error> {
     write_atomic(&folder.join(FILE), json(agreement)?.as_bytes())?;
     let figures = agreement.sensors.iter().map(|s| octaves(s).to_html()).collect::<Result<Vec<_>, _>>()?;

@@ -85,9 +85,6 @@ const MOST_ROWS: usize = 1000;
 const DECADES_FROM: f64 = 20.0;
 
 /// Writes `index.html` into the folder of a campaign.
-///
-/// # Errors
-/// [`Error::Run`] when the file cannot be written, [`Error::Drawing`].
 pub fn write_campaign(folder: &Path, index: &CampaignIndex) -> Result<(), Error> {
     let page = page(index)?.into_string();
     write_atomic(&folder.join("index.html"), page.as_bytes())?;

@@ -25,9 +25,6 @@ const WORTH: f64 = 10.0;
 const LONGEST: usize = 48;
 
 /// Writes `compare.json` and `report.html` into `folder`, which is made.
-///
-/// # Errors
-/// [`Error::Write`] and [`Error::Run`] when the folder or its files cannot be written, [`Error::Drawing`].
 pub fn write_comparison(folder: &Path, comparison: &Comparison) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|why| Error::Write { path: folder.to_owned(), why })?;
     write_atomic(&folder.join("compare.json"), json(comparison)?.as_bytes())?;

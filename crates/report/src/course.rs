@@ -34,7 +34,6 @@ impl Span<'_> {
     }
 }
 
-/// The spectrogram of a record.
 pub(super) fn picture(course: &Course, unit: &str) -> Picture {
     let columns = course.values.len() / course.lines;
     let time = Span { label: "Time", end: course.step_s * columns as f64, unit: "s", prefixed: true };
@@ -262,7 +261,6 @@ fn fill(shade: usize) -> String {
     format!("fill:#{r:02x}{g:02x}{b:02x};stroke:none")
 }
 
-/// The cells, one path a shade.
 fn draw_cells(sheet: &mut Sheet, shades: &Shades) {
     let columns = shades.levels_db.len() / shades.rows;
     let (wide, high) = (SIZE[0] / columns as f64, SIZE[1] / shades.rows as f64);
@@ -286,7 +284,6 @@ fn draw_cells(sheet: &mut Sheet, shades: &Shades) {
     }
 }
 
-/// Ticks and words of both axes.
 fn draw_axes(sheet: &mut Sheet, x: &Span<'_>, y: &Span<'_>) {
     let (values, step) = ticks(0.0, x.end, 8);
     for value in values {
@@ -304,7 +301,6 @@ fn draw_axes(sheet: &mut Sheet, x: &Span<'_>, y: &Span<'_>) {
     sheet.upright([18.0, AT[1] + 0.5 * SIZE[1]], 13.0, INK, y.label);
 }
 
-/// The key, brightest at the top.
 fn draw_key(sheet: &mut Sheet, &Shades { top_db, range_db, .. }: &Shades) {
     let x = AT[0] + SIZE[0] + 16.0;
     let step = SIZE[1] / SHADES as f64;

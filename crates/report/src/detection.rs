@@ -11,9 +11,6 @@ use crate::page::{document, with_code};
 use crate::plot::{Axis, Colour, Figure, Level, Mark, Series};
 
 /// Writes `report.html` into a folder.
-///
-/// # Errors
-/// [`Error::Run`] when it cannot be written, [`Error::Drawing`].
 pub fn write_detection(folder: &Path, detection: &Detection) -> Result<(), Error> {
     let figure = figure(detection).to_html()?;
     let percent = |share: f64| format!("{:.0} %", 100.0 * share);

@@ -19,9 +19,6 @@ use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
 /// Writes the report of the ensemble in `folder` into that folder and returns its numbers.
 ///
 /// Starts that are not complete are named and do not count.
-///
-/// # Errors
-/// As [`write`](super::write).
 pub fn write_ensemble(folder: &Path) -> Result<EnsembleSummary, Error> {
     let findings = EnsembleFindings::of(folder)?;
     let dir = RunDir::open_ensemble(folder)?;
@@ -55,7 +52,6 @@ fn page(findings: &EnsembleFindings, sections: &[Section]) -> Result<Markup, Err
     ))
 }
 
-/// All sections, in the order of the page.
 fn sections(findings: &EnsembleFindings, dir: &RunDir) -> Vec<Section> {
     let summary = &findings.summary;
     // The scene as written, comments and all; an ensemble without it was refused above.

@@ -240,9 +240,6 @@ fn short(value: f64) -> String {
 }
 
 /// Writes `inference.json` and `report.html` into `folder`, which must be there.
-///
-/// # Errors
-/// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
 pub fn write_inference(folder: &Path, answer: &Answer) -> Result<(), Error> {
     write_atomic(&folder.join("inference.json"), json(answer)?.as_bytes())?;
     write_atomic(&folder.join("report.html"), page::page(answer)?.into_string().as_bytes())?;

@@ -13,9 +13,6 @@ use crate::series::{SeriesRecord, table};
 
 /// Writes `joint.json` and `joint.html` of several channels of one machine and their joint verdict into
 /// `folder`, which must be there.
-///
-/// # Errors
-/// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
 pub fn write_joint(folder: &Path, joint: &Joint, entries: &[SeriesRecord]) -> Result<(), Error> {
     write_atomic(&folder.join("joint.json"), json(&joint)?.as_bytes())?;
     write_atomic(&folder.join("joint.html"), joint_page(joint, entries).into_string().as_bytes())?;

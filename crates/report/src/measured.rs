@@ -38,9 +38,6 @@ pub fn findings_schema() -> Value {
 
 /// Writes `findings.json` and `report.html` of the record in `file` into `folder`, which is made; over a
 /// `baseline` where there is one.
-///
-/// # Errors
-/// [`Error::Write`] and [`Error::Run`] when the folder or its files cannot be written, [`Error::Drawing`].
 pub fn write_measured(
     folder: &Path,
     file: &str,

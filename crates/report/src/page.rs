@@ -132,7 +132,6 @@ impl Section {
         Self { after, ..self }
     }
 
-    /// For the page.
     pub(crate) fn markup(&self) -> Result<Markup, Error> {
         let drawn = figures(&self.figures)?;
         let heading = html! { @if !self.id.is_empty() { h2 id=(self.id) { (self.heading) } } };
@@ -236,7 +235,6 @@ pub(crate) fn sentence(note: &str) -> String {
     capital(note) + if note.ends_with('.') { "" } else { "." }
 }
 
-/// Words with a capital.
 pub(crate) fn capital(words: &str) -> String {
     let mut letters = words.chars();
     let first: String = letters.next().map(|c| c.to_uppercase().collect()).unwrap_or_default();

@@ -49,9 +49,6 @@ quantities! {
 
 /// Writes `findings.json` and `report.html` of a series of records into `folder`, which must be there;
 /// `limits` are drawn beside the levels.
-///
-/// # Errors
-/// [`Error::Run`] when the files cannot be written, [`Error::Drawing`].
 pub fn write_series(folder: &Path, findings: &SeriesFindings, limits: &[Limit]) -> Result<(), Error> {
     write_atomic(&folder.join("findings.json"), json(findings)?.as_bytes())?;
     write_atomic(&folder.join("report.html"), page(findings, limits)?.into_string().as_bytes())?;

@@ -42,9 +42,6 @@ quantities! {
 
 /// Writes `findings.json` and `report.html` of all components into `folder`, and below it the page of each
 /// bearing.
-///
-/// # Errors
-/// [`Error::Write`] and [`Error::Run`] when folder or files cannot be written, [`Error::Drawing`].
 pub fn write_sources(
     folder: &Path,
     file: &str,

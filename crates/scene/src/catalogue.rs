@@ -19,7 +19,6 @@ group! {
     struct Entry {
         /// Its name.
         name: String = String::new(), required();
-        /// Its rolling elements.
         element: ElementKind = ElementKind::Roller;
         /// How many there are.
         elements: Option<u64> = None;
@@ -59,9 +58,6 @@ pub fn known() -> Result<Vec<CatalogueBearing>, String> {
 }
 
 /// Those of [`known`] whose names begin as `text` does: `NU`, `62`.
-///
-/// # Errors
-/// As [`known`].
 pub fn beginning_with(text: &str) -> Result<Vec<CatalogueBearing>, String> {
     Ok(catalogue::beginning_with(text, known()?))
 }
@@ -75,9 +71,6 @@ pub fn parse(text: &str) -> Result<CatalogueBearing, String> {
 }
 
 /// As [`parse`], with other advice where a name is unknown.
-///
-/// # Errors
-/// As [`parse`].
 pub fn parse_or_advise(text: &str, advice: &str) -> Result<CatalogueBearing, String> {
     CatalogueBearing::parse_among(text, known, advice)
 }
@@ -191,9 +184,6 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
 }
 
 /// Bearings of the files that there are: those of the working folder first.
-///
-/// # Errors
-/// Words on a file that is there and cannot be read.
 fn bearings() -> Result<Vec<CatalogueBearing>, String> {
     let mut all = Vec::new();
     for path in paths() {

@@ -8,7 +8,6 @@ use stribeck_theory::static_load::RigidRings;
 use crate::resolved::ResolvedScene;
 use crate::scene::{ContactFormula, ContactPasses, Scene};
 
-/// Parameters of a contact law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct ContactNumbers {
     /// Penalty stiffness of both passes together [Pa/m].

@@ -98,7 +98,6 @@ pub struct Field {
     pub about: &'static [&'static str],
     /// What is written for it.
     pub shape: Shape,
-    /// Limits of its numbers.
     pub(crate) limits: Limits,
     /// It has no default.
     pub is_required: bool,
@@ -250,12 +249,10 @@ impl Words {
 }
 
 impl Group {
-    /// The field of this name.
     pub(crate) fn get(&self, name: &str) -> Option<&'static Field> {
         self.fields.iter().find(|field| field.name == name)
     }
 
-    /// Whether a field has its default, and is not written then.
     pub(crate) fn omits(&self, field: &Field, node: &Node) -> bool {
         field.is_omitted && (self.default)().field(field.name) == Some(node)
     }

@@ -361,7 +361,6 @@ impl DampedBand {
     }
 }
 
-/// Oil in SI.
 fn oil(film: &FilmScene) -> Oil {
     Oil {
         viscosity: film.viscosity_pa_s,

@@ -75,20 +75,12 @@ impl Scene {
 
     /// Checks the scene in `text`; `file_name` is what errors call it. Tables of the scene are looked for
     /// from the present folder.
-    ///
-    /// # Errors
-    ///
-    /// As [`Scene::read`].
     pub fn parse(text: &str, file_name: &str) -> Result<Self, SceneError> {
         compose(text, file_name, Path::new(""), &[] as &[&str])
     }
 
     /// This scene with `overrides` applied, checked. The syntax is that of [`Scene::read_with`]; tables are
     /// looked for from the present folder.
-    ///
-    /// # Errors
-    ///
-    /// As [`Scene::read_with`].
     pub fn with_overrides<S: AsRef<str>>(&self, overrides: &[S]) -> Result<Self, SceneError> {
         let mut sources = Sources::of_scene(self);
         sources.set_all(overrides)?;
@@ -235,7 +227,6 @@ fn paths_in(tree: &Node) -> Vec<String> {
     tree.entries("").into_iter().map(|(path, ..)| path).collect()
 }
 
-/// Text → scene, overrides.
 fn understand<S: AsRef<str>>(text: &str, file: &str, overrides: &[S]) -> Result<Understood, SceneError> {
     let mut sources = Sources::of_text(text, file, &SCENE)?;
     sources.accept_words_of_catalogues();

@@ -149,10 +149,6 @@ impl ResolvedScene {
     }
 
     /// Load distribution at the start, under the load alone (no weights).
-    ///
-    /// # Errors
-    ///
-    /// As [`RigidRings::distribute`].
     pub fn static_load(&self) -> Result<StaticLoad, Error> {
         RigidRings::new(self, self.contact_law)
             .distribute(self.duty.load_n(0.0), &self.written.angles_to_load_deg())

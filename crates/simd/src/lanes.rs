@@ -176,7 +176,6 @@ impl<S: Simd> Vector<S> {
     /// How many numbers it holds: 1, 2, 4 or 8.
     pub const LEN: usize = S::F64_LANES;
 
-    /// The instruction set.
     #[inline(always)]
     pub(crate) fn simd(self) -> S {
         self.simd

@@ -33,7 +33,6 @@ pub(crate) struct Full {
     bearing: BearingSystem,
 }
 
-/// Its state in a checkpoint.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Saved {
     system: Snapshot,

@@ -7,9 +7,6 @@ use stribeck_mesh::vtu;
 use stribeck_store::mesh_file::REFERENCE;
 
 /// The file of a mesh whose nodes stand at these places [m].
-///
-/// # Errors
-/// When the mesh cannot be written as a file.
 pub(crate) fn mesh_file(assembly: &Assembly, place: &dyn Fn(u32) -> [f64; 2]) -> Result<Vec<u8>, Error> {
     let mut mesh = assembly.model.mesh.clone();
     let reference: Vec<[f64; 3]> = mesh.x.iter().zip(&mesh.y).map(|(&x, &y)| [x, y, 0.0]).collect();

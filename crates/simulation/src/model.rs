@@ -21,7 +21,6 @@ pub(crate) struct Preparation<'a> {
     pub(crate) scene: &'a ResolvedScene,
     /// The program, with the threads that the model makes use of.
     pub(crate) host: &'a Host<'a>,
-    /// The folder of the run.
     pub(crate) dir: &'a RunDir,
     pub(crate) progress: Progress,
 }
@@ -45,43 +44,30 @@ pub(crate) trait Model: Sized {
     /// Its state in a checkpoint.
     type Saved: Serialize + DeserializeOwned;
 
-    /// The model in motion.
     type Motion: Motion<Saved = Self::Saved>;
 
     /// Whether threads share its steps.
     const SHARED: bool;
 
     /// The model of a scene in equilibrium under its load, with rolling velocities.
-    ///
-    /// # Errors
-    /// When it cannot be meshed, preloaded or reduced.
     fn prepare(
         with: &mut Preparation<'_>,
         watch: &mut dyn FnMut(&Progress) -> ControlFlow<()>,
     ) -> Result<(Self, Setup), Error>;
 
     /// The same model without its preload, for a checkpoint of a run with this `info`.
-    ///
-    /// # Errors
-    /// As [`Model::prepare`].
     fn prepare_again(with: &mut Preparation<'_>, info: &RunInfo) -> Result<Self, Error>;
 
     /// Warnings before the first step.
     fn warnings(&self, scene: &ResolvedScene, info: &RunInfo) -> Vec<Warning>;
 
     /// Content of `mesh.vtu` at the start.
-    ///
-    /// # Errors
-    /// When the mesh cannot be written as a file.
     fn mesh_file(&self, scene: &ResolvedScene) -> Result<Vec<u8>, Error>;
 
     /// Sets it in motion.
     fn start(self, with: &Preparation<'_>) -> Self::Motion;
 
     /// Sets it in motion from a checkpoint, if that is one of this model.
-    ///
-    /// # Errors
-    /// Why it is not.
     fn go_on(
         self,
         with: &Preparation<'_>,

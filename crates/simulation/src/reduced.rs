@@ -30,7 +30,6 @@ pub use on_shaft::on_shaft;
 
 /// A reduced bearing before its first step.
 pub(crate) struct Reduced {
-    /// The meshed bodies.
     assembly: Assembly,
     bearing: Bearing,
     /// Displacements of the nodes of rings and housing at the preload [m].

@@ -86,9 +86,6 @@ pub fn extend(dir: &RunDir, duration_ms: f64, host: &Host<'_>, watch: Watch<'_>)
 
 /// Simulated time [s] from which [`resume`] would continue the run in `dir`; everything that can be checked
 /// without making the model is.
-///
-/// # Errors
-/// As [`resume`].
 pub fn saved_until(dir: &RunDir) -> Result<f64, Error> {
     let scene = &Scene::read(dir.scene())?.resolve();
     dispatch(scene, SavedUntil { scene, dir })

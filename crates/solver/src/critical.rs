@@ -78,7 +78,6 @@ struct Operator<'a> {
     dynamics: &'a Dynamics,
     bound: Vec<f64>,
     free: Vec<usize>,
-    /// Whether each component answers to forces.
     answers: Vec<bool>,
     /// Displacement of a probe [m].
     probe: f64,

@@ -239,9 +239,6 @@ impl Dynamics {
     }
 
     /// Sets the time step [s].
-    ///
-    /// # Errors
-    /// When it is not positive.
     pub fn set_time_step(&mut self, dt: f64) -> Result<(), Error> {
         check("time step [s]", dt, dt > 0.0, "positive")?;
         self.time_step = dt;
@@ -253,9 +250,6 @@ impl Dynamics {
     /// the model's rate holds until then. A step turns it by the exact angle `rate` · Δt; to follow an angle
     /// over time, give the mean rate of each step. Restoring a snapshot leaves it as it
     /// is.
-    ///
-    /// # Errors
-    /// As for the rate of a model.
     pub fn set_rotation_rate(&mut self, rate: f64) -> Result<(), Error> {
         check_rate(rate)?;
         for finish in self.tiles.iter_mut().flat_map(|tile| &mut tile.finish) {
@@ -268,9 +262,6 @@ impl Dynamics {
 
     /// Lets every body that turns at a prescribed rate turn at this one, as [`Self::set_rotation_rate`] does
     /// nodes.
-    ///
-    /// # Errors
-    /// As for the rate of a model.
     pub fn set_turning_rate(&mut self, rate: f64) -> Result<(), Error> {
         check_rate(rate)?;
         self.rigid_bodies.iter_mut().for_each(|body| body.set_turning_rate(rate));

@@ -175,7 +175,6 @@ impl Part {
     }
 }
 
-/// Energies of quadrilaterals.
 struct QuadSum<'a> {
     quads: &'a [([u32; 4], QuadReference)],
     stiffness: &'a Stiffness,

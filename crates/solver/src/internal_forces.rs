@@ -29,7 +29,6 @@ impl Dynamics {
     }
 }
 
-/// Forces of quadrilaterals.
 struct QuadForces<'a> {
     quads: &'a [([u32; 4], QuadReference)],
     stiffness: &'a Stiffness,

@@ -106,9 +106,6 @@ impl Model {
     /// References of all quadrilaterals and triangles, in mesh order. Quadrilaterals that follow one another
     /// with the same shape but for rounding share one reference: an element then has the same forces whether
     /// it is computed in a strip or alone, and their sum over the body is zero.
-    ///
-    /// # Errors
-    /// When an element has no positive area.
     pub(crate) fn references(&self) -> Result<(Vec<QuadReference>, Vec<TriangleReference>), Error> {
         let mut quads = Vec::with_capacity(self.mesh.quads.len());
         let mut triangles = Vec::with_capacity(self.mesh.triangles.len());
@@ -128,9 +125,6 @@ impl Model {
     }
 
     /// Lumped mass of every node [kg]: a quarter of each quadrilateral, a third of each triangle.
-    ///
-    /// # Errors
-    /// When a node of an elastic body, or every node of a rigid one, belongs to no element.
     pub(crate) fn masses(
         &self,
         quads: &[QuadReference],

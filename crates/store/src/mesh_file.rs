@@ -142,7 +142,6 @@ enum Size {
     AtMost(usize),
 }
 
-/// The header, and the arrays that it points to.
 struct Arrays<'a, F> {
     file: &'a mut F,
     header: String,
@@ -173,7 +172,6 @@ impl<'a, F: Read + Seek> Arrays<'a, F> {
             .ok_or(format!("its header has no `{name}` of at most {MAX_COUNT}"))
     }
 
-    /// Names of the bodies, by their numbers.
     fn body_names(&mut self) -> Result<Vec<String>, String> {
         if self.header.contains(" Name=\"body_names\"") {
             return names(&self.bytes("body_names", "String", Size::AtMost(MAX_NAMES))?);
@@ -194,7 +192,6 @@ impl<'a, F: Read + Seek> Arrays<'a, F> {
         if names.is_empty() { Err("it names no bodies".to_owned()) } else { Ok(names) }
     }
 
-    /// The bytes of a named array.
     fn bytes(&mut self, name: &str, kind: &str, size: Size) -> Result<Vec<u8>, String> {
         let line = self.header.lines().find(|line| attribute(line, "Name") == Some(name)).ok_or(format!(
             "it has no `{name}`: a version of the program that did not keep it has written it. Repeat the run"

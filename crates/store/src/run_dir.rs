@@ -202,10 +202,6 @@ impl RunDir {
     /// Writes `scene.ron` and `run.json` of a continued run, whose duration may be longer than before.
     ///
     /// Call it when the state of the checkpoint is restored and the time loop is about to begin.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the disk refuses.
     pub fn go_on(&self, scene: &Scene, info: &RunInfo) -> Result<(), Error> {
         self.reservation.start();
         files::remove_partial(&self.path)?;

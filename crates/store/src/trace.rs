@@ -27,10 +27,6 @@ pub struct Trace {
 
 impl Trace {
     /// Reads all channels of the trace at `path`. Memory is bounded by the size of the file.
-    ///
-    /// # Errors
-    ///
-    /// As [`TraceFile::open`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
         TraceFile::open(path)?.read_all()
     }

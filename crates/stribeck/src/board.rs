@@ -95,7 +95,6 @@ impl Board {
         self.bar.suspend(|| tell!("{line}"));
     }
 
-    /// Warns above the bar.
     pub(crate) fn warn(&self, line: &str) {
         self.bar.suspend(|| caution!("{line}"));
     }

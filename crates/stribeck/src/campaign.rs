@@ -45,7 +45,6 @@ pub(crate) struct OfFile {
     shards: Option<u32>,
 }
 
-/// One part of the runs.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Shard {
     pub(crate) part: usize,

@@ -63,7 +63,6 @@ const STEPS: [(&str, &[&str]); 5] = [
     ),
 ];
 
-/// Pages that it leaves.
 const PAGES: [&str; 2] = ["run/report.html", "verdict/report.html"];
 
 pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {

@@ -355,7 +355,6 @@ pub(crate) fn unit(name: &str) -> Option<&'static str> {
     .map(|(_, unit)| unit)
 }
 
-/// Data of one frame.
 struct Stressed {
     time_s: f64,
     part: Part,

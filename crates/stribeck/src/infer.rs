@@ -176,7 +176,6 @@ fn enter(out: &std::path::Path, inference: &Inference) -> Result<()> {
     Ok(())
 }
 
-/// An inference under way.
 struct Study<'a> {
     options: &'a Options,
     inference: &'a Inference,
@@ -304,7 +303,6 @@ impl Study<'_> {
         Ok(true)
     }
 
-    /// Whether one of these scenes has run.
     fn has_run(&self, points: &[Point]) -> Result<bool> {
         for wanted in Rounds::wanted(points) {
             if let Stage::Done = self.rounds.runs().stage(Keep::Numbers, wanted)? {

@@ -35,9 +35,6 @@ struct Shared {
 
 impl Interrupt {
     /// Listens from now on; once a process.
-    ///
-    /// # Errors
-    /// When the system does not allow it.
     pub fn listen() -> Result<Self> {
         let shared = Arc::new(Shared::default());
         let seen = Arc::clone(&shared);

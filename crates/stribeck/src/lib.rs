@@ -96,9 +96,6 @@ pub struct Cli {
 
 impl Cli {
     /// Executes the command line.
-    ///
-    /// # Errors
-    /// The message for the user.
     pub fn run(&self) -> Result<ExitCode> {
         self.loudness.apply();
         self.limits.apply();
@@ -211,9 +208,6 @@ impl Command {
     }
 
     /// Executes the command, with paths and words of `place`.
-    ///
-    /// # Errors
-    /// The message for the user.
     pub fn run(&self, place: &Place) -> Result<ExitCode> {
         match self {
             Self::Demo(options) => demo::run(options, place),

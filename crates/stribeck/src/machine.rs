@@ -18,9 +18,6 @@ use stribeck_store::trace::TraceWriter;
 use crate::place::Place;
 
 /// Writes the record of the machine of a complete run, unless it is there or its scene has no machine.
-///
-/// # Errors
-/// When the run cannot be read, is too short, or the disk refuses.
 pub(crate) fn keep(dir: &RunDir) -> Result<()> {
     let file = dir.machine();
     if file.exists() || !dir.trace().exists() {

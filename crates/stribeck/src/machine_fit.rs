@@ -95,9 +95,6 @@ impl State {
 }
 
 /// The scene of a bearing in such a state, whose force makes a record of `duration_s` at `rate_hz`.
-///
-/// # Errors
-/// When its numbers are none of such a bearing, or an override is refused.
 pub fn scene_of(
     bearing: &str,
     (load_n, speed_rpm): (f64, f64),
@@ -209,9 +206,6 @@ fn one(
 }
 
 /// The vertical force on the housing in each scene; equal scenes are run once, and those in `folder` not again.
-///
-/// # Errors
-/// When one cannot be run; at Ctrl-C.
 fn forces(scenes: &[&Scene], folder: PathBuf, share: Share) -> Result<Vec<Force>> {
     let interrupt = Interrupt::listen()?;
     let runs = ManyRuns(folder);

@@ -351,9 +351,6 @@ fn ask<T>(question: &str, default: &dyn Display, parse: &dyn Fn(&str) -> Result<
 }
 
 /// The scene of a bearing with a spall of a raceway, or a sound one, as `new` writes it.
-///
-/// # Errors
-/// When the numbers are none of such a bearing.
 #[cfg(feature = "full")]
 pub(crate) fn scene(bearing: &str, load_n: f64, speed_rpm: f64, ring: Option<DefectRing>) -> Result<Scene> {
     let limits = Limits::of(bearing)?;

@@ -120,7 +120,6 @@ pub(crate) fn warning(words: Arguments<'_>) {
     on_error(&marked("warning: ", AnsiColor::Yellow), words);
 }
 
-/// Prints an error with its causes.
 pub(crate) fn error(error: &anyhow::Error, causes: &[String]) {
     on_error(&marked("error: ", AnsiColor::Red), format_args!("{error}"));
     causes.iter().for_each(|cause| on_error("", format_args!("  because: {cause}")));

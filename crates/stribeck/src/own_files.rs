@@ -69,10 +69,8 @@ const HOLDERS: [&str; 6] = ["runs", "full", "reduced", "simulated", "synthetic",
 /// Folder of links to runs.
 const LINKS: &str = "by_name";
 
-/// What lies in a folder.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Contents {
-    /// Files of ours.
     pub(crate) own: Vec<PathBuf>,
     /// Folders that held ours alone, the innermost first.
     folders: Vec<PathBuf>,

@@ -35,9 +35,6 @@ impl Place {
     }
 
     /// The scene in a file under `overrides`; without a file the paper's run.
-    ///
-    /// # Errors
-    /// Mistakes in it, or in the meshes that it names, with line and field.
     pub fn scene(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
         let scene = self.scene_quietly(file, overrides)?;
         if let Some(file) = file.map(|file| self.locate(file)) {
@@ -64,9 +61,6 @@ impl Place {
 
     /// As [`Place::scene`], without messages on replaced fields or assumed dimensions, to read a scene many
     /// times.
-    ///
-    /// # Errors
-    /// As [`Place::scene`].
     pub fn scene_quietly(&self, file: Option<&Path>, overrides: &[String]) -> Result<Scene> {
         let file = file.map(|file| self.locate(file));
         let scene = match &file {
@@ -101,9 +95,6 @@ impl Place {
     }
 
     /// The scene that fields are without a file around them: the defaults under `overrides`.
-    ///
-    /// # Errors
-    /// As [`Place::scene`].
     pub fn scene_of_fields(&self, overrides: &[String]) -> Result<Scene> {
         let scene = Self::with_sound_meshes(Scene::default().with_overrides(overrides)?, None, overrides)?;
         Self::say_assumed(&scene);
@@ -133,9 +124,6 @@ impl Place {
     }
 
     /// Refuses the file of a scene where a run or a record is asked for.
-    ///
-    /// # Errors
-    /// What makes a run of it.
     #[cfg(feature = "full")]
     pub(crate) fn refuse_scene(&self, path: &Path) -> Result<()> {
         anyhow::ensure!(
@@ -162,18 +150,12 @@ impl Place {
     }
 
     /// The run or ensemble below `runs/` whose `run.json` or `ensemble.json` was written last.
-    ///
-    /// # Errors
-    /// When there is none.
     pub fn newest_run(&self) -> Result<PathBuf> {
         self.newest(&["run.json", "ensemble.json"])
     }
 
     /// The newest run below `runs/` that is one of its own; where there are ensembles alone, the newest of
     /// those.
-    ///
-    /// # Errors
-    /// When there is none.
     pub fn newest_single_run(&self) -> Result<PathBuf> {
         self.newest(&["run.json"]).or_else(|_| self.newest_run())
     }

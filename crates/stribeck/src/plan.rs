@@ -78,7 +78,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The load distribution.
 fn loads(plan: &Plan) {
     let loads = &plan.loads;
     let [outer, inner] = loads.pressure_pa.map(|pa| 1e-6 * pa);

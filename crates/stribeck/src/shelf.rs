@@ -10,7 +10,6 @@ use stribeck_store::run_info::{RunInfo, Status};
 
 use crate::place::{Place, shown};
 
-/// Content of a folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     Run,
@@ -57,7 +56,6 @@ impl Kind {
     }
 }
 
-/// One folder.
 #[derive(Debug)]
 pub(crate) struct Item {
     pub(crate) name: String,
@@ -78,7 +76,6 @@ impl Item {
         Some(Self { name, path: path.to_owned(), kind, state: state(path, kind), written, bytes })
     }
 
-    /// Its page, where there is one.
     pub(crate) fn page(&self) -> Option<PathBuf> {
         Some(self.path.join(self.kind.page())).filter(|page| page.exists())
     }
@@ -192,7 +189,6 @@ pub(crate) fn size(path: &Path) -> (u64, Option<SystemTime>) {
     (bytes, newest)
 }
 
-/// A number of bytes in words.
 pub(crate) fn in_words(bytes: u64) -> String {
     let units = [("GB", 1e9), ("MB", 1e6), ("kB", 1e3)];
     let bytes = bytes as f64;

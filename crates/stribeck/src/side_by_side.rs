@@ -15,7 +15,6 @@ use crate::host::{self, SharedClock};
 use crate::interrupt::Interrupt;
 use crate::progress::energy_error;
 
-/// A run that is to be made or continued.
 pub(crate) struct Due {
     pub(crate) number: usize,
     pub(crate) scene: Scene,
@@ -129,7 +128,6 @@ impl<'a> Shop<'a> {
     }
 }
 
-/// How a run ended, in a line.
 fn words(info: &RunInfo) -> String {
     match (info.status, &info.stop_reason) {
         (Status::Complete, _) => {

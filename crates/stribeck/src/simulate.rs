@@ -57,7 +57,6 @@ pub struct Options {
     seed: Option<u64>,
 }
 
-/// A number of worker threads.
 pub(crate) fn threads(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| (1..=1024).contains(n));
     number.ok_or_else(|| {
@@ -75,7 +74,6 @@ pub(crate) fn jobs(text: &str) -> Result<usize, String> {
     })
 }
 
-/// A number of starts.
 fn starts(text: &str) -> Result<usize, String> {
     let number = text.parse().ok().filter(|n| (1..=10_000).contains(n));
     number.ok_or_else(|| {

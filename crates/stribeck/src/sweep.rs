@@ -112,7 +112,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
 }
 
-/// Whether a file is a scene that can be read.
 fn is_scene(file: &Path) -> bool {
     Campaign::read(file).is_err() && readable(Some(file), &[] as &[&str]).is_ok()
 }
@@ -229,7 +228,6 @@ fn name(scene: &str, swept: &[&Assigned]) -> String {
     name.replace(|c: char| !(c.is_ascii_alphanumeric() || "-_".contains(c)), "-")
 }
 
-/// The file of the campaign.
 fn text(
     options: &Options,
     keep: Kept,
@@ -311,9 +309,6 @@ fn kept_in(out: &Path) -> Option<Kept> {
 
 /// Removes the tables of an earlier sweep in this folder; its runs stay and are used where their scenes occur
 /// again.
-///
-/// # Errors
-/// When they kept less than `keep` asks for.
 fn make_way(out: &Path, keep: Kept) -> Result<()> {
     let text = std::fs::read_to_string(out.join(CAMPAIGN)).unwrap_or_default();
     if text.starts_with(WRITTEN_BY) {

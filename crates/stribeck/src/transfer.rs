@@ -161,7 +161,6 @@ impl Transfer {
     }
 }
 
-/// One mode in words.
 fn mode(text: &str) -> Result<Mode> {
     let [mut mass, mut stiffness, mut damping] = [None; 3];
     for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {

@@ -3,31 +3,12 @@
 /// Errors of contact.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "messages say what happened and name their fields")]
 pub enum Error {
-    /// A number is outside its range.
     #[error("{field} = {value}: must be {allowed}")]
-    OutOfRange {
-        /// Name of the quantity.
-        field: &'static str,
-        /// The value given.
-        value: f64,
-        /// The values allowed, in words.
-        allowed: &'static str,
-    },
-    /// Two surfaces cannot be a pair.
+    OutOfRange { field: &'static str, value: f64, allowed: &'static str },
     #[error("contact pair {pair}: {reason}")]
-    BadPair {
-        /// Its place in the list.
-        pair: usize,
-        /// Problem.
-        reason: &'static str,
-    },
-    /// A surface has too few facets or one of no length.
+    BadPair { pair: usize, reason: &'static str },
     #[error("contact surface `{name}`: {reason}")]
-    BadSurface {
-        /// Name of the surface.
-        name: String,
-        /// Problem.
-        reason: &'static str,
-    },
+    BadSurface { name: String, reason: &'static str },
 }

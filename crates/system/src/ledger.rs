@@ -73,7 +73,6 @@ pub enum Scale {
 }
 
 impl Scale {
-    /// As words of a message.
     pub(crate) fn words(self) -> &'static str {
         match self {
             Self::TotalEnergy => "largest energy",

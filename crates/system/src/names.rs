@@ -16,7 +16,6 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// Number of the body of that name.
     pub(crate) fn body(&self, name: &str) -> Result<usize, Error> {
         let found = self.bodies.iter().position(|body| body.name == name);
         found.ok_or_else(|| unknown("body", name, self.bodies.iter().map(|body| &*body.name)))
@@ -35,14 +34,12 @@ impl Names {
         Ok(nodes_of(&self.bodies[body]).collect())
     }
 
-    /// Refuses a name that is taken.
     pub(crate) fn check_new(&self, name: &str) -> Result<(), Error> {
         let taken = self.body(name).is_ok() || self.groups.iter().any(|(n, _)| n == name);
         if taken { Err(Error::TwiceNamed { name: name.to_owned() }) } else { Ok(()) }
     }
 }
 
-/// Nodes of a body.
 pub(crate) fn nodes_of(body: &Body) -> Range<u32> {
     body.nodes.start as u32..body.nodes.end as u32
 }

@@ -82,7 +82,6 @@ pub struct Film {
     pub speed: f64,
 }
 
-/// A surface and the curve that it stands for.
 pub(crate) struct NamedSurface {
     pub(crate) name: String,
     pub(crate) surface: Surface,

@@ -28,7 +28,6 @@ pub struct System {
     pub(crate) forces: Forces,
     pub(crate) names: Names,
     pub(crate) behaviour: Vec<Behaviour>,
-    /// Names of the contact pairs.
     pub(crate) pairs: Vec<String>,
     /// Of all contact surfaces [m].
     pub(crate) shortest_facet: f64,
@@ -105,9 +104,6 @@ impl System {
     }
 
     /// Sets the time step [s], and the critical one that it was chosen by, if there was one, for messages.
-    ///
-    /// # Errors
-    /// When it is not positive and finite.
     pub fn set_time_step(&mut self, time_step: f64, critical: Option<f64>) -> Result<(), Error> {
         self.dynamics.set_time_step(time_step)?;
         self.reference_time_step = critical;
@@ -143,9 +139,6 @@ impl System {
 
     /// Lets all rigid bodies that turn at a prescribed rate turn at this one [rad/s], as
     /// [`System::set_rotation_rate`] does nodes.
-    ///
-    /// # Errors
-    /// As there.
     pub fn set_turning_rate(&mut self, rate: f64) -> Result<(), Error> {
         Ok(self.dynamics.set_turning_rate(rate)?)
     }
@@ -164,9 +157,6 @@ impl System {
     }
 
     /// One step, and the energies at the positions before it.
-    ///
-    /// # Errors
-    /// As [`System::step`].
     pub fn step_with_ledger(&mut self) -> Result<Ledger, Error> {
         let mut ledger =
             if self.balance.reference.is_some() { self.counted_step()? } else { self.first_step()? };
@@ -177,9 +167,6 @@ impl System {
 
     /// Takes `steps` steps and looks after the first and after every `every`-th that follows; `see` is shown
     /// each ledger. The first finding that stops ends it.
-    ///
-    /// # Errors
-    /// As [`System::step`].
     pub fn run(
         &mut self,
         steps: u64,
@@ -203,9 +190,6 @@ impl System {
     }
 
     /// Takes steps until `time` [s].
-    ///
-    /// # Errors
-    /// As [`System::step`].
     pub fn run_until(&mut self, time: f64) -> Result<(), Error> {
         while self.time() < time {
             self.step()?;

@@ -3,28 +3,17 @@
 /// Everything that can go wrong between numbers of a bearing and its loads.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
+#[expect(missing_docs, reason = "messages say what happened and name their fields")]
 pub enum Error {
-    /// A number given to a function of this crate lies outside its range.
     #[error("`{field}` is {value}; allowed: {allowed}. {suggestion}")]
-    Input {
-        /// Name of the argument.
-        field: &'static str,
-        /// Its value.
-        value: f64,
-        /// The valid range, with unit.
-        allowed: String,
-        /// Remedy.
-        suggestion: &'static str,
-    },
+    Input { field: &'static str, value: f64, allowed: String, suggestion: &'static str },
 
-    /// The rigid-ring load distribution was not found.
     #[error(
         "no static load distribution found: after {iterations} iterations {residual_n:.3e} N of {load_n:.4} \
          N are unbalanced. Check `load_n` against `thickness_mm`: the approach must stay far below the \
          roller's radius"
     )]
     NoEquilibrium {
-        /// Iterations done.
         iterations: usize,
         /// Unbalanced force [N].
         residual_n: f64,

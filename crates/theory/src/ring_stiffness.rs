@@ -168,7 +168,6 @@ impl TurningRings {
     }
 }
 
-/// Forces at one shift.
 struct Carried {
     /// Load less the forces of the elements [N].
     left: [f64; 2],

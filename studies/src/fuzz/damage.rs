@@ -44,7 +44,6 @@ pub(crate) fn text(original: &str, dice: &mut Dice) -> String {
     chars.into_iter().collect()
 }
 
-/// Replaces one of the numbers in a text.
 fn number(chars: &mut Vec<char>, dice: &mut Dice) {
     let starts: Vec<usize> = (1..chars.len())
         .filter(|&i| chars[i].is_ascii_digit() && matches!(chars[i - 1], ' ' | '(' | '-'))
@@ -63,7 +62,6 @@ fn number(chars: &mut Vec<char>, dice: &mut Dice) {
     chars.splice(start..start + length, written.chars());
 }
 
-/// Damages bytes in some places.
 pub(crate) fn bytes(original: &[u8], dice: &mut Dice) -> Vec<u8> {
     let mut bytes = original.to_vec();
     for _ in 0..=dice.below(3) {

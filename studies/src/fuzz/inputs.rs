@@ -19,10 +19,8 @@ use super::readers::{self, Shelf};
 use stribeck::host;
 use stribeck_scene::dice::Dice;
 
-/// One kind of input.
 pub(crate) struct Kind {
     pub(crate) name: &'static str,
-    /// Share of all inputs.
     pub(crate) weight: u64,
     pub(crate) attempt: fn(&Inputs, &mut Dice) -> Result<Answer>,
 }

@@ -49,7 +49,6 @@ fn pairs<'a>(records: &'a [Labelled], judged: &'a [Judged]) -> impl Iterator<Ite
     records.iter().zip(judged)
 }
 
-/// Class of a record.
 fn class(record: &Labelled) -> &'static str {
     match record.truth {
         Some(name) => name.part(),

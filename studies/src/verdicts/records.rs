@@ -60,7 +60,6 @@ struct Set {
 /// length of the defect.
 type Entry = (String, String, String, usize, Option<String>, bool, Option<f64>, Option<f64>);
 
-/// Names of the sets.
 pub(super) const SETS: [&str; 8] = [
     "HIT-SM, 6205",
     "CWRU drive end, 6205",
@@ -74,9 +73,6 @@ pub(super) const SETS: [&str; 8] = [
 pub(super) const UESTC: &str = SETS[3];
 
 /// All records of the list that are below `folder`.
-///
-/// # Errors
-/// When a file cannot be read, or none is there.
 pub(super) fn read(folder: &Path) -> Result<Vec<Labelled>> {
     let path = crate::package().join("data/verdicts.ron");
     let text = std::fs::read_to_string(&path).with_context(|| format!("cannot read {}", path.display()))?;

@@ -32,7 +32,6 @@ pub(super) fn ways() -> [Way; 7] {
     ]
 }
 
-/// A model of one body of steel.
 pub(super) fn model(part: &Part) -> Result<Model> {
     let mut mesh = Mesh::new();
     mesh.add("body", part);

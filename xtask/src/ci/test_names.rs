@@ -27,16 +27,13 @@ const PREFIXES: [&str; 14] = [
 /// Tests that hold numbers of somebody else cite where they come from.
 const CITING: [&str; 3] = ["analytic_", "converges_", "peer_"];
 
-/// One test of the workspace.
 pub(super) struct Test {
-    /// File in which it stands, from the root.
     pub(super) file: String,
     pub(super) name: String,
     /// Comments of the file's head, of the test and in it.
     comments: String,
 }
 
-/// All tests of the workspace.
 pub(super) fn all(root: &Path) -> Result<Vec<Test>> {
     let mut found = Vec::new();
     for folder in sources::folders(root)? {

@@ -11,12 +11,10 @@ use super::program::{About, Program, Script};
 /// A run of ours before each of another program takes about this long [s].
 const OUR_RUN_S: f64 = 0.25;
 
-/// And a run of the other.
 const THEIR_RUN_S: f64 = 0.5;
 
 /// A problem, and our own solutions of it.
 pub(super) struct Problem {
-    /// Heading of its table.
     pub(super) title: String,
     /// Its name for the reader.
     pub(super) text: String,

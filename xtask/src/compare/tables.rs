@@ -54,7 +54,6 @@ pub(super) fn page(rounds: usize, measured: &[Measured], absent: &[Absent]) -> S
     page
 }
 
-/// The section of one problem.
 pub(super) fn of_problem(measured: &Measured) -> String {
     let mut page = String::new();
     let all = measured.entries.iter().flat_map(|e| &e.rounds);

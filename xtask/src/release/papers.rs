@@ -20,7 +20,6 @@ pub(super) fn bill() -> String {
     format!("stribeck-{VERSION}.cdx.json")
 }
 
-/// Writes one file.
 pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
     std::fs::write(folder.join(name), text).with_context(|| format!("cannot write {name}"))
 }

@@ -15,7 +15,6 @@ pub(super) type Environment = Vec<(String, OsString)>;
 /// Oldest C library on which programs for Linux run: that of RHEL 7, as of wheels for manylinux2014.
 const GLIBC: &str = "2.17";
 
-/// A platform.
 pub(super) struct Platform<'a> {
     /// Its name in Rust.
     pub(super) target: &'a str,
@@ -24,7 +23,6 @@ pub(super) struct Platform<'a> {
     library: &'static str,
     /// Name of a build with zig: with the C library's version.
     zig: String,
-    /// Whether it has a wheel.
     pub(super) wheel: bool,
 }
 

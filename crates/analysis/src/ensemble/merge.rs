@@ -32,9 +32,6 @@ pub enum Merged {
 
 impl Merged {
     /// Of the summaries of all complete starts.
-    ///
-    /// # Errors
-    /// [`Error::Summary`] when one of them cannot be written.
     pub fn of<'a, T: Serialize + 'a>(summaries: impl Iterator<Item = &'a T>) -> Result<Self, Error> {
         let values: Vec<Value> =
             summaries.map(serde_json::to_value).collect::<Result<_, _>>().map_err(Error::Summary)?;
@@ -134,7 +131,6 @@ fn list(values: &[&Value], of: usize) -> Merged {
     Merged::List(order.iter().filter_map(|key| items.get(key)).map(|values| merge(values, of)).collect())
 }
 
-/// Name of an item.
 fn name(item: &Value) -> String {
     let words = NAMES.iter().filter_map(|field| item.get(field)).map(Value::to_string);
     words.collect::<Vec<_>>().join(" ")

@@ -33,7 +33,6 @@ pub(super) struct BasebandComb {
     /// The line of the comb next to it [Hz]: rollers that do not pass their facets together have none at the
     /// mean rate.
     pub(super) line_hz: f64,
-    /// The baseband itself.
     pub(super) baseband: Baseband,
     /// Sums over all rollers, one a column: the terms of accelerations.
     sums: Vec<Signal>,
@@ -128,7 +127,6 @@ impl BasebandComb {
         self.baseband.bands(&signals, &hz).into_iter().map(columns).collect()
     }
 
-    /// Blocks of its columns.
     pub(super) fn blocks(&self) -> Blocks {
         self.baseband.blocks(self.sums[0].len())
     }
@@ -219,7 +217,6 @@ impl Baseband {
         (0..self.length(samples)).map(mean).collect()
     }
 
-    /// A recorded signal.
     pub(super) fn of_signal(&self, values: &[f64]) -> Signal {
         self.of_samples(|n| (values[n], 0.0), values.len())
     }

@@ -28,7 +28,6 @@ pub(super) struct Rollers<'a> {
 
 /// Lines of the facets.
 pub(super) struct MeshLines {
-    /// As predicted.
     pub(super) lines: Vec<PredictedLine>,
     /// As measured one by one, at every sensor.
     pub(super) tones: Vec<Tone>,
@@ -64,7 +63,6 @@ pub(super) struct LeadingSpectrum {
 pub(super) struct EnvelopeAnswer {
     pub(super) spectrum: Option<Spectrum>,
     pub(super) finding: Option<EnvelopeFinding>,
-    /// Why there is none.
     pub(super) why_not: Option<String>,
 }
 

@@ -16,7 +16,6 @@ const FIFTH: f64 = 5.0;
 /// Parts of a record.
 struct Spans<'a> {
     time: &'a [f64],
-    /// Phase of every sample.
     phases: Vec<Phase>,
     /// About the exits.
     impulses: Vec<Range<usize>>,
@@ -34,9 +33,6 @@ struct QuietAndImpulse {
 
 /// Levels at every sensor; fills in the impulse of each event at the leading one. `tone` is that of the
 /// rollers' vertices.
-///
-/// # Errors
-/// [`Error::Signal`] when a density cannot be searched.
 pub(super) fn level_finding(
     time: &[f64],
     (sensors, tone): (&[SensorSignal], Option<&PredictedLine>),

@@ -51,7 +51,6 @@ pub(crate) struct PointState<N> {
     pub(crate) damping: N,
 }
 
-/// Their results.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reaction<N> {
     /// One where the point touches.

@@ -32,7 +32,6 @@ pub(crate) struct Row<'a> {
 /// How far vectors of points came.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Outcome {
-    /// Whether a point touches.
     pub(crate) touched: bool,
     /// Bits of the active points that are left to scalar code.
     pub(crate) left: u64,

@@ -105,17 +105,14 @@ pub(crate) fn set_step(d: &mut Dynamics, contacts: &Contacts, factor: f64) {
     d.set_time_step(factor * critical).expect("a positive time step");
 }
 
-/// Slots of mesh nodes.
 pub(crate) fn slots(d: &Dynamics, nodes: impl IntoIterator<Item = usize>) -> Vec<u32> {
     nodes.into_iter().map(|n| d.layout().slot_of_node[n]).collect()
 }
 
-/// Slots of one body.
 pub(crate) fn of_body(d: &Dynamics, model: &Model, body: usize) -> Vec<u32> {
     slots(d, model.mesh.bodies[body].nodes.clone())
 }
 
-/// Slot of one mesh node.
 pub(crate) fn slot(d: &Dynamics, node: usize) -> usize {
     d.layout().slot_of_node[node] as usize
 }

@@ -18,7 +18,6 @@ const LONGEST_S: f64 = 100.0;
 
 /// Where a family stands highest.
 pub(crate) struct Standing {
-    /// Number of the band.
     pub(crate) band: usize,
     pub(crate) comb: Comb,
     /// Fundamental without slip [Hz].

@@ -17,9 +17,6 @@ const COMES_AND_GOES: f64 = 1e-5;
 const REACH: f64 = 1.0;
 
 /// Whether a comb of `comb_hz` stands in the `band_hz` of either half of `samples`.
-///
-/// # Errors
-/// [`Error::Signal`] when the samples are not numbers.
 fn agree(samples: &[f64], rate_hz: f64, band_hz: (f64, f64), comb_hz: f64) -> Result<bool, Error> {
     let half = BandEnvelopes::segment_of(samples.len() / 2, samples.len() / 2);
     let grid_hz = rate_hz / half as f64;
@@ -44,9 +41,6 @@ fn agree(samples: &[f64], rate_hz: f64, band_hz: (f64, f64), comb_hz: f64) -> Re
 /// Withdraws claims of families that stand in one half of the record only, but for those that no chance
 /// makes, and a sure one of the cage: a spot on an element meets the raceways while it spins about the right axis,
 /// and comes and goes.
-///
-/// # Errors
-/// [`Error::Signal`] when the samples are not numbers.
 pub(crate) fn without_passing(
     families: Vec<Family>,
     samples: &[f64],

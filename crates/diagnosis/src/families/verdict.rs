@@ -99,9 +99,6 @@ impl Candidates {
     /// The families of a machine in a record. `lines_hz` is the speed by the lines of the record, which places
     /// multiples of the shaft better than one that is given; `by_shaft`: the lines of the shaft stand at the
     /// speed of the machine, so that only slip can move a family.
-    ///
-    /// # Errors
-    /// A note on what is missing for them.
     pub(crate) fn of(
         record: &Record,
         machine: &Machine,

@@ -17,7 +17,6 @@ const LONGEST: f64 = 0.5;
 /// A second event that is missed is nearer to the first than this part of what would have shown.
 const MISSED: f64 = 2.0;
 
-/// The length by the record.
 #[derive(Debug, Default)]
 pub(crate) struct SpallLength {
     /// From two events a passage [mm].

@@ -50,10 +50,6 @@ pub(crate) struct Record {
 
 impl Record {
     /// Reads a channel sampled `rate_hz` times a second.
-    ///
-    /// # Errors
-    /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or
-    /// constant, [`Error::Signal`] when it cannot be processed.
     pub(crate) fn read(channel: &Channel, rate_hz: f64) -> Result<Self, Error> {
         if !rate_hz.is_finite() || rate_hz <= 0.0 {
             return Err(Error::NoSignal(format!("a sample rate of {rate_hz} Hz; give one above 0")));
@@ -106,7 +102,6 @@ impl Record {
     }
 }
 
-/// A pass over the samples.
 struct Pass {
     /// Length of a segment [samples].
     segment: usize,
@@ -184,7 +179,6 @@ impl Pass {
         self.velocity.as_mut().map_or(Ok(()), |level| level.add(samples))
     }
 
-    /// Faults of the samples.
     fn notes(&self, rate_hz: f64) -> Vec<String> {
         let mut notes = self.screening.notes(rate_hz);
         if self.refused > 0 {

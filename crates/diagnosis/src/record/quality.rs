@@ -126,7 +126,6 @@ pub(crate) fn reservation(found: &[Quality]) -> Option<String> {
         .then(|| format!("The record is not sound, and the verdict rests on it: {}.", spoils.join(", ")))
 }
 
-/// A share in words.
 fn percent(share: f64) -> String {
     match 100.0 * share {
         all if all > 99.95 => "100 %".to_owned(),

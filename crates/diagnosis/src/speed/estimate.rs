@@ -63,7 +63,6 @@ const LEAST_OF_SHAFT: f64 = 15.0;
 const TURNS: f64 = 50.0;
 const TURNS_NEAR: f64 = 100.0;
 
-/// The speed found in a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SpeedEstimate {
     pub(crate) hz: f64,

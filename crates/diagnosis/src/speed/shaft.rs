@@ -28,7 +28,6 @@ const SAME_LINES: f64 = 3.0;
 /// Corrections below this part are within the tolerance of the families as it is.
 const CORRECTED: f64 = 2e-3;
 
-/// The shaft by its lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shaft {
     /// Its speed [Hz].

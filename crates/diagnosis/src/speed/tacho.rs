@@ -56,9 +56,6 @@ pub fn of(channel: &Channel, rate_hz: f64, per_turn: f64) -> Result<Turns, Error
 }
 
 /// Counts the pulses of a channel sampled `rate_hz` times a second, one a turn.
-///
-/// # Errors
-/// As [`pulses`].
 pub fn turns(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
     pulses(channel, rate_hz, 1)
 }

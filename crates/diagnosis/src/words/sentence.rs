@@ -115,7 +115,6 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
     verdict
 }
 
-/// A probability in words.
 pub(crate) fn probability(p: f64) -> String {
     if p >= 0.95 {
         "nearly 1".to_owned()

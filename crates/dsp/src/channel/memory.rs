@@ -24,9 +24,6 @@ pub fn set_most_bytes(bytes: u64) {
 }
 
 /// Refuses `bytes` for `what` of a file where that is more than the limit.
-///
-/// # Errors
-/// [`Error::TooLarge`].
 pub fn ask(path: &Path, what: &str, bytes: u64) -> Result<()> {
     let most = most_bytes();
     if bytes <= most {
@@ -35,7 +32,6 @@ pub fn ask(path: &Path, what: &str, bytes: u64) -> Result<()> {
     Err(Error::TooLarge { path: path.to_owned(), what: what.to_owned(), bytes, most })
 }
 
-/// A number of bytes in words.
 pub(super) fn in_words(bytes: &u64) -> String {
     let bytes = *bytes as f64;
     let units = [(1e12, "TB"), (1e9, "GB"), (1e6, "MB"), (1e3, "kB")];

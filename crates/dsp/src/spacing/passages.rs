@@ -36,7 +36,6 @@ const BEYOND: f64 = 1.1;
 /// An event of several peaks begins with the first that has this part of the height of the one taken.
 const BEGINS: f64 = 0.5;
 
-/// Parameters of the search.
 pub(super) struct Search {
     /// Time between passages [samples].
     pub(super) period: f64,
@@ -55,7 +54,6 @@ struct Mean {
     reach: usize,
 }
 
-/// A second event in one band.
 #[derive(Clone, Copy)]
 struct Second {
     /// Its place in the mean.
@@ -132,7 +130,6 @@ impl Search {
         (best as f64 + 0.5) / STEPS as f64
     }
 
-    /// Second events of a band.
     fn seconds(&self, mean: &Mean) -> Vec<Second> {
         let Mean { all, halves, reach } = mean;
         let reach = *reach;

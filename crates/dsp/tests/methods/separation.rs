@@ -10,7 +10,6 @@ fn noise(count: usize) -> Vec<f64> {
     (0..count).map(|_| 0.5 * noise.uniform()).collect()
 }
 
-/// Amplitude of a line.
 fn amplitude(signal: &[f64], cycles: f64) -> f64 {
     let (c, s) = signal.iter().enumerate().fold((0.0, 0.0), |(c, s), (n, x)| {
         let angle = TAU * cycles * n as f64;

@@ -11,7 +11,6 @@ pub(crate) struct Dialect {
     pub(crate) decimal_comma: bool,
 }
 
-/// Kind of a field.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Field {
     Number(f64),
@@ -135,7 +134,6 @@ impl Dialect {
         line.chars().all(|c| c.is_whitespace() || c == self.separator || c == '"')
     }
 
-    /// Kind of a field.
     pub(crate) fn field(&self, field: &str) -> Field {
         const MISSING: [&str; 10] = ["", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "nil"];
         if let Some(number) = self.number(field) {

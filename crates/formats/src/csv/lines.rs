@@ -72,7 +72,6 @@ impl Coding {
     }
 }
 
-/// Lines of a file, one after the other.
 pub(crate) struct Lines {
     file: BufReader<File>,
     coding: Coding,

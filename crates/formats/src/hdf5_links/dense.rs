@@ -4,7 +4,6 @@
 
 use super::{DEEPEST, Member, Source, link, long, number};
 
-/// A heap of links.
 struct Heap {
     /// Bits of a place in it, and bytes of a place and of a length.
     bits: u32,
@@ -101,7 +100,6 @@ impl Source<'_> {
         Some(())
     }
 
-    /// An object of the heap.
     fn in_heap(&mut self, heap: &Heap, id: &[u8]) -> Option<Vec<u8>> {
         // The first byte is 0 for one within the blocks.
         if *id.first()? != 0 {

@@ -10,7 +10,6 @@ use crate::number::{Kind, Number};
 use crate::strided::{Count, Pieces, Strided};
 use crate::{Channel, Result};
 
-/// Metadata of one channel.
 pub(crate) struct Described {
     pub(crate) name: String,
     pub(crate) unit: Option<String>,

@@ -14,7 +14,6 @@ const STORED: f64 = u32::MAX as f64;
 /// Scales of a channel, and numbers of a scale, at most.
 const MOST: usize = 10_000;
 
-/// How many scales there are.
 pub(crate) fn count(of: &Properties) -> usize {
     match of.get("NI_Number_Of_Scales") {
         Some(Property::Number(n)) => (n.max(0.0) as usize).min(MOST),

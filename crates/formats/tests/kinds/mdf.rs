@@ -4,7 +4,6 @@ use stribeck_testing::Scratch;
 
 use crate::{COUNT, RATE_HZ, holds, notes, opened, signal};
 
-/// One channel of an MDF group.
 pub(crate) struct MdfChannel<'a> {
     pub(crate) name: &'a str,
     pub(crate) unit: &'a str,
@@ -24,7 +23,6 @@ pub(crate) struct MdfChannel<'a> {
 /// records.
 pub(crate) type MdfGroup<'a> = (&'a [MdfChannel<'a>], u32, u32, Vec<Vec<u8>>);
 
-/// An MDF file of such groups.
 pub(crate) fn mdf(groups: &[MdfGroup<'_>]) -> Vec<u8> {
     let mut bytes = b"MDF     4.10    tests   \0\0\0\0\x9a\x01".to_vec();
     bytes.resize(64, 0);

@@ -35,7 +35,6 @@ fn mat5_element(kind: u32, data: &[u8]) -> Vec<u8> {
     out
 }
 
-/// A matrix of doubles.
 pub(crate) fn mat5_matrix(name: &str, shape: &[i32], values: impl Iterator<Item = f64>) -> Vec<u8> {
     let parts = [
         mat5_element(6, &[6_u32, 0].map(u32::to_le_bytes).concat()),

@@ -15,7 +15,6 @@ const STEPS: usize = 30;
 /// surer.
 const SURE: f64 = 0.02;
 
-/// The probability that an output exists.
 #[derive(Debug, Clone)]
 pub(super) struct Existence {
     function: Option<Regression>,
@@ -68,7 +67,6 @@ impl Existence {
         Ok(Self { function: Some(function), share, deviation, offset, slope, least })
     }
 
-    /// At points.
     pub(super) fn predict(&self, points: &[Vec<f64>]) -> Vec<f64> {
         let probability = |mean: f64| {
             let x = self.offset + self.slope * logit(self.share + self.deviation * mean);

@@ -212,7 +212,6 @@ impl Noise {
         weighted
     }
 
-    /// Covariance within a block.
     fn within(&self, block: &[usize]) -> Mat<f64> {
         Mat::from_fn(block.len(), block.len(), |a, b| {
             let variance = (self.variances[block[a]] * self.variances[block[b]]).sqrt();

@@ -16,7 +16,6 @@ pub(crate) const OUTPUTS: usize = 8;
 /// Every field is uniform in the unit interval.
 pub(crate) const PRIORS: [Prior; FIELDS] = [Prior::Uniform { from: 0.0, to: 1.0 }; FIELDS];
 
-/// The columns of its outputs.
 pub(crate) fn columns() -> Vec<Output> {
     let scale = |i| if i == 0 || i == 3 { Scale::Logarithmic } else { Scale::Linear };
     (0..OUTPUTS).map(|i| Output { name: format!("y{i}"), scale: scale(i) }).collect()
@@ -80,7 +79,6 @@ pub(crate) fn readings(seed: u64, points: usize, each: usize) -> Runs {
     runs
 }
 
-/// The same runs with some of their outputs.
 pub(crate) fn only(runs: Runs, kept: &[usize]) -> Runs {
     let outputs = runs.outputs.iter().map(|row| kept.iter().map(|&output| row[output]).collect()).collect();
     Runs { outputs, ..runs }

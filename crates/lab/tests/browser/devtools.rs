@@ -76,7 +76,6 @@ impl Tab {
         }
     }
 
-    /// Value of a promise in the page.
     pub(crate) fn answer(&mut self, script: &str) -> Value {
         let said = self.call(
             "Runtime.evaluate",

@@ -32,7 +32,6 @@ pub(super) struct Gathered {
 }
 
 impl Gathered {
-    /// The set of elements of that name.
     pub(super) fn set(&mut self, name: &str) -> &mut Vec<u64> {
         let at = self.sets.iter().position(|(known, _)| known == name).unwrap_or_else(|| {
             self.sets.push((name.to_owned(), Vec::new()));
@@ -41,7 +40,6 @@ impl Gathered {
         &mut self.sets[at].1
     }
 
-    /// The set of nodes of that name.
     pub(super) fn node_set(&mut self, name: &str) -> &mut Vec<u64> {
         self.node_sets.entry(name.to_owned()).or_default()
     }
@@ -56,7 +54,6 @@ impl Gathered {
         }
     }
 
-    /// A node in the plane.
     pub(super) fn node(&mut self, number: u64, [x, y, z]: [f64; 3], line: usize) -> Result<(), DeckError> {
         let shown = number % MOST_NUMBER;
         if !(x.is_finite() && y.is_finite() && z.is_finite()) {

@@ -76,7 +76,6 @@ impl Origins {
         }
     }
 
-    /// The same in words.
     pub(super) fn shown(&self, line: usize) -> String {
         match self.locate(line) {
             (Some(file), line) => format!("`{file}`, line {line}"),

@@ -186,7 +186,6 @@ impl Motion<'_> {
         parts.into_iter().filter(move |&(_, property)| has(property))
     }
 
-    /// Property of an element.
     fn property(&self, corners: [u32; 4]) -> usize {
         let at = corners.map(|n| [self.mesh.x[n as usize], self.mesh.y[n as usize]]);
         if corners[2] != corners[3] && regular(&at) { FOUR_POINTS } else { ONE_POINT }
@@ -454,7 +453,6 @@ fn regular(corners: &[[f64; 2]; 4]) -> bool {
     (parallel(0) && equal(1)) || (parallel(1) && equal(0))
 }
 
-/// A group of nodes.
 fn nodes(out: &mut String, number: usize, name: &str, nodes: &[u32]) {
     let _ = writeln!(out, "/GRNOD/NODE/{number}\n{name}");
     lines(out, nodes.iter().map(|n| *n as usize + 1));

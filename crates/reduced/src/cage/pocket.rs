@@ -17,7 +17,6 @@ use crate::{
     tally::Tally,
 };
 
-/// Where the cage is.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PlacedCage {
     pub(crate) at: [f64; 2],
@@ -36,7 +35,6 @@ pub(crate) struct WallForce {
     pub(crate) on_cage: f64,
 }
 
-/// A roller at its pocket.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RollerInPocket {
     pub(crate) velocity: [f64; 2],

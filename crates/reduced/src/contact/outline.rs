@@ -260,7 +260,6 @@ impl<'a> Walk<'a> {
         self.end = if hidden { self.next[0] } else { self.b[0] };
     }
 
-    /// The present facet.
     #[inline(always)]
     pub(crate) fn facet(&self) -> Facet {
         let base = self.a[1] - self.slope * self.a[0];

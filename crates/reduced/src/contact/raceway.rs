@@ -5,7 +5,6 @@ use stribeck_simd::lanes::Number;
 
 use super::{outline::Outline, penetration::Sides, round::Relief, traction::Traction};
 
-/// One raceway.
 #[derive(Debug, Clone)]
 pub(crate) struct Raceway {
     pub(crate) outline: Outline,

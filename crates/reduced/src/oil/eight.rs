@@ -142,7 +142,6 @@ impl EightFilms {
         self.lie_on(&race.curved, &race.curved.lands[land], lane, film.places[0]);
     }
 
-    /// State of one film.
     pub(crate) fn film(&self, lane: usize) -> Film {
         let layer = (self.present >> lane) & 1 == 1;
         let place = Place { facet: self.facet[lane], along: self.along[lane] };

@@ -57,9 +57,6 @@ pub(crate) struct Nearest {
 
 impl Curved {
     /// The curve through an outline around its solid, or with `hollow` within it.
-    ///
-    /// # Errors
-    /// When facets meet at such angles that no film lies across a vertex.
     pub(crate) fn new(name: &str, outline: &Outline, hollow: bool) -> Result<Self, Error> {
         let mut slots: Vec<u32> = (0..outline.len() as u32).collect();
         if hollow {
@@ -77,9 +74,6 @@ impl Curved {
     }
 
     /// The rim of a roller: one land all around.
-    ///
-    /// # Errors
-    /// When there are corners in it.
     pub(crate) fn rim(outline: &Outline) -> Result<Self, Error> {
         let name = "rim of a roller";
         let reason = "has corners: oil needs rollers whose facets meet at less than 20°; take more \
@@ -89,7 +83,6 @@ impl Curved {
         if curved.lands.len() == 1 { Ok(curved) } else { Err(corners().into()) }
     }
 
-    /// Whether it has such a place.
     pub(crate) fn holds(&self, place: Place) -> bool {
         (place.facet as usize) < self.surface.facets() && (0.0..=1.0).contains(&place.along)
     }
@@ -104,12 +97,10 @@ impl Curved {
 }
 
 impl Curved {
-    /// The curve of a facet of a land.
     pub(super) fn curve(&self, land: &Land, facet: u32) -> FacetCurve {
         land.curve(&self.surface, &self.x, &self.y, facet)
     }
 
-    /// The facet of a land before or after another one.
     pub(super) fn beside(&self, land: &Land, facet: u32, forward: bool) -> Option<u32> {
         land.beside(&self.surface, facet, forward)
     }

@@ -21,7 +21,6 @@ pub struct Scratch {
     pub(crate) blocks: Vec<Block>,
     /// Overlaps of eight contacts, each by parts.
     pub(crate) parts: [Penetration<Row>; LANES],
-    /// The modes during a step.
     pub(crate) modes: Modes,
     /// Steps in the sums of the blocks.
     pub(crate) summed: usize,
@@ -34,7 +33,6 @@ pub struct Scratch {
     pub(crate) energy: Stored,
     /// Deepest penetration since the start of the sample [m].
     pub(crate) deepest: f64,
-    /// The frame of the shaft, where that is moved.
     pub(crate) frame: Option<Frame>,
 }
 

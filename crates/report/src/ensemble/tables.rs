@@ -265,7 +265,6 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
     }
 }
 
-/// Number of the roller of an event.
 pub(super) fn roller(event: &Merged) -> String {
     match event.get("roller") {
         Some(Merged::Same(number)) => number.to_string(),
@@ -392,7 +391,6 @@ pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
     }
 }
 
-/// Where the numbers come from.
 pub(super) fn provenance(findings: &EnsembleFindings) -> Markup {
     let ensemble = &findings.ensemble;
     let rows = [

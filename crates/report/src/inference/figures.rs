@@ -323,7 +323,6 @@ pub(super) fn pulls(answer: &Answer) -> Picture {
     picture
 }
 
-/// Rank histograms of a calibration.
 pub(super) fn ranks(fields: &[FieldCalibrated]) -> Picture {
     let rows = fields.len().div_ceil(IN_A_ROW);
     let (wide, tall) = (260.0, 120.0);

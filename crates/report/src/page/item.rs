@@ -8,7 +8,6 @@ use crate::plot::{Figure, Picture, Tab};
 /// Width of half a page [px].
 pub(crate) const HALF_PAGE_PX: u32 = 540;
 
-/// A chart or a picture.
 #[derive(Debug)]
 pub(crate) enum Item {
     Chart(Box<Figure>),
@@ -69,7 +68,6 @@ impl Item {
         }
     }
 
-    /// The moving form, when there is one.
     pub(crate) fn animation(&self) -> Option<&[u8]> {
         match self {
             Self::Chart(_) => None,
@@ -78,12 +76,10 @@ impl Item {
     }
 }
 
-/// Charts as items of a page.
 pub(crate) fn charts(figures: impl IntoIterator<Item = Figure>) -> impl Iterator<Item = Item> {
     figures.into_iter().map(|figure| Item::Chart(Box::new(figure)))
 }
 
-/// Pictures as items of a page.
 pub(crate) fn drawn(pictures: impl IntoIterator<Item = Picture>) -> impl Iterator<Item = Item> {
     pictures.into_iter().map(Item::Picture)
 }

@@ -63,9 +63,6 @@ struct SentLevel {
 
 impl Figure {
     /// The figure for the page: chart, static picture for print, caption, note and data.
-    ///
-    /// # Errors
-    /// [`Error::Drawing`] when the static picture cannot be drawn.
     pub fn to_html(&self) -> Result<Markup, Error> {
         let still = self.to_svg()?;
         let data = self.data()?;

@@ -156,9 +156,6 @@ impl Picture {
     }
 
     /// The picture for the page: drawing, caption and note.
-    ///
-    /// # Errors
-    /// [`Error::Drawing`] when a dense drawing cannot be turned into pixels.
     pub fn to_html(&self) -> Result<Markup, Error> {
         let svg = self.sheet.to_svg();
         let still = if self.dense {

@@ -10,9 +10,6 @@ use crate::Error;
 const SCALE: f32 = 1.5;
 
 /// The drawing as PNG, 1.5 pixels a unit. `name` is for the message.
-///
-/// # Errors
-/// [`Error::Drawing`] when the SVG cannot be understood.
 pub fn png(name: &str, svg: &str) -> Result<Vec<u8>, Error> {
     scaled(name, svg, SCALE)
 }

@@ -33,9 +33,6 @@ type Chart<'a, 'b> = ChartContext<'b, SVGBackend<'a>, Cartesian2d<RangedCoordf64
 
 impl Figure {
     /// The figure as a self-contained SVG document, at most about 1800 points a series (extremes kept).
-    ///
-    /// # Errors
-    /// [`Error::Drawing`] when the drawing library refuses the ranges.
     pub fn to_svg(&self) -> Result<String, Error> {
         let mut text = String::new();
         let height = self

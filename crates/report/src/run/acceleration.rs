@@ -19,7 +19,6 @@ const TABS: &str = "acceleration";
 /// Most exits that are named in full.
 const NAMED: usize = 6;
 
-/// The section.
 pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
     let findings = of.findings;
     let figures = raw(findings).into_iter().chain(others(of.record, findings)?).chain(notched(findings));

@@ -161,7 +161,6 @@ fn mesh_in_short(summary: &Summary) -> String {
     )
 }
 
-/// Number and noun.
 fn count(number: usize, noun: &str) -> String {
     format!("{number} {noun}{}", if number == 1 { "" } else { "s" })
 }

@@ -9,7 +9,6 @@ use crate::plot::{Axis, Colour, Figure, Series};
 /// Rows of the ledger that are drawn, at most: of a longer one every second, or third …
 const LEDGER_ROWS: usize = 1 << 21;
 
-/// The section.
 pub(super) fn section(run: &Run) -> Result<Section, Error> {
     Ok(Section::new("energy", "Energy")
         .folded("Is it conserved, and what takes it?")

@@ -8,7 +8,6 @@ use stribeck_diagnosis::words::numbers::significant;
 use super::spectrum::families::no_lines;
 use crate::page::{Section, cell, grouped, pairs, said_once, spoken};
 
-/// The section.
 pub(super) fn section(summary: &Summary) -> Section {
     Section::new("artefacts", "All lines of the leading sensor")
         .linked("All lines")

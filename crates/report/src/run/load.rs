@@ -15,7 +15,6 @@ use crate::Error;
 use crate::page::{Section, cell, charts, drawn, minus, pairs, table};
 use crate::plot::{Axis, Band, Colour, Figure, Level, Series};
 
-/// The section.
 pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
     let (scene, findings) = (&of.run.scene, of.findings);
     let charts = charts(distribution(scene, findings).into_iter().chain(sums(of)).chain(slip::figures(of)?));

@@ -61,7 +61,6 @@ struct Sent<'a> {
     /// Least and largest acceleration in each frame: u16 from `-peak_g` to `peak_g`.
     trace: Option<SentTrace<'a>>,
     spalls: Vec<SentSpall>,
-    /// Rollers with a defect of their own.
     faulty: Vec<usize>,
     /// Time [s] and words, ascending.
     events: Vec<(f64, String)>,
@@ -122,7 +121,6 @@ impl Stretch {
         self.samples.len() / self.per_frame
     }
 
-    /// Mean of each frame.
     fn means(&self, values: &[f64]) -> Vec<f64> {
         values.chunks_exact(self.per_frame).map(|c| c.iter().sum::<f64>() / c.len() as f64).collect()
     }
@@ -143,9 +141,6 @@ fn angles(frames: usize) -> usize {
 }
 
 /// The section; `None` where fewer than two frames or no roller are on record.
-///
-/// # Errors
-/// [`Error::Run`] when the trace cannot be read.
 pub(super) fn section(of: &Subject<'_>) -> Result<Option<Section>, Error> {
     let (record, findings) = (of.record, of.findings);
     let (scene, interval_s) = (&of.run.scene, record.interval_s());

@@ -14,7 +14,6 @@ use stribeck_scene::scene::{ContactFormula, Scene};
 
 use crate::page::{self, Section, cell, charts, grouped, wide_table};
 
-/// The section of a run.
 pub(super) fn section(case: &PaperCase<'_>, summary: &Summary) -> Section {
     case.section(html! { (numbers::table(summary)) (numbers::readings(summary)) })
 }

@@ -35,7 +35,6 @@ const TABS: &str = "spectra";
 /// Multiples of the defect's frequency that are marked.
 const FAMILY: usize = 10;
 
-/// The section.
 pub(super) fn section(of: &Subject<'_>) -> Result<Section, Error> {
     let (findings, summary) = (of.findings, &of.findings.summary);
     let charts = charts(raw(findings).into_iter().chain(notched(findings)).chain(others(findings)));

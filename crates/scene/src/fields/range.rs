@@ -3,7 +3,6 @@
 use crate::scene::Scene;
 use crate::scene_file::wording::number;
 
-/// Limits of the numbers of a field.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Limits {
     /// It has no numbers, or its items have theirs.
@@ -50,7 +49,6 @@ impl Range {
         self.most.map_or(self.high, |most| most(scene))
     }
 
-    /// Whether a number lies in it, in this scene.
     pub(crate) fn contains(self, x: f64, scene: &Scene) -> bool {
         let high = self.high(scene);
         let above = if self.low_included { x >= self.low } else { x > self.low };

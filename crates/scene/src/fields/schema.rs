@@ -84,7 +84,6 @@ fn within(kind: &str, spot: Spot) -> Json {
     schema
 }
 
-/// A value in JSON.
 fn json(node: &Node, shape: Shape) -> Json {
     match (&node.content, shape.there()) {
         (Content::Atom(_), Shape::Number) => f64::read(node).map_or(Json::Null, |number| json!(number)),

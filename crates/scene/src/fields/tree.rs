@@ -57,7 +57,6 @@ pub enum Source {
     Argument(usize),
 }
 
-/// A step of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Step<'a> {
     /// `.name`

@@ -51,7 +51,6 @@ pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
     each.flat_map(|(i, deviation)| Checked::new(scene, i, deviation).findings()).collect()
 }
 
-/// One deviation with the surface that it is on.
 struct Checked<'a> {
     scene: &'a Scene,
     index: usize,

@@ -26,7 +26,6 @@ pub(super) const ROLLER_LENGTH: f64 = 0.6;
 /// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.
 const STRIBECK: f64 = 4.37;
 
-/// The text between quotes.
 pub(crate) fn designation(value: &str) -> Option<String> {
     let inner = value.trim().strip_prefix('"')?.strip_suffix('"')?;
     (!inner.contains('"')).then(|| inner.to_owned())
@@ -41,9 +40,6 @@ const FRICTION: f64 = 0.05;
 
 /// Sets the bearing of the scene, and its surroundings as far as the user did not write them; `given` has the
 /// paths of written fields.
-///
-/// # Errors
-/// In words: unknown dimensions of the bearing, or why a plane model has no such bearing.
 pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(), String> {
     let fields = "give it by its fields, `bearing: (rollers: 13, roller_diameter_mm: 7.5, …)`";
     let known = catalogue::parse_or_advise(name, fields)?;
@@ -75,9 +71,6 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
 
 /// Makes the cylinders of a bearing as long as it takes to give way as its balls do: by the load, which was chosen
 /// for cylinders as long as the balls' ring allows, if the user gave none.
-///
-/// # Errors
-/// In words: no cylinder gives way as they would.
 pub(super) fn put_balls(scene: &mut Scene, name: &str) -> Result<(), String> {
     let thickness_mm = tidy(thickness_of_balls(scene));
     if thickness_mm >= THINNEST_MM {

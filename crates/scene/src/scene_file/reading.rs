@@ -72,7 +72,6 @@ impl Found<'_> {
         }
     }
 
-    /// The group at a path in words.
     fn home(&self, path: &str) -> String {
         if path.is_empty() { self.sources.kind.noun.to_owned() } else { format!("`{path}`") }
     }

@@ -25,7 +25,6 @@ pub struct Kind {
     pub for_fields_of_scenes: Option<&'static str>,
 }
 
-/// The file of a scene.
 pub(crate) const SCENE: Kind = Kind {
     noun: "a scene",
     example: "`()` is the complete default scene; is the file cut off?",
@@ -52,9 +51,6 @@ impl Sources {
     }
 
     /// What a file of this kind says, its fields alone.
-    ///
-    /// # Errors
-    /// When the text is no tree of fields and values.
     pub(crate) fn of_text(text: &str, file: &str, kind: &'static Kind) -> Result<Self, SceneError> {
         let (file, text, tree) = (file.to_owned(), text.to_owned(), Node::group([]));
         let mut sources = Self { kind, file, text, arguments: Vec::new(), tree, is_named: false };
@@ -107,7 +103,6 @@ impl Sources {
         }
     }
 
-    /// A value as it is written.
     pub(crate) fn text_of<'a>(&'a self, node: &'a Node) -> &'a str {
         match (node.source, &node.content) {
             (Source::File, _) => &self.text[node.span.clone()],
@@ -129,10 +124,6 @@ impl Sources {
     }
 
     /// Applies arguments in order.
-    ///
-    /// # Errors
-    /// All that cannot be applied; the others are, as far as they go, so each meets the scene that it is
-    /// written for.
     pub(crate) fn set_all<S: AsRef<str>>(&mut self, arguments: &[S]) -> Result<(), SceneError> {
         let given = written_by(arguments);
         let mut problems = Vec::new();
@@ -385,7 +376,6 @@ fn incomplete(path: &str, value: &str, spot: Spot, place: Place) -> Problem {
     problem
 }
 
-/// The error on a path that no scene has.
 pub(crate) fn unknown(path: &str, mark: Place) -> Problem {
     // The longest prefix that exists is the section; the rest is the unknown name.
     let sections = path.match_indices('.').rev().map(|(at, _)| &path[..at]);
@@ -424,7 +414,6 @@ fn with_section(text: String, section: &str, names: &[&str]) -> String {
     names.iter().fold(text, full)
 }
 
-/// The value at a path that is there.
 fn find<'a>(tree: &'a mut Node, path: &str) -> Option<&'a mut Node> {
     fn one<'a>(node: &'a mut Node, step: Step<'_>) -> Option<&'a mut Node> {
         match (&mut node.content, step) {

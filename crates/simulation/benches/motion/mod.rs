@@ -10,7 +10,6 @@ pub(crate) const CLOSING: usize = 4000;
 /// A part of the critical step of elements and contact that leaves room for changes.
 const FACTOR: f64 = 0.9;
 
-/// The scene in motion.
 pub(crate) fn bearing(scene: &Scene, threads: usize) -> (BearingSystem, usize) {
     let scene = &scene.resolve();
     let assembly = Assembly::new(scene).expect("a scene that can be meshed");

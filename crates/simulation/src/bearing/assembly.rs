@@ -51,9 +51,6 @@ struct PlacedHousing {
 
 impl Assembly {
     /// Meshes every body of the scene.
-    ///
-    /// # Errors
-    /// When a dimension or a count cannot be meshed.
     pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
         Self::of(scene, &MeshedParts::new(scene)?)
     }

@@ -36,9 +36,6 @@ pub(crate) struct Housing {
 
 /// The housing of a scene; none where the outer ring does not deform, because it moves as one with it. `back`
 /// is the outer ring's outer surface in `mesh`.
-///
-/// # Errors
-/// When it cannot be meshed, or its file says something else.
 pub(crate) fn housing(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Result<Option<Housing>, Error> {
     let back = &polygon(scene, mesh, back);
     let made = match &scene.written.housing {

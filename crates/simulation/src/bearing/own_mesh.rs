@@ -197,9 +197,6 @@ pub fn notes(scene: &Scene) -> Vec<String> {
 }
 
 /// A housing, with its surfaces `bore` and `loaded`.
-///
-/// # Errors
-/// When the file says something else, or does not fit the outer ring.
 pub(crate) fn housing(housing: &MeshHousingScene, scene: &ResolvedScene) -> Result<Part, Error> {
     let mut own = OwnMesh::read("housing", &housing.file, &housing.text, housing.unit_mm)?;
     let bore = own.closed("bore", &housing.bore, "bore")?;
@@ -214,9 +211,6 @@ pub(crate) fn housing(housing: &MeshHousingScene, scene: &ResolvedScene) -> Resu
 }
 
 /// A ring, with its surfaces `inner` and `outer`, of which one is its raceway.
-///
-/// # Errors
-/// When the file says something else, or is no such ring of the bearing.
 pub(crate) fn ring(ring: &RingMeshScene, of: DefectRing, scene: &ResolvedScene) -> Result<Part, Error> {
     // Outwards, seen from the rollers: where the ring's material is.
     let (group, outwards, race, thickness) = match of {

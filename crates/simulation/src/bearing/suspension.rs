@@ -13,9 +13,6 @@ use crate::error::Error;
 
 /// Ties every node of the ring's back to the frame, of which `held` is a node: each by its share of the
 /// circumference.
-///
-/// # Errors
-/// When a node is not in the mesh of the plan.
 pub(crate) fn suspend(
     plan: &mut Plan,
     springs: &SpringHousingScene,

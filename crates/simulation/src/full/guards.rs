@@ -26,7 +26,6 @@ const SMALL_STEP: f64 = 0.25;
 /// Samples between two looks at the elements: a look costs as much as two steps.
 const LOOK_EVERY: u64 = 10;
 
-/// The limits of one run.
 #[derive(Debug, Clone)]
 pub(super) struct Guards {
     shared: guards::Guards,

@@ -102,7 +102,6 @@ fn apart(scene: &ResolvedScene) -> Option<String> {
     }
 }
 
-/// The limits of one run.
 #[derive(Debug, Clone)]
 pub(super) struct Guards {
     shared: guards::Guards,
@@ -195,7 +194,6 @@ impl Guards {
         None
     }
 
-    /// Advice for a run that diverges.
     fn advice(&self) -> String {
         let astray = self.placed.cage.map_or(0.0, |cage| libm::hypot(cage.offset[0], cage.offset[1]));
         if astray > ASTRAY * self.roller_radius {

@@ -22,13 +22,10 @@ pub(crate) struct Nodes {
     pub(crate) rim: Vec<u32>,
     /// Outer ring and housing.
     pub(crate) structure: Vec<u32>,
-    /// Outer ring.
     pub(crate) outer_ring: Vec<u32>,
-    /// Inner ring.
     pub(crate) inner_ring: Vec<u32>,
     /// Roller 1.
     pub(crate) roller: Vec<u32>,
-    /// Nodes of sensors, in their order.
     pub(crate) sensors: Vec<u32>,
     /// Outer surface of the outer ring.
     pub(crate) back: Vec<u32>,
@@ -69,7 +66,6 @@ pub(crate) struct Extraction {
 pub(crate) struct Preload {
     /// All forces, those of elements and contact included.
     pub(crate) all: NodeForces,
-    /// The load, and load with weight.
     pub(crate) load: NodeForces,
     pub(crate) outside: NodeForces,
     /// Springs of contact within the structure, one for each contact point that carries or may come to.
@@ -135,7 +131,6 @@ impl Extraction {
         self.slot_of[node as usize]
     }
 
-    /// Slots of some nodes.
     pub(crate) fn slots(&self, nodes: &[u32]) -> Vec<u32> {
         nodes.iter().map(|&n| self.slot(n)).collect()
     }

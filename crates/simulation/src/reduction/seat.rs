@@ -24,16 +24,13 @@ pub(crate) struct Parts<'a> {
     /// [m].
     pub(crate) springs: &'a [Spring],
     pub(crate) gaps: &'a [f64],
-    /// Whether there is friction.
     pub(crate) friction: bool,
     /// Places by slot [m].
     pub(crate) x: &'a [f64],
     pub(crate) y: &'a [f64],
     /// Slots of the ring's back, with the force of the seat on each at the preload [N].
     pub(crate) back: &'a [(u32, [f64; 2])],
-    /// Nodes of the raceway.
     pub(crate) raceway: &'a [RacewayNode],
-    /// Slots of the sensors.
     pub(crate) sensors: &'a [u32],
     /// Whether a slot is one of the ring.
     pub(crate) of_ring: &'a dyn Fn(u32) -> bool,
@@ -83,9 +80,6 @@ struct Tangential {
 
 /// Divides the seat into panels, and turns the modes of a structure whose seat slides into those of one whose
 /// seat holds. `None` where there is no seat.
-///
-/// # Errors
-/// When the modes of the held seat are not found.
 pub(crate) fn of(structure: &mut Structure, parts: &Parts<'_>) -> Result<Option<Seat>, Error> {
     let Some(panels) = Panels::of(parts) else { return Ok(None) };
     let responses = Responses::of(structure, parts, &panels);

@@ -88,7 +88,6 @@ pub fn names(scene: &ResolvedScene) -> Vec<String> {
 /// The channels of a scene.
 #[derive(Debug, Clone)]
 pub struct Channels {
-    /// Names of the sensors.
     sensors: Vec<String>,
     /// Numbers of the rolling elements, from 1.
     rollers: Vec<usize>,

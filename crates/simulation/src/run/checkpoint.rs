@@ -28,7 +28,6 @@ const VERSION: u32 = 21;
 /// Length of a scene's hash.
 const HASH: usize = 16;
 
-/// Bytes before the content.
 const HEADER: usize = MAGIC.len() + 4 + HASH + 8 + 4;
 
 /// A longer content is refused: a thousand times the paper's bearing.

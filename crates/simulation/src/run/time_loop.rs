@@ -46,9 +46,6 @@ pub trait Motion: Send {
     fn look(&mut self, info: &mut RunInfo) -> Option<String>;
 
     /// Writes the picture of a sample, if one is due.
-    ///
-    /// # Errors
-    /// When it cannot be written.
     fn picture(&mut self, _sample: usize) -> Result<(), Error> {
         Ok(())
     }
@@ -95,7 +92,6 @@ pub struct Run<M> {
     identity: String,
     motion: M,
     channels: Channels,
-    /// The row of the last sample.
     row: Vec<f64>,
     trace: TraceWriter,
     energy: TraceWriter,
@@ -270,7 +266,6 @@ impl<M: Motion> Run<M> {
         Checkpoint { info: self.info.clone(), motion: self.motion.saved() }
     }
 
-    /// Writes one sample.
     fn write(&mut self, l: &Ledger) -> Result<(), Error> {
         [self.info.energy.peak_strain_j, self.info.energy.max_relative_error] = self.motion.balance();
         self.info.energy.heat_j = l.friction + l.damping + l.contact_damping + l.film;

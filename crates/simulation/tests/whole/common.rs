@@ -106,7 +106,6 @@ pub(crate) fn run_watched(
     simulate(scene, &dir, &host(threads), watch).expect("the scene is sound")
 }
 
-/// A sampled channel of a run.
 pub(crate) fn column(run: &Run, name: &str) -> Vec<f64> {
     run.trace.channel(name).expect("readable").unwrap_or_else(|| panic!("the trace has no `{name}`"))
 }

@@ -40,7 +40,6 @@ pub struct Layout {
     pub node_of_slot: Vec<Option<u32>>,
     /// Runs of ghosts and the first slot of the run that they copy, ascending.
     pub(crate) ghosts: Vec<(Range<usize>, usize)>,
-    /// The tiles, in slot order.
     pub(crate) tiles: Vec<TileLayout>,
 }
 

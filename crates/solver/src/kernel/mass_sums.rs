@@ -19,7 +19,6 @@ pub(crate) struct MassSums {
     angular: f64,
 }
 
-/// Sums of each lane of a tile.
 pub(crate) type LaneSums = [MassSums; LANES];
 
 impl MassSums {

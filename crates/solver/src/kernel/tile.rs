@@ -65,7 +65,6 @@ pub(crate) struct TileDamping {
     pub(crate) sums: LaneSums,
 }
 
-/// Structural damping of one tile.
 #[derive(Debug, Clone)]
 pub(crate) struct TileStructural {
     /// Mass of each slot [kg].

@@ -58,7 +58,6 @@ impl VaryingReferences {
         groups.flat_map(|group| &mut group[3 * LANES..4 * LANES]).for_each(|scale| *scale *= factor);
     }
 
-    /// Bytes of all references.
     pub(crate) fn bytes(&self) -> usize {
         size_of::<f64>() * self.0.len()
     }

@@ -60,7 +60,6 @@ impl Factor {
         self.symbolic.len_val()
     }
 
-    /// Factorises a matrix of the pattern.
     pub(super) fn compute(&mut self, matrix: &Matrix) -> Result<(), Error> {
         let missing = self.entries().saturating_sub(self.values.len());
         self.values.try_reserve_exact(missing).map_err(failed)?;

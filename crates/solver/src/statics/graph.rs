@@ -38,12 +38,10 @@ impl Graph {
         Self { start, neighbours }
     }
 
-    /// Nodes.
     pub(super) fn len(&self) -> usize {
         self.start.len() - 1
     }
 
-    /// Neighbours of a node.
     pub(super) fn of(&self, node: u32) -> &[u32] {
         &self.neighbours[self.start[node as usize]..self.start[node as usize + 1]]
     }

@@ -70,7 +70,6 @@ impl Matrix {
         }
     }
 
-    /// The pattern.
     pub(super) fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
         let n = self.columns.len() - 1;
         SymbolicSparseColMatRef::new_checked(n, n, &self.columns, None, &self.rows)

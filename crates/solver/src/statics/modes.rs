@@ -164,12 +164,10 @@ impl Basis {
         MatRef::from_column_major_slice(&self.vectors[..n * count], n, count)
     }
 
-    /// The last block.
     fn last_block(&self) -> &[f64] {
         &self.vectors[self.vectors.len() - self.mass.len() * self.last[0]..]
     }
 
-    /// A vector of random numbers.
     fn at_random(&mut self) -> Vec<f64> {
         let Self { mass, seed, .. } = self;
         let mut next = || {

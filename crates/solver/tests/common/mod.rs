@@ -47,7 +47,6 @@ pub(crate) fn split(mut part: Part) -> Part {
     part
 }
 
-/// A model of one body of steel.
 pub(crate) fn body(part: &Part) -> Model {
     let mut mesh = Mesh::new();
     mesh.add("body", part);
@@ -67,12 +66,10 @@ pub(crate) fn ready(model: &Model, factor: f64) -> Dynamics {
     d
 }
 
-/// Slots of mesh nodes.
 pub(crate) fn slots(d: &Dynamics, nodes: impl IntoIterator<Item = usize>) -> Vec<u32> {
     nodes.into_iter().map(|n| d.layout().slot_of_node[n]).collect()
 }
 
-/// Slot of one mesh node.
 pub(crate) fn slot(d: &Dynamics, node: usize) -> usize {
     d.layout().slot_of_node[node] as usize
 }

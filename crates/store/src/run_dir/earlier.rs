@@ -49,7 +49,6 @@ impl Earlier {
         matches!(info.status, Status::Complete | Status::Diverged)
     }
 
-    /// Its description in words.
     pub(super) fn name(&self) -> String {
         let info = match self {
             Self::Ensemble { wanted: Some(wanted), ended } => {

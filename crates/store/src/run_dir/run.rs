@@ -38,10 +38,6 @@ impl Run {
     }
 
     /// Refuses a run whose `scene.ron` differs from the simulated scene.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::OtherScene`].
     pub fn check_scene(&self, path: &Path) -> Result<(), Error> {
         let (found, expected) = (self.scene.written.hash(), &self.info.scene_hash);
         if found == *expected {

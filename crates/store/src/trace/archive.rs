@@ -23,7 +23,6 @@ const AT_ONCE: usize = 1 << 28;
 /// Longest header of one array.
 const MAX_HEADER: usize = 4096;
 
-/// An archive on disk.
 pub(super) struct Archive {
     pub(super) names: Vec<String>,
     /// Where the values of each channel begin [bytes].

@@ -99,19 +99,11 @@ impl TraceFile {
     }
 
     /// Every channel, over all samples.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read.
     pub fn read_all(&self) -> Result<Trace, Error> {
         self.read(0..self.rows, |_| true)
     }
 
     /// The channel called `name`, over all samples; `None` when it was not sampled.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read.
     pub fn channel(&self, name: &str) -> Result<Option<Vec<f64>>, Error> {
         if !self.names.iter().any(|n| n == name) {
             return Ok(None);
@@ -120,10 +112,6 @@ impl TraceFile {
     }
 
     /// The last value of the channel called `name`; `None` when it was not sampled.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read.
     pub fn last(&self, name: &str) -> Result<Option<f64>, Error> {
         let last = self.read(self.rows.saturating_sub(1)..self.rows, |n| n == name)?;
         Ok(last.get(name).and_then(|column| column.first().copied()))
@@ -131,10 +119,6 @@ impl TraceFile {
 
     /// The channels that are `wanted`, in file order, over the samples `rows` as far as they are there. One
     /// pass over these rows, however many channels.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read.
     pub fn read(&self, rows: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Trace, Error> {
         let mut part = Part::of(self, rows.len().min(self.rows), wanted);
         if let Layout::Columns(starts) = &self.layout {
@@ -161,10 +145,6 @@ impl TraceFile {
     }
 
     /// As [`TraceFile::read`], up to the last sample before any channel, wanted or not, stops being a number.
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read.
     pub fn read_finite(&self, rows: Range<usize>, wanted: impl Fn(&str) -> bool) -> Result<Trace, Error> {
         let mut part = Part::of(self, rows.len().min(self.rows), wanted);
         let finite = |value: &[u8; 8]| f64::from_le_bytes(*value).is_finite();
@@ -180,10 +160,6 @@ impl TraceFile {
 
     /// Every channel, decimated to at most this many samples: all of them, or every second one, or every
     /// third …
-    ///
-    /// # Errors
-    ///
-    /// [`Error::Io`] when the file cannot be read.
     pub fn read_thinned(&self, most: usize) -> Result<Trace, Error> {
         let every = self.rows.div_ceil(most.max(1)).max(1);
         if every == 1 {

@@ -190,10 +190,6 @@ impl TraceWriter {
     }
 
     /// Flushes, and waits until the disk has it: a power cut then loses no row that was pushed before.
-    ///
-    /// # Errors
-    ///
-    /// As [`TraceWriter::flush`].
     pub fn sync(&mut self) -> Result<(), Error> {
         self.flush()?;
         let synced = self.file.sync_data();
@@ -201,10 +197,6 @@ impl TraceWriter {
     }
 
     /// Flushes and closes the file, in the form in which `numpy.load` opens it.
-    ///
-    /// # Errors
-    ///
-    /// As [`TraceWriter::flush`].
     pub fn finish(mut self) -> Result<(), Error> {
         self.flush()?;
         if header::opens_in_numpy(&self.names) {

@@ -9,9 +9,6 @@ const DRIFT: f64 = 0.02;
 const SAME: f64 = 5e-4;
 
 /// How much later a tachometer begins than the signal [s], both with their rates [Hz].
-///
-/// # Errors
-/// Where they have no time in common.
 pub(super) fn later_s(
     signal: &Channel,
     tacho: &Channel,

@@ -193,7 +193,6 @@ pub(super) struct Turning {
     pub(super) pulses: Vec<f64>,
 }
 
-/// Reads and analyses one record.
 pub(crate) fn examine(asked: &Path, options: &Reading, place: &Place) -> Result<Analysis> {
     let Read { signal, rate_hz, machine, mut notes, of_run, turning, quality } = read(asked, options, place)?;
     let mut analysis = Analysis::of_inspected(&signal, rate_hz, &machine, quality)?;
@@ -220,7 +219,6 @@ pub(crate) struct Accelerations {
     pub(crate) machine: Machine,
 }
 
-/// Reads the accelerations of a record.
 pub(crate) fn accelerations(asked: &Path, options: &Reading, place: &Place) -> Result<Accelerations> {
     let Read { signal, rate_hz, machine, turning, .. } = read(asked, options, place)?;
     ensure!(turning.is_none(), "the speed of `{}` varies: take a record at a steady speed", asked.display());
@@ -234,7 +232,6 @@ pub(crate) fn accelerations(asked: &Path, options: &Reading, place: &Place) -> R
     Ok(Accelerations { samples: signal.scaled(unit.in_m_s2()).read()?, rate_hz, machine })
 }
 
-/// Reads one record.
 pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {
     let (mut file, scene) = located(asked, place)?;
     // What its machine's sensor records is a signal as a measured one.

@@ -38,9 +38,6 @@ pub(super) struct Simulation {
 
 impl Simulation {
     /// The analysis again with the simulated free path; unchanged if no spall length depends on it.
-    ///
-    /// # Errors
-    /// When the scene is another bearing, or not of the reduced model, or cannot be read or run; at Ctrl-C.
     pub(super) fn again(
         &self,
         analysis: Analysis,

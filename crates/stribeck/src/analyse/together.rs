@@ -20,7 +20,6 @@ const JOINT: &str = "joint.json";
 /// Relative difference within which two channels agree on the speed.
 const SAME_SPEED: f64 = 0.01;
 
-/// A channel of a file.
 struct Source {
     file: PathBuf,
     /// `None` for the one that the file's reading picks.

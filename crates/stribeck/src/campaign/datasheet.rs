@@ -102,7 +102,6 @@ const OWN_COLUMNS: [(&str, &str); 29] = [
     ("floor_by", "What stopped the roller at the floor of the spall: `film` or `metal`"),
 ];
 
-/// What a column holds, in a sentence.
 fn meaning(column: &str, quantities: &[Quantity]) -> String {
     let of_event = format!("events.{column}");
     let path = column.strip_prefix("summary.").unwrap_or(&of_event);
@@ -118,7 +117,6 @@ fn meaning(column: &str, quantities: &[Quantity]) -> String {
     what.to_owned()
 }
 
-/// Content of the campaign, by name.
 fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'static str, String)> {
     let of_scenes = |of: &dyn Fn(&Scene) -> String| counted(scenes.iter().map(|scene| of(scene)));
     let range = |of: &dyn Fn(&Scene) -> f64, unit: &str| span(scenes.iter().map(|scene| of(scene)), unit);
@@ -163,7 +161,6 @@ fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'stat
     ]
 }
 
-/// Limits of the data, from their content.
 fn limits(scenes: &[&Scene]) -> Vec<String> {
     let mut limits = vec![
         "A plane model of the thickness that each scene gives: nothing tilts, and nothing moves along the \

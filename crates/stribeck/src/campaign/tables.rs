@@ -24,7 +24,6 @@ use super::Folder;
 use crate::many_runs::{Stage, summary_of};
 pub(super) use truth::{Truth, model};
 
-/// Names of the tables.
 pub(super) const RUNS: &str = "runs.parquet";
 pub(super) const EVENTS: &str = "events.parquet";
 pub(super) const SIGNALS: &str = "signals.parquet";
@@ -36,7 +35,6 @@ pub(super) struct Row {
     pub(super) split: &'static str,
     pub(super) status: &'static str,
     pub(super) reason: Option<String>,
-    /// Warnings of its guards, a line each.
     pub(super) warnings: Option<String>,
     variant: usize,
     pub(super) start: usize,
@@ -48,7 +46,6 @@ pub(super) struct Row {
     /// Version and commit of the program that ran it.
     pub(super) program: Option<String>,
     pub(super) folder: Option<PathBuf>,
-    /// Numbers of the summary by their path.
     pub(super) numbers: BTreeMap<String, f64>,
     samples: Option<i64>,
 }
@@ -66,7 +63,6 @@ pub(super) struct Written {
     pub(super) signals: Vec<String>,
 }
 
-/// Reads the results of the runs.
 pub(super) fn rows(folder: &Folder, campaign: &Campaign, stages: &[Stage]) -> Result<Vec<Row>> {
     let quantities = Summary::quantities();
     let row = |(variant, stage): (&Variant, &Stage)| -> Result<Row> {

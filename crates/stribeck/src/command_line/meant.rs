@@ -35,7 +35,6 @@ const COMMANDS: [(&[&str], &str); 17] = [
 /// Commands that take fields of a scene by `--set`.
 const OF_SCENES: &[&str] =
     &["simulate", "plan", "sweep", "campaign", "detect", "validate", "stiffness", "lab", "fmu"];
-/// Commands that read records.
 const OF_RECORDS: &[&str] = &["analyse", "analyze", "compare", "infer", "machine"];
 
 /// Flags of these commands by the words and units of others, ours, and the factor between the units.
@@ -242,7 +241,6 @@ fn extra(name: &str, words: &[String], at: usize) -> Option<Vec<String>> {
     Some(replaced(words, at..at + 1, by))
 }
 
-/// The value that was meant for a flag.
 fn value(flag: &str, wrong: &str, near: Option<String>) -> Option<String> {
     let lower = wrong.trim().to_lowercase();
     if let Some((_, ours)) = VALUES.iter().find(|(words, _)| flag == "--defect" && words.contains(&&*lower)) {

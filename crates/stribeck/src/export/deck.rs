@@ -82,9 +82,6 @@ fn model<'a>(scene: &ResolvedScene, mesh: &'a Mesh) -> Model<'a> {
 }
 
 /// The step of the scene: loads, speeds and contacts, as far as decks can express them.
-///
-/// # Errors
-/// When this program meshes another model than that of the run.
 fn step(scene: &ResolvedScene, mesh: &Mesh) -> Result<Step> {
     let assembly = Assembly::new(scene)?;
     let (own, k) = (&assembly.model.mesh, &assembly.kinematics);

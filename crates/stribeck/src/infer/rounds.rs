@@ -53,7 +53,6 @@ impl Round {
     }
 }
 
-/// The prior of an unknown.
 pub(super) fn prior(unknown: &Unknown) -> Prior {
     match &unknown.values {
         Values::Range { from, to, log: false } => Prior::Uniform { from: *from, to: *to },

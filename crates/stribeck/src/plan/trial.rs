@@ -75,9 +75,7 @@ pub(super) struct Trial {
     pub(super) steps: Cost,
     /// Their number.
     pub(super) steps_planned: f64,
-    /// The account of the beginning.
     pub(super) info: RunInfo,
-    /// Threads.
     pub(super) threads: usize,
 }
 

@@ -131,7 +131,6 @@ fn runs(folder: &Path) -> Vec<PathBuf> {
     runs
 }
 
-/// Names of the files of a run.
 fn files(run: &Path) -> Vec<String> {
     let names = fs::read_dir(run).expect("a run").flatten().map(|entry| entry.file_name());
     let mut names: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();

@@ -13,10 +13,8 @@ use stribeck_store::run_dir::RunDir;
 use stribeck_store::run_info::{RunInfo, Status};
 use stribeck_testing::{Scratch, said, says};
 
-/// The program.
 pub(crate) const STRIBECK: &str = env!("CARGO_BIN_EXE_stribeck");
 
-/// A coarse scene.
 pub(crate) const QUICK: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/scenes/quick.ron");
 
 /// What makes it very coarse, and start from rest.
@@ -105,7 +103,6 @@ impl Deref for Desk {
 }
 
 impl Desk {
-    /// An empty folder.
     pub(crate) fn new(name: &str) -> Self {
         Self::of(name, &[])
     }
@@ -115,7 +112,6 @@ impl Desk {
         Self { folder: Scratch::create(name), begins }
     }
 
-    /// A folder with a scene in it.
     pub(crate) fn with_scene(name: &str) -> Self {
         let desk = Self::new(name);
         fs::copy(QUICK, desk.join("quick.ron")).expect("a scene");

@@ -29,7 +29,6 @@ const SCENE: &str = "(
 /// What validates the scene with two starts.
 const VALIDATE: [&str; 5] = ["validate", "scene.ron", "--starts=2", "--jobs=2", "--threads=1"];
 
-/// A folder with the scene.
 fn desk(name: &str) -> Desk {
     let desk = Desk::new(name);
     fs::write(desk.join("scene.ron"), SCENE).unwrap();

@@ -84,7 +84,6 @@ fn unlike(own: &Held, of: &Held) -> Option<&'static str> {
     }
 }
 
-/// A channel in words.
 fn words(of: &Held) -> String {
     let rate = of.rate_hz.map_or(String::new(), |hz| format!(", {hz:.6} Hz"));
     let len = of.len.map_or(String::new(), |len| format!(" of {len}"));

@@ -62,7 +62,6 @@ impl Peer {
     }
 }
 
-/// A line of their output.
 fn reading(line: &str) -> Result<Reading> {
     let said: Value = serde_json::from_str(line).with_context(|| format!("no answer: {line}"))?;
     if let Some(why) = said["refused"].as_str() {

@@ -331,7 +331,6 @@ const SILENT: f64 = 0.01;
 /// How far the mean moves over the usual root mean square.
 const DRIFTING: f64 = 3.0;
 
-/// A number of stretches in words.
 fn stretches(count: usize) -> String {
     if count == 1 { "1 stretch".to_owned() } else { format!("{count} stretches") }
 }

@@ -11,7 +11,6 @@ const BANDS: usize = 1 << 13;
 /// Levels that are counted one by one.
 const LEVELS: usize = 1 << 12;
 
-/// A rail.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Rail {
     pub(super) value: f64,

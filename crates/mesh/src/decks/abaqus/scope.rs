@@ -19,7 +19,6 @@ pub(super) enum Member {
     Named(String),
     /// The nodes of a set of elements.
     NodesOf(String),
-    /// A member in an instance.
     In(String, Box<Member>),
 }
 
@@ -33,7 +32,6 @@ pub(super) struct Sets {
 }
 
 impl Sets {
-    /// The set of that name, which may be empty.
     pub(super) fn of(&mut self, name: &str) -> &mut Vec<(Member, usize)> {
         let next = self.all.len();
         let at = *self.places.entry(name.to_ascii_uppercase()).or_insert(next);

@@ -86,7 +86,6 @@ impl<'a> Source<'a> {
         Ok(())
     }
 
-    /// The next word of a text.
     fn word(&mut self) -> Result<&'a str, DeckError> {
         let rest = &self.bytes[self.at..];
         let blank = |byte: &u8| byte.is_ascii_whitespace();
@@ -120,7 +119,6 @@ impl<'a> Source<'a> {
         Ok(bytes)
     }
 
-    /// A whole number as a word.
     pub(super) fn number(&mut self) -> Result<i64, DeckError> {
         let word = self.word()?;
         word.parse().map_err(|_| self.fault(format!("`{word}` is no whole number")))
@@ -147,7 +145,6 @@ impl<'a> Source<'a> {
         Err(self.fault(format!("{number} is no count, nor the number of a node or element")))
     }
 
-    /// A number with a fraction.
     pub(super) fn real(&mut self) -> Result<f64, DeckError> {
         if self.binary {
             return Ok(f64::from_le_bytes(self.take()?));

@@ -78,7 +78,6 @@ impl Head {
     }
 }
 
-/// All sets of nodes of a file.
 #[derive(Default)]
 pub(super) struct NodeSets {
     /// Members with their lines, by the number of the set.

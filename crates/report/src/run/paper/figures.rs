@@ -22,9 +22,7 @@ const ZOOM_HZ: (f64, f64) = (4e3, 6e3);
 const FIFTH_HZ: f64 = 23e3;
 const PANELS: [&str; 3] = ["a", "b", "c"];
 
-/// A signal of a sensor.
 type Signal = fn(&SensorSignal) -> &[f64];
-/// A density of a sensor.
 type Density = fn(&SensorSignal) -> Option<&Spectrum>;
 
 /// All figures in the paper's order.

@@ -6,7 +6,6 @@ use stribeck_analysis::summary::Summary;
 
 use crate::page::{cell, minus, wide_table};
 
-/// The verdict and its families.
 pub(super) fn table(summary: &Summary) -> Markup {
     let Some(diagnosis) = &summary.diagnosis else { return html! {} };
     let number = |hz: Option<f64>| cell(hz.map(|hz| format!("{hz:.2}")));

@@ -27,9 +27,6 @@ pub struct MeshedParts {
 
 impl MeshedParts {
     /// Meshes them. They do not depend on the initial position of the rollers.
-    ///
-    /// # Errors
-    /// When a dimension or a count cannot be meshed.
     pub fn new(scene: &ResolvedScene) -> Result<Self, Error> {
         let b = &scene.written.bearing;
         let made = |ring: &Annulus, grading: &Option<Grading>| match grading {

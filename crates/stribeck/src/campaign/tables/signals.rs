@@ -20,7 +20,6 @@ fn recorded(rows: &[Row]) -> impl Iterator<Item = (&Row, PathBuf)> {
     })
 }
 
-/// Names of the signals that any of the runs has.
 pub(super) fn names(rows: &[Row]) -> Result<BTreeSet<String>> {
     let mut names = BTreeSet::new();
     for (_, file) in recorded(rows) {
@@ -47,7 +46,6 @@ pub(super) fn write(
     Ok(())
 }
 
-/// Names of all columns.
 pub(super) fn columns(names: &BTreeSet<String>) -> Vec<String> {
     group(None, names, Trace::default()).map(|column| column.name).collect()
 }
