@@ -18,8 +18,8 @@ quantities! {
         /// Mean over the record of the force between rollers and outer ring along the load [N], positive when
         /// it supports the load.
         pub mean_n: Option<f64> => "mean force of load and weight on the outer ring" at 5,
-        /// Expected value: the load, its mean over the record where it changes, plus the weight of housing
-        /// and outer ring along it [N].
+        /// Expected value: the load, its mean over the record where it changes, plus the weight that
+        /// rests on the rollers along it [N].
         pub expected_n: f64,
         /// `mean_n / expected_n − 1`.
         pub relative_error: Option<f64> => "mean load off the applied one",

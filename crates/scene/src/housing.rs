@@ -98,6 +98,11 @@ impl HousingScene {
         }
     }
 
+    /// Mass whose weight a foundation carries, not the bearing [kg]: that of a machine.
+    pub fn on_foundation_kg(&self, bearing: &BearingScene) -> f64 {
+        self.machine().map_or(0.0, |machine| machine.mass(bearing).mass_kg)
+    }
+
     /// The machine, where there is one.
     pub fn machine(&self) -> Option<&MachineScene> {
         match self {

@@ -98,6 +98,8 @@ pub struct ResolvedScene {
     pub load: f64,
     /// Gravity, downwards [m/s²].
     pub gravity: f64,
+    /// Mass of the housing whose weight a foundation carries [kg].
+    pub on_foundation: f64,
     /// Simulated time [s].
     pub duration: f64,
     /// Sampling interval [s].
@@ -211,7 +213,6 @@ impl ResolvedScene {
             };
             Some((i, relief))
         };
-        let clearance_mm = b.outer_race_diameter_mm - b.inner_race_diameter_mm - 2.0 * b.roller_diameter_mm;
         let mut resolved = Self {
             written: scene.clone(),
             duty: scene.duty(),
@@ -223,7 +224,7 @@ impl ResolvedScene {
             rollers: b.rollers,
             roller_radius: 0.5e-3 * b.roller_diameter_mm,
             thickness: 1e-3 * b.thickness_mm,
-            clearance: 1e-3 * clearance_mm + 1e-6 * b.clearance_change_um,
+            clearance: 1e-6 * (b.clearance_um() + b.clearance_change_um),
             first_roller_angle: b.first_roller_deg.to_radians(),
             roller_offsets: scene
                 .cage
@@ -249,6 +250,7 @@ impl ResolvedScene {
             structural_damping: scene.solver.structural_damping.as_ref().map(DampedBand::of),
             load: scene.operation.load_n,
             gravity: scene.operation.gravity_m_s2,
+            on_foundation: scene.housing.on_foundation_kg(b),
             duration: 1e-3 * scene.solver.duration_ms,
             interval: 1e-6 * scene.output.interval_us,
             sensor_angles: scene.output.sensors.iter().map(|sensor| sensor.angle_deg.to_radians()).collect(),

@@ -59,6 +59,13 @@ group! {
     }
 }
 
+impl BearingScene {
+    /// Diametral clearance as bought, without its change in operation [µm].
+    pub fn clearance_um(&self) -> f64 {
+        1e3 * (self.outer_race_diameter_mm - self.inner_race_diameter_mm - 2.0 * self.roller_diameter_mm)
+    }
+}
+
 words! {
     /// A rolling element.
     pub enum ElementKind: Copy, Eq {

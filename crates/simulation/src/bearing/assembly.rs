@@ -19,7 +19,7 @@ use crate::bearing::housing::housing;
 use crate::error::Error;
 pub use parts::{CAGE_ELEMENT_MM, MeshedParts};
 use parts::{cage_part, facets_around, formed};
-pub use system::{BearingSystem, Pairs, Roller, load};
+pub use system::{BearingSystem, Pairs, Roller, load, unsupported};
 
 /// The bodies of a scene, meshed, placed, and with their constraints; nothing touches yet.
 #[derive(Debug)]

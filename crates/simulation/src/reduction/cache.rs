@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use stribeck_scene::{
     duty::LONGEST_RUN_S,
+    machine::MachineScene,
     scene::{
         CageScene, ContactFormula, ContactScene, DefectRing, DefectScene, GuardsScene, HousingScene,
         ModelScene, OperationScene, OutputScene, ReducedScene, Scene, SolverScene,
@@ -21,7 +22,7 @@ use crate::reduction::{reduce::ReducedMesh, structure::modes_khz};
 const FOLDER: &str = ".reduced";
 
 /// First bytes of the file, with the version of its content.
-const MAGIC: &[u8; 20] = b"stribeck reduced vH\n";
+const MAGIC: &[u8; 20] = b"stribeck reduced vI\n";
 
 /// The scene from which the reduction of `scene` is made: fields that change neither mesh nor preload have
 /// their defaults. Rollers lie symmetrically about the first groove, as few as may be in it.
@@ -59,7 +60,11 @@ pub fn reference(scene: &Scene) -> Scene {
         adapter: scene.adapter.clone(),
         // The path of a machine changes nothing of the bearing.
         housing: match scene.housing.machine() {
-            Some(machine) => HousingScene::Rigid(machine.mass(&scene.bearing)),
+            Some(machine) => HousingScene::Machine(MachineScene {
+                mass_kg: Some(machine.mass(&scene.bearing).mass_kg),
+                damping_per_s: machine.damping_per_s,
+                ..MachineScene::default()
+            }),
             None => scene.housing.clone(),
         },
         outer_ring_mesh: scene.outer_ring_mesh.clone(),

@@ -1,6 +1,6 @@
 //! A preloaded bearing taken apart: sets of nodes, their positions, and the forces on them.
 
-use crate::bearing::assembly::BearingSystem;
+use crate::bearing::assembly::{BearingSystem, unsupported};
 use stribeck_mesh::Mesh;
 use stribeck_scene::{housing::HousingScene, resolved::ResolvedScene};
 use stribeck_solver::{
@@ -56,6 +56,8 @@ pub(crate) struct Extraction {
     pub(crate) roller_centre: [f64; 2],
     /// Mass of outer ring and housing [kg].
     pub(crate) structure_mass: f64,
+    /// Part of that mass whose weight the rollers carry [-].
+    weighing: f64,
     /// Mass of the frame around springs [kg] and one of its nodes.
     pub(crate) frame: Option<(f64, u32)>,
     /// Slot of each node in the solver's order.
@@ -102,6 +104,7 @@ impl Extraction {
             }),
             _ => None,
         };
+        let structure_mass = nodes.structure.iter().map(|&n| system.mass(n)).sum();
         let mut extraction = Self {
             moved: of_rings.map(|n| [places[n][0] - mesh.x[n], places[n][1] - mesh.y[n]]).collect(),
             seat_pair: bearing.pairs.seat(),
@@ -109,13 +112,16 @@ impl Extraction {
             roller: inertia(bearing.rollers[0].body),
             cage: bearing.cage.map(inertia),
             roller_centre: places[bearing.rollers[0].centre as usize],
-            structure_mass: nodes.structure.iter().map(|&n| system.mass(n)).sum(),
+            structure_mass,
+            weighing: 1.0 - scene.on_foundation / structure_mass,
             frame,
             nodes,
             places,
             contact_forces,
             slot_of: Vec::new(),
         };
+        // It is a part of the weight here: the load varies, and that does not.
+        unsupported(&mut bearing.system, scene)?;
         let parts = bearing.system.into_parts();
         extraction.slot_of.clone_from(&parts.dynamics.layout().slot_of_node);
         Ok((extraction, parts))
@@ -159,6 +165,10 @@ impl Preload {
         for (n, mass) in parts.dynamics.mass().iter().enumerate() {
             outside.fx[n] += mass * gx;
             outside.fy[n] += mass * gy;
+        }
+        for slot in extraction.slots(&extraction.nodes.structure) {
+            outside.fy[slot as usize] -=
+                (1.0 - extraction.weighing) * parts.dynamics.mass()[slot as usize] * gy;
         }
         let mut suspension = Vec::new();
         let (x, y) = (&parts.dynamics.state.x, &parts.dynamics.state.y);

@@ -71,5 +71,5 @@ impl Setup {
 fn expected_support(scene: &ResolvedScene, carried_mass: f64) -> f64 {
     let load = scene.duty.mean_load_n(scene.duration);
     let [_, up] = scene.written.load_direction();
-    load - up * scene.written.operation.gravity_m_s2 * carried_mass
+    load - up * scene.gravity * (carried_mass - scene.on_foundation)
 }

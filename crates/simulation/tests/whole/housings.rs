@@ -41,6 +41,7 @@ const PEDESTAL: &str = "housing=pedestal(width_mm: 90, base_mm: 45, top_mm: 38)"
 const MESH: &str = "housing=mesh(file: \"FILE\", unit_mm: 1)";
 const SPRINGS: &str = "housing=springs(stiffness_n_um: 500, damping_n_s_m: 3000, mass_kg: 2)";
 const RIGID: &str = "housing=rigid(mass_kg: 2)";
+const MACHINE: &str = "housing=machine(mass_kg: 200)";
 
 /// Source: the sum of the rollers' forces along the load is the load and the weight along it, in any
 /// direction that the housing takes; THEORY §4.
@@ -69,6 +70,24 @@ fn analytic_every_housing_hands_its_load_to_the_rollers() {
         assert!((carried / info.expected_support_n - 1.0).abs() < 0.02, "{housing} {angle}: {carried}");
         let sits = scene.housing.has_seat();
         assert_eq!(run.trace.names().iter().any(|name| name == "seat.fx_n"), sits, "{housing}");
+    }
+}
+
+/// A machine stands on its foundation: 1962 N of its housing change nothing of what the rollers carry, in neither
+/// model. Source: the sum of all forces on the ring vanishes at rest.
+#[test]
+fn analytic_the_weight_of_a_machine_is_not_the_bearings() {
+    const RING_KG: f64 = 0.1;
+    for model in ["full", "reduced()"] {
+        let model = format!("model={model}");
+        let scene = scene(&[MACHINE, &model, "contact.surface=arc", "solver.mass_damping_per_s=5000"]);
+        let folder = Scratch::new("housing-foundation");
+        assert_eq!(run(&scene, &folder).status, Status::Complete, "{model}");
+        let run = Run::read(folder.path()).expect("readable");
+        let on = |i: usize| -mean(&run, &format!("roller.{i}.outer_fy_n"));
+        let carried: f64 = (1..=scene.bearing.rollers).map(on).sum();
+        assert!((carried - 5000.0).abs() < 0.02 * 5000.0, "{model}: {carried}");
+        assert!((run.info.expected_support_n - 5000.0).abs() < 9.81 * RING_KG, "{model}: {:?}", run.info);
     }
 }
 

@@ -33,6 +33,8 @@ const LOADED: &str = "loaded surface";
 
 /// Name of the component of a rotating load that acts across the static one.
 const ACROSS: &str = "load across";
+/// What a machine's foundation carries of its housing.
+const FOUNDATION: &str = "foundation";
 
 /// A bearing in motion: the system, and which body and contact pair of it is which. Bodies are numbered as in
 /// the mesh.
@@ -198,8 +200,8 @@ impl Assembly {
         Ok(())
     }
 
-    /// The load of the scene on the housing, or on the outer ring's back where there is none, and the load
-    /// across it where one turns with the shaft.
+    /// The load of the scene on the housing, or on the outer ring's back where there is none, the load across it
+    /// where one turns with the shaft, and what a foundation carries.
     fn apply_load(&self, plan: &mut Plan, scene: &ResolvedScene) -> Result<(), Error> {
         plan.surface(LOADED, self.loaded().clone())?;
         let (load_n, [along_x, along_y]) = (scene.written.operation.load_n, scene.written.load_direction());
@@ -209,6 +211,12 @@ impl Assembly {
             let share = load_n / nodes.len() as f64;
             let across = nodes.iter().map(|&n| (n, [-share * along_y, share * along_x]));
             plan.load_nodes(ACROSS, across.collect())?;
+        }
+        let weight_n = scene.on_foundation * scene.gravity;
+        if weight_n > 0.0 {
+            let nodes = plan.nodes(LOADED)?;
+            let share = weight_n / nodes.len() as f64;
+            plan.load_nodes(FOUNDATION, nodes.into_iter().map(|n| (n, [0.0, share])).collect())?;
         }
         Ok(())
     }
@@ -298,6 +306,14 @@ pub fn load(system: &mut System, duty: &Duty, load_n: f64, at_s: f64) -> Result<
         system.scale_load(ACROSS, across / load_n)?;
     }
     Ok(())
+}
+
+/// Takes away what a foundation carries of the housing.
+///
+/// # Errors
+/// When the system has no load of that name.
+pub fn unsupported(system: &mut System, scene: &ResolvedScene) -> Result<(), stribeck_system::Error> {
+    if scene.on_foundation * scene.gravity > 0.0 { system.scale_load(FOUNDATION, 0.0) } else { Ok(()) }
 }
 
 /// Puts oil between every roller and both raceways, the outer one first.
