@@ -6,7 +6,7 @@ use stribeck_diagnosis::{
     AccelerationUnit, Analysis, Defect, Family, Machine, STANDARD_GRAVITY, sidebands_seen,
 };
 use stribeck_dsp::channel::Channel;
-use stribeck_dsp::{BandEnvelope, Sensor, Whitened};
+use stribeck_dsp::{BandEnvelope, Whitened};
 use stribeck_scene::catalogue;
 use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::resolved::ResolvedScene;
@@ -116,23 +116,6 @@ pub fn analysis_at_the_machine(run: &Run, expected: &Kinematics) -> Result<Optio
         }
         None => Ok(None),
     }
-}
-
-/// The same of the channel in white noise, whose rms is `noise` of its own: a run has none, a machine always
-/// has some. Its seed is fixed.
-pub fn analysis_in_noise(
-    scene: &ResolvedScene,
-    record: &Record<'_>,
-    expected: &Kinematics,
-    name: &str,
-    noise: f64,
-) -> Result<Option<Analysis>, Error> {
-    let Some(samples) = record.part(0..record.len(), |n| n == name)?.take(name) else { return Ok(None) };
-    let rate_hz = record.sample_rate_hz();
-    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
-    let power = samples.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / samples.len() as f64;
-    let sensor = Sensor { noise_density: noise * (power / (0.5 * rate_hz)).sqrt(), ..Sensor::ideal(rate_hz) };
-    judged(scene, expected, name, (sensor.record(&samples, rate_hz).map_err(Error::Signal)?, rate_hz))
 }
 
 fn judged(

@@ -42,7 +42,7 @@ pub mod machine_fit;
 mod many_runs;
 #[cfg(feature = "full")]
 mod memory;
-mod new;
+pub mod new;
 mod open;
 mod out;
 mod own_files;

@@ -350,6 +350,25 @@ fn ask<T>(question: &str, default: &dyn Display, parse: &dyn Fn(&str) -> Result<
     }
 }
 
+/// The text of the scene of a sound bearing in the catalogue, every answer the usual one.
+///
+/// # Errors
+/// When the catalogue has no such bearing.
+pub fn sound(bearing: &str) -> Result<String> {
+    let options = Options {
+        file: None,
+        bearing: Some(bearing.to_owned()),
+        load_n: None,
+        speed_rpm: None,
+        defect: Some(Where::None),
+        length_mm: None,
+        duration_s: None,
+        yes: true,
+    };
+    let answers = answers(&options, false)?;
+    Ok(text(&name(&answers), &answers))
+}
+
 /// The scene of a bearing with a spall of a raceway, or a sound one, as `new` writes it.
 #[cfg(feature = "full")]
 pub(crate) fn scene(bearing: &str, load_n: f64, speed_rpm: f64, ring: Option<DefectRing>) -> Result<Scene> {
