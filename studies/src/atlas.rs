@@ -8,6 +8,7 @@ use stribeck_analysis::diagnosis::{DiagnosedFamily, DiagnosisFinding};
 use stribeck_analysis::summary::{EnergyFinding, Summary};
 use stribeck_diagnosis::Defect;
 use stribeck_scene::scene::Scene;
+use stribeck_theory::kinematics::off_multiple;
 
 use crate::{Finished, Rows, Runner, Variant};
 
@@ -97,8 +98,8 @@ fn with_defect(variant: Variant, sound: &Scene, defect: &str, list: &str) -> Var
         "roller-spall" => (ROLLER_MS, vec![2.0 * k.bsf_hz]),
         _ => (sound.solver.duration_ms, vec![k.bpfo_hz, k.bpfi_hz]),
     };
-    let off_shaft = |hz: &f64| (hz - (hz / k.shaft_hz).round() * k.shaft_hz).abs();
-    let nearest_hz = knocks_hz.iter().map(off_shaft).fold(f64::INFINITY, f64::min);
+    let nearest_hz =
+        knocks_hz.into_iter().map(|hz| off_multiple(hz, k.shaft_hz)).fold(f64::INFINITY, f64::min);
     let duration_ms = (1e3 * RESOLUTIONS / nearest_hz).ceil().min(LONGEST_MS).max(least_ms);
     variant
         .with(format!("solver.duration_ms={duration_ms}"))

@@ -15,6 +15,7 @@ use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::write_atomic;
 use stribeck_theory::catalogue::{CatalogueBearing, Element};
 use stribeck_theory::fits::mounted_clearance_change_um;
+use stribeck_theory::kinematics::off_multiple;
 
 use crate::out::say;
 use crate::place::{Place, shown};
@@ -196,8 +197,7 @@ impl Limits {
             pitch_mm: 0.5 * (scene.bearing.outer_race_diameter_mm + scene.bearing.inner_race_diameter_mm),
             passing: k.bpfo_hz.min(k.bpfi_hz).min(2.0 * k.bsf_hz) / k.shaft_hz,
             off_shaft: [k.bpfo_hz, k.bpfi_hz]
-                .map(|hz| hz / k.shaft_hz)
-                .map(|turns| (turns - turns.round()).abs())
+                .map(|hz| off_multiple(hz / k.shaft_hz, 1.0))
                 .into_iter()
                 .fold(f64::INFINITY, f64::min),
         })

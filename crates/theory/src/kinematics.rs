@@ -102,6 +102,11 @@ pub struct Crossing {
     pub exit_s: f64,
 }
 
+/// Distance of a frequency from the nearest multiple of another one, such as that of the shaft, in their unit.
+pub fn off_multiple(frequency: f64, of: f64) -> f64 {
+    (frequency - (frequency / of).round() * of).abs()
+}
+
 impl Kinematics {
     /// Kinematics of `bearing` with the inner ring at `speed_rpm`, clockwise where it is positive, and the
     /// outer one at rest.

@@ -1,6 +1,7 @@
 //! Where a family stands highest of all bands, and how deep its knocks are there.
 
 use stribeck_dsp::{BandEnvelope, Comb, CombTest, Whitened};
+use stribeck_theory::kinematics::off_multiple;
 
 use crate::Defect;
 use crate::families::family::{Family, Reason};
@@ -74,7 +75,7 @@ pub(crate) fn search(
     }
     let ranges = own.ranges_without(low, high);
     if ranges.is_empty() || own.holds(comb_hz) {
-        let needed_s = segment_s * own.width_hz / own.off_shaft_hz(comb_hz);
+        let needed_s = segment_s * own.width_hz / off_multiple(comb_hz, own.shaft_hz);
         let longer = if own.is_of_shaft(comb_hz) && (record_s..LONGEST_S).contains(&needed_s) {
             format!("one of {:.1} s", (10.0 * needed_s).ceil() / 10.0)
         } else {

@@ -32,11 +32,6 @@ impl OwnLines {
         self.turning().any(|shaft_hz| self.is_multiple(hz, shaft_hz, f64::NAN))
     }
 
-    /// Distance of `hz` from the nearest multiple of the bearing's own shaft [Hz].
-    pub(crate) fn off_shaft_hz(&self, hz: f64) -> f64 {
-        (hz - (hz / self.shaft_hz).round() * self.shaft_hz).abs()
-    }
-
     /// All shafts [Hz], the bearing's own first.
     fn turning(&self) -> impl Iterator<Item = f64> {
         std::iter::once(self.shaft_hz).chain(self.shafts_hz.iter().copied())
@@ -104,6 +99,8 @@ impl OwnLines {
 
 #[cfg(test)]
 mod tests {
+    use stribeck_theory::kinematics::off_multiple;
+
     use super::*;
 
     const OWN: OwnLines = OwnLines {
@@ -121,7 +118,9 @@ mod tests {
         assert_eq!(OWN.ranges_without(89.9, 92.0), [(90.2, 92.0)]);
         assert_eq!(OWN.ranges_without(91.0, 92.0), [(91.0, 92.0)]);
         assert!(OWN.ranges_without(89.9, 90.1).is_empty());
-        assert!(OWN.holds(90.1) && !OWN.holds(91.0) && (OWN.off_shaft_hz(89.5) - 0.5).abs() < 1e-12);
+        assert!(
+            OWN.holds(90.1) && !OWN.holds(91.0) && (off_multiple(89.5, OWN.shaft_hz) - 0.5).abs() < 1e-12
+        );
     }
 
     #[test]
