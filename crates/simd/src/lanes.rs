@@ -414,36 +414,23 @@ impl<S: Simd> Vector<S> {
 const SUM: u8 = 0;
 const LARGEST: u8 = 1;
 
-impl<S: Simd> Add for Vector<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        Self { lanes: self.simd.add_f64s(self.lanes, other.lanes), ..self }
-    }
+macro_rules! lane_by_lane {
+    ($($operation:ident, $name:ident, $of_lanes:ident;)*) => {$(
+        impl<S: Simd> $operation for Vector<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                Self { lanes: self.simd.$of_lanes(self.lanes, other.lanes), ..self }
+            }
+        }
+    )*};
 }
 
-impl<S: Simd> Sub for Vector<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        Self { lanes: self.simd.sub_f64s(self.lanes, other.lanes), ..self }
-    }
-}
-
-impl<S: Simd> Mul for Vector<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        Self { lanes: self.simd.mul_f64s(self.lanes, other.lanes), ..self }
-    }
-}
-
-impl<S: Simd> Div for Vector<S> {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        Self { lanes: self.simd.div_f64s(self.lanes, other.lanes), ..self }
-    }
+lane_by_lane! {
+    Add, add, add_f64s;
+    Sub, sub, sub_f64s;
+    Mul, mul, mul_f64s;
+    Div, div, div_f64s;
 }
 
 impl<S: Simd> Neg for Vector<S> {

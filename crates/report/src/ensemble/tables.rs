@@ -2,9 +2,9 @@
 
 use maud::{Markup, html};
 
-use crate::page::{capital, cell, spoken, term};
+use crate::page::{capital, cell, spoken, term, wide_table};
 use crate::run::spectrum::families::OFF;
-use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged};
+use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary, Merged, StartSummary};
 use stribeck_analysis::quantity::Quantity;
 use stribeck_analysis::statistic::{CONFIDENCE, Statistic};
 use stribeck_analysis::summary::{Event, Summary};
@@ -149,23 +149,20 @@ pub(super) fn sensors(summary: &EnsembleSummary) -> Markup {
         };
         found.map(|s| level(s, 0))
     };
+    let head =
+        html! { th { "Sensor" } th { "Component" } @for (_, words) in PHASES { th class="n" { (words) } } };
+    let components = [(None, "a_y"), (Some("radial"), "radial"), (Some("tangential"), "tangential")];
+    let rows =
+        sensors.iter().flat_map(|sensor| components.map(|(component, name)| (sensor, component, name)));
+    let row = |(sensor, component, name): (&Merged, Option<&str>, &str)| {
+        html! {
+            td { (sensor.text("sensor").unwrap_or("–")) } td { (name) }
+            @for (field, _) in PHASES { (cell(of(sensor, component, field))) }
+        }
+    };
     html! {
         h3 { "Peaks by phase at every sensor [g], mean ± 95 %" }
-        div class="scroll" {
-            table {
-                thead { tr { th { "Sensor" } th { "Component" } @for (_, words) in PHASES { th class="n" { (words) } } } }
-                tbody {
-                    @for sensor in sensors {
-                        @for (component, name) in [(None, "a_y"), (Some("radial"), "radial"), (Some("tangential"), "tangential")] {
-                            tr {
-                                td { (sensor.text("sensor").unwrap_or("–")) } td { (name) }
-                                @for (field, _) in PHASES { (cell(of(sensor, component, field))) }
-                            }
-                        }
-                    }
-                }
-            }
-        }
+        (wide_table(None, &head, rows.map(row)))
     }
 }
 
@@ -175,29 +172,22 @@ pub(super) fn families(summary: &EnsembleSummary) -> Markup {
     if families.is_empty() {
         return html! {};
     }
-    html! {
-        div class="scroll" {
-            table class="ledger" {
-                thead {
-                    tr {
-                        th { "Family of facet lines" } th class="n" { "Found in" } th class="n" { "Predicted Hz" } th class="n" { "Carrier Hz" }
-                        th class="n" { (term("Off its place", OFF)) } th class="n" { "Largest g" }
-                    }
-                }
-                tbody {
-                    @for family in families {
-                        tr {
-                            td { (spoken(family.text("name").unwrap_or("–"))) }
-                            (cell(share(family)))
-                            (cell(family.number("predicted_hz").map(|s| mean(s, 1.0, 1))))
-                            (cell(family.number("carrier_hz").map(|s| mean(s, 1.0, 1))))
-                            (cell(family.number("offset_resolutions").map(|s| mean(s, 1.0, 2))))
-                            (cell(family.number("level_g").map(|s| level(s, 1))))
-                        }
-                    }
-                }
-            }
+    let head = html! {
+        th { "Family of facet lines" } th class="n" { "Found in" } th class="n" { "Predicted Hz" } th class="n" { "Carrier Hz" }
+        th class="n" { (term("Off its place", OFF)) } th class="n" { "Largest g" }
+    };
+    let row = |family: &Merged| {
+        html! {
+            td { (spoken(family.text("name").unwrap_or("–"))) }
+            (cell(share(family)))
+            (cell(family.number("predicted_hz").map(|s| mean(s, 1.0, 1))))
+            (cell(family.number("carrier_hz").map(|s| mean(s, 1.0, 1))))
+            (cell(family.number("offset_resolutions").map(|s| mean(s, 1.0, 2))))
+            (cell(family.number("level_g").map(|s| level(s, 1))))
         }
+    };
+    html! {
+        (wide_table(Some("ledger"), &head, families.iter().map(row)))
         p class="hint" { "Each start is judged by itself, against its own recorded motion (THEORY §7.7); \
             shares with their 95 % interval." }
     }
@@ -227,36 +217,29 @@ pub(super) fn events(findings: &EnsembleFindings) -> Markup {
     let off = |event: &Merged, of: fn(&Event) -> Option<f64>| {
         findings.over_events(&roller(event), of).map(|s| mean(&s, 1.0, 3))
     };
-    html! {
-        div class="scroll" {
-            table {
-                thead {
-                    tr {
-                        th { "Roller" } th class="n" { "#1 unloads" } th class="n" { "off ms" } th class="n" { "#2 floor" } th class="n" { "on oil" }
-                        th class="n" { "at ms" } th class="n" { "N" } th class="n" { "#3 neighbour" } th class="n" { "gain" } th class="n" { "#4 loaded" }
-                        th class="n" { "off ms" } th class="n" { "Impulse g" }
-                    }
-                }
-                tbody {
-                    @for event in events {
-                        tr {
-                            td { (roller(event)) }
-                            td class="n" { (count(event, "entry_ms")) "/" (of) }
-                            (cell(off(event, Event::entry_off_ms)))
-                            td class="n" { (first(event, Event::impact_ms)) "/" (of) }
-                            td class="n" { (first(event, Event::landing_ms)) "/" (of) }
-                            (cell(event.number("floor_ms").map(|s| mean(s, 1.0, 2))))
-                            (cell(event.number("floor_n").map(|s| mean(s, 1.0, 0))))
-                            td class="n" { (count(event, "compensation_ms")) "/" (of) }
-                            (cell(event.number("compensation_gain").map(|s| mean(s, 1.0, 2))))
-                            td class="n" { (count(event, "exit_ms")) "/" (of) }
-                            (cell(off(event, Event::exit_off_ms)))
-                            (cell(event.number("impulse_g").map(|s| level(s, 0))))
-                        }
-                    }
-                }
-            }
+    let head = html! {
+        th { "Roller" } th class="n" { "#1 unloads" } th class="n" { "off ms" } th class="n" { "#2 floor" } th class="n" { "on oil" }
+        th class="n" { "at ms" } th class="n" { "N" } th class="n" { "#3 neighbour" } th class="n" { "gain" } th class="n" { "#4 loaded" }
+        th class="n" { "off ms" } th class="n" { "Impulse g" }
+    };
+    let row = |event: &Merged| {
+        html! {
+            td { (roller(event)) }
+            td class="n" { (count(event, "entry_ms")) "/" (of) }
+            (cell(off(event, Event::entry_off_ms)))
+            td class="n" { (first(event, Event::impact_ms)) "/" (of) }
+            td class="n" { (first(event, Event::landing_ms)) "/" (of) }
+            (cell(event.number("floor_ms").map(|s| mean(s, 1.0, 2))))
+            (cell(event.number("floor_n").map(|s| mean(s, 1.0, 0))))
+            td class="n" { (count(event, "compensation_ms")) "/" (of) }
+            (cell(event.number("compensation_gain").map(|s| mean(s, 1.0, 2))))
+            td class="n" { (count(event, "exit_ms")) "/" (of) }
+            (cell(off(event, Event::exit_off_ms)))
+            (cell(event.number("impulse_g").map(|s| level(s, 0))))
         }
+    };
+    html! {
+        (wide_table(None, &head, events.iter().map(row)))
         p class="hint" {
             "Starts that show the event, and means ± 95 % of those. On oil: the film stops the roller before \
              it reaches the floor. Off: after the centre would stand over the edge without slip. #3: what the \
@@ -357,32 +340,25 @@ pub(super) fn starts(summary: &EnsembleSummary) -> Markup {
         Ended::Failed => "failed",
         Ended::Missing => "not begun",
     };
-    html! {
-        div class="scroll" {
-            table {
-                thead {
-                    tr {
-                        th { "Folder" } th class="n" { "Roller 1 at °" } th class="n" { "Phase °" } th { "Ended" } th class="n" { "Exit g" }
-                        th class="n" { "Gap g" } th class="n" { "Energy %" } th class="n" { "Wall s" } th class="n" { "Warnings" }
-                    }
-                }
-                tbody {
-                    @for start in &summary.starts {
-                        tr {
-                            td { a href={ (start.folder) "/scene.ron" } { (start.folder) } }
-                            (cell(start.first_roller_deg.map(|deg| shown(deg, 4))))
-                            (cell(start.roller_phase_deg.map(|deg| shown(deg, 4))))
-                            td { (ended(start.ended)) }
-                            (cell(start.exit_g.map(numbers::level)))
-                            (cell(start.gap_g.map(numbers::level)))
-                            (cell(start.energy_error.map(|e| shown(100.0 * e, 3))))
-                            (cell(start.wall_s.map(|s| shown(s, 1))))
-                            td class="n" { (start.warnings.len()) }
-                        }
-                    }
-                }
-            }
+    let head = html! {
+        th { "Folder" } th class="n" { "Roller 1 at °" } th class="n" { "Phase °" } th { "Ended" } th class="n" { "Exit g" }
+        th class="n" { "Gap g" } th class="n" { "Energy %" } th class="n" { "Wall s" } th class="n" { "Warnings" }
+    };
+    let row = |start: &StartSummary| {
+        html! {
+            td { a href={ (start.folder) "/scene.ron" } { (start.folder) } }
+            (cell(start.first_roller_deg.map(|deg| shown(deg, 4))))
+            (cell(start.roller_phase_deg.map(|deg| shown(deg, 4))))
+            td { (ended(start.ended)) }
+            (cell(start.exit_g.map(numbers::level)))
+            (cell(start.gap_g.map(numbers::level)))
+            (cell(start.energy_error.map(|e| shown(100.0 * e, 3))))
+            (cell(start.wall_s.map(|s| shown(s, 1))))
+            td class="n" { (start.warnings.len()) }
         }
+    };
+    html! {
+        (wide_table(None, &head, summary.starts.iter().map(row)))
         p class="hint" {
             "A start is a run of its own: `stribeck report` in its folder makes its page, and `stribeck \
              simulate` with its scene.ron gives the same samples again. Places in the pockets stand in its \

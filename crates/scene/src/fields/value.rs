@@ -25,59 +25,37 @@ fn parsed<T: serde::de::DeserializeOwned>(node: &Node) -> Option<T> {
     }
 }
 
-impl Value for f64 {
-    const SHAPE: Shape = Shape::Number;
+/// Values that are one word.
+macro_rules! words {
+    ($($type:ty, $shape:expr, $form:literal;)*) => {$(
+        impl Value for $type {
+            const SHAPE: Shape = $shape;
 
-    fn read(node: &Node) -> Option<Self> {
-        parsed(node)
-    }
+            fn read(node: &Node) -> Option<Self> {
+                parsed(node)
+            }
 
-    fn write(&self) -> Node {
-        Node::atom(format!("{self:?}"))
-    }
+            fn write(&self) -> Node {
+                Node::atom(format!($form, self))
+            }
+        }
+    )*};
 }
 
-impl Value for usize {
-    const SHAPE: Shape = Shape::Count;
-
-    fn read(node: &Node) -> Option<Self> {
-        parsed(node)
-    }
-
-    fn write(&self) -> Node {
-        Node::atom(self.to_string())
-    }
+words! {
+    f64, Shape::Number, "{:?}";
+    usize, Shape::Count, "{}";
+    u64, Shape::Count, "{}";
+    bool, Shape::Words(&YES_OR_NO), "{}";
 }
 
-impl Value for u64 {
-    const SHAPE: Shape = Shape::Count;
-
-    fn read(node: &Node) -> Option<Self> {
-        parsed(node)
-    }
-
-    fn write(&self) -> Node {
-        Node::atom(self.to_string())
-    }
-}
-
-impl Value for bool {
-    const SHAPE: Shape = Shape::Words(&Words {
-        about: &["Yes or no."],
-        words: &[
-            Word { word: "false", about: &["No."], inside: None },
-            Word { word: "true", about: &["Yes."], inside: None },
-        ],
-    });
-
-    fn read(node: &Node) -> Option<Self> {
-        parsed(node)
-    }
-
-    fn write(&self) -> Node {
-        Node::atom(self.to_string())
-    }
-}
+const YES_OR_NO: Words = Words {
+    about: &["Yes or no."],
+    words: &[
+        Word { word: "false", about: &["No."], inside: None },
+        Word { word: "true", about: &["Yes."], inside: None },
+    ],
+};
 
 impl Value for String {
     const SHAPE: Shape = Shape::Text;

@@ -93,7 +93,7 @@ pub(super) fn check(inference: &Inference) -> Result<()> {
         let path = target.of.path();
         if all.iter().all(|quantity| quantity.path != path) {
             let wanted = target.of.to_string();
-            let near = all.iter().min_by_key(|quantity| distance(&quantity.path, &wanted));
+            let near = all.iter().min_by_key(|quantity| strsim::levenshtein(&quantity.path, &wanted));
             let near = near.map_or("", |quantity| &quantity.path);
             bail!(
                 "target `{}`: `{wanted}` is no number of summary.json. The nearest is `{near}`; \
@@ -104,21 +104,6 @@ pub(super) fn check(inference: &Inference) -> Result<()> {
         }
     }
     Ok(())
-}
-
-/// Edits between two paths.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut before = row[0];
-        row[0] = i + 1;
-        for (j, &y) in b.iter().enumerate() {
-            let here = (before + usize::from(x != y)).min(row[j] + 1).min(row[j + 1] + 1);
-            before = std::mem::replace(&mut row[j + 1], here);
-        }
-    }
-    row[b.len()]
 }
 
 /// Points and quantities of each reading that is taken of a run: that of its point, and some evenly beyond.
