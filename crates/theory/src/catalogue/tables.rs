@@ -5,9 +5,6 @@ use super::{Boundary, CatalogueBearing, Element};
 /// Name, element, number, diameter, pitch [mm], contact angle [°], bore, outside, width [mm], source.
 type Row = (&'static str, Element, Option<u32>, f64, f64, f64, Option<[f64; 3]>, &'static str);
 
-/// Size, F, E, bore and outside diameter, width of the narrow and of the wide series [mm].
-type Cylindrical = (u32, f64, f64, [f64; 2], [f64; 2]);
-
 /// Name of the paper's bearing.
 pub const PAPER: &str = "paper";
 
@@ -38,49 +35,13 @@ const BEYOND_RULE: &str = "bore and outside by ISO 15; rolling elements by rule:
 const LIGHT: &str = "raceway diameter F of NU bearings of series 10, makers' catalogues; pitch by rule, (bore + \
     outside)/2, so that d = pitch − F";
 
-/// Raceway diameters F and E [mm] of cylindrical roller bearings of E design by size, with bore and outside
-/// diameter [mm] by ISO 15, and width [mm] of the narrow and of the wide series, which have the same
-/// raceways; those of [`IN_PROPORTION`] from its neighbour.
-const CYLINDRICAL: [Cylindrical; 38] = [
-    (202, 19.3, 30.3, [15.0, 35.0], [11.0, 14.0]),
-    (203, 22.1, 35.1, [17.0, 40.0], [12.0, 16.0]),
-    (204, 26.5, 41.5, [20.0, 47.0], [14.0, 18.0]),
-    (205, 31.5, 46.5, [25.0, 52.0], [15.0, 18.0]),
-    (206, 37.5, 55.5, [30.0, 62.0], [16.0, 20.0]),
-    (207, 44.0, 64.0, [35.0, 72.0], [17.0, 23.0]),
-    (208, 49.5, 71.5, [40.0, 80.0], [18.0, 23.0]),
-    (209, 54.5, 76.5, [45.0, 85.0], [19.0, 23.0]),
-    (210, 59.5, 81.5, [50.0, 90.0], [20.0, 23.0]),
-    (211, 66.0, 90.0, [55.0, 100.0], [21.0, 25.0]),
-    (212, 72.0, 100.0, [60.0, 110.0], [22.0, 28.0]),
-    (213, 78.5, 108.5, [65.0, 120.0], [23.0, 31.0]),
-    (214, 83.5, 113.5, [70.0, 125.0], [24.0, 31.0]),
-    (215, 88.5, 118.5, [75.0, 130.0], [25.0, 31.0]),
-    (216, 95.3, 127.3, [80.0, 140.0], [26.0, 33.0]),
-    (217, 100.5, 136.5, [85.0, 150.0], [28.0, 36.0]),
-    (218, 107.0, 145.0, [90.0, 160.0], [30.0, 40.0]),
-    (219, 112.5, 154.5, [95.0, 170.0], [32.0, 43.0]),
-    (220, 119.0, 163.0, [100.0, 180.0], [34.0, 46.0]),
-    (IN_PROPORTION, 21.5, 35.9, [15.0, 42.0], [13.0, 17.0]),
-    (303, 24.2, 40.2, [17.0, 47.0], [14.0, 19.0]),
-    (304, 27.5, 45.5, [20.0, 52.0], [15.0, 21.0]),
-    (305, 34.0, 54.0, [25.0, 62.0], [17.0, 24.0]),
-    (306, 40.5, 62.5, [30.0, 72.0], [19.0, 27.0]),
-    (307, 46.2, 70.2, [35.0, 80.0], [21.0, 31.0]),
-    (308, 52.0, 80.0, [40.0, 90.0], [23.0, 33.0]),
-    (309, 58.5, 88.5, [45.0, 100.0], [25.0, 36.0]),
-    (310, 65.0, 97.0, [50.0, 110.0], [27.0, 40.0]),
-    (311, 70.5, 106.5, [55.0, 120.0], [29.0, 43.0]),
-    (312, 77.0, 115.0, [60.0, 130.0], [31.0, 46.0]),
-    (313, 82.5, 124.5, [65.0, 140.0], [33.0, 48.0]),
-    (314, 89.0, 133.0, [70.0, 150.0], [35.0, 51.0]),
-    (315, 95.0, 143.0, [75.0, 160.0], [37.0, 55.0]),
-    (316, 101.0, 151.0, [80.0, 170.0], [39.0, 58.0]),
-    (317, 108.0, 160.0, [85.0, 180.0], [41.0, 60.0]),
-    (318, 113.5, 169.5, [90.0, 190.0], [43.0, 64.0]),
-    (319, 121.5, 177.5, [95.0, 200.0], [45.0, 67.0]),
-    (320, 127.5, 191.5, [100.0, 215.0], [47.0, 73.0]),
-];
+/// Deep groove ball bearings: name, bore, outside diameter and width [mm] by ISO 15.
+const DEEP_GROOVE: &str = include_str!("deep_groove.csv");
+
+/// Cylindrical roller bearings of E design by size: raceway diameters F and E, bore and outside diameter by ISO 15,
+/// and width of the narrow and of the wide series, which have the same raceways [mm]; those of [`IN_PROPORTION`]
+/// from its neighbour.
+const CYLINDRICAL: &str = include_str!("cylindrical.csv");
 
 /// Raceway diameter F [mm] of cylindrical roller bearings of series 10, from number 5 on; bore, outside diameter and
 /// width are those of the ball bearings of series 60.
@@ -89,7 +50,7 @@ const LIGHT_SERIES: [f64; 16] =
 
 /// The size whose raceways are printed nowhere: 15 + 27·(24.2 − 17)/30 and 15 + 27·(40.2 − 17)/30 mm, to a
 /// tenth.
-const IN_PROPORTION: u32 = 302;
+const IN_PROPORTION: &str = "302";
 
 /// Cylindrical roller bearings by where their flanges are, which a plane model does not have: rollers and
 /// raceways are the same.
@@ -108,172 +69,30 @@ const OTHERS: [Row; 10] = [
     ("NICE", Element::Ball, Some(8), 5.969, 31.623, 0.0, None, MFPT),
 ];
 
-/// Deep groove ball bearings whose designations begin alike, by the number of their bore from `first` on: outside
-/// diameters and widths [mm] by ISO 15. The bore of a miniature is its number in millimetres.
-struct Series {
-    begins: &'static str,
-    first: usize,
-    outside: &'static [f64],
-    width: &'static [f64],
-}
-
-/// Outside diameters [mm] of the series of diameters 0, 2 and 3, numbers 0 to 22.
-const OUTSIDE: [[f64; 23]; 3] = [
-    [
-        26.0, 28.0, 32.0, 35.0, 42.0, 47.0, 55.0, 62.0, 68.0, 75.0, 80.0, 90.0, 95.0, 100.0, 110.0, 115.0,
-        125.0, 130.0, 140.0, 145.0, 150.0, 160.0, 170.0,
-    ],
-    [
-        30.0, 32.0, 35.0, 40.0, 47.0, 52.0, 62.0, 72.0, 80.0, 85.0, 90.0, 100.0, 110.0, 120.0, 125.0, 130.0,
-        140.0, 150.0, 160.0, 170.0, 180.0, 190.0, 200.0,
-    ],
-    [
-        35.0, 37.0, 42.0, 47.0, 52.0, 62.0, 72.0, 80.0, 90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0,
-        160.0, 170.0, 180.0, 190.0, 200.0, 215.0, 225.0, 240.0,
-    ],
-];
-
-const DEEP_GROOVE: [Series; 9] = [
-    Series {
-        begins: "60",
-        first: 0,
-        outside: &OUTSIDE[0],
-        width: &[
-            8.0, 8.0, 9.0, 10.0, 12.0, 12.0, 13.0, 14.0, 15.0, 16.0, 16.0, 18.0, 18.0, 18.0, 20.0, 20.0,
-            22.0, 22.0, 24.0, 24.0, 24.0, 26.0, 28.0,
-        ],
-    },
-    Series {
-        begins: "62",
-        first: 0,
-        outside: &OUTSIDE[1],
-        width: &[
-            9.0, 10.0, 11.0, 12.0, 14.0, 15.0, 16.0, 17.0, 18.0, 19.0, 20.0, 21.0, 22.0, 23.0, 24.0, 25.0,
-            26.0, 28.0, 30.0, 32.0, 34.0, 36.0, 38.0,
-        ],
-    },
-    Series {
-        begins: "63",
-        first: 0,
-        outside: &OUTSIDE[2],
-        width: &[
-            11.0, 12.0, 13.0, 14.0, 15.0, 17.0, 19.0, 21.0, 23.0, 25.0, 27.0, 29.0, 31.0, 33.0, 35.0, 37.0,
-            39.0, 41.0, 43.0, 45.0, 47.0, 49.0, 50.0,
-        ],
-    },
-    Series {
-        begins: "622",
-        first: 0,
-        outside: &OUTSIDE[1],
-        width: &[14.0, 14.0, 14.0, 16.0, 18.0, 18.0, 20.0, 23.0, 23.0, 23.0, 23.0, 25.0, 28.0, 31.0, 31.0],
-    },
-    Series {
-        begins: "623",
-        first: 0,
-        outside: &OUTSIDE[2],
-        width: &[17.0, 17.0, 17.0, 19.0, 21.0, 24.0, 27.0, 31.0, 33.0, 36.0, 40.0],
-    },
-    Series {
-        begins: "64",
-        first: 3,
-        outside: &[62.0, 72.0, 80.0, 90.0, 100.0, 110.0, 120.0, 130.0, 140.0, 150.0, 160.0, 180.0, 190.0],
-        width: &[17.0, 19.0, 21.0, 23.0, 25.0, 27.0, 29.0, 31.0, 33.0, 35.0, 37.0, 42.0, 45.0],
-    },
-    Series {
-        begins: "68",
-        first: 0,
-        outside: &[
-            19.0, 21.0, 24.0, 26.0, 32.0, 37.0, 42.0, 47.0, 52.0, 58.0, 65.0, 72.0, 78.0, 85.0, 90.0, 95.0,
-            100.0, 110.0, 115.0, 120.0, 125.0,
-        ],
-        width: &[
-            5.0, 5.0, 5.0, 5.0, 7.0, 7.0, 7.0, 7.0, 7.0, 7.0, 7.0, 9.0, 10.0, 10.0, 10.0, 10.0, 10.0, 13.0,
-            13.0, 13.0, 13.0,
-        ],
-    },
-    Series {
-        begins: "69",
-        first: 0,
-        outside: &[
-            22.0, 24.0, 28.0, 30.0, 37.0, 42.0, 47.0, 55.0, 62.0, 68.0, 72.0, 80.0, 85.0, 90.0, 100.0, 105.0,
-            110.0, 120.0, 125.0, 130.0, 140.0,
-        ],
-        width: &[
-            6.0, 6.0, 7.0, 7.0, 9.0, 9.0, 9.0, 10.0, 12.0, 12.0, 12.0, 13.0, 13.0, 13.0, 16.0, 16.0, 16.0,
-            18.0, 18.0, 18.0, 20.0,
-        ],
-    },
-    Series {
-        begins: "160",
-        first: 2,
-        outside: &[
-            32.0, 35.0, 42.0, 47.0, 55.0, 62.0, 68.0, 75.0, 80.0, 90.0, 95.0, 100.0, 110.0, 115.0, 125.0,
-            130.0, 140.0, 145.0, 150.0,
-        ],
-        width: &[
-            8.0, 8.0, 8.0, 8.0, 9.0, 9.0, 9.0, 10.0, 10.0, 11.0, 11.0, 11.0, 13.0, 13.0, 14.0, 14.0, 16.0,
-            16.0, 16.0,
-        ],
-    },
-];
-
-const MINIATURE: [Series; 5] = [
-    Series {
-        begins: "60",
-        first: 4,
-        outside: &[12.0, 14.0, 17.0, 19.0, 22.0, 24.0],
-        width: &[4.0, 5.0, 6.0, 6.0, 7.0, 7.0],
-    },
-    Series {
-        begins: "62",
-        first: 3,
-        outside: &[10.0, 13.0, 16.0, 19.0, 22.0, 24.0, 26.0],
-        width: &[4.0, 5.0, 5.0, 6.0, 7.0, 8.0, 8.0],
-    },
-    Series {
-        begins: "63",
-        first: 3,
-        outside: &[13.0, 16.0, 19.0, 22.0, 26.0, 28.0, 30.0],
-        width: &[5.0, 5.0, 6.0, 7.0, 9.0, 9.0, 10.0],
-    },
-    Series {
-        begins: "68",
-        first: 3,
-        outside: &[7.0, 9.0, 11.0, 13.0, 14.0, 16.0, 17.0],
-        width: &[2.0, 2.5, 3.0, 3.5, 3.5, 4.0, 4.0],
-    },
-    Series {
-        begins: "69",
-        first: 3,
-        outside: &[8.0, 11.0, 13.0, 15.0, 17.0, 19.0, 20.0],
-        width: &[3.0, 4.0, 4.0, 5.0, 5.0, 6.0, 6.0],
-    },
-];
-
-/// Bearings that a plane model does not have, by what their designations begin with: series of outside diameters,
-/// first number, element, its diameter over (outside − bore), contact angle [°]. Makers print neither: the last two
-/// are usual ones (own).
-const BEYOND_A_PLANE: [(&str, usize, usize, Element, f64, f64); 20] = [
-    ("12", 1, 0, Element::Ball, 0.25, 10.0),
-    ("13", 2, 0, Element::Ball, 0.25, 10.0),
-    ("22", 1, 0, Element::Ball, 0.25, 13.0),
-    ("23", 2, 0, Element::Ball, 0.25, 15.0),
-    ("70", 0, 0, Element::Ball, 0.3, 15.0),
-    ("72", 1, 0, Element::Ball, 0.3, 40.0),
-    ("73", 2, 0, Element::Ball, 0.3, 40.0),
-    ("32", 1, 0, Element::Ball, 0.3, 30.0),
-    ("33", 2, 0, Element::Ball, 0.3, 30.0),
-    ("213", 2, 4, Element::Roller, 0.27, 9.0),
-    ("222", 1, 5, Element::Roller, 0.28, 10.0),
-    ("223", 2, 8, Element::Roller, 0.28, 13.0),
-    ("302", 1, 2, Element::Roller, 0.26, 14.0),
-    ("303", 2, 2, Element::Roller, 0.26, 12.0),
-    ("313", 2, 5, Element::Roller, 0.26, 28.0),
-    ("320", 0, 4, Element::Roller, 0.26, 15.0),
-    ("322", 1, 4, Element::Roller, 0.26, 14.0),
-    ("323", 2, 3, Element::Roller, 0.26, 12.0),
-    ("330", 0, 5, Element::Roller, 0.26, 13.0),
-    ("332", 1, 5, Element::Roller, 0.26, 13.0),
+/// Bearings that a plane model does not have, by what their designations begin with: series of ball bearings of
+/// the same bore and outside diameter, first number, element, its diameter over (outside − bore), contact angle
+/// [°]. Makers print neither: the last two are usual ones (own).
+const BEYOND_A_PLANE: [(&str, &str, usize, Element, f64, f64); 20] = [
+    ("12", "62", 0, Element::Ball, 0.25, 10.0),
+    ("13", "63", 0, Element::Ball, 0.25, 10.0),
+    ("22", "62", 0, Element::Ball, 0.25, 13.0),
+    ("23", "63", 0, Element::Ball, 0.25, 15.0),
+    ("70", "60", 0, Element::Ball, 0.3, 15.0),
+    ("72", "62", 0, Element::Ball, 0.3, 40.0),
+    ("73", "63", 0, Element::Ball, 0.3, 40.0),
+    ("32", "62", 0, Element::Ball, 0.3, 30.0),
+    ("33", "63", 0, Element::Ball, 0.3, 30.0),
+    ("213", "63", 4, Element::Roller, 0.27, 9.0),
+    ("222", "62", 5, Element::Roller, 0.28, 10.0),
+    ("223", "63", 8, Element::Roller, 0.28, 13.0),
+    ("302", "62", 2, Element::Roller, 0.26, 14.0),
+    ("303", "63", 2, Element::Roller, 0.26, 12.0),
+    ("313", "63", 5, Element::Roller, 0.26, 28.0),
+    ("320", "60", 4, Element::Roller, 0.26, 15.0),
+    ("322", "62", 4, Element::Roller, 0.26, 14.0),
+    ("323", "63", 3, Element::Roller, 0.26, 12.0),
+    ("330", "60", 5, Element::Roller, 0.26, 13.0),
+    ("332", "62", 5, Element::Roller, 0.26, 13.0),
 ];
 
 /// Width of the outer ring of UC inserts [mm] with bores of 20 to 70 mm. Smaller bores have the outer ring and the
@@ -281,12 +100,26 @@ const BEYOND_A_PLANE: [(&str, usize, usize, Element, f64, f64); 20] = [
 const INSERT_WIDTH: [f64; 11] = [17.0, 17.0, 19.0, 20.0, 21.0, 22.0, 24.0, 25.0, 27.0, 28.0, 30.0];
 const FIRST_INSERT: usize = 4;
 
-/// Bore [mm] of the number in a designation, ISO 15.
-fn bore_mm(number: usize) -> f64 {
-    match number {
-        0..=3 => [10.0, 12.0, 15.0, 17.0][number],
-        _ => 5.0 * number as f64,
-    }
+/// Names of a table, and what stands behind each.
+fn rows(table: &'static str) -> impl Iterator<Item = (&'static str, &'static str)> {
+    table.lines().skip(1).filter_map(|line| line.split_once(','))
+}
+
+/// Numbers of a row; tests hold them against their ranges.
+fn numbers<const N: usize>(row: &str) -> [f64; N] {
+    let mut cells = row.split(',');
+    [(); N].map(|()| cells.next().and_then(|cell| cell.parse().ok()).unwrap_or(f64::NAN))
+}
+
+/// Bore, outside diameter and width [mm] of a series of ball bearings, by the last two digits of their names.
+fn series(begins: &str) -> impl Iterator<Item = (usize, [f64; 3])> {
+    let number = move |name: &str| name.strip_prefix(begins).filter(|end| end.len() == 2)?.parse().ok();
+    rows(DEEP_GROOVE).filter_map(move |(name, row)| Some((number(name)?, numbers(row))))
+}
+
+/// Those of one bearing of a series.
+fn sizes(begins: &str, number: usize) -> [f64; 3] {
+    series(begins).find(|(of, _)| *of == number).map_or([f64::NAN; 3], |(_, sizes)| sizes)
 }
 
 /// Ball and pitch diameter [mm] by the rule of [`BALL_RULE`].
@@ -302,33 +135,22 @@ pub fn all() -> Vec<CatalogueBearing> {
 
 fn deep_groove() -> impl Iterator<Item = CatalogueBearing> {
     let listed = |name: &str| OTHERS.iter().any(|row| row.0 == name);
-    let numbered = |series: &'static Series| {
-        let sizes = series.outside.iter().zip(series.width).enumerate();
-        sizes.map(|(at, (&outside, &width))| (series.begins, series.first + at, outside, width))
-    };
-    let usual = DEEP_GROOVE.iter().flat_map(numbered).map(|(begins, number, outside, width)| {
-        by_rule(format!("{begins}{number:02}"), [bore_mm(number), outside, width], BALL_RULE)
-    });
-    let miniature = MINIATURE.iter().flat_map(numbered).map(|(begins, number, outside, width)| {
-        by_rule(format!("{begins}{number}"), [number as f64, outside, width], BALL_RULE)
-    });
-    usual.chain(miniature).filter(move |bearing| !listed(&bearing.name))
+    let own = rows(DEEP_GROOVE).filter(move |(name, _)| !listed(name));
+    own.map(|(name, row)| by_rule(name.to_owned(), numbers(row), BALL_RULE))
 }
 
 fn beyond_a_plane() -> impl Iterator<Item = CatalogueBearing> {
-    BEYOND_A_PLANE.iter().flat_map(|&(begins, series, first, element, share, angle_deg)| {
-        OUTSIDE[series].iter().enumerate().skip(first).map(move |(number, &outside)| {
-            let bore = bore_mm(number);
-            CatalogueBearing {
-                name: format!("{begins}{number:02}"),
-                element,
-                elements: None,
-                diameter_mm: share * (outside - bore),
-                pitch_mm: 0.5 * (bore + outside),
-                angle_deg,
-                boundary: None,
-                source: BEYOND_RULE.to_owned(),
-            }
+    BEYOND_A_PLANE.iter().flat_map(|&(begins, alike, first, element, share, angle_deg)| {
+        let of_series = series(alike).filter(move |(number, _)| *number >= first);
+        of_series.map(move |(number, [bore, outside, _])| CatalogueBearing {
+            name: format!("{begins}{number:02}"),
+            element,
+            elements: None,
+            diameter_mm: share * (outside - bore),
+            pitch_mm: 0.5 * (bore + outside),
+            angle_deg,
+            boundary: None,
+            source: BEYOND_RULE.to_owned(),
         })
     })
 }
@@ -336,9 +158,11 @@ fn beyond_a_plane() -> impl Iterator<Item = CatalogueBearing> {
 fn inserts() -> impl Iterator<Item = CatalogueBearing> {
     (1..FIRST_INSERT + INSERT_WIDTH.len()).map(|number| {
         let size = number.max(FIRST_INSERT);
-        let boundary = [bore_mm(size), OUTSIDE[1][size], INSERT_WIDTH[size - FIRST_INSERT]];
+        let [bore, outside, _] = sizes("62", size);
+        let boundary = [bore, outside, INSERT_WIDTH[size - FIRST_INSERT]];
         let of_size = by_rule(format!("UC2{number:02}"), boundary, INSERT_RULE);
-        let boundary = of_size.boundary.map(|boundary| Boundary { bore_mm: bore_mm(number), ..boundary });
+        let [bore_mm, ..] = sizes("62", number);
+        let boundary = of_size.boundary.map(|boundary| Boundary { bore_mm, ..boundary });
         CatalogueBearing { boundary, ..of_size }
     })
 }
@@ -362,22 +186,19 @@ fn cylindrical() -> impl Iterator<Item = CatalogueBearing> {
 }
 
 fn e_design(flanges: &'static str) -> impl Iterator<Item = CatalogueBearing> {
-    [0, 1].into_iter().flat_map(move |wide| {
-        CYLINDRICAL.iter().map(move |&(size, f, e, [bore, outside], widths)| {
+    // 210 in its narrow series, 2210 in its wide one.
+    ["", "2"].into_iter().enumerate().flat_map(move |(wide, begins)| {
+        rows(CYLINDRICAL).map(move |(size, row)| {
+            let [f, e, bore, outside, widths @ ..]: [f64; 6] = numbers(row);
             let source = if size == IN_PROPORTION { PROPORTION } else { E_TYPE };
-            // 210 in its narrow series, 2210 in its wide one.
-            let name = format!("{flanges} {}{size}", if wide == 1 { "2" } else { "" });
-            of_raceways(name, [f, e], [bore, outside, widths[wide]], source)
+            of_raceways(format!("{flanges} {begins}{size}"), [f, e], [bore, outside, widths[wide]], source)
         })
     })
 }
 
 fn light_series(flanges: &'static str) -> impl Iterator<Item = CatalogueBearing> {
-    const FIRST: usize = 5;
-    LIGHT_SERIES.iter().enumerate().map(move |(at, &f)| {
-        let number = FIRST + at;
-        let (bore, outside) = (bore_mm(number), OUTSIDE[0][number]);
-        let boundary = [bore, outside, DEEP_GROOVE[0].width[number]];
+    series("60").skip(5).zip(LIGHT_SERIES).map(move |((number, boundary), f)| {
+        let [bore, outside, _] = boundary;
         of_raceways(format!("{flanges} 10{number:02}"), [f, bore + outside - f], boundary, LIGHT)
     })
 }
@@ -449,7 +270,8 @@ mod tests {
     /// Rollers of E design have diameters in whole or half millimetres, and lie between bore and outside.
     #[test]
     fn invariant_raceways_lie_between_bore_and_outside_with_rollers_of_whole_sizes() {
-        for (size, f, e, [bore, outside], [narrow, wide]) in CYLINDRICAL {
+        for (size, row) in rows(CYLINDRICAL) {
+            let [f, e, bore, outside, narrow, wide] = numbers(row);
             let roller = 0.5 * (e - f);
             if size != IN_PROPORTION {
                 assert!((2.0 * roller - (2.0 * roller).round()).abs() < 1e-9, "{size}: {roller} mm");
@@ -471,5 +293,7 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), count);
         assert!(count > 300, "{count}");
+        let sizes = all().into_iter().flat_map(|bearing| [bearing.diameter_mm, bearing.pitch_mm]);
+        assert!(sizes.into_iter().all(|mm| mm > 0.0 && mm < 300.0));
     }
 }
