@@ -14,7 +14,7 @@ use stribeck_theory::duty::Duty;
 use stribeck_theory::lubrication::Oil;
 use stribeck_theory::material::Material;
 
-use crate::contact_formula::{ContactNumbers, as_hertz};
+use crate::contact_formula::as_hertz;
 use crate::deviation::{Relief, RollingSurface};
 use crate::dice::Dice;
 use crate::faults::rolling_circle;
@@ -198,7 +198,6 @@ impl ResolvedScene {
         let b = &scene.bearing;
         let material = Material::from(&scene.material);
         let element_size = 1e-3 * scene.mesh.size_mm;
-        let contact = ContactNumbers::of(scene, &material, element_size);
         let deviations = scene.deviations();
         let relief = |on: RollingSurface| {
             let [diameter_mm, facet_mm] = rolling_circle(scene, on);
@@ -242,8 +241,9 @@ impl ResolvedScene {
             roller_reliefs: (0..b.rollers).filter_map(of_roller).collect(),
             element_size,
             coarse_size: scene.mesh.grading.as_ref().map(|grading| 1e-3 * grading.coarse_mm),
-            penalty_stiffness: contact.stiffness,
-            contact_layer_mass: contact.layer_mass,
+            penalty_stiffness: scene.contact.penalty_scale * material.youngs_modulus / element_size,
+            // Half an element deep: the mass of a surface's nodes.
+            contact_layer_mass: 0.5 * material.density * element_size,
             contact_onset: 1e-6 * scene.contact.onset_um,
             film: scene.film.as_ref().map(oil),
             stiffness_damping: 1e-9 * scene.solver.stiffness_damping_ns,

@@ -41,13 +41,6 @@ words! {
         Hertz = "hertz",
         /// `penalty_scale` × E / element size; critical damping of two equal surface layers on that spring.
         ElementLayer = "element_layer",
-        /// LS-DYNA's standard penalty: `penalty_scale` (`SLSFAC` × `SFS`, usually 0.1) × bulk modulus × area²
-        /// / volume of the element behind a segment, on each pass. `damping_ratio` is `VDC` / 100, whose
-        /// critical damping is 2 m ω.
-        LsdynaStandard = "lsdyna_standard",
-        /// LS-DYNA's segment-based penalty (`SOFT` = 2): `penalty_scale` (likewise) × ½ m₁m₂/(m₁ + m₂) / Δt²,
-        /// of segments with half an element each. `damping_ratio` as in the standard penalty.
-        LsdynaSegment = "lsdyna_segment",
     }
 }
 

@@ -9,8 +9,8 @@ use stribeck_scene::{
     duty::LONGEST_RUN_S,
     machine::MachineScene,
     scene::{
-        CageScene, ContactFormula, ContactScene, DefectRing, DefectScene, GuardsScene, HousingScene,
-        ModelScene, OperationScene, OutputScene, ReducedScene, Scene, SolverScene,
+        CageScene, ContactScene, DefectRing, DefectScene, GuardsScene, HousingScene, ModelScene,
+        OperationScene, OutputScene, ReducedScene, Scene, SolverScene,
     },
 };
 use stribeck_store::run_dir::write_atomic;
@@ -38,11 +38,7 @@ pub fn reference(scene: &Scene) -> Scene {
         onset_um,
         ..
     } = scene.contact.clone();
-    let mut solver = SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() };
-    if formula == ContactFormula::LsdynaSegment {
-        // Its penalty is that of the full model's step.
-        solver.time_step_factor = scene.solver.time_step_factor;
-    }
+    let solver = SolverScene { hourglass_scale: scene.solver.hourglass_scale, ..SolverScene::default() };
     let groove = scene.grooves().into_iter().next();
     let middle = groove.as_ref().map_or(scene.load_zone_deg(), |groove| groove.angle_deg);
     let mut bearing = scene.bearing.clone();

@@ -13,8 +13,7 @@ use stribeck_reduced::{
     motion::{BearingInMotion, Saved},
 };
 use stribeck_scene::scene::{
-    ContactFormula, HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene,
-    RotatingLoadScene, Scene,
+    HarmonicScene, ModelScene, PocketWalls, ProfileScene, RampScene, ReducedScene, RotatingLoadScene, Scene,
 };
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::reduced::{Prepared, prepared};

@@ -43,21 +43,6 @@ fn issue_round_rollers_over_defects_in_pieces_write_the_same_bytes() {
     assert_goes_on_with_the_same_bytes(&scene, &folder, 37);
 }
 
-/// A penalty that depends on the full model's step is that of another reduction when the step changes.
-#[test]
-fn issue_a_penalty_by_the_time_step_has_reductions_of_its_own() {
-    let folder = Scratch::create("reduced-segment");
-    let cached = |factor: f64, formula: ContactFormula| {
-        let mut scene = coarse(0.02);
-        (scene.contact.formula, scene.solver.time_step_factor) = (formula, factor);
-        let name = format!("{factor}-{formula:?}");
-        run(&scene, &folder, &name, 1).reduced.is_some_and(|kept| kept.from_cache)
-    };
-    let [segment, layer] = [ContactFormula::LsdynaSegment, ContactFormula::ElementLayer];
-    assert!(!cached(0.9, segment) && !cached(0.5, segment));
-    assert!(!cached(0.9, layer) && cached(0.5, layer));
-}
-
 /// Runs that began side by side each made the reduction that one could have left to the others.
 #[test]
 fn issue_runs_that_begin_together_make_one_reduction() {
