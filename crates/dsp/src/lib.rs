@@ -36,7 +36,6 @@
 //! | the repetition rate of impulses | [`EnvelopeSpectrum`], where [`PeriodCount`] finds the record long enough |
 //! | the band of impulses | [`fast_kurtogram`], [`BandEnvelopes`] for records of any length |
 //! | the rate at which a part of the spectrum is modulated | [`spectral_correlation`] |
-//! | components that repeat exactly, and the rest, which slips | [`separate`] |
 //! | how a record changes | [`spectrogram`], [`Spectrograph`] for records of any length, [`ridge`] |
 //! | whether there is a family of harmonics, with a false-alarm rate | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
@@ -50,8 +49,6 @@
 //! | how a signal sounds | [`Sound`] |
 //! | root mean square, crest factor, kurtosis | [`statistics`] |
 //! | a signal by name, unit and rate, wherever its samples lie | [`channel`] |
-//!
-//! `examples/knocks.rs` does all of it to one signal.
 //!
 //! # A measured sine
 //!
@@ -115,7 +112,6 @@ mod prewhitened;
 mod resample;
 mod response;
 mod ridge;
-mod separation;
 mod signature;
 mod spacing;
 mod spectrogram;
@@ -143,7 +139,6 @@ pub use resample::resample_poly;
 pub use response::{Mode, Response, Undone};
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
-pub use separation::{Separated, separate};
 pub use signature::{PASSAGES, Rhythm, Signature, WITHIN};
 pub use sound::Sound;
 pub use spacing::{EventSpacing, Spacing, event_spacing, passage_spacing};

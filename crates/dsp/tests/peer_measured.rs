@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use serde_json::Value;
 use stribeck_dsp::{
-    Cyclic, Scaling, WelchOptions, fast_kurtogram, magnitude_spectrogram, resample_poly, separate,
+    Cyclic, Scaling, WelchOptions, fast_kurtogram, magnitude_spectrogram, resample_poly,
     spectral_correlation, spectrogram,
 };
 
@@ -108,13 +108,6 @@ fn peer_other_sample_rates() {
         let ours = resample_poly(&input(200), up, down).unwrap();
         assert_near(&case, &ours, &numbers(&theirs["resampled"][&case]), 1e-12);
     }
-}
-
-#[test]
-fn peer_discrete_and_random_parts() {
-    // Direct convolution by numpy 2.4.6.
-    let ours = separate(&input(600), 64, 7).unwrap();
-    assert_equal("discrete", &ours.discrete, &numbers(&vectors()["separated"]));
 }
 
 #[test]

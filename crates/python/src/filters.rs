@@ -105,18 +105,6 @@ pub(crate) fn record<'py>(
     Ok(sensor.record(x.as_slice()?, fs).map_err(refused)?.into_pyarray(py))
 }
 
-/// Discrete and random part.
-#[pyfunction]
-pub(crate) fn separate<'py>(
-    py: Python<'py>,
-    x: PyReadonlyArray1<'py, f64>,
-    taps: usize,
-    delay: usize,
-) -> PyResult<(Array<'py>, Array<'py>)> {
-    let parts = stribeck_dsp::separate(x.as_slice()?, taps, delay).map_err(refused)?;
-    Ok((parts.discrete.into_pyarray(py), parts.random.into_pyarray(py)))
-}
-
 /// One number of a signal.
 #[pyfunction]
 pub(crate) fn statistic(x: PyReadonlyArray1<'_, f64>, which: &str) -> PyResult<f64> {

@@ -55,7 +55,6 @@ fn _stribeck(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(filters::envelope_spectrum, module)?)?;
     module.add_function(wrap_pyfunction!(filters::resample_poly, module)?)?;
     module.add_function(wrap_pyfunction!(filters::record, module)?)?;
-    module.add_function(wrap_pyfunction!(filters::separate, module)?)?;
     module.add_function(wrap_pyfunction!(filters::statistic, module)?)?;
     module.add_function(wrap_pyfunction!(knocks::fast_kurtogram, module)?)?;
     module.add_function(wrap_pyfunction!(knocks::spectral_correlation, module)?)?;

@@ -390,14 +390,6 @@ class Signals(unittest.TestCase):
         np.testing.assert_array_equal(one, two)
         self.assertAlmostEqual((other - ideal).std() / (0.01 * np.sqrt(1500)), 1.0, delta=0.1)
 
-    def test_what_repeats_is_parted_from_what_does_not(self):
-        dsp, n = stribeck.dsp, np.arange(len(self.x))
-        tone = np.sin(2 * np.pi * 500 * n / self.fs)
-        discrete, random = dsp.separate(tone + 0.5 * self.x, taps=512, delay=64)
-        np.testing.assert_allclose(discrete + random, tone + 0.5 * self.x, atol=1e-12)
-        middle = slice(2000, -2000)
-        self.assertLess((discrete - tone)[middle].std(), 0.1)
-
     def test_modulated_noise_is_found_in_its_band_and_at_its_rate(self):
         from scipy import signal
 

@@ -11,7 +11,6 @@ mod prewhitened;
 mod resample;
 mod ridge;
 mod sensor;
-mod separation;
 mod signature;
 mod sound;
 mod spacing;

@@ -9,8 +9,8 @@ how strong it is, and at which frequencies         `welch`, `periodogram`, `band
 how it changes                                     `spectrogram`, `ridge`
 without one line, in one band, at another rate     `iirnotch`, `notch`, `envelope`, `resample_poly`, `record`
 where it knocks, and at what rate                  `fast_kurtogram`, `envelope_spectrum`, `band_envelopes`,
-                                                   `spectral_correlation`, `whitened_spectrum`, `comb_search`
-what repeats and what does not                     `separate`, `event_spacing`
+                                                   `spectral_correlation`, `whitened_spectrum`, `comb_search`,
+                                                   `event_spacing`
 over the angle of the shaft                        `ridge_turns`, `order_track`, `means_over_angle`
 ================================================== ====================================================================
 """
@@ -53,7 +53,6 @@ __all__ = [
     "ridge",
     "ridge_turns",
     "rms",
-    "separate",
     "spectral_correlation",
     "spectrogram",
     "strongest_line",
@@ -397,13 +396,6 @@ def comb_search(
         _count("needed", needed),
     )
     return Comb(*_stribeck.comb(values, _grid(f, values), segments, low_hz, high_hz, harmonics, needed))
-
-
-def separate(x: ArrayLike, taps: int = 4096, delay: int = 512) -> tuple[Samples, Samples]:
-    """The discrete and the random part, which add up to the signal: what an earlier stretch foretells through a
-    filter of ``taps`` taps, such as gears and shafts, and the rest, such as bearings. ``delay`` [samples] exceeds the
-    ringing of resonances. Source: Antoni and Randall 2004."""
-    return _stribeck.separate(_samples(x), _count("taps", taps), _count("delay", delay))
 
 
 def event_spacing(
