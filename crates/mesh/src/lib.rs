@@ -64,7 +64,6 @@
 //! | load nodes as they lie in memory | [`find_strips`] |
 //!
 //! Bodies from another mesher need no generator: the fields of [`Part`] are public.
-//! `examples/ring_and_disc.rs` prints the quality of two bodies and writes them to a file.
 //!
 //! # Where to look
 //!
