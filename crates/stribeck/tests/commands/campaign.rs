@@ -253,24 +253,6 @@ fn refuses_fields_that_no_scene_has_before_anything_runs() {
 }
 
 #[test]
-fn refuses_values_that_no_field_takes_before_anything_runs() {
-    for (wrong, words) in [
-        (
-            "[outr, inner]",
-            ["campaign.ron:8:41", "`defect.ring` is `outr`", "`outer`, `inner`", "did you mean `outer`?"],
-        ),
-        (
-            "[outer, 2]",
-            ["campaign.ron:8:48", "`defect.ring` is `2`", "`outer`, `inner`", "`outer` (the default)"],
-        ),
-    ] {
-        let desk = desk("campaign-misspelt-value", &CAMPAIGN.replace("[outer, inner]", wrong));
-        desk.refuses("--out=A", &words);
-        assert!(!desk.join("A").exists());
-    }
-}
-
-#[test]
 fn behaves_variants_that_cannot_be_are_rows_with_their_reason() {
     let text = CAMPAIGN.replace("latin_hypercube(count: 8, over: [", "grid([").replace(
         "(field: \"operation.load_n\", from: 5000, to: 50000),",

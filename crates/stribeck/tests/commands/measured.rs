@@ -446,44 +446,6 @@ fn issue_a_wrong_rate_in_a_file_can_be_overruled() {
     says(&output, &["a defect of the outer raceway (BPFO at 142.9", "the file says 12800 Hz"]);
 }
 
-#[test]
-fn issue_a_gap_in_the_times_is_noted() {
-    let desk = Desk::new("measured-gap");
-    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { t + 0.5 }));
-    std::fs::write(desk.join("a.csv"), text).unwrap();
-    let output = desk.run("analyse a.csv --bearing=6205 --speed-rpm=1200");
-    says(
-        &output,
-        &["note: the times of `t [s]` have a gap after row 51200 (3.999922 s): missing samples: 6400"],
-    );
-    let text = table("t [s],acc\n", 12_800.0, |t| format!("{:.7}", if t < 4.0 { t } else { 2.0 * t - 4.0 }));
-    std::fs::write(desk.join("a.csv"), text).unwrap();
-    let output = desk.run("analyse a.csv --bearing=6205 --speed-rpm=1200");
-    assert!(!output.status.success());
-    says(
-        &output,
-        &["give `--rate-hz`; the times of `t [s]` are uneven, or their rate changes, from about row 51001"],
-    );
-}
-
-/// One sample of 1000 hid a defect that stands by 30 dB, without a word.
-#[test]
-fn issue_a_sample_that_hides_a_defect_is_reported() {
-    let desk = Desk::new("measured-spurious");
-    let mut samples = knocks(12_800.0);
-    samples[33_333] = -1000.0;
-    mat5::write(&desk.join("a.mat"), &[Channel::held("x", samples).at_rate(Some(12_800.0))], &[]).unwrap();
-    let output = desk.run("analyse a.mat --channel=x --bearing=6205 --speed-rpm=1200");
-    says(
-        &output,
-        &[
-            "shows no defect",
-            "note: sample 33333 (2.6041 s) is -1000.000000",
-            "Put the mean of its neighbours",
-        ],
-    );
-}
-
 /// What we export as `.mat` did not say its rate when it was analysed.
 #[test]
 fn roundtrip_an_exported_record_says_its_rate() {
