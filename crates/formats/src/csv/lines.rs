@@ -5,7 +5,6 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
-use encoding_rs::{Encoding, UTF_8, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use stribeck_dsp::channel::memory;
 
 use crate::{Error, Result};
@@ -13,21 +12,60 @@ use crate::{Error, Result};
 /// Parts of the memory that a line may take: its bytes, its text and its numbers are held at once.
 const PARTS: u64 = 4;
 
+/// What stands for 0x80 to 0x9f in Windows-1252; all other bytes are the characters of their number.
+const WINDOWS_1252: [char; 32] = [
+    '€', '\u{81}', '‚', 'ƒ', '„', '…', '†', '‡', 'ˆ', '‰', 'Š', '‹', 'Œ', '\u{8d}', 'Ž', '\u{8f}', '\u{90}',
+    '‘', '’', '“', '”', '•', '–', '—', '˜', '™', 'š', '›', 'œ', '\u{9d}', 'ž', 'Ÿ',
+];
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Encoding {
+    Utf8,
+    Utf16Le,
+    Utf16Be,
+    Windows1252,
+}
+
+impl Encoding {
+    /// The text of some bytes; what is no character becomes U+FFFD.
+    fn decode(self, bytes: &[u8]) -> String {
+        let wide = |unit: fn([u8; 2]) -> u16| {
+            let (pairs, rest) = bytes.as_chunks();
+            let units: Vec<u16> = pairs.iter().map(|pair| unit(*pair)).collect();
+            let mut text = String::from_utf16_lossy(&units);
+            text.extend(rest.iter().map(|_| char::REPLACEMENT_CHARACTER));
+            text
+        };
+        match self {
+            Self::Utf8 => String::from_utf8_lossy(bytes).into_owned(),
+            Self::Utf16Le => wide(u16::from_le_bytes),
+            Self::Utf16Be => wide(u16::from_be_bytes),
+            Self::Windows1252 => bytes
+                .iter()
+                .map(|byte| match byte {
+                    0x80..=0x9f => WINDOWS_1252[usize::from(byte - 0x80)],
+                    _ => char::from(*byte),
+                })
+                .collect(),
+        }
+    }
+}
+
 /// How the bytes of a text become lines.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Coding {
-    encoding: &'static Encoding,
+    encoding: Encoding,
     /// End of a line; `\r` alone is that of old Macintoshes.
     end: u8,
 }
 
 /// The 16-bit encoding that the first bytes of a file show, by its mark or by its zeros.
-fn wide(start: &[u8]) -> Option<&'static Encoding> {
+fn wide(start: &[u8]) -> Option<Encoding> {
     if start.starts_with(b"\xff\xfe") {
-        return Some(UTF_16LE);
+        return Some(Encoding::Utf16Le);
     }
     if start.starts_with(b"\xfe\xff") {
-        return Some(UTF_16BE);
+        return Some(Encoding::Utf16Be);
     }
     let zeros = |at: usize| start.iter().skip(at).step_by(2).filter(|b| **b == 0).count();
     let (pairs, even, odd) = (start.len() / 2, zeros(0), zeros(1));
@@ -36,8 +74,8 @@ fn wide(start: &[u8]) -> Option<&'static Encoding> {
     }
     // Digits and separators have one byte that is zero and one that is not.
     match (even == 0 && odd > pairs * 9 / 10, odd == 0 && even > pairs * 9 / 10) {
-        (true, _) => Some(UTF_16LE),
-        (_, true) => Some(UTF_16BE),
+        (true, _) => Some(Encoding::Utf16Le),
+        (_, true) => Some(Encoding::Utf16Be),
         _ => None,
     }
 }
@@ -54,10 +92,10 @@ impl Coding {
         let file = File::open(path).map_err(|e| Error::read(path, e))?;
         file.take(1 << 16).read_to_end(&mut start).map_err(|e| Error::read(path, e))?;
         let encoding = wide(&start).unwrap_or_else(|| match std::str::from_utf8(&start) {
-            Ok(_) => UTF_8,
+            Ok(_) => Encoding::Utf8,
             // The last character may be cut.
-            Err(why) if why.error_len().is_none() => UTF_8,
-            Err(_) => WINDOWS_1252,
+            Err(why) if why.error_len().is_none() => Encoding::Utf8,
+            Err(_) => Encoding::Windows1252,
         });
         // Few lines may end otherwise than most.
         let plain: Vec<u8> = start.into_iter().filter(|b| *b != 0).collect();
@@ -68,7 +106,7 @@ impl Coding {
     }
 
     fn is_wide(self) -> bool {
-        self.encoding == UTF_16LE || self.encoding == UTF_16BE
+        matches!(self.encoding, Encoding::Utf16Le | Encoding::Utf16Be)
     }
 }
 
@@ -112,7 +150,7 @@ impl Lines {
             }
             // The end of a line is a character, not a byte of one.
             let at = self.bytes.len() - 1;
-            if self.coding.encoding == UTF_16LE {
+            if self.coding.encoding == Encoding::Utf16Le {
                 let mut zero = Vec::new();
                 if self.bytes.len() % 2 == 1 {
                     (&mut self.file).take(1).read_to_end(&mut zero).map_err(io)?;
@@ -129,8 +167,22 @@ impl Lines {
             return Ok(None);
         }
         self.read += 1;
-        let (text, _) = self.coding.encoding.decode_without_bom_handling(&self.bytes);
+        let text = self.coding.encoding.decode(&self.bytes);
         let text = text.trim_start_matches(['\u{feff}', '\n']).trim_end_matches(['\r', '\n']);
         Ok(Some(text.to_owned()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Encoding;
+
+    /// Code points from the table of Windows-1252 and from RFC 2781; a lone byte is no character.
+    #[test]
+    fn by_hand_bytes_of_each_encoding_become_text() {
+        assert_eq!(Encoding::Utf8.decode(b"5 \xc2\xb5m\xff"), "5 µm\u{fffd}");
+        assert_eq!(Encoding::Windows1252.decode(b"\x80 \x8e \x9f \xb5 \xff"), "€ Ž Ÿ µ ÿ");
+        assert_eq!(Encoding::Utf16Le.decode(&[0x08, 0xd8, 0x45, 0xdf, 0xb5, 0]), "\u{12345}µ");
+        assert_eq!(Encoding::Utf16Be.decode(&[0, 0xb5, 0x31]), "µ\u{fffd}");
     }
 }
