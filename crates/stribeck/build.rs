@@ -14,6 +14,8 @@ fn main() {
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {
         println!("cargo:rerun-if-changed={log}");
     }
+    // `cargo xtask release` sets it, having seen that nothing was changed.
+    println!("cargo:rerun-if-env-changed=SOURCE_DATE_EPOCH");
     println!("cargo:rustc-env=STRIBECK_COMMIT={}", commit());
     println!("cargo:rerun-if-env-changed={FMU}");
     println!("cargo:rustc-check-cfg=cfg(fmu_embedded)");

@@ -2,7 +2,8 @@
 //! installers.
 //!
 //! Other tools do the work: zig links for each platform, maturin packs wheels, tar and gzip archives. Equal
-//! sources give equal bytes: files have the time of the last commit, and no path of this machine.
+//! sources give equal bytes: files have the time of the last commit, and no path of this machine; a checkout
+//! with changes, of which programs would say so, is refused.
 
 mod archive;
 mod dependencies;
@@ -133,14 +134,18 @@ fn program(
     Some((archive, sum.split(' ').next()?.to_owned()))
 }
 
-/// `SOURCE_DATE_EPOCH`, or else the time of the last commit [s since 1970].
+/// `SOURCE_DATE_EPOCH`, or else the time of the last commit [s since 1970], if nothing was changed since.
 fn epoch(root: &Path) -> Result<String> {
     if let Ok(given) = std::env::var("SOURCE_DATE_EPOCH") {
         return Ok(given);
     }
-    let mut git = Command::new("git");
-    git.current_dir(root).args(["log", "-1", "--format=%ct"]);
-    Ok(output(&mut git, "name the time of the release in SOURCE_DATE_EPOCH")?.trim().to_owned())
+    let git = |words: &[&str]| {
+        let advice = "name the time of the release in SOURCE_DATE_EPOCH";
+        output(Command::new("git").current_dir(root).args(words), advice)
+    };
+    let changes = git(&["status", "--porcelain", "--untracked-files=no"])?;
+    ensure!(changes.is_empty(), "a release is made from a commit; commit or stash these changes:\n{changes}");
+    Ok(git(&["log", "-1", "--format=%ct"])?.trim().to_owned())
 }
 
 fn sums(folder: &Path) -> Result<String> {
