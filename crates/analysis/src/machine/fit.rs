@@ -6,8 +6,6 @@
 //! regularisation; the background is what a record of the sound machine has beyond its own force behind this
 //! path. Both are found in turns.
 
-use faer::linalg::solvers::{Llt, Solve};
-use faer::{Mat, Side};
 use stribeck_dsp::{Sensor, statistics};
 use stribeck_scene::machine::{BackgroundScene, GainScene, MachineScene, MachineSensorScene};
 use stribeck_scene::scene::BearingScene;
@@ -188,38 +186,60 @@ impl Path {
     fn descend(&mut self, damaged: &[&Octaves]) {
         let n = self.gains.len();
         for _ in 0..STEPS {
-            let (mut matrix, mut right) = (Mat::<f64>::zeros(n, n), Mat::<f64>::zeros(n, 1));
+            // Rows of the symmetric matrix from the diagonal on: a bend joins three neighbours.
+            let (mut rows, mut right) = (vec![[0.0; 3]; n], vec![0.0; n]);
             for octaves in damaged {
                 for band in 0..n {
                     let passed = self.gains[band].exp() * octaves.force[band].rms.powi(2);
                     let all = passed + self.background[band];
                     let (slope, misfit) = (passed / all, 2.0 * octaves.measured[band].rms.ln() - all.ln());
-                    matrix[(band, band)] += slope * slope;
-                    right[(band, 0)] += slope * misfit;
+                    rows[band][0] += slope * slope;
+                    right[band] += slope * misfit;
                 }
             }
             for middle in 1..n.saturating_sub(1) {
                 let (at, weights) = ([middle - 1, middle, middle + 1], [1.0, -2.0, 1.0]);
                 let bend: f64 = at.iter().zip(weights).map(|(i, w)| w * self.gains[*i]).sum();
                 for (i, w) in at.iter().zip(weights) {
-                    right[(*i, 0)] -= SMOOTH * w * bend;
-                    for (j, v) in at.iter().zip(weights) {
-                        matrix[(*i, *j)] += SMOOTH * w * v;
+                    right[*i] -= SMOOTH * w * bend;
+                    for (beside, v) in weights[i + 1 - middle..].iter().enumerate() {
+                        rows[*i][beside] += SMOOTH * w * v;
                     }
                 }
             }
             // Where the background hides the force in every record, nothing but its neighbours holds a gain.
-            (0..n).for_each(|band| matrix[(band, band)] += 1e-6);
-            let Ok(factors) = Llt::new(matrix.as_ref(), Side::Lower) else { return };
-            let step = factors.solve(&right);
-            let longest = (0..n).map(|band| step[(band, 0)].abs()).fold(0.0, f64::max);
+            rows.iter_mut().for_each(|row| row[0] += 1e-6);
+            let Some(step) = solved(rows, right) else { return };
+            let longest = step.iter().map(|step| step.abs()).fold(0.0, f64::max);
             let share = (LONGEST_STEP / longest).min(1.0);
-            self.gains.iter_mut().enumerate().for_each(|(band, gain)| *gain += share * step[(band, 0)]);
+            self.gains.iter_mut().zip(&step).for_each(|(gain, step)| *gain += share * step);
             if longest < 1e-6 {
                 return;
             }
         }
     }
+}
+
+/// Solves a symmetric system of five diagonals from its rows, each from the diagonal on; `None` where it is not
+/// positive definite.
+fn solved(mut rows: Vec<[f64; 3]>, mut right: Vec<f64>) -> Option<Vec<f64>> {
+    let n = rows.len();
+    for i in 0..n {
+        let pivot = rows[i];
+        if pivot[0].is_nan() || pivot[0] <= 0.0 {
+            return None;
+        }
+        for below in 1..pivot.len().min(n - i) {
+            let factor = pivot[below] / pivot[0];
+            (below..pivot.len()).for_each(|j| rows[i + below][j - below] -= factor * pivot[j]);
+            right[i + below] -= factor * right[i];
+        }
+    }
+    for i in (0..n).rev() {
+        let known: f64 = rows[i][1..].iter().zip(&right[i + 1..]).map(|(a, x)| a * x).sum();
+        right[i] = (right[i] - known) / rows[i][0];
+    }
+    Some(right)
 }
 
 #[cfg(test)]
@@ -287,6 +307,15 @@ mod tests {
         let of = |samples: &[f64]| third_octaves(samples, other.rate_hz, 10_000.0).expect("long");
         let off = crate::machine::octaves::above_db(&of(&ours.samples), &of(&other.measured));
         assert!(crate::machine::octaves::median_size(&off) < 1.0, "{off:?}");
+    }
+
+    /// The right side is the matrix times (1, 2, 3, 4); the second matrix has the eigenvalue −1.
+    #[test]
+    fn by_hand_five_diagonals_are_solved() {
+        let rows = vec![[7.0, -4.0, 1.0], [8.0, -4.0, 1.0], [9.0, -4.0, 0.0], [10.0, 0.0, 0.0]];
+        let found = solved(rows, vec![2.0, 4.0, 4.0, 30.0]).expect("positive definite");
+        assert!(found.iter().zip([1.0, 2.0, 3.0, 4.0]).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+        assert_eq!(solved(vec![[1.0, 2.0, 0.0], [1.0, 0.0, 0.0]], vec![1.0, 1.0]), None);
     }
 
     #[test]
