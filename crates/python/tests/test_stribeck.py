@@ -82,7 +82,7 @@ class Learning(unittest.TestCase):
             small = Path(folder) / "small.ron"
             text = (root / "fixtures/campaigns/learn6205.ron").read_text()
             text = text.replace("count: 48", "count: 12").replace("../scenes", str(root / "fixtures/scenes"))
-            short = '"mesh.grading=()", "solver.duration_ms=510"'
+            short = '"mesh.grading=()", "solver.duration_ms=560"'
             text = text.replace('"output.interval_us=20"', f'"output.interval_us=20", {short}')
             small.write_text(text)
             stribeck.campaign(small, out=Path(folder) / "sim")
