@@ -11,7 +11,7 @@ pub mod octaves;
 
 use std::f64::consts::TAU;
 
-use stribeck_dsp::{Mode, Response, Sensor};
+use stribeck_dsp::{Mode, Response, Sensor, statistics};
 use stribeck_scene::dice::Dice;
 use stribeck_scene::machine::{BackgroundScene, MachineScene, MachineSensorScene};
 use stribeck_scene::scene::{BearingScene, Scene};
@@ -76,6 +76,16 @@ pub fn of_run(run: &Run) -> Result<Option<MachineRecord>, Error> {
     let Some(machine) = run.scene.written.housing.machine() else { return Ok(None) };
     let force = Force::of_run(run, machine.direction_deg)?;
     record(machine, &run.scene.written.bearing, &force).map(Some)
+}
+
+/// Root mean square of a record about its mean, by which it is held against that of a machine.
+///
+/// # Errors
+/// [`Error::Signal`] for a record that is empty or not finite.
+pub fn level(samples: &[f64]) -> Result<f64, Error> {
+    let (mean, rms) = (statistics::mean(samples), statistics::rms(samples));
+    let (mean, rms) = (mean.map_err(Error::Signal)?, rms.map_err(Error::Signal)?);
+    Ok((rms * rms - mean * mean).max(0.0).sqrt())
 }
 
 /// The record of a machine's sensor under a force.

@@ -18,6 +18,8 @@ quantities! {
     pub struct RecordFinding {
         /// Power of the noise over that of the rest [dB].
         pub noise_db: f64,
+        /// Level of the record of the scene's machine, the same for every noise [m/s²]; `None` without a machine.
+        pub level_m_s2: Option<f64>,
         /// Numbers that a path does not change.
         #[serde(flatten)]
         pub signature: PassageSignature,
@@ -76,11 +78,12 @@ pub fn duration_s(rhythm: Rhythm) -> f64 {
 const BEFORE: f64 = 5.0;
 
 /// The records that a scene asks for, by the force of all rolling elements on the outer ring [N], sampled
-/// `rate_hz` times a second; none where the force is too short, or the scene has no rhythm, with a note.
+/// `rate_hz` times a second, and the level of that of its machine; none where the force is too short, or the scene has no rhythm, with a note.
 pub(crate) fn of(
     scene: &Scene,
     force_n: &[f64],
     rate_hz: f64,
+    level_m_s2: Option<f64>,
     notes: &mut Vec<String>,
 ) -> Result<Vec<RecordFinding>, Error> {
     let Some(asked) = &scene.output.records else { return Ok(Vec::new()) };
@@ -106,7 +109,7 @@ pub(crate) fn of(
         let noise = rms * 10_f64.powf(noise_db / 20.0);
         let record: Vec<f64> = plain.iter().map(|x| x + noise * normal(&mut dice)).collect();
         let signature = Signature::of(&record, asked.rate_hz, rhythm).map_err(Error::Signal)?;
-        Ok(RecordFinding { noise_db, signature: PassageSignature::of(&signature) })
+        Ok(RecordFinding { noise_db, level_m_s2, signature: PassageSignature::of(&signature) })
     };
     asked.noise_db.iter().map(one).collect()
 }
@@ -155,9 +158,10 @@ mod tests {
         assert!((rhythm.passing_hz / 53.77 - 1.0).abs() < 0.01, "{rhythm:?}");
         let mut notes = Vec::new();
         let force = force(&scene, 2.5e-3, duration_s(rhythm));
-        let found = of(&scene, &force, 1e5, &mut notes).expect("records");
+        let found = of(&scene, &force, 1e5, Some(0.3), &mut notes).expect("records");
         assert!(notes.is_empty(), "{notes:?}");
         let [quiet, loud] = &found[..] else { panic!("{found:?}") };
+        assert_eq!([quiet.level_m_s2, loud.level_m_s2], [Some(0.3); 2]);
         let expected = 2.5e-3 * rhythm.passing_hz;
         assert!((quiet.signature.spacing.expect("two events") / expected - 1.0).abs() < 0.03, "{quiet:?}");
         assert!(
@@ -170,9 +174,9 @@ mod tests {
     fn refuses_records_of_runs_that_are_too_short_with_a_note() {
         let mut scene = scene();
         let mut notes = Vec::new();
-        let found = of(&scene, &force(&scene, 2.5e-3, 0.3), 1e5, &mut notes).expect("a note");
+        let found = of(&scene, &force(&scene, 2.5e-3, 0.3), 1e5, None, &mut notes).expect("a note");
         assert!(found.is_empty() && notes[0].contains("16 passages"), "{notes:?}");
         scene.output.records = None::<RecordsScene>;
-        assert!(of(&scene, &[], 1e5, &mut notes).expect("nothing").is_empty() && notes.len() == 1);
+        assert!(of(&scene, &[], 1e5, None, &mut notes).expect("nothing").is_empty() && notes.len() == 1);
     }
 }

@@ -39,6 +39,10 @@ pub struct Options {
     /// and clearance. Needs `--bearing`, and `--speed-rpm` where the record does not yield the speed
     #[arg(long, value_name = "FILE", conflicts_with_all = ["file", "emit"])]
     record: Option<PathBuf>,
+    /// The record's machine, by `stribeck machine` on other records of it: simulated records have its path and
+    /// background, and the level counts. Takes the unit of the record, `--unit`, if the file does not say it
+    #[arg(long, value_name = "FILE", requires = "record")]
+    machine: Option<PathBuf>,
     /// Runs for a record
     #[arg(long, value_name = "N", requires = "record", default_value_t = 240, value_parser = runs)]
     runs: usize,

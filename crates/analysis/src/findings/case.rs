@@ -20,6 +20,7 @@ use crate::families;
 use crate::filtering::Filter;
 use crate::kinematics::{KinematicsFinding, Turning};
 use crate::load::{Carried, LoadFinding};
+use crate::machine;
 use crate::paper;
 use crate::prediction::Prediction;
 use crate::reading::CursorReading;
@@ -253,7 +254,13 @@ impl<'a> Case<'a> {
         carried: &Carried,
         notes: &mut Vec<String>,
     ) -> Result<Vec<RecordFinding>, Error> {
-        records::of(&self.run.scene.written, carried.support_n(), self.record.sample_rate_hz(), notes)
+        let scene = &self.run.scene.written;
+        if scene.output.records.is_none() {
+            return Ok(Vec::new());
+        }
+        let of_machine = machine::of_run(self.run)?;
+        let level = of_machine.map(|record| machine::level(&record.samples)).transpose()?;
+        records::of(scene, carried.support_n(), self.record.sample_rate_hz(), level, notes)
     }
 
     /// Which line of the leading sensor has which cause? None where the speed changes.

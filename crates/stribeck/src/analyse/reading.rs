@@ -222,14 +222,20 @@ pub(crate) struct Accelerations {
 pub(crate) fn accelerations(asked: &Path, options: &Reading, place: &Place) -> Result<Accelerations> {
     let Read { signal, rate_hz, machine, turning, .. } = read(asked, options, place)?;
     ensure!(turning.is_none(), "the speed of `{}` varies: take a record at a steady speed", asked.display());
-    let unit = signal.unit.as_deref().and_then(AccelerationUnit::parse).with_context(|| {
+    let in_m_s2 = in_m_s2(signal.unit.as_deref(), asked)?;
+    Ok(Accelerations { samples: signal.scaled(in_m_s2).read()?, rate_hz, machine })
+}
+
+/// The unit of a record's accelerations [m/s²].
+pub(crate) fn in_m_s2(unit: Option<&str>, file: &Path) -> Result<f64> {
+    let unit = unit.and_then(AccelerationUnit::parse).with_context(|| {
         format!(
             "`{}` does not say that its samples are accelerations: give `--unit g` or `--unit m/s^2`, with \
              `--scale` for a voltage",
-            asked.display()
+            file.display()
         )
     })?;
-    Ok(Accelerations { samples: signal.scaled(unit.in_m_s2()).read()?, rate_hz, machine })
+    Ok(unit.in_m_s2())
 }
 
 pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Read> {

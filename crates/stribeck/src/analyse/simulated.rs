@@ -72,19 +72,19 @@ fn scenes(analysis: &Analysis, file: &Path, options: &Reading, lengths_mm: [f64;
     let mut scenes: Vec<Scene> = Vec::new();
     for (load_n, loose) in [(least, true), (most, false)] {
         for length_mm in lengths_mm.map(|mm| mm.max(SHORTEST_MM)) {
-            let mut set = vec![
+            let set = [
                 format!("defect.ring={ring}"),
                 format!("defect.length_mm={length_mm:.3}"),
                 format!("operation.load_n={load_n:.3}"),
                 format!("operation.speed_rpm={rpm:.3}"),
                 format!("solver.duration_ms={duration_ms:.1}"),
             ];
+            let mut scene = Scene::read_with(file, &set)
+                .with_context(|| format!("`{}` with a spall of this record", file.display()))?;
             if let Some((tight_um, loose_um)) = options.clearance_um {
                 let um = if loose { loose_um } else { tight_um };
-                set.push(format!("bearing.clearance_change_um={um:.3}"));
+                scene.bearing.clearance_change_um = um - scene.bearing.clearance_um();
             }
-            let scene = Scene::read_with(file, &set)
-                .with_context(|| format!("`{}` with a spall of this record", file.display()))?;
             if scenes.iter().all(|other| other.hash() != scene.hash()) {
                 scenes.push(scene);
             }

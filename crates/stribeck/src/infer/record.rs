@@ -1,11 +1,12 @@
 //! The cause of a measured record: inference of a spall from the signature of its passages, which does not
-//! depend on the path.
+//! depend on the path, and from its level where the machine is known.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail, ensure};
 use stribeck_analysis::load::support;
+use stribeck_analysis::machine;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::records::{PassageSignature, duration_s, normal, rhythm};
 use stribeck_diagnosis::{Analysis, Defect, Family, usual_load_n};
@@ -15,16 +16,18 @@ use stribeck_formats::{Channel, uff58};
 use stribeck_plans::inference::{Inference, Values};
 use stribeck_scene::catalogue;
 use stribeck_scene::dice::Dice;
-use stribeck_scene::scene::Scene;
+use stribeck_scene::machine::MachineScene;
+use stribeck_scene::scene::{DefectRing, HousingScene, RecordsScene, Scene};
 use stribeck_store::run_dir::{Keep, Run, check_folder, write_atomic};
 use stribeck_theory::catalogue::CatalogueBearing;
 
 use super::answer::Known;
 use super::rounds::{Point, Rounds};
 use super::{FILE, Options};
-use crate::analyse::{Reading, examine};
+use crate::analyse::{Reading, examine, in_m_s2};
 use crate::compare;
 use crate::interrupt::Interrupt;
+use crate::machine_fit::{State, scene_of};
 use crate::many_runs::ManyRuns;
 use crate::place::{Place, shown};
 
@@ -41,15 +44,14 @@ const DEPTH_MM: (f64, f64) = (0.01, 0.3);
 const SLOPE_DEG: (f64, f64) = (25.0, 90.0);
 /// Default clearance [µm].
 const CLEARANCE_UM: (f64, f64) = (0.0, 20.0);
-/// Ratio of the element's diameter to a facet.
-const FACETS: usize = 100;
-/// Step of the reduced model [µs]; stiff contacts shorten it.
-const STEP_US: f64 = 2.0;
 /// The record that is made for comparison [s].
 const SYNTHETIC_S: f64 = 2.0;
 /// Standard deviation of the time between two events from that by force: a tenth and less for simulated
 /// spalls from 3 mm on; entries of 2 mm are found late by up to a fifth of it (docs/results/spalls.md).
 const FREE_TOLERANCE: f64 = 0.1;
+/// Standard deviation of a record's level from that of its machine, over it: the median of 11 to 17 records is 4 dB
+/// (docs/results/machine.md), that of a normal deviate of 6 dB.
+const LEVEL_TOLERANCE: f64 = 0.7;
 /// Samples a second of sounds [Hz].
 const PLAYED_HZ: u32 = 48_000;
 
@@ -59,20 +61,24 @@ pub(super) struct Measured {
     pub(super) file: PathBuf,
     analysis: Analysis,
     rhythm: Rhythm,
+    /// Unit of its samples [m/s²]; 1 where its level is not compared.
+    in_m_s2: f64,
 }
 
 /// Properties of a damaged raceway.
 struct Claim<'a> {
-    ring: &'static str,
+    ring: DefectRing,
     family: &'a Family,
     passing_hz: f64,
 }
 
-/// What a record tells of its passages whatever the path to the sensor.
+/// What a record tells of its passages.
 struct Told {
     signature: PassageSignature,
     /// Time between its two events, where it shows two [ms].
     free_ms: Option<f64>,
+    /// Root mean square [m/s²], where the machine is known.
+    level_m_s2: Option<f64>,
 }
 
 /// Analyses a record and writes the inference that it asks for into `out`.
@@ -83,21 +89,33 @@ pub(super) fn prepare(record: &Path, options: &Options, out: &Path, place: &Plac
         "a record is inferred by simulating its bearing: name it with `--bearing`, for example 6205",
     )?;
     let known = catalogue::parse(bearing).map_err(anyhow::Error::msg)?;
+    let machine =
+        options.machine.as_deref().map(|file| MachineScene::read(&place.locate(file))).transpose()?;
     let findings = &analysis.findings;
+    let in_m_s2 = match machine {
+        Some(_) => in_m_s2(findings.unit.as_deref(), record)?,
+        None => 1.0,
+    };
     let rpm = findings.speed_rpm.context("give the speed of the shaft with `--speed-rpm`")?;
     let claim = claim(&analysis)?;
     let cage_hz = family(&analysis, Defect::Ftf).map_or(0.4 * rpm / 60.0, |family| family.expected_hz);
     let rhythm = rhythm(claim.passing_hz, rpm / 60.0, cage_hz);
     let signature = Signature::of(&analysis.beginning, findings.rate_hz, rhythm)
         .with_context(|| format!("`{}` cannot be held against simulated records", record.display()))?;
+    let level = machine::level(&analysis.beginning)?;
+    let told = Told {
+        signature: PassageSignature::of(&signature),
+        free_ms: findings.event_spacing_ms,
+        level_m_s2: machine.is_some().then_some(in_m_s2 * level),
+    };
     check_folder(out, &[FILE])?;
-    let base = base(bearing, &known, &claim, rpm, rhythm, findings.rate_hz);
-    let told = Told { signature: PassageSignature::of(&signature), free_ms: findings.event_spacing_ms };
-    let text = text(record, &known, &claim, reading, &told, options.runs);
+    let load_n = reading.load_n.unwrap_or_else(|| usual_load_n(&known));
+    let base = base(bearing, &claim, (load_n, rpm), (rhythm, findings.rate_hz), machine)?;
+    let text = text(record, (&base, &known), &claim, reading, &told, options.runs);
     std::fs::create_dir_all(out).with_context(|| format!("cannot make `{}`", shown(out)))?;
-    write_once(&out.join(BASE), &base)?;
+    write_once(&out.join(BASE), &base.to_ron())?;
     write_once(&out.join(FILE), &text)?;
-    Ok(Measured { file: out.join(FILE), analysis, rhythm })
+    Ok(Measured { file: out.join(FILE), analysis, rhythm, in_m_s2 })
 }
 
 /// Writes a file, or finds the same one.
@@ -127,8 +145,8 @@ fn claim(analysis: &Analysis) -> Result<Claim<'_>> {
         );
     };
     let ring = match family.name {
-        Defect::Bpfo => "outer",
-        Defect::Bpfi => "inner",
+        Defect::Bpfo => DefectRing::Outer,
+        Defect::Bpfi => DefectRing::Inner,
         Defect::Bsf | Defect::Ftf => bail!(
             "{} Spalls are inferred on raceways: of a rolling element or a cage there is no such model",
             analysis.findings.verdict
@@ -137,48 +155,47 @@ fn claim(analysis: &Analysis) -> Result<Claim<'_>> {
     Ok(Claim { ring, family, passing_hz: family.measured_hz.unwrap_or(family.expected_hz) })
 }
 
-/// The scene: the bearing between rings that do not bend, dry, with one spall under the load.
+/// The scene, as `machine` fits a path on it: the bearing in its machine, or in a mass as heavy, with one spall under
+/// the load.
 fn base(
     bearing: &str,
-    known: &CatalogueBearing,
     claim: &Claim<'_>,
-    rpm: f64,
-    rhythm: Rhythm,
-    rate_hz: f64,
-) -> String {
-    let size_mm = std::f64::consts::PI * known.diameter_mm / FACETS as f64;
-    let interval_us = (1e6 / rate_hz).min(10.0);
-    let noise: Vec<String> = NOISE_DB.iter().map(|db| format!("{db:?}")).collect();
-    format!(
-        "// The bearing of a measured record between rings that do not bend: what sets of unknowns \
-         change.\n(\n name: \"record\",\n    model: reduced(modes_khz: 30.0, step_us: {STEP_US:?}),\n    \
-         bearing: \"{bearing}\",\n    housing: rigid(),\n    defect: (ring: {}, length_mm: 1.0, depth_mm: \
-         0.1, angle_deg: 90.0),\n    cage: (pocket: corners),\n    mesh: (size_mm: {size_mm:.4}, \
-         roller_facets: {FACETS}),\n    operation: (load_n: 100.0, speed_rpm: {rpm:?}),\n    contact: \
-         (surface: arc, friction: 0.05),\n    film: None,\n    solver: (duration_ms: {:.1}, \
-         mass_damping_per_s: 5000.0, structural_damping: None),\n    output: (interval_us: {interval_us:?}, \
-         frames: None, records: (rate_hz: {rate_hz:?}, noise_db: [{}])),\n)\n",
-        claim.ring,
-        1e3 * duration_s(rhythm),
-        noise.join(", "),
-    )
+    ((least_n, most_n), rpm): ((f64, f64), f64),
+    (rhythm, rate_hz): (Rhythm, f64),
+    machine: Option<MachineScene>,
+) -> Result<Scene> {
+    let state = State { spall: Some((claim.ring, 1.0)), width_mm: None };
+    let set = ["name=record".to_owned(), format!("solver.duration_ms={:.1}", 1e3 * duration_s(rhythm))];
+    let mut scene = scene_of(bearing, ((least_n * most_n).sqrt(), rpm), state, (rate_hz, 1.0), &set)?;
+    scene.housing = match (machine, scene.housing.mass(&scene.bearing)) {
+        (Some(mut machine), _) => {
+            machine.sensor.rate_hz = rate_hz;
+            HousingScene::Machine(machine)
+        }
+        (None, mass) => HousingScene::Rigid(mass.unwrap_or_default()),
+    };
+    scene.output.records = Some(RecordsScene { rate_hz, noise_db: NOISE_DB.to_vec() });
+    scene.validate()?;
+    Ok(scene)
 }
 
 /// The inference: unknowns of the spall, and targets from the record.
 fn text(
     record: &Path,
-    known: &CatalogueBearing,
+    (base, known): (&Scene, &CatalogueBearing),
     claim: &Claim<'_>,
     reading: &Reading,
     told: &Told,
     runs: usize,
 ) -> String {
     let across = known.diameter_mm * known.angle_deg.to_radians().cos();
-    let raceway_mm = if claim.ring == "outer" { known.pitch_mm + across } else { known.pitch_mm - across };
+    let is_outer = claim.ring == DefectRing::Outer;
+    let raceway_mm = if is_outer { known.pitch_mm + across } else { known.pitch_mm - across };
     let elements = f64::from(known.elements.unwrap_or(9).max(3));
     let longest_mm = LONGEST * std::f64::consts::PI * raceway_mm / elements;
     let load = reading.load_n.unwrap_or_else(|| usual_load_n(known));
-    let clearance = reading.clearance_um.unwrap_or(CLEARANCE_UM);
+    let (tight_um, loose_um) = reading.clearance_um.unwrap_or(CLEARANCE_UM);
+    let bought_um = base.bearing.clearance_um();
     let noise: Vec<String> = NOISE_DB.iter().map(|db| format!("\"{db}\"")).collect();
     let stem = record.file_stem().map_or_else(|| "record".into(), |name| name.to_string_lossy());
     let name: String =
@@ -188,7 +205,7 @@ fn text(
         ("defect.depth_mm", DEPTH_MM, true),
         ("defect.edge_slope_deg", SLOPE_DEG, false),
         ("operation.load_n", load, true),
-        ("bearing.clearance_change_um", clearance, false),
+        ("bearing.clearance_change_um", (tight_um - bought_um, loose_um - bought_um), false),
     ];
     // A field given as one number is not an unknown.
     let set: Vec<String> = ranges
@@ -212,20 +229,8 @@ fn text(
         "        (name: \"noise_db\", readings: [{}]),\n    ],\n    targets: [",
         noise.join(", ")
     );
-    for (name, of, value, tolerance) in targets(&told.signature) {
-        let _ = writeln!(
-            text,
-            "        (name: \"{name}\", of: \"records[noise_db={{noise_db}}].{of}\", {value}, tolerance: \
-             {tolerance}),"
-        );
-    }
-    if let Some(free_ms) = told.free_ms {
-        let tolerance = FREE_TOLERANCE * free_ms;
-        let _ = writeln!(
-            text,
-            "        (name: \"time between the edges, ms\", of: \"median(events.free_ms)\", value: {free_ms:.4}, \
-             tolerance: {tolerance:.4}),"
-        );
+    for (name, of, value, tolerance) in targets(told) {
+        let _ = writeln!(text, "        (name: \"{name}\", of: \"{of}\", {value}, tolerance: {tolerance}),");
     }
     let first = runs / 2;
     let _ = writeln!(
@@ -239,17 +244,30 @@ fn text(
 /// Targets of the record: name, number of the summary, value, tolerance. The time between two events is
 /// compared with the force of the simulated element, which loses and regains its load at the edges: behind a
 /// path most simulated records have only a hump there.
-fn targets(told: &PassageSignature) -> [(&'static str, &'static str, String, f64); 6] {
+fn targets(told: &Told) -> Vec<(&'static str, String, String, f64)> {
+    let of = |number: &str| format!("records[noise_db={{noise_db}}].{number}");
     let value = |value: f64| format!("value: {value:.5}");
-    let within: Vec<String> = told.within.iter().map(|value| format!("{value:.4}")).collect();
-    [
-        ("correlation within a passage", "within", format!("values: [{}]", within.join(", ")), 0.03),
-        ("passages repeat", "repeats", value(told.repeats), 0.02),
-        ("ten passages later", "repeats_later", value(told.repeats_later), 0.02),
-        ("sidebands of the shaft, dB", "by_shaft_db", value(told.by_shaft_db), 1.0),
-        ("sidebands of the cage, dB", "by_cage_db", value(told.by_cage_db), 1.0),
-        ("swing of the power", "swing", value(told.swing), 0.02),
-    ]
+    let Told { signature, free_ms, level_m_s2 } = told;
+    let within: Vec<String> = signature.within.iter().map(|value| format!("{value:.4}")).collect();
+    let within = format!("values: [{}]", within.join(", "));
+    let level = |level: f64| {
+        ("level, m/s²", of("level_m_s2"), format!("value: {level:e}, log: true"), LEVEL_TOLERANCE * level)
+    };
+    let free = |ms: f64| {
+        let (name, of) = ("time between the edges, ms", "median(events.free_ms)");
+        (name, of.to_owned(), format!("value: {ms:.4}"), FREE_TOLERANCE * ms)
+    };
+    let mut targets = vec![
+        ("correlation within a passage", of("within"), within, 0.03),
+        ("passages repeat", of("repeats"), value(signature.repeats), 0.02),
+        ("ten passages later", of("repeats_later"), value(signature.repeats_later), 0.02),
+        ("sidebands of the shaft, dB", of("by_shaft_db"), value(signature.by_shaft_db), 1.0),
+        ("sidebands of the cage, dB", of("by_cage_db"), value(signature.by_cage_db), 1.0),
+        ("swing of the power", of("swing"), value(signature.swing), 0.02),
+    ];
+    targets.extend(free_ms.map(free));
+    targets.extend(level_m_s2.map(level));
+    targets
 }
 
 impl Measured {
@@ -291,11 +309,14 @@ impl Measured {
         Ok(Some(page.join("report.html")))
     }
 
-    /// The force of a run behind a path with the spectrum of the measured record, in noise of the same
-    /// spectrum, at the level of that record.
+    /// The record of a run's machine. Without one its force behind a path with the spectrum of the measured record, in
+    /// noise of the same spectrum, at the level of that record.
     fn synthetic(&self, folder: &Path, noise_db: f64) -> Result<Vec<f64>> {
         let findings = &self.analysis.findings;
         let run = Run::read(folder)?;
+        if let Some(record) = machine::of_run(&run)? {
+            return Ok(record.samples.into_iter().map(|x| x / self.in_m_s2).collect());
+        }
         let record = Record::whole(&run)?;
         let force = support(&record, run.scene.written.load_direction());
         let start = (5.0 / self.rhythm.passing_hz * record.sample_rate_hz()) as usize;
@@ -376,31 +397,46 @@ mod tests {
     fn behaves_the_inference_of_a_record_can_be_read_and_its_scenes_simulated() {
         let analysis = analysis();
         let claim = claim(&analysis).expect("one raceway");
-        assert_eq!(claim.ring, "outer");
+        assert_eq!(claim.ring, DefectRing::Outer);
         let rhythm = rhythm(claim.passing_hz, 20.0, 8.0);
         let signature = Signature::of(&analysis.beginning, 12_800.0, rhythm).expect("long enough");
-        let signature = PassageSignature::of(&signature);
-        let told = Told { signature, free_ms: Some(1.5) };
         let known = CatalogueBearing::parse("6205").expect("in the catalogue");
         let line = Line::parse_from(["x", "--load-n", "50..150", "--clearance-um", "5"]);
         let folder = Scratch::create("infer-record");
         let at = |name: &str| folder.join(name);
-        let base = base("6205", &known, &claim, 1200.0, rhythm, 12_800.0);
-        std::fs::write(at(BASE), base).expect("room");
-        let text = text(Path::new("a record.csv"), &known, &claim, &line.reading, &told, 60);
-        std::fs::write(at(FILE), &text).expect("room");
-        let inference = Inference::read(&at(FILE)).unwrap_or_else(|why| panic!("{why}\n{text}"));
-        let names: Vec<&str> = inference.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
-        // A given clearance is not an unknown.
-        assert_eq!(
-            names,
-            ["defect.length_mm", "defect.depth_mm", "defect.edge_slope_deg", "operation.load_n", "noise_db"]
-        );
-        assert!(inference.targets.iter().any(|target| target.name.contains("between the edges")));
-        let scene = inference.scene(&[2.0, 0.1, 60.0, 100.0, 1.0]).expect("a scene");
-        let records = scene.output.records.expect("records");
-        assert_eq!((records.rate_hz, records.noise_db.len()), (12_800.0, NOISE_DB.len()));
-        assert!(scene.solver.duration_ms > 30.0 / 71.7 * 1e3);
+        let fitted = MachineScene { seed: 7, ..MachineScene::default() };
+        for (machine, last) in [(None, "time between the edges, ms"), (Some(fitted), "level, m/s²")] {
+            let is_known = machine.is_some();
+            let signature = PassageSignature::of(&signature);
+            let told = Told { signature, free_ms: Some(1.5), level_m_s2: is_known.then_some(0.2) };
+            let base = base("6205", &claim, ((50.0, 150.0), 1200.0), (rhythm, 12_800.0), machine);
+            let base = base.expect("a scene");
+            std::fs::write(at(BASE), base.to_ron()).expect("room");
+            let text = text(Path::new("a record.csv"), (&base, &known), &claim, &line.reading, &told, 60);
+            std::fs::write(at(FILE), &text).expect("room");
+            let inference = Inference::read(&at(FILE)).unwrap_or_else(|why| panic!("{why}\n{text}"));
+            let names: Vec<&str> = inference.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
+            // A given clearance is not an unknown.
+            assert_eq!(
+                names,
+                [
+                    "defect.length_mm",
+                    "defect.depth_mm",
+                    "defect.edge_slope_deg",
+                    "operation.load_n",
+                    "noise_db"
+                ]
+            );
+            assert_eq!(inference.targets.last().expect("targets").name, last);
+            let scene = inference.scene(&[2.0, 0.1, 60.0, 100.0, 1.0]).expect("a scene");
+            // It is the clearance in operation, not a change of the one as bought.
+            let of = &scene.bearing;
+            assert!((of.clearance_um() + of.clearance_change_um - 5.0).abs() < 1e-3, "{of:?}");
+            assert_eq!(scene.housing.machine().map(|m| m.sensor.rate_hz), is_known.then_some(12_800.0));
+            let records = scene.output.records.expect("records");
+            assert_eq!((records.rate_hz, records.noise_db.len()), (12_800.0, NOISE_DB.len()));
+            assert!(scene.solver.duration_ms > 30.0 / 71.7 * 1e3);
+        }
     }
 
     #[test]
