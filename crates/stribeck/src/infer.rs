@@ -93,7 +93,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
         (None, Some(file)) => {
             ensure!(
-                !options.reading.is_given(),
+                !options.reading.is_given() && options.machine.is_none(),
                 "options of a record were given, and no record: `--record {}` names it",
                 file.display()
             );
