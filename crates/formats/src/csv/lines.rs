@@ -1,6 +1,7 @@
 //! Lines of a text in any of the usual encodings: UTF-8, UTF-16 and, where it is neither, Latin-1 as Windows
 //! has it.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
@@ -28,16 +29,16 @@ enum Encoding {
 
 impl Encoding {
     /// The text of some bytes; what is no character becomes U+FFFD.
-    fn decode(self, bytes: &[u8]) -> String {
+    fn decode(self, bytes: &[u8]) -> Cow<'_, str> {
         let wide = |unit: fn([u8; 2]) -> u16| {
             let (pairs, rest) = bytes.as_chunks();
             let units: Vec<u16> = pairs.iter().map(|pair| unit(*pair)).collect();
             let mut text = String::from_utf16_lossy(&units);
             text.extend(rest.iter().map(|_| char::REPLACEMENT_CHARACTER));
-            text
+            Cow::Owned(text)
         };
         match self {
-            Self::Utf8 => String::from_utf8_lossy(bytes).into_owned(),
+            Self::Utf8 => String::from_utf8_lossy(bytes),
             Self::Utf16Le => wide(u16::from_le_bytes),
             Self::Utf16Be => wide(u16::from_be_bytes),
             Self::Windows1252 => bytes
