@@ -1,18 +1,16 @@
 //! The progress of many runs: one bar for all of them on a terminal, lines in a log.
 
 use std::collections::BTreeMap;
-use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 use stribeck_simulation::run::host::Progress;
 use stribeck_store::run_info::clock;
 
-use crate::out::{caution, is_quiet, tell};
+use crate::out::{caution, tell};
+use crate::progress::{bar, pause};
 
-/// A bar is redrawn this often, a log gets a line.
-const PAUSES: [Duration; 2] = [Duration::from_millis(100), Duration::from_secs(10)];
 /// Parts of the bar.
 const PARTS: u64 = 1000;
 
@@ -40,16 +38,7 @@ struct State {
 impl Board {
     /// A board for a number of runs, each called a `noun`.
     pub(crate) fn new(noun: &'static str, all: usize) -> Self {
-        let on_terminal = std::io::stderr().is_terminal();
-        let target = if on_terminal && !is_quiet() {
-            ProgressDrawTarget::stderr()
-        } else {
-            ProgressDrawTarget::hidden()
-        };
-        let bar = ProgressBar::with_draw_target(Some(PARTS), target);
-        if let Ok(style) = ProgressStyle::with_template("{bar:24} {wide_msg}") {
-            bar.set_style(style);
-        }
+        let (bar, on_terminal) = bar(PARTS);
         let now = Instant::now();
         let state = State { noun, all, done: 0, going: BTreeMap::new(), earlier: 0.0, shown: now };
         Self { bar, on_terminal, began: now, state: Mutex::new(state) }
@@ -66,7 +55,7 @@ impl Board {
             state.earlier += part;
         }
         let now = Instant::now();
-        if now - state.shown < PAUSES[usize::from(!self.on_terminal)] {
+        if now - state.shown < pause(self.on_terminal) {
             return;
         }
         state.shown = now;

@@ -10,11 +10,6 @@ use stribeck_store::run_info::{RunInfo, clock};
 
 use crate::out::{is_quiet, tell};
 
-/// A bar is redrawn this often.
-const REDRAW: Duration = Duration::from_millis(100);
-/// A log gets a line this often.
-const LOG_PAUSE: Duration = Duration::from_secs(10);
-
 /// Shows how far a run has come.
 pub struct Meter {
     bar: ProgressBar,
@@ -30,16 +25,7 @@ pub struct Meter {
 impl Meter {
     /// A meter for a run of `duration_ms` simulated time.
     pub fn new(duration_ms: f64) -> Self {
-        let on_terminal = std::io::stderr().is_terminal();
-        let target = if on_terminal && !is_quiet() {
-            ProgressDrawTarget::stderr()
-        } else {
-            ProgressDrawTarget::hidden()
-        };
-        let bar = ProgressBar::with_draw_target(Some(1), target);
-        if let Ok(style) = ProgressStyle::with_template("{bar:24} {wide_msg}") {
-            bar.set_style(style);
-        }
+        let (bar, on_terminal) = bar(1);
         let now = Instant::now();
         Self { bar, on_terminal, duration_ms, phase: "", began: (now, 0), shown: now, shown_part: 0.0 }
     }
@@ -55,8 +41,7 @@ impl Meter {
         }
         let since = now - self.shown;
         let complete = part >= 1.0 && self.shown_part < 1.0;
-        let pause = if self.on_terminal { REDRAW } else { LOG_PAUSE };
-        if !(new_phase || complete && self.on_terminal || since >= pause) {
+        if !(new_phase || complete && self.on_terminal || since >= pause(self.on_terminal)) {
             return;
         }
         (self.shown, self.shown_part) = (now, part);
@@ -97,6 +82,23 @@ impl Meter {
             clock(elapsed * left / done)
         )
     }
+}
+
+/// How often a bar is redrawn, or a log gets a line.
+pub(crate) fn pause(on_terminal: bool) -> Duration {
+    if on_terminal { Duration::from_millis(100) } else { Duration::from_secs(10) }
+}
+
+/// A bar of so many parts, and whether there is a terminal for it.
+pub(crate) fn bar(parts: u64) -> (ProgressBar, bool) {
+    let on_terminal = std::io::stderr().is_terminal();
+    let target =
+        if on_terminal && !is_quiet() { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    let bar = ProgressBar::with_draw_target(Some(parts), target);
+    if let Ok(style) = ProgressStyle::with_template("{bar:24} {wide_msg}") {
+        bar.set_style(style);
+    }
+    (bar, on_terminal)
 }
 
 /// Largest energy imbalance of a run, in words.

@@ -10,7 +10,7 @@ use stribeck_plans::campaign::Campaign;
 use stribeck_scene::catalogue;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_scene::scene_file::{readable, replaced_by_bearing};
-use stribeck_store::run_dir::{Keep, check_folder};
+use stribeck_store::run_dir::check_folder;
 
 use crate::campaign::{self, CAMPAIGN, MARKS, SCENES, carry_out};
 use crate::many_runs::Share;
@@ -67,12 +67,12 @@ impl Kept {
         if scene.model == ModelScene::Full { Self::All } else { Self::Signals }
     }
 
-    /// As a campaign's file has it.
-    fn whole(self) -> Keep {
+    /// As a campaign's file has it, and the flag.
+    fn word(self) -> &'static str {
         match self {
-            Self::All => Keep::All,
-            Self::Signals => Keep::Signals,
-            Self::Numbers => Keep::Numbers,
+            Self::All => "all",
+            Self::Signals => "signals",
+            Self::Numbers => "numbers",
         }
     }
 }
@@ -250,20 +250,12 @@ fn text(
     }
     text +=
         &format!("    seed: {},\n    starts: {},\n", options.seed.unwrap_or(1), options.starts.unwrap_or(1));
-    text += &format!("    keep: {},\n    variants: grid([\n", word(keep.whole()));
+    text += &format!("    keep: {},\n    variants: grid([\n", keep.word());
     for a in swept {
         let values: Vec<String> = a.values.iter().map(|value| as_ron(&a.field, value)).collect();
         text += &format!("        (field: {:?}, values: [{}]),\n", a.field, values.join(", "));
     }
     Ok(text + "    ]),\n)\n")
-}
-
-fn word(keep: Keep) -> &'static str {
-    match keep {
-        Keep::All => "all",
-        Keep::Signals => "signals",
-        Keep::Numbers => "numbers",
-    }
 }
 
 /// A value as a scene has it: names of bearings and other texts get their quotes.
@@ -304,7 +296,7 @@ fn kept_in(out: &Path) -> Option<Kept> {
     let text =
         std::fs::read_to_string(out.join(CAMPAIGN)).ok().filter(|text| text.starts_with(WRITTEN_BY))?;
     let kept = [Kept::All, Kept::Signals, Kept::Numbers];
-    kept.into_iter().find(|kept| text.contains(&format!("keep: {},", word(kept.whole()))))
+    kept.into_iter().find(|kept| text.contains(&format!("keep: {},", kept.word())))
 }
 
 /// Removes the tables of an earlier sweep in this folder; its runs stay and are used where their scenes occur
@@ -317,8 +309,8 @@ fn make_way(out: &Path, keep: Kept) -> Result<()> {
                 "runs in `{}` were made with `--keep {}`, and what `--keep {}` asks for besides was \
                  not kept: give the same `--keep`, or another `--out`",
                 shown(out),
-                word(before.whole()),
-                word(keep.whole())
+                before.word(),
+                keep.word()
             );
         }
         for file in [CAMPAIGN, SCENES] {
