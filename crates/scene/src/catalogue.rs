@@ -140,7 +140,8 @@ fn as_cylinders(name: &str, length: f64) -> String {
     format!(
         "the balls of {name} are cylinders {length} mm long, between which raceways approach each other as with \
          balls at the load that the scene was made for, and in the reduced model at any load; pressures and stresses \
-         are those of lines, not of points"
+         are those of lines, not of points, and rings are no wider: in an adapter or a pedestal they bend several \
+         times as far as real ones, in a machine or a rigid housing not at all"
     )
 }
 
