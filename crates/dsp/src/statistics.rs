@@ -31,6 +31,9 @@ pub fn peak(signal: &[f64]) -> Result<f64> {
 }
 
 /// Crest factor: peak over root mean square. 1 for a square wave, √2 for a sine, above 4 for impacts.
+///
+/// # Errors
+/// Those of [`rms`], and [`Error::Undefined`] for a signal of zeros.
 pub fn crest_factor(signal: &[f64]) -> Result<f64> {
     let rms = rms(signal)?;
     if rms == 0.0 {

@@ -107,6 +107,9 @@ impl Content {
     }
 
     /// From bytes.
+    ///
+    /// # Errors
+    /// [`Error::Content`] when they are not those of a bearing.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, Error> {
         let (mut content, singles): (Self, Singles) = postcard::from_bytes(bytes)?;
         let reduction = &mut content.modal.reduction;

@@ -37,6 +37,9 @@ pub(crate) fn spall(handles: &Handles) -> Option<Spall> {
 
 /// The bearing of some handles, under a load and at a speed that follow `duty`. A handle that stands where
 /// the scene has it changes no bit.
+///
+/// # Errors
+/// When a raceway has no room for the spall.
 pub(crate) fn modal(content: &Content, to: &Handles, duty: Option<Duty>) -> Result<ModalBearing, Error> {
     let mut modal = content.modal.clone();
     let was = &content.handles;

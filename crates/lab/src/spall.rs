@@ -121,6 +121,9 @@ fn places(n: usize, first: f64, radius: f64, spall: Option<&Spall>) -> Result<Ve
 
 /// Vertices of a raceway with another spall, or none. `outwards` is 1 for the outer and −1 for the inner
 /// raceway: where a spall leads.
+///
+/// # Errors
+/// When the raceway has no room for the spall.
 pub fn moved(
     vertices: &[[f64; 2]],
     was: Option<&Spall>,
@@ -177,6 +180,9 @@ impl Move {
 }
 
 /// Moves the spall of the outer raceway, whose vertices as they are drawn are `outline`; gives the new ones.
+///
+/// # Errors
+/// When the raceway has no room for the spall.
 pub fn move_outer(
     reduction: &mut Reduction,
     outline: &[[f64; 2]],

@@ -60,6 +60,11 @@ struct Subject<'a> {
 /// Writes the report of the run in `run_dir` into that directory and returns its numbers.
 ///
 /// An interrupted or diverged run gives a report of what exists, with a banner.
+///
+/// # Errors
+/// [`Error::Run`] when the directory is not a run, its scene was changed, a file cannot be understood or the
+/// report cannot be written, [`Error::Write`] when a figure cannot be written, [`Error::Signal`] and
+/// [`Error::Drawing`] when a recorded signal cannot be processed or drawn.
 pub fn write(run_dir: &Path) -> Result<Summary, Error> {
     write_between(run_dir, f64::NEG_INFINITY..f64::INFINITY)
 }

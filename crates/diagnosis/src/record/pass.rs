@@ -50,6 +50,10 @@ pub(crate) struct Record {
 
 impl Record {
     /// Reads a channel sampled `rate_hz` times a second.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a record that is too short or
+    /// constant, [`Error::Signal`] when it cannot be processed.
     pub(crate) fn read(channel: &Channel, rate_hz: f64) -> Result<Self, Error> {
         if !rate_hz.is_finite() || rate_hz <= 0.0 {
             return Err(Error::NoSignal(format!("a sample rate of {rate_hz} Hz; give one above 0")));

@@ -57,6 +57,9 @@ pub(crate) struct Nearest {
 
 impl Curved {
     /// The curve through an outline around its solid, or with `hollow` within it.
+    ///
+    /// # Errors
+    /// When facets meet at such angles that no film lies across a vertex.
     pub(crate) fn new(name: &str, outline: &Outline, hollow: bool) -> Result<Self, Error> {
         let mut slots: Vec<u32> = (0..outline.len() as u32).collect();
         if hollow {

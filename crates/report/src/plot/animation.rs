@@ -71,6 +71,9 @@ fn inside(corners: &[[f64; 2]], at: [f64; 2]) -> bool {
 }
 
 /// The pictures as an endless GIF, each shown for `hundredths` of a second.
+///
+/// # Errors
+/// [`Error::Drawing`] when they differ in size or there are none.
 pub fn gif(name: &str, canvases: &[Canvas], hundredths: u16) -> Result<Vec<u8>, Error> {
     let failed = |why: String| Error::Drawing { figure: name.to_owned(), why };
     let first = canvases.first().ok_or_else(|| failed("it has no pictures".into()))?;

@@ -124,6 +124,10 @@ impl Sources {
     }
 
     /// Applies arguments in order.
+    ///
+    /// # Errors
+    /// All that cannot be applied; the others are, as far as they go, so each meets the scene that it is
+    /// written for.
     pub(crate) fn set_all<S: AsRef<str>>(&mut self, arguments: &[S]) -> Result<(), SceneError> {
         let given = written_by(arguments);
         let mut problems = Vec::new();

@@ -69,6 +69,10 @@ const UNITS: [(&[&str], f64); 4] = [
 const FASTEST: f64 = 1e6;
 
 /// The turns from a speed over time; none where neither unit nor name says that the channel is one.
+///
+/// # Errors
+/// [`Error::File`] when it cannot be read, [`Error::NoSignal`] for a speed that goes through zero, is no
+/// number, or is too large.
 pub(super) fn of_speed(channel: &Channel, rate_hz: f64) -> Result<Option<Turns>, Error> {
     let Some((factor, of_unit)) = turns_a_minute(channel) else { return Ok(None) };
     let name = &channel.name;
