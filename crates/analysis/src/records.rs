@@ -78,7 +78,8 @@ pub fn duration_s(rhythm: Rhythm) -> f64 {
 const BEFORE: f64 = 5.0;
 
 /// The records that a scene asks for, by the force of all rolling elements on the outer ring [N], sampled
-/// `rate_hz` times a second, and the level of that of its machine; none where the force is too short, or the scene has no rhythm, with a note.
+/// `rate_hz` times a second, and the level of that of its machine; none where the force is too short, or the scene
+/// has no rhythm, with a note.
 pub(crate) fn of(
     scene: &Scene,
     force_n: &[f64],
