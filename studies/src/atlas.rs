@@ -92,18 +92,14 @@ pub(crate) fn measure(runner: &Runner<'_>, rows: &mut Rows) -> Result<()> {
 }
 
 /// The scene of a sound bearing with a defect in proportion to its elements.
-fn with_defect(variant: Variant, sound: &Scene, defect: &str, list: &str) -> Variant {
-    let k = sound.kinematics();
-    let (least_ms, knocks_hz) = match defect {
-        "roller-spall" => (ROLLER_MS, vec![2.0 * k.bsf_hz]),
-        _ => (sound.solver.duration_ms, vec![k.bpfo_hz, k.bpfi_hz]),
-    };
-    let nearest_hz =
-        knocks_hz.into_iter().map(|hz| off_multiple(hz, k.shaft_hz)).fold(f64::INFINITY, f64::min);
-    let duration_ms = (1e3 * RESOLUTIONS / nearest_hz).ceil().min(LONGEST_MS).max(least_ms);
-    variant
-        .with(format!("solver.duration_ms={duration_ms}"))
-        .with(format!("defects=[{}]", in_diameters(list, sound.bearing.roller_diameter_mm)))
+fn with_defect(mut variant: Variant, sound: &Scene, defect: &str, list: &str) -> Variant {
+    if defect == "roller-spall" {
+        let k = sound.kinematics();
+        let apart_ms = 1e3 * RESOLUTIONS / off_multiple(2.0 * k.bsf_hz, k.shaft_hz);
+        let duration_ms = apart_ms.ceil().clamp(ROLLER_MS, LONGEST_MS);
+        variant = variant.with(format!("solver.duration_ms={duration_ms}"));
+    }
+    variant.with(format!("defects=[{}]", in_diameters(list, sound.bearing.roller_diameter_mm)))
 }
 
 /// The text with every number in braces, in diameters of a roller, in millimetres; thousandths of a diameter,
