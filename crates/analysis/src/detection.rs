@@ -153,8 +153,8 @@ pub fn smallest(records: &[(f64, usize, usize)], seed: u64) -> Option<(Curve, Sm
 }
 
 /// What every answer leaves out.
-pub const CAUTION: &str = "A spall without `defect.width_mm` takes the whole contact, and simulated elements come \
-    more evenly than real ones, so that lines stand too high: a machine shows spalls later than this curve says";
+pub const CAUTION: &str = "A spall without `defect.width_mm` takes the whole contact, and simulated blows differ less \
+    from one another than real ones, so that lines stand too high: a machine shows spalls later than this curve says";
 
 /// How many of the records of one length show the spall.
 fn counted(of: Option<&OfLength>, record_s: f64) -> String {
@@ -184,7 +184,7 @@ pub fn in_words(detection: &Detection) -> String {
             )
         }
         Smallest::Below(mm) => format!(
-            "Even the shortest spall that was tried, {mm:.2} mm, is found in {}, {of}. Shorter ones were not tried (`--lengths`).",
+            "Even the shortest spall that was tried, {mm:.2} mm, is found in {}, {of}. Shorter ones were not tried.",
             counted(detection.lengths.first(), *record_s)
         ),
         Smallest::Above(mm) => format!(

@@ -16,7 +16,7 @@ pub(crate) fn load(path: &Path) -> Result<String, SceneError> {
     let shown = path.display();
     let unreadable = |error: std::io::Error| {
         let reason = reason(&error);
-        refuse(path, format!("cannot read scene `{shown}`: {reason}"), advice(&error, path))
+        refuse(path, format!("cannot read `{shown}`: {reason}"), advice(&error, path))
     };
     if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
         return Err(refuse(path, format!("`{shown}` is a folder, not a scene file"), inside(path)));

@@ -307,7 +307,11 @@ fn refuses_files_that_are_no_scene() {
     assert!(refuse("huge", &vec![b' '; (8 << 20) + 1]).contains("larger than 8388608 bytes"));
     assert!(refuse("empty", b"").contains("the scene is empty"));
     assert!(refuse("cut", b"(bearing: (rollers: 2").contains("ends too early"));
-    assert!(only(Scene::read(folder.join("missing.ron"))).to_string().contains("cannot read scene"));
+    assert!(
+        only(Scene::read(folder.join("missing.ron")))
+            .to_string()
+            .contains("missing.ron`: there is no such file")
+    );
     assert!(only(Scene::read(folder.path())).to_string().contains("is a folder"));
     std::fs::write(folder.join("bom.ron"), "\u{feff}()").expect("writable");
     assert!(Scene::read(folder.join("bom.ron")).is_ok());
