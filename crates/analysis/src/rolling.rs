@@ -21,7 +21,8 @@ const SLIDING: f64 = 0.02;
 pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f64) -> Option<f64> {
     let motion = scene.written.mean_kinematics();
     let radius = scene.roller_radius;
-    let inertia = 0.5 * PI * scene.material.density * scene.thickness * radius.powi(4);
+    let length = scene.thickness * scene.element_share();
+    let inertia = 0.5 * PI * scene.material.density * length * radius.powi(4);
     let pairs = curve.angle_deg.windows(2).zip(curve.force_n.windows(2));
     let over_angle: f64 = pairs.map(|(a, q)| 0.5 * (q[0] + q[1]) * (a[1] - a[0]).to_radians()).sum();
     let impulse = over_angle / motion.cage_rad_s.abs();

@@ -40,6 +40,8 @@ pub struct FilmSpec {
     pub oil: Oil,
     /// Penalty stiffness of the contact of the two [Pa/m].
     pub stiffness: f64,
+    /// Length out of plane [m].
+    pub length: f64,
     /// Initial entrainment speed [m/s]: half the sum of the speeds of both surfaces relative to the contact.
     pub speed: f64,
 }
@@ -113,8 +115,8 @@ struct Memory {
 }
 
 impl Films {
-    /// Films between `surfaces`, in reference positions `x`, `y` [m] by slot; `thickness` [m] is out of
-    /// plane.
+    /// Films between `surfaces`, in reference positions `x`, `y` [m] by slot; `thickness` [m] is that of
+    /// their contacts out of plane.
     ///
     /// # Errors
     /// When a number is out of range or a surface cannot hold a film.
@@ -137,9 +139,10 @@ impl Films {
         let (mut films, mut first) = (Vec::new(), Vec::new());
         for spec in specs {
             first.push(films.len());
-            let FilmSpec { round, centre, track, oil, stiffness, speed } = *spec;
+            let FilmSpec { round, centre, track, oil, stiffness, length, speed } = *spec;
             check("dynamic viscosity [Pa s]", oil.viscosity, oil.viscosity > 0.0)?;
             check("least film thickness [m]", oil.least, oil.least > 0.0)?;
+            check("length of a film [m]", length, length > 0.0)?;
             check("penalty stiffness [Pa/m]", stiffness, stiffness > 0.0)?;
             let name = || surfaces[round].name.clone();
             let [whole] = &lands[round][..] else {
@@ -162,7 +165,7 @@ impl Films {
                     track,
                     centre,
                     lands: [land.clone(), whole.clone()],
-                    law: FilmLaw::new(oil, radius, thickness, bed),
+                    law: FilmLaw::new(oil, radius, length, bed),
                     memory: Memory::new(speed),
                     nodes: [0; 4],
                     pushed: Pushed::default(),

@@ -89,7 +89,8 @@ impl Model {
     fn films(&self) -> Films {
         let oil = Oil { viscosity: VISCOSITY, least: LEAST };
         let centre = self.centre as u32;
-        let spec = FilmSpec { round: 1, centre, track: 0, oil, stiffness: STIFFNESS, speed: SPEED };
+        let spec =
+            FilmSpec { round: 1, centre, track: 0, oil, stiffness: STIFFNESS, length: LENGTH, speed: SPEED };
         Films::new(vec![self.ring.clone(), self.rim.clone()], &[spec], LENGTH, &self.x, &self.y)
             .expect("a film")
     }

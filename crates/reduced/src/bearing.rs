@@ -78,17 +78,17 @@ impl Bearing {
             for (raceway, film) in raceways.iter_mut().zip([oil.outer, oil.inner]) {
                 let (viscosity, relative) = (oil.viscosity, raceway.relative);
                 raceway.traction =
-                    Some(Traction::new(&resistance, viscosity, film.least, relative, *thickness));
+                    Some(Traction::new(&resistance, viscosity, film.least, relative, oil.length));
             }
         }
         let resistance = resisting.map(|(oil, resistance)| {
-            Resistance::new(&resistance, oil.viscosity, &raceways, radii.roller, *thickness)
+            Resistance::new(&resistance, oil.viscosity, &raceways, radii.roller, oil.length)
         });
         let oil = parameters.oil.as_ref();
         let oil = oil.map(|oil| {
             let others: Vec<&Outline> = rollers.rims[1..].iter().map(|rim| &rim.outline).collect();
             let rims = (&rollers.rims[0].outline, &others[..]);
-            Lubrication::new(oil, &raceways, rims, law.penalty, *thickness)
+            Lubrication::new(oil, &raceways, rims, law.penalty)
         });
         let seat = reduction.springs.as_ref();
         let seat = seat.map(|seat| {

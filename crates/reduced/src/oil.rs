@@ -105,17 +105,17 @@ pub(crate) struct FilmForces {
 
 impl Lubrication {
     /// Oil between the outer and the inner raceway and rims of rollers, a round one and others, on a penalty
-    /// [N/m²] of bodies of a thickness [m].
+    /// [N/m²] of the bodies.
     pub(crate) fn new(
         oil: &modal::Oil,
         raceways: &[Raceway; 2],
         (round, others): (&Outline, &[&Outline]),
         penalty: f64,
-        thickness: f64,
     ) -> Result<Self, Error> {
         let curvature = Curved::rim(round)?.lands[0].curvature;
         let race = |name: &str, on: &Raceway, hollow, loaded: modal::Film| -> Result<OiledRaceway, Error> {
             let curved = Curved::new(name, &on.outline, hollow)?;
+            let length = oil.length;
             let oil = Oil { viscosity: oil.viscosity, least: loaded.least };
             let law = |land: &Land| {
                 let relative = curvature + land.curvature;
@@ -125,7 +125,7 @@ impl Lubrication {
                     return Err(SurfaceError::BadSurface { name: name.to_owned(), reason });
                 }
                 let give = BodySpring::new(penalty, 1.0 / relative, &on.compliance);
-                Ok(FilmLaw::new(oil, 1.0 / relative, thickness, give))
+                Ok(FilmLaw::new(oil, 1.0 / relative, length, give))
             };
             let films = curved.lands.iter().map(law).collect::<Result<_, _>>()?;
             Ok(OiledRaceway { curved, films, speed: loaded.speed })

@@ -93,8 +93,7 @@ pub fn of_scene(scene: &Scene) -> CatalogueBearing {
 /// Assumptions of a scene: dimensions that no catalogue prints, and dimensions that the fields of a bearing
 /// left out.
 pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
-    let of_balls = || as_cylinders("this bearing", bearing.thickness_mm);
-    let own_balls = (bearing.element == ElementKind::Ball).then(of_balls);
+    let own_balls = (bearing.element == ElementKind::Ball).then(|| as_cylinders("this bearing"));
     if !bearing.assumed.is_empty() || own_balls.is_some() {
         return bearing.assumed.iter().map(|what| assumption(*what, bearing)).chain(own_balls).collect();
     }
@@ -130,18 +129,16 @@ pub fn assumptions(bearing: &BearingScene) -> Vec<String> {
             "clearance, cage and the length of the rollers, {length} mm, are usual ones for {name}, not its \
              maker's"
         )),
-        Element::Ball => notes.push(as_cylinders(name, length) + ", and clearance and cage are usual ones"),
+        Element::Ball => notes.push(as_cylinders(name) + ", and clearance and cage are usual ones"),
     }
     notes
 }
 
-/// The note on balls, which a plane model has as cylinders of this length [mm].
-fn as_cylinders(name: &str, length: f64) -> String {
+/// The note on balls, which a plane model has as cylinders.
+fn as_cylinders(name: &str) -> String {
     format!(
-        "the balls of {name} are cylinders {length} mm long, between which raceways approach each other as with \
-         balls at the load that the scene was made for, and in the reduced model at any load; pressures and stresses \
-         are those of lines, not of points, and rings are no wider: in an adapter or a pedestal they bend several \
-         times as far as real ones, in a machine or a rigid housing not at all"
+        "the balls of {name} are cylinders with the mass of balls between rings as wide as real ones, and raceways \
+         approach each other as with balls; pressures and stresses in pictures are those of lines, not of points"
     )
 }
 
@@ -177,9 +174,16 @@ fn assumption(what: Assumed, b: &BearingScene) -> String {
             if b.element == ElementKind::Ball { "as much as it takes to fill them in" } else { "a fifth" }
         ),
         Assumed::Length => format!(
-            "nobody gave the length of the rollers, `thickness_mm`: {} mm are assumed, 0.6 of `width_mm` or, \
-             without it, a roller's diameter",
-            mm(b.thickness_mm)
+            "nobody gave {}",
+            if b.element == ElementKind::Ball {
+                format!("`width_mm`: {} mm are assumed, a ball over 0.6", mm(b.thickness_mm))
+            } else {
+                format!(
+                    "the length of the rollers, `thickness_mm`: {} mm are assumed, 0.6 of `width_mm` or, without \
+                     it, a roller's diameter",
+                    mm(b.thickness_mm)
+                )
+            }
         ),
     }
 }

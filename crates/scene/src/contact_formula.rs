@@ -1,6 +1,7 @@
-//! The penalty with which raceways give way as Hertz's do (THEORY §6.2).
+//! The penalty with which raceways give way as Hertz's do, and cylinders that stand for balls (THEORY §6.2).
 
 use stribeck_theory::bearing::Bearing;
+use stribeck_theory::contact_law::{ContactLaw, ContactLawKind};
 use stribeck_theory::line_contact::LineContacts;
 use stribeck_theory::static_load::RigidRings;
 
@@ -14,8 +15,12 @@ pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
     let static_load =
         RigidRings::new(bearing, scene.contact_law).distribute(load_n, &scene.written.angles_to_load_deg());
     let largest_n = static_load.map_or(load_n, |load| load.max_roller_n());
-    let w = REFERENCE * largest_n / scene.thickness;
-    let wanted = LineContacts::of(bearing).approach(w).0;
+    let force = REFERENCE * largest_n;
+    let w = force / scene.thickness;
+    let wanted = match scene.contact_law() {
+        ContactLawKind::Ball => ContactLaw::of(bearing, ContactLawKind::Ball).both(force),
+        _ => LineContacts::of(bearing).approach(w).0,
+    };
     let meshed = scene.meshed_contacts();
     let on_mesh =
         |side: usize, stiffness: f64| meshed.approach_on_mesh(side, w, scene.element_size, stiffness);
@@ -31,6 +36,18 @@ pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
     }
     soft * layer
 }
+
+/// Length of cylinders [m] that let the raceways approach each other at the most loaded place as balls would; at
+/// most that of their rings.
+pub(crate) fn length_of_balls(scene: &ResolvedScene) -> f64 {
+    let load = STRIBECK * scene.load / scene.rollers as f64;
+    let wanted = ContactLaw::of(scene, ContactLawKind::Ball).both(load);
+    let length = LineContacts::of(scene).load(wanted).map(|(line_load, _)| load / line_load);
+    length.unwrap_or(scene.thickness).clamp(1e-6, scene.thickness.max(1e-6))
+}
+
+/// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.
+const STRIBECK: f64 = 4.37;
 
 /// The law of a penalty bends more than Hertz's: equal approaches under this multiple of the largest force make
 /// the distribution over the rollers equal.

@@ -9,12 +9,13 @@
 
 use std::f64::consts::{PI, TAU};
 
+use stribeck_theory::catalogue::Element;
 use stribeck_theory::contact_law::ContactLawKind;
 use stribeck_theory::duty::Duty;
 use stribeck_theory::lubrication::Oil;
 use stribeck_theory::material::Material;
 
-use crate::contact_formula::as_hertz;
+use crate::contact_formula::{as_hertz, length_of_balls};
 use crate::deviation::{Relief, RollingSurface};
 use crate::dice::Dice;
 use crate::faults::rolling_circle;
@@ -53,6 +54,9 @@ pub struct ResolvedScene {
     pub roller_radius: f64,
     /// Out-of-plane thickness [m].
     pub thickness: f64,
+    /// Length of the contacts of rolling elements [m]: of rollers the thickness, of balls that of cylinders which
+    /// give way as they do under the load at the start.
+    pub contact_length: f64,
     /// Diametral clearance [m]; below zero, rollers are pressed between the raceways.
     pub clearance: f64,
     /// Angle of the middle of the pocket of roller 1 [rad].
@@ -188,6 +192,12 @@ impl ResolvedScene {
 
     fn of(scene: &Scene) -> Self {
         let mut resolved = Self::with_stated_contact(scene);
+        if scene.element() == Element::Ball {
+            resolved.contact_length = length_of_balls(&resolved);
+            let share = resolved.contact_length / resolved.thickness;
+            resolved.penalty_stiffness *= share;
+            resolved.contact_layer_mass *= share;
+        }
         if scene.contact.formula == ContactFormula::Hertz {
             resolved.penalty_stiffness = scene.contact.penalty_scale * as_hertz(&resolved);
         }
@@ -223,6 +233,7 @@ impl ResolvedScene {
             rollers: b.rollers,
             roller_radius: 0.5e-3 * b.roller_diameter_mm,
             thickness: 1e-3 * b.thickness_mm,
+            contact_length: 1e-3 * b.thickness_mm,
             clearance: 1e-6 * (b.clearance_um() + b.clearance_change_um),
             first_roller_angle: b.first_roller_deg.to_radians(),
             roller_offsets: scene
@@ -263,6 +274,16 @@ impl ResolvedScene {
             resolved.grooves[groove].depth = resolved.depth_of(defect);
         }
         resolved
+    }
+
+    /// Penetration over the element size above which a run warns that contact is too soft [%]: where it is as soft
+    /// as balls, it does not before the run stops.
+    pub fn soft_percent(&self) -> f64 {
+        let guards = &self.written.guards;
+        match self.contact_law {
+            ContactLawKind::Ball => guards.penetration_stop_percent,
+            _ => guards.penetration_warning_percent,
+        }
     }
 
     /// Radius of the circle on which the centres of rollers run that touch the outer raceway [m].

@@ -38,7 +38,7 @@ impl From<&ResolvedScene> for Bearing {
             roller_radius: scene.roller_radius,
             rollers: scene.rollers,
             clearance: scene.clearance,
-            thickness: scene.thickness,
+            thickness: scene.contact_length,
             material: scene.material,
         }
     }
@@ -112,11 +112,14 @@ impl Scene {
         if is_ball { Element::Ball } else { Element::Roller }
     }
 
-    /// Law of the contacts of rolling elements in its model: balls touch in points and relieved rollers with their
-    /// middles where the model has no mesh and contact is as in steel; anything else is plane.
+    /// Law of the contacts of rolling elements in its model, where they are as in steel: the penalty is that of
+    /// balls, and without a mesh relieved rollers touch with their middles. Anything else is plane.
     pub(crate) fn contact_law(&self) -> ContactLawKind {
-        let in_steel = self.contact.formula == ContactFormula::Hertz;
-        if in_steel && self.model != ModelScene::Full { self.law_of_elements() } else { ContactLawKind::Line }
+        match self.law_of_elements() {
+            _ if self.contact.formula != ContactFormula::Hertz => ContactLawKind::Line,
+            ContactLawKind::Profiled if self.model == ModelScene::Full => ContactLawKind::Line,
+            kind => kind,
+        }
     }
 
     /// Law of its rolling elements, whatever the model.
@@ -140,12 +143,22 @@ impl ResolvedScene {
         !self.written.housing.is_rigid() || self.written.contact.formula == ContactFormula::Hertz
     }
 
-    /// Line contacts of what is meshed: a ring that moves as one piece does not give way.
+    /// Line contacts of what is meshed: a ring that moves as one piece does not give way, and a roller that is
+    /// shorter than the rings gives way the more.
     pub fn meshed_contacts(&self) -> LineContacts {
         let bearing = Bearing::from(self);
         let is_rigid = self.written.housing.is_rigid();
         let outer_ring_thickness = bearing.outer_ring_thickness.filter(|_| !is_rigid);
-        LineContacts::of(Bearing { outer_ring_thickness, ..bearing })
+        let contacts = LineContacts::of(Bearing { outer_ring_thickness, ..bearing });
+        contacts.with_shorter_rollers(self.element_share())
+    }
+
+    /// Length of a rolling element over the thickness: of a roller one, of a ball that of the cylinder with its mass.
+    pub fn element_share(&self) -> f64 {
+        match self.contact_law() {
+            ContactLawKind::Ball => 4.0 / 3.0 * self.roller_radius / self.thickness,
+            _ => 1.0,
+        }
     }
 
     /// Load distribution at the start, under the load alone (no weights).
@@ -172,7 +185,7 @@ impl ResolvedScene {
         Ok(Some(lubrication::loaded_films(self, oil, &k, slowest, load_n)))
     }
 
-    /// Law of its contacts: points for balls of the catalogue, lines for all others.
+    /// Law of its rolling elements, whatever the model: points for balls, lines for all others.
     pub fn contact_law(&self) -> ContactLawKind {
         self.written.law_of_elements()
     }

@@ -91,14 +91,16 @@ impl Plan {
                 surfaces.iter().filter(|s| oiled.clone().any(|name| *name == s.name)).collect();
             let find =
                 |name: &str| oiled.iter().position(|s| s.name == name).expect("a film names its surfaces");
-            let specs = films.iter().map(|Film { round, centre, track, oil, stiffness, speed }| FilmSpec {
-                round: find(round),
-                centre: dynamics.layout().slot_of_node[*centre as usize],
-                track: find(track),
-                oil: *oil,
-                stiffness: *stiffness,
-                speed: *speed,
-            });
+            let specs =
+                films.iter().map(|Film { round, centre, track, oil, stiffness, length, speed }| FilmSpec {
+                    round: find(round),
+                    centre: dynamics.layout().slot_of_node[*centre as usize],
+                    track: find(track),
+                    oil: *oil,
+                    stiffness: *stiffness,
+                    length: *length,
+                    speed: *speed,
+                });
             let curves = oiled
                 .iter()
                 .map(|s| Surface::new(s.name.clone(), slots(&s.surface.nodes), s.surface.closed, x, y));

@@ -77,6 +77,8 @@ pub struct Film {
     pub oil: Oil,
     /// Penalty stiffness of the contact of the two [Pa/m].
     pub stiffness: f64,
+    /// Length out of plane [m].
+    pub length: f64,
     /// Entrainment speed before the first step [m/s]: half the sum of the speeds of both surfaces against the
     /// contact.
     pub speed: f64,

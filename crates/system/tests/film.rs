@@ -31,7 +31,8 @@ fn above_wall(x: f64, gap: f64, viscosity: f64, held: bool) -> Plan {
 fn pour(plan: &mut Plan, oil: Oil, speed: f64) {
     let centre = plan.nodes("roller.centre").expect("a mark")[0];
     let (round, track) = ("roller.rim".to_owned(), "wall.top".to_owned());
-    plan.film(Film { round, centre, track, oil, stiffness: STIFFNESS, speed }).expect("two surfaces");
+    plan.film(Film { round, centre, track, oil, stiffness: STIFFNESS, length: LENGTH, speed })
+        .expect("two surfaces");
 }
 
 /// The same without oil.

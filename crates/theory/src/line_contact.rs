@@ -18,6 +18,8 @@ pub struct LineContacts {
     poisson: f64,
     /// Radius of the roller [m].
     roller: f64,
+    /// Length of the roller over that of the contact [-].
+    share: f64,
     /// Outer and inner contact: effective radius and ring thickness [m]; no thickness of a ring that does not
     /// deform.
     sides: [(f64, Option<f64>); 2],
@@ -33,11 +35,18 @@ impl LineContacts {
             modulus: m.contact_modulus(),
             poisson: nu,
             roller: bearing.roller_radius,
+            share: 1.0,
             sides: [
                 (bearing.outer_contact_radius(), bearing.outer_ring_thickness),
                 (bearing.inner_contact_radius(), Some(bearing.inner_ring_thickness)),
             ],
         }
+    }
+
+    /// The same where rollers are this share of the rings as long, and give way as much more.
+    #[must_use]
+    pub fn with_shorter_rollers(self, share: f64) -> Self {
+        Self { share, ..self }
     }
 
     /// Approach of the two raceways [m] under the line load `w` [N/m], and its derivative [m²/N].
@@ -77,7 +86,7 @@ impl LineContacts {
         let roller = 2.0 * libm::log(4.0 * self.roller / half_width) - 1.0;
         let of_ring =
             |depth: f64| 2.0 * libm::log(2.0 * depth / half_width) - self.poisson / (1.0 - self.poisson);
-        self.softness * (roller + self.sides[side].1.map_or(0.0, of_ring))
+        self.softness * (roller / self.share + self.sides[side].1.map_or(0.0, of_ring))
     }
 
     /// Approach at one contact [m] under the line load `w` [N/m] where bodies are meshed with facets of `facet`

@@ -81,7 +81,7 @@ impl<'a> Oiled<'a> {
             orbit_rad,
             force_n,
             film,
-            mass_kg: scene.material.density * section * scene.thickness,
+            mass_kg: scene.material.density * section * scene.thickness * scene.element_share(),
             path_radius_m: scene.path_radius(),
             gravity_m_s2: scene.gravity,
         };

@@ -140,7 +140,7 @@ fn penetration(scene: &ResolvedScene, loads: &Loads) -> Option<String> {
     let guards = &scene.written.guards;
     let ends = match percent {
         p if p > guards.penetration_stop_percent => "which stops the run",
-        p if p > guards.penetration_warning_percent => "which the run will warn of",
+        p if p > scene.soft_percent() => "which the run will warn of",
         _ => return None,
     };
     let model = if scene.written.model == ModelScene::Full { "full" } else { "reduced" };

@@ -155,6 +155,8 @@ pub struct Pockets {
 pub struct Oil {
     /// Viscosity [Pa s].
     pub viscosity: f64,
+    /// Length of films, out of plane [m].
+    pub length: f64,
     /// Films at the outer raceway.
     pub outer: Film,
     /// Films at the inner raceway.

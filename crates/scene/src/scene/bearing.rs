@@ -40,7 +40,8 @@ group! {
         pub diameter_seed: u64 = 1, within(0.0, 1e9), omitted();
         /// Profile of rollers along their length, in the reduced model.
         pub roller_profile: RollerProfile = RollerProfile::Straight, omitted();
-        /// Out-of-plane thickness of the plane-strain model [mm]; the paper does not state it.
+        /// Out-of-plane thickness of the plane-strain model [mm], the length of rollers and the width of rings with
+        /// balls; the paper does not state it.
         pub thickness_mm: f64 = 30.0, positive(10_000.0);
         /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow
         /// counter-clockwise.

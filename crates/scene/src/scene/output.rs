@@ -62,7 +62,7 @@ group! {
         pub energy_stop_percent: f64 = 25.0, positive(1e6);
         /// Hourglass energy over strain energy above which the run carries a warning [%].
         pub hourglass_warning_percent: f64 = 10.0, positive(1e6);
-        /// Penetration over the element size above which the run carries a warning [%].
+        /// Penetration over the element size above which the run carries a warning [%], unless it is that of balls.
         pub penetration_warning_percent: f64 = 10.0, positive(200.0);
         /// … and above which it stops [%]; at 200 % its force vanishes.
         pub penetration_stop_percent: f64 = 100.0, positive(200.0);

@@ -9,7 +9,7 @@ mod housing;
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
-use super::named::ROLLER_LENGTH;
+use super::named::length_in;
 use super::wording::{number, round_down, round_up};
 use crate::scene::Scene;
 use bounds::{at_most, between, less_than, lower, more_than};
@@ -108,7 +108,7 @@ fn described_twice(scene: &Scene) -> Option<Finding> {
         ("pitch_mm", b.pitch_mm, pitch),
         ("bore_mm", b.bore_mm, b.inner_race_diameter_mm - 2.0 * b.inner_ring_thickness_mm),
         ("outside_mm", b.outside_mm, b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm),
-        ("width_mm", b.width_mm, b.thickness_mm / ROLLER_LENGTH),
+        ("width_mm", b.width_mm, b.thickness_mm / length_in(1.0, scene.element())),
     ];
     let differs =
         |(_, given, is): &(_, Option<f64>, f64)| given.is_some_and(|mm| (mm - is).abs() > 0.01 * pitch);

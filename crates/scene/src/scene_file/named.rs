@@ -7,8 +7,6 @@
 use stribeck_theory::catalogue::{
     Boundary, CatalogueBearing, Element, PAPER, beyond_a_plane, normal_clearance_mm, plain,
 };
-use stribeck_theory::line_contact::LineContacts;
-use stribeck_theory::point_contact;
 
 use crate::catalogue;
 use crate::housing::{HousingScene, PedestalScene};
@@ -17,14 +15,13 @@ use crate::scene::{
     ModelScene, PocketWalls, ReducedScene, Scene,
 };
 
-/// Cylinders that stand for balls are no shorter [mm].
-const THINNEST_MM: f64 = 1e-3;
-
 /// Length of a roller over the width of its ring, between flanges.
 pub(super) const ROLLER_LENGTH: f64 = 0.6;
 
-/// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.
-const STRIBECK: f64 = 4.37;
+/// Thickness of the model [mm] of a bearing with rings of this width: that of rollers, with balls that of the rings.
+pub(super) fn length_in(width_mm: f64, element: Element) -> f64 {
+    if element == Element::Ball { width_mm } else { ROLLER_LENGTH * width_mm }
+}
 
 pub(crate) fn designation(value: &str) -> Option<String> {
     let inner = value.trim().strip_prefix('"')?.strip_suffix('"')?;
@@ -62,33 +59,8 @@ pub(crate) fn put(scene: &mut Scene, name: &str, given: &[String]) -> Result<(),
     if !given.iter().any(|path| path == "name") {
         scene.name = plain_name(&known.name);
     }
-    surround(scene, Surrounded { bearing, pitch_mm: known.pitch_mm }, given);
-    if known.element == Element::Ball {
-        put_balls(scene, &known.name)?;
-    }
+    surround(scene, Surrounded { bearing, pitch_mm: known.pitch_mm, element: known.element }, given);
     Ok(())
-}
-
-/// Makes the cylinders of a bearing as long as it takes to give way as its balls do: by the load, which was chosen
-/// for cylinders as long as the balls' ring allows, if the user gave none.
-pub(super) fn put_balls(scene: &mut Scene, name: &str) -> Result<(), String> {
-    let thickness_mm = tidy(thickness_of_balls(scene));
-    if thickness_mm >= THINNEST_MM {
-        scene.bearing.thickness_mm = thickness_mm;
-        return Ok(());
-    }
-    let (load_n, rating_n) = (scene.operation.load_n, scene.static_rating_n());
-    Err(if load_n < rating_n {
-        format!(
-            "a cylinder that gives way under `operation.load_n` = {load_n:e} N as the balls of `{name}` do would be \
-             thinner than {THINNEST_MM} mm. Take more load"
-        )
-    } else {
-        format!(
-            "the balls of `{name}` are pressed flat under `operation.load_n` = {load_n:e} N: its static rating is \
-             {rating_n:.0} N by ISO 76, and no cylinder gives way as they would. Take less load"
-        )
-    })
 }
 
 /// The designation of a group of fields that gives no dimension: `bearing: (designation: "NU 205",
@@ -138,16 +110,17 @@ pub(super) fn plain_name(designation: &str) -> String {
     designation.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "-")
 }
 
-/// A bearing and its pitch diameter [mm], without clearance.
+/// A bearing, its pitch diameter [mm], without clearance, and its elements.
 pub(super) struct Surrounded {
     pub(super) bearing: BearingScene,
     pub(super) pitch_mm: f64,
+    pub(super) element: Element,
 }
 
 /// Sets the bearing of a scene and, in proportion to the paper's, all surroundings that the user did not
 /// give: cage, housing, defect, elements, contact, load and pictures.
 pub(super) fn surround(scene: &mut Scene, of: Surrounded, all: &[String]) {
-    let Surrounded { bearing, pitch_mm } = of;
+    let Surrounded { bearing, pitch_mm, element } = of;
     let given = |path: &str| all.iter().any(|written| written == path);
     let paper = Scene::default();
     let facets = paper.mesh.roller_facets as f64 / scene.mesh.roller_facets as f64;
@@ -187,9 +160,10 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, all: &[String]) {
         follow("mesh.grading.coarse_mm", &mut grading.coarse_mm, size * GradingScene::default().coarse_mm);
     }
     follow("contact.friction", &mut scene.contact.friction, FRICTION);
-    // The same pressure where rollers carry the same share.
+    // The same pressure where rollers carry the same share; balls as if their rings had rollers.
     let area = |b: &BearingScene| b.rollers as f64 * b.roller_diameter_mm * b.thickness_mm;
     let load = paper.operation.load_n * area(&bearing) / area(&paper.bearing);
+    let load = if element == Element::Ball { ROLLER_LENGTH * load } else { load };
     follow("operation.load_n", &mut scene.operation.load_n, load);
     let [least, most] = scene.duty().speed_range_rpm(0.0, 1e-3 * scene.solver.duration_ms);
     if let Some(frames) = &mut scene.output.frames {
@@ -329,7 +303,7 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
         inner_ring_thickness_mm: tidy(0.5 * (inner - bore_mm)),
         rollers: count,
         roller_diameter_mm: tidy(roller),
-        thickness_mm: tidy(ROLLER_LENGTH * width_mm),
+        thickness_mm: tidy(length_in(width_mm, known.element)),
         first_roller_deg: first_roller(count),
         ..BearingScene::default()
     })
@@ -338,22 +312,6 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
 /// Angle of roller 1 [°]: as far before the middle of the load zone, in pitches, as in the paper's bearing.
 pub(super) fn first_roller(rollers: usize) -> f64 {
     tidy(90.0 + 4.0 * 24.0 / rollers as f64)
-}
-
-/// Length of cylinders [mm] that let the raceways approach each other at the most loaded place as balls would
-/// (THEORY §6.2).
-fn thickness_of_balls(scene: &Scene) -> f64 {
-    let g = scene.resolve();
-    let load = STRIBECK * g.load / g.rollers as f64;
-    let groove = 2.0 * point_contact::CONFORMITY * g.roller_radius;
-    let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
-    let wanted: f64 = [g.inner_race_radius, -g.outer_race_radius]
-        .iter()
-        .map(|&race| point_contact::approach(g.roller_radius, race, groove, load, modulus))
-        .sum();
-    // The line load that makes as much, and how long a line has it; none does where balls are pressed flat.
-    let line_load = LineContacts::of(&g).load(wanted).map_or(f64::INFINITY, |(w, _)| w);
-    1e3 * load / line_load
 }
 
 /// A dimension to a few micrometres.

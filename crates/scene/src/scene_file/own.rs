@@ -142,11 +142,8 @@ pub(super) fn complete(scene: &mut Scene, given: &[String]) -> Result<(), Box<Re
             name => name,
         };
     }
-    named::surround(scene, Surrounded { bearing, pitch_mm }, given);
-    if scene.bearing.element == ElementKind::Ball && !written("thickness_mm") {
-        let balls = named::put_balls(scene, &scene.name.clone());
-        balls.map_err(|why| Refusal::new("roller_diameter_mm", why, String::new(), String::new()))?;
-    }
+    let element = bearing.element.into();
+    named::surround(scene, Surrounded { bearing, pitch_mm, element }, given);
     Ok(())
 }
 
@@ -197,11 +194,11 @@ fn bearing(
     let length = if written("thickness_mm") {
         b.thickness_mm
     } else {
-        // That of balls follows from their load.
-        if b.element == ElementKind::Roller {
+        if b.element == ElementKind::Roller || main.width.is_none() {
             assume(Assumed::Length);
         }
-        main.width.map_or(d.roller, |width| named::ROLLER_LENGTH * width)
+        let width = main.width.unwrap_or(d.roller / named::ROLLER_LENGTH);
+        named::length_in(width, b.element.into())
     };
     let first = if written("first_roller_deg") { b.first_roller_deg } else { named::first_roller(rollers) };
     let thickest = |radius: f64| (RING * d.roller).min(OF_RADIUS * radius);

@@ -87,6 +87,10 @@ impl Assembly {
 
         let kinematics = scene.written.kinematics();
         let mut bodies = Bodies::new(scene, mesh)?;
+        let share = scene.element_share();
+        if share != 1.0 {
+            rollers.iter().try_for_each(|(_, roller)| bodies.shorter(roller.body, share))?;
+        }
         let cage = match cage_mesh {
             Some((cage, density)) => {
                 bodies.rigid(cage.body, Behaviour::Rigid, density)?;
@@ -210,6 +214,14 @@ impl<'a> Bodies<'a> {
         let m = &self.scene.material;
         self.model.behaviour[body] = behaviour;
         self.model.materials[body] = Elastic::new(m.youngs_modulus, m.poissons_ratio, density * m.density)?;
+        Ok(())
+    }
+
+    /// Makes a body this `share` of the thickness long, out of plane: as heavy and as stiff.
+    fn shorter(&mut self, body: usize, share: f64) -> Result<(), Error> {
+        let m = &self.scene.material;
+        self.model.materials[body] =
+            Elastic::new(share * m.youngs_modulus, m.poissons_ratio, share * m.density)?;
         Ok(())
     }
 

@@ -115,7 +115,10 @@ impl Guards {
     pub(super) fn new(scene: &ResolvedScene) -> Self {
         Self {
             shared: guards::Guards::new(scene, "`model.step_us`"),
-            limits: scene.written.guards.clone(),
+            limits: GuardsScene {
+                penetration_warning_percent: scene.soft_percent(),
+                ..scene.written.guards.clone()
+            },
             element_size: scene.element_size,
             roller_radius: scene.roller_radius,
             placed: Placed::default(),

@@ -70,12 +70,14 @@ impl Compliances {
         let inner = inner_patch(&size, extraction, dynamics, beside)?;
         let (roller, across) = roller_patch(&size, extraction, dynamics)?;
         let penalty = scene.penalty_stiffness * scene.thickness;
+        // The penalty of balls takes nearly all of the approach, one of a layer half of it.
+        let beyond_rigid = if scene.contact_law == ContactLawKind::Ball { 1.25 } else { 2.0 };
         let compliance =
             |on: &[Vec<f64>], spacing: f64, radius: f64, across: f64, more: &dyn Fn(f64) -> f64| {
                 let flexibility = [on, &roller.flexibility[..]];
                 let pressed =
                     LocalContact { spacing: [spacing, roller.spacing], flexibility, radius, penalty };
-                curve(&pressed, size.most, across, more)
+                curve(&pressed, (size.most, beyond_rigid), across, more)
             };
         let beyond = beyond_lines(scene);
         let rigid = vec![vec![0.0; roller.flexibility.len()]; roller.flexibility.len()];
@@ -226,15 +228,21 @@ fn rigid_modes(d: &Dynamics, motions: &SmallMotions, slots: &[u32]) -> Modes {
     Modes { squares: vec![0.0; 3], shapes }
 }
 
-/// Solves the local contact problem at several loads up to `most` [N]; `across` is the deflection of a roller
+/// Solves the local contact problem at several loads up to `most` [N], which takes at least so many times the
+/// approach of rigid surfaces; `across` is the deflection of a roller
 /// by an equal force on its other side [m/N], `more` what the contact gives way beside [m].
-fn curve(pressed: &LocalContact<'_>, most: f64, across: f64, more: &dyn Fn(f64) -> f64) -> Compliance {
+fn curve(
+    pressed: &LocalContact<'_>,
+    (most, beyond_rigid): (f64, f64),
+    across: f64,
+    more: &dyn Fn(f64) -> f64,
+) -> Compliance {
     // Nodes of both surfaces lie anyhow to each other under a contact; a few cases stand for all.
     let phases = [[0.0, 0.0], [0.5, 0.0], [0.0, 0.5], [0.5, 0.5]];
     let mean = |delta: f64| {
         phases.iter().map(|&phase| pressed.force(delta, phase)).sum::<f64>() / phases.len() as f64
     };
-    let mut deepest = 2.0 * pressed.rigid(most);
+    let mut deepest = beyond_rigid * pressed.rigid(most);
     for _ in 0..20 {
         if mean(deepest) >= most {
             break;

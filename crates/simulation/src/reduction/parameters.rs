@@ -227,5 +227,5 @@ fn oil(scene: &ResolvedScene) -> Result<Option<Oil>, Error> {
         contact_modulus: scene.material.contact_modulus(),
         density: 1e-2 * resistance.oil_percent * OIL_DENSITY,
     });
-    Ok(Some(Oil { viscosity: oil.viscosity, outer, inner, resistance }))
+    Ok(Some(Oil { viscosity: oil.viscosity, length: scene.contact_length, outer, inner, resistance }))
 }

@@ -288,7 +288,7 @@ fn behaves_a_run_says_that_its_modes_are_too_few() {
     let folder = Scratch::create("reduced-few");
     for (model, warns) in [("reduced(modes_khz: 20)", true), ("reduced()", false)] {
         let text = format!(
-            "(bearing: \"6205\", model: {model}, film: None, defect: None, output: (frames: None),
+            "(bearing: \"NU 205\", model: {model}, film: None, defect: None, output: (frames: None),
               operation: (load_n: 1500, speed_rpm: 900), solver: (duration_ms: 0.05))"
         );
         let scene = Scene::parse(&text, "here").expect("a sound scene");

@@ -139,6 +139,10 @@ fn remarks(scene: &ResolvedScene, assembly: &Assembly) -> Vec<String> {
         (s.film.is_some(), "oil films"),
         (rough, "friction: that of Radioss in the plane does not reach the limit of sliding"),
         (c.damping_ratio > 0.0, "contact damping"),
+        (
+            scene.element_share() != 1.0,
+            "the length of balls: they are as long as their rings are wide, and heavier",
+        ),
         (c.onset_um > 0.0, "the rounded onset of contact"),
         (v.structural_damping.is_some(), "structural damping"),
         (v.stiffness_damping_ns > 0.0, "stiffness damping"),

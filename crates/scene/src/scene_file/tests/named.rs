@@ -94,16 +94,21 @@ fn behaves_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
 }
 
 #[test]
-fn invariant_balls_are_cylinders_of_their_own_stiffness() {
+fn invariant_balls_have_films_of_cylinders_of_their_own_stiffness_between_rings_of_their_width() {
     use stribeck_theory::{line_contact::LineContacts, point_contact};
     let scene = Scene::parse("(bearing: \"6205\", operation: (load_n: 2000))", "mine").unwrap();
     let g = scene.resolve();
     let load = 4.37 * 2000.0 / 9.0;
     let modulus = g.material.youngs_modulus / (1.0 - g.material.poissons_ratio.powi(2));
     let ball = |race| point_contact::approach(g.roller_radius, race, 1.04 * g.roller_radius, load, modulus);
-    let ratio = LineContacts::of(&g).approach(load / g.thickness).0
+    let ratio = LineContacts::of(&g).approach(load / g.contact_length).0
         / (ball(g.inner_race_radius) + ball(-g.outer_race_radius));
     assert!((ratio - 1.0).abs() < 1e-3, "{ratio}");
+    assert_eq!(g.thickness, 15e-3);
+    // Whatever said the load, and wherever.
+    let later = Scene::parse("(bearing: \"6205\")", "mine").unwrap();
+    let later = later.with_overrides(&["operation.load_n=2000"]).unwrap().resolve();
+    assert_eq!(later.contact_length, g.contact_length);
 }
 
 /// It was the paper's bearing by that name, without a word.

@@ -327,6 +327,7 @@ fn oil(plan: &mut Plan, scene: &ResolvedScene, rollers: &[Roller]) -> Result<(),
                 track: track.to_owned(),
                 oil: Oil { viscosity: film.viscosity, least: loaded.least },
                 stiffness: scene.penalty_stiffness,
+                length: scene.contact_length,
                 speed: loaded.speed,
             })?;
         }

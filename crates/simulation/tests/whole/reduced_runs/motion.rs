@@ -260,7 +260,7 @@ fn behaves_light_loads() {
 /// of line contacts, THEORY §6.2; the load comes back as the sum of the rollers' forces.
 #[test]
 fn analytic_rollers_in_a_rigid_housing() {
-    for bearing in ["NU 205", "6305"] {
+    for bearing in ["NU 205", "NU 305"] {
         let text = format!(
             "(bearing: \"{bearing}\", model: reduced(step_us: 0.5), film: None, defect: None, \
              housing: rigid(mass_kg: 1),
@@ -295,6 +295,25 @@ fn analytic_rollers_in_a_rigid_housing() {
         let mean = sums.sum::<f64>() / samples as f64;
         assert!((mean / info.expected_support_n - 1.0).abs() < 1e-3, "{bearing}: {mean} N");
     }
+}
+
+/// Rings as narrow as the cylinders that stood for balls bent after a ball and held it in its spall.
+#[test]
+fn issue_a_ball_passes_the_spall_of_a_bearing_by_name() {
+    let text = "(bearing: \"6305\", model: reduced(), output: (frames: None), solver: (duration_ms: 25))";
+    let scene = Scene::parse(text, "here").expect("a sound scene");
+    let folder = Scratch::create("reduced-passes");
+    let info = run(&scene, &folder, "run", 1);
+    assert_eq!(info.status, Status::Complete, "{:?}", info.stop_reason);
+    let trace = trace(&folder, "run");
+    let roller = |of: &str| channel(&trace, &format!("roller.1.{of}"));
+    let (fx, fy, x, y) = (roller("outer_fx_n"), roller("outer_fy_n"), roller("x_m"), roller("y_m"));
+    let force = fx.iter().zip(fy).map(|(x, y)| x.hypot(*y));
+    assert!(force.fold(f64::INFINITY, f64::min) < 0.5 * fx[0].hypot(fy[0]));
+    let angle = |n: usize| y[n].atan2(x[n]);
+    let turned = angle(0) - angle(x.len() - 1);
+    let rolling = 0.025 * scene.kinematics().cage_rad_s.abs();
+    assert!((turned / rolling - 1.0).abs() < 0.05, "{turned} instead of {rolling}");
 }
 
 /// Bearings by their names carry as Hertz's contacts between rigid rings do, balls in points and rollers in
