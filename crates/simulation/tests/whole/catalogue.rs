@@ -122,9 +122,8 @@ fn analytic_rollers_between_rigid_rings() {
 }
 
 /// A ball of the mesh has the mass of a ball, its rings that of their width.
-/// Source: volumes of a ball and of a hollow cylinder.
 #[test]
-fn analytic_masses_of_a_ball_bearing() {
+fn by_hand_masses_of_a_ball_bearing() {
     let scene = Scene::default().with_overrides(&RIGID).expect("valid");
     let scene = scene.with_overrides(&["bearing=6305", "mesh.roller_facets=80"]).expect("valid").resolve();
     let machine = Assembly::new(&scene).expect("a mesh").build(&scene, 1).expect("a machine");
