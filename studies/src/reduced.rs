@@ -102,6 +102,8 @@ fn put(rows: &mut Rows, name: &str, agreement: &Agreement) {
     }
     rows.values("scenes", name, [("starts", agreement.starts as f64), ("ms", agreement.simulated_ms)]);
     let kept = agreement.rows.iter().filter(|row| row.decided && row.within).count();
+    let warns = agreement.notes.iter().any(|note| note.contains("the reduced model warns"));
+    rows.word("scenes", name, "warns", if warns { "yes" } else { "no" });
     rows.values("scenes", name, [("kept", kept as f64), ("quantities", agreement.rows.len() as f64)]);
 }
 
@@ -138,6 +140,9 @@ pub(crate) fn derive(rows: &mut Rows) {
         let within = bands.iter().filter(|(_, off, _)| off.abs() <= BAND_LIMIT_DB).count();
         let count = if bands.is_empty() { String::new() } else { format!("{within} of {}", bands.len()) };
         words.push(("bands".into(), count));
+        let [least, most] = [f64::min, f64::max].map(|of| bands.iter().map(|band| band.1).reduce(of));
+        let range = least.zip(most).map(|(a, b)| format!("{} to {}", decimals(a, 1), decimals(b, 1)));
+        words.push(("range".into(), range.unwrap_or_default()));
         let outside = bands.iter().filter(|(_, off, error)| off.abs() - 2.0 * error > BAND_LIMIT_DB);
         let outside = outside.filter_map(|(what, off, error)| {
             let mut parts = what.split('_').skip(1);

@@ -122,7 +122,13 @@ impl Agreement {
                 .filter_map(|hz| waveform::correlated(hz, &sides))
                 .collect(),
             peaks: waveform::peaks(&sides),
-            notes: notes.into_iter().flatten().collect(),
+            notes: notes
+                .into_iter()
+                .flatten()
+                .chain(
+                    first.info.warnings.iter().map(|warning| format!("the reduced model warns: {warning}")),
+                )
+                .collect(),
         })
     }
 

@@ -103,7 +103,7 @@ impl ContactNoise {
         let mut hz: Vec<f64> = prediction.facet_lines.iter().map(|l| l.1).collect();
         hz.sort_by(f64::total_cmp);
         let closest = hz.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
-        let width = largest_n / scene.thickness * effective / (PI * scene.material.contact_modulus());
+        let width = largest_n / scene.contact_length * effective / (PI * scene.material.contact_modulus());
         Ok(Self {
             lines: prediction.facet_lines.clone(),
             lumped: Lumped::of(scene)?,

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use stribeck_scene::deviation::{FormScene, RollingSurface, SpallScene};
 use stribeck_scene::resolved::{ResolvedScene, pocket_half_width};
 use stribeck_scene::scene::PocketWalls;
+use stribeck_theory::contact_law::ContactLawKind;
 use stribeck_theory::static_load::RigidRings;
 
 use crate::kinematics::KinematicsFinding;
@@ -22,7 +23,8 @@ pub fn least_support_n(scene: &ResolvedScene, curve: &StaticCurve, support_n: f6
     let motion = scene.written.mean_kinematics();
     let radius = scene.roller_radius;
     let length = scene.thickness * scene.element_share();
-    let inertia = 0.5 * PI * scene.material.density * length * radius.powi(4);
+    let shape = if scene.contact_law == ContactLawKind::Ball { 0.4 } else { 0.5 };
+    let inertia = shape * PI * scene.material.density * length * radius.powi(4);
     let pairs = curve.angle_deg.windows(2).zip(curve.force_n.windows(2));
     let over_angle: f64 = pairs.map(|(a, q)| 0.5 * (q[0] + q[1]) * (a[1] - a[0]).to_radians()).sum();
     let impulse = over_angle / motion.cage_rad_s.abs();

@@ -164,10 +164,10 @@ fn invariant_series_and_mirror() {
         loads_n: vec![500.0],
         speeds_rpm: vec![speed_rpm],
         angles: ANGLES,
-        law: scene.contact_law(),
+        law: scene.law_of_elements(),
         damping_s: 8e-6,
     };
-    assert_eq!(scene.contact_law(), ContactLawKind::Ball);
+    assert_eq!(scene.law_of_elements(), ContactLawKind::Ball);
     let of = |speed: f64| BearingStiffness::of(&scene, &grid(speed)).expect("stiffness").points.remove(0);
     let (there, back): (Point, Point) = (of(1500.0), of(-1500.0));
     for i in 0..ANGLES {

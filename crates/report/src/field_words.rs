@@ -21,7 +21,7 @@ const KNOWN: [(&str, &str); 20] = [
     ("operation.gravity_m_s2", "Gravity"),
     ("bearing.rollers", "Rolling elements"),
     ("bearing.roller_diameter_mm", "Diameter of the rolling elements"),
-    ("bearing.thickness_mm", "Length of the rolling elements"),
+    ("bearing.thickness_mm", "Length of the rolling elements, with balls width of the rings"),
     ("bearing.outer_race_diameter_mm", "Diameter of the outer raceway"),
     ("bearing.inner_race_diameter_mm", "Diameter of the inner raceway"),
     ("bearing.clearance_change_um", "Change of the clearance"),

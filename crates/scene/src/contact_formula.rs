@@ -12,12 +12,15 @@ use crate::resolved::ResolvedScene;
 pub(crate) fn as_hertz(scene: &ResolvedScene) -> f64 {
     let [_, load_n] = scene.duty.load_range_n(scene.duration);
     let bearing = Bearing::from(scene);
-    let static_load =
-        RigidRings::new(bearing, scene.contact_law).distribute(load_n, &scene.written.angles_to_load_deg());
-    let largest_n = static_load.map_or(load_n, |load| load.max_roller_n());
+    let largest_n = match scene.contact_law {
+        ContactLawKind::Ball => STRIBECK * load_n / scene.rollers as f64,
+        law => RigidRings::new(bearing, law)
+            .distribute(load_n, &scene.written.angles_to_load_deg())
+            .map_or(load_n, |load| load.max_roller_n()),
+    };
     let force = REFERENCE * largest_n;
     let w = force / scene.thickness;
-    let wanted = match scene.contact_law() {
+    let wanted = match scene.contact_law {
         ContactLawKind::Ball => ContactLaw::of(bearing, ContactLawKind::Ball).both(force),
         _ => LineContacts::of(bearing).approach(w).0,
     };
@@ -43,7 +46,7 @@ pub(crate) fn length_of_balls(scene: &ResolvedScene) -> f64 {
     let load = STRIBECK * scene.load / scene.rollers as f64;
     let wanted = ContactLaw::of(scene, ContactLawKind::Ball).both(load);
     let length = LineContacts::of(scene).load(wanted).map(|(line_load, _)| load / line_load);
-    length.unwrap_or(scene.thickness).clamp(1e-6, scene.thickness.max(1e-6))
+    length.map_or(scene.thickness, |length| length.min(scene.thickness))
 }
 
 /// Share of the load that the most loaded element carries, times their number: Stribeck's number for balls.

@@ -20,8 +20,7 @@ use crate::deviation::{Relief, RollingSurface};
 use crate::dice::Dice;
 use crate::faults::rolling_circle;
 use crate::scene::{
-    BearingScene, CageScene, ContactFormula, DefectRing, DefectScene, FilmScene, PocketWalls, Scene,
-    StructuralDampingScene,
+    BearingScene, CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
 };
 
 /// A scene in SI: dimensions, material, mesh, contact, load and times, and the scene as written, for fields
@@ -88,6 +87,8 @@ pub struct ResolvedScene {
     pub coarse_size: Option<f64>,
     /// Penalty stiffness of contact [Pa/m].
     pub penalty_stiffness: f64,
+    /// The same between the outer ring and its seat, which is no softer where balls are [Pa/m].
+    pub seat_stiffness: f64,
     /// Mass of a surface layer on either side of a contact [kg/m²], for which its damping is reckoned.
     pub contact_layer_mass: f64,
     /// Gap at which contact of rollers sets in [m].
@@ -194,12 +195,13 @@ impl ResolvedScene {
         let mut resolved = Self::with_stated_contact(scene);
         if scene.element() == Element::Ball {
             resolved.contact_length = length_of_balls(&resolved);
-            let share = resolved.contact_length / resolved.thickness;
-            resolved.penalty_stiffness *= share;
-            resolved.contact_layer_mass *= share;
+            resolved.contact_layer_mass *= resolved.contact_length / resolved.thickness;
         }
-        if scene.contact.formula == ContactFormula::Hertz {
+        if scene.is_of_hertz() {
             resolved.penalty_stiffness = scene.contact.penalty_scale * as_hertz(&resolved);
+        }
+        if scene.element() != Element::Ball {
+            resolved.seat_stiffness = resolved.penalty_stiffness;
         }
         resolved
     }
@@ -253,6 +255,7 @@ impl ResolvedScene {
             element_size,
             coarse_size: scene.mesh.grading.as_ref().map(|grading| 1e-3 * grading.coarse_mm),
             penalty_stiffness: scene.contact.penalty_scale * material.youngs_modulus / element_size,
+            seat_stiffness: scene.contact.penalty_scale * material.youngs_modulus / element_size,
             // Half an element deep: the mass of a surface's nodes.
             contact_layer_mass: 0.5 * material.density * element_size,
             contact_onset: 1e-6 * scene.contact.onset_um,

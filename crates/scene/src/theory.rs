@@ -1,11 +1,14 @@
 //! Numbers of a scene for the theory of rolling bearings, and what the theory says of the scene.
 
+use std::f64::consts::PI;
+
 use stribeck_theory::bearing::{Bearing, Dimensions, Ring};
 use stribeck_theory::catalogue::{self, Element};
 use stribeck_theory::kinematics::{Kinematics, Stretch};
 use stribeck_theory::line_contact::LineContacts;
 use stribeck_theory::lubrication::{self, LoadedFilm};
 use stribeck_theory::material::Material;
+use stribeck_theory::point_contact::{self, CONFORMITY};
 use stribeck_theory::ring_stiffness::TurningRings;
 use stribeck_theory::static_load::{RigidRings, StaticLoad};
 use stribeck_theory::{Error, contact_law::ContactLawKind, load_rating};
@@ -112,11 +115,16 @@ impl Scene {
         if is_ball { Element::Ball } else { Element::Roller }
     }
 
+    /// Whether the penalty is a multiple of Hertz's: that of balls is, whatever the formula.
+    pub fn is_of_hertz(&self) -> bool {
+        self.contact.formula == ContactFormula::Hertz || self.element() == Element::Ball
+    }
+
     /// Law of the contacts of rolling elements in its model, where they are as in steel: the penalty is that of
     /// balls, and without a mesh relieved rollers touch with their middles. Anything else is plane.
     pub(crate) fn contact_law(&self) -> ContactLawKind {
         match self.law_of_elements() {
-            _ if self.contact.formula != ContactFormula::Hertz => ContactLawKind::Line,
+            _ if !self.is_of_hertz() => ContactLawKind::Line,
             ContactLawKind::Profiled if self.model == ModelScene::Full => ContactLawKind::Line,
             kind => kind,
         }
@@ -140,7 +148,7 @@ impl ResolvedScene {
     /// Whether contact with the outer raceway has the compliance of the ring: not where the ring moves as one
     /// piece, unless the penalty stands for it.
     pub fn outer_gives_way(&self) -> bool {
-        !self.written.housing.is_rigid() || self.written.contact.formula == ContactFormula::Hertz
+        !self.written.housing.is_rigid() || self.written.is_of_hertz()
     }
 
     /// Line contacts of what is meshed: a ring that moves as one piece does not give way, and a roller that is
@@ -155,7 +163,7 @@ impl ResolvedScene {
 
     /// Length of a rolling element over the thickness: of a roller one, of a ball that of the cylinder with its mass.
     pub fn element_share(&self) -> f64 {
-        match self.contact_law() {
+        match self.contact_law {
             ContactLawKind::Ball => 4.0 / 3.0 * self.roller_radius / self.thickness,
             _ => 1.0,
         }
@@ -185,9 +193,22 @@ impl ResolvedScene {
         Ok(Some(lubrication::loaded_films(self, oil, &k, slowest, load_n)))
     }
 
-    /// Law of its rolling elements, whatever the model: points for balls, lines for all others.
-    pub fn contact_law(&self) -> ContactLawKind {
+    /// Law of its rolling elements, whatever the model: points for balls, lines for all others, which may be relieved.
+    pub fn law_of_elements(&self) -> ContactLawKind {
         self.written.law_of_elements()
+    }
+
+    /// Largest pressure of a contact with the outer and with the inner raceway under a force [N] by Hertz [Pa]: of a
+    /// point for balls, of a line for all others.
+    pub fn pressure_pa(&self, force_n: f64) -> [f64; 2] {
+        let (r, modulus) = (self.roller_radius, self.material.contact_modulus());
+        if self.contact_law == ContactLawKind::Ball {
+            let groove = 2.0 * CONFORMITY * r;
+            return [-self.outer_race_radius, self.inner_race_radius]
+                .map(|across| point_contact::pressure(r, across, groove, force_n, 2.0 * modulus));
+        }
+        [self.outer_contact_radius(), self.inner_contact_radius()]
+            .map(|radius| (force_n / self.thickness * modulus / (PI * radius)).sqrt())
     }
 
     /// The bearing between rigid rings, without defects, with its inner ring at `speed_rpm`; the outer one

@@ -56,7 +56,7 @@ const NUMBERS: &str = "detect.json";
 fn lengths(text: &str) -> Result<(f64, f64), String> {
     let number = |text: &str| text.trim().parse::<f64>().ok().filter(|mm| mm.is_finite() && *mm > 0.0);
     let both = text.split_once("..").and_then(|(low, high)| Some((number(low)?, number(high)?)));
-    both.filter(|(low, high)| low < high)
+    both.filter(|(low, high)| low <= high)
         .ok_or_else(|| format!("`{text}` is no range of lengths in mm, such as 0.3..5"))
 }
 
@@ -156,10 +156,11 @@ fn base(options: &Options, place: &Place) -> Result<Scene> {
 /// Starts of the sound bearing, then of every length.
 fn scenes(base: &Scene, options: &Options) -> Result<Vec<Made>> {
     let (shortest, longest) = options.lengths;
-    let last = f64::from(options.points - 1);
+    let points = if shortest < longest { options.points } else { 1 };
+    let last = f64::from((points - 1).max(1));
     let length = |n: u32| 1e-3 * (1e3 * shortest * (longest / shortest).powf(f64::from(n) / last)).round();
     let mut all = Vec::new();
-    for length_mm in std::iter::once(None).chain((0..options.points).map(|n| Some(length(n)))) {
+    for length_mm in std::iter::once(None).chain((0..points).map(|n| Some(length(n)))) {
         let mut scene = base.clone();
         match (length_mm, &mut scene.defect) {
             (Some(mm), Some(defect)) => defect.length_mm = mm,
@@ -246,7 +247,7 @@ mod tests {
 
     #[test]
     fn refuses_ranges_that_are_none() {
-        assert_eq!(lengths("0.3..5"), Ok((0.3, 5.0)));
+        assert_eq!((lengths("0.3..5"), lengths("2..2")), (Ok((0.3, 5.0)), Ok((2.0, 2.0))));
         for text in ["5", "5..0.3", "0..1", "a..b", "-1..2"] {
             assert!(lengths(text).unwrap_err().contains("0.3..5"), "{text}");
         }

@@ -31,7 +31,7 @@ pub struct Options {
     /// Angles of the cage over one pitch of its elements
     #[arg(long, default_value_t = 64, value_name = "COUNT")]
     angles: usize,
-    /// Law of contact [default: ball for ball bearings of the catalogue, line for all others]
+    /// Law of contact [default: ball for balls, line for all others]
     #[arg(long, value_enum)]
     contact: Option<Contact>,
     /// Damping over stiffness [µs], C = β K: stated, because nothing here computes it; 2.5 to 25 are measured
@@ -48,7 +48,7 @@ pub struct Options {
 /// Laws of contact.
 #[derive(Debug, Clone, Copy, clap::ValueEnum)]
 enum Contact {
-    /// Line contact in plane strain, as in the models
+    /// Line contact in plane strain
     Line,
     /// Point contact of balls in grooves of 0.52 diameters
     Ball,
@@ -135,7 +135,7 @@ fn grid(options: &Options, scene: &ResolvedScene) -> Result<Grid> {
         "`--damping-us` is {beta}: between 0 and 1000 µs; rolling bearings have 2.5 to 25 (Krämer 1993)"
     );
     let law = match options.contact {
-        None => scene.contact_law(),
+        None => scene.law_of_elements(),
         Some(Contact::Line) => ContactLawKind::Line,
         Some(Contact::Ball) => ContactLawKind::Ball,
         Some(Contact::Palmgren) => ContactLawKind::Palmgren,

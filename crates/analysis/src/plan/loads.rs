@@ -1,14 +1,10 @@
 //! Static loads of a bearing, and problems to expect in motion.
 
-use std::f64::consts::PI;
-
 use stribeck_scene::{
     advice::holds_cage,
     resolved::ResolvedScene,
     scene::{ModelScene, PocketWalls},
 };
-use stribeck_theory::contact_law::ContactLawKind;
-use stribeck_theory::point_contact::{self, CONFORMITY};
 
 use crate::Error;
 
@@ -21,8 +17,8 @@ pub struct Loads {
     pub largest_n: f64,
     /// Rollers that carry something.
     pub loaded: usize,
-    /// Largest pressure under it by Hertz, at the outer and at the inner raceway [Pa]: of a ball's point contact in
-    /// the reduced model, else of a line contact.
+    /// Largest pressure under it by Hertz, at the outer and at the inner raceway [Pa]: of a ball's point contact,
+    /// or of a line contact.
     pub pressure_pa: [f64; 2],
     /// Basic static load rating by ISO 76 [N].
     pub static_rating_n: f64,
@@ -38,23 +34,12 @@ impl Loads {
     pub fn of(scene: &ResolvedScene) -> Result<Self, Error> {
         let shared = scene.static_load()?;
         let largest_n = shared.max_roller_n();
-        let m = &scene.material;
-        let line = |radius: f64| (largest_n / scene.thickness * m.contact_modulus() / (PI * radius)).sqrt();
-        let point = |across: f64| {
-            let groove = 2.0 * CONFORMITY * scene.roller_radius;
-            let modulus = m.youngs_modulus / (1.0 - m.poissons_ratio.powi(2));
-            point_contact::pressure(scene.roller_radius, across, groove, largest_n, modulus)
-        };
-        let pressure_pa = match scene.contact_law {
-            ContactLawKind::Ball => [point(-scene.outer_race_radius), point(scene.inner_race_radius)],
-            _ => [line(scene.outer_contact_radius()), line(scene.inner_contact_radius())],
-        };
         let [_, most] = scene.duty.load_range_n(scene.duration);
         Ok(Self {
             clearance_m: scene.clearance,
             largest_n,
             loaded: shared.loaded_rollers(),
-            pressure_pa,
+            pressure_pa: scene.pressure_pa(largest_n),
             static_rating_n: scene.written.static_rating_n(),
             load_n: most.max(scene.load),
         })
@@ -152,6 +137,8 @@ fn penetration(scene: &ResolvedScene, loads: &Loads) -> Option<String> {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
     use stribeck_scene::scene::Scene;
 

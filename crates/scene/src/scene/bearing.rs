@@ -53,7 +53,7 @@ group! {
         pub bore_mm: Option<f64> = None, positive(20_000.0), omitted();
         /// Outside diameter [mm], instead of the outer ring's thickness.
         pub outside_mm: Option<f64> = None, positive(20_000.0), omitted();
-        /// Width of the rings [mm], instead of `thickness_mm`: rollers are usually 0.6 of it long.
+        /// Width of the rings [mm], instead of `thickness_mm`: rollers are usually 0.6 of it long, balls have all of it.
         pub width_mm: Option<f64> = None, positive(20_000.0), omitted();
         /// Dimensions that the user did not give and the program assumed; written by the program.
         pub assumed: Vec<Assumed> = Vec::new(), omitted();
@@ -72,7 +72,7 @@ words! {
     pub enum ElementKind: Copy, Eq {
         /// A cylinder.
         Roller = "roller",
-        /// A ball: it touches in points in the reduced model, and is a cylinder of the same approach in the full one.
+        /// A ball: a cylinder with its mass, which gives way as points do.
         Ball = "ball",
     }
 }

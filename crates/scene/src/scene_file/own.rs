@@ -197,8 +197,11 @@ fn bearing(
         if b.element == ElementKind::Roller || main.width.is_none() {
             assume(Assumed::Length);
         }
-        let width = main.width.unwrap_or(d.roller / named::ROLLER_LENGTH);
-        named::length_in(width, b.element.into())
+        match (main.width, b.element) {
+            (Some(width), of) => named::length_in(width, of.into()),
+            (None, ElementKind::Roller) => d.roller,
+            (None, ElementKind::Ball) => d.roller / named::ROLLER_LENGTH,
+        }
     };
     let first = if written("first_roller_deg") { b.first_roller_deg } else { named::first_roller(rollers) };
     let thickest = |radius: f64| (RING * d.roller).min(OF_RADIUS * radius);

@@ -70,7 +70,7 @@ impl Compliances {
         let inner = inner_patch(&size, extraction, dynamics, beside)?;
         let (roller, across) = roller_patch(&size, extraction, dynamics)?;
         let penalty = scene.penalty_stiffness * scene.thickness;
-        // The penalty of balls takes nearly all of the approach, one of a layer half of it.
+        // The penalty of balls takes nearly all of the approach, others about half of it.
         let beyond_rigid = if scene.contact_law == ContactLawKind::Ball { 1.25 } else { 2.0 };
         let compliance =
             |on: &[Vec<f64>], spacing: f64, radius: f64, across: f64, more: &dyn Fn(f64) -> f64| {
@@ -228,9 +228,9 @@ fn rigid_modes(d: &Dynamics, motions: &SmallMotions, slots: &[u32]) -> Modes {
     Modes { squares: vec![0.0; 3], shapes }
 }
 
-/// Solves the local contact problem at several loads up to `most` [N], which takes at least so many times the
-/// approach of rigid surfaces; `across` is the deflection of a roller
-/// by an equal force on its other side [m/N], `more` what the contact gives way beside [m].
+/// Solves the local contact problem at several loads up to `most` [N], which takes `beyond_rigid` times the approach
+/// of rigid surfaces or more; `across` is the deflection of a roller by an equal force on its other side [m/N],
+/// `more` what the contact gives way beside [m].
 fn curve(
     pressed: &LocalContact<'_>,
     (most, beyond_rigid): (f64, f64),

@@ -23,7 +23,7 @@ const MAGIC: &[u8; 20] = b"stribeck checkpoint\n";
 
 /// Version of the file. Other versions are refused, because a state that is read in part does not continue to
 /// the same bits.
-const VERSION: u32 = 21;
+const VERSION: u32 = 22;
 
 /// Length of a scene's hash.
 const HASH: usize = 16;

@@ -146,6 +146,10 @@ fn left_out(scene: &ResolvedScene) -> Vec<String> {
         (profiles, "profiles of speed and load: they stay as they are at the start"),
         (o.rotating_load.is_some(), "the load that turns with the shaft"),
         (scene.written.film.is_some(), "oil films"),
+        (
+            scene.element_share() != 1.0,
+            "mass and approach of balls: cylinders as long as the rings are wide are heavier and stiffer",
+        ),
         (scene.written.solver.structural_damping.is_some(), "structural damping"),
         (scene.written.solver.mass_damping_per_s > 0.0, "mass damping"),
         (scene.written.solver.stiffness_damping_ns > 0.0, "stiffness damping"),

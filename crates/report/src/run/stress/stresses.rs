@@ -1,9 +1,7 @@
 //! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
 
-use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-use stribeck_scene::resolved::ResolvedScene;
 use stribeck_store::frames::{Frame, Window};
 use stribeck_store::mesh_file::RunMesh;
 
@@ -14,6 +12,7 @@ use stribeck_analysis::record::Record;
 use stribeck_analysis::stress::{Cell, Lame, cells};
 use stribeck_analysis::summary::Event;
 use stribeck_diagnosis::words::numbers::{kilonewtons, pascals};
+use stribeck_theory::contact_law::ContactLawKind;
 
 /// Part of the cells whose stress the scale leaves above its end: single corners would take all colours.
 const ABOVE: f64 = 0.002;
@@ -32,42 +31,25 @@ struct Moment {
     time_s: f64,
     cells: Vec<Cell>,
     focus: [f64; 2],
-    /// Hertzian stress of the contact at the focus; `None` at an edge.
-    hertz: Option<Hertz>,
-}
-
-/// A line contact of a roller with the outer raceway (Johnson 1985, §4.2).
-#[derive(Debug, Clone, Copy)]
-struct Hertz {
-    /// Largest pressure [Pa].
-    pressure: f64,
-    /// Half-width [m].
-    half_width: f64,
+    /// Hertzian pressure of the contact at the focus [Pa]; `None` at an edge, and of balls, whose points are not in the
+    /// plane.
+    hertz: Option<f64>,
 }
 
 /// Highest von Mises stress under a line contact over its largest pressure, for ν = 0.3: yield begins at p₀ =
 /// 1.79 Y (Johnson 1985, §6.1).
 const VON_MISES_OF_PRESSURE: f64 = 1.0 / 1.79;
 
-impl Hertz {
-    fn of(scene: &ResolvedScene, force: f64) -> Self {
-        let (load, modulus) = (force / scene.thickness, scene.material.contact_modulus());
-        let half_width = (4.0 * load * scene.outer_contact_radius() / (PI * modulus)).sqrt();
-        Self { pressure: 2.0 * load / (PI * half_width), half_width }
-    }
-
-    /// Beside the highest stress of the picture.
-    fn beside(&self, von_mises: f64) -> String {
-        let expected = VON_MISES_OF_PRESSURE * self.pressure;
-        format!(
-            "Hertz has a pressure of {:.2} GPa over a half-width of {:.2} mm under this load, and a highest \
-             von Mises stress of {:.2} GPa below it: the picture shows {:.0} % of that.",
-            1e-9 * self.pressure,
-            1e3 * self.half_width,
-            1e-9 * expected,
-            100.0 * von_mises / expected
-        )
-    }
+/// The stress that Hertz's `pressure` [Pa] makes beside the highest one of the picture.
+fn beside_hertz(pressure: f64, von_mises: f64) -> String {
+    let expected = VON_MISES_OF_PRESSURE * pressure;
+    format!(
+        "Hertz has a pressure of {:.2} GPa under this load, and a highest von Mises stress of {:.2} GPa below it: the \
+         picture shows {:.0} % of that.",
+        1e-9 * pressure,
+        1e-9 * expected,
+        100.0 * von_mises / expected
+    )
 }
 
 pub(super) fn pictures(
@@ -125,7 +107,8 @@ fn moments(
                 time_s: *time,
                 cells: cells.clone(),
                 focus,
-                hertz: (force > 0.0).then(|| Hertz::of(scene, force)),
+                hertz: (force > 0.0 && scene.contact_law != ContactLawKind::Ball)
+                    .then(|| scene.pressure_pa(force)[0]),
             })
         })
     });
@@ -220,7 +203,7 @@ fn still(moments: &[Moment], window: &Window) -> Picture {
             1e3 * away,
             m.at
         ));
-        hertz.extend(m.hertz.map(|h| format!(" {}", h.beside(cell.von_mises))));
+        hertz.extend(m.hertz.map(|h| format!(" {}", beside_hertz(h, cell.von_mises))));
     }
     picture.caption = format!("The highest stress is {}.{hertz}", places.join(" and "));
     picture.note = "Von Mises stress at the centre of each element, linear elastic: nothing yields in this \

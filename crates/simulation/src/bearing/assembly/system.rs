@@ -227,7 +227,9 @@ impl Assembly {
         let base = Law::penalty(scene.penalty_stiffness)?;
         let base = base.with_damping(c.damping_ratio, scene.contact_layer_mass)?;
         let rolling = base.with_friction(c.friction)?.with_onset(scene.contact_onset)?;
-        let seat = base.with_friction(c.seat_friction)?;
+        let seat =
+            Law::penalty(scene.seat_stiffness)?.with_damping(c.damping_ratio, scene.contact_layer_mass)?;
+        let seat = seat.with_friction(c.seat_friction)?;
         let method = match c.method {
             ContactMethod::Collocated => Method::Collocated,
             ContactMethod::Integrated => Method::Integrated { points: c.points_per_facet },
