@@ -20,7 +20,8 @@ use crate::deviation::{Relief, RollingSurface};
 use crate::dice::Dice;
 use crate::faults::rolling_circle;
 use crate::scene::{
-    BearingScene, CageScene, DefectRing, DefectScene, FilmScene, PocketWalls, Scene, StructuralDampingScene,
+    BearingScene, CageScene, ContactFormula, DefectRing, DefectScene, FilmScene, PocketWalls, Scene,
+    StructuralDampingScene,
 };
 
 /// A scene in SI: dimensions, material, mesh, contact, load and times, and the scene as written, for fields
@@ -193,16 +194,14 @@ impl ResolvedScene {
 
     fn of(scene: &Scene) -> Self {
         let mut resolved = Self::with_stated_contact(scene);
-        if scene.element() == Element::Ball {
-            resolved.contact_length = length_of_balls(&resolved);
-            resolved.contact_layer_mass *= resolved.contact_length / resolved.thickness;
-        }
-        if scene.is_of_hertz() {
+        let layer = resolved.penalty_stiffness;
+        if scene.contact.formula == ContactFormula::Hertz {
             resolved.penalty_stiffness = scene.contact.penalty_scale * as_hertz(&resolved);
+        } else if scene.element() == Element::Ball {
+            resolved.penalty_stiffness *= resolved.contact_length / resolved.thickness;
         }
-        if scene.element() != Element::Ball {
-            resolved.seat_stiffness = resolved.penalty_stiffness;
-        }
+        resolved.seat_stiffness =
+            if resolved.contact_law == ContactLawKind::Ball { layer } else { resolved.penalty_stiffness };
         resolved
     }
 
@@ -271,6 +270,10 @@ impl ResolvedScene {
             frame_half_width: scene.output.frames.as_ref().map(|frames| 1e-3 * frames.half_width_mm),
             material,
         };
+        if scene.element() == Element::Ball {
+            resolved.contact_length = length_of_balls(&resolved);
+            resolved.contact_layer_mass *= resolved.contact_length / resolved.thickness;
+        }
         for (groove, defect) in
             scene.grooves().iter().enumerate().filter(|(_, defect)| defect.width_mm.is_some())
         {

@@ -115,16 +115,11 @@ impl Scene {
         if is_ball { Element::Ball } else { Element::Roller }
     }
 
-    /// Whether the penalty is a multiple of Hertz's: that of balls is, whatever the formula.
-    pub fn is_of_hertz(&self) -> bool {
-        self.contact.formula == ContactFormula::Hertz || self.element() == Element::Ball
-    }
-
     /// Law of the contacts of rolling elements in its model, where they are as in steel: the penalty is that of
     /// balls, and without a mesh relieved rollers touch with their middles. Anything else is plane.
     pub(crate) fn contact_law(&self) -> ContactLawKind {
         match self.law_of_elements() {
-            _ if !self.is_of_hertz() => ContactLawKind::Line,
+            _ if self.contact.formula != ContactFormula::Hertz => ContactLawKind::Line,
             ContactLawKind::Profiled if self.model == ModelScene::Full => ContactLawKind::Line,
             kind => kind,
         }
@@ -148,7 +143,7 @@ impl ResolvedScene {
     /// Whether contact with the outer raceway has the compliance of the ring: not where the ring moves as one
     /// piece, unless the penalty stands for it.
     pub fn outer_gives_way(&self) -> bool {
-        !self.written.housing.is_rigid() || self.written.is_of_hertz()
+        !self.written.housing.is_rigid() || self.written.contact.formula == ContactFormula::Hertz
     }
 
     /// Line contacts of what is meshed: a ring that moves as one piece does not give way, and a roller that is
@@ -163,7 +158,7 @@ impl ResolvedScene {
 
     /// Length of a rolling element over the thickness: of a roller one, of a ball that of the cylinder with its mass.
     pub fn element_share(&self) -> f64 {
-        match self.contact_law {
+        match self.law_of_elements() {
             ContactLawKind::Ball => 4.0 / 3.0 * self.roller_radius / self.thickness,
             _ => 1.0,
         }
@@ -202,7 +197,7 @@ impl ResolvedScene {
     /// point for balls, of a line for all others.
     pub fn pressure_pa(&self, force_n: f64) -> [f64; 2] {
         let (r, modulus) = (self.roller_radius, self.material.contact_modulus());
-        if self.contact_law == ContactLawKind::Ball {
+        if self.law_of_elements() == ContactLawKind::Ball {
             let groove = 2.0 * CONFORMITY * r;
             return [-self.outer_race_radius, self.inner_race_radius]
                 .map(|across| point_contact::pressure(r, across, groove, force_n, 2.0 * modulus));

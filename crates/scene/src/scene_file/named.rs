@@ -213,9 +213,7 @@ pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, all: &[String]) 
         "output.interval_us" => scene.record_no_faster(all),
         "model" => modes(scene, &given),
         "contact.formula" => as_stiff_as_hertz(scene, all),
-        "contact.penalty_scale"
-            if !given("contact.formula") && is_hertz && scene.element() != Element::Ball =>
-        {
+        "contact.penalty_scale" if !given("contact.formula") && is_hertz => {
             scene.contact.formula = ContactFormula::ElementLayer;
         }
         _ => {}
@@ -251,14 +249,13 @@ fn modes(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
 }
 
 /// Contact of any bearing but the paper's, where the user stated none: round, and as soft as steel. A penalty
-/// scale alone is that of an element layer, but of balls that of their stiffness.
+/// scale alone is that of an element layer.
 pub(super) fn contact(scene: &mut Scene, given: &[String]) {
     let written = |path: &str| given.iter().any(|written| written == path);
     if !written("contact.surface") {
         scene.contact.surface = ContactSurface::Arc;
     }
-    let is_stated = written("contact.penalty_scale") && scene.element() != Element::Ball;
-    if !written("contact.formula") && !is_stated {
+    if !written("contact.formula") && !written("contact.penalty_scale") {
         scene.contact.formula = ContactFormula::Hertz;
     }
     as_stiff_as_hertz(scene, given);

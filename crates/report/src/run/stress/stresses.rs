@@ -107,7 +107,7 @@ fn moments(
                 time_s: *time,
                 cells: cells.clone(),
                 focus,
-                hertz: (force > 0.0 && scene.contact_law != ContactLawKind::Ball)
+                hertz: (force > 0.0 && scene.law_of_elements() != ContactLawKind::Ball)
                     .then(|| scene.pressure_pa(force)[0]),
             })
         })

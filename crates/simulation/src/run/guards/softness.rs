@@ -1,6 +1,6 @@
 //! Contact that is softer than the bearing itself.
 
-use stribeck_scene::resolved::ResolvedScene;
+use stribeck_scene::{resolved::ResolvedScene, scene::ContactFormula};
 use stribeck_theory::contact_law::ContactLawKind;
 use stribeck_theory::static_load::RigidRings;
 
@@ -38,7 +38,7 @@ impl Softness {
         };
         let depth = scene.written.spalls().iter().map(|d| 1e-3 * d.depth_mm).fold(f64::INFINITY, f64::min);
         let contact = &scene.written.contact;
-        let is_steel = scene.written.is_of_hertz() && contact.penalty_scale >= 1.0;
+        let is_steel = contact.formula == ContactFormula::Hertz && contact.penalty_scale >= 1.0;
         // Balls of steel sink in by the approach that they have.
         let depth = if is_steel && scene.contact_law == ContactLawKind::Ball { f64::INFINITY } else { depth };
         Self { steel, depth, is_steel }
