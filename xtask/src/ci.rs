@@ -83,7 +83,8 @@ fn cargo_steps(crates: &[String]) -> Vec<Vec<String>> {
     ];
     let package = |name: &str| if name == "stribeck" { name.to_owned() } else { format!("stribeck-{name}") };
     // The library for other programs is no member of the workspace: it needs libclang.
-    let members = crates.iter().filter(|name| *name != "fmu");
+    let names = crates.iter().filter_map(|folder| folder.rsplit('/').next());
+    let members = names.filter(|name| *name != "fmu");
     steps.extend(members.map(|name| words(&format!("test --release -p {}", package(name)))));
     steps.push(words("test --release -p stribeck-studies -p xtask"));
     steps

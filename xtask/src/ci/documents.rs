@@ -19,7 +19,7 @@ pub(crate) fn check_citations(root: &Path) -> Result<Vec<String>> {
     let theory = read(root, "docs/THEORY.md")?;
     let sections: BTreeSet<&str> = theory.lines().filter_map(markdown::section_number).collect();
     let mut complaints = Vec::new();
-    let folders = ["crates", "studies"].map(|folder| sources::rust_files(&root.join(folder)));
+    let folders = sources::FOLDERS.map(|folder| sources::rust_files(&root.join(folder)));
     for file in folders.into_iter().collect::<Result<Vec<_>>>()?.concat() {
         let text =
             std::fs::read_to_string(&file).with_context(|| format!("cannot read {}", file.display()))?;
@@ -96,7 +96,7 @@ fn documents(root: &Path) -> Result<Vec<String>> {
             entries.flatten().map(|entry| format!("{folder}/{}", entry.file_name().to_string_lossy()));
         names.extend(files.filter(|name| name.ends_with(".md")));
     }
-    names.extend(sources::crates(root)?.iter().map(|name| format!("crates/{name}/README.md")));
+    names.extend(sources::crates(root)?.iter().map(|folder| format!("{folder}/README.md")));
     names.retain(|name| root.join(name).exists());
     names.sort();
     Ok(names)

@@ -23,21 +23,24 @@ pub(crate) fn rust_files(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(found)
 }
 
-/// Names of the folders in `crates/`, sorted.
+/// Folders of the packages below `crates/`, one or two levels down, from the root, sorted.
 pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
-    let folder = root.join("crates");
-    let entries = std::fs::read_dir(&folder).with_context(|| format!("cannot read {}", folder.display()))?;
-    let mut names: Vec<String> = entries
-        .flatten()
-        .filter(|entry| entry.path().join("Cargo.toml").is_file())
-        .map(|entry| entry.file_name().to_string_lossy().into_owned())
-        .collect();
-    names.sort();
-    Ok(names)
+    let mut found = Vec::new();
+    let mut folders = vec!["crates".to_owned()];
+    while let Some(folder) = folders.pop() {
+        let entries = std::fs::read_dir(root.join(&folder)).with_context(|| format!("cannot read {folder}"))?;
+        for entry in entries.flatten().filter(|entry| entry.path().is_dir()) {
+            let name = format!("{folder}/{}", entry.file_name().to_string_lossy());
+            let list = if entry.path().join("Cargo.toml").is_file() { &mut found } else { &mut folders };
+            // Below `crates/` are layers, below those packages.
+            if name.matches('/').count() <= 2 {
+                list.push(name);
+            }
+        }
+    }
+    found.sort();
+    Ok(found)
 }
 
-/// Folders of all packages, from the root: those in `crates/`, and what only the development uses.
-pub(crate) fn folders(root: &Path) -> Result<Vec<String>> {
-    let development = ["studies", "xtask"].map(str::to_owned);
-    Ok(crates(root)?.iter().map(|name| format!("crates/{name}")).chain(development).collect())
-}
+/// Folders that hold all packages, from the root.
+pub(crate) const FOLDERS: [&str; 3] = ["crates", "studies", "xtask"];

@@ -40,9 +40,8 @@ pub(super) fn check(root: &Path) -> Result<Vec<String>> {
             let text = std::fs::read_to_string(document(root)).context("cannot read docs/VALIDATION.md")?;
             let tests = test_names::all(root)?;
             Ok(strays(&text, |package, name| {
-                let folder = format!("{package}/");
-                let file = |test: &str| test.trim_start_matches("crates/").starts_with(&folder);
-                tests.iter().any(|test| test.name == name && file(&test.file))
+                let folder = format!("/{package}/");
+                tests.iter().any(|test| test.name == name && test.file.contains(&folder))
             }))
         }
     }
