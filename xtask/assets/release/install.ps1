@@ -1,8 +1,8 @@
-# Installs stribeck {{version}} for this user. $env:STRIBECK_TO names the folder of the program, $env:STRIBECK_FROM where the
-# archive is, a folder or an address.
+# Installs stribeck {{version}} for this user from the archive beside this file. $env:STRIBECK_TO names the folder of the
+# program, $env:STRIBECK_FROM where the archive is, a folder or an address.
 $ErrorActionPreference = "Stop"
 
-$from = if ($env:STRIBECK_FROM) { $env:STRIBECK_FROM } else { "{{repository}}/releases/download/v{{version}}" }
+$from = if ($env:STRIBECK_FROM) { $env:STRIBECK_FROM } else { $PSScriptRoot }
 $to = if ($env:STRIBECK_TO) { $env:STRIBECK_TO } else { "$env:LOCALAPPDATA\Programs\stribeck" }
 $name = "stribeck-{{version}}-x86_64-pc-windows-gnu"
 $sums = @"

@@ -1,9 +1,9 @@
 #!/bin/sh
-# Installs stribeck {{version}} for this user. STRIBECK_TO names the folder of the program, by default ~/.local/bin;
-# STRIBECK_FROM where the archive is, a folder or an address.
+# Installs stribeck {{version}} for this user from the archive beside this file. STRIBECK_TO names the folder of the program, by
+# default ~/.local/bin; STRIBECK_FROM where the archive is, a folder or an address.
 set -eu
 
-from="${STRIBECK_FROM:-{{repository}}/releases/download/v{{version}}}"
+from="${STRIBECK_FROM:-$(dirname "$0")}"
 to="${STRIBECK_TO:-$HOME/.local/bin}"
 case "$(uname -s) $(uname -m)" in
 "Linux x86_64") target=x86_64-unknown-linux-gnu ;;
@@ -26,11 +26,21 @@ SUMS
 }
 work="$(mktemp -d)"
 trap 'rm -rf "$work"' EXIT
-cd "$work"
 case "$from" in
-/*) cp "$from/$name.tar.gz" . ;;
-*) if command -v curl >/dev/null; then curl -fsSLO "$from/$name.tar.gz"; else wget -q "$from/$name.tar.gz"; fi ;;
+*://*) curl -fsSL -o "$work/$name.tar.gz" "$from/$name.tar.gz" ;;
+*)
+    [ -f "$from/$name.tar.gz" ] || {
+        echo "There is no $name.tar.gz in $from: STRIBECK_FROM names the folder or the address that has it." >&2
+        exit 1
+    }
+    cp "$from/$name.tar.gz" "$work"
+    ;;
 esac
+case "$to" in
+/*) ;;
+*) to="$PWD/$to" ;;
+esac
+cd "$work"
 if command -v sha256sum >/dev/null; then
     echo "$sum" | sha256sum -c - >/dev/null
 else

@@ -26,13 +26,8 @@ pub(super) fn write(folder: &Path, name: &str, text: &str) -> Result<()> {
 
 /// Writes all; `archives` have names and checksums.
 pub(super) fn write_all(root: &Path, folder: &Path, archives: &[(String, String)]) -> Result<()> {
-    let sums: Vec<String> = archives.iter().map(|(name, sum)| format!("{sum}  {name}")).collect();
-    for (name, text) in TEMPLATES {
-        let text =
-            text.replace("{{version}}", VERSION).replace("{{repository}}", env!("CARGO_PKG_REPOSITORY"));
-        let text = text.replace("{{sums}}", &sums.join("\n"));
-        let text =
-            archives.iter().fold(text, |text, (name, sum)| text.replace(&format!("{{{{{name}}}}}"), sum));
+    for (name, template) in TEMPLATES {
+        let text = filled(template, archives);
         // A formula needs the archives of both processors.
         if !text.contains("{{") {
             write(folder, name, &text)?;
@@ -51,6 +46,14 @@ pub(super) fn write_all(root: &Path, folder: &Path, archives: &[(String, String)
     write(folder, "CITATION.cff", &citation)
 }
 
+/// A template with version, address and checksums in their places.
+fn filled(template: &str, archives: &[(String, String)]) -> String {
+    let sums: Vec<String> = archives.iter().map(|(name, sum)| format!("{sum}  {name}")).collect();
+    let text = template.replace("{{version}}", VERSION).replace("{{sums}}", &sums.join("\n"));
+    let text = text.replace("{{repository}}", env!("CARGO_PKG_REPOSITORY"));
+    archives.iter().fold(text, |text, (name, sum)| text.replace(&format!("{{{{{name}}}}}"), sum))
+}
+
 /// The section of this version in the changelog, or that of what is not released.
 fn notes(changes: &str) -> Result<&str> {
     let of = |title: &str| {
@@ -63,7 +66,41 @@ fn notes(changes: &str) -> Result<&str> {
 
 #[cfg(test)]
 mod tests {
+    use std::process::Command;
+
     use super::*;
+
+    /// The installer takes the archive beside itself, from another folder too, and the one of a relative
+    /// `STRIBECK_FROM`; without network.
+    #[test]
+    #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
+    fn issue_the_installer_takes_the_archive_beside_it() {
+        let folder = stribeck_testing::Scratch::create("installer");
+        let name = format!("stribeck-{VERSION}-x86_64-unknown-linux-gnu");
+        let script = r#"
+            mkdir -p release "$1" && echo program >"$1/stribeck" && tar -czf "release/$1.tar.gz" "$1"
+            sha256sum "release/$1.tar.gz" | cut -d ' ' -f 1
+        "#;
+        let made = Command::new("sh")
+            .args(["-euc", script, "sh", &name])
+            .current_dir(folder.path())
+            .output()
+            .expect("a shell");
+        let sum = String::from_utf8(made.stdout).expect("text").trim().to_owned();
+        let release = folder.path().join("release");
+        write(&release, "install.sh", &filled(TEMPLATES[0].1, &[(format!("{name}.tar.gz"), sum)]))
+            .expect("written");
+        for (place, from) in [(folder.path(), None), (folder.path(), Some("release")), (&release, Some("."))] {
+            let mut install = Command::new("sh");
+            install.arg(release.join("install.sh")).current_dir(place).env_remove("STRIBECK_FROM");
+            install.env("STRIBECK_TO", "bin").envs(from.map(|from| ("STRIBECK_FROM", from)));
+            let output = install.output().expect("a shell");
+            assert!(output.status.success(), "{output:?}");
+            let program = std::fs::read_to_string(place.join("bin/stribeck")).expect("the program");
+            assert_eq!(program, "program\n");
+            std::fs::remove_dir_all(place.join("bin")).expect("removed");
+        }
+    }
 
     #[test]
     fn by_hand_notes_are_the_section_of_the_version() {
