@@ -43,10 +43,8 @@ pub(crate) fn check(root: &Path) -> Result<Vec<String>> {
 fn page() -> Result<String> {
     let mut text = String::from(
         "# Every number of a run\n\nWritten by `cargo xtask quantities` from the summary's own declarations. \
-         A path leads to a number in `summary.json`, to its statistic in that of an ensemble, to the column \
-         `summary.PATH` of a campaign, and to a target of an inference. Numbers with an … are in a list, of \
-         which an inference takes one item or combines all, as in `median(events.floor_n)`, and campaigns \
-         have no column. `compare` and the page of a campaign show the bold ones. \
+         A path leads to a number in `summary.json`, to its statistic in that of an ensemble, and to the column \
+         `summary.PATH` of a campaign. Numbers with an … are in a list, and campaigns have no column of them. `compare` and the page of a campaign show the bold ones. \
          `cargo xtask quantities --schema` prints the JSON schema of `summary.json`.\n",
     );
     let quantities = Summary::quantities();

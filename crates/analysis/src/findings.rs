@@ -157,7 +157,6 @@ impl Findings {
         let envelope = EnvelopeAnswer::with_note(enveloped, &mut notes);
         let orders = case.orders(&motion, &sensors, &mut notes)?;
         let film = FilmFinding::measure(case.run, record)?;
-        let records = case.records(&carried, &mut notes)?;
         let answers = Answers {
             motion,
             carried,
@@ -173,7 +172,6 @@ impl Findings {
             envelope,
             orders,
             film,
-            records,
             notes,
         };
         Ok(case.findings(answers))

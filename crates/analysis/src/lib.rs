@@ -31,7 +31,6 @@
 //! | How far is the reduced model from the full one? | [`agreement`] |
 //! | What differs between runs or records, and is it more than scatter? | [`comparison`] |
 //! | What does the verdict on a record say of a run? | [`diagnosis`] |
-//! | Which numbers of a run survive in such a record, behind an unknown path and in noise? | [`records`] |
 //! | What does the sensor of a machine about the bearing record, and which machine made a record? | [`machine`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
 //! | How is a number of a summary declared? | [`quantity`] |
@@ -94,7 +93,6 @@ pub mod artefacts;
 pub mod detection;
 pub mod diagnosis;
 pub mod machine;
-pub mod records;
 pub mod stiffness;
 pub mod stress;
 

@@ -145,12 +145,7 @@ impl Carried {
     }
 
     /// Force of all rollers on the outer ring against the load at every sample [N]: positive when it supports
-    /// the load.
-    pub fn support_n(&self) -> &[f64] {
-        &self.support_n
-    }
-
-    /// The same; empty where no roller was recorded.
+    /// the load; empty where no roller was recorded.
     pub fn into_support(self) -> Vec<f64> {
         if self.rollers > 0 { self.support_n } else { Vec::new() }
     }

@@ -11,7 +11,7 @@ pub mod octaves;
 
 use std::f64::consts::TAU;
 
-use stribeck_dsp::{Mode, Response, Sensor, statistics};
+use stribeck_dsp::{Mode, Response, Sensor};
 use stribeck_scene::dice::Dice;
 use stribeck_scene::machine::{BackgroundScene, MachineScene, MachineSensorScene};
 use stribeck_scene::scene::{BearingScene, Scene};
@@ -20,7 +20,6 @@ use stribeck_store::run_dir::Run;
 use crate::Error;
 use crate::load::support;
 use crate::record::Record;
-use crate::records::normal;
 
 /// Name of the channel of such a record.
 pub const CHANNEL: &str = "sensor.machine.a_m_s2";
@@ -76,16 +75,6 @@ pub fn of_run(run: &Run) -> Result<Option<MachineRecord>, Error> {
     let Some(machine) = run.scene.written.housing.machine() else { return Ok(None) };
     let force = Force::of_run(run, machine.direction_deg)?;
     record(machine, &run.scene.written.bearing, &force).map(Some)
-}
-
-/// Root mean square of a record about its mean, by which it is held against that of a machine.
-///
-/// # Errors
-/// [`Error::Signal`] for a record that is empty or not finite.
-pub fn level(samples: &[f64]) -> Result<f64, Error> {
-    let (mean, rms) = (statistics::mean(samples), statistics::rms(samples));
-    let (mean, rms) = (mean.map_err(Error::Signal)?, rms.map_err(Error::Signal)?);
-    Ok((rms * rms - mean * mean).max(0.0).sqrt())
 }
 
 /// The record of a machine's sensor under a force.
@@ -149,6 +138,12 @@ fn coloured(
     let (hz, gains): (Vec<f64>, Vec<f64>) = background.iter().map(|band| (band.hz, gain(band))).unzip();
     let response = Response::of_gains(&hz, &gains, 0.5 * rate_hz).map_err(Error::Signal)?;
     response.through(&white, rate_hz).map_err(Error::Signal)
+}
+
+/// Normally distributed with a variance of 1: G. E. P. Box and M. E. Muller, Ann. Math. Stat. 29 (1958) 610.
+fn normal(dice: &mut Dice) -> f64 {
+    let (length, turn) = (1.0 - dice.share(), dice.share());
+    (-2.0 * length.ln()).sqrt() * (TAU * turn).cos()
 }
 
 fn sensor(of: &MachineSensorScene, seed: u64) -> Sensor {

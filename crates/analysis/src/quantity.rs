@@ -1,8 +1,8 @@
 //! Every number of `summary.json`, by its path.
 //!
-//! Reading and writing, the statistics of ensembles, the columns of campaigns, the targets of inferences, the
-//! guide's page (`cargo xtask quantities`) and the schema for other programs follow from the declarations in
-//! `quantities!` ([`stribeck_diagnosis::quantity`]).
+//! Reading and writing, the statistics of ensembles, the columns of campaigns, the guide's page
+//! (`cargo xtask quantities`) and the schema for other programs follow from the declarations in `quantities!`
+//! ([`stribeck_diagnosis::quantity`]).
 
 pub mod schema;
 

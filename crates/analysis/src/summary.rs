@@ -22,7 +22,6 @@ use crate::levels::SignalLevel;
 use crate::load::LoadFinding;
 use crate::quantity::{self, Quantity};
 use crate::reading::CursorReading;
-use crate::records::RecordFinding;
 use crate::tones::Tone;
 
 const WORDS: Kind = Kind::Text;
@@ -85,9 +84,6 @@ quantities! {
         /// Blind diagnosis from the leading sensor; `None` when the record is too short.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub diagnosis: Option<DiagnosisFinding>,
-        /// Signatures of synthetic records of a machine's sensor, one for each level of noise in the scene.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        pub records: Vec<RecordFinding>,
         /// Possible readings behind the paper's 4545 Hz at this sample rate.
         pub cursor: Option<CursorReading>,
         /// Every number of the paper beside ours.

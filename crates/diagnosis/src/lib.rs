@@ -59,7 +59,6 @@ pub use families::family::{Family, Reason};
 pub use families::sidebands::sidebands_seen;
 pub use families::unexplained::Unexplained;
 pub use findings::{Interval, MeasuredFindings, SoundAsHigh};
-pub use length::estimate::SHORTEST_S;
 pub use length::pressed::{Pressed, usual_load_n};
 pub use machine::{Machine, SPEEDS_RPM};
 pub use record::course::Course;

@@ -40,9 +40,7 @@
 //! | whether there is a family of harmonics, with a false-alarm rate | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
 //! | the times of impacts behind an unknown path | [`prewhitened_power`] |
-//! | the record of a sensor behind a random path, or behind the path of a record | [`Path`], [`coloured_like`] |
 //! | the signal of a sensor behind a measured response or some modes, and the signal before them | [`Response`] |
-//! | numbers of repeated passages that do not depend on the path to the sensor | [`Signature`] |
 //! | components locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | the record at another rate | [`resample_poly`] |
 //! | a computed signal as a sensor and its recorder would have recorded it | [`Sensor`] |
@@ -107,12 +105,11 @@ mod cycle;
 mod angle;
 mod cyclic;
 mod kurtogram;
-mod path;
+mod least_delay;
 mod prewhitened;
 mod resample;
 mod response;
 mod ridge;
-mod signature;
 mod spacing;
 mod spectrogram;
 mod velocity;
@@ -132,14 +129,12 @@ pub use error::{Error, Result};
 pub use kurtogram::{KurtogramBand, fast_kurtogram};
 pub use notch::Notch;
 pub use options::{Averaging, Detrend, WelchOptions};
-pub use path::{Path, at_rate, coloured_like};
 pub use peak::{Peak, Sinusoid};
 pub use prewhitened::prewhitened_power;
 pub use resample::resample_poly;
 pub use response::{Mode, Response, Undone};
 pub use ridge::{Ridge, ridge};
 pub use sensor::Sensor;
-pub use signature::{PASSAGES, Rhythm, Signature, WITHIN};
 pub use sound::Sound;
 pub use spacing::{EventSpacing, Spacing, event_spacing, passage_spacing};
 pub use spectrogram::{Spectrogram, Spectrograph, magnitude_spectrogram, spectrogram};

@@ -13,7 +13,7 @@ use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
 
 use crate::error::{check_positive, check_signal};
-use crate::path::least_delay;
+use crate::least_delay::least_delay;
 use crate::{Error, Result};
 
 /// A ringing has ended when it has fallen to this part.

@@ -70,11 +70,6 @@ impl<'a> File<'a> {
         problem.into()
     }
 
-    pub(crate) fn shown(&self, mut problem: Problem, path: &str) -> SceneError {
-        problem.place = self.place(path);
-        problem.into()
-    }
-
     /// The scene that all others start from; a mistake in an item of `set` is shown at that item.
     pub(crate) fn of_base(&self, error: SceneError) -> SceneError {
         SceneError::new(error.problems().iter().cloned().map(|problem| self.in_set(problem)).collect())

@@ -1,5 +1,4 @@
-//! Files that plan many runs: a campaign varies fields of a scene, an inference looks for unknown fields by
-//! targets of a record.
+//! Files that plan many runs: a campaign varies fields of a scene.
 //!
 //! It is a crate because a single run needs none of it.
 //!
@@ -16,7 +15,6 @@
 //! ```
 
 pub mod campaign;
-pub mod inference;
 
 mod document;
 

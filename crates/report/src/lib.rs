@@ -19,7 +19,6 @@
 //! | the reduced model beside the full one | [`write_agreement`] | `report.html`, `validation.json` |
 //! | runs, ensembles and records beside each other | [`write_comparison`] | `report.html`, `compare.json` |
 //! | a campaign | [`write_campaign`] | `index.html` |
-//! | an inference | [`inference::write_inference`] | `report.html`, `inference.json` |
 //! | the smallest spall that is found | [`write_detection`] | `report.html` |
 //! | a measured record | [`write_measured`] | `report.html`, `findings.json` |
 //! | a series of measured records | [`write_series`] | `report.html`, `findings.json` |
@@ -48,7 +47,6 @@ mod campaign;
 mod comparison;
 mod detection;
 mod ensemble;
-pub mod inference;
 mod joint;
 mod measured;
 mod series;

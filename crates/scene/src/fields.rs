@@ -11,8 +11,8 @@
 //! }
 //! ```
 //!
-//! Reading, ranges, suggestions for misspelt names, `--set`, the axes of campaigns and the unknowns of
-//! inferences, the identity of a scene, the page of all fields and the schema for editors follow from it.
+//! Reading, ranges, suggestions for misspelt names, `--set`, the axes of campaigns, the identity of
+//! a scene, the page of all fields and the schema for editors follow from it.
 
 mod difference;
 pub(crate) mod page;

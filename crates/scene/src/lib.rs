@@ -60,7 +60,6 @@ pub mod mesh_text;
 mod narrow;
 pub mod paper;
 mod quality;
-pub mod records;
 pub mod resolved;
 pub mod ring_mesh;
 pub mod scene;

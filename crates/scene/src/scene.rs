@@ -11,7 +11,6 @@ use crate::fields::{group, words};
 
 pub use crate::deviation::DeviationScene;
 pub use crate::housing::HousingScene;
-pub use crate::records::RecordsScene;
 pub use crate::ring_mesh::RingMeshScene;
 pub use bearing::{
     AdapterScene, Assumed, BearingScene, CageScene, DefectRing, DefectScene, ElementKind, MaterialScene,

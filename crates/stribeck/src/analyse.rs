@@ -26,7 +26,7 @@ use stribeck_store::run_dir::check_folder;
 use crate::interrupt::Interrupt;
 use crate::out::say;
 use crate::place::{Place, shown};
-pub(crate) use reading::{Accelerations, Reading, Speed, accelerations, examine, in_m_s2};
+pub(crate) use reading::{Accelerations, Reading, Speed, accelerations, examine};
 use simulated::Simulation;
 
 /// Flags of `analyse`.

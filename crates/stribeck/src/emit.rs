@@ -1,4 +1,4 @@
-//! Scripts by which an existing workflow engine runs the parts of a campaign or of an inference.
+//! Scripts by which an existing workflow engine runs the parts of a campaign.
 
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,7 @@ use crate::Command;
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Simulate a bearing", &["demo", "new", "plan", "simulate", "lab"]),
     ("Diagnose records", &["analyse", "compare", "machine", "detect"]),
-    ("Many runs", &["sweep", "infer"]),
+    ("Many runs", &["sweep"]),
     ("For other programs", &["export", "fmu", "stiffness"]),
     (
         "Runs, names, checks",

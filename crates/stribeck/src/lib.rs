@@ -30,8 +30,6 @@ mod emit;
 mod export;
 pub mod fmu;
 mod help;
-#[cfg(feature = "full")]
-mod infer;
 pub mod lab;
 mod limits;
 mod list;
@@ -66,8 +64,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 #[cfg(not(feature = "full"))]
 use elsewhere::{
-    self as analyse, self as compare, self as demo, self as detect, self as export, self as infer,
-    self as machine_fit, self as sweep,
+    self as analyse, self as compare, self as demo, self as detect, self as export, self as machine_fit,
+    self as sweep,
 };
 pub use limits::Limits;
 pub use out::Loudness;
@@ -130,9 +128,6 @@ pub enum Command {
         after_help = "Example: stribeck sweep mine.ron --set operation.load_n=1000,2000,4000"
     )]
     Sweep(sweep::Options),
-    /// Infers unknown fields of a scene from observed numbers, with their intervals
-    #[command(after_help = "Example: stribeck infer unknown.ron")]
-    Infer(infer::Options),
     /// Fits path to the sensor and background of a machine to records of known state
     #[command(
         after_help = "Example: stribeck machine sound.mat spalled.mat --defect none --defect outer:0.53 --bearing 6205 --unit g"
@@ -196,7 +191,6 @@ impl Command {
             self,
             Self::Demo(_)
                 | Self::Sweep(_)
-                | Self::Infer(_)
                 | Self::Machine(_)
                 | Self::Detect(_)
                 | Self::Analyse(_)
@@ -215,7 +209,6 @@ impl Command {
             Self::Simulate(options) => simulate::run(options, place),
             Self::Report(options) => report::run(options, place),
             Self::Sweep(options) => sweep::run(options, place),
-            Self::Infer(options) => infer::run(options, place),
             Self::Machine(options) => machine_fit::run(options, place),
             Self::Detect(options) => detect::run(options, place),
             Self::Validate(options) => validate::run(options, place),

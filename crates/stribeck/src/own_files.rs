@@ -9,7 +9,7 @@ use crate::place::shown;
 use crate::shelf::Kind;
 
 /// Files of all kinds of folders, by name.
-const FILES: [&str; 38] = [
+const FILES: [&str; 31] = [
     // A run, an ensemble and their reports.
     "run.json",
     "ensemble.json",
@@ -32,15 +32,8 @@ const FILES: [&str; 38] = [
     "scenes.txt",
     "index.html",
     ".turn",
-    // A validation, an inference, a comparison, a stiffness.
+    // A validation, a comparison, a stiffness.
     "validation.json",
-    "inference.ron",
-    "inference.json",
-    "posterior.parquet",
-    "measured.uff",
-    "synthetic.uff",
-    "measured.wav",
-    "synthetic.wav",
     "compare.json",
     "stiffness.json",
     "detect.json",
@@ -55,16 +48,15 @@ const FILES: [&str; 38] = [
 ];
 
 /// Folders whose files all have one of some endings.
-const FILLED: [(&str, &[&str]); 5] = [
+const FILLED: [(&str, &[&str]); 4] = [
     ("figures", &["svg", "png", "gif"]),
     ("frames", &["npy"]),
     ("failed", &["txt"]),
-    ("rounds", &["csv"]),
     (".reduced", &["modes"]),
 ];
 
 /// Folders that hold further ones of ours; a folder of ours may also lie in another by any name.
-const HOLDERS: [&str; 6] = ["runs", "full", "reduced", "simulated", "synthetic", "beside"];
+const HOLDERS: [&str; 4] = ["runs", "full", "reduced", "simulated"];
 
 /// Folder of links to runs.
 const LINKS: &str = "by_name";
@@ -139,7 +131,7 @@ fn is_own(name: &str) -> bool {
     FILES.contains(&name) || is_half_written(name)
 }
 
-/// Whether a name is that of a file that a killed process left: `.run.json.123-4.part`, `posterior.123.new`.
+/// Whether a name is that of a file that a killed process left: `.run.json.123-4.part`, `runs.parquet.123.new`.
 fn is_half_written(name: &str) -> bool {
     let hidden = name.strip_prefix('.').and_then(|name| name.strip_suffix(".part"));
     let beside = name.strip_suffix(".new").or_else(|| name.strip_suffix(".part"));

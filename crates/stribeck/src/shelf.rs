@@ -16,13 +16,12 @@ pub(crate) enum Kind {
     Ensemble,
     Campaign,
     Validation,
-    Inference,
     Comparison,
     Analysis,
 }
 
 /// A kind of folder: the files that mark it, its page, and a word for it.
-const KINDS: [(Kind, &[&str], &str, &str); 7] = [
+const KINDS: [(Kind, &[&str], &str, &str); 6] = [
     (Kind::Ensemble, &["ensemble.json"], "report.html", "ensemble"),
     (Kind::Run, &["run.json"], "report.html", "run"),
     (Kind::Campaign, &["runs.parquet", "campaign.ron"], "index.html", "campaign"),
@@ -32,7 +31,6 @@ const KINDS: [(Kind, &[&str], &str, &str); 7] = [
         "report.html",
         "validation",
     ),
-    (Kind::Inference, &["inference.json", "inference.ron"], "report.html", "inference"),
     (Kind::Comparison, &["compare.json"], "report.html", "comparison"),
     (Kind::Analysis, &["findings.json"], "report.html", "record"),
 ];

@@ -15,7 +15,6 @@ use crate::filtering::Filter;
 use crate::kinematics::KinematicsFinding;
 use crate::load::{Carried, LoadFinding};
 use crate::prediction::StaticCurve;
-use crate::records::RecordFinding;
 use crate::summary::{Event, LevelsFinding, SpectrumFinding};
 use crate::tones::{PredictedLine, Tone};
 
@@ -105,6 +104,5 @@ pub(super) struct Answers {
     pub(super) envelope: EnvelopeAnswer,
     pub(super) orders: Orders,
     pub(super) film: Option<FilmFinding>,
-    pub(super) records: Vec<RecordFinding>,
     pub(super) notes: Vec<String>,
 }

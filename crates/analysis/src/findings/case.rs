@@ -20,12 +20,10 @@ use crate::families;
 use crate::filtering::Filter;
 use crate::kinematics::{KinematicsFinding, Turning};
 use crate::load::{Carried, LoadFinding};
-use crate::machine;
 use crate::paper;
 use crate::prediction::Prediction;
 use crate::reading::CursorReading;
 use crate::record::Record;
-use crate::records::{self, RecordFinding};
 use crate::ring;
 use crate::rolling;
 use crate::summary::{EnergyFinding, RunCost, SpectrumFinding, Summary};
@@ -248,21 +246,6 @@ impl<'a> Case<'a> {
         Ok(LeadingSpectrum { finding, fine })
     }
 
-    /// Which signatures has a machine's sensor, where the scene has `output.records`?
-    pub(super) fn records(
-        &self,
-        carried: &Carried,
-        notes: &mut Vec<String>,
-    ) -> Result<Vec<RecordFinding>, Error> {
-        let scene = &self.run.scene.written;
-        if scene.output.records.is_none() {
-            return Ok(Vec::new());
-        }
-        let of_machine = machine::of_run(self.run)?;
-        let level = of_machine.map(|record| machine::level(&record.samples)).transpose()?;
-        records::of(scene, carried.support_n(), self.record.sample_rate_hz(), level, notes)
-    }
-
     /// Which line of the leading sensor has which cause? None where the speed changes.
     pub(super) fn artefacts(
         &self,
@@ -344,7 +327,6 @@ impl<'a> Case<'a> {
             artefacts: answers.artefacts,
             envelope: answers.envelope.finding,
             diagnosis: answers.diagnosis,
-            records: answers.records,
             cursor,
             paper: Vec::new(),
             notes: answers.notes,

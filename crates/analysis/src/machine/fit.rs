@@ -245,7 +245,7 @@ fn solved(mut rows: Vec<[f64; 3]>, mut right: Vec<f64>) -> Option<Vec<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::records::normal;
+    use crate::machine::normal;
     use stribeck_scene::dice::Dice;
     use stribeck_testing::assert_refused;
 

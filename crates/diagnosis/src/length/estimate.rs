@@ -10,7 +10,7 @@ use crate::length::pressed::{Loading, Pressed};
 use crate::{Defect, Family, Interval, Machine};
 
 /// Events closer than this cannot be distinguished from the ringing of one [s].
-pub const SHORTEST_S: f64 = 0.4e-3;
+const SHORTEST_S: f64 = 0.4e-3;
 /// Longest distance of two events over that of two passages: a longer one is the shorter distance of the exit
 /// and the next entry.
 const LONGEST: f64 = 0.5;

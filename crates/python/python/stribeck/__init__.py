@@ -31,11 +31,10 @@ from pathlib import Path
 from typing import Any, Callable
 
 from . import _progress, _ron, _stribeck, dsp
-from ._program import Campaign, Inference, _analysed, _python_words, campaign, command, export, infer, validate
+from ._program import Campaign, _analysed, _python_words, campaign, command, export, validate
 
 __all__ = [
     "Campaign",
-    "Inference",
     "Run",
     "analyse",
     "campaign",
@@ -43,7 +42,6 @@ __all__ = [
     "defect_orders",
     "dsp",
     "export",
-    "infer",
     "load",
     "run",
     "scene",

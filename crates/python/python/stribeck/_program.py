@@ -115,50 +115,6 @@ def campaign(
     return Campaign(out if out is not None else Path(printed.strip().rsplit(": ", 1)[-1]).parent)
 
 
-class Inference:
-    """What an inference found: its folder, its answer as a dictionary, and draws of the posterior."""
-
-    def __init__(self, folder: str | os.PathLike[str]):
-        self.folder = Path(folder)
-
-    def __repr__(self) -> str:
-        return f"stribeck.Inference({str(self.folder)!r})"
-
-    @property
-    def answer(self) -> dict[str, Any]:
-        """Contents of ``inference.json``: unknowns, targets, pulls, pairs that exclude one another."""
-        return json.loads((self.folder / "inference.json").read_text())
-
-    @property
-    def posterior(self) -> Any:
-        """A row a draw, a column an unknown in its unit, as a pandas DataFrame."""
-        import pandas
-
-        return pandas.read_parquet(self.folder / "posterior.parquet")
-
-
-def infer(
-    file: str | os.PathLike[str],
-    *,
-    out: str | os.PathLike[str] | None = None,
-    jobs: int | None = None,
-    threads: int | None = None,
-    memory_gb: float | None = None,
-    calibrate: int | None = None,
-) -> Inference:
-    """Infers unknown fields of a scene from numbers that were seen, or goes on with it, and returns what was found.
-
-    file: unknowns and targets, such as ``fixtures/infer/quick.ron``.
-    out: its folder; without it ``runs/NAME``.
-    jobs, threads, memory_gb: as of ``stribeck infer``; the answer does not depend on them.
-    calibrate: so many scenes are drawn from the prior and inferred from their own numbers.
-    """
-    flags = _asked(out=out, jobs=jobs, threads=threads, memory_gb=memory_gb, calibrate=calibrate)
-    printed = _done(["infer", os.fspath(file), *flags])
-    # The last line ends in the path of the page.
-    return Inference(out if out is not None else Path(printed.strip().rsplit(": ", 1)[-1]).parent)
-
-
 def validate(
     scene: str | os.PathLike[str],
     fields: Mapping[str, Any] | None = None,

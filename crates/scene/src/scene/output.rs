@@ -3,8 +3,6 @@
 use super::solver::LONGEST_MS;
 use crate::fields::group;
 
-use crate::records::RecordsScene;
-
 /// At places around the ring of the paper's bearing.
 fn default_sensors() -> Vec<SensorScene> {
     let places = [("side", 0.0), ("shoulder", 22.0), ("seat", 90.0), ("bottom", 270.0)];
@@ -20,9 +18,6 @@ group! {
         pub sensors: Vec<SensorScene> = default_sensors();
         /// Pictures of the stress about the defect; `None` writes none.
         pub frames: Option<FramesScene> = Some(FramesScene::default());
-        /// Synthetic records of a machine's sensor, whose signatures of the passages over the defect can be
-        /// compared with a measured record's; `None` without.
-        pub records: Option<RecordsScene> = None, omitted();
     }
 }
 

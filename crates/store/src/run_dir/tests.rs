@@ -303,7 +303,7 @@ fn partial_files(folder: &Path) -> Vec<String> {
 #[test]
 fn survives_many_writers_of_one_file() {
     let folder = Scratch::create("writers");
-    let path = folder.join("inference.ron");
+    let path = folder.join("campaign.ron");
     let text = |writer: usize| vec![b'a' + writer as u8; 20_000];
     std::thread::scope(|scope| {
         for writer in 0..8 {

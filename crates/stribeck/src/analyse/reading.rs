@@ -79,29 +79,6 @@ pub(crate) struct Reading {
     pub(super) path: Option<String>,
 }
 
-impl Reading {
-    /// Whether the flags state anything of a machine, or of a file.
-    pub(crate) fn is_given(&self) -> bool {
-        let numbers = self.rate_hz.is_some() || self.load_n.is_some() || self.clearance_um.is_some();
-        let words = [&self.channel, &self.bearing, &self.tacho, &self.unit].iter().any(|word| word.is_some());
-        numbers || words || self.speed_rpm.is_some()
-    }
-
-    /// The same machine, for a file of one channel with its rate.
-    pub(crate) fn of_one_channel(&self) -> Self {
-        Self {
-            rate_hz: None,
-            force_rate: false,
-            channel: None,
-            tacho: None,
-            scale: 1.0,
-            unit: None,
-            path: None,
-            ..self.clone()
-        }
-    }
-}
-
 /// The user's statement of the speed [1/min].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Speed {

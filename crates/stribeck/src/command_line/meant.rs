@@ -12,7 +12,7 @@ use stribeck_scene::scene_file::nearest;
 const MOST: usize = 8;
 
 /// Words for commands, and ours, which may have a flag.
-const COMMANDS: [(&[&str], &str); 17] = [
+const COMMANDS: [(&[&str], &str); 16] = [
     (&["run", "start", "go", "sim"], "simulate"),
     (&["resume", "continue"], "simulate --resume"),
     (&["plot", "show", "view", "browse", "page"], "open"),
@@ -26,7 +26,6 @@ const COMMANDS: [(&[&str], &str); 17] = [
     (&["convert", "save", "write"], "export"),
     (&["gui", "play", "animate", "interactive"], "lab"),
     (&["estimate", "predict", "check", "dry-run"], "plan"),
-    (&["fit", "identify", "invert", "calibrate"], "infer"),
     (&["example", "examples", "tutorial", "quickstart"], "demo"),
     (&["version"], "--version"),
     (&["rotordynamics", "coefficients"], "stiffness"),
@@ -35,7 +34,7 @@ const COMMANDS: [(&[&str], &str); 17] = [
 /// Commands that take fields of a scene by `--set`.
 const OF_SCENES: &[&str] =
     &["simulate", "plan", "sweep", "campaign", "detect", "validate", "stiffness", "lab", "fmu"];
-const OF_RECORDS: &[&str] = &["analyse", "analyze", "compare", "infer", "machine"];
+const OF_RECORDS: &[&str] = &["analyse", "analyze", "compare", "machine"];
 
 /// Flags of these commands by the words and units of others, ours, and the factor between the units.
 type Flags = (&'static [&'static str], &'static [&'static str], &'static str, f64);

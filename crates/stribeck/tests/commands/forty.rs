@@ -25,7 +25,7 @@ use Then::{Answers, Says, Works};
 const CATALOGUE_WORDS: &str = "(bearing: (bore_mm: 8, outer_diameter_mm: 22, width_mm: 7, balls: 7, \
     ball_diameter: 3.969, pitch_diameter_mm: 15), operation: (load_n: 100, rpm: 1500))";
 
-const FORTY: [(&str, Then); 48] = [
+const FORTY: [(&str, Then); 47] = [
     ("stribeck --version", Works("stribeck 0.")),
     ("stribeck help sweep", Works("<FIELD=V1,V2,…>")),
     ("stribeck demo --help", Works("ten seconds")),
@@ -89,7 +89,6 @@ const FORTY: [(&str, Then); 48] = [
         Answers("try: stribeck analyse record.npy --bearing 6205 --speed-rpm 1200 --rate-hz 12800"),
     ),
     ("stribeck record.wav", Answers("try: stribeck analyse record.wav")),
-    ("stribeck infer record.wav", Answers("--record record.wav")),
     // The end of the hour.
     ("stribeck resume mine", Answers("try: stribeck simulate --resume mine")),
     ("stribeck simulate --resume mine", Answers("--set solver.duration_ms=")),

@@ -13,7 +13,6 @@ mod everyday;
 mod first_hour;
 mod fmu;
 mod forty;
-mod infer;
 mod machine;
 mod measured;
 mod mistakes;
