@@ -92,8 +92,6 @@ enum Format {
     Pvd,
     /// ParaView: the same in one file (VTKHDF)
     Vtkhdf,
-    /// The mesh, undeformed, with material, sections and contacts, for LS-DYNA
-    K,
     /// The mesh, undeformed, with material, sections and contacts, for Abaqus or CalculiX
     Inp,
     /// The mesh, undeformed, for Gmsh (4.1)
@@ -113,7 +111,6 @@ impl Format {
             Self::Parquet => &["parquet"],
             Self::Wav | Self::Wav64 => &["wav"],
             Self::Vtkhdf => &["vtkhdf", "hdf"],
-            Self::K => &["k", "key", "dyn"],
             Self::Inp => &["inp"],
             Self::Msh => &["msh"],
             Self::Radioss => &["rad"],
@@ -126,7 +123,7 @@ impl Format {
         match self {
             Self::Csv | Self::Npz | Self::Mat | Self::Uff | Self::Parquet | Self::Wav64 => true,
             Self::Wav => recorded,
-            Self::Pvd | Self::Vtkhdf | Self::K | Self::Inp | Self::Msh | Self::Radioss => false,
+            Self::Pvd | Self::Vtkhdf | Self::Inp | Self::Msh | Self::Radioss => false,
         }
     }
 }
@@ -183,7 +180,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             vtkhdf::write(&path, &stressed(&dir, &run)?, &provenance(&run))?;
             path
         }
-        Format::K => deck::write(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
         Format::Inp => deck::write(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
         Format::Radioss => radioss::write(&run.scene, &provenance(&run).join("; "), out("radioss_0000.rad"))?,
         Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
@@ -281,7 +277,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         Format::Parquet => parquet::write(&path, &channels, &notes)?,
         Format::Wav => sound::recorded(&path, &no_time, options.sensor.as_deref(), notes)?,
         Format::Wav64 => wav::write(&path, &no_time, &notes)?,
-        Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh | Format::Radioss => {}
+        Format::Pvd | Format::Vtkhdf | Format::Inp | Format::Msh | Format::Radioss => {}
     }
     Ok(path)
 }

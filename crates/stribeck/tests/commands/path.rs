@@ -34,5 +34,5 @@ fn behaves_a_path_leads_the_force_to_a_sensor_and_back() {
     ] {
         desk.refuses(&["export", "run", "--to", "csv", "--path", path], &told);
     }
-    says(&desk.run(&["export", "run", "--to", "k", "--path", mode]), &["`--path` makes signals"]);
+    says(&desk.run(&["export", "run", "--to", "inp", "--path", mode]), &["`--path` makes signals"]);
 }
