@@ -3,7 +3,6 @@
 mod deck;
 mod radioss;
 mod sound;
-mod vtkhdf;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -64,7 +63,7 @@ pub struct Options {
     #[arg(long, value_name = "FIELD=VALUE")]
     set: Vec<String>,
     /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, sound.wav, paraview,
-    /// frames.vtkhdf, mesh.FORMAT or radioss_0000.rad; of a scene file NAME_0000.rad]
+    /// mesh.FORMAT or radioss_0000.rad; of a scene file NAME_0000.rad]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -90,8 +89,6 @@ enum Format {
     /// lists them
     #[value(alias = "vtu")]
     Pvd,
-    /// ParaView: the same in one file (VTKHDF)
-    Vtkhdf,
     /// The mesh, undeformed, with material, sections and contacts, for Abaqus or CalculiX
     Inp,
     /// The mesh, undeformed, for Gmsh (4.1)
@@ -110,7 +107,6 @@ impl Format {
             Self::Uff => &["uff", "unv"],
             Self::Parquet => &["parquet"],
             Self::Wav | Self::Wav64 => &["wav"],
-            Self::Vtkhdf => &["vtkhdf", "hdf"],
             Self::Inp => &["inp"],
             Self::Msh => &["msh"],
             Self::Radioss => &["rad"],
@@ -123,7 +119,7 @@ impl Format {
         match self {
             Self::Csv | Self::Npz | Self::Mat | Self::Uff | Self::Parquet | Self::Wav64 => true,
             Self::Wav => recorded,
-            Self::Pvd | Self::Vtkhdf | Self::Inp | Self::Msh | Self::Radioss => false,
+            Self::Pvd | Self::Inp | Self::Msh | Self::Radioss => false,
         }
     }
 }
@@ -175,11 +171,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));
     let written = match options.to {
         Format::Pvd => series(&dir, &run, out("paraview"))?,
-        Format::Vtkhdf => {
-            let path = out("frames.vtkhdf");
-            vtkhdf::write(&path, &stressed(&dir, &run)?, &provenance(&run))?;
-            path
-        }
         Format::Inp => deck::write(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
         Format::Radioss => radioss::write(&run.scene, &provenance(&run).join("; "), out("radioss_0000.rad"))?,
         Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
@@ -277,7 +268,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         Format::Parquet => parquet::write(&path, &channels, &notes)?,
         Format::Wav => sound::recorded(&path, &no_time, options.sensor.as_deref(), notes)?,
         Format::Wav64 => wav::write(&path, &no_time, &notes)?,
-        Format::Pvd | Format::Vtkhdf | Format::Inp | Format::Msh | Format::Radioss => {}
+        Format::Pvd | Format::Inp | Format::Msh | Format::Radioss => {}
     }
     Ok(path)
 }
