@@ -41,7 +41,7 @@
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
 //! | the times of impacts behind an unknown path | [`prewhitened_power`] |
 //! | the record of a sensor behind a random path, or behind the path of a record | [`Path`], [`coloured_like`] |
-//! | the signal of a sensor behind a measured response or some modes, and the signal before them | [`Response`] |
+//! | the signal of a sensor behind some modes, and the signal before them | [`Response`] |
 //! | numbers of repeated passages that do not depend on the path to the sensor | [`Signature`] |
 //! | components locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | the record at another rate | [`resample_poly`] |

@@ -43,9 +43,9 @@ pub struct Options {
     /// quality=30, noise_density=0.002, range=500, bits=24, seed=1", in m/s²
     #[arg(long)]
     sensor: Option<String>,
-    /// Leads the force of the rolling elements on the outer ring to a sensor first: a frequency response,
-    /// FILE.uff, or "mass=12, stiffness=2e8, damping=0.02", several modes with `;` between them. Only what
-    /// that sensor shows is written, as path.ax_m_s2 and path.ay_m_s2
+    /// Leads the force of the rolling elements on the outer ring to a sensor first: "mass=12, stiffness=2e8,
+    /// damping=0.02", several modes with `;` between them. Only what that sensor shows is written, as
+    /// path.ax_m_s2 and path.ay_m_s2
     #[arg(long, value_name = "PATH")]
     path: Option<String>,
     /// Writes what the sensor of a machine records instead, in m/s²: that of the scene, or the one in FILE, which
@@ -232,7 +232,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
     }
     if let Some(path) = &options.path {
         let time = recording.channels.iter().filter(|c| c.name == TIME).cloned();
-        let made = Transfer::read(path, place)?.at_sensor(&recording)?;
+        let made = Transfer::read(path)?.at_sensor(&recording)?;
         recording.channels = time.chain(made).collect();
     }
     // Whatever is chosen keeps its times: a run's first sample is not at zero.
