@@ -50,21 +50,6 @@ pub enum Error {
         before_hz: f64,
     },
     #[error(
-        "the response is known from {low_hz} to {high_hz} Hz, and the signal has lines from {lowest_hz:.3} \
-         to {highest_hz} Hz: they share no frequency; measure the response in the band of the signal, or \
-         sample the signal faster or longer"
-    )]
-    NoOverlap {
-        /// Lowest frequency of the response [Hz].
-        low_hz: f64,
-        /// Its highest one [Hz].
-        high_hz: f64,
-        /// Lowest frequency of the signal [Hz].
-        lowest_hz: f64,
-        /// Its highest one [Hz].
-        highest_hz: f64,
-    },
-    #[error(
         "band = {low_hz} to {high_hz} Hz: {bins} usable points on a grid of {grid_hz} Hz, at least \
          {least} are needed; widen the band or use a longer record"
     )]

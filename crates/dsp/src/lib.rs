@@ -40,7 +40,7 @@
 //! | whether there is a family of harmonics, with a false-alarm rate | [`CombTest`] on a [`Whitened`] spectrum |
 //! | how far apart two events are that follow each other | [`event_spacing`], [`passage_spacing`] |
 //! | the times of impacts behind an unknown path | [`prewhitened_power`] |
-//! | the signal of a sensor behind a measured response or some modes, and the signal before them | [`Response`] |
+//! | the signal of a sensor behind some modes, and the signal before them | [`Response`] |
 //! | components locked to a shaft | [`order_track`], [`OverAngle::average`] |
 //! | the record at another rate | [`resample_poly`] |
 //! | a computed signal as a sensor and its recorder would have recorded it | [`Sensor`] |

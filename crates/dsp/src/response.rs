@@ -1,5 +1,5 @@
-//! Frequency responses between a place and a sensor, in modes or in measured lines, applied to a signal and
-//! divided out of one.
+//! Frequency responses between a place and a sensor, in modes or by gains, applied to a signal and divided out
+//! of one.
 //!
 //! A response multiplies the lines of the signal's transform by its own values at their frequencies, so a
 //! causal response stays one, and phases are those of the response. A response of acceleration to force says
@@ -7,7 +7,7 @@
 //! behind its last one the signal is continued by its mirror image, for as long as the response rings, so
 //! that it does not begin with a blow.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 use rustfft::FftPlanner;
 use rustfft::num_complex::Complex;
@@ -18,8 +18,6 @@ use crate::{Error, Result};
 
 /// A ringing has ended when it has fallen to this part.
 const ENDED: f64 = 1e-3;
-/// Share of the band of measured lines at either end over which they are faded out.
-const FADED: f64 = 0.05;
 /// What regularises a division, over the median magnitude of the response in its band.
 const REGULARISED: f64 = 0.05;
 /// Lines of a causal response: those of 12.8 kHz are 3 Hz apart.
@@ -78,10 +76,6 @@ pub struct Response(Form);
 #[derive(Debug, Clone, PartialEq)]
 enum Form {
     Modes(Vec<Mode>),
-    Lines {
-        hz: Vec<f64>,
-        values: Vec<Complex<f64>>,
-    },
     /// At even steps of the frequency from 0 on.
     Causal {
         grid_hz: f64,
@@ -114,28 +108,6 @@ impl Response {
             return Err(Error::TooShort { field: "modes", len: 0, least, purpose: "a response" });
         }
         Ok(Self(Form::Modes(modes)))
-    }
-
-    /// Measured lines: frequencies [Hz], which ascend, with real and imaginary part at each. Between two
-    /// lines both parts are interpolated straight; beyond the first and the last one the response is none,
-    /// and it is faded to that over a twentieth of the band at either end.
-    ///
-    /// # Errors
-    /// [`Error::TooShort`] for fewer than 8 lines, [`Error::WrongLength`], [`Error::NotFinite`],
-    /// [`Error::NotAscending`].
-    pub fn of_lines(hz: Vec<f64>, parts: &[[f64; 2]]) -> Result<Self> {
-        check_signal(&hz, 8, "a response in lines")?;
-        if parts.len() != hz.len() {
-            return Err(Error::WrongLength { field: "lines", len: parts.len(), planned: hz.len() });
-        }
-        let flat: Vec<f64> = parts.iter().flatten().copied().collect();
-        check_signal(&flat, 16, "a response in lines")?;
-        let before = |n: usize| if n == 0 { -f64::MIN_POSITIVE } else { hz[n - 1] };
-        if let Some(n) = (0..hz.len()).find(|n| hz[*n] <= before(*n)) {
-            return Err(Error::NotAscending { line: n + 1, hz: hz[n], before_hz: before(n).max(0.0) });
-        }
-        let values = parts.iter().map(|[re, im]| Complex::new(*re, *im)).collect();
-        Ok(Self(Form::Lines { hz, values }))
     }
 
     /// The causal response of least delay that has these gains at these frequencies [Hz], which ascend: straight
@@ -177,15 +149,6 @@ impl Response {
         Self(Form::Sum(of))
     }
 
-    /// Where it is known [Hz]; `None` for one that is known everywhere.
-    pub fn band_hz(&self) -> Option<(f64, f64)> {
-        match &self.0 {
-            Form::Modes(_) | Form::Causal { .. } | Form::Sum(_) => None,
-            Form::Ringing(of, _) => of.band_hz(),
-            Form::Lines { hz, .. } => Some((hz[0], hz[hz.len() - 1])),
-        }
-    }
-
     /// Its value at a frequency.
     pub fn at(&self, hz: f64) -> Complex<f64> {
         match &self.0 {
@@ -197,38 +160,25 @@ impl Response {
                 let n = (at as usize).min(values.len() - 2);
                 values[n] * (n as f64 + 1.0 - at) + values[n + 1] * (at - n as f64)
             }
-            Form::Lines { hz: lines, values } => {
-                let (low, high) = (lines[0], lines[lines.len() - 1]);
-                if !(low..=high).contains(&hz) {
-                    return Complex::default();
-                }
-                let n = lines.partition_point(|line| *line <= hz).clamp(1, lines.len() - 1);
-                let share = (hz - lines[n - 1]) / (lines[n] - lines[n - 1]);
-                faded(hz, low, high) * (values[n - 1] * (1.0 - share) + values[n] * share)
-            }
         }
     }
 
-    /// How long it rings [s]: lines cannot say more than the inverse of their distance.
+    /// How long it rings [s].
     fn rings_s(&self) -> f64 {
         match &self.0 {
             Form::Modes(modes) => modes.iter().map(Mode::rings_s).fold(0.0, f64::max),
             Form::Causal { grid_hz, .. } => 0.5 / grid_hz,
             Form::Sum(all) => all.iter().map(Self::rings_s).fold(0.0, f64::max),
             Form::Ringing(of, decay_s) => of.rings_s() + (1.0 / ENDED).ln() * decay_s,
-            Form::Lines { hz, .. } => {
-                hz.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min).recip()
-            }
         }
     }
 
     /// The signal as the sensor records it.
     ///
     /// # Errors
-    /// [`Error::NotPositive`], [`Error::TooShort`], [`Error::NotFinite`], [`Error::NoOverlap`] where no line
-    /// of the signal lies in the band.
+    /// [`Error::NotPositive`], [`Error::TooShort`], [`Error::NotFinite`].
     pub fn through(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Vec<f64>> {
-        self.check(signal, sample_rate_hz)?;
+        check(signal, sample_rate_hz)?;
         Ok(self.multiplied(signal, sample_rate_hz, |hz| self.at(hz)))
     }
 
@@ -236,8 +186,8 @@ impl Response {
     /// H*/(|H|² + ε²) with ε a twentieth of the median magnitude in the band, so that noise is not magnified
     /// where the response passes little.
     pub fn undo(&self, signal: &[f64], sample_rate_hz: f64) -> Result<Undone> {
-        self.check(signal, sample_rate_hz)?;
-        let (low, high) = self.overlap(signal.len(), sample_rate_hz);
+        check(signal, sample_rate_hz)?;
+        let (low, high) = (sample_rate_hz / signal.len() as f64, 0.5 * sample_rate_hz);
         let grid: Vec<f64> = (0..1000).map(|n| low + (f64::from(n) + 0.5) * (high - low) / 1000.0).collect();
         let power = self.regularisation(&grid);
         let given_back: Vec<bool> = grid
@@ -262,23 +212,6 @@ impl Response {
         let mut sorted: Vec<f64> = grid.iter().map(|hz| self.at(*hz).norm()).collect();
         sorted.sort_by(f64::total_cmp);
         (REGULARISED * sorted[sorted.len() / 2]).powi(2).max(f64::MIN_POSITIVE)
-    }
-
-    /// The frequencies that both a record and the response have [Hz].
-    fn overlap(&self, samples: usize, sample_rate_hz: f64) -> (f64, f64) {
-        let (low, high) = (sample_rate_hz / samples as f64, 0.5 * sample_rate_hz);
-        self.band_hz().map_or((low, high), |(from, to)| (low.max(from), high.min(to)))
-    }
-
-    fn check(&self, signal: &[f64], sample_rate_hz: f64) -> Result<()> {
-        check_positive("sample_rate_hz", sample_rate_hz)?;
-        check_signal(signal, 16, "a response")?;
-        let (low, high) = self.overlap(signal.len(), sample_rate_hz);
-        if let (Some((low_hz, high_hz)), true) = (self.band_hz(), low >= high) {
-            let lowest_hz = sample_rate_hz / signal.len() as f64;
-            return Err(Error::NoOverlap { low_hz, high_hz, lowest_hz, highest_hz: 0.5 * sample_rate_hz });
-        }
-        Ok(())
     }
 
     fn multiplied(&self, signal: &[f64], rate_hz: f64, by: impl Fn(f64) -> Complex<f64>) -> Vec<f64> {
@@ -311,10 +244,9 @@ impl Response {
     }
 }
 
-/// From 0 at either end of a band to 1 inside of it.
-fn faded(hz: f64, low: f64, high: f64) -> f64 {
-    let near = (hz - low).min(high - hz) / (FADED * (high - low));
-    if near < 1.0 { 0.5 - 0.5 * (PI * near).cos() } else { 1.0 }
+fn check(signal: &[f64], sample_rate_hz: f64) -> Result<()> {
+    check_positive("sample_rate_hz", sample_rate_hz)?;
+    check_signal(signal, 16, "a response")
 }
 
 /// Delays of the all-passes over the time in which they die away.

@@ -2,8 +2,6 @@
 //!
 //! Source: *Universal File Datasets*, Structural Dynamics Research Laboratory, University of Cincinnati.
 
-mod frf;
-
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
@@ -11,7 +9,6 @@ use std::path::Path;
 use crate::number::{Kind, Number};
 use crate::units::seconds;
 use crate::{Channel, Error, Recording, Result};
-pub use frf::{Frf, Per, responses};
 
 const FORMAT: &str = "UFF 58";
 /// Lines of a dataset before its data: five of text, six of numbers.

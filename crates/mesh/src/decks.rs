@@ -1,4 +1,4 @@
-//! Meshes in the formats of other programs: LS-DYNA keyword files, Abaqus input files and Gmsh files.
+//! Meshes in the formats of other programs: Abaqus input files and Gmsh files.
 //!
 //! Written are nodes [m], elements, and for each body a part or element set of its name and a set of its
 //! nodes. The reader takes the same from any such file: plane quadrilaterals and triangles of first order,
@@ -8,29 +8,24 @@
 //!
 //! | format | nodes | elements | sets |
 //! |---|---|---|---|
-//! | LS-DYNA `.k` | `*NODE` | `*ELEMENT_SHELL`, triangles with the last node twice | `*PART`, `*SET_NODE…` |
 //! | Abaqus `.inp` | `*NODE`, `*PART` and `*INSTANCE` | `*ELEMENT` of CPE4, CPE4R, CPS4, S4 …, CPE3 … | `ELSET=`, `*ELSET`, `NSET=`, `*NSET` |
 //! | Gmsh `.msh` 2.2, 4.0, 4.1, text or binary | `$Nodes` | `$Elements` of types 2 and 3 | `$PhysicalNames` of surfaces, and of curves for sets of nodes |
 //!
-//! A set of line elements is a set of their nodes. An `*INCLUDE` is followed by the caller, who reads the
-//! files ([`included`]).
+//! A set of line elements is a set of their nodes. A mesh is one file: `*INCLUDE` is refused.
 //!
-//! [`Deck::write_model`] adds what makes the mesh a model ([`Model`]): `*MAT_ELASTIC`, `*SECTION_SHELL` and
-//! `*CONTACT_2D_AUTOMATIC_SURFACE_TO_SURFACE`, or `*MATERIAL`, `*SOLID SECTION`, `*SURFACE` and `*CONTACT
-//! PAIR`; and a step of explicit dynamics ([`Step`]): gravity, loads on nodes, guided and turning nodes, and
-//! the velocities of all at the start.
+//! [`Deck::write_model`] adds what makes the mesh a model ([`Model`]): `*MATERIAL`, `*SOLID SECTION`, `*SURFACE`
+//! and `*CONTACT PAIR`; and a step of explicit dynamics ([`Step`]): gravity, loads on nodes, guided and turning
+//! nodes, and the velocities of all at the start.
 //!
 //! [`radioss`] writes a motion that has begun for Radioss, which reads none of these.
 //!
-//! Sources: *LS-DYNA Keyword User's Manual*, volume I; *Abaqus Analysis User's Guide*, input syntax; *Gmsh
-//! Reference Manual*, MSH file formats 2.2, 4.0 and 4.1.
+//! Sources: *Abaqus Analysis User's Guide*, input syntax; *Gmsh Reference Manual*, MSH file formats 2.2, 4.0 and
+//! 4.1.
 
 mod abaqus;
 mod gathered;
 mod gmsh;
-mod lsdyna;
 mod model;
-mod origin;
 pub mod radioss;
 
 use std::borrow::Cow;
@@ -39,16 +34,12 @@ use std::fmt;
 
 use self::gathered::MOST_NUMBER;
 pub use self::model::{ContactPair, Model, Side, Step};
-use self::origin::Origins;
-pub use self::origin::included;
 use crate::smoothing::sound;
 use crate::{Error, Mesh, Part};
 
 /// A format that meshes are exchanged in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Deck {
-    /// LS-DYNA keyword file, `.k`.
-    LsDyna,
     /// Abaqus input file, `.inp`.
     Abaqus,
     /// Gmsh, `.msh`; written in version 4.1 as text.
@@ -59,7 +50,6 @@ impl Deck {
     /// The format that files with this extension have.
     pub fn of_extension(extension: &str) -> Option<Self> {
         match extension.to_ascii_lowercase().as_str() {
-            "k" | "key" | "dyn" => Some(Self::LsDyna),
             "inp" => Some(Self::Abaqus),
             "msh" => Some(Self::Gmsh),
             _ => None,
@@ -70,7 +60,6 @@ impl Deck {
     pub fn write(self, mesh: &Mesh, title: &str) -> String {
         let title = title.replace(['\n', '\r'], " ");
         match self {
-            Self::LsDyna => lsdyna::write(mesh, &title),
             Self::Abaqus => abaqus::write(mesh, &title),
             Self::Gmsh => gmsh::write(mesh, &title),
         }
@@ -81,7 +70,6 @@ impl Deck {
     pub fn write_model(self, model: &Model<'_>, title: &str) -> String {
         let title = title.replace(['\n', '\r'], " ");
         match self {
-            Self::LsDyna => lsdyna::write_model(model, &title),
             Self::Abaqus => abaqus::write_model(model, &title),
             Self::Gmsh => gmsh::write(model.mesh, &title),
         }
@@ -104,12 +92,7 @@ impl Deck {
             return gmsh::read(bytes);
         }
         let text = text_of(bytes);
-        let origins = Origins::of(&text);
-        let found = if self == Self::LsDyna { lsdyna::read(&text) } else { abaqus::read(&text) };
-        found.and_then(|found| found.finish(text.lines().count(), &origins)).map_err(|fault| {
-            let (file, line) = origins.locate(fault.line);
-            DeckError { file: file.map(str::to_owned), line, what: fault.what }
-        })
+        abaqus::read(&text)?.finish(text.lines().count())
     }
 }
 
@@ -139,9 +122,7 @@ impl ReadDeck {
 /// Why a file is no mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct DeckError {
-    /// The included file, where it is not the one that was read.
-    pub file: Option<String>,
-    /// Line in it, from 1.
+    /// Line of the file, from 1.
     pub line: usize,
     /// Problem and remedy.
     pub what: String,
@@ -149,17 +130,14 @@ pub struct DeckError {
 
 impl fmt::Display for DeckError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match &self.file {
-            Some(file) => write!(f, "`{file}`, line {}: {}", self.line, self.what),
-            None => write!(f, "line {}: {}", self.line, self.what),
-        }
+        write!(f, "line {}: {}", self.line, self.what)
     }
 }
 
 impl std::error::Error for DeckError {}
 
 fn fault(line: usize, what: impl Into<String>) -> DeckError {
-    DeckError { file: None, line, what: what.into() }
+    DeckError { line, what: what.into() }
 }
 
 /// A text of any encoding that has ASCII in it. Its lines may end as those of old Macintoshes do.

@@ -14,14 +14,6 @@ pub(crate) fn refused(why: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(why.to_string())
 }
 
-/// One of the words that a flag accepts.
-pub(crate) fn one_of<T: Copy>(flag: &str, word: &str, known: &[(&str, T)]) -> PyResult<T> {
-    known.iter().find(|(name, _)| *name == word).map(|(_, value)| *value).ok_or_else(|| {
-        let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-        refused(format!("{flag}={word:?}: known are {}", names.join(", ")))
-    })
-}
-
 /// Findings of a record, as JSON in the form of `findings.json`.
 #[pyfunction]
 #[pyo3(signature = (signal, rate_hz, bearing, speed_rpm, unit, name))]

@@ -313,7 +313,7 @@
   // Each figure as a file: its drawing as it is, and the same in pixels, twice as fine as on the page.
   const saving = (figure) => {
     const svg = figure.querySelector(".still svg, .drawing svg");
-    const image = figure.querySelector(".moving img, .drawing img"), canvas = figure.querySelector("canvas.bearing");
+    const image = figure.querySelector(".drawing img"), canvas = figure.querySelector("canvas.bearing");
     const text = () => new XMLSerializer().serializeToString(svg);
     const address = () => "data:image/svg+xml;charset=utf-8," + encodeURIComponent(text());
     const forms = [];

@@ -33,7 +33,7 @@ pub(crate) fn write_figures(figures: &[&Item], folder: &Path, words: ElementWord
     })
 }
 
-/// A figure as SVG and as PNG; one that moves as GIF too.
+/// A figure as SVG and as PNG.
 fn write_figure(figure: &Item, folder: &Path, words: ElementWords) -> Result<(), Error> {
     let write = |form: &str, bytes: &[u8]| {
         let path = folder.join(format!("{}.{form}", figure.id()));
@@ -41,8 +41,7 @@ fn write_figure(figure: &Item, folder: &Path, words: ElementWords) -> Result<(),
     };
     let svg = words.markup(figure.to_svg()?);
     write("svg", svg.as_bytes())?;
-    write("png", &plot::png(figure.id(), &svg)?)?;
-    figure.animation().map_or(Ok(()), |gif| write("gif", gif))
+    write("png", &plot::png(figure.id(), &svg)?)
 }
 
 /// `summary.json` with a final line end.

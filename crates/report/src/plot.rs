@@ -12,7 +12,6 @@
 //! # Ok::<(), stribeck_report::Error>(())
 //! ```
 
-mod animation;
 pub(crate) mod base64;
 mod decimate;
 mod interactive;
@@ -20,16 +19,17 @@ mod labels;
 mod picture;
 mod raster;
 mod scale;
+mod shade;
 mod svg;
 
 pub(crate) use base64::bytes as base64_bytes;
 
-pub use animation::{Canvas, gif, shade_rgb};
 pub use interactive::script;
 pub use picture::{Anchor, Picture, Sheet};
 pub use raster::png;
 pub use scale::{Scale, ticks};
 use serde::Serialize;
+pub use shade::shade_rgb;
 
 /// One chart: an abscissa, an ordinate, the series over them, and a caption.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,11 +3,11 @@
 use crate::fields::group;
 
 group! {
-    /// A ring from a Gmsh, Abaqus or LS-DYNA file of plane quadrilaterals and triangles, with the centre of
+    /// A ring from a Gmsh or Abaqus file of plane quadrilaterals and triangles, with the centre of
     /// the bearing in the origin. Its material is that of the bearing, its raceway the circle of `bearing`,
     /// with the cut-outs of the file.
     pub struct RingMeshScene {
-        /// The file, `.msh`, `.inp` or `.k`; its path counts from the folder of the scene.
+        /// The file, `.msh` or `.inp`; its path counts from the folder of the scene.
         pub file: String = String::new();
         /// Length unit of the file [mm]: 1 for files in millimetres, 1000 for metres.
         pub unit_mm: f64 = 1.0, positive(1e6);

@@ -3,7 +3,6 @@
 mod deck;
 mod radioss;
 mod sound;
-mod vtkhdf;
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -44,9 +43,9 @@ pub struct Options {
     /// quality=30, noise_density=0.002, range=500, bits=24, seed=1", in m/s²
     #[arg(long)]
     sensor: Option<String>,
-    /// Leads the force of the rolling elements on the outer ring to a sensor first: a frequency response,
-    /// FILE.uff, or "mass=12, stiffness=2e8, damping=0.02", several modes with `;` between them. Only what
-    /// that sensor shows is written, as path.ax_m_s2 and path.ay_m_s2
+    /// Leads the force of the rolling elements on the outer ring to a sensor first: "mass=12, stiffness=2e8,
+    /// damping=0.02", several modes with `;` between them. Only what that sensor shows is written, as
+    /// path.ax_m_s2 and path.ay_m_s2
     #[arg(long, value_name = "PATH")]
     path: Option<String>,
     /// Writes what the sensor of a machine records instead, in m/s²: that of the scene, or the one in FILE, which
@@ -64,7 +63,7 @@ pub struct Options {
     #[arg(long, value_name = "FIELD=VALUE")]
     set: Vec<String>,
     /// File to write, for pvd a folder [default: in the run's folder: trace.FORMAT, sound.wav, paraview,
-    /// frames.vtkhdf, mesh.FORMAT or radioss_0000.rad; of a scene file NAME_0000.rad]
+    /// mesh.FORMAT or radioss_0000.rad; of a scene file NAME_0000.rad]
     #[arg(long)]
     out: Option<PathBuf>,
 }
@@ -90,10 +89,6 @@ enum Format {
     /// lists them
     #[value(alias = "vtu")]
     Pvd,
-    /// ParaView: the same in one file (VTKHDF)
-    Vtkhdf,
-    /// The mesh, undeformed, with material, sections and contacts, for LS-DYNA
-    K,
     /// The mesh, undeformed, with material, sections and contacts, for Abaqus or CalculiX
     Inp,
     /// The mesh, undeformed, for Gmsh (4.1)
@@ -112,8 +107,6 @@ impl Format {
             Self::Uff => &["uff", "unv"],
             Self::Parquet => &["parquet"],
             Self::Wav | Self::Wav64 => &["wav"],
-            Self::Vtkhdf => &["vtkhdf", "hdf"],
-            Self::K => &["k", "key", "dyn"],
             Self::Inp => &["inp"],
             Self::Msh => &["msh"],
             Self::Radioss => &["rad"],
@@ -126,7 +119,7 @@ impl Format {
         match self {
             Self::Csv | Self::Npz | Self::Mat | Self::Uff | Self::Parquet | Self::Wav64 => true,
             Self::Wav => recorded,
-            Self::Pvd | Self::Vtkhdf | Self::K | Self::Inp | Self::Msh | Self::Radioss => false,
+            Self::Pvd | Self::Inp | Self::Msh | Self::Radioss => false,
         }
     }
 }
@@ -178,12 +171,6 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let out = |name: &str| options.out.clone().unwrap_or_else(|| folder.join(name));
     let written = match options.to {
         Format::Pvd => series(&dir, &run, out("paraview"))?,
-        Format::Vtkhdf => {
-            let path = out("frames.vtkhdf");
-            vtkhdf::write(&path, &stressed(&dir, &run)?, &provenance(&run))?;
-            path
-        }
-        Format::K => deck::write(&dir, &run, Deck::LsDyna, out("mesh.k"))?,
         Format::Inp => deck::write(&dir, &run, Deck::Abaqus, out("mesh.inp"))?,
         Format::Radioss => radioss::write(&run.scene, &provenance(&run).join("; "), out("radioss_0000.rad"))?,
         Format::Msh => deck::write(&dir, &run, Deck::Gmsh, out("mesh.msh"))?,
@@ -245,7 +232,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
     }
     if let Some(path) = &options.path {
         let time = recording.channels.iter().filter(|c| c.name == TIME).cloned();
-        let made = Transfer::read(path, place)?.at_sensor(&recording)?;
+        let made = Transfer::read(path)?.at_sensor(&recording)?;
         recording.channels = time.chain(made).collect();
     }
     // Whatever is chosen keeps its times: a run's first sample is not at zero.
@@ -281,7 +268,7 @@ fn signals(dir: &RunDir, run: &Run, options: &Options, place: &Place) -> Result<
         Format::Parquet => parquet::write(&path, &channels, &notes)?,
         Format::Wav => sound::recorded(&path, &no_time, options.sensor.as_deref(), notes)?,
         Format::Wav64 => wav::write(&path, &no_time, &notes)?,
-        Format::Pvd | Format::Vtkhdf | Format::K | Format::Inp | Format::Msh | Format::Radioss => {}
+        Format::Pvd | Format::Inp | Format::Msh | Format::Radioss => {}
     }
     Ok(path)
 }

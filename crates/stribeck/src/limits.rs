@@ -1,6 +1,4 @@
-//! Limits on what a command takes: of the machine's memory, and of files beside those that were named.
-
-use std::path::PathBuf;
+//! Limits on what a command takes of the machine's memory.
 
 /// Flags of all commands.
 #[derive(Debug, Clone, Default, clap::Args)]
@@ -9,15 +7,11 @@ pub struct Limits {
     /// the machine has [default: a quarter of the machine's]
     #[arg(long, global = true, value_name = "SIZE", value_parser = bytes, display_order = 1002)]
     max_memory: Option<u64>,
-    /// A folder from which a mesh file may include others; its own folder is one. May be repeated
-    #[arg(long = "allow-include", global = true, value_name = "DIR", display_order = 1003)]
-    allow_include: Vec<PathBuf>,
 }
 
 impl Limits {
     /// Holds from now on.
     pub fn apply(&self) {
-        stribeck_scene::mesh_text::allow(&self.allow_include);
         #[cfg(feature = "full")]
         if let Some(most) = self.max_memory.or_else(|| crate::memory::whole_bytes().map(|all| all / PART)) {
             stribeck_dsp::channel::memory::set_most_bytes(most);

@@ -5,12 +5,12 @@ use std::time::SystemTime;
 
 use anyhow::{Result, anyhow, bail};
 use stribeck_scene::advice::doubts_of_material;
+use stribeck_scene::catalogue;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{Replaced, refused_at, replaced_by_bearing};
-use stribeck_scene::{catalogue, mesh_text};
 use stribeck_simulation::{Error, bearing::own_mesh};
 
-use crate::out::{alert, caution, detail, tell};
+use crate::out::{alert, caution, detail};
 
 /// The variable by which `cargo xtask` says, when it hands a command on, which repository it is in.
 pub const REPOSITORY: &str = "STRIBECK_REPOSITORY";
@@ -42,21 +42,8 @@ impl Place {
             Self::say_replaced(&file, &replaced_by_bearing(&file, overrides));
         }
         Self::say_assumed(&scene);
-        Self::say_copied(&scene);
         doubts_of_material(&scene).iter().for_each(|doubt| caution!("{doubt}"));
         Ok(scene)
-    }
-
-    /// Prints the files that mesh files include: a run, and its page, hold a copy of each.
-    fn say_copied(scene: &Scene) {
-        let copied: Vec<String> =
-            scene.mesh_texts().flat_map(mesh_text::included).map(|name| format!("`{name}`")).collect();
-        if !copied.is_empty() {
-            tell!(
-                "note: the run will hold copies of the files that its mesh includes: {}",
-                copied.join(", ")
-            );
-        }
     }
 
     /// As [`Place::scene`], without messages on replaced fields or assumed dimensions, to read a scene many

@@ -1,41 +1,31 @@
 //! The path from the force of a bearing to a sensor: `--path`.
 
-use std::path::Path;
-
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, bail};
 use stribeck_diagnosis::AccelerationUnit;
 use stribeck_dsp::{Mode, Response};
-use stribeck_formats::uff58::{Per, responses};
 use stribeck_formats::{Channel, Recording};
-
-use crate::place::Place;
 
 /// How modes are written.
 const FORM: &str = "\"mass=12, stiffness=2e8, damping=0.02\" in kg, N/m and parts of the critical damping, \
-                    several modes with `;` between them, or a .uff file with a frequency response, of \
-                    several the one behind `#`: FILE.uff#2";
+                    several modes with `;` between them";
 
 /// A path to a sensor.
 #[derive(Debug, Clone)]
 pub(crate) struct Transfer {
     response: Response,
-    per: Per,
-    /// Its description, and the assumptions on it.
+    /// Its description.
     words: String,
 }
 
 impl Transfer {
-    /// From modes in words, or from a file.
-    pub(crate) fn read(text: &str, place: &Place) -> Result<Self> {
-        let (file, number) = text.rsplit_once('#').map_or((text, None), |(file, n)| (file, Some(n)));
-        let file = place.locate(Path::new(file));
-        if file.is_file() {
-            return Self::of_file(&file, number).with_context(|| format!("`--path {text}`"));
+    /// From modes in words.
+    pub(crate) fn read(text: &str) -> Result<Self> {
+        if !text.contains('=') {
+            bail!(
+                "`--path {text}` is no mode, and tables of frequency responses are not read. A path is {FORM}"
+            );
         }
-        if text.contains('=') {
-            return Self::of_modes(text).with_context(|| format!("`--path \"{text}\"`"));
-        }
-        bail!("`--path {text}`: there is no such file, and it is no mode. A path is {FORM}")
+        Self::of_modes(text).with_context(|| format!("`--path \"{text}\"`"))
     }
 
     fn of_modes(text: &str) -> Result<Self> {
@@ -43,67 +33,23 @@ impl Transfer {
             text.split(';').filter(|mode| !mode.trim().is_empty()).map(mode).collect::<Result<Vec<_>>>()?;
         let hz: Vec<String> = modes.iter().map(|mode| format!("{:.1}", mode.hz())).collect();
         let words = format!("modes at {} Hz", hz.join(" and "));
-        Ok(Self { response: Response::of_modes(modes)?, per: Per::Force, words })
+        Ok(Self { response: Response::of_modes(modes)?, words })
     }
 
-    fn of_file(file: &Path, number: Option<&str>) -> Result<Self> {
-        let (found, others) = responses(file)?;
-        let listed = |n: usize| format!("#{} `{}`", n + 1, found[n].name);
-        let all = (0..found.len()).map(listed).collect::<Vec<_>>().join(", ");
-        let asked = number.map(|number| {
-            let n = number.trim().parse::<usize>().ok().filter(|n| (1..=found.len()).contains(n));
-            n.with_context(|| format!("`#{number}`: the file has {all}"))
-        });
-        let chosen = match (asked.transpose()?, found.len()) {
-            (_, 0) => bail!(
-                "`{}` has no frequency response: {}. Export one of function type 4, complex, over frequency",
-                file.display(),
-                if others.is_empty() { "no dataset 58".to_owned() } else { others.join("; ") }
-            ),
-            (Some(n), _) => &found[n - 1],
-            (None, 1) => &found[0],
-            (None, _) => bail!("`{}` has several: choose {all}, as FILE.uff#1", file.display()),
-        };
-        let response = Response::of_lines(chosen.hz.clone(), &chosen.response)
-            .with_context(|| format!("`{}` of line {}", chosen.name, chosen.line))?;
-        let (low, high) = response.band_hz().unwrap_or_default();
-        let notes: String = chosen.notes.iter().map(|note| format!("; {note}")).collect();
-        let words = format!("`{}`, known from {low} to {high} Hz, nothing beyond{notes}", chosen.name);
-        Ok(Self { response, per: chosen.per, words })
-    }
-
-    /// A run as recorded by a sensor at the end of the path: both directions of the force, or every
-    /// acceleration.
+    /// A run as recorded by a sensor at the end of the path: both directions of the force.
     pub(crate) fn at_sensor(&self, recording: &Recording) -> Result<Vec<Channel>> {
-        match self.per {
-            Per::Force => ["x", "y"].into_iter().map(|axis| self.of_force(recording, axis)).collect(),
-            Per::Acceleration => {
-                let is = |name: &str| name.ends_with(".ax_m_s2") || name.ends_with(".ay_m_s2");
-                let found = recording.channels.iter().filter(|c| is(&c.name));
-                found.map(|channel| self.of_acceleration(channel)).collect()
-            }
-        }
+        ["x", "y"].into_iter().map(|axis| self.of_force(recording, axis)).collect()
     }
 
     /// The same for the direction of one channel, with a description.
     pub(crate) fn of_run(&self, recording: &Recording, channel: &Channel) -> Result<(Channel, String)> {
-        let (made, what) = match self.per {
-            Per::Force => {
-                let axis = if channel.name.contains(".ax_") { "x" } else { "y" };
-                let what = format!("the force of the rolling elements on the outer ring along {axis}");
-                (self.of_force(recording, axis)?, what)
-            }
-            Per::Acceleration => {
-                ensure!(
-                    channel.name.ends_with("_m_s2"),
-                    "channel `{}` is no acceleration, to which the path is related; choose one with \
-                     `--channel`, such as `ay_m_s2`",
-                    channel.name
-                );
-                (self.of_acceleration(channel)?, format!("`{}`", channel.name))
-            }
-        };
-        Ok((made, format!("{what} went through the path ({}) to a sensor at its end", self.words)))
+        let axis = if channel.name.contains(".ax_") { "x" } else { "y" };
+        let note = format!(
+            "the force of the rolling elements on the outer ring along {axis} went through the path ({}) to a \
+             sensor at its end",
+            self.words
+        );
+        Ok((self.of_force(recording, axis)?, note))
     }
 
     /// The force of the rolling elements on the outer ring, and the acceleration that it makes.
@@ -132,32 +78,21 @@ impl Transfer {
         Ok(made.at_rate(Some(rate_hz)).in_unit(Some("m/s^2".to_owned())))
     }
 
-    fn of_acceleration(&self, channel: &Channel) -> Result<Channel> {
-        let rate_hz = channel.rate_hz.context("the run has no sample rate")?;
-        let samples = self.response.through(&channel.read()?, rate_hz)?;
-        let made = Channel::held(format!("path.{}", channel.name), samples);
-        Ok(made.at_rate(Some(rate_hz)).in_unit(Some("m/s^2".to_owned())))
-    }
-
     /// The input of the path, from a channel that a sensor recorded at its end, with a description.
     pub(crate) fn before(&self, channel: &Channel, rate_hz: f64) -> Result<(Channel, String)> {
         let unit = channel.unit.as_deref().and_then(AccelerationUnit::parse);
         let samples = channel.scaled(unit.map_or(1.0, AccelerationUnit::in_m_s2)).read()?;
         let undone = self.response.undo(&samples, rate_hz)?;
-        let (quantity, symbol) = match self.per {
-            Per::Force => ("the force at the bearing", "N"),
-            Per::Acceleration => ("the acceleration at the bearing", "m/s^2"),
-        };
         let assumed = if unit.is_some() { "" } else { "; the record does not say its unit: m/s² is taken" };
         let (low, high) = undone.band_hz;
         let note = format!(
-            "the path ({}) was divided out: the samples are {quantity}, without its mean, from {low:.0} to \
+            "the path ({}) was divided out: the samples are the force at the bearing, without its mean, from {low:.0} to \
              {high:.0} Hz, of which {:.0} % are given back by nine tenths or more{assumed}",
             self.words,
             100.0 * undone.share
         );
         let made = Channel::held(format!("{} before the path", channel.name), undone.signal);
-        Ok((made.at_rate(Some(rate_hz)).in_unit(Some(symbol.to_owned())), note))
+        Ok((made.at_rate(Some(rate_hz)).in_unit(Some("N".to_owned())), note))
     }
 }
 

@@ -35,11 +35,8 @@ fn good_files() -> Vec<(String, Vec<u8>)> {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             let extension = path.extension().unwrap_or_default().to_string_lossy().into_owned();
-            // Meshes, scripts, and responses without a signal.
-            if path.is_file()
-                && !["inp", "msh", "py"].contains(&&*extension)
-                && !path.ends_with("responses.uff")
-            {
+            // Meshes and scripts.
+            if path.is_file() && !["inp", "msh", "py"].contains(&&*extension) {
                 let name = path.file_name().unwrap().to_string_lossy().into_owned();
                 all.push((name, std::fs::read(&path).unwrap()));
             }

@@ -2,7 +2,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::origin::Origins;
 use super::{DeckError, ReadDeck, fault};
 use crate::{Body, Mesh};
 
@@ -121,7 +120,7 @@ impl Gathered {
     }
 
     /// The mesh, body by body: each element belongs to the first set that names it. `last` is the last line.
-    pub(super) fn finish(mut self, last: usize, origins: &Origins) -> Result<ReadDeck, DeckError> {
+    pub(super) fn finish(mut self, last: usize) -> Result<ReadDeck, DeckError> {
         let (z, node, line) = self.farthest;
         if z.abs() > FLAT * self.widest {
             return Err(fault(line, format!("node {node} has z = {z}; a plane mesh lies in z = 0")));
@@ -132,9 +131,9 @@ impl Gathered {
         self.nodes_along_lines();
         let notes = self.notes.iter().map(|(what, lines)| match &lines[..] {
             [first, others @ ..] if !others.is_empty() => {
-                format!("{} and {} more: {what}", origins.shown(*first), others.len())
+                format!("line {first} and {} more: {what}", others.len())
             }
-            _ => format!("{}: {what}", origins.shown(lines[0])),
+            _ => format!("line {}: {what}", lines[0]),
         });
         let notes = notes.collect();
         let Self { nodes, elements, mut sets, node_sets, .. } = self;

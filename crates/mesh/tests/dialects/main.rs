@@ -12,12 +12,10 @@
 
 mod abaqus;
 mod gmsh;
-mod ls_dyna;
 
 use std::process::Command;
 
-use ls_dyna::{k, k_sets};
-use stribeck_mesh::decks::{Deck, ReadDeck, included};
+use stribeck_mesh::decks::{Deck, ReadDeck};
 use stribeck_testing::{Scratch, peer::python_with, said};
 
 const NODES: [[f64; 2]; 6] = [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]];
@@ -66,27 +64,6 @@ fn issue_sets_that_name_what_is_not_there() {
         "{:?}",
         read.notes
     );
-    let text = "*NODE\n1,0,0\n2,1,0\n3,0,1\n*ELEMENT_SHELL\n1,1,1,2,3,3\n*SET_NODE_ADD\n1\n2\n*SET_NODE_ADD\n2\n1\n*SET_NODE_ADD\n3\n9\n";
-    let read = Deck::LsDyna.read(text).expect("a mesh");
-    assert!(read.node_sets.is_empty() && read.notes.len() == 3, "{:?}", read.notes);
-    assert!(read.notes[2].contains("there is no set of nodes 9"), "{:?}", read.notes);
-}
-
-#[test]
-fn issue_lines_are_those_of_the_included_file() {
-    let text = format!(
-        "*HEADING\n** *INCLUDE, INPUT=part.inp\n{}*NSET, NSET=raceway\n1, 2, 3\n*NSET, NSET=fit\n4, 5, \
-         6\n*FILM\n",
-        included("**", "part.inp", &format!("{INP}*SURFACE\n"))
-    );
-    let read = check("included", Deck::Abaqus, text.as_bytes(), "steel");
-    assert_eq!(read.notes, ["`part.inp`, line 11: `*SURFACE` is not read", "line 7: `*FILM` is not read"]);
-    let why = Deck::Abaqus.read(&text.replace("2, 1., 0.", "2, 1., z")).expect_err("damaged");
-    assert_eq!((why.file.as_deref(), why.line), (Some("part.inp"), 3));
-    assert_eq!(why.to_string(), "`part.inp`, line 3: `z` is no number");
-    // The format of an included keyword file ends with it.
-    let inner = included("$", "a.k", &k("*KEYWORD I10=Y", "", "", [10, 16, 10]));
-    check("included", Deck::LsDyna, format!("*KEYWORD\n{inner}{}", k_sets(10)).as_bytes(), "steel");
 }
 
 /// The same mesh as meshio 5.3.5 writes it, where the interpreter in STRIBECK_PYTHON (or python3) has it.

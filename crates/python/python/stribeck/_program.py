@@ -148,7 +148,7 @@ def export(
     """Writes a run in the format of another program, and returns the file's path.
 
     run: the folder of the run.
-    to: ``csv``, ``npz``, ``mat``, ``uff``, ``parquet``, ``wav``, ``pvd``, ``vtkhdf``, ``k``, ``inp`` or ``msh``.
+    to: ``csv``, ``npz``, ``mat``, ``uff``, ``parquet``, ``wav``, ``pvd``, ``inp`` or ``msh``.
     channels: only channels whose name contains one of these.
     sensor: records the accelerations through a sensor, ``"rate_hz=25600, bits=24"``.
     out: the file; without it one in the run's folder.

@@ -1,17 +1,15 @@
-"""Signal processing, with the signatures and conventions of ``scipy.signal`` where it has the function.
+"""Signal processing of bearings that ``scipy.signal`` does not have; spectra, filters and other rates are scipy's.
 
 Signals are arrays of one dimension, real, evenly sampled ``fs`` times a second; what is not finite is refused. Arrays that
 come back are new. What cannot be done is a ``ValueError`` that says why and what to try.
 
 ================================================== ====================================================================
-how strong it is, and at which frequencies         `welch`, `periodogram`, `band_rms`, `velocity_rms`,
-                                                   `strongest_line`, `rms`, `peak`, `crest_factor`, `kurtosis`
-how it changes                                     `spectrogram`, `ridge`
-without one line, in one band, at another rate     `iirnotch`, `notch`, `envelope`, `resample_poly`, `record`
+how strong it is, and at which frequencies         `band_rms`, `velocity_rms`, `strongest_line`
+what a sensor and its recorder make of it          `record`
 where it knocks, and at what rate                  `fast_kurtogram`, `envelope_spectrum`, `band_envelopes`,
                                                    `spectral_correlation`, `whitened_spectrum`, `comb_search`,
                                                    `event_spacing`
-over the angle of the shaft                        `ridge_turns`, `order_track`, `means_over_angle`
+over the angle of the shaft                        `ridge`, `ridge_turns`, `order_track`, `means_over_angle`
 ================================================== ====================================================================
 """
 
@@ -35,29 +33,17 @@ __all__ = [
     "band_envelopes",
     "band_rms",
     "comb_search",
-    "crest_factor",
-    "envelope",
     "envelope_spectrum",
     "event_spacing",
     "fast_kurtogram",
-    "get_window",
-    "iirnotch",
-    "kurtosis",
     "means_over_angle",
-    "notch",
     "order_track",
-    "peak",
-    "periodogram",
     "record",
-    "resample_poly",
     "ridge",
     "ridge_turns",
-    "rms",
     "spectral_correlation",
-    "spectrogram",
     "strongest_line",
     "velocity_rms",
-    "welch",
     "whitened_spectrum",
 ]
 
@@ -158,7 +144,7 @@ def _grid(f: ArrayLike, values: Samples) -> float:
         raise ValueError(f"`f` has {len(frequencies)} frequencies for {len(values)} values: both of one spectrum")
     step = frequencies[-1] / (len(frequencies) - 1)
     if not (step > 0 and np.allclose(frequencies, step * np.arange(len(frequencies)), rtol=0, atol=1e-6 * step)):
-        raise ValueError("`f` begins at zero and has equal steps, as from `welch` or `envelope_spectrum`")
+        raise ValueError("`f` begins at zero and has equal steps, as from `scipy.signal.welch` or `envelope_spectrum`")
     return float(step)
 
 
@@ -167,74 +153,7 @@ def _steps(step: float, count: int) -> Samples:
     return np.asarray(step * np.arange(count), dtype=np.float64)
 
 
-def _detrend(word: str | bool) -> str:
-    """The word for what is removed; scipy has ``False`` for nothing."""
-    return "none" if word is False else str(word)
 
-
-def get_window(window: str, Nx: int, fftbins: bool = True) -> Samples:
-    """Weights of ``scipy.signal.get_window``: ``hann`` or ``boxcar``, and ``hamming`` with ``fftbins=False``, which
-    makes windows symmetric. Shape ``(Nx,)``; four samples at least. Source: Harris 1978."""
-    return _stribeck.get_window(window, _count("Nx", Nx), fftbins)
-
-
-def welch(
-    x: ArrayLike,
-    fs: float = 1.0,
-    window: str = "hann",
-    nperseg: int = 256,
-    noverlap: int | None = None,
-    nfft: int | None = None,
-    detrend: str | bool = "constant",
-    scaling: str = "density",
-    average: str = "mean",
-) -> tuple[Samples, Samples]:
-    """Power spectrum by Welch's method, as ``scipy.signal.welch``.
-
-    Frequencies [Hz] and values, one-sided: a density [unit²/Hz] or, with ``scaling="spectrum"``, powers [unit²].
-    Windows are ``hann`` and ``boxcar``, ``detrend`` is ``constant``, ``linear`` or ``False``, ``average`` is ``mean``
-    or ``median``. ``noverlap`` is half a segment without it.
-    """
-    x = _samples(x)
-    nperseg, noverlap, nfft = _count("nperseg", nperseg), _optional("noverlap", noverlap, 0), _optional("nfft", nfft)
-    return _stribeck.welch(x, fs, window, nperseg, noverlap, nfft, _detrend(detrend), scaling, average)
-
-
-def periodogram(
-    x: ArrayLike,
-    fs: float = 1.0,
-    window: str = "boxcar",
-    nfft: int | None = None,
-    detrend: str | bool = "constant",
-    scaling: str = "density",
-) -> tuple[Samples, Samples]:
-    """Spectrum of the whole record as one segment, as ``scipy.signal.periodogram``: see `welch`. ``nfft`` is no
-    shorter than the record; beyond it zeros are added."""
-    x = _samples(x)
-    return welch(x, fs, window, max(len(x), 1), 0, nfft, detrend, scaling)
-
-
-def spectrogram(
-    x: ArrayLike,
-    fs: float = 1.0,
-    window: str = "hann",
-    nperseg: int = 256,
-    noverlap: int | None = None,
-    nfft: int | None = None,
-    detrend: str | bool = "constant",
-    scaling: str = "density",
-    mode: str = "psd",
-) -> tuple[Samples, Samples, Samples]:
-    """Spectra of segments one after the other, as ``scipy.signal.spectrogram``, whose own defaults are a Tukey window
-    and an overlap of one eighth; here they are those of `welch`.
-
-    Frequencies [Hz], shape ``(f,)``, middles of the segments [s], shape ``(t,)``, and values, shape ``(f, t)``.
-    ``mode`` is ``psd`` or ``magnitude``, the magnitude of the short-time transform.
-    """
-    x = _samples(x)
-    nperseg, noverlap, nfft = _count("nperseg", nperseg), _optional("noverlap", noverlap, 0), _optional("nfft", nfft)
-    f, t, values = _stribeck.spectrogram(x, fs, window, nperseg, noverlap, nfft, _detrend(detrend), scaling, mode)
-    return f, t, values.reshape(len(t), len(f)).T
 
 
 def band_rms(x: ArrayLike, fs: float, low_hz: float, high_hz: float, nperseg: int | None = None) -> float:
@@ -260,25 +179,6 @@ def strongest_line(x: ArrayLike, fs: float, low_hz: float, high_hz: float, npers
     return Line(*_stribeck.strongest_line(_samples(x), fs, low_hz, high_hz, _optional("nperseg", nperseg)))
 
 
-def iirnotch(w0: float, Q: float, fs: float = 2.0) -> tuple[Samples, Samples]:
-    """Numerator and denominator of ``scipy.signal.iirnotch``, three each: frequency ``w0`` and rate ``fs`` in Hz,
-    quality ``Q`` (the frequency over the width at -3 dB). For ``scipy.signal.lfilter``, or use `notch`."""
-    return _stribeck.iirnotch(w0, Q, fs)
-
-
-def notch(x: ArrayLike, fs: float, centre_hz: float, quality: float = 15.0, *, zero_phase: bool = False) -> Samples:
-    """The signal behind the notch of ``scipy.signal.iirnotch``; with ``zero_phase`` there and back, which is twice as
-    deep."""
-    return _stribeck.notch(_samples(x), fs, centre_hz, quality, zero_phase)
-
-
-def envelope(x: ArrayLike, fs: float = 1.0, band_hz: Band | None = None) -> Samples:
-    """The Hilbert envelope, ``abs(scipy.signal.hilbert(x))``, as long as the signal and in its unit.
-
-    With ``band_hz`` that of the band alone, everything else set to zero in the transform. The record is taken as
-    periodic, so its ends are not to be trusted; without a band the mean is part of the envelope.
-    """
-    return _stribeck.envelope(_samples(x), fs, band_hz)
 
 
 def envelope_spectrum(x: ArrayLike, fs: float, band_hz: Band | None = None) -> tuple[Samples, Samples]:
@@ -288,12 +188,6 @@ def envelope_spectrum(x: ArrayLike, fs: float, band_hz: Band | None = None) -> t
     Repeated impacts are lines at their rate and its multiples. Source: Randall and Antoni 2011.
     """
     return _stribeck.envelope_spectrum(_samples(x), fs, band_hz)
-
-
-def resample_poly(x: ArrayLike, up: int, down: int) -> Samples:
-    """The signal at ``up/down`` times its rate, as ``scipy.signal.resample_poly`` with its default filter. The length
-    is ``ceil(len(x) * up / down)``."""
-    return _stribeck.resample_poly(_samples(x), _count("up", up), _count("down", down))
 
 
 def record(
@@ -314,24 +208,7 @@ def record(
     return _stribeck.record(_samples(x), fs, rate_hz, resonance, noise_density, range, bits, seed)
 
 
-def rms(x: ArrayLike) -> float:
-    """Root mean square about zero, in the unit of the signal; the mean is part of it."""
-    return _stribeck.statistic(_samples(x), "rms")
 
-
-def peak(x: ArrayLike) -> float:
-    """Largest magnitude, in the unit of the signal."""
-    return _stribeck.statistic(_samples(x), "peak")
-
-
-def crest_factor(x: ArrayLike) -> float:
-    """Largest magnitude over the root mean square: 1 for a square wave, √2 for a sine, above 4 for impacts."""
-    return _stribeck.statistic(_samples(x), "crest_factor")
-
-
-def kurtosis(x: ArrayLike, fisher: bool = True) -> float:
-    """Kurtosis as ``scipy.stats.kurtosis``: 0 for Gaussian noise, more for impacts; 3 with ``fisher=False``."""
-    return _stribeck.statistic(_samples(x), "kurtosis") - (3.0 if fisher else 0.0)
 
 
 def fast_kurtogram(x: ArrayLike, fs: float, levels: int = 5) -> list[tuple[float, float, float]]:
@@ -408,8 +285,8 @@ def event_spacing(
 
 
 def ridge(f: ArrayLike, t: ArrayLike, Sxx: ArrayLike, steepest_hz_s: float) -> Ridge:
-    """The line of most power through a `spectrogram` among all that change by at most ``steepest_hz_s`` [Hz/s]: a
-    speed without a tachometer. Shapes are those of `spectrogram`; give only the frequencies to be searched: ``Sxx[(f
+    """The line of most power through a ``scipy.signal.spectrogram`` among all that change by at most ``steepest_hz_s`` [Hz/s]: a
+    speed without a tachometer. Shapes are scipy's; give only the frequencies to be searched: ``Sxx[(f
     > 20) & (f < 60)]``."""
     f, t = _samples(f, "`f`"), _samples(t, "`t`")
     values = np.asarray(Sxx, dtype=np.float64)
@@ -418,7 +295,7 @@ def ridge(f: ArrayLike, t: ArrayLike, Sxx: ArrayLike, steepest_hz_s: float) -> R
     if not (np.isfinite(values).all() and np.isfinite(f).all() and np.isfinite(t).all() and (values >= 0).all()):
         raise ValueError("`f`, `t` and `Sxx` are finite, and `Sxx` is not negative")
     if (np.diff(f) <= 0).any() or (np.diff(t) <= 0).any():
-        raise ValueError("`f` and `t` ascend, as those of `spectrogram`")
+        raise ValueError("`f` and `t` ascend, as those of `scipy.signal.spectrogram`")
     return Ridge(*_stribeck.ridge(f.tolist(), t.tolist(), values.T.ravel().tolist(), steepest_hz_s))
 
 

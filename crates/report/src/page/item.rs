@@ -67,13 +67,6 @@ impl Item {
             Self::Picture(picture) => Picture { note, ..picture.clone() }.to_html(),
         }
     }
-
-    pub(crate) fn animation(&self) -> Option<&[u8]> {
-        match self {
-            Self::Chart(_) => None,
-            Self::Picture(picture) => picture.animation.as_deref(),
-        }
-    }
 }
 
 pub(crate) fn charts(figures: impl IntoIterator<Item = Figure>) -> impl Iterator<Item = Item> {

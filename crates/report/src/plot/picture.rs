@@ -20,8 +20,6 @@ pub struct Picture {
     pub note: String,
     /// The drawing.
     pub sheet: Sheet,
-    /// Shown instead of the drawing on a screen: an animation, GIF.
-    pub animation: Option<Vec<u8>>,
     /// True for drawings with too many lines for the page, which holds pixels instead.
     pub dense: bool,
     /// Where it is one of several that stand behind tabs.
@@ -143,7 +141,6 @@ impl Picture {
             caption: String::new(),
             note: String::new(),
             sheet,
-            animation: None,
             dense: false,
             tab: None,
         }
@@ -168,10 +165,7 @@ impl Picture {
             figure id=(self.id) class="picture" {
                 h3 { (self.title) }
                 p class="caption" { (self.caption) }
-                @if let Some(gif) = &self.animation {
-                    div class="moving" { img src={ "data:image/gif;base64," (base64::bytes(gif)) } alt=(self.title); }
-                }
-                div class=(if self.animation.is_some() { "drawing print-only" } else { "drawing" }) { (still) }
+                div class="drawing" { (still) }
                 @if !self.note.is_empty() { p class="note" { (self.note) } }
             }
         })

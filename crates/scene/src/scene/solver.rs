@@ -40,9 +40,9 @@ group! {
         pub from_khz: f64 = 2.0, positive(1e4);
         /// Upper end of the band [kHz]; above it the ratio falls as one over the frequency.
         pub to_khz: f64 = 40.0, positive(1e5);
-        /// Maxwell branches beside every element: over a factor of 20 in frequency the ratio is within −49
-        /// and +25 % with one, −8 and +4 % with two, 1 % with three.
-        pub branches: usize = 1, within(1.0, 3.0);
+        /// Maxwell branches beside every element: one, with which the ratio is within −49 and +25 % over a
+        /// factor of 20 in frequency. Scenes with more are not computed.
+        pub branches: usize = 1, within(1.0, 1.0);
         /// Which bodies.
         pub bodies: Vec<DampedBody> = vec![DampedBody::OuterRing, DampedBody::InnerRing, DampedBody::Adapter];
     }

@@ -97,18 +97,6 @@ fn read_machine(machine: &mut MachineScene, folder: &Path, sources: &Sources) ->
     Ok(())
 }
 
-impl Scene {
-    /// The texts of all its mesh files.
-    pub fn mesh_texts(&self) -> impl Iterator<Item = &str> {
-        let housing = match &self.housing {
-            HousingScene::Mesh(housing) => Some(housing.text.as_str()),
-            _ => None,
-        };
-        let rings = [&self.outer_ring_mesh, &self.inner_ring_mesh].into_iter().flatten();
-        housing.into_iter().chain(rings.map(|ring| ring.text.as_str()))
-    }
-}
-
 /// Inserts the content of the mesh `file` of the group `path` into `text`, unless it is there.
 fn read_mesh(
     path: &str,
@@ -120,15 +108,20 @@ fn read_mesh(
     if !text.is_empty() {
         return Ok(());
     }
-    *text = mesh_text::read(&folder.join(file), MAX_MESH_BYTES).map_err(|why| {
+    let refuse = |why: &str, instead: &str| {
         let field = format!("{path}.file");
         let mut problem =
             Problem::new(format!("cannot read the mesh `{}`: {why}", shown(file)), sources.place(&field));
         problem.field = field;
-        "a Gmsh (`.msh`), Abaqus (`.inp`) or LS-DYNA (`.k`) file".clone_into(&mut problem.allowed);
-        "check the path, which counts from the folder of the scene".clone_into(&mut problem.suggestion);
+        "a Gmsh (`.msh`) or Abaqus (`.inp`) file".clone_into(&mut problem.allowed);
+        instead.clone_into(&mut problem.suggestion);
         problem
-    })?;
+    };
+    if let Some([why, instead]) = mesh_text::refused_by_name(file) {
+        return Err(refuse(why, instead).into());
+    }
+    *text = mesh_text::read(&folder.join(file), MAX_MESH_BYTES)
+        .map_err(|why| refuse(&why, "check the path, which counts from the folder of the scene"))?;
     Ok(())
 }
 

@@ -42,7 +42,7 @@ impl<'a> OwnMesh<'a> {
         let refuse = |what: String| refused(group, file, what);
         let extension = Path::new(file).extension().and_then(|e| e.to_str()).unwrap_or_default();
         let deck = Deck::of_extension(extension)
-            .ok_or_else(|| refuse("its name ends in neither `.msh`, `.inp` nor `.k`".to_owned()))?;
+            .ok_or_else(|| refuse("its name ends in neither `.msh` nor `.inp`".to_owned()))?;
         let bytes = mesh_text::bytes(text).map_err(refuse)?;
         let deck = deck.read_bytes(&bytes).map_err(|fault| refuse(fault.to_string()))?;
         let mut part = deck.part().map_err(|error| refuse(error.to_string()))?;
@@ -55,7 +55,7 @@ impl<'a> OwnMesh<'a> {
         Err(refused(self.group, self.file, what))
     }
 
-    /// The set of that name; Abaqus and LS-DYNA take capitals and small letters for the same.
+    /// The set of that name; Abaqus takes capitals and small letters for the same.
     fn set(&self, name: &str) -> Option<&[u32]> {
         let sets = &self.deck.node_sets;
         let mut alike =

@@ -129,8 +129,8 @@ fn analytic_a_notched_ring_in_a_pedestal_runs_and_carries_its_load() {
     assert!((-carried / info.expected_support_n - 1.0).abs() < 0.02, "{carried} N");
 }
 
-/// A ring as other programs write it, in two files and with parts that are no mesh, is the ring; and the run
-/// lists the ignored parts.
+/// A ring as other programs write it, with parts that are no mesh, is the ring; and the run lists the ignored
+/// parts.
 #[test]
 fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
     let plain = scene(&[]);
@@ -142,11 +142,9 @@ fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
     let (nodes, rest) = text.split_at(text.find("*ELEMENT").expect("elements"));
     let more =
         "*ELEMENT, TYPE=T3D2, ELSET=Line1\n900001, 1, 2\n*Nset, nset=RACE\nRaceway\n*MATERIAL, NAME=steel\n";
-    for (name, text) in [
-        ("nodes.inp", nodes.to_owned() + "*SURFACE, NAME=s\n"),
-        ("apart.inp", format!("*INCLUDE, INPUT=nodes.inp\n{rest}{more}")),
-        ("whole.inp", text.clone()),
-    ] {
+    for (name, text) in
+        [("other.inp", format!("{nodes}*SURFACE, NAME=s\n{rest}{more}")), ("whole.inp", text.clone())]
+    {
         std::fs::write(folder.join(name), text).expect("written");
     }
     let with = |name: &str, raceway: &str| {
@@ -154,23 +152,23 @@ fn issue_a_run_lists_what_of_its_meshes_was_passed_over() {
         let ring = format!("outer_ring_mesh=(file: {file:?}, unit_mm: 1000, raceway: {raceway:?})");
         scene(&[ring, "solver.duration_ms=0.02".to_owned()])
     };
-    let apart = with("apart.inp", "race");
+    let other = with("other.inp", "race");
     let meshed = |scene: &Scene| Assembly::new(&scene.resolve()).expect("a mesh").model.mesh;
-    assert_eq!(meshed(&apart), meshed(&with("whole.inp", "raceway")));
+    assert_eq!(meshed(&other), meshed(&with("whole.inp", "raceway")));
     let dir = RunDir::create(folder.join("run")).expect("the folder is new");
-    simulate(&apart, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("the scene runs");
+    simulate(&other, &dir, &host(1), &mut |_| ControlFlow::Continue(())).expect("the scene runs");
     let notes = Run::read(folder.join("run")).expect("readable").info.notes;
     let line = 1 + nodes.lines().count();
     assert!(notes[0].starts_with("of `outer_ring_mesh.file` `") && notes.len() == 3, "{notes:?}");
     for words in [
-        format!("`nodes.inp`, line {line}: `*SURFACE` is not read"),
+        format!("line {line}: `*SURFACE` is not read"),
         "elements of type `T3D2` are passed over".to_owned(),
         "`*MATERIAL` is not read".to_owned(),
     ] {
         assert!(notes.iter().any(|note| note.contains(&words)), "{words}: {notes:?}");
     }
     // A set that was passed over is asked for.
-    let mut none = with("apart.inp", "race");
+    let mut none = with("other.inp", "race");
     let ring = none.outer_ring_mesh.as_mut().expect("a ring");
     ring.text = ring.text.replace("\nRaceway\n", "\nNothing\n");
     let said = Assembly::new(&none.resolve()).expect_err("no set").to_string();

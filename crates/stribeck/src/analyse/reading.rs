@@ -72,9 +72,9 @@ pub(crate) struct Reading {
     /// Unit of the samples after that
     #[arg(long)]
     pub(super) unit: Option<String>,
-    /// Path from the bearing to the sensor: a frequency response, FILE.uff, or "mass=12, stiffness=2e8,
-    /// damping=0.02", several modes with `;` between them. It is divided out of a record, which is then the
-    /// force at the bearing; the force of a run goes through it
+    /// Path from the bearing to the sensor: "mass=12, stiffness=2e8, damping=0.02", several modes with `;`
+    /// between them. It is divided out of a record, which is then the force at the bearing; the force of a
+    /// run goes through it
     #[arg(long, value_name = "PATH")]
     pub(super) path: Option<String>,
 }
@@ -226,7 +226,7 @@ pub(super) fn read(asked: &Path, options: &Reading, place: &Place) -> Result<Rea
     }
     let recording = Recording::open(&file)?;
     let picked = pick(&recording, options.channel.as_deref(), scene.is_some())?;
-    let path = options.path.as_deref().map(|text| Transfer::read(text, place)).transpose()?;
+    let path = options.path.as_deref().map(Transfer::read).transpose()?;
     let behind_path = match (&path, &scene) {
         (Some(path), Some(_)) => Some(path.of_run(&recording, picked)?),
         _ => None,

@@ -9,7 +9,7 @@ use crate::decks::gathered::{Gathered, MOST_NUMBER};
 use crate::decks::{DeckError, fault, real, whole};
 
 /// Cards that make or move nodes and elements, and what to do instead.
-const REFUSED: [(&str, &str); 10] = [
+const REFUSED: [(&str, &str); 9] = [
     ("SYSTEM", "it gives nodes in axes of their own; write them in those of the model"),
     ("NGEN", "it makes nodes; write all of them"),
     ("NFILL", "it makes nodes; write all of them"),
@@ -18,9 +18,11 @@ const REFUSED: [(&str, &str); 10] = [
     ("ELGEN", "it makes elements; write all of them"),
     ("ELCOPY", "it makes elements; write all of them"),
     ("IMPORT", "it takes bodies from another analysis; write them out"),
-    ("INCLUDE", "the file that it names is not at hand; put what it holds here"),
     ("PARAMETER", "it has values computed; write the values"),
 ];
+
+/// Cards whose data may lie in another file, `INPUT=`.
+const WITH_INPUT: [&str; 5] = ["INCLUDE", "NODE", "ELEMENT", "NSET", "ELSET"];
 
 /// Cards that are neither mesh nor worth a note.
 const SAID_BY_OTHERS: [&str; 6] =
@@ -92,6 +94,17 @@ impl File {
             let value = card.parameter(key).filter(|value| !value.is_empty());
             value.ok_or_else(|| fault(line, format!("`*{}` lacks `{key}=`", card.name)))
         };
+        if WITH_INPUT.contains(&card.name.as_str())
+            && (card.name == "INCLUDE" || card.parameter("INPUT").is_some())
+        {
+            let (name, input) = (&card.name, card.parameter("INPUT").unwrap_or_default());
+            return Err(fault(
+                line,
+                format!(
+                    "`*{name}, INPUT={input}` is not read: a mesh is one file; put what `{input}` holds here"
+                ),
+            ));
+        }
         match card.name.as_str() {
             "NODE" => self.nodes(card)?,
             "ELEMENT" => self.elements(card)?,

@@ -10,7 +10,6 @@ use super::elements::dimension_and_nodes;
 use super::source::Source;
 use super::{QUADRILATERAL, TRIANGLE};
 use crate::decks::gathered::Gathered;
-use crate::decks::origin::Origins;
 use crate::decks::{DeckError, ReadDeck, fault};
 
 /// Longest list of groups of one curve or surface.
@@ -57,7 +56,7 @@ pub(in crate::decks) fn read(bytes: &[u8]) -> Result<ReadDeck, DeckError> {
         file.source.skip_section(section)?;
     }
     let last = file.source.line();
-    file.found.finish(last, &Origins::default())
+    file.found.finish(last)
 }
 
 /// What to do about formats that are not read.

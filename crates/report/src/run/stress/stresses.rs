@@ -1,27 +1,20 @@
-//! Von Mises stress: under a loaded roller, at the exit edge, and while a roller crosses the defect.
-
-use std::ops::RangeInclusive;
+//! Von Mises stress: under a loaded roller and at the exit edge.
 
 use stribeck_store::frames::{Frame, Window};
 use stribeck_store::mesh_file::RunMesh;
 
 use crate::Error;
-use crate::plot::{Anchor, Canvas, Picture, Sheet, gif, shade_rgb};
+use crate::plot::{Anchor, Picture, Sheet, shade_rgb};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_analysis::stress::{Cell, Lame, cells};
-use stribeck_analysis::summary::Event;
 use stribeck_diagnosis::words::numbers::{kilonewtons, pascals};
 use stribeck_theory::contact_law::ContactLawKind;
 
 /// Part of the cells whose stress the scale leaves above its end: single corners would take all colours.
 const ABOVE: f64 = 0.002;
-/// Side of an animated picture [px].
-const SIDE: u16 = 480;
 /// Half the side of the picture of a moment [m].
 const HALF: f64 = 3e-3;
-/// Time for one animated picture [1/100 s].
-const HUNDREDTHS: u16 = 9;
 
 /// A moment: its title, its cells, and the focus, in the axes of the picture [m].
 struct Moment {
@@ -66,9 +59,6 @@ pub(super) fn pictures(
     let moments = moments(record, findings, window, &all)?;
     if moments.iter().any(|moment| moment.cells.iter().any(|cell| is_near(moment, cell, window))) {
         pictures.push(still(&moments, window));
-    }
-    if all.len() > 2 {
-        pictures.push(moving(record, findings, window, &all)?);
     }
     Ok(pictures)
 }
@@ -224,100 +214,4 @@ fn scale_of_colours(sheet: &mut Sheet, at: [f64; 2], end: f64) {
     sheet.text([at[0], at[1] + 27.0], 12.0, Anchor::Start, "#000", "0");
     let words = format!("{} and more, von Mises", pascals(end));
     sheet.text([at[0] + 246.0, at[1] + 11.0], 12.0, Anchor::Start, "#000", &words);
-}
-
-/// The first passage that frames of these times show from its entry to its exit, its roller in the window
-/// half-way.
-fn crossing<'a>(
-    record: &Record<'_>,
-    findings: &'a Findings,
-    window: &Window,
-    frames_s: RangeInclusive<f64>,
-) -> Result<Option<&'a Event>, Error> {
-    for event in &findings.summary.events {
-        let Some([entry_s, exit_s]) = event.entry_ms.zip(event.exit_ms).map(|(a, b)| [1e-3 * a, 1e-3 * b])
-        else {
-            continue;
-        };
-        if !frames_s.contains(&entry_s) || !frames_s.contains(&exit_s) {
-            continue;
-        }
-        let middle = record.time_s().partition_point(|t| *t < 0.5 * (entry_s + exit_s));
-        let part = record.with_rollers(&[event.roller], middle..middle + 1)?;
-        let roller = part.roller(event.roller);
-        let centre = roller.and_then(|roller| Some([*roller.x.first()?, *roller.y.first()?]));
-        if centre.is_some_and(|[x, y]| window.holds(x, y)) {
-            return Ok(Some(event));
-        }
-    }
-    Ok(None)
-}
-
-fn moving(
-    record: &Record<'_>,
-    findings: &Findings,
-    window: &Window,
-    all: &[(f64, Vec<Cell>)],
-) -> Result<Picture, Error> {
-    let end = end_of_scale(all.iter().flat_map(|f| &f.1));
-    let half = 0.97 * window.half;
-    let scale = 0.5 * f64::from(SIDE) / half;
-    let place = |c: &[f64; 2]| {
-        let [x, y] = window.place(c[0], c[1]);
-        [0.5 * f64::from(SIDE) + scale * x, 0.5 * f64::from(SIDE) - scale * y]
-    };
-    let (first, last) = (all[0].0, all[all.len() - 1].0);
-    let canvases: Vec<Canvas> = all
-        .iter()
-        .map(|(time, cells)| {
-            let mut canvas = Canvas::new(SIDE, SIDE);
-            for cell in cells {
-                let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
-                canvas.fill(&corners, cell.von_mises / end);
-            }
-            // Time runs along the lower edge.
-            let bar = f64::from(SIDE) * (time - first) / (last - first).max(f64::MIN_POSITIVE);
-            for row in 1..4 {
-                let y = f64::from(SIDE) - f64::from(row);
-                canvas.line([0.0, y], [bar, y]);
-            }
-            canvas
-        })
-        .collect();
-    let bytes = gif("crossing", &canvases, HUNDREDTHS)?;
-    // Paper cannot move: it gets the middle of the crossing.
-    let mut sheet = Sheet::new(f64::from(SIDE), f64::from(SIDE) + 40.0);
-    let (time, middle) = &all[all.len() / 2];
-    sheet.clipped("crossing-window", [0.0, 0.0], [f64::from(SIDE); 2], |sheet| {
-        for cell in middle {
-            let corners: Vec<[f64; 2]> = cell.corners.iter().map(place).collect();
-            let [r, g, b] = shade_rgb(cell.von_mises / end);
-            sheet.path(&corners, true, &format!("fill:#{r:02x}{g:02x}{b:02x}"));
-        }
-    });
-    scale_of_colours(&mut sheet, [8.0, f64::from(SIDE) + 8.0], end);
-    let crossing = crossing(record, findings, window, first..=last)?;
-    let title = if crossing.is_some() { "A roller crosses the defect" } else { "Stress about the defect" };
-    let mut picture = Picture::new("crossing", title, sheet);
-    picture.dense = true;
-    picture.animation = Some(bytes);
-    picture.caption = match crossing {
-        Some(event) => format!(
-            "Roller {} unloads over the leading edge, its neighbours take its load, and it is caught again \
-             by the trailing edge; watch the stress run into the rings.",
-            event.roller
-        ),
-        None => "No roller unloads over the spall and is loaded again here while frames are kept.".to_owned(),
-    };
-    picture.note = format!(
-        "{} pictures from {:.1} to {:.1} ms, {:.0} times slower than the bearing; yellow is {} von Mises and \
-         more. On paper: {:.1} ms.",
-        all.len(),
-        1e3 * first,
-        1e3 * last,
-        0.01 * f64::from(HUNDREDTHS) * (all.len() - 1) as f64 / (last - first).max(f64::MIN_POSITIVE),
-        pascals(end),
-        1e3 * time
-    );
-    Ok(picture)
 }
