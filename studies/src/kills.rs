@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail, ensure};
 
-use crate::{Answer, Host, Rows};
+use crate::{Answer, Host};
 use stribeck_scene::dice::Dice;
 
 /// Flags of `study kills`.
@@ -34,9 +34,6 @@ pub struct Options {
     /// With --hours: the library libfaketimeMT.so.1, with which clocks jump by up to a year
     #[arg(long, value_name = "LIBRARY", requires = "hours")]
     clock: Option<PathBuf>,
-    /// Writes no page
-    #[arg(long)]
-    pub(crate) no_page: bool,
 }
 
 /// A process that does not end within this time counts as hanging [s].
@@ -111,7 +108,7 @@ impl Tally {
     }
 }
 
-pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result<Answer> {
+pub(crate) fn measure(options: &Options, host: &Host) -> Result<Answer> {
     let place = options.disk.clone().unwrap_or_else(std::env::temp_dir);
     let folder = place.join(format!("stribeck-kills-{}", std::process::id()));
     fs::create_dir_all(&folder).context("cannot make a folder for the runs")?;
@@ -120,29 +117,18 @@ pub(crate) fn measure(options: &Options, host: &Host, rows: &mut Rows) -> Result
     let tally = done?;
     fs::remove_dir_all(&folder).ok();
     let [runs, campaigns] = tally.finished;
-    let values = [
-        ("hours", (host.seconds() - began) / 3600.0),
-        ("kills", tally.kills as f64),
-        ("asked to end", tally.terminated as f64),
-        ("full disks", tally.full_disks as f64),
-        ("jumps of the clock", tally.jumps as f64),
-        ("while continued", tally.again as f64),
-        ("before the first checkpoint", tally.too_early as f64),
-        ("runs with equal bytes", runs as f64),
-        ("campaigns with equal bytes", campaigns as f64),
-        ("ms of a run", options.duration_ms),
-    ];
-    rows.values("kills", "all", values);
     let [first, last] = tally.memory();
-    rows.values(
-        "kills",
-        "all",
-        [("memory, first quarter [MiB]", first), ("memory, last quarter [MiB]", last)],
-    );
     let said = format!(
-        "{} disturbances, {} kills, {runs} runs and {campaigns} campaigns with the bytes of undisturbed ones",
-        tally.disturbances(),
-        tally.kills
+        "{} kills, {} requests to end, {} full disks and {} jumps of the clock within {:.2} hours, {} of them while a \
+         run was being continued and {} before its first checkpoint: {runs} runs and {campaigns} campaigns with the \
+         bytes of undisturbed ones; campaigns took {first:.0?} MiB in the first quarter and {last:.0?} in the last",
+        tally.kills,
+        tally.terminated,
+        tally.full_disks,
+        tally.jumps,
+        (host.seconds() - began) / 3600.0,
+        tally.again,
+        tally.too_early
     );
     Ok(Answer { said: Some(said), ..Answer::default() })
 }

@@ -15,16 +15,12 @@ pub mod reference;
 
 mod analyse;
 mod atlas;
-mod families;
 mod figure;
 mod host;
-mod impulse;
 mod kills;
 mod long;
 mod machine;
-mod measured_loop;
 mod noise;
-mod own;
 mod page;
 mod paper;
 mod plan;
@@ -34,14 +30,13 @@ mod rows;
 mod run_time;
 mod runner;
 mod sample;
-mod skidding;
-mod spall_size;
 mod spalls;
 mod stability;
 mod verdicts;
 mod work_precision;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use anyhow::{Context, Result};
 
@@ -72,25 +67,12 @@ pub enum Study {
     WorkPrecision,
     /// Sources of contact noise, and the effect of each cure
     Noise(Flags),
-    /// Whether the family of lines of any facet count is named rightly, and false ones are not
-    Families(Flags),
     /// Many bearings, many defects: whether each is diagnosed correctly
     Atlas(Flags),
-    /// Lengths of measured spalls, and whether simulated ones of these lengths knock alike
-    Loop(measured_loop::Options),
     /// Simulated spalls of known length through `stribeck analyse`: whether it finds their lengths
     Spalls(Flags),
-    /// Whether the force at the exit of a spall grows with its depth and its width
-    #[command(name = "spall_size")]
-    SpallSize(Flags),
-    /// How far cage and rollers of a lightly loaded bearing lag behind, over load, speed, oil and clearance
-    Skidding(Flags),
     /// How far the reduced bearing is from the full one, scene by scene
     Reduced(Flags),
-    /// Whether the impulse at the exit is that of a finer mesh, over many starts
-    Impulse(impulse::Options),
-    /// Bearings by their own fields, at the first try, by both models
-    Own(Flags),
     /// Records of machines fitted on one record a rig, beside the measured ones
     Machine(machine::Options),
     /// Measured records of known state through the verdict of `analyse`, beside plainer methods
@@ -107,15 +89,9 @@ impl Study {
             Self::RunTime(_) => "run_time",
             Self::WorkPrecision => "work_precision",
             Self::Noise(_) => "noise",
-            Self::Families(_) => "families",
             Self::Atlas(_) => "atlas",
-            Self::Loop(_) => "loop",
             Self::Spalls(_) => "spalls",
-            Self::Skidding(_) => "skidding",
-            Self::SpallSize(_) => "spall_size",
             Self::Reduced(_) => "reduced",
-            Self::Impulse(_) => "impulse",
-            Self::Own(_) => "own",
             Self::Machine(_) => "machine",
             Self::Verdicts(_) => "verdicts",
         }
@@ -127,20 +103,14 @@ impl Study {
         match self {
             Self::Paper(flags) => paper::measure(&runner(flags), rows)?,
             Self::Long(options) => long::measure(options, host, rows)?,
-            Self::Kills(options) => return kills::measure(options, host, rows),
+            Self::Kills(options) => return kills::measure(options, host),
             Self::Stability(flags) => return stability::measure(&runner(flags), rows),
             Self::RunTime(options) => run_time::measure(options, host, rows)?,
             Self::WorkPrecision => work_precision::measure(host, rows)?,
             Self::Noise(flags) => noise::measure(&runner(flags), rows)?,
-            Self::Families(flags) => families::measure(&runner(flags), rows)?,
             Self::Atlas(flags) => atlas::measure(&runner(flags), rows)?,
-            Self::Loop(options) => measured_loop::measure(options, host, rows)?,
             Self::Spalls(flags) => spalls::measure(&runner(flags), rows)?,
-            Self::Skidding(flags) => skidding::measure(&runner(flags), rows)?,
-            Self::SpallSize(flags) => spall_size::measure(&runner(flags), rows)?,
             Self::Reduced(flags) => reduced::measure(&runner(flags), rows)?,
-            Self::Impulse(options) => impulse::measure(options, host, rows)?,
-            Self::Own(flags) => return own::measure(&runner(flags), rows),
             Self::Machine(options) => machine::measure(options, host, rows)?,
             Self::Verdicts(options) => verdicts::measure(options, host, rows)?,
         }
@@ -154,12 +124,13 @@ impl Study {
         if !page_only {
             let mut rows = Rows::default();
             answer = self.measure(host, &mut rows)?;
-            if matches!(self, Self::Kills(options) if options.no_page) {
+            if rows == Rows::default() {
                 return Ok(answer);
             }
             write(&results().join(format!("{}.csv", self.name())), &rows.to_csv())?;
+            made_by(self.name(), host)?;
         }
-        let (file, missing) = write_page(self.name())?;
+        let (file, missing) = write_page(self.name(), page_only)?;
         for path in missing {
             host.say(&format!("the page has a gap: {path}"));
         }
@@ -183,17 +154,42 @@ fn results() -> PathBuf {
     root().join("docs/results")
 }
 
-/// Writes the table of a study and its page, whose path it returns.
-pub fn publish(study: &str, rows: &Rows) -> Result<PathBuf> {
-    write(&results().join(format!("{study}.csv")), &rows.to_csv())?;
-    Ok(write_page(study)?.0)
-}
-
-fn write_page(study: &str) -> Result<(PathBuf, Vec<String>)> {
+fn write_page(study: &str, keeps_mark: bool) -> Result<(PathBuf, Vec<String>)> {
     let (page, missing) = page_of(study)?;
     let file = results().join(format!("{study}.md"));
-    write(&file, &page)?;
+    let kept = std::fs::read_to_string(&file).unwrap_or_default();
+    let mark = if keeps_mark { mark_of(&kept) } else { "" };
+    write(&file, &(mark.to_owned() + &page))?;
     Ok((file, missing))
+}
+
+/// The line that an older program made a page, as `cargo xtask ci --mark` writes it before the page of a study.
+pub(crate) fn mark_of(page: &str) -> &str {
+    let end = page.find("\n\n").map_or(0, |at| at + 2);
+    if page.starts_with("Made by an older program") { &page[..end] } else { "" }
+}
+
+/// Notes that this program made the page of a study, and for how long it was at it.
+fn made_by(study: &str, host: &Host) -> Result<()> {
+    let file = results().join("made_by.csv");
+    let read = |path: &Path| {
+        std::fs::read_to_string(path).with_context(|| format!("cannot read {}", path.display()))
+    };
+    let digest = read(&root().join("fixtures/golden/digest"))?;
+    let output = Command::new("git").args(["log", "-1", "--format=%h,%cs"]).current_dir(root()).output();
+    let commit = output.map(|o| String::from_utf8_lossy(&o.stdout).trim().to_owned()).unwrap_or_default();
+    let commit = if commit.is_empty() { "," } else { &commit };
+    let text = read(&file)?;
+    let of_study = |line: &&str| line.split(',').next() == Some(study);
+    // Runs that were kept take no time: the longest is what it takes from the beginning.
+    let before = text.lines().find(of_study).and_then(|line| line.split(',').nth(4)?.parse().ok());
+    let minutes = (host.seconds() / 60.0).ceil().max(before.unwrap_or(0.0));
+    let mut lines: Vec<&str> = text.lines().skip(1).filter(|line| !of_study(line)).collect();
+    let line = format!("{study},{},{commit},{minutes},cargo xtask study {study}", digest.trim());
+    lines.push(&line);
+    lines.sort_unstable();
+    let head = text.lines().next().unwrap_or_default();
+    write(&file, &format!("{head}\n{}\n", lines.join("\n")))
 }
 
 /// The page of a study from its template and the kept table, and what the table lacks for it.
@@ -204,21 +200,17 @@ pub(crate) fn page_of(study: &str) -> Result<(String, Vec<String>)> {
     let mut rows = Rows::read(&results().join(format!("{study}.csv")))?;
     match study {
         "atlas" => atlas::derive(&mut rows),
-        "impulse" => impulse::derive(&mut rows),
         "reduced" => reduced::derive(&mut rows),
         "run_time" => run_time::derive(&mut rows),
-        "spall_size" => spall_size::derive(&mut rows),
-        "spalls" | "loop" => analyse::derive(&mut rows),
+        "spalls" => analyse::derive(&mut rows),
         "stability" => stability::derive(&mut rows),
         "verdicts" => verdicts::derive(&mut rows),
         "work_precision" => work_precision::derive(&mut rows),
         _ => {}
     }
     let (page, missing) = page::render(&template, &rows);
-    let command =
-        if study == "readers" { "fuzz --peers python3".to_owned() } else { format!("study {study}") };
     let source =
-        format!("\nWritten by `cargo xtask {command}`; all numbers are in [{study}.csv]({study}.csv).\n");
+        format!("\nWritten by `cargo xtask study {study}`; all numbers are in [{study}.csv]({study}.csv).\n");
     Ok((page + &source, missing))
 }
 

@@ -1,9 +1,7 @@
-//! The program of `cargo xtask study`, one question, many runs, one table, and of `cargo xtask fuzz`.
+//! The program of `cargo xtask study`: one question, many runs, one table.
 //!
 //! A program of its own, so that simulating and reporting from a fresh clone need not wait until all studies
 //! are compiled.
-
-mod fuzz;
 
 use std::process::ExitCode;
 
@@ -31,9 +29,6 @@ struct Cli {
 enum Command {
     #[command(flatten)]
     Study(Study),
-    /// Feeds the program generated bad input: `cargo xtask fuzz`
-    #[command(hide = true, override_usage = "cargo xtask fuzz [OPTIONS]")]
-    Fuzz(fuzz::Options),
     /// A command of `stribeck`, for studies of whole processes
     #[command(subcommand, hide = true)]
     Stribeck(stribeck::Command),
@@ -44,7 +39,6 @@ fn main() -> ExitCode {
     cli.loudness.apply();
     stribeck::conclude(match cli.command {
         Command::Study(study) => answer(&study, cli.page_only),
-        Command::Fuzz(options) => fuzz::run(&options),
         Command::Stribeck(command) => {
             command.run(&Place::repository("cargo xtask", stribeck_studies::root()))
         }

@@ -1,7 +1,5 @@
 //! Means of independent numbers with their uncertainty.
 
-use crate::Rows;
-
 /// Numbers of one kind, one a start.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sample {
@@ -20,12 +18,6 @@ impl Sample {
         Self { mean, scatter, count: values.len() }
     }
 
-    /// Adds mean, standard error and scatter to the rows.
-    pub(crate) fn put(&self, rows: &mut Rows, table: &str, variant: &str, quantity: &str) {
-        let words = [("mean", self.mean), ("standard error", self.error()), ("scatter", self.scatter)];
-        rows.values(table, variant, words.map(|(word, value)| (format!("{quantity}, {word}"), value)));
-    }
-
     /// Standard error of the mean.
     pub(crate) fn error(&self) -> f64 {
         self.scatter / (self.count as f64).sqrt()
@@ -39,33 +31,9 @@ pub(crate) fn ratio(one: &Sample, other: &Sample) -> [f64; 2] {
     [ratio - 1.0, error]
 }
 
-/// Correlation of pairs of numbers about the mean of the group that they belong to.
-pub(crate) fn correlation_within(groups: &[Vec<[f64; 2]>]) -> f64 {
-    let mut sums = [0.0; 3];
-    for pairs in groups {
-        let mean = |k: usize| pairs.iter().map(|pair| pair[k]).sum::<f64>() / pairs.len() as f64;
-        let [a, b] = [mean(0), mean(1)];
-        for [x, y] in pairs {
-            let [dx, dy] = [x - a, y - b];
-            sums = [sums[0] + dx * dx, sums[1] + dy * dy, sums[2] + dx * dy];
-        }
-    }
-    sums[2] / (sums[0] * sums[1]).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn by_hand_correlation_does_not_see_what_groups_differ_by() {
-        let falling =
-            |x0: f64, y0: f64| (0..4).map(|i| [x0 + f64::from(i), y0 - 2.0 * f64::from(i)]).collect();
-        let groups: [Vec<[f64; 2]>; 2] = [falling(0.0, 0.0), falling(10.0, 100.0)];
-        assert!((correlation_within(&groups) + 1.0).abs() < 1e-15);
-        let square = vec![[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]];
-        assert_eq!(correlation_within(&[square]), 0.0);
-    }
 
     #[test]
     fn by_hand_means_of_four_numbers_and_their_ratio() {

@@ -105,12 +105,19 @@ pub(crate) fn measure(runner: &Runner<'_>, rows: &mut Rows) -> Result<Answer> {
     Ok(Answer { failure, ..Answer::default() })
 }
 
-/// All cases in one table.
+/// All cases in one table, and how many of each chapter ended how.
 pub(crate) fn derive(rows: &mut Rows) {
     for chapter in CHAPTERS {
-        for case in rows.variants(chapter) {
-            let ended = rows.get(chapter, &case, "ended").unwrap_or_default().to_owned();
-            rows.word("cases", &format!("{chapter}: {case}"), "ended", &ended);
+        let cases = rows.variants(chapter);
+        let ended = |case: &String| rows.get(chapter, case, "ended").unwrap_or_default().to_owned();
+        let endings: Vec<String> = cases.iter().map(ended).collect();
+        for (case, ended) in cases.iter().zip(&endings) {
+            rows.word("cases", &format!("{chapter}: {case}"), "ended", ended);
+        }
+        rows.value("chapters", chapter, "all", cases.len() as f64);
+        for word in ["right", "warned", "stopped", "refused"] {
+            let count = endings.iter().filter(|ended| *ended == word).count();
+            rows.value("chapters", chapter, word, count as f64);
         }
     }
 }

@@ -19,10 +19,10 @@ pub(crate) struct Words {
     pub(crate) words: Vec<OsString>,
 }
 
-/// A study, or the hidden command `fuzz` of their program.
-pub(crate) fn study(name: Option<&str>, words: &Words, loudness: Loudness) -> Result<ExitCode> {
+/// A study.
+pub(crate) fn study(words: &Words, loudness: Loudness) -> Result<ExitCode> {
     let mut cargo = cargo_run("stribeck-studies", loudness);
-    cargo.args(loudness.flag()).args(name).args(&words.words);
+    cargo.args(loudness.flag()).args(&words.words);
     replace_process(cargo)
 }
 

@@ -1,11 +1,10 @@
-//! What develops Stribeck: `cargo xtask ci`, `study`, `peers` and `fuzz`, and the program's own `simulate`,
+//! What develops Stribeck: `cargo xtask ci` and `study`, and the program's own `simulate`,
 //! `report` and `plan`.
 //!
 //! Glue only: paths, flags, progress and exit codes. All computation is in the crates.
 
 mod book;
 mod ci;
-mod compare;
 mod fields;
 mod fmu;
 mod handed_on;
@@ -41,8 +40,6 @@ enum Command {
     Program(stribeck::Command),
     /// Answers a question by many runs: tables and pictures in docs/results
     Study(handed_on::Words),
-    /// Solves the same problems with other programs, checks that they agree, and times them
-    Peers(compare::Options),
     /// Builds the module of `cargo xtask lab`, which steps a bearing in a page, and says where it is
     LabModule(lab::Options),
     /// Builds the documents as a book with mdBook, with a lab in its guide
@@ -55,8 +52,6 @@ enum Command {
     Fields(fields::Options),
     /// Writes the guide's page of all numbers of a run from the summary's declarations
     Quantities(quantities::Options),
-    /// Feeds the program generated bad input: scenes, overrides, traces, checkpoints, meshes
-    Fuzz(handed_on::Words),
     /// Checks format, lints, tests and documents
     Ci(ci::Options),
 }
@@ -80,15 +75,13 @@ fn main() -> ExitCode {
         Command::Program(command) => lab::with_module(command)
             .and_then(fmu::with_library)
             .and_then(|command| command.run(&Place::repository("cargo xtask", workspace::root()))),
-        Command::Study(words) => handed_on::study(None, &words, cli.loudness),
-        Command::Peers(options) => compare::run(&options),
+        Command::Study(words) => handed_on::study(&words, cli.loudness),
         Command::LabModule(options) => lab::build_module(&options),
         Command::Wheel(options) => wheel::build(&options),
         Command::Book => book::run(),
         Command::Release(options) => release::run(&options),
         Command::Fields(options) => fields::run(&options),
         Command::Quantities(options) => quantities::run(&options),
-        Command::Fuzz(words) => handed_on::study(Some("fuzz"), &words, cli.loudness),
         Command::Ci(options) => ci::run(&options),
     })
 }
@@ -112,7 +105,7 @@ mod tests {
 
     #[test]
     fn behaves_what_follows_study_is_left_to_its_program() {
-        for line in ["--help", "-h", "kills --help", "kills --kills 5 --no-page", "help kills", ""] {
+        for line in ["--help", "-h", "kills --help", "kills --kills 5", "help kills", ""] {
             let words = line.split_whitespace();
             let cli = Cli::try_parse_from(["xtask", "-q", "study"].into_iter().chain(words)).expect(line);
             let Command::Study(study) = cli.command else { panic!("{line}") };

@@ -26,12 +26,6 @@ fn behaves_a_command_that_reads_records_is_handed_on_to_the_program() {
     assert!(output.status.success(), "{output:?}");
     assert!(said.starts_with("run --release --package stribeck --manifest-path"), "{said}");
     assert!(said.trim_end().ends_with(" --quiet -- -q analyse a record.csv --bearing 6205"), "{said}");
-    let fuzz = xtask("echo", &["fuzz", "--cases", "3"]);
-    let said = String::from_utf8_lossy(&fuzz.stdout);
-    assert!(
-        said.contains("--package stribeck-studies") && said.trim_end().ends_with(" -- fuzz --cases 3"),
-        "{said}"
-    );
 }
 
 #[test]

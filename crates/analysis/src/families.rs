@@ -45,7 +45,7 @@ use stribeck_diagnosis::quantities;
 
 /// The least lead of a score that counts: its residual is then 26 % smaller than that of any rival. On
 /// records that were not used to choose it, one false comb in some hundreds leads by it
-/// (docs/results/families.md).
+/// (THEORY §7.7).
 pub const LEAST_LEAD: f64 = 0.3;
 /// A peak that stands this far above its surroundings [dB] at the place of a carrier is not said to be absent.
 /// At places where no family has lines, one of ten accelerations holds one in 4 % of the records.

@@ -1,10 +1,10 @@
 //! Every function that scipy has, too, beside scipy's: the same answer, and the ratio of times taken in turn.
 //!
-//! `cargo bench -p stribeck-dsp --bench beside_scipy` writes `docs/results/signals.md`. The interpreter in
-//! STRIBECK_PYTHON, or python3, needs numpy and scipy.
+//! Processor times are medians on one thread; the ratio, of pairs, is above 1 where ours is faster. scipy keeps the
+//! tables of its transforms from call to call, and so do `Envelope` and `EnvelopeSpectrum`; the others make
+//! theirs in every call. The interpreter in STRIBECK_PYTHON, or python3, needs numpy and scipy.
 
 use std::cell::RefCell;
-use std::fmt::Write as _;
 use std::hint::black_box;
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -285,36 +285,22 @@ fn row(case: &Case<'_>, scipy: &mut Scipy) -> Result<String, String> {
     ))
 }
 
-fn page() -> Result<String, String> {
+fn table() -> Result<(), String> {
     let x = signal(1 << 18);
     let (mut scipy, versions) = Scipy::start()?;
-    let versions: Vec<&str> = versions.split_whitespace().collect();
-    let [scipy_version, numpy_version] = versions[..] else { return Err("no versions".to_owned()) };
-    let mut text = format!(
-        "# Signal functions beside scipy\n\nWritten by `cargo bench -p stribeck-dsp --bench beside_scipy`: \
-         every function of `stribeck-dsp` that scipy {scipy_version} (numpy {numpy_version}) has, too, on \
-         262 144 samples at 25.6 kHz unless something else is said. Ours and scipy's in turn, {ROUNDS} times \
-         each on one thread; processor time in ms and the ratio are medians, the ratio over pairs, above 1 \
-         where ours is faster. scipy keeps the tables of its transforms from call to call, and so do \
-         `Envelope` and `EnvelopeSpectrum`, which are plans; the others make theirs in every call. Sums of \
-         both results agree to {AGREED:e}.\n\n\
-         | ours | scipy | on | ours, ms | scipy, ms | scipy over ours |\n|---|---|---|---|---|---|\n"
+    println!(
+        "scipy and numpy {versions}, 262 144 samples unless something else is said, sums agree to {AGREED:e}\n\n\
+         | ours | scipy | on | ours, ms | scipy, ms | scipy over ours |\n|---|---|---|---|---|---|"
     );
     for case in cases(&x) {
-        let row = row(&case, &mut scipy)?;
-        println!("{row}");
-        let _ = writeln!(text, "{row}");
+        println!("{}", row(&case, &mut scipy)?);
     }
-    Ok(text)
+    Ok(())
 }
 
 fn main() {
-    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/results/signals.md");
-    match page().and_then(|text| std::fs::write(file, text).map_err(|why| why.to_string())) {
-        Ok(()) => println!("docs/results/signals.md"),
-        Err(why) => {
-            eprintln!("{why}");
-            std::process::exit(1);
-        }
+    if let Err(why) = table() {
+        eprintln!("{why}");
+        std::process::exit(1);
     }
 }

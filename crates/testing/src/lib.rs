@@ -1,12 +1,13 @@
 //! Shared by the tests of several crates: comparisons, rows of `docs/VALIDATION.md`, repeatable numbers,
-//! temporary folders, cases beside each other, the output of a program, a reference for balls, and peers:
-//! other programs to compare with.
+//! temporary folders, damage to files, cases beside each other, the output of a program, a reference for
+//! balls, and peers: other programs to compare with.
 //!
 //! It depends on no other crate of the workspace, so that all can have it as a dev-dependency. What needs the
 //! solver stands in `tests/common` of the crate that uses it.
 
 mod ball;
 mod cases;
+pub mod damage;
 pub mod ledger;
 mod noise;
 pub mod peer;

@@ -99,7 +99,7 @@ fn issue_a_tdms_file_that_was_not_closed_is_read_up_to_there() {
     }
 }
 
-/// npTDMS reads the same numbers: `cargo xtask fuzz --peers` compares.
+/// npTDMS reads the same numbers.
 #[test]
 fn peer_rows_of_daqmx_become_channels_by_their_scales() {
     let desk = Scratch::create("formats-daqmx");

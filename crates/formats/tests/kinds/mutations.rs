@@ -1,15 +1,18 @@
-//! Files of all formats with bytes changed at random: none makes a reader panic or hang.
+//! Damaged files of all formats: none makes a reader panic or hang.
 
+use std::cell::Cell;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use proptest::{prop_assert, test_runner::TestRunner};
 use stribeck_formats::Recording;
-use stribeck_testing::{Noise, Scratch};
+use stribeck_testing::Scratch;
+use stribeck_testing::damage::{cases, damaged};
 
 use crate::{RATE_HZ, opened, signal};
 
-/// Mutations of the tests; `STRIBECK_MUTATIONS` makes them more.
-const MUTATIONS: usize = 10_000;
+/// Files that are tried; `PROPTEST_CASES` makes them more.
+const CASES: u32 = 10_000;
 
 /// An input that takes longer hangs.
 const PATIENCE: Duration = Duration::from_secs(5);
@@ -46,74 +49,37 @@ fn good_files() -> Vec<(String, Vec<u8>)> {
     all
 }
 
-/// Bytes that are changed, left out, put in, doubled or set to the borders of their range.
-fn mutated(good: &[u8], draw: &mut impl FnMut(usize) -> usize) -> Vec<u8> {
-    let mut bytes = good.to_vec();
-    for _ in 0..=draw(4) {
-        if bytes.is_empty() {
-            break;
-        }
-        // Heads hold the structure: half of the mutations are there.
-        let among = if draw(2) == 0 { bytes.len().min(400) } else { bytes.len() };
-        let at = draw(among);
-        let end = (at + 1 + draw(9)).min(bytes.len());
-        match draw(6) {
-            0 => bytes[at] = draw(256) as u8,
-            1 => bytes[at] ^= 1 << draw(8),
-            2 => drop(bytes.drain(at..end)),
-            3 => {
-                let again = bytes[at..end].to_vec();
-                bytes.splice(at..at, again);
-            }
-            4 => bytes[at..end].fill([0, 0xff, 0x7f, 0x80][draw(4)]),
-            _ => bytes.truncate(at),
-        }
-    }
-    bytes
-}
-
 #[test]
-fn survives_mutations_of_every_format() {
-    let desk = Scratch::create("formats-mutations");
+fn survives_damage_to_every_format() {
+    let desk = Scratch::create("formats-damage");
     let all = good_files();
     for (name, bytes) in &all {
         let found = opened(&desk, name, bytes);
         assert!(found.channels.iter().any(|c| c.len > 1 && c.read().is_ok()), "{name}: {:?}", found.notes);
     }
-    let count = std::env::var("STRIBECK_MUTATIONS").ok().and_then(|n| n.parse().ok()).unwrap_or(MUTATIONS);
-    let mut noise = Noise::new(50);
-    let mut draw = |among: usize| (((noise.uniform() + 1.0) / 2.0 * among as f64) as usize).min(among - 1);
-    let (mut read, mut refused) = (0_usize, 0_usize);
-    for n in 0..count {
-        let (name, good) = &all[n % all.len()];
-        let bytes = mutated(good, &mut draw);
-        let path = desk.join(format!("mutated-{name}"));
+    let (read, refused) = (Cell::new(0_usize), Cell::new(0_usize));
+    let done = TestRunner::new(cases(CASES)).run(&damaged(all), |(name, bytes)| {
+        let path = desk.join(format!("damaged-{name}"));
         std::fs::write(&path, &bytes).unwrap();
         let began = Instant::now();
-        let answer = std::panic::catch_unwind(|| match Recording::open(&path) {
+        match Recording::open(&path) {
             Ok(found) => {
                 for channel in found.channels.iter().filter(|c| c.len < 1_000_000) {
                     if let Ok(samples) = channel.read() {
-                        assert!(
-                            samples.len() as u64 <= channel.len,
-                            "`{}` holds more than it says",
-                            channel.name
-                        );
+                        let (held, says) = (samples.len() as u64, channel.len);
+                        prop_assert!(held <= says, "`{}` holds {held} samples, not {says}", channel.name);
                     }
                 }
-                true
+                read.set(read.get() + 1);
             }
             Err(why) => {
-                assert!(why.to_string().contains("mutated-"), "{why}");
-                false
+                prop_assert!(why.to_string().contains("damaged-"), "{why}");
+                refused.set(refused.get() + 1);
             }
-        });
-        let Ok(answer) = answer else {
-            panic!("mutation {n} of {name}: {:02x?}", &bytes[..bytes.len().min(4000)])
-        };
-        assert!(began.elapsed() < PATIENCE, "mutation {n} of {name} took {:?}", began.elapsed());
-        if answer { read += 1 } else { refused += 1 }
-    }
-    println!("{count} mutations: {read} read, {refused} refused");
-    assert!(read > 0 && refused > 0);
+        }
+        prop_assert!(began.elapsed() < PATIENCE, "{name} took {:?}", began.elapsed());
+        Ok(())
+    });
+    done.unwrap_or_else(|why| panic!("{why}"));
+    assert!(read.get() > 0 && refused.get() > 0, "{} read, {} refused", read.get(), refused.get());
 }
