@@ -3,7 +3,7 @@
 Usage: python xtask/peers/compare.py [--quick] [--rounds N] [--peers numba,scipy,akantu,kratos,openseespy]
 
 The interpreter needs numpy; `pip install -r xtask/peers/requirements.txt` has the others, and one that is not there is left
-out by name. Ours (`crates/contact/examples/peer.rs`) runs again before every run of another, so that both meet the same
+out by name. Ours (`crates/fe/contact/examples/peer.rs`) runs again before every run of another, so that both meet the same
 machine. Writes docs/results/compare.csv and .md; `--quick` takes the small problems, three rounds, and writes nothing.
 """
 

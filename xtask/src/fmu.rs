@@ -1,4 +1,4 @@
-//! The library of an FMU: `crates/fmu`, compiled for this machine.
+//! The library of an FMU: `crates/apps/fmu`, compiled for this machine.
 
 use std::path::PathBuf;
 use std::process::Command;
@@ -8,7 +8,7 @@ use anyhow::{Context, Result, ensure};
 use crate::workspace;
 
 /// Its manifest, outside the workspace.
-pub(crate) const MANIFEST: &str = "crates/fmu/Cargo.toml";
+pub(crate) const MANIFEST: &str = "crates/apps/fmu/Cargo.toml";
 
 /// The command of the program, with a library that is built before it where it makes an FMU.
 pub(crate) fn with_library(command: stribeck::Command) -> Result<stribeck::Command> {

@@ -1,4 +1,4 @@
-//! The module of the lab: `crates/lab`, compiled for `wasm32-unknown-unknown`.
+//! The module of the lab: `crates/apps/lab`, compiled for `wasm32-unknown-unknown`.
 
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
@@ -11,8 +11,8 @@ use crate::workspace;
 /// Its target.
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Where a build of `crates/lab` finds it, below the root.
-const EMBEDDED: &str = "crates/lab/assets/module";
+/// Where a build of `crates/apps/lab` finds it, below the root.
+const EMBEDDED: &str = "crates/apps/lab/assets/module";
 
 /// Flags of `lab-module`.
 #[derive(Debug, clap::Args)]

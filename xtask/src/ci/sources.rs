@@ -43,4 +43,4 @@ pub(crate) fn crates(root: &Path) -> Result<Vec<String>> {
 }
 
 /// Folders that hold all packages, from the root.
-pub(crate) const FOLDERS: [&str; 3] = ["crates", "studies", "xtask"];
+pub(crate) const FOLDERS: [&str; 2] = ["crates", "xtask"];
