@@ -2,6 +2,7 @@
 
 mod documents;
 mod features;
+mod layers;
 mod markdown;
 mod sources;
 mod test_names;
@@ -26,6 +27,7 @@ pub(crate) struct Options {
 type Check = (&'static str, fn(&Path) -> Result<Vec<String>>);
 
 const CHECKS: &[Check] = &[
+    ("no arrow runs to a higher layer", layers::check),
     ("the program and xtask are made of the same libraries", features::check),
     ("THEORY has every section that code cites", documents::check_citations),
     ("links in the documents lead somewhere, within the book", documents::check_links),
