@@ -67,7 +67,7 @@ const PARTIAL: &str = ".part";
 const FILES: [&str; 12] =
     [INFO, ENSEMBLE, REPORT, LAB, SUMMARY, TRACE, SIGNALS, MACHINE, ENERGY, MESH, CHECKPOINT, SCENE];
 
-/// Folders that a run or its report fills, and their files.
+/// Folders that a run or its report fills, and their files; GIFs stand in runs of earlier versions, which are removed, too.
 const FOLDERS: [(&str, &[&str]); 2] = [(FIGURES, &["svg", "png", "gif"]), (FRAMES, &["npy"])];
 
 const UNTOUCHED: &str = "Nothing was changed; choose a folder that can be written with --out";
