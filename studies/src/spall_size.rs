@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, ensure};
 use stribeck_analysis::record::Record;
 use stribeck_analysis::summary::Summary;
-use stribeck_plans::campaign::Campaign;
 use stribeck_scene::scene::Scene;
+use stribeck_store::campaign::Campaign;
 use stribeck_store::run_dir::Run;
 
 use crate::page::decimals;

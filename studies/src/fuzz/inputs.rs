@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, ensure};
 use stribeck_mesh::{Annulus, ArcBlock, Body, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
-use stribeck_plans::campaign::Campaign;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation as simulation;
 use stribeck_simulation::bearing::assembly::Assembly;
 use stribeck_simulation::run::host::Progress;
 use stribeck_solver::{Dynamics, Elastic, Model};
+use stribeck_store::campaign::Campaign;
 use stribeck_store::run_dir::RunDir;
 use stribeck_store::trace::Trace;
 
