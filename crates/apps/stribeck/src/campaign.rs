@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
-use stribeck_plans::campaign::{Campaign, Variant};
 use stribeck_report::{CampaignIndex, CampaignRun, write_campaign};
 use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_store::campaign::{Campaign, Variant};
 use stribeck_store::run_dir::check_folder;
 
 use crate::emit::{self, MOST_PARTS, Part};

@@ -6,10 +6,10 @@ use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
-use stribeck_plans::campaign::Campaign;
 use stribeck_scene::catalogue;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_scene::scene_file::{readable, replaced_by_bearing};
+use stribeck_store::campaign::Campaign;
 use stribeck_store::run_dir::check_folder;
 
 use crate::campaign::{self, CAMPAIGN, MARKS, SCENES, carry_out};

@@ -3,6 +3,8 @@
 //!
 //! It is a crate because analyses and pages read runs, and link nothing of what makes them.
 //!
+//! [`campaign`] reads the file that plans many runs; mistakes in it are shown as those of a scene.
+//!
 //! The head of [`run_dir`] lists all files. [`run_dir::Run::read`] reads scene, provenance and sampled
 //! channels of a run; [`mesh_file::RunMesh`] its mesh, [`frames`] the positions of nodes about the defect.
 //!
@@ -18,6 +20,8 @@ pub mod run_info;
 pub mod frames;
 pub mod mesh_file;
 pub mod trace;
+
+pub mod campaign;
 
 mod error;
 

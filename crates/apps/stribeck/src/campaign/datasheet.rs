@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use stribeck_analysis::quantity::{Quantity, stem_and_unit};
 use stribeck_analysis::summary::Summary;
-use stribeck_plans::campaign::Campaign;
 use stribeck_scene::scene::{ModelScene, Scene};
+use stribeck_store::campaign::Campaign;
 use stribeck_store::run_dir::Keep;
 
 use super::tables::{EVENTS, RUNS, Row, SIGNALS, Truth, Written, model, sampling_rate_hz};

@@ -5,7 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
-use stribeck_plans::campaign::{Campaign, Variant};
+use stribeck_store::campaign::{Campaign, Variant};
 
 use super::Folder;
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::MOST_RUNS;
-use crate::document::{File, Written};
+use super::document::{File, Written};
 use stribeck_scene::dice::Dice;
 use stribeck_scene::fields::{group, words};
 use stribeck_scene::scene_file::without_mark;

@@ -1,7 +1,7 @@
 //! Errors of a campaign's file, as those of scenes: with line, field, allowed values and remedy.
 
 use super::design::Rows;
-pub(super) use crate::document::File;
+pub(super) use super::document::File;
 use stribeck_scene::fields;
 use stribeck_scene::scene_file::{Kind, Place, Problem, SceneError, place_in_file};
 

@@ -18,19 +18,20 @@
 //! content.
 
 mod design;
+mod document;
 mod refusal;
 mod split;
 
 use std::path::Path;
 
-use crate::document::unreadable;
+use crate::run_dir::Keep;
 use design::{Rows, Variants};
+use document::unreadable;
 use refusal::{CAMPAIGN, File, varies};
 use stribeck_scene::ensemble::start;
 use stribeck_scene::fields::group;
 use stribeck_scene::scene::Scene;
 use stribeck_scene::scene_file::{self, Place, Problem, SceneError, without_mark};
-use stribeck_store::run_dir::Keep;
 
 /// Most runs of a campaign.
 pub const MOST_RUNS: usize = 1_000_000;
