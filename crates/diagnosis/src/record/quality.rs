@@ -6,8 +6,11 @@
 //! rule compares the record with itself, so that none needs the range or the unit of the sensor.
 
 mod flat;
+mod histogram;
 mod inspection;
+mod jumps;
 mod rails;
+mod similarity;
 mod spectral;
 
 use serde::Serialize;
@@ -39,6 +42,22 @@ pub enum Kind {
     Hum,
     /// Much of the power lies just below half the sample rate, where an anti-alias filter leaves none.
     Aliased,
+    /// Values leave the range at one end and come back at the other.
+    Wrapped,
+    /// Negative values were read or written without their sign.
+    SignLost,
+    /// The bytes of the numbers stand in the other order.
+    Swapped,
+    /// One value stands more often than any that is measured.
+    Marked,
+    /// A stretch stands a second time.
+    Repeated,
+    /// Samples held, stuffed with zeros, interpolated, or of channels in turn.
+    Pattern,
+    /// Samples pile up at rails that drift.
+    DriftingRails,
+    /// Gain or offset change at once.
+    Jump,
 }
 
 quantities! {
@@ -59,7 +78,7 @@ quantities! {
 impl Kind {
     /// Whether levels, knocks and lines of such samples are no longer those of the machine.
     pub fn spoils_verdicts(self) -> bool {
-        matches!(self, Self::Clipped | Self::Held | Self::Dead | Self::FewLevels | Self::SlewLimited)
+        !matches!(self, Self::Drift | Self::Hum | Self::Aliased)
     }
 
     /// In a few words.
@@ -73,8 +92,34 @@ impl Kind {
             Self::Drift => "drifting mean",
             Self::Hum => "mains hum",
             Self::Aliased => "aliasing",
+            Self::Wrapped => "wrapped values",
+            Self::SignLost => "sign lost",
+            Self::Swapped => "bytes swapped",
+            Self::Marked => "one value too often",
+            Self::Repeated => "repeated stretches",
+            Self::Pattern => "not samples of one signal",
+            Self::DriftingRails => "clipped at rails that drift",
+            Self::Jump => "gain or offset changed",
         }
     }
+}
+
+impl Quality {
+    /// Whether such samples are no record of a signal, so that neither a defect nor its absence follows from them:
+    /// gaps and dead stretches from half of the record on.
+    pub fn is_no_signal(&self) -> bool {
+        match self.kind {
+            Kind::Held | Kind::Dead => self.share > 0.5,
+            Kind::Clipped | Kind::FewLevels | Kind::SlewLimited | Kind::Drift | Kind::Hum | Kind::Aliased => false,
+            _ => true,
+        }
+    }
+}
+
+/// The headline of samples that are no record of a signal, with what to do; `None` where they are one.
+pub fn no_signal(found: &[Quality]) -> Option<String> {
+    let why = found.iter().find(|of| of.is_no_signal())?;
+    Some(format!("No verdict: the samples are no record of a signal. Why: {}.", why.words))
 }
 
 /// The quality of a channel sampled `rate_hz` times a second; `speed_rpm` is that of the shaft, where it is
@@ -91,7 +136,7 @@ pub fn of(channel: &Channel, rate_hz: f64, speed_rpm: Option<f64>) -> Result<Vec
         kept.extend(block.iter().take(KEPT - kept.len()));
         true
     })?;
-    let mut found = inspection.finish();
+    let mut found = inspection.finish(&kept);
     found.extend(hum_of(&kept, rate_hz, speed_rpm)?);
     Ok(found)
 }
