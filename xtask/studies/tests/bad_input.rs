@@ -10,7 +10,7 @@ use proptest::test_runner::{TestCaseResult, TestRunner};
 use stribeck::host;
 use stribeck_mesh::decks::Deck;
 use stribeck_mesh::{Annulus, ArcBlock, Circle, Disc, Grading, Groove, Mesh, Rectangle, SeatedBlock};
-use stribeck_plans::campaign::Campaign;
+use stribeck_store::campaign::Campaign;
 use stribeck_scene::scene::Scene;
 use stribeck_simulation as simulation;
 use stribeck_simulation::bearing::assembly::Assembly;

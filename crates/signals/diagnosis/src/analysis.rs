@@ -79,13 +79,17 @@ impl Analysis {
                 std::mem::take(&mut record.quality).into_iter().chain(hum).collect()
             }
         };
-        let Judged { machine: taken, speed, is_corrected, decided, families, over, verdict } =
-            Judged::of(channel, &record, machine)?;
+        let judged = Judged::of(channel, &record, machine)?;
+        let no_signal = quality::no_signal(&quality);
+        let Judged { machine: taken, speed, is_corrected, decided, families, over, verdict } = match &no_signal {
+            Some(headline) => judged.without_claims(headline),
+            None => judged,
+        };
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
         let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families).min(0.5 * rate_hz))?;
         let duration_s = record.duration_s();
         let of_quality = quality.iter().map(|of| of.words.clone()).collect();
-        let reservation = quality::reservation(&quality);
+        let reservation = quality::reservation(&quality).filter(|_| no_signal.is_none());
         let notes = [record.notes, of_quality, speed.notes, decided.notes, vec![spall.note]].concat();
         Ok(Self {
             findings: MeasuredFindings {

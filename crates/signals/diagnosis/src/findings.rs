@@ -77,6 +77,11 @@ quantities! {
 }
 
 impl MeasuredFindings {
+    /// Whether the samples are no record of a signal, so that neither a defect nor its absence follows.
+    pub fn is_no_signal(&self) -> bool {
+        self.quality.iter().any(Quality::is_no_signal)
+    }
+
     /// The unit of the channel; `None` where it is unknown, or not an acceleration.
     pub fn acceleration_unit(&self) -> Option<AccelerationUnit> {
         self.unit.as_deref().and_then(AccelerationUnit::parse)

@@ -76,7 +76,15 @@ impl Joint {
             Defect::ALL.into_iter().filter_map(|name| JointFamily::of(name, channels, alike)).collect();
         decide(&mut families, &mut notes);
         let names: Vec<String> = channels.iter().map(|(name, _)| name.clone()).collect();
-        let verdict = conclude(&families, channels);
+        let none: Vec<String> = (channels.iter())
+            .filter(|(_, analysis)| analysis.findings.is_no_signal())
+            .map(|(name, _)| format!("`{name}`"))
+            .collect();
+        let verdict = match none.len() {
+            0 => conclude(&families, channels),
+            all if all == channels.len() => "No verdict: no channel is a record of a signal.".to_owned(),
+            _ => format!("{} No record of a signal: {}.", conclude(&families, channels), none.join(", ")),
+        };
         Some(Self { channels: names, families, verdict, notes })
     }
 }

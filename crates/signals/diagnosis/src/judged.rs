@@ -65,6 +65,17 @@ impl Judged {
         Ok(found)
     }
 
+    /// The same of samples that are no record of a signal, as `headline` says: nothing is claimed, and nothing excluded.
+    pub(crate) fn without_claims(mut self, headline: &str) -> Self {
+        for family in &mut self.families {
+            (family.claimed, family.p_value) = (false, 1.0);
+            family.reason = "the samples are no record of a signal".to_owned().into();
+        }
+        (self.decided.unexplained, self.decided.score_db, self.decided.sound) = (None, None, None);
+        self.verdict = headline.to_owned();
+        self
+    }
+
     /// Of the judgements for each possible number of rolling elements the one to report; `None` without any.
     fn among(judged: Vec<(u32, Self)>, bearing: &CatalogueBearing) -> Option<Self> {
         let numbers: Vec<u32> = judged.iter().map(|(elements, _)| *elements).collect();

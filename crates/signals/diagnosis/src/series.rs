@@ -92,6 +92,10 @@ impl Series {
     /// Of records in the order of time, `None` for those that could not be analysed, of which the first `sound`
     /// are of the sound machine.
     pub fn of(records: &[Option<&MeasuredFindings>], sound: usize) -> Self {
+        let signals: Vec<Option<&MeasuredFindings>> =
+            records.iter().map(|record| record.filter(|findings| !findings.is_no_signal())).collect();
+        let none = records.iter().flatten().count() - signals.iter().flatten().count();
+        let records = &signals;
         let analysed = records.iter().flatten().count();
         let names =
             Defect::ALL.into_iter().filter(|name| records.iter().any(|r| family(*r, *name).is_some()));
@@ -102,6 +106,12 @@ impl Series {
         let mut verdict = conclude(&families, growth.as_ref(), [analysed, sound]);
         let spoilt =
             |record: &&&MeasuredFindings| record.quality.iter().any(|found| found.kind.spoils_verdicts());
+        if none > 0 {
+            verdict = match analysed {
+                0 => format!("No verdict: none of {none} records is a record of a signal."),
+                _ => format!("{verdict} No record of a signal: {none} more."),
+            };
+        }
         match records.iter().flatten().filter(spoilt).count() {
             0 => {}
             some => {
@@ -216,6 +226,17 @@ fn onset(heights_db: &[Option<f64>], sound: usize) -> Option<Onset> {
         .map(|place| (place, likelihood(&points[..place], 1) + likelihood(&points[place..], 2)))
         .collect();
     let best = *scored.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    // One constant or one line over all records that says as much needs no change (Bayesian information criterion;
+    // levels, slopes, scatters and the place are its parameters).
+    let criterion = |parts: &[(&[(f64, f64)], usize)], parameters: f64| {
+        let misfit = |(part, of): &(&[(f64, f64)], usize)| part.len() as f64 * (misfit(part, *of) / part.len() as f64).ln();
+        parts.iter().map(misfit).sum::<f64>() + parameters * (points.len() as f64).ln()
+    };
+    let (before, behind) = points.split_at(best.0);
+    let unchanged = criterion(&[(&points, 1)], 2.0).min(criterion(&[(&points, 2)], 3.0));
+    if unchanged <= criterion(&[(before, 1), (behind, 2)], 6.0) {
+        return None;
+    }
     let weights: Vec<f64> = scored.iter().map(|(_, score)| (score - best.1).exp()).collect();
     let total: f64 = weights.iter().sum();
     let quantile = |part: f64| {
@@ -234,21 +255,30 @@ fn onset(heights_db: &[Option<f64>], sound: usize) -> Option<Onset> {
     })
 }
 
+/// Sum of squares [dB²] of points about a constant (`parameters` = 1) or a line (2).
+fn misfit(points: &[(f64, f64)], parameters: usize) -> f64 {
+    let n = points.len() as f64;
+    let (time, level) = centre(points);
+    let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(t, x)| of(t - time, x - level)).sum::<f64>();
+    let (together, square) = (sum(&|t, x| t * x), sum(&|_, x| x * x));
+    let rest = if parameters == 1 { square } else { square - together * together / sum(&|t, _| t * t) };
+    rest.max(n * LEAST_SCATTER_DB * LEAST_SCATTER_DB)
+}
+
+fn centre(points: &[(f64, f64)]) -> (f64, f64) {
+    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / points.len() as f64;
+    (mean(|p| p.0), mean(|p| p.1))
+}
+
 /// Logarithm of the marginal likelihood of points on a constant (`parameters` = 1) or a line (2), but for what
 /// is the same for all places of the change.
 fn likelihood(points: &[(f64, f64)], parameters: usize) -> f64 {
     let n = points.len() as f64;
-    let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
-    let (time, level) = (mean(|p| p.0), mean(|p| p.1));
-    let sum = |of: &dyn Fn(f64, f64) -> f64| points.iter().map(|(t, x)| of(t - time, x - level)).sum::<f64>();
-    let (spread, together, square) = (sum(&|t, _| t * t), sum(&|t, x| t * x), sum(&|_, x| x * x));
-    let (rest, determinant) = match parameters {
-        1 => (square, n),
-        _ => (square - together * together / spread, n * spread),
-    };
+    let (time, _) = centre(points);
+    let spread = points.iter().map(|(t, _)| (t - time).powi(2)).sum::<f64>();
+    let determinant = if parameters == 1 { n } else { n * spread };
     let half = 0.5 * (n - parameters as f64);
-    let rest = rest.max(n * LEAST_SCATTER_DB * LEAST_SCATTER_DB);
-    ln_gamma(half) - half * (std::f64::consts::PI * rest).ln() - 0.5 * determinant.ln()
+    ln_gamma(half) - half * (std::f64::consts::PI * misfit(points, parameters)).ln() - 0.5 * determinant.ln()
 }
 
 /// The lengths of the first and the last record that give one.
@@ -292,6 +322,7 @@ fn words(family: &SeriesFamily, sound: usize) -> String {
             format!("from record {record} on (90 %: {low} to {high}), ")
         }
         Some(Onset { record, .. }) => format!("from record {record} on, "),
+        None if *claiming == height_db.len() => "from the first record on, ".to_owned(),
         None => String::new(),
     };
     let by = match (claiming, height_db.len() - sound) {
@@ -330,7 +361,7 @@ mod tests {
         let found = onset(&heights(&values), 0).unwrap();
         assert_eq!((found.record, found.low, found.high), (7, 7, 7));
         // A faint one is less certain, and one among the sound records is excluded.
-        values.iter_mut().enumerate().skip(6).for_each(|(at, x)| *x = 5.0 + scatter[at] + 0.4);
+        values.iter_mut().enumerate().skip(6).for_each(|(at, x)| *x = 5.0 + scatter[at] + 0.8);
         let faint = onset(&heights(&values), 0).unwrap();
         assert!(faint.high > faint.low, "{faint:?}");
         assert!(onset(&heights(&values), 8).is_none_or(|found| found.low > 8));
@@ -339,6 +370,13 @@ mod tests {
         gaps[2] = None;
         assert!(onset(&gaps, 0).is_some());
         assert!(onset(&heights(&values[..4]), 0).is_none(), "too few for either part");
+        // Where nothing changes, or the height grows from the first record on, there is none.
+        for count in [8, 40, 500] {
+            let constant: Vec<f64> = (0..count).map(|at| 12.0 + scatter[at * 7 % 12]).collect();
+            assert_eq!(onset(&heights(&constant), 0), None, "{count} records");
+            let line: Vec<f64> = constant.iter().enumerate().map(|(at, x)| x + 0.2 * at as f64).collect();
+            assert_eq!(onset(&heights(&line), 0), None, "{count} records on a line");
+        }
     }
 
     #[test]

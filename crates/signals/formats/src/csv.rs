@@ -16,7 +16,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use dialect::{Dialect, Field, Groups, groups};
+use dialect::{Dialect, Field, Groups, digest, groups};
 pub(crate) use lines::is_wide;
 use lines::{Coding, Lines};
 pub(crate) use stamp::stamp;
@@ -25,7 +25,7 @@ use stribeck_dsp::channel::{Samples, memory};
 use crate::recording::{equal_lengths, left_out};
 use crate::time::says_time;
 use crate::units;
-use crate::{Channel, Error, Recording, Result};
+use crate::{Channel, Error, Recording, Result, clock_columns};
 
 /// Lines before the first row of numbers, at most.
 const PREAMBLE: usize = 200;
@@ -94,7 +94,7 @@ pub fn open(path: &Path) -> Result<Recording> {
         let Some(line) = lines.next(path)? else { break };
         start.push(line);
     }
-    let Some((dialect, mut first)) = Dialect::of(&start) else {
+    let Some((mut dialect, mut first)) = Dialect::of(&start) else {
         let shown: String = start
             .iter()
             .rev()
@@ -115,6 +115,9 @@ pub fn open(path: &Path) -> Result<Recording> {
     if first == 0 && is_whole && lie_across(&rows, columns) {
         return across(path, &rows, dialect);
     }
+    dialect.day_first = day_comes_first(path, coding, dialect, &start[first..])?;
+    let mut heading = start[..first].iter().rev().filter(|line| line.contains(char::is_alphabetic));
+    dialect.heading = std::array::from_fn(|_| heading.next().map(|line| digest(line)));
     let commas = dialect.decimal_comma && start[first..].iter().any(|line| line.contains(','));
     let rate_hz = head::rate_hz(&start[..first], dialect, commas);
     let numbers = columns_of_numbers(rows.first().map_or("", |row| row.as_str()), dialect);
@@ -143,6 +146,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     let (census, rows, mut notes) = counted;
     let mut channels = Vec::new();
+    let sparse = census.iter().filter(|of| of.missing > rows / FEW && of.missing < rows).count();
     let origin_s = census.iter().find_map(|census| census.origin_s).unwrap_or(0);
     for (at, (name, mut census)) in names.into_iter().zip(census).enumerate() {
         let thousands = census.thousands();
@@ -189,7 +193,8 @@ pub fn open(path: &Path) -> Result<Recording> {
     }
     // Each column by itself would read the whole file: that of a wide table is read once.
     let channels = if channels.len() > NARROW { held(path, &channels, rows)? } else { channels };
-    Ok(Recording { path: path.to_owned(), format: "CSV", channels, notes })
+    let recording = Recording { path: path.to_owned(), format: "CSV", channels, notes };
+    if sparse > 1 { clock_columns::parted(recording) } else { Ok(recording) }
 }
 
 /// Most columns that stay in the file.
@@ -203,7 +208,7 @@ fn held(path: &Path, channels: &[Channel], rows: u64) -> Result<Vec<Channel>> {
     let places: Vec<&Column> = channels.iter().filter_map(|c| c.samples_as()).collect();
     let mut lines = Lines::open(path, first.coding)?;
     while let Some(line) = lines.next(path)? {
-        if lines.read <= first.preamble || first.dialect.is_empty(&line) || columns[0].len() as u64 == rows {
+        if lines.read <= first.preamble || first.dialect.is_aside(&line) || columns[0].len() as u64 == rows {
             continue;
         }
         let fields = first.dialect.split(&line);
@@ -382,13 +387,18 @@ fn census(
 ) -> Result<(Vec<Census>, u64, Vec<String>)> {
     let mut all: Vec<Census> = (0..columns).map(|_| Census::default()).collect();
     let (mut rows, mut notes, mut short) = (0, Vec::new(), None);
+    let mut asides = Vec::new();
     // Rows that hold more than there are columns, and the first of them.
     let mut longer: (u64, u64) = (0, 0);
     // The last rows, and in which of the first columns they hold a word.
     let mut tail: VecDeque<(u64, u64)> = VecDeque::new();
     let mut lines = Lines::open(path, coding)?;
     while let Some(line) = lines.next(path)? {
-        if lines.read <= preamble || dialect.is_empty(&line) {
+        if lines.read <= preamble || dialect.is_aside(&line) {
+            if lines.read > preamble && !dialect.is_empty(&line) {
+                asides.push((lines.read, line));
+                asides.truncate(ASIDES);
+            }
             continue;
         }
         rows += 1;
@@ -417,6 +427,11 @@ fn census(
              left out"
         ));
     }
+    if let Some((line, text)) = asides.first() {
+        let more = if asides.len() < 2 { "" } else { ", and so are others" };
+        let text: String = text.chars().take(40).collect();
+        notes.push(format!("line {line}, `{text}`, is a comment or the names once more, and no row{more}"));
+    }
     if let Some(line) = short {
         notes.push(format!("line {line}, the last, is cut off and left out"));
         rows -= 1;
@@ -424,6 +439,26 @@ fn census(
     }
     rows -= summary(&mut all, &tail, &mut notes);
     Ok((all, rows, notes))
+}
+
+/// Lines that are no rows which are kept.
+const ASIDES: usize = 2;
+
+/// Whether the day comes first in dates with slashes, which one for the file decides: a number above 12 is no month,
+/// and of two dates the number that changes is the day.
+fn day_comes_first(path: &Path, coding: Coding, dialect: Dialect, rows: &[String]) -> Result<bool> {
+    let of = |line: &str| dialect.split(line).into_iter().find_map(stamp::slashed);
+    let Some(first) = rows.first().and_then(|line| of(line)) else { return Ok(false) };
+    let mut lines = Lines::open(path, coding)?;
+    while let Some(line) = lines.next(path)? {
+        match of(&line) {
+            Some((a, _)) if a > 12 => return Ok(true),
+            Some((_, b)) if b > 12 => return Ok(false),
+            Some((a, b)) if (a == first.0) != (b == first.1) => return Ok(a != first.0),
+            _ => {}
+        }
+    }
+    Ok(false)
 }
 
 /// Rows at the end of a table that are no samples, at most.
@@ -566,7 +601,7 @@ impl Samples for Column {
         let mut left = len;
         while left > 0 {
             let Some(line) = lines.next(&self.path)? else { break };
-            if lines.read <= self.preamble || self.dialect.is_empty(&line) {
+            if lines.read <= self.preamble || self.dialect.is_aside(&line) {
                 continue;
             }
             let fields = self.dialect.split(&line);

@@ -28,6 +28,8 @@ const CHAR: u32 = 4;
 const SPARSE: u32 = 5;
 const DOUBLE: u32 = 6;
 const UINT64: u32 = 15;
+/// A value of a class of MATLAB's own: a table, a timetable, a string, a date.
+const OPAQUE: u32 = 17;
 /// Flags of arrays.
 const COMPLEX: u32 = 0x0800;
 /// Bytes of a packed variable in which its head lies, unless that is longer than most.
@@ -69,6 +71,7 @@ pub fn open(path: &Path) -> Result<Recording> {
         if at + 8 + length > size {
             return Err(cut());
         }
+        let before = found.channels.len();
         match kind {
             COMPRESSED => {
                 let mut bytes = Vec::new();
@@ -104,6 +107,9 @@ pub fn open(path: &Path) -> Result<Recording> {
             // MATLAB's internal data.
             _ => {}
         }
+        // Behind objects stand their contents, without a name.
+        let mut at_all = 0..;
+        found.channels.retain(|channel| at_all.next() < Some(before) || !channel.name.is_empty());
         at += 8 + length;
     }
     Ok(Recording { path: path.to_owned(), format: FORMAT, channels: found.channels, notes: found.notes })
@@ -266,9 +272,15 @@ impl Found {
 
     fn head<'a>(&self, bytes: &'a [u8]) -> Parsed<Head<'a>> {
         let (flags, rest) = self.element(bytes)?;
+        let flags = self.word(flags.data, 0);
+        let text = |of: &Element| String::from_utf8_lossy(of.data).trim_end_matches('\0').to_owned();
+        if flags & 0xff == OPAQUE {
+            // It has no dimensions; the kind of object and its class follow its name.
+            let (name, rest) = self.element(rest)?;
+            return Ok(Head { class: OPAQUE, complex: false, shape: vec![0], count: 0, name: text(&name), rest });
+        }
         let (dimensions, rest) = self.element(rest)?;
         let (name, rest) = self.element(rest)?;
-        let flags = self.word(flags.data, 0);
         let sizes: Vec<u64> =
             (0..dimensions.data.len() / 4).map(|n| u64::from(self.word(dimensions.data, 4 * n))).collect();
         if sizes.is_empty() {
@@ -276,8 +288,8 @@ impl Found {
         }
         let count = sizes.iter().try_fold(1_u64, |n, size| n.checked_mul(*size));
         let count = count.ok_or("an array is too large")?;
-        let name = String::from_utf8_lossy(name.data).trim_end_matches('\0').to_owned();
-        Ok(Head { class: flags & 0xff, complex: flags & COMPLEX != 0, shape: sizes, count, name, rest })
+        let (class, complex) = (flags & 0xff, flags & COMPLEX != 0);
+        Ok(Head { class, complex, shape: sizes, count, name: text(&name), rest })
     }
 
     fn number(&self, kind: u32) -> Option<Number> {
@@ -368,6 +380,15 @@ impl Found {
                 Ok(())
             }
             CHAR => Ok(()),
+            OPAQUE => {
+                let (class, _) = self.element(head.rest).and_then(|(_, rest)| self.element(rest))?;
+                let class = String::from_utf8_lossy(class.data);
+                let class = class.trim_end_matches('\0');
+                self.notes.push(left_out(&name, &format!(
+                    "it is a MATLAB object ({class}), whose samples only MATLAB reads: save its columns as vectors"
+                )));
+                Ok(())
+            }
             DOUBLE..=UINT64 if !head.complex => {
                 let (data, _) = self.element(head.rest)?;
                 let number = self

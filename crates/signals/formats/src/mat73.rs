@@ -126,8 +126,11 @@ struct Found {
 impl Found {
     /// Adds the channels of a group; unreadable ones are noted, and do not affect the rest.
     fn group(&mut self, group: &Group, prefix: &str, trail: &mut Vec<String>) {
-        let names = match (group.datasets(), group.groups()) {
-            (Ok(sets), Ok(groups)) => (sets, groups),
+        if let Ok(attributes) = group.attrs() {
+            self.rates.extend(rates(&attributes, prefix));
+        }
+        let (sets, names) = match (group.iter_datasets(), group.groups()) {
+            (Ok(sets), Ok(groups)) => (sets.map(|(name, set)| (name, Ok(set))).collect(), groups),
             (Err(why), _) | (_, Err(why)) => {
                 // A link to another object, or a damaged one, spoils the library's list of a group; each name
                 // alone can be opened.
@@ -141,22 +144,22 @@ impl Found {
                     let name = format!("{prefix}{}", link.name);
                     self.notes.push(left_out(&name, "it is a link to another object"));
                 }
-                objects.into_iter().map(|of| of.name).partition(|name| group.dataset(name).is_ok())
+                let opened = objects.into_iter().map(|of| (group.dataset(&of.name), of.name));
+                let (sets, groups): (Vec<_>, Vec<_>) = opened.partition(|(set, _)| set.is_ok());
+                let names = groups.into_iter().map(|(_, name)| name).collect();
+                (sets.into_iter().map(|(set, name)| (name, set)).collect::<Vec<_>>(), names)
             }
         };
-        if let Ok(attributes) = group.attrs() {
-            self.rates.extend(rates(&attributes, prefix));
-        }
-        for name in names.0 {
+        for (name, set) in sets {
             let full = format!("{prefix}{name}");
-            let done = group.dataset(&name).and_then(|set| self.dataset(&set, &full));
+            let done = set.and_then(|set| self.dataset(&set, &full));
             if let Err(why) = done {
                 self.is_version_5 |=
                     matches!(why, hdf5_pure::Error::Format(FormatError::InvalidLayoutVersion(5)));
                 self.notes.push(left_out(&full, &why.to_string()));
             }
         }
-        for name in names.1 {
+        for name in names {
             // Data referenced by cells and objects have no names.
             if trail.len() >= DEEPEST || name.starts_with('#') {
                 continue;
@@ -405,7 +408,7 @@ fn start_s(attributes: &HashMap<String, AttrValue>) -> Option<f64> {
         .iter()
         .filter_map(|(name, value)| {
             let stamp = || {
-                let (s, ns) = csv::stamp(value.as_str()?)?;
+                let (s, ns) = csv::stamp(value.as_str()?, false)?;
                 units::start_s(name, 0.0).map(|_| s as f64 + 1e-9 * f64::from(ns))
             };
             number(value).and_then(|x| units::start_s(name, x)).or_else(stamp)

@@ -6,6 +6,7 @@ use std::path::Path;
 
 use stribeck_dsp::channel::memory;
 
+use crate::recording::LEFT_OUT;
 use crate::{
     Error, Recording, Result, clock_columns, csv, flac, mat4, mat5, mat73, mdf4, npy, npz, parquet, tdms,
     time, uff58, wav,
@@ -21,6 +22,12 @@ impl Recording {
     pub fn open(path: impl AsRef<Path>) -> Result<Self> {
         let path = path.as_ref();
         let mut start = Vec::new();
+        let kind = std::fs::metadata(path).map_err(|e| Error::read(path, e))?.file_type();
+        if !kind.is_file() && !kind.is_dir() {
+            // A pipe may never end, and is read more than once.
+            let seen = "it is a pipe or a device, and no file: save it first".to_owned();
+            return Err(Error::Unknown { path: path.to_owned(), seen });
+        }
         let file = File::open(path).map_err(|e| Error::read(path, e))?;
         file.take(4096).read_to_end(&mut start).map_err(|e| Error::read(path, e))?;
         let begins = |magic: &[u8]| start.starts_with(magic);
@@ -66,8 +73,20 @@ impl Recording {
             csv::open(path)
         }?;
         within_memory(&opened)?;
-        Ok(time::told(clock_columns::joined(opened)?)?.told_apart())
+        let mut told = time::told(clock_columns::joined(opened)?)?.told_apart();
+        told.notes = few(told.notes);
+        Ok(told)
     }
+}
+
+/// At most ten of the notes on what is left out, and how many more there are.
+fn few(notes: Vec<String>) -> Vec<String> {
+    const SHOWN: usize = 10;
+    let (out, mut rest): (Vec<String>, Vec<String>) = notes.into_iter().partition(|note| note.contains(LEFT_OUT));
+    let more = out.len().saturating_sub(SHOWN);
+    rest.extend(out.into_iter().take(SHOWN));
+    rest.extend((more > 0).then(|| format!("and {more} more are left out")));
+    rest
 }
 
 /// Whether HDF5 begins, behind a block of the user's at most.

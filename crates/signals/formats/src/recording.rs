@@ -72,7 +72,7 @@ impl Recording {
 
     /// Names and lengths of the channels, for messages.
     pub fn names(&self) -> String {
-        const SHOWN: usize = 12;
+        const SHOWN: usize = 10;
         let mut all: Vec<String> =
             self.channels.iter().take(SHOWN).map(|c| format!("`{}` ({} samples)", c.name, c.len)).collect();
         if self.channels.len() > SHOWN {
@@ -84,8 +84,11 @@ impl Recording {
 
 /// Why a channel is none, in the words that all formats use.
 pub(crate) fn left_out(name: &str, why: &str) -> String {
-    format!("`{name}` is left out: {why}")
+    format!("`{name}`{LEFT_OUT}{why}")
 }
+
+/// By which such a note is known.
+pub(crate) const LEFT_OUT: &str = " is left out: ";
 
 /// Refuses channels of different lengths, which a table cannot hold; returns that length.
 pub(crate) fn equal_lengths(path: &Path, format: &'static str, channels: &[Channel]) -> Result<u64> {

@@ -7,7 +7,7 @@
 mod packets;
 
 use crate::units::{self, DATES_S, SLOWEST_S, Unit};
-use crate::{Channel, Recording, Result};
+use crate::{Channel, Recording, Result, clock_columns};
 
 /// Samples that are looked at together.
 const STRETCH: usize = 1000;
@@ -66,6 +66,13 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
             channel.unit = Some(unit.to_owned());
         }
     }
+    for n in 0..channels.len() {
+        let stands = courses[n].as_ref().is_some_and(Course::is_held) && is_clock(&channels[n]);
+        if stands && let Some(note) = clock_columns::without_doubles(channels, n)? {
+            recording.notes.push(note);
+            courses = channels.iter().map(Course::of).collect::<Result<Vec<_>>>()?;
+        }
+    }
     let said = rates_said(channels, &mut recording.notes);
     for channel in channels.iter_mut().filter(|c| c.rate_hz.is_none()) {
         let beside = said.iter().filter(|(of, _)| of.is_empty() || *of == parent(&channel.name));
@@ -109,6 +116,14 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
             own.extend(own_clock(channels, &courses, n, k).map(|(m, course)| (k, m, course)));
         }
         for (k, m, course) in &own {
+            let Some(course) = course else {
+                recording.notes.push(format!(
+                    "`{}` and `{}` count differently, and the file does not say which of them is the clock of `{}`: \
+                     give the rate by hand",
+                    channels[n].name, channels[*m].name, channels[*k].name
+                ));
+                continue;
+            };
             let rate_hz = course.rate_hz(&channels[*m], asked, &mut recording.notes);
             channels[*k].start_s = channels[*k].start_s.or(rate_hz.and_then(|hz| course.start_s(hz)));
             channels[*k].rate_hz = channels[*k].rate_hz.or(rate_hz);
@@ -138,47 +153,64 @@ pub(crate) fn told(mut recording: Recording) -> Result<Recording> {
         for (channel, _) in
             channels.iter().zip(&courses).filter(|(channel, course)| course.is_none() && !channel.is_time)
         {
-            let is_clock = matches!(unit_of(channel), Unit::Time(..)) || says_time(own_name(channel));
-            if is_clock && channel.len >= LEAST as u64 {
+            if is_clock(channel) && channel.len >= LEAST as u64 {
                 recording.notes.extend(packets::why_uneven(channel)?);
             }
+        }
+        for channel in channels.iter().filter(|c| c.len < LEAST as u64) {
+            let odd = units::odd_rate(member(&channel.name), channel.unit.as_deref(), &channel.read()?);
+            recording.notes.extend(odd.map(|why| format!("`{}` {why}", channel.name)));
         }
     }
     Ok(recording)
 }
 
 /// The clock of one channel among those of a table, where it is another one than `main`: it counts the same time,
-/// and is called after the channel, as `time_tacho` is after `tacho`, or is the last before it with a signal
-/// between it and `main`.
+/// and is called after the channel, as `time_tacho` is after `tacho` and `time2` after `acc2`, or is the last before it
+/// with a signal between it and `main`. Without a course where the file does not say which it is.
 fn own_clock<'a>(
     channels: &[Channel],
     courses: &'a [Option<Course>],
     main: usize,
     of: usize,
-) -> Option<(usize, &'a Course)> {
+) -> Option<(usize, Option<&'a Course>)> {
     let (all, name) = (courses[main].as_ref()?, own_name(&channels[of]).to_lowercase());
     let counts_same = |n: &usize| {
-        let (clock, unit) = (&channels[*n], unit_of(&channels[*n]));
-        let is_clock = matches!(unit, Unit::Time(..)) || says_time(own_name(clock));
-        let is_other =
-            |c: &Course| c.first.1 != all.first.1 && c.first.1 < all.last.1 && all.first.1 < c.last.1;
+        let clock = &channels[*n];
+        let is_other = |c: &Course| {
+            let ends = |c: &Course| (c.first.1, c.last.1);
+            ends(c) != ends(all) && c.first.1 < all.last.1 && all.first.1 < c.last.1
+        };
         *n != main
             && (clock.len, &clock.group) == (channels[of].len, &channels[of].group)
             && clock.is_time
-            && is_clock
-            && unit == unit_of(&channels[main])
+            && is_clock(clock)
+            && unit_of(clock) == unit_of(&channels[main])
             && courses[*n].as_ref().is_some_and(is_other)
     };
+    let number = |name: &str| name.chars().filter(char::is_ascii_digit).collect::<String>();
     let is_called = |n: &usize| {
-        own_name(&channels[*n]).to_lowercase().split(|c: char| !c.is_alphanumeric()).any(|word| word == name)
+        let clock = own_name(&channels[*n]).to_lowercase();
+        let same = number(&clock) == number(&name) && !number(&name).is_empty();
+        same || clock.split(|c: char| !c.is_alphanumeric()).any(|word| word == name)
     };
+    if is_called(&main) {
+        return None;
+    }
     let clocks = || (0..channels.len()).filter(counts_same);
-    let before = || {
-        let near = clocks().rfind(|n| *n < of)?;
-        (main..near).any(|n| !channels[n].is_time).then_some(near)
-    };
-    let found = clocks().find(is_called).or_else(before)?;
-    Some((found, courses[found].as_ref()?))
+    let between = |near: &usize| (main..*near).any(|n| !channels[n].is_time);
+    let before = || clocks().rfind(|n| *n < of).filter(between);
+    if let Some(found) = clocks().find(is_called).or_else(before) {
+        return Some((found, courses[found].as_ref()));
+    }
+    let step = |c: &Course| (c.last.1 - c.first.1) / (c.last.0 - c.first.0);
+    let differs = |n: &usize| courses[*n].as_ref().is_some_and(|c| (step(c) / step(all) - 1.0).abs() > SAME_RATE);
+    clocks().filter(|n| *n < of).find(differs).map(|n| (n, None))
+}
+
+/// Whether name or unit are those of a time.
+pub(crate) fn is_clock(channel: &Channel) -> bool {
+    matches!(unit_of(channel), Unit::Time(..)) || says_time(own_name(channel))
 }
 
 /// Sample rates [Hz] that are numbers of their own, each with its struct; contradictory ones are noted and
@@ -217,8 +249,8 @@ fn starts_said(channels: &[Channel]) -> Result<Vec<(String, f64)>> {
         let of_name = || {
             let (before, key) = channel.name.match_indices('_').find_map(|(at, _)| {
                 let (before, key) = (&channel.name[..at], &channel.name[at + 1..]);
-                let is_there = channels.iter().any(|c| c.len > 1 && c.name == before);
-                (is_there && start_s(key).is_some()).then_some((before, key))
+                let is_there = || channels.iter().any(|c| c.len > 1 && c.name == before);
+                (start_s(key).is_some() && is_there()).then_some((before, key))
             })?;
             Some((before, start_s(key)?))
         };
@@ -243,25 +275,11 @@ fn member(name: &str) -> &str {
 pub fn says_time(name: &str) -> bool {
     let word: String = member(name).chars().take_while(|c| c.is_alphabetic()).collect();
     let word = word.to_lowercase();
-    word.starts_with("time")
-        || matches!(
-            word.as_str(),
-            "t" | "ts"
-                | "epoch"
-                | "unix"
-                | "utc"
-                | "stamp"
-                | "clock"
-                | "uhrzeit"
-                | "zeit"
-                | "temps"
-                | "tiempo"
-                | "tempo"
-                | "datum"
-                | "date"
-                | "datetime"
-                | "zeitstempel"
-        )
+    const WORDS: [&str; 14] = [
+        "t", "ts", "epoch", "unix", "utc", "stamp", "clock", "uhrzeit", "zeit", "temps", "tiempo", "tempo", "datum",
+        "zeitstempel",
+    ];
+    word.starts_with("time") || matches!(word.as_str(), "date" | "datetime") || WORDS.contains(&word.as_str())
 }
 
 fn unit_of(channel: &Channel) -> Unit {

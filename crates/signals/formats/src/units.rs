@@ -260,6 +260,27 @@ pub(crate) fn rate_hz(name: &str, unit: Option<&str>, value: f64) -> Option<f64>
     rate.or_else(|| step().map(|s| rounded(1.0 / s))).filter(|hz| hz.is_finite() && *hz > 0.0)
 }
 
+/// Why numbers under the name of a rate or of a time step say no rate; nothing where they do, or the name is another.
+pub(crate) fn odd_rate(name: &str, unit: Option<&str>, values: &[f64]) -> Option<String> {
+    // Some step, and some rate, is one under such a name.
+    let of_thousandth = rate_hz(name, unit, 1e-3)?;
+    match values {
+        [] => Some("is empty: no rate follows".to_owned()),
+        [value] if rate_hz(name, unit, *value).is_some() => None,
+        [value] if of_thousandth < 1.0 || !(value.is_finite() && *value > 0.0) => {
+            Some(format!("is {value}: no rate follows"))
+        }
+        [value] => Some(format!(
+            "is {value}: as seconds that is {} Hz, as milliseconds {} Hz, as microseconds {} Hz; no rate follows",
+            rounded(1.0 / value), rounded(1e3 / value), rounded(1e6 / value)
+        )),
+        [first, ..] => {
+            let all = values.iter().fold((*first, *first), |(low, high), x| (low.min(*x), high.max(*x)));
+            Some(format!("has {} values, from {} to {}: no rate follows", values.len(), all.0, all.1))
+        }
+    }
+}
+
 /// Seconds from 1970 to 1990, and to 2060.
 pub(crate) const DATES_S: std::ops::Range<f64> = 6.3e8..2.84e9;
 

@@ -5,6 +5,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
+use stribeck_dsp::channel::Samples;
 use stribeck_dsp::channel::wav::{FLOAT, Format, PCM};
 pub use stribeck_dsp::channel::wav::{Whole, pcm};
 
@@ -28,6 +29,7 @@ pub fn open(path: &Path) -> Result<Recording> {
     let size = file.get_ref().metadata().map_err(io)?.len();
     let mut at = 12;
     let (mut format, mut frame, mut long_data) = (None, 0, None);
+    let mut pieces: Vec<Recording> = Vec::new();
     while at + 8 <= size {
         file.seek(SeekFrom::Start(at)).map_err(io)?;
         let mut tag = [0; 8];
@@ -57,7 +59,10 @@ pub fn open(path: &Path) -> Result<Recording> {
                 let behind = at + 8 + length;
                 let ends = behind >= size || is_piece(&mut file, behind, size).map_err(io)?;
                 let data = Data { at: at + 8, there: size - at - 8, length, long_data, ends };
-                return samples(path, format, frame, data);
+                pieces.push(samples(path, format, frame, data)?);
+                if !ends || behind >= size {
+                    break;
+                }
             }
             _ => {}
         }
@@ -73,7 +78,45 @@ pub fn open(path: &Path) -> Result<Recording> {
             }
         }
     }
-    Err(damaged("it ends before its samples"))
+    joined(pieces).ok_or_else(|| damaged("it ends before its samples"))
+}
+
+/// The pieces of samples, one behind the other.
+fn joined(pieces: Vec<Recording>) -> Option<Recording> {
+    let count = pieces.len();
+    let mut pieces = pieces.into_iter();
+    let mut all = pieces.next()?;
+    let rest: Vec<Recording> = pieces.collect();
+    if !rest.is_empty() {
+        for (n, channel) in all.channels.iter_mut().enumerate() {
+            let parts: Vec<Channel> = rest.iter().filter_map(|piece| piece.channels.get(n).cloned()).collect();
+            let (len, first) = (channel.len + parts.iter().map(|part| part.len).sum::<u64>(), channel.clone());
+            let samples = Parts([vec![first], parts].concat());
+            *channel = Channel::new(channel.name.clone(), len, samples).at_rate(channel.rate_hz);
+        }
+        all.notes.push(format!("its samples stand in {count} pieces, which are put one behind the other"));
+    }
+    Some(all)
+}
+
+/// Samples of channels, one behind the other.
+#[derive(Debug)]
+struct Parts(Vec<Channel>);
+
+impl Samples for Parts {
+    fn for_each_block(&self, _: u64, take: &mut dyn FnMut(&[f64]) -> bool) -> Result<()> {
+        let mut goes_on = true;
+        for part in &self.0 {
+            part.for_each_block(|block| {
+                goes_on = take(block);
+                goes_on
+            })?;
+            if !goes_on {
+                break;
+            }
+        }
+        Ok(())
+    }
 }
 
 /// Where the piece `data` begins, how many bytes are there, and how many its header and that of a long file

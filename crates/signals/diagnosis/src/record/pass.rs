@@ -72,7 +72,7 @@ impl Record {
         let Pass { segment, envelopes, density, tracing, velocity, screening, inspection, kept, .. } = pass;
         let density = density.finish();
         let folded = quality::folded(&density.0, &density.1);
-        let quality = inspection.finish().into_iter().chain(folded).collect();
+        let quality = inspection.finish(&kept).into_iter().chain(folded).collect();
         let Some(health) = screening.health(&density.1) else {
             return Err(Error::NoSignal(format!(
                 "channel `{}` is constant; is the sensor connected?",

@@ -43,13 +43,11 @@ pub(crate) struct Screening {
     highest: Extreme,
 }
 
-/// An extreme value, how often it occurs, and the next ones.
+/// An extreme value, and the next ones.
 #[derive(Debug, Clone, Default)]
 struct Extreme {
     value: f64,
-    /// Samples at the value, and the largest value below it.
-    total: u64,
-    next: Option<f64>,
+    is_known: bool,
     /// The largest values with their places, ascending.
     largest: Vec<(f64, u64)>,
 }
@@ -102,37 +100,8 @@ impl Screening {
                 first as f64 / rate_hz
             ));
         }
-        match self.spurious(rate_hz) {
-            Some(note) => notes.push(note),
-            None => notes.extend(self.marks()),
-        }
+        notes.extend(self.spurious(rate_hz));
         notes
-    }
-
-    /// Notes on a value that several samples have exactly and that lies farther from all others than these
-    /// from each other, by [`FAR`]: what a recorder writes where it has no sample.
-    fn marks(&self) -> Vec<String> {
-        let origin = self.origin.unwrap_or(0.0);
-        let sides = [(&self.highest, &self.lowest, 1.0), (&self.lowest, &self.highest, -1.0)];
-        // Where all others are equal it is a converter of two levels.
-        let is_mark = |this: &Extreme, other: &Extreme| {
-            let range = this.next.map_or(0.0, |next| next + other.value);
-            this.total > 1 && range > 0.0 && this.value - this.next.unwrap_or(0.0) > FAR * range
-        };
-        let found = sides.into_iter().filter(|(this, other, _)| is_mark(this, other));
-        found
-            .map(|(this, _, sign)| {
-                // Without the rounding of the difference.
-                let value = origin + sign * this.value;
-                let mark = format!("{value:.9e}").parse().unwrap_or(value);
-                format!(
-                    "{} samples are exactly {mark:?}, ten times as far from all others as these are from \
-                     each other: probably the mark of a missing sample, which looks like a knock. Leave the \
-                     field empty in their place",
-                    this.total
-                )
-            })
-            .collect()
     }
 
     /// A note on samples far beyond all others that do not ring.
@@ -220,13 +189,8 @@ impl Extreme {
                 self.largest.remove(0);
             }
         }
-        if value > self.value || self.total == 0 {
-            self.next = (self.total > 0).then_some(self.value);
-            (self.value, self.total) = (value, 1);
-        } else if value == self.value {
-            self.total += 1;
-        } else {
-            self.next = Some(self.next.map_or(value, |next| next.max(value)));
+        if value > self.value || !self.is_known {
+            (self.value, self.is_known) = (value, true);
         }
     }
 }
@@ -256,27 +220,6 @@ mod tests {
                 noise.uniform() + height * ring
             })
             .collect()
-    }
-
-    /// Fifteen samples of −9999 made a verdict of knocks, without a word.
-    #[test]
-    fn issue_marks_of_missing_samples_are_named() {
-        let clean = knocks(700, 8.0, 0.2, 20.0);
-        for mark in [-9999.0, 1e30] {
-            let mut samples = clean.clone();
-            samples.iter_mut().skip(300).step_by(3500).for_each(|x| *x = mark);
-            let count = samples.iter().filter(|x| **x == mark).count();
-            let said = notes(&samples);
-            assert!(
-                said.contains(&format!("{count} samples are exactly")) && !said.contains("ring"),
-                "{said}"
-            );
-        }
-        // What a converter rounds has equal peaks, and knocks stand far out.
-        let rounded: Vec<f64> = clean.iter().map(|x| x.round()).collect();
-        assert!(!notes(&rounded).contains("exactly"), "{}", notes(&rounded));
-        let signs: Vec<f64> = clean.iter().map(|x| x.signum()).collect();
-        assert!(!notes(&signs).contains("exactly"), "{}", notes(&signs));
     }
 
     /// A spike of one sample, or of a few places, on any side; in the first one, too.

@@ -1,8 +1,9 @@
 //! The speed of a shaft from a tachometer: its pulses, its angle, or its speed over time.
 //!
-//! Pulses that are missing are bridged, and those that are too many are dropped, as long as they are few; a
-//! record in which they are many is refused, because its speed would be one of the tachometer and not of the
-//! shaft.
+//! A wheel with long gaps or uneven teeth is recognised by the turns in which their distances recur, before any pulse
+//! is put in or left out. Pulses that are missing are bridged, and those that are too many are dropped, up to a
+//! twentieth of all; a record in which they are more is refused, because its speed would be one of the tachometer and
+//! not of the shaft.
 
 mod course;
 mod edges;
@@ -120,6 +121,7 @@ fn marks(channel: &Channel, rate_hz: f64, each_turn: f64) -> Result<Turns, Error
     };
     let Mended { per_turn, .. } = found;
     let mut notes = found.notes(name, rate_hz);
+    notes.extend(found.ends(name, rate_hz, samples.len()));
     let count = ((found.pulses.len() - 1) as f64 / per_turn as f64 / faster) as usize;
     let pulses = over_turns(found.pulses, per_turn);
     let (mean, variation) = mean_and_variation(&pulses);

@@ -1,5 +1,7 @@
 //! How a table is written: separator of columns, decimal sign, first row of numbers.
 
+use std::hash::{Hash, Hasher};
+
 use super::WIDE;
 use super::stamp::stamp;
 
@@ -9,6 +11,10 @@ pub(crate) struct Dialect {
     /// Separator of columns; a space stands for any run of white space.
     pub(crate) separator: char,
     pub(crate) decimal_comma: bool,
+    /// In dates with slashes the day comes first.
+    pub(crate) day_first: bool,
+    /// Digests of the lines of names and units, which may stand again further below.
+    pub(crate) heading: [Option<u64>; 2],
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +30,10 @@ pub(crate) enum Field {
 const AGREE: usize = 8;
 
 impl Dialect {
+    pub(crate) fn new(separator: char, decimal_comma: bool) -> Self {
+        Self { separator, decimal_comma, day_first: false, heading: [None; 2] }
+    }
+
     /// The dialect of some lines, and the first of them that is a row of numbers.
     pub(crate) fn of(lines: &[String]) -> Option<(Self, usize)> {
         const ALL: [(char, bool); 10] = [
@@ -40,7 +50,7 @@ impl Dialect {
         ];
         // Strictly: numbers, times and gaps alone. Otherwise some columns may be texts.
         let found = [true, false].into_iter().find_map(|strict| {
-            let all = ALL.into_iter().map(|(separator, decimal_comma)| Self { separator, decimal_comma });
+            let all = ALL.into_iter().map(|(separator, decimal_comma)| Self::new(separator, decimal_comma));
             let mut all = all.filter_map(|dialect| Some((dialect, dialect.begins(lines, strict)?)));
             let first = all.next()?;
             if first.0.separator != ',' || first.1 < 2 * AGREE {
@@ -51,7 +61,7 @@ impl Dialect {
             Some(all.find(|of| above(of) && of.0.is_single(&lines[of.1..])).unwrap_or(first))
         });
         let (dialect, first) = found?;
-        let single = Self { separator: ' ', decimal_comma: true };
+        let single = Self::new(' ', true);
         let one_column = dialect.separator == ',' && is_one_column(&lines[..first], &lines[first..]);
         if one_column { Some((single, single.begins(lines, true)?)) } else { Some((dialect, first)) }
     }
@@ -134,6 +144,19 @@ impl Dialect {
         line.chars().all(|c| c.is_whitespace() || c == self.separator || c == '"')
     }
 
+    /// Whether a line is no row: empty, a comment, or the names of the columns once more.
+    pub(crate) fn is_aside(&self, line: &str) -> bool {
+        /// What Excel writes in place of a number.
+        const NONE: [&str; 7] = ["#n/a", "#div/0!", "#ref!", "#value!", "#num!", "#name?", "#null!"];
+        let text = line.trim_start().trim_start_matches('"');
+        let is_comment = || {
+            let marked = ["#", "%", "//"].iter().any(|sign| text.starts_with(sign));
+            marked && !NONE.iter().any(|none| text.to_lowercase().starts_with(none))
+        };
+        let is_heading = || text.starts_with(|c: char| !c.is_numeric()) && self.heading.contains(&Some(digest(line)));
+        self.is_empty(line) || is_comment() || is_heading()
+    }
+
     pub(crate) fn field(&self, field: &str) -> Field {
         const MISSING: [&str; 10] = ["", "nan", "na", "n/a", "null", "none", "-", "--", "#n/a", "nil"];
         if let Some(number) = self.number(field) {
@@ -142,7 +165,7 @@ impl Dialect {
         if MISSING.contains(&field.to_lowercase().as_str()) {
             return Field::Missing;
         }
-        stamp(field).map_or(Field::Text, |(s, ns)| Field::Stamp(s, ns))
+        stamp(field, self.day_first).map_or(Field::Text, |(s, ns)| Field::Stamp(s, ns))
     }
 
     /// A number with the decimal sign of the table, and with its thousands in groups.
@@ -181,6 +204,13 @@ impl Dialect {
             signs.into_iter().find_map(|sign| plain(&ungrouped(&field, point, sign)?))
         })
     }
+}
+
+/// A number that another line than this one hardly has.
+pub(super) fn digest(line: &str) -> u64 {
+    let mut hasher = std::hash::DefaultHasher::new();
+    line.trim().hash(&mut hasher);
+    hasher.finish()
 }
 
 /// `1.234.567,5` without the signs between its thousands, and with a decimal point. Without a fraction a

@@ -7,8 +7,9 @@ use jiff::tz::TimeZone;
 
 use crate::units::seconds;
 
-/// Seconds and nanoseconds since some origin that all stamps of one form share.
-pub(crate) fn stamp(field: &str) -> Option<(i64, i32)> {
+/// Seconds and nanoseconds since some origin that all stamps of one form share; `day_first` of dates with slashes
+/// whose month may be their day.
+pub(crate) fn stamp(field: &str, day_first: bool) -> Option<(i64, i32)> {
     let field = field.trim();
     if let Some(span) = span(field).or_else(|| duration(field)) {
         return Some(span);
@@ -32,9 +33,9 @@ pub(crate) fn stamp(field: &str) -> Option<(i64, i32)> {
     };
     let split = text.split_once(['T', ' ']);
     match split {
-        Some((date, time)) if date.matches(['-', '/', '.']).count() == 2 => civil(day(date)?, clock(time)?),
+        Some((date, time)) if date.matches(['-', '/', '.']).count() == 2 => civil(day(date, day_first)?, clock(time)?),
         _ if text.contains(':') => civil(Date::constant(1970, 1, 1), clock(&text)?),
-        _ => civil(day(&text)?, Time::midnight()),
+        _ => civil(day(&text, day_first)?, Time::midnight()),
     }
 }
 
@@ -91,8 +92,15 @@ fn nanos(fraction: &str) -> Option<i32> {
     fraction.chars().chain("000000000".chars()).take(9).collect::<String>().parse().ok()
 }
 
-/// A day; with dots, the day comes first, with slashes the month, unless it can be none.
-fn day(text: &str) -> Option<Date> {
+/// The first two numbers of a date with slashes.
+pub(super) fn slashed(field: &str) -> Option<(u8, u8)> {
+    let mut parts = field.trim().split('/');
+    let [first, second] = [parts.next()?, parts.next()?].map(|part| part.trim().parse().ok());
+    parts.next().and(Some((first?, second?))).filter(|(a, b)| (1..=31).contains(a) && (1..=31).contains(b))
+}
+
+/// A day; with dots, the day comes first, with slashes the month, unless it can be none or `day_first` says so.
+fn day(text: &str, day_first: bool) -> Option<Date> {
     let parts: Vec<i16> =
         text.split(['-', '/', '.']).map(|n| n.trim().parse().ok()).collect::<Option<_>>()?;
     let [a, b, c] = parts[..] else { return None };
@@ -102,7 +110,7 @@ fn day(text: &str) -> Option<Date> {
     let full = |year: i16| if year < 100 { 2000 + year } else { year };
     if a > 31 {
         of(a, b, c)
-    } else if text.contains('/') && a <= 12 {
+    } else if text.contains('/') && a <= 12 && !(day_first && b <= 12) {
         of(full(c), a, b)
     } else {
         of(full(c), b, a)
@@ -145,7 +153,7 @@ mod tests {
 
     #[test]
     fn by_hand_stamps_of_many_programs() {
-        let base = stamp("2024-05-01 08:00:00").unwrap();
+        let base = stamp("2024-05-01 08:00:00", false).unwrap();
         for (text, nanos) in [
             ("2024-05-01T08:00:00.000078125", 78_125),
             ("2024-05-01T10:00:00.5+02:00", 500_000_000),
@@ -154,20 +162,20 @@ mod tests {
             ("05/01/2024 8:00:00.5 AM", 500_000_000),
             ("2024/05/01 08:00:00:007", 7_000_000),
         ] {
-            assert_eq!(stamp(text), Some((base.0, nanos)), "{text}");
+            assert_eq!(stamp(text, false), Some((base.0, nanos)), "{text}");
         }
-        assert_eq!(stamp("08:00:00,5"), Some((28_800, 500_000_000)));
-        assert_eq!(stamp("01:23.4"), Some((83, 400_000_000)));
-        assert_eq!(stamp("75:00,5"), Some((4500, 500_000_000)));
-        assert_eq!(stamp("78.125 ms"), Some((0, 78_125_000)));
-        assert_eq!(stamp("2.5 sec"), Some((2, 500_000_000)));
-        assert_eq!(stamp("0 days 00:00:00.000078125"), Some((0, 78_125)));
-        assert_eq!(stamp("-1 days +23:59:59.5"), Some((-1, 500_000_000)));
-        assert_eq!(stamp("1 day, 0:00:01"), Some((86_401, 0)));
-        assert_eq!(stamp("P0DT0H1M0.5S"), Some((60, 500_000_000)));
-        assert_eq!(stamp("PT0.000078125S"), Some((0, 78_125)));
+        assert_eq!(stamp("08:00:00,5", false), Some((28_800, 500_000_000)));
+        assert_eq!(stamp("01:23.4", false), Some((83, 400_000_000)));
+        assert_eq!(stamp("75:00,5", false), Some((4500, 500_000_000)));
+        assert_eq!(stamp("78.125 ms", false), Some((0, 78_125_000)));
+        assert_eq!(stamp("2.5 sec", false), Some((2, 500_000_000)));
+        assert_eq!(stamp("0 days 00:00:00.000078125", false), Some((0, 78_125)));
+        assert_eq!(stamp("-1 days +23:59:59.5", false), Some((-1, 500_000_000)));
+        assert_eq!(stamp("1 day, 0:00:01", false), Some((86_401, 0)));
+        assert_eq!(stamp("P0DT0H1M0.5S", false), Some((60, 500_000_000)));
+        assert_eq!(stamp("PT0.000078125S", false), Some((0, 78_125)));
         for text in ["1.5", "-3", "12", "3 g", "ms", "1.5 V", "1e-3", "acc", "1.234,5", "08-15"] {
-            assert_eq!(stamp(text), None, "{text}");
+            assert_eq!(stamp(text, false), None, "{text}");
         }
     }
 }

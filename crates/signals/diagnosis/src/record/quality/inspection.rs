@@ -1,8 +1,10 @@
 //! The inspection of samples as they are read: each finding that needs no spectrum, and its words.
 
 use super::flat::{self, Flat, Lines, Run};
+use super::histogram::Histogram;
 use super::rails::{Rail, Rails};
-use super::{Kind, Quality, median, percent};
+use super::similarity::{self, Pattern, Repeats};
+use super::{Kind, Quality, jumps, median, percent};
 
 /// Stretches over which mean and level are followed, at most, and the shortest [s].
 const STRETCHES: usize = 200;
@@ -10,19 +12,26 @@ const SHORTEST_S: f64 = 0.1;
 
 /// Sums over a stretch of the record.
 #[derive(Debug, Clone, Copy, Default)]
-struct Stretch {
+pub(super) struct Stretch {
     count: f64,
     sum: f64,
-    squares: f64,
+    /// Of the samples, of their steps, and of the steps of these.
+    squares: [f64; 3],
 }
 
 impl Stretch {
-    fn mean(&self) -> f64 {
+    pub(super) fn mean(&self) -> f64 {
         self.sum / self.count
     }
 
     fn deviation(&self) -> f64 {
-        (self.squares / self.count - self.mean().powi(2)).max(0.0).sqrt()
+        self.spreads()[0]
+    }
+
+    /// Root mean squares about the mean of the samples, of their steps, and of the steps of these.
+    pub(super) fn spreads(&self) -> [f64; 3] {
+        let [samples, steps, bends] = self.squares.map(|of| of / self.count);
+        [samples - self.mean().powi(2), steps, bends].map(|square| square.max(0.0).sqrt())
     }
 }
 
@@ -55,9 +64,10 @@ pub(crate) struct Inspection {
     stretches: Vec<Stretch>,
     /// Samples of a stretch.
     length: usize,
-    /// First value, from which stretches count, and the last one.
+    /// First value, from which stretches count, the last one, and the step to it.
     origin: Option<f64>,
     last: Option<f64>,
+    step: f64,
     count: u64,
 }
 
@@ -76,6 +86,7 @@ impl Inspection {
             length,
             origin: None,
             last: None,
+            step: 0.0,
             count: 0,
         }
     }
@@ -94,30 +105,34 @@ impl Inspection {
             let is_new = self.last != Some(x);
             self.values.add(x, is_new);
             self.flat.add(x, at, is_new, self.values.is_extreme(x));
+            let place = (at as usize / self.length).min(self.stretches.len() - 1);
+            let stretch = &mut self.stretches[place];
             if let Some(last) = self.last
                 && (x - last).is_finite()
             {
                 self.steps.add(x - last, true);
                 self.lines.add(last, x - last, at);
+                stretch.squares[1] += (x - last).powi(2);
+                stretch.squares[2] += (x - last - self.step).powi(2);
+                self.step = x - last;
             }
             self.last = Some(x);
             let d = x - *self.origin.get_or_insert(x);
-            let place = (at as usize / self.length).min(self.stretches.len() - 1);
-            let stretch = &mut self.stretches[place];
             stretch.count += 1.0;
             stretch.sum += d;
-            stretch.squares += d * d;
+            stretch.squares[0] += d * d;
         }
     }
 
-    /// The findings that need no spectrum.
-    pub(crate) fn finish(mut self) -> Vec<Quality> {
+    /// The findings that need no spectrum; `kept` are the first samples.
+    pub(crate) fn finish(mut self, kept: &[f64]) -> Vec<Quality> {
         self.flat.interrupt();
         self.lines.interrupt();
         let few = self.values.few_levels();
         let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
-        let mut found: Vec<Quality> =
-            self.clipped(few.is_some(), &at_rail, &[&ends[..], &gaps].concat()).into_iter().collect();
+        let rails = self.rails(few.is_some(), &[&ends[..], &gaps].concat());
+        let mut found = self.no_signal(kept, &rails);
+        found.extend(self.clipped(&rails, &at_rail));
         found.extend(ends.iter().map(|run| self.dead(run)));
         if few.is_none() {
             found.extend(self.held(&gaps));
@@ -133,10 +148,153 @@ impl Inspection {
             None => {}
         }
         // What was filled in moves the mean, too.
-        if found.iter().all(|of| !matches!(of.kind, Kind::Held | Kind::Dead)) {
+        if found.iter().all(|of| !matches!(of.kind, Kind::Held | Kind::Dead | Kind::Jump)) {
             found.extend(self.drift());
         }
         found
+    }
+
+    /// By which the samples are no record of a signal.
+    fn no_signal(&self, kept: &[f64], rails: &[Rail]) -> Vec<Quality> {
+        let Some(histogram) = Histogram::of(kept) else { return Vec::new() };
+        let whole = |kind, words: String| self.quality(kind, 1.0, 0, words);
+        let mut found: Vec<Quality> = self.pattern(kept).into_iter().chain(self.repeated(kept)).collect();
+        if found.is_empty() {
+            let values: Vec<f64> = rails.iter().map(|rail| rail.value).collect();
+            found.extend(self.marks(&histogram, &values));
+        }
+        let piled = similarity::piled(kept, histogram.range()).filter(|_| rails.is_empty());
+        let across = jumps::crossings(kept, histogram.range());
+        if let Some(share) = piled {
+            found.push(self.quality(Kind::DriftingRails, share, 0, format!(
+                "clipped at rails that drift: {} of the samples pile up at the highest or the lowest value of their \
+                 neighbourhood; levels, crest and kurtosis are not those of the machine. Measure again with a larger \
+                 range",
+                percent(share)
+            )));
+        } else if found.is_empty() && rails.is_empty() {
+            found.extend(self.wrapped(kept, &histogram, across));
+        }
+        if histogram.is_of_another_format() {
+            found.push(whole(Kind::Swapped, "values over more decades than a sensor has: the bytes of the numbers stand in the other \
+                order, or they are numbers of another format. Read them with the order of bytes of their recorder".to_owned()));
+        } else if found.is_empty() && rails.is_empty() && histogram.is_one_sided() {
+            found.push(whole(Kind::SignLost, "sign lost: all values lie on one side of zero, and most of them near it, as those of a \
+                rectified signal do. Record the signal itself, with its sign".to_owned()));
+        }
+        found.extend(self.jump());
+        found
+    }
+
+    /// Samples that stand many times, zeros between samples, channels one after the other.
+    fn pattern(&self, kept: &[f64]) -> Option<Quality> {
+        let (places, kind) = similarity::pattern(kept)?;
+        let lower = self.rate_hz / places as f64;
+        let words = match kind {
+            Pattern::Held => format!(
+                "samples held: each stands {places} times. Keep one of {places}, and give the rate of {} Hz",
+                spelt(lower)
+            ),
+            Pattern::Stuffed => format!(
+                "one value between samples: of each {places} samples some are always the same. Keep the others, and \
+                 give the rate of {} Hz",
+                spelt(lower)
+            ),
+            Pattern::Unlike => format!(
+                "every {places} samples a pattern recurs: channels that stand one after the other, or samples between \
+                 which others were interpolated. Keep one of {places}, and give the rate of {} Hz",
+                spelt(lower)
+            ),
+        };
+        Some(self.quality(Kind::Pattern, 1.0 - 1.0 / places as f64, 0, words))
+    }
+
+    /// Stretches that stand twice.
+    fn repeated(&self, kept: &[f64]) -> Option<Quality> {
+        let Repeats { samples, first, lag } = similarity::repeats(kept)?;
+        let share = samples as f64 / kept.len() as f64;
+        let words = format!(
+            "repeated: {} of the samples stand a second time, to the last bit, the first of them {lag} samples behind \
+             their like; a recorder wrote a buffer twice. Cut the record at {:.4} s",
+            percent(share),
+            first as f64 / self.rate_hz
+        );
+        Some(self.quality(Kind::Repeated, share, first as u64, words))
+    }
+
+    /// Values that are too frequent to be measured.
+    fn marks(&self, histogram: &Histogram, rails: &[f64]) -> Option<Quality> {
+        let marks = histogram.marks(rails);
+        let share = marks.iter().map(|(_, samples)| self.part(*samples as u64)).sum::<f64>();
+        let each: Vec<String> =
+            marks.iter().map(|(value, samples)| format!("{samples} samples are exactly {}", spelt(*value))).collect();
+        let words = format!(
+            "one value too often: {}, as no other value is; a mark of missing samples, or what a dead zone leaves, \
+             which looks like knocks. Leave the field empty in their place",
+            each.join(" and ")
+        );
+        (!marks.is_empty()).then(|| self.quality(Kind::Marked, share, 0, words))
+    }
+
+    /// Values that leave the range at one end and come back at the other.
+    fn wrapped(&self, kept: &[f64], histogram: &Histogram, across: usize) -> Option<Quality> {
+        let (low, high) = (histogram.quantile(0.0), histogram.quantile(1.0));
+        let quantum = histogram.quantum();
+        let full = quantum.and_then(|quantum| jumps::full_range(low, high, quantum));
+        let share = across as f64 / kept.len() as f64;
+        let hollow = histogram.is_hollow() && share > 0.01;
+        let breaks_off = histogram.breaks_off() && share > 1e-3;
+        if !hollow && !breaks_off && (full.is_none() || across < 2) {
+            return None;
+        }
+        let unsigned = |bits: i32| {
+            let all = f64::from(bits).exp2() * quantum.unwrap_or(1.0);
+            format!("subtract {} above {}", spelt(all), spelt(0.5 * all - quantum.unwrap_or(1.0)))
+        };
+        let (kind, words) = if hollow {
+            let cure = full.filter(|(_, is_unsigned)| *is_unsigned).map_or_else(
+                || format!("subtract the range of its numbers above {}", spelt(0.5 * (low + high))),
+                |(bits, _)| unsigned(bits),
+            );
+            (Kind::SignLost, format!(
+                "sign lost: values stand at both ends of the range, {} to {}, and none between, as those of signed \
+                 numbers that were read as unsigned: {cure}",
+                spelt(low), spelt(high)
+            ))
+        } else if let Some(bytes) = quantum.filter(|_| breaks_off).and_then(|q| jumps::swapped_bytes(kept, q)) {
+            (Kind::Swapped, format!(
+                "bytes swapped: all values from {} to {} are as frequent, and with the {bytes} bytes of each number in \
+                 the other order they lie near each other. Read the file with the other order of bytes",
+                spelt(low), spelt(high)
+            ))
+        } else {
+            (Kind::Wrapped, format!(
+                "wrapped: {across} steps lead from one end of the range, {} to {}, to the other, and no value piles up \
+                 there: what lies beyond one end was written at the other. Measure with a smaller gain, or convert \
+                 with more bits",
+                spelt(low), spelt(high)
+            ))
+        };
+        Some(self.quality(kind, share, 0, words))
+    }
+
+    /// A gain or an offset that changed.
+    fn jump(&self) -> Option<Quality> {
+        let full: Vec<Stretch> =
+            self.stretches.iter().filter(|s| s.count >= 0.5 * self.length as f64).copied().collect();
+        let usual = median(&full.iter().map(Stretch::deviation).collect::<Vec<_>>())?;
+        let (at, what) = jumps::gain(&full)
+            .map(|(at, ratio)| (at, format!("gain changed: all frequencies are {} times as strong", spelt(ratio))))
+            .or_else(|| {
+                let (at, by) = jumps::offset(&full, usual)?;
+                Some((at, format!("offset changed: the mean moves by {}", spelt(by))))
+            })?;
+        let from = at * self.length;
+        let words = format!(
+            "{what} from {:.2} s on, at once and for good, as an amplifier or a recorder does it. Cut the record there",
+            from as f64 / self.rate_hz
+        );
+        Some(self.quality(Kind::Jump, self.part(self.count.saturating_sub(from as u64)), from as u64, words))
     }
 
     /// The stretches that stand still, by what they mean.
@@ -158,12 +316,15 @@ impl Inspection {
         stays
     }
 
-    /// Samples at the ends of the range; a long stay there is clipping, too.
-    fn clipped(&self, few_levels: bool, at_rail: &[Run], others: &[Run]) -> Option<Quality> {
+    /// The rails, but for values at which the channel stands in gaps, or to the end.
+    fn rails(&self, few_levels: bool, others: &[Run]) -> Vec<Rail> {
         let (low, high) = self.values.clipped(self.flat.natural(), few_levels);
-        // A channel that stands at its largest value to the end, or in gaps, is not clipped.
         let stands = |rail: &Rail| others.iter().any(|run| run.value == rail.value);
-        let rails: Vec<Rail> = [low, high].into_iter().flatten().filter(|rail| !stands(rail)).collect();
+        [low, high].into_iter().flatten().filter(|rail| !stands(rail)).collect()
+    }
+
+    /// Samples at the ends of the range; a long stay there is clipping, too.
+    fn clipped(&self, rails: &[Rail], at_rail: &[Run]) -> Option<Quality> {
         let held: u64 = at_rail.iter().map(|run| run.count).sum();
         let samples = held.max(rails.iter().map(|rail| rail.samples).sum());
         if samples == 0 {

@@ -23,8 +23,18 @@ pub fn of_angle(channel: &Channel, rate_hz: f64) -> Result<Turns, Error> {
 
 /// The same from the angles [rad] themselves.
 fn of_angles(angle: &[f64], name: &str, rate_hz: f64) -> Result<Turns, Error> {
-    let (first, last) = (angle.first().copied().unwrap_or(0.0), angle.last().copied().unwrap_or(0.0));
-    let places: Vec<f64> = angle.iter().map(|rad| PULSES * (rad - first).abs() / TAU).collect();
+    let first = angle.first().copied().unwrap_or(0.0);
+    // An angle that begins anew each turn goes on by less than half of one.
+    let (mut before, mut turned) = (first, 0.0);
+    let unwrapped = angle.iter().map(|rad| {
+        let step = rad - before;
+        turned += step - TAU * (step / TAU).round();
+        before = *rad;
+        turned
+    });
+    let unwrapped: Vec<f64> = unwrapped.collect();
+    let last = unwrapped.last().copied().unwrap_or(0.0);
+    let places: Vec<f64> = unwrapped.iter().map(|rad| PULSES * rad.abs() / TAU).collect();
     if places.windows(2).any(|pair| pair[1] < pair[0]) {
         return Err(Error::NoSignal(format!(
             "`{name}` turns back on the way: cut the record to a part in which the shaft turns one way"
@@ -38,7 +48,7 @@ fn of_angles(angle: &[f64], name: &str, rate_hz: f64) -> Result<Turns, Error> {
     if pulses.len() < 3 {
         return Err(Error::NoSignal(format!(
             "`{name}` turns by {:.3} rad, a twentieth of a turn is the least",
-            (last - first).abs()
+            last.abs()
         )));
     }
     let (mean, variation) = mean_and_variation(&pulses);

@@ -2,8 +2,10 @@
 
 /// Pulses on either side that say how far apart pulses are.
 const NEIGHBOURS: usize = 4;
-/// Part of the pulses that may be missing or too many.
-const FEW: f64 = 0.15;
+/// Part of the pulses that may be put in or left out.
+const FEW: f64 = 0.05;
+/// Fewest samples from pulse to pulse.
+const LEAST: f64 = 2.5;
 /// Largest variation of the speed between two pulses and the next two that a shaft follows.
 const SUDDEN: f64 = 0.5;
 /// Shortest gap whose variation counts [samples]: shorter ones vary by the grid of the samples.
@@ -17,6 +19,8 @@ pub(super) struct Mended {
     pub(super) per_turn: usize,
     missing: Vec<f64>,
     double: Vec<f64>,
+    /// One that was not asked for, by which the turns are counted.
+    wheel: Option<Wheel>,
 }
 
 impl Mended {
@@ -30,6 +34,20 @@ impl Mended {
         let [first, second, .., before, last] = self.pulses[..] else { return 0 };
         let room = |gap: f64, step: f64| if gap < 1.5 * step { 0 } else { (gap / step) as usize };
         room(first, second - first) + room(samples as f64 - last, last - before)
+    }
+
+    /// A note on where pulses begin late, or end early, in a record of `samples` samples.
+    pub(super) fn ends(&self, name: &str, rate_hz: f64, samples: usize) -> Option<String> {
+        let [first, .., last] = self.pulses[..] else { return None };
+        let gap = (last - first) / (self.pulses.len() - 1) as f64;
+        let room = |of: f64| of > (3.0 * gap).max(0.02 * samples as f64);
+        let behind = room(samples as f64 - last).then(|| format!("after {:.2} s", last / rate_hz));
+        let before = room(first).then(|| format!("before {:.2} s", first / rate_hz));
+        let places: Vec<String> = before.into_iter().chain(behind).collect();
+        (!places.is_empty()).then(|| {
+            let places = places.join(" and ");
+            format!("tachometer `{name}`: no pulses {places}; the speed is that between")
+        })
     }
 
     /// What was done, for the user.
@@ -46,6 +64,12 @@ impl Mended {
             format!("tachometer `{name}`: {number}{pulses} {are} {what}, at {times}{more}: {done}")
         };
         let mut notes = Vec::new();
+        if let Some(Wheel { pulses, teeth, .. }) = self.wheel {
+            notes.push(format!(
+                "tachometer `{name}`: the distances of its pulses recur every {pulses}, with the room of {teeth}: these \
+                 are taken for one turn. Give `--pulses-per-turn` if they are not"
+            ));
+        }
         if !self.missing.is_empty() {
             notes.push(told("missing", &self.missing, "put in at even distances"));
         }
@@ -56,10 +80,33 @@ impl Mended {
     }
 }
 
-/// At least three pulses as a shaft gives them, `per_turn` a turn; otherwise why no speed follows. Where the
-/// teeth of a wheel are too uneven, one of them gives the turns.
+/// At least three pulses as a shaft gives them, `per_turn` a turn; otherwise why no speed follows. The wheel is that
+/// by which the distances of its pulses recur: of one with long gaps, and of uneven teeth, each turn is one pulse.
 pub(super) fn mended(edges: &[f64], name: &str, rate_hz: f64, per_turn: usize) -> Result<Mended, String> {
+    let gaps: Vec<f64> = edges.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mean = (edges[edges.len() - 1] - edges[0]) / gaps.len() as f64;
+    if mean < LEAST {
+        return Err(format!(
+            "tachometer `{name}`: pulses come every {mean:.2} samples, {:.0} a second at {rate_hz} samples a second, or \
+             faster than these show: no speed follows. Record it faster, or give the speed by `--speed-rpm`",
+            rate_hz / mean
+        ));
+    }
     let whole = even(edges, name, rate_hz, per_turn);
+    if let Some(wheel) = Wheel::of(&gaps) {
+        let Wheel { pulses, teeth, first } = wheel;
+        let one: Vec<f64> = edges[first..].iter().copied().step_by(pulses).collect();
+        let turns = even(&one, name, rate_hz, 1).ok().filter(|turns| one.len() > 2 && turns.odd() == 0);
+        return match turns {
+            Some(turns) if per_turn == pulses || per_turn == teeth => Ok(turns),
+            Some(turns) if per_turn == 1 => Ok(Mended { wheel: Some(wheel), ..turns }),
+            _ if per_turn == teeth || per_turn % pulses == 0 && per_turn > pulses => whole,
+            _ => Err(format!(
+                "tachometer `{name}`: the distances of its pulses recur every {pulses}, with the room of {teeth}, and \
+                 {per_turn} are said to make a turn: no speed follows. Give `--pulses-per-turn {pulses}`"
+            )),
+        };
+    }
     if per_turn == 1 || whole.is_ok() {
         return whole;
     }
@@ -68,6 +115,53 @@ pub(super) fn mended(edges: &[f64], name: &str, rate_hz: f64, per_turn: usize) -
         Ok(turns) if one.len() > 2 && turns.odd() == 0 => Ok(turns),
         _ => whole,
     }
+}
+
+/// A wheel whose pulses are unevenly apart, in the same way each turn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wheel {
+    /// Pulses a turn, and how many even ones would have its room.
+    pulses: usize,
+    teeth: usize,
+    /// A pulse behind the longest distance.
+    first: usize,
+}
+
+impl Wheel {
+    /// By the distances that differ from those around them: they recur after as many pulses, all over the record.
+    fn of(gaps: &[f64]) -> Option<Self> {
+        let over: Vec<f64> = (0..gaps.len()).map(|n| gaps[n] / around(gaps, n)).collect();
+        // Edges lie between two samples.
+        let grid = |n: usize| 1.5 / gaps[n];
+        let differs = |n: usize| (over[n] - 1.0).abs() > 0.15 + grid(n);
+        let odd: Vec<usize> = (0..gaps.len()).filter(|n| differs(*n)).collect();
+        let alike = |a: usize, b: usize| b < over.len() && (over[a] / over[b] - 1.0).abs() < 0.1 + grid(a) + grid(b);
+        let apart = odd.iter().skip(1).map(|n| n - odd[0]).take(64);
+        let pulses = apart.filter(|n| *n > 1).find(|pulses| {
+            let inner = odd.iter().filter(|n| *n + pulses < gaps.len()).count();
+            let recur = odd.iter().filter(|n| differs_at(&odd, *n + pulses) && alike(**n, *n + pulses)).count();
+            let turns = gaps.len() / pulses;
+            turns > 2 && 10 * recur >= 9 * inner && 10 * odd.len() >= 8 * turns
+        })?;
+        let of_turn = &over[odd[0]..(odd[0] + pulses).min(over.len())];
+        let shortest = of_turn.iter().copied().fold(f64::INFINITY, f64::min);
+        let teeth = of_turn.iter().map(|of| (of / shortest).round()).sum::<f64>() as usize;
+        let longest = (odd[0]..odd[0] + pulses).max_by(|a, b| over[*a].total_cmp(&over[*b]))?;
+        Some(Self { pulses, teeth, first: longest % pulses + 1 })
+    }
+}
+
+/// The usual one of sixteen gaps about the gap `n`, the longer of two that are as frequent.
+fn around(gaps: &[f64], n: usize) -> f64 {
+    let until = (n + 8).max(16).min(gaps.len());
+    let mut near = gaps[until.saturating_sub(16)..until].to_vec();
+    near.sort_by(f64::total_cmp);
+    near[near.len() / 2]
+}
+
+/// Whether a place is among ascending ones.
+fn differs_at(odd: &[usize], place: usize) -> bool {
+    odd.binary_search(&place).is_ok()
 }
 
 fn even(edges: &[f64], name: &str, rate_hz: f64, per_turn: usize) -> Result<Mended, String> {
@@ -108,18 +202,16 @@ fn even(edges: &[f64], name: &str, rate_hz: f64, per_turn: usize) -> Result<Mend
         pulses.push(edge);
     }
     let count = pulses.len();
-    let refuse = |what: &str, of: &[f64]| {
-        format!(
-            "tachometer `{name}`: {} of {count} pulses are {what}, the first at {:.4} s: no speed follows. \
-             Is it the right channel, or give the speed by `--speed-rpm`",
-            of.len(),
-            of.first().unwrap_or(&0.0) / rate_hz
-        )
-    };
-    for (what, of) in [("missing", &missing), ("too many", &double)] {
-        if of.len() as f64 > FEW * count as f64 {
-            return Err(refuse(what, of));
-        }
+    let patched = missing.len() + double.len();
+    if patched as f64 > FEW * count as f64 {
+        let first = missing.iter().chain(&double).copied().fold(f64::INFINITY, f64::min);
+        return Err(format!(
+            "tachometer `{name}`: {} of {count} pulses are missing and {} too many, the first at {:.4} s: no speed \
+             follows. Is it the right channel, or give the speed by `--speed-rpm`",
+            missing.len(),
+            double.len(),
+            first / rate_hz
+        ));
     }
     match sudden(&pulses) {
         Some((at, percent)) => Err(format!(
@@ -128,7 +220,7 @@ fn even(edges: &[f64], name: &str, rate_hz: f64, per_turn: usize) -> Result<Mend
              (`--pulses-per-turn`), or give the speed by `--speed-rpm`",
             at / rate_hz
         )),
-        None => Ok(Mended { pulses, per_turn, missing, double }),
+        None => Ok(Mended { pulses, per_turn, missing, double, wheel: None }),
     }
 }
 

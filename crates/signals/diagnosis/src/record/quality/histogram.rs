@@ -1,0 +1,120 @@
+//! How values are distributed: one that is too frequent, both ends and nothing between, one side alone.
+
+/// Values of a stretch of the record, sorted.
+#[derive(Debug)]
+pub(super) struct Histogram {
+    sorted: Vec<f64>,
+    /// Values with the number of runs of equal samples, the most frequent first.
+    frequent: Vec<(f64, usize)>,
+    /// Samples in each of [`BINS`] parts of the range.
+    bins: Vec<f64>,
+}
+
+/// Parts of the range.
+const BINS: usize = 64;
+/// How many values may be too frequent, and how many times as often as the next one each is.
+const MARKS: usize = 4;
+const OFTEN: usize = 8;
+/// Share of the samples from which on they matter.
+const SHARE: f64 = 0.002;
+/// How many times as far from all others as these from each other a mark of missing samples lies, of which two
+/// suffice.
+const FAR: f64 = 10.0;
+/// Fewest values of a signal.
+const FEW: usize = 16;
+
+impl Histogram {
+    /// `None` for samples that are all equal.
+    pub(super) fn of(samples: &[f64]) -> Option<Self> {
+        let mut sorted: Vec<f64> = samples.iter().copied().filter(|x| x.is_finite()).collect();
+        sorted.sort_unstable_by(f64::total_cmp);
+        let (low, high) = (*sorted.first()?, *sorted.last()?);
+        let width = (high - low) / BINS as f64;
+        if !(width > 0.0 && width.is_finite()) {
+            return None;
+        }
+        let mut bins = vec![0.0; BINS];
+        sorted.iter().for_each(|x| bins[(((x - low) / width) as usize).min(BINS - 1)] += 1.0);
+        let new = samples.iter().zip(samples.iter().skip(1)).filter(|(a, b)| a != b).map(|(_, b)| b + 0.0);
+        let mut begun: Vec<f64> = samples.iter().take(1).copied().chain(new).filter(|x| x.is_finite()).collect();
+        begun.sort_unstable_by(f64::total_cmp);
+        let mut frequent: Vec<(f64, usize)> = begun.chunk_by(|a, b| a == b).map(|all| (all[0], all.len())).collect();
+        frequent.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        Some(Self { sorted, frequent, bins })
+    }
+
+    pub(super) fn range(&self) -> f64 {
+        self.sorted[self.sorted.len() - 1] - self.sorted[0]
+    }
+
+    pub(super) fn quantile(&self, part: f64) -> f64 {
+        self.sorted[(part * (self.sorted.len() - 1) as f64).round() as usize]
+    }
+
+    /// Whether the values span more decades than a sensor has, as numbers of another format do.
+    pub(super) fn is_of_another_format(&self) -> bool {
+        const DECADES: f64 = 1e-15;
+        let most = self.sorted[0].abs().max(self.sorted[self.sorted.len() - 1].abs());
+        let spread = (self.quantile(0.75) - self.quantile(0.25)).abs();
+        self.frequent.len() > FEW && spread < DECADES * most && spread > 0.0
+    }
+
+    /// Values that stand more often than all others, but for those at the rails of a limiter, with their samples.
+    pub(super) fn marks(&self, rails: &[f64]) -> Vec<(f64, usize)> {
+        if self.frequent.len() <= FEW {
+            return Vec::new();
+        }
+        let usual = self.frequent[MARKS].1;
+        let (first, last) = (self.sorted[0], self.sorted[self.sorted.len() - 1]);
+        let samples = |of: f64| self.sorted.partition_point(|x| *x <= of) - self.sorted.partition_point(|x| *x < of);
+        let is_mark = |&(value, runs): &(f64, usize)| {
+            let others = self.sorted.len() - samples(value);
+            let (lowest, highest) = match value {
+                _ if value == first => (self.sorted[self.sorted.len() - others], last),
+                _ if value == last => (first, self.sorted[others - 1]),
+                _ => (first, last),
+            };
+            // Farther from the others than these from each other.
+            let apart = (lowest - value).max(value - highest) / (highest - lowest);
+            let at_end = value == first || value == last;
+            let at_rail = at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0);
+            let is_often = runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
+            runs > 1 && apart > FAR || is_often && (apart > 0.1 || !at_rail)
+        };
+        self.frequent.iter().take(MARKS).filter(|of| is_mark(of)).map(|of| (of.0, samples(of.0))).collect()
+    }
+
+    /// Whether values stand at both ends of the range and none in its middle.
+    pub(super) fn is_hollow(&self) -> bool {
+        let of = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        let (ends, middle) = ([of(&self.bins[..2]), of(&self.bins[BINS - 2..])], of(&self.bins[BINS / 4..BINS * 3 / 4]));
+        let mean = self.sorted.len() as f64 / BINS as f64;
+        self.frequent.len() > FEW && middle < 0.05 * mean && ends.iter().all(|end| *end > mean)
+    }
+
+    /// Whether the density breaks off at both ends, where that of a signal falls off and that of a limiter piles up.
+    pub(super) fn breaks_off(&self) -> bool {
+        const LEAST: f64 = 8.0;
+        let sharp = |outer: f64, next: f64| outer >= LEAST && outer > 0.4 * next && outer < 4.0 * next;
+        let end = self.bins.len() - 1;
+        self.frequent.len() > FEW && sharp(self.bins[0], self.bins[1]) && sharp(self.bins[end], self.bins[end - 1])
+    }
+
+    /// Whether all values lie on one side of zero, and most of them near it.
+    pub(super) fn is_one_sided(&self) -> bool {
+        let [least, low, middle, high, most] = [0.001, 0.1, 0.5, 0.9, 0.999].map(|part| self.quantile(part));
+        let (below, above) = ((low - least) / (middle - low), (most - high) / (high - middle));
+        let near_zero = |edge: f64, other: f64| edge.abs() < 0.02 * (other - edge).abs();
+        self.frequent.len() > FEW
+            && (below < 0.5 && above > 0.9 && near_zero(least, most)
+                || above < 0.5 && below > 0.9 && near_zero(most, least))
+    }
+
+    /// The step of the converter, where all values are whole numbers of it.
+    pub(super) fn quantum(&self) -> Option<f64> {
+        let steps = self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-9 * self.range());
+        let step = steps.fold(f64::INFINITY, f64::min);
+        let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.01;
+        (self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole)).then_some(step)
+    }
+}
