@@ -29,6 +29,8 @@ pub struct Analysis {
     /// Spectra over speed and angle where the speed varies; filled by the caller, which has the times of the
     /// turns.
     pub varying: Option<Varying>,
+    /// The machine at the speed, and with the rolling elements, that were taken.
+    pub machine: Machine,
     /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
     pub enhanced: Option<Enhanced>,
 }
@@ -79,8 +81,9 @@ impl Analysis {
                 std::mem::take(&mut record.quality).into_iter().chain(hum).collect()
             }
         };
-        let Judged { machine: taken, speed, is_corrected, decided, families, over, verdict } =
-            Judged::of(channel, &record, machine)?;
+        let is_spoilt = quality.iter().any(|found| found.kind.spoils_verdicts());
+        let Judged { machine: taken, speed, is_corrected, decided, families, over, conclusion, verdict } =
+            Judged::of(channel, &record, machine, is_spoilt)?;
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
         let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families).min(0.5 * rate_hz))?;
         let duration_s = record.duration_s();
@@ -109,6 +112,7 @@ impl Analysis {
                 sound_as_high: decided
                     .sound
                     .map(|sound| SoundAsHigh { as_high: sound.as_high, records: sound.records }),
+                conclusion,
                 verdict: std::iter::once(verdict).chain(reservation).collect::<Vec<_>>().join(" "),
                 spall_mm: spall.length_mm,
                 spall_otherwise_mm: spall.otherwise_mm,
@@ -123,6 +127,7 @@ impl Analysis {
             over,
             course: record.course,
             varying: None,
+            machine: taken,
             enhanced,
         })
     }
