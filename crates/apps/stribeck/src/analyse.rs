@@ -123,7 +123,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let sound = baseline::read(options, place)?;
     let reading = Reading { sound_db: baseline::scores(&sound), ..options.reading.clone() };
-    let asked = Asked { options, sound: sound.first(), simulation: simulation.as_ref(), place };
+    let asked = Asked { options, sound: &sound, simulation: simulation.as_ref(), place };
     if let [file] = &files[..] {
         let out = options.out.clone().unwrap_or_else(|| default_folder(file));
         check_folder(&out, &["findings.json"])?;
@@ -161,8 +161,8 @@ fn passed(judged: &Judged) -> String {
 /// What is asked of every record.
 struct Asked<'a> {
     options: &'a Options,
-    /// The record of the sound machine that is drawn behind.
-    sound: Option<&'a Baseline>,
+    /// Records of the healthy machine, of which the first is drawn behind.
+    sound: &'a [Baseline],
     simulation: Option<&'a Simulation>,
     place: &'a Place,
 }
@@ -178,11 +178,9 @@ fn analyse(asked: &Path, out: Option<&Path>, of: &Asked<'_>, reading: &Reading) 
         analysis = simulation.again(analysis, asked, reading, out, place)?;
     }
     add_zone(options, &mut analysis);
-    if let Some(first) = sound {
-        baseline::beside(&mut analysis, first)?;
-    }
+    baseline::beside(&mut analysis, sound)?;
     if let Some(out) = out {
-        write_measured(out, &name, &analysis, sound)?;
+        write_measured(out, &name, &analysis, sound.first())?;
     }
     Ok(analysis)
 }

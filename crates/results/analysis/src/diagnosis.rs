@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 use stribeck_diagnosis::{
-    AccelerationUnit, Analysis, Defect, Family, Machine, STANDARD_GRAVITY, sidebands_seen,
+    AccelerationUnit, Analysis, Conclusion, Defect, Family, Machine, STANDARD_GRAVITY, sidebands_seen,
 };
 use stribeck_dsp::channel::Channel;
 use stribeck_dsp::{BandEnvelope, Whitened};
@@ -36,6 +36,9 @@ quantities! {
     pub struct DiagnosisFinding {
         /// The sensor and component, as the trace names it.
         pub channel: String,
+        /// The conclusion on each part of the bearing.
+        #[serde(default)]
+        pub conclusion: Conclusion,
         /// The conclusion in one sentence.
         pub verdict: String,
         /// Root mean square of the record that is judged [g].
@@ -174,6 +177,7 @@ pub fn of(scene: &ResolvedScene, motion: &KinematicsFinding, analysis: &Analysis
     });
     DiagnosisFinding {
         channel: analysis.findings.channel.clone(),
+        conclusion: analysis.findings.conclusion,
         verdict: analysis.findings.verdict.clone(),
         level_g: analysis.findings.health.rms / STANDARD_GRAVITY,
         resolution_hz: analysis.findings.resolution_hz,

@@ -29,6 +29,8 @@ pub struct Analysis {
     /// Spectra over speed and angle where the speed varies; filled by the caller, which has the times of the
     /// turns.
     pub varying: Option<Varying>,
+    /// The machine at the speed, and with the rolling elements, that were taken.
+    pub machine: Machine,
     /// Enhanced envelope spectrum of the beginning; `None` for a record too short for it.
     pub enhanced: Option<Enhanced>,
 }
@@ -79,12 +81,14 @@ impl Analysis {
                 std::mem::take(&mut record.quality).into_iter().chain(hum).collect()
             }
         };
-        let judged = Judged::of(channel, &record, machine)?;
+        let is_spoilt = quality.iter().any(|found| found.kind.spoils_verdicts());
+        let judged = Judged::of(channel, &record, machine, is_spoilt)?;
         let no_signal = quality::no_signal(&quality);
-        let Judged { machine: taken, speed, is_corrected, decided, families, over, verdict } = match &no_signal {
-            Some(headline) => judged.without_claims(headline),
-            None => judged,
-        };
+        let Judged { machine: taken, speed, is_corrected, decided, families, over, conclusion, verdict } =
+            match &no_signal {
+                Some(headline) => judged.without_claims(headline),
+                None => judged,
+            };
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
         let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families).min(0.5 * rate_hz))?;
         let duration_s = record.duration_s();
@@ -113,6 +117,7 @@ impl Analysis {
                 sound_as_high: decided
                     .sound
                     .map(|sound| SoundAsHigh { as_high: sound.as_high, records: sound.records }),
+                conclusion,
                 verdict: std::iter::once(verdict).chain(reservation).collect::<Vec<_>>().join(" "),
                 spall_mm: spall.length_mm,
                 spall_otherwise_mm: spall.otherwise_mm,
@@ -127,6 +132,7 @@ impl Analysis {
             over,
             course: record.course,
             varying: None,
+            machine: taken,
             enhanced,
         })
     }

@@ -9,6 +9,7 @@ pub mod family;
 pub(crate) mod halves;
 pub(crate) mod limits;
 pub(crate) mod machine_lines;
+pub(crate) mod power;
 pub(crate) mod rules;
 pub(crate) mod second;
 pub mod sidebands;

@@ -2,10 +2,12 @@
 
 use serde::Serialize;
 
+use crate::conclusion::Doubt;
 use crate::quantities;
 use crate::record::quality::Quality;
 use crate::record::zone;
-use crate::{AccelerationUnit, Family, Health, Unexplained};
+use crate::words::sentence::conclude;
+use crate::{AccelerationUnit, Conclusion, Family, Health, Unexplained};
 
 quantities! {
     /// Contents of `findings.json`. A number that the record cannot yield is `null`, with the reason in `notes`.
@@ -54,6 +56,8 @@ quantities! {
         /// Records of the sound machine with as high a score.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub sound_as_high: Option<SoundAsHigh>,
+        /// The conclusion on each part of the bearing.
+        pub conclusion: Conclusion,
         /// The conclusion in one sentence.
         pub verdict: String,
         /// Length of a spall, from two events a passage [mm].
@@ -80,6 +84,19 @@ impl MeasuredFindings {
     /// Whether the samples are no record of a signal, so that neither a defect nor its absence follows.
     pub fn is_no_signal(&self) -> bool {
         self.quality.iter().any(Quality::is_no_signal)
+    }
+
+    /// Conclusion and verdict after a change of the families.
+    pub(crate) fn conclude_again(&mut self) {
+        if self.is_no_signal() {
+            return;
+        }
+        let is_spoilt = self.quality.iter().any(|found| found.kind.spoils_verdicts());
+        let turns = self.duration_s * self.speed_rpm.unwrap_or(0.0) / 60.0;
+        let doubt = Doubt::of(is_spoilt, self.speed_uncertainty_rpm.is_some(), turns);
+        self.conclusion = Conclusion::of(&self.families, self.unexplained.as_ref(), doubt);
+        let told = (doubt, &self.conclusion, self.unit.as_deref());
+        self.verdict = conclude(&self.families, self.unexplained.as_ref(), told);
     }
 
     /// The unit of the channel; `None` where it is unknown, or not an acceleration.

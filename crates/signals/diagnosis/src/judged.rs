@@ -9,6 +9,7 @@ use stribeck_dsp::BandEnvelope;
 use stribeck_dsp::channel::Channel;
 use stribeck_theory::catalogue::CatalogueBearing;
 
+use crate::conclusion::Doubt;
 use crate::families::verdict::{Candidates, Decided, FirstDefect};
 use crate::families::{halves, rules, second};
 use crate::record::bands::over_period;
@@ -16,7 +17,7 @@ use crate::record::pass::Record;
 use crate::speed::half_speed::{self, decide_at_half, detect_half_speed};
 use crate::speed::settled::Settled;
 use crate::words::sentence::conclude;
-use crate::{Defect, Error, Family, Machine};
+use crate::{Answer, Conclusion, Defect, Error, Family, Machine};
 
 /// Families whose places go with the number of rolling elements.
 const RACEWAYS: [Defect; 2] = [Defect::Bpfo, Defect::Bpfi];
@@ -34,29 +35,35 @@ pub(crate) struct Judged {
     pub(crate) families: Vec<Family>,
     /// Envelope spectra over the period of the defect that stands highest; none without a defect.
     pub(crate) over: Vec<BandEnvelope>,
+    pub(crate) conclusion: Conclusion,
     pub(crate) verdict: String,
 }
 
 impl Judged {
     /// Judges the families of a record of this channel.
-    pub(crate) fn of(channel: &Channel, record: &Record, machine: &Machine) -> Result<Self, Error> {
+    pub(crate) fn of(
+        channel: &Channel,
+        record: &Record,
+        machine: &Machine,
+        is_spoilt: bool,
+    ) -> Result<Self, Error> {
         let Some(bearing) = machine.bearing.as_ref().filter(|bearing| bearing.elements.is_none()) else {
-            return Self::of_known(channel, record, machine);
+            return Self::of_known(channel, record, machine, is_spoilt);
         };
         let speed = Settled::of(record, machine);
         if speed.machine.speed_rpm.is_none() {
-            return Self::of_known(channel, record, machine);
+            return Self::of_known(channel, record, machine, is_spoilt);
         }
         let with = |elements: u32| {
             let bearing = Some(CatalogueBearing { elements: Some(elements), ..bearing.clone() });
             let speed_is_exact = speed.machine.speed_is_exact;
             let machine = Machine { bearing, speed_rpm: speed.given_rpm, speed_is_exact, ..machine.clone() };
-            Ok((elements, Self::of_known(channel, record, &machine)?))
+            Ok((elements, Self::of_known(channel, record, &machine, is_spoilt)?))
         };
         let numbers = bearing.possible_elements();
         let judged = numbers.iter().copied().map(with).collect::<Result<Vec<_>, Error>>()?;
         let Some(mut found) = Self::among(judged, bearing) else {
-            return Self::of_known(channel, record, machine);
+            return Self::of_known(channel, record, machine, is_spoilt);
         };
         if machine.speed_rpm.is_none() {
             found.speed.uncertainty_rpm = speed.uncertainty_rpm;
@@ -72,6 +79,7 @@ impl Judged {
             family.reason = "the samples are no record of a signal".to_owned().into();
         }
         (self.decided.unexplained, self.decided.score_db, self.decided.sound) = (None, None, None);
+        self.conclusion = Conclusion::of(&self.families, None, Some(Doubt::Samples));
         self.verdict = headline.to_owned();
         self
     }
@@ -102,6 +110,7 @@ impl Judged {
         );
         for family in found.families.iter_mut().filter(|f| f.claimed && RACEWAYS.contains(&f.name)) {
             family.claimed = false;
+            found.conclusion.raceways.answer = Answer::CannotTell;
             family.reason =
                 format!("it is there with {taken} rolling elements, whose number is not known").into();
         }
@@ -117,7 +126,12 @@ impl Judged {
     }
 
     /// The same for a bearing whose number of rolling elements is known, or none.
-    fn of_known(channel: &Channel, record: &Record, machine: &Machine) -> Result<Self, Error> {
+    fn of_known(
+        channel: &Channel,
+        record: &Record,
+        machine: &Machine,
+        is_spoilt: bool,
+    ) -> Result<Self, Error> {
         let speed = Settled::of(record, machine);
         let candidates = Candidates::of(record, &speed.machine, speed.lines_hz, speed.by_shaft);
         let half = candidates.as_ref().ok().and_then(|candidates| {
@@ -140,13 +154,17 @@ impl Judged {
         };
         let families = std::mem::take(&mut decided.families);
         let families = concluded(families, decided.first.as_ref(), record, &over)?;
+        let turns = record.duration_s() * machine.speed_rpm.unwrap_or(0.0) / 60.0;
+        let doubt = Doubt::of(is_spoilt, speed.uncertainty_rpm.is_some(), turns);
+        let conclusion = Conclusion::of(&families, decided.unexplained.as_ref(), doubt);
         let said = if families.is_empty() {
             format!("No verdict: {}.", decided.notes.join("; "))
         } else {
-            conclude(&families, decided.unexplained.as_ref())
+            let unit = channel.unit.as_deref();
+            conclude(&families, decided.unexplained.as_ref(), (doubt, &conclusion, unit))
         };
         let verdict = std::iter::once(said).chain(said_of_half).collect::<Vec<_>>().join(" ");
-        Ok(Self { machine, speed, is_corrected, decided, families, over, verdict })
+        Ok(Self { machine, speed, is_corrected, decided, families, over, conclusion, verdict })
     }
 }
 

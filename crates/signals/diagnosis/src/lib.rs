@@ -38,12 +38,14 @@
 pub mod quantity;
 
 mod analysis;
+mod conclusion;
 pub mod families;
 mod findings;
 pub mod joint;
 mod judged;
 pub mod length;
 mod machine;
+pub mod pool;
 pub mod record;
 pub mod series;
 pub mod sources;
@@ -53,6 +55,7 @@ pub mod words;
 mod error;
 
 pub use analysis::Analysis;
+pub use conclusion::{Answer, Concluded, Conclusion, FOUND};
 pub use error::Error;
 pub use families::defect::Defect;
 pub use families::family::{Family, Reason};

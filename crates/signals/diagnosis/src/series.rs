@@ -12,9 +12,11 @@ use statrs::function::gamma::ln_gamma;
 
 use crate::families::limits::ALPHA;
 use crate::families::sound::BEYOND_SOUND;
+use crate::pool::Pooled;
 use crate::quantities;
 use crate::words::numbers::chance;
-use crate::{Defect, Family, Interval, MeasuredFindings};
+use crate::words::sentence::no_defect;
+use crate::{Answer, Concluded, Conclusion, Defect, Family, Interval, MeasuredFindings};
 
 quantities! {
     /// The verdict on a series of records.
@@ -30,6 +32,8 @@ quantities! {
         pub families: Vec<SeriesFamily>,
         /// Growth of the spall, where two records at least give a length.
         pub growth: Option<Growth>,
+        /// The conclusion on each part of the bearing.
+        pub conclusion: Conclusion,
         /// The conclusion in one sentence.
         pub verdict: String,
     }
@@ -49,6 +53,11 @@ quantities! {
         pub last_claiming: usize,
         /// All records behind those of the sound machine that claim it.
         pub claiming: usize,
+        /// Short records at the end of the series whose mean spectra claim it; `null` where they do not.
+        pub pooled: Option<usize>,
+        /// The family whose lines these records together cannot distinguish from its own.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        pub not_told_apart_from: Option<Defect>,
         /// Whether the series is called a defect of this part.
         pub claimed: bool,
         /// The record from which on it stands; `null` where it is not claimed, or the series shows no beginning.
@@ -90,8 +99,8 @@ quantities! {
 
 impl Series {
     /// Of records in the order of time, `None` for those that could not be analysed, of which the first `sound`
-    /// are of the sound machine.
-    pub fn of(records: &[Option<&MeasuredFindings>], sound: usize) -> Self {
+    /// are of the healthy machine; `pooled` are the short ones together.
+    pub fn of(records: &[Option<&MeasuredFindings>], sound: usize, pooled: &[Pooled]) -> Self {
         let signals: Vec<Option<&MeasuredFindings>> =
             records.iter().map(|record| record.filter(|findings| !findings.is_no_signal())).collect();
         let none = records.iter().flatten().count() - signals.iter().flatten().count();
@@ -100,10 +109,18 @@ impl Series {
         let names =
             Defect::ALL.into_iter().filter(|name| records.iter().any(|r| family(*r, *name).is_some()));
         let mut families: Vec<SeriesFamily> =
-            names.map(|name| SeriesFamily::of(name, records, sound)).collect();
+            names.map(|name| SeriesFamily::of(name, records, sound, pooled)).collect();
         highest_alone(&mut families);
+        // One claim with two names stands under the first.
+        for at in 1..families.len() {
+            let other = families[at].not_told_apart_from;
+            if families[..at].iter().any(|f| f.claimed && Some(f.name) == other) {
+                families[at].claimed = false;
+            }
+        }
         let growth = growth(records);
-        let mut verdict = conclude(&families, growth.as_ref(), [analysed, sound]);
+        let conclusion = concluded(&families, &records[sound.min(records.len())..]);
+        let mut verdict = conclude(&families, growth.as_ref(), (analysed, sound), &conclusion, records);
         let spoilt =
             |record: &&&MeasuredFindings| record.quality.iter().any(|found| found.kind.spoils_verdicts());
         if none > 0 {
@@ -120,7 +137,7 @@ impl Series {
                 )
             }
         }
-        Self { records: records.len(), analysed, sound, families, growth, verdict }
+        Self { records: records.len(), analysed, sound, families, growth, conclusion, verdict }
     }
 }
 
@@ -128,20 +145,61 @@ fn family(record: Option<&MeasuredFindings>, name: Defect) -> Option<&Family> {
     record?.families.iter().find(|family| family.name == name)
 }
 
+impl Series {
+    /// The same with the alarms of its records, each with its number from 1 on and the name of its level.
+    pub fn alarmed(self, alarms: &[(usize, &str)]) -> Self {
+        let mut names: Vec<&str> = alarms.iter().map(|(_, name)| *name).collect();
+        names.sort_unstable();
+        names.dedup();
+        let of = |name: &&str| {
+            let records: Vec<usize> = alarms.iter().filter(|(_, of)| of == name).map(|(at, _)| *at).collect();
+            let (first, last) = (records.first().copied().unwrap_or(0), records.last().copied().unwrap_or(0));
+            match records.len() {
+                1 => format!("{name} in record {first}"),
+                count => format!("{name} in {count} records from {first} to {last}"),
+            }
+        };
+        let words: Vec<String> = names.iter().map(of).collect();
+        let alarm = (!words.is_empty()).then(|| format!(" ALARM: {}.", words.join(", ")));
+        Self { verdict: self.verdict + &alarm.unwrap_or_default(), ..self }
+    }
+}
+
 impl SeriesFamily {
-    fn of(name: Defect, records: &[Option<&MeasuredFindings>], sound: usize) -> Self {
+    fn of(name: Defect, records: &[Option<&MeasuredFindings>], sound: usize, pooled: &[Pooled]) -> Self {
         let of = |record: &Option<&MeasuredFindings>| family(*record, name).cloned();
         let later: Vec<Family> = records.iter().skip(sound).filter_map(of).collect();
         let limit = if later.iter().any(|f| f.claimed && f.p_value >= ALPHA) { BEYOND_SOUND } else { ALPHA };
         let End { p_value, last, claiming: last_claiming } = End::of(&later, limit);
-        let claimed = p_value < limit && 2 * last_claiming >= last;
+        let together = pooled.iter().filter_map(|of| {
+            let family = of.families.iter().find(|family| family.name == name && family.claimed)?;
+            let p_value = family.p_value * pooled.len() as f64;
+            (p_value < ALPHA).then_some((of.last, p_value, family.not_told_apart_from))
+        });
+        let together = together.max_by_key(|(last, ..)| *last);
+        let by_records = p_value < limit && 2 * last_claiming >= last;
+        let claimed = by_records || together.is_some();
+        let p_value = together.filter(|_| !by_records).map_or(p_value, |(_, p_value, _)| p_value);
+        let not_told_apart_from = together.filter(|_| !by_records).and_then(|(_, _, other)| other);
+        let pooled = together.map(|(last, ..)| last);
         let height_db: Vec<Option<f64>> = records
             .iter()
             .map(|r| family(*r, name).map(Family::score_db).filter(|db| db.is_finite()))
             .collect();
         let onset = if claimed { onset(&height_db, sound) } else { None };
         let claiming = later.iter().filter(|family| family.claimed).count();
-        Self { name, p_value, last, last_claiming, claiming, claimed, onset, height_db }
+        Self {
+            name,
+            p_value,
+            last,
+            last_claiming,
+            claiming,
+            pooled,
+            not_told_apart_from,
+            claimed,
+            onset,
+            height_db,
+        }
     }
 
     /// Its mean height in the records by which it is judged [dB].
@@ -197,7 +255,7 @@ fn highest_alone(families: &mut [SeriesFamily]) {
         .map(|(at, family)| (at, family.last_claiming));
     let Some((first, claiming)) = highest else { return };
     for (at, family) in families.iter_mut().enumerate() {
-        if at != first && 2 * family.last_claiming < claiming {
+        if at != first && family.pooled.is_none() && 2 * family.last_claiming < claiming {
             family.claimed = false;
             family.onset = None;
         }
@@ -289,7 +347,42 @@ fn growth(records: &[Option<&MeasuredFindings>]) -> Option<Growth> {
     Some(Growth { from, from_mm, to, to_mm, has_grown: to_mm.low > from_mm.high })
 }
 
-fn conclude(families: &[SeriesFamily], growth: Option<&Growth>, [analysed, sound]: [usize; 2]) -> String {
+/// The conclusion on all records: a defect where it is claimed, none where half of the records that are not of the
+/// healthy machine show that there is none, and no other knocks at the end.
+fn concluded(families: &[SeriesFamily], records: &[Option<&MeasuredFindings>]) -> Conclusion {
+    let conclusions: Vec<&Conclusion> = records.iter().flatten().map(|record| &record.conclusion).collect();
+    let claimed = |names: &[Defect]| families.iter().any(|f| f.claimed && names.contains(&f.name));
+    let of = |names: &[Defect], part: fn(&Conclusion) -> &Concluded| {
+        let all: Vec<&Concluded> = conclusions.iter().map(|conclusion| part(conclusion)).collect();
+        let count = |answer: Answer| all.iter().filter(|of| of.answer == answer).count();
+        let last = all.last().map(|of| of.answer);
+        let shows_none = 2 * count(Answer::NoDefect) >= all.len() && last == Some(Answer::NoDefect);
+        let answer = if claimed(names) {
+            Answer::Defect
+        } else if !all.is_empty() && count(Answer::NoSignal) == all.len() {
+            Answer::NoSignal
+        } else if shows_none {
+            Answer::NoDefect
+        } else {
+            Answer::CannotTell
+        };
+        let of_last = all.last().copied().copied();
+        Concluded { answer, ..of_last.unwrap_or(*part(&Conclusion::default())) }
+    };
+    Conclusion {
+        raceways: of(&[Defect::Bpfo, Defect::Bpfi], |c| &c.raceways),
+        elements: of(&[Defect::Bsf, Defect::Ftf], |c| &c.elements),
+        cage: of(&[], |c| &c.cage),
+    }
+}
+
+fn conclude(
+    families: &[SeriesFamily],
+    growth: Option<&Growth>,
+    (analysed, sound): (usize, usize),
+    conclusion: &Conclusion,
+    records: &[Option<&MeasuredFindings>],
+) -> String {
     let claimed: Vec<String> =
         families.iter().filter(|family| family.claimed).map(|family| words(family, sound)).collect();
     if !claimed.is_empty() {
@@ -302,20 +395,35 @@ fn conclude(families: &[SeriesFamily], growth: Option<&Growth>, [analysed, sound
         );
     }
     let single: usize = families.iter().map(|family| family.claiming).sum();
-    match single {
-        0 => format!("The series of {analysed} records shows no defect."),
+    let some = match single {
+        0 => String::new(),
         _ => format!(
-            "The series shows no defect that lasts to its end: {single} of {analysed} records claim one, and fewer \
-             than half of the last ones."
+            " {single} of {analysed} records claim a defect, and fewer than half of the last ones: none that lasts to \
+             the end."
         ),
+    };
+    let last = records.iter().rev().flatten().next();
+    if conclusion.raceways.answer == Answer::NoDefect {
+        let unit = last.and_then(|last| last.unit.as_deref());
+        return format!("{}{some}", no_defect(conclusion, unit));
     }
+    let could = records.iter().flatten().filter(|r| r.conclusion.raceways.answer == Answer::NoDefect).count();
+    let of_last = last.map_or_else(String::new, |last| format!(" Of the last: {}", last.verdict));
+    format!(
+        "The series of {analysed} records cannot tell whether there is a defect: {could} of them could have shown one \
+         of a raceway, and show none.{some}{of_last}"
+    )
 }
 
 fn words(family: &SeriesFamily, sound: usize) -> String {
-    let SeriesFamily { name, p_value, claiming, onset, height_db, .. } = family;
+    let SeriesFamily { name, p_value, claiming, onset, height_db, pooled, not_told_apart_from, .. } = family;
     let part = match name {
         Defect::Ftf => "the cage or of one rolling element",
         _ => name.part(),
+    };
+    let part = match not_told_apart_from {
+        Some(other) => format!("{part} or of {}, which the records cannot distinguish", other.part()),
+        None => part.to_owned(),
     };
     let since = match onset {
         Some(Onset { record, low, high }) if low < high => {
@@ -328,6 +436,12 @@ fn words(family: &SeriesFamily, sound: usize) -> String {
     let by = match (claiming, height_db.len() - sound) {
         (claiming, of) if *claiming == of => {
             format!("all {of} records that are not of the sound machine claim it")
+        }
+        (0, _) if pooled.is_some() => {
+            format!(
+                "the mean of the squared envelope spectra of the last {} records claims it",
+                pooled.unwrap_or(0)
+            )
         }
         (claiming, of) => format!("{claiming} of {of} records claim it"),
     };

@@ -11,7 +11,7 @@ use stribeck_theory::catalogue::CatalogueBearing;
 
 use crate::Error;
 use crate::families::unrelated::SLIP;
-use crate::{Analysis, Defect, Family, Machine, words::sentence};
+use crate::{Analysis, Defect, Family, Machine};
 
 /// A part of a machine that makes lines, and how fast its shaft turns.
 #[derive(Debug, Clone, PartialEq)]
@@ -183,7 +183,7 @@ pub fn analyse(
     let mut all = Vec::new();
     for (component, analysis) in &mut bearings {
         let findings = &mut analysis.findings;
-        findings.verdict = sentence::conclude(&findings.families, findings.unexplained.as_ref());
+        findings.conclude_again();
         all.push(format!("{component}: {}", findings.verdict));
     }
     Ok(Sources { bearings, verdict: all.join(" ") })

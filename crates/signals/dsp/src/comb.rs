@@ -140,9 +140,8 @@ impl CombTest {
         if !ordered || self.needed as f64 * high_hz > limit_hz {
             return Err(Error::Band { low_hz, high_hz, limit_hz: limit_hz / self.needed as f64 });
         }
-        // Half a line at the highest harmonic.
-        let step = spectrum.grid_hz / (2 * self.harmonics) as f64;
-        let candidates = ((high_hz - low_hz) / step).floor() as usize + 1;
+        let step = self.step_hz(spectrum);
+        let candidates = self.candidates(spectrum, high_hz - low_hz) as usize;
         let mut best = (f64::NEG_INFINITY, low_hz);
         let mut ratios = vec![0.0; self.harmonics];
         for n in 0..candidates {
@@ -158,6 +157,16 @@ impl CombTest {
         // Below the smallest number a probability is still no certainty.
         let p_value = (candidates as f64 * self.p_value(spectrum, height)).clamp(f64::MIN_POSITIVE, 1.0);
         Ok(Comb { fundamental_hz: self.refined(spectrum, hz), height, ratios, p_value })
+    }
+
+    /// Distance of the fundamentals that are tried: half a line at the highest harmonic [Hz].
+    fn step_hz(&self, spectrum: &Whitened) -> f64 {
+        spectrum.grid_hz / (2 * self.harmonics) as f64
+    }
+
+    /// Fundamentals that a search over a range [Hz] tries.
+    pub fn candidates(&self, spectrum: &Whitened, range_hz: f64) -> f64 {
+        (range_hz / self.step_hz(spectrum)).floor() + 1.0
     }
 
     /// Probability that noise makes a family of this height at one frequency.

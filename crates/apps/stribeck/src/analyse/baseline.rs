@@ -26,11 +26,27 @@ pub(super) fn read(options: &Options, place: &Place) -> Result<Vec<Baseline>> {
 
 /// The scores by which they calibrate the verdict on another record [dB].
 pub(super) fn scores(sound: &[Baseline]) -> Vec<f64> {
-    sound.iter().filter_map(|baseline| baseline.analysis.findings.score_db).collect()
+    let healthy = sound.iter().filter(|baseline| claim(&baseline.analysis).is_none());
+    healthy.filter_map(|baseline| baseline.analysis.findings.score_db).collect()
 }
 
-/// Remarks on a record and the sound one behind it, in the notes of the first.
-pub(super) fn beside(analysis: &mut Analysis, sound: &Baseline) -> Result<()> {
+/// The defect that a record of the healthy machine claims itself, in words.
+pub(super) fn claim(analysis: &Analysis) -> Option<String> {
+    let claimed = analysis.findings.families.iter().filter(|f| f.claimed).map(|f| f.name.name());
+    let names: Vec<&str> = claimed.collect();
+    (!names.is_empty()).then(|| format!("by its own verdict it has a defect, {}", names.join(", ")))
+}
+
+/// Notes on all of them that claim a defect themselves, and are left out.
+fn left_out(sound: &[Baseline]) -> impl Iterator<Item = String> {
+    sound.iter().filter_map(|baseline| {
+        Some(format!("the baseline `{}` is left out: {}", baseline.name, claim(&baseline.analysis)?))
+    })
+}
+
+/// Remarks on a record and the healthy ones behind it, of which the first is drawn, in its notes.
+pub(super) fn beside(analysis: &mut Analysis, all: &[Baseline]) -> Result<()> {
+    let Some(sound) = all.first() else { return Ok(()) };
     let name = &sound.name;
     let sound = &sound.analysis;
     let (here, there) = (&analysis.findings, &sound.findings);
@@ -40,14 +56,7 @@ pub(super) fn beside(analysis: &mut Analysis, sound: &Baseline) -> Result<()> {
         there.unit.as_deref().unwrap_or("no unit"),
         here.unit.as_deref().unwrap_or("no unit")
     );
-    let mut notes = Vec::new();
-    let claimed: Vec<&str> = there.families.iter().filter(|f| f.claimed).map(|f| f.name.name()).collect();
-    if !claimed.is_empty() {
-        notes.push(format!(
-            "the baseline `{name}` is no sound machine by its own verdict: it shows {}",
-            claimed.join(", ")
-        ));
-    }
+    let mut notes: Vec<String> = left_out(all).collect();
     if here.rate_hz != there.rate_hz {
         notes.push(format!(
             "the baseline was sampled at {} Hz, the record at {} Hz: levels of the whole signal compare only \

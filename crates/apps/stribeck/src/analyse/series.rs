@@ -5,12 +5,13 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
 use stribeck_diagnosis::MeasuredFindings;
+use stribeck_diagnosis::pool::{Pool, Pooled};
 use stribeck_diagnosis::record::alarm::{Limit, Quantity, State};
 use stribeck_diagnosis::series::Series;
 use stribeck_report::{SeriesFindings, SeriesRecord, write_series};
 use stribeck_store::run_dir::{check_folder, write_atomic};
 
-use super::{Asked, Options, Reading, analyse, passed};
+use super::{Asked, Options, Reading, analyse, baseline, passed};
 use crate::causes;
 use crate::interrupt::Interrupted;
 use crate::out::{say, tell};
@@ -81,18 +82,26 @@ pub(super) fn run(files: &[PathBuf], asked: &Asked<'_>, mut reading: Reading) ->
         std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
         write_atomic(&out.join(FINDINGS), b"[]")?;
     }
-    let mut records = analysed(files, &out, asked, &mut reading)?;
+    let (mut records, pooled) = analysed(files, &out, asked, &mut reading)?;
     let limits = limits(options, &records);
-    judge(&mut records, &limits, options.json);
+    judge(&mut records, &limits);
     let sound = options.reference.unwrap_or(0);
     let findings: Vec<Option<&MeasuredFindings>> = records.iter().map(|r| r.findings.as_ref()).collect();
-    let series = Series::of(&findings, sound);
+    let alarms: Vec<(usize, &str)> =
+        records.iter().enumerate().flat_map(|(at, r)| alarms(at + 1, r)).collect();
+    let series = Series::of(&findings, sound, &pooled).alarmed(&alarms);
     let all = SeriesFindings { series, records };
     write_series(&out, &all, &limits)?;
     if options.json {
         say!("{}", serde_json::to_string_pretty(&all)?);
     } else {
         say!("{}", all.series.verdict);
+        for record in &all.records {
+            let verdict = record.findings.as_ref().map(|findings| &findings.verdict);
+            say!("  {}: {}", record.file, verdict.or(record.error.as_ref()).map_or("", String::as_str));
+            let passing = record.alarms.iter().filter(|judged| judged.state != State::Good);
+            passing.for_each(|judged| say!("    {}", passed(judged)));
+        }
         say!("report: {}", shown(&out.join("report.html")));
     }
     let failed = all.records.iter().filter(|record| record.findings.is_none()).count();
@@ -106,17 +115,22 @@ fn analysed(
     out: &Path,
     asked: &Asked<'_>,
     reading: &mut Reading,
-) -> Result<Vec<SeriesRecord>> {
+) -> Result<(Vec<SeriesRecord>, Vec<Pooled>)> {
     let options = asked.options;
     let every = files.len().div_ceil(PAGES).max(1);
     let (mut records, mut of_reference) = (Vec::new(), Vec::new());
+    let mut pool = Pool::new(files.len(), options.reference.unwrap_or(0));
     for (at, (file, folder)) in files.iter().zip(folders(files)).enumerate() {
         let folder = (at.is_multiple_of(every) || at + 1 == files.len()).then_some(folder);
         let page = folder.as_ref().map(|folder| out.join(folder));
         let (findings, error) = match analyse(file, page.as_deref(), asked, reading) {
             Ok(analysis) => {
+                pool.add(at, &analysis);
                 if options.reference.is_some_and(|count| at < count) {
-                    of_reference.extend(analysis.findings.score_db);
+                    match baseline::claim(&analysis) {
+                        Some(claim) => tell!("note: `{}` is left out of the reference: {claim}", shown(file)),
+                        None => of_reference.extend(analysis.findings.score_db),
+                    }
                 }
                 (Some(analysis.findings), None)
             }
@@ -124,21 +138,23 @@ fn analysed(
             Err(why) => (None, Some([vec![why.to_string()], causes(&why)].concat().join(": "))),
         };
         let file = file.display().to_string();
-        let verdict = findings.as_ref().map_or_else(|| error.as_deref().unwrap_or(""), |f| &f.verdict);
-        if !options.json {
-            say!("{file}: {verdict}");
-        }
         records.push(SeriesRecord { file, folder, findings, error, alarms: Vec::new() });
         // Not by one another: what they scatter by is what the others are judged by.
         if options.reference == Some(at + 1) {
             reading.sound_db.append(&mut of_reference);
         }
     }
-    Ok(records)
+    Ok((records, pool.judged()))
+}
+
+/// The levels of a record that pass their alarm, with its number.
+fn alarms(number: usize, record: &SeriesRecord) -> impl Iterator<Item = (usize, &str)> {
+    let alarms = record.alarms.iter().filter(|judged| judged.state == State::Alarm);
+    alarms.map(move |judged| (number, judged.limit.quantity.name()))
 }
 
 /// How the levels of each record stand to the limits.
-fn judge(records: &mut [SeriesRecord], limits: &[Limit], quietly: bool) {
+fn judge(records: &mut [SeriesRecord], limits: &[Limit]) {
     for limit in limits {
         let mut all = records.iter().filter_map(|record| record.findings.as_ref()).peekable();
         let why = all.peek().map(|first| limit.quantity.missing(first));
@@ -149,9 +165,6 @@ fn judge(records: &mut [SeriesRecord], limits: &[Limit], quietly: bool) {
     for record in records {
         let Some(findings) = &record.findings else { continue };
         record.alarms = limits.iter().filter_map(|limit| limit.judge(findings)).collect();
-        for judged in record.alarms.iter().filter(|judged| judged.state != State::Good && !quietly) {
-            say!("{}: {}", record.file, passed(judged));
-        }
     }
 }
 

@@ -42,8 +42,13 @@ pub(crate) fn controls(
             spacings.flat_map(|spacing| [-2.0, -1.0, 1.0, 2.0].map(|k| comb.fundamental_hz + k * spacing));
         sidebands.any(|sideband| (hz - sideband).abs() < width_hz)
     };
+    // In a short record fundamentals that are apart by more than slip may share lines.
+    let shares_lines = |hz: f64| {
+        let mut parts = (1..=5).flat_map(|p| (1..=5).map(move |q| f64::from(p) / f64::from(q)));
+        parts.any(|part| (hz - part * comb.fundamental_hz).abs() < width_hz)
+    };
     let mut found: Vec<Comb> = unrelated_hz(comb_hz)
-        .filter(|hz| !of_the_first(*hz))
+        .filter(|hz| !of_the_first(*hz) && !shares_lines(*hz))
         .filter_map(|hz| CombTest::FOUR_OF_FIVE.search(spectrum, (1.0 - SLIP) * hz, (1.0 + SLIP) * hz).ok())
         .filter(|control| own.is_none_or(|own| !own.holds(control.fundamental_hz)))
         .filter(|control| !beside(control.fundamental_hz))

@@ -7,6 +7,7 @@ use serde::{Serialize, Serializer};
 use crate::Defect;
 use crate::families::controls::MOST_AS_HIGH;
 use crate::families::limits::{ALPHA, KNOCK, decibel};
+use crate::families::power::Limit;
 use crate::families::unexplained::UnexplainedComb;
 use crate::families::unrelated::UNRELATED_SPACINGS;
 use crate::quantities;
@@ -14,7 +15,7 @@ use crate::words::numbers::chance;
 
 /// Families of sound bearings are deeper than d in a part exp(−d times this) of all: fitted to the 108 of the
 /// same records.
-const SOUND_DEPTHS: f64 = 11.4;
+pub(crate) const SOUND_DEPTHS: f64 = 11.4;
 
 quantities! {
     /// One defect family.
@@ -62,6 +63,12 @@ quantities! {
         /// Height of the family [dB], for comparison with others.
         #[serde(skip)]
         pub(crate) height_db: f64,
+        /// Impacts that the record would have shown.
+        #[serde(skip)]
+        pub(crate) limit: Option<Limit>,
+        /// Peak of its impacts over the root mean square of the record, where it is there.
+        #[serde(skip)]
+        pub shown_over_rms: Option<f64>,
         /// The unrelated combs of the same spectrum that it must stand above: fundamental [Hz] and height [dB];
         /// for pictures.
         #[serde(skip)]
@@ -121,6 +128,8 @@ impl Family {
             claimed: false,
             reason: Reason::Undecided,
             height_db: f64::NEG_INFINITY,
+            limit: None,
+            shown_over_rms: None,
             controls: Vec::new(),
         }
     }

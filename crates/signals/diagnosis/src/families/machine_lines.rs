@@ -6,6 +6,9 @@
 pub(crate) struct OwnLines {
     /// Turns of the shaft [Hz].
     pub(crate) shaft_hz: f64,
+    /// Whether its multiples are its own: in a record so short that they cover the places of all families, where they
+    /// stand only.
+    pub(crate) shaft_counts: bool,
     /// Turns of the cage [Hz], where its comb stands.
     pub(crate) cage_hz: Option<f64>,
     /// Rolling elements: this multiple of the cage is BPFO.
@@ -34,7 +37,8 @@ impl OwnLines {
 
     /// All shafts [Hz], the bearing's own first.
     fn turning(&self) -> impl Iterator<Item = f64> {
-        std::iter::once(self.shaft_hz).chain(self.shafts_hz.iter().copied())
+        let own = Some(self.shaft_hz).filter(|_| self.shaft_counts);
+        own.into_iter().chain(self.shafts_hz.iter().copied())
     }
 
     /// Whether `hz` is a multiple of a mesh or a sideband of one.
@@ -105,6 +109,7 @@ mod tests {
 
     const OWN: OwnLines = OwnLines {
         shaft_hz: 30.0,
+        shaft_counts: true,
         cage_hz: None,
         elements: 8.0,
         width_hz: 0.2,

@@ -387,6 +387,7 @@ fn element_by_the_cage(families: &[Family], bands: &[BandEnvelope]) -> Option<((
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Conclusion;
     use crate::words::sentence::conclude;
 
     /// Found at `measured_hz`, far above noise and anything else.
@@ -431,7 +432,7 @@ mod tests {
             ];
             families[0].height_db = 24.9;
             let families = decide(shared_out(families, 1.0, true), Around::default(), None, true);
-            let verdict = conclude(&families, None);
+            let verdict = conclude(&families, None, (None, &Conclusion::default(), None));
             assert!(families.iter().all(|family| family.claimed), "{families:?}");
             assert!(verdict.contains("of the outer raceway or of a rolling element"), "{verdict}");
             assert!(verdict.contains("2 times BSF") && !verdict.contains(" and a defect"), "{verdict}");

@@ -13,7 +13,7 @@
 //! shaft and of the cage are nobody's defect (`machine_lines.rs`), and where a comb that is no family's
 //! stands higher than all that are, nothing weaker is claimed (`unexplained.rs`).
 
-use stribeck_dsp::{BandEnvelope, Whitened};
+use stribeck_dsp::{BandEnvelope, CombTest, Whitened};
 use stribeck_theory::catalogue::{CatalogueBearing, DefectOrders, Element};
 
 use crate::families::candidate::{Candidate, Standing, search};
@@ -22,6 +22,7 @@ use crate::families::controls::{controls, part_as_high, rank};
 use crate::families::family::{Family, Reason};
 use crate::families::limits::{ALPHA, decibel};
 use crate::families::machine_lines::OwnLines;
+use crate::families::power;
 use crate::families::rules::{Around, claimed_first, decide, first, shared_out, without_mirrored};
 use crate::families::sidebands::is_modulated_by_the_cage;
 use crate::families::sound::{BesideSound, farthest};
@@ -84,6 +85,9 @@ pub(crate) struct FirstDefect {
 
 /// Lines about a multiple of the shaft or the cage that are its own: half the width of a Hann window’s lobe.
 const OWN_LINES: f64 = 1.5;
+/// Width of these lines over the frequency of the shaft from which a record is short: they cover half of all
+/// places.
+const SHORT: f64 = 0.25;
 /// Largest radial clearance of ball bearings with a bore of 24 to 40 mm of group 3, which is usual in motors
 /// [mm] (ISO 5753-1), and the sum of the curvatures of both grooves over the diameter of a ball, radii of 52 %
 /// each: by both a load along the shaft steepens the contact (T. A. Harris, Rolling Bearing Analysis, 4th ed.,
@@ -118,6 +122,9 @@ impl Candidates {
         let place_of_cage_hz = (orders.ftf * shaft_hz + machine.outer_speed_rpm / 60.0).abs();
         let places = [orders.bpfo, orders.bpfi, orders.bsf].map(|order| order * shaft_hz);
         let shaft_lines = own_lines(machine, lines_hz.unwrap_or(shaft_hz), OWN_LINES / segment_s);
+        let is_short = shaft_lines.width_hz > SHORT * shaft_hz;
+        let shaft_counts = !is_short || shaft_stands(&whitened, shaft_lines.shaft_hz, &places[..2]);
+        let shaft_lines = OwnLines { shaft_counts, ..shaft_lines };
         let look =
             |name: Defect, hz: f64, own: &OwnLines| search(name, hz, &whitened, own, record_s, segment_s);
         // Turns of another shaft may stand where the cage turns.
@@ -149,7 +156,7 @@ impl Candidates {
             .enumerate()
             .map(|(at, candidate)| {
                 let half = halved.filter(|(first, _)| *first == at).map(|(_, half)| half);
-                beside_controls(candidate, half, &whitened, &own, first_hz)
+                beside_controls(candidate, half, &whitened, &own, (first_hz, record))
             })
             .collect();
         let modulated = is_modulated_by_the_cage(&measured, &whitened);
@@ -270,6 +277,7 @@ fn own_lines(machine: &Machine, shaft_hz: f64, width_hz: f64) -> OwnLines {
     let in_hz = |orders: &[f64]| orders.iter().map(|order| order * shaft_hz).collect();
     OwnLines {
         shaft_hz,
+        shaft_counts: true,
         cage_hz: None,
         elements: f64::from(machine.bearing.as_ref().and_then(|bearing| bearing.elements).unwrap_or(0)),
         width_hz,
@@ -283,6 +291,30 @@ fn own_lines(machine: &Machine, shaft_hz: f64, width_hz: f64) -> OwnLines {
 fn whitened(record: &Record) -> Vec<(&BandEnvelope, Whitened)> {
     let bands = record.bands.iter();
     bands.filter_map(|b| Some((b, Whitened::new(&b.values, b.grid_hz, b.segments).ok()?))).collect()
+}
+
+/// Whether multiples of the shaft stand as high as the first lines of the raceways between them, by their places
+/// [Hz]: where a raceway stands between lower ones, its lines are not the shaft's.
+fn shaft_stands(whitened: &[(&BandEnvelope, Whitened)], shaft_hz: f64, places: &[f64]) -> bool {
+    const LINES: u32 = 2;
+    let raceway_stands_out = |hz: &f64| {
+        let (low_hz, high_hz) = ((1.0 - SLIP) * hz, (1.0 + SLIP) * hz);
+        let combs = whitened.iter().filter_map(|(_, spectrum)| {
+            Some((CombTest::FOUR_OF_FIVE.search(spectrum, low_hz, high_hz).ok()?, spectrum))
+        });
+        let highest = combs.max_by(|a, b| a.0.height.total_cmp(&b.0.height));
+        highest.is_some_and(|(comb, spectrum)| {
+            let grid_hz = spectrum.grid_hz();
+            (1..=LINES).all(|n| {
+                let hz = f64::from(n) * comb.fundamental_hz;
+                let below = (hz / shaft_hz).floor() * shaft_hz;
+                let multiples = [below, below + shaft_hz].into_iter().filter(|of| (of - hz).abs() > grid_hz);
+                let line = |hz: f64| spectrum.ratios().get((hz / grid_hz).round() as usize).copied();
+                multiples.filter_map(line).all(|ratio| ratio < spectrum.at(hz))
+            })
+        })
+    };
+    !places.iter().any(raceway_stands_out)
 }
 
 /// The combs of families that are more than noise.
@@ -317,7 +349,7 @@ fn beside_controls(
     half: Option<Unexplained>,
     whitened: &[(&BandEnvelope, Whitened)],
     own: &OwnLines,
-    first_hz: Option<f64>,
+    (first_hz, record): (Option<f64>, &Record),
 ) -> Family {
     let Candidate { family, standing, .. } = candidate;
     let reason = half.map_or(family.reason.clone(), |half| {
@@ -328,11 +360,18 @@ fn beside_controls(
         ))
     });
     let judged = Family { reason, ..family };
-    let Some(Standing { band, comb, comb_hz, times, .. }) = standing else { return judged.calibrated() };
+    let Some(Standing { band, comb, comb_hz, times, searched }) = standing else {
+        return judged.calibrated();
+    };
+    let places = searched * CombTest::FOUR_OF_FIVE.candidates(&whitened[band].1, 2.0 * SLIP * comb_hz);
+    let shown_over_rms = power::shown_over_rms(&judged, comb_hz, whitened, record);
+    let limit = power::limit((judged.name, comb_hz, places), whitened, own, record);
     let controls = controls(&comb, comb_hz, &whitened[band].1, first_hz, Some(own));
     let ranked = Family {
         rank: part_as_high(&comb, &controls),
         controls: controls.iter().map(|c| (c.fundamental_hz, decibel(c.height))).collect(),
+        limit,
+        shown_over_rms,
         ..judged
     };
     let measured_hz = ranked.is_there().then_some(comb.fundamental_hz / times);

@@ -1,9 +1,13 @@
 //! The verdict in words.
 
 use crate::Defect;
+use crate::conclusion::{Conclusion, Doubt, Open, open};
 use crate::families::family::Family;
+use crate::families::limits::KNOCK;
+use crate::families::power::Limit;
 use crate::families::unexplained::Unexplained;
 use crate::families::unrelated::SLIP;
+use crate::words::numbers::significant;
 
 /// A frequency beside that of rolling without slip, in words.
 fn beside(hz: f64, without_slip_hz: f64) -> String {
@@ -24,8 +28,12 @@ fn may_be_of(family: &Family, hz: f64) -> bool {
     (1.0..=3.0).contains(&times) && (hz / (times * comb_hz) - 1.0).abs() < SLIP
 }
 
-/// The verdict in words.
-pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -> String {
+/// The verdict in words, with the conclusion and the unit of its limits.
+pub(crate) fn conclude(
+    families: &[Family],
+    unexplained: Option<&Unexplained>,
+    (doubt, conclusion, unit): (Option<Doubt>, &Conclusion, Option<&str>),
+) -> String {
     // Two families that cannot be distinguished are reported under the name of the first.
     let spoken_for = |at: usize, family: &Family| {
         families[..at].iter().any(|f| f.claimed && f.not_told_apart_from == Some(family.name))
@@ -82,37 +90,70 @@ pub(crate) fn conclude(families: &[Family], unexplained: Option<&Unexplained>) -
             highest.name
         );
     }
-    let weak: Vec<&str> = families.iter().filter(|f| f.is_there()).map(|f| f.name.name()).collect();
-    let unheard: Vec<&str> = families.iter().filter(|f| f.band_hz.is_none()).map(|f| f.name.name()).collect();
-    let hidden: Vec<&str> = families.iter().filter(|f| f.undecided).map(|f| f.name.name()).collect();
-    if unheard.len() == families.len() {
+    if families.iter().all(|f| f.band_hz.is_none()) {
         return "The record cannot tell whether there is a defect: it is too short, or sampled too slowly, \
             for every family. The reasons say which length or rate would do."
             .to_owned();
     }
-    let mut verdict = if hidden.is_empty() {
-        "The record shows no defect.".to_owned()
-    } else {
-        format!(
-            "The record does not decide about {}, whose place is that of the machine's own lines, and shows no \
-             other defect.",
-            hidden.join(" and ")
-        )
+    match open(families, unexplained, doubt) {
+        None => no_defect(conclusion, unit),
+        Some(open) => format!("The record cannot tell whether a raceway is damaged: {}.", why(open, unit)),
+    }
+}
+
+/// "No defect", with the impacts that would have been claimed and what the method misses.
+pub(crate) fn no_defect(conclusion: &Conclusion, unit: Option<&str>) -> String {
+    let one_in = conclusion.elements.share.map_or(f64::NAN, |share| (1.0 / share).round());
+    let exceed = match (conclusion.raceways.limit, conclusion.raceways.limit_band_hz) {
+        (Some(peak), Some(band_hz)) => format!(" whose impacts exceed {}", strength(peak, band_hz, unit)),
+        _ => String::new(),
     };
-    if !weak.is_empty() {
-        let above_db = families.iter().filter(|f| f.is_there()).filter_map(Family::above_unrelated_db);
-        verdict += &format!(
-            " {} can be seen, up to {:.0} dB above combs at other spacings, without deep knocks: records of the sound \
-             machine (`--baseline`) decide, or the trend.",
-            weak.join(" and "),
-            above_db.fold(0.0, f64::max)
-        );
+    format!("No defect of a raceway{exceed}; of damaged rolling elements this method finds one in {one_in}.")
+}
+
+/// A peak and its band.
+fn strength(peak: f64, (low_hz, high_hz): (f64, f64), unit: Option<&str>) -> String {
+    let [low, high] = [low_hz, high_hz].map(|hz| significant(1e-3 * hz, 2));
+    format!("{} {} (peak, {low} to {high} kHz)", significant(peak, 2), unit.unwrap_or("of its unit"))
+}
+
+/// Why the record cannot tell, and what would.
+fn why(open: Open<'_>, unit: Option<&str>) -> String {
+    match open {
+        Open::Doubt(Doubt::Samples) => "its samples are spoilt".to_owned(),
+        Open::Doubt(Doubt::SoughtSpeed) => {
+            "its speed was sought in the record, and at a wrong speed no defect \
+            shows; a measured speed would tell"
+                .to_owned()
+        }
+        Open::Doubt(Doubt::Short) => {
+            "it holds too few turns of the shaft; a longer record, or a series of them, \
+            would tell"
+                .to_owned()
+        }
+        Open::Knocks => "something else has impacts that are stronger".to_owned(),
+        Open::NotLookedFor(family) if family.undecided => {
+            format!("it does not decide about {}, {}", family.name, family.reason)
+        }
+        Open::NotLookedFor(family) => format!("{} was not looked for, {}", family.name, family.reason),
+        Open::Near(family) => format!(
+            "{} stands {:.0} dB above combs at other spacings, and the power of its band varies by {:.0} % of its mean; \
+             {:.0} % would be a defect. Records of the healthy machine (`--baseline`), more load or the trend would tell",
+            family.name,
+            family.above_unrelated_db().unwrap_or(0.0),
+            100.0 * family.depth.unwrap_or(0.0),
+            100.0 * KNOCK
+        ),
+        Open::Weak(Some(Limit { peak, over_rms, band_hz })) => format!(
+            "impacts below {}, {} times its RMS, would not show, and those of spalls are weaker; a longer record, one \
+             nearer to the bearing or records of the healthy machine (`--baseline`) would tell",
+            strength(peak, band_hz, unit),
+            significant(over_rms, 2)
+        ),
+        Open::Weak(None) => {
+            "no band could show its impacts; a longer record, or one sampled faster, would tell".to_owned()
+        }
     }
-    let unheard: Vec<&str> = unheard.into_iter().filter(|name| !hidden.contains(name)).collect();
-    if !unheard.is_empty() {
-        verdict += &format!(" It does not decide about {}.", unheard.join(" and "));
-    }
-    verdict
 }
 
 pub(crate) fn probability(p: f64) -> String {
@@ -136,7 +177,7 @@ mod tests {
         let bsf = Family { undecided: true, ..Family::expected(Defect::Bsf, 49.861) };
         let says = |family: &Family, hz: f64| {
             let other = Unexplained { hz, order: hz / 25.0, height_db: 20.0, band_hz: (1e3, 2e3) };
-            conclude(std::slice::from_ref(family), Some(&other))
+            conclude(std::slice::from_ref(family), Some(&other), (None, &Conclusion::default(), None))
         };
         assert!(says(&bsf, 99.47).contains("where BSF lies beside one of the machine's own lines"));
         assert!(says(&bsf, 90.0).contains("no family of this bearing"));
