@@ -34,6 +34,7 @@
 //! | Which numbers of a run survive in such a record, behind an unknown path and in noise? | [`records`] |
 //! | What does the sensor of a machine about the bearing record, and which machine made a record? | [`machine`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
+//! | What is a row of the table of many runs? | [`runs`] |
 //! | How is a number of a summary declared? | [`quantity`] |
 //!
 //! # A measured gearbox
@@ -103,6 +104,7 @@ pub mod comparison;
 pub mod ensemble;
 pub mod findings;
 pub mod paper;
+pub mod runs;
 pub mod statistic;
 
 mod error;

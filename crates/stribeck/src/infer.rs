@@ -112,7 +112,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     let of_record = measured.as_ref().map(|(_, out)| out.clone());
     let out = of_record.or_else(|| options.out.clone()).unwrap_or_else(|| place.runs().join(&inference.name));
     if let Some(engine) = options.emit {
-        let part = crate::emit::Part::new(options.shards.unwrap_or(crate::emit::MOST_PARTS), options.share);
+        let part = crate::emit::Part::new(options.shards, usize::MAX, engine, options.share);
         say!("{}", crate::emit::script(engine, "infer", &file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
