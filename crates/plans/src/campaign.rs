@@ -233,7 +233,8 @@ fn of_bearings(base: &Path, file: &Text, rows: &Rows) -> Vec<OfBearing> {
             continue;
         }
         seen.push(bearing);
-        for found in replaced_by_bearing(base, &file.overrides(rows, row)) {
+        let replaced = replaced_by_bearing(base, &file.overrides(rows, row));
+        for found in replaced.into_iter().filter(|found| found.field != "name") {
             match all.iter_mut().find(|known| known.field == found.field) {
                 Some(known) if known.now.contains(&found.now) => {}
                 Some(known) => known.now.push(found.now),

@@ -14,7 +14,7 @@ use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::field_words::FieldWords;
-use crate::page::{HALF_PAGE_PX, banner, capital, document};
+use crate::page::{HALF_PAGE_PX, banner, capital, document, sentence};
 use crate::plot::{Axis, Colour, Figure, Series};
 use change::Change;
 
@@ -219,7 +219,7 @@ fn incomplete(index: &CampaignIndex, complete: usize) -> Markup {
     for run in index.runs.iter().filter(|run| !run.is_complete()) {
         *counts.entry(run.row.status.as_str()).or_default() += 1;
     }
-    let lost = index.lost.iter().map(|lost| format!(" The label leaks: {lost}.")).collect::<String>();
+    let lost = index.lost.iter().map(|lost| format!(" {}", sentence(lost))).collect::<String>();
     let rest = "What the others left is drawn where there is a number, and their reasons are in the table.";
     banner((complete, index.runs.len()), "runs", counts, &format!("{rest}{lost}"))
 }
@@ -318,7 +318,8 @@ fn figure(
     let id = format!("{}-{at}", path.replace(['.', '_'], "-"));
     let title = format!("{words} over the {}", FieldWords::of(&index.fields[at]).inside());
     let mut figure = Figure::new(&id, &title, abscissa.axis.clone(), Axis::plain(words, unit));
-    let joined = other.is_some() || index.fields.len() == 1;
+    // A line through names would be a trend.
+    let joined = abscissa.is_ordered && (other.is_some() || index.fields.len() == 1);
     let (mut lines, mut dots) = (Vec::new(), Vec::new());
     for (name, colour) in groups.iter().zip(Colour::FOREGROUNDS.into_iter().cycle()) {
         let (x, y): (Vec<f64>, Vec<f64>) =

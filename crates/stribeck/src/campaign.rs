@@ -179,11 +179,14 @@ const MOST_NUMBERS: usize = 5;
 
 /// Says before the first run what is not as the file has it: fields that a bearing replaces, and runs that cannot
 /// be.
-fn announce(campaign: &Campaign) {
+pub(crate) fn announce(campaign: &Campaign) {
     if !campaign.replaced.is_empty() {
-        let of_field = |OfBearing { field, written, now }: &OfBearing| match now.as_slice() {
-            [first, .., last] => format!("`{field}` {first} … {last} instead of {written}"),
-            now => format!("`{field}` {} instead of {written}", now.concat()),
+        let of_field = |OfBearing { field, written, now }: &OfBearing| {
+            let numbers: Vec<f64> = now.iter().filter_map(|value| value.parse().ok()).collect();
+            let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let now = if least < most { format!("{least} to {most}") } else { now.join(", ") };
+            format!("`{field}` {now} instead of {written}")
         };
         caution!(
             "with each bearing its surroundings change, in the place of those of the scene file: {}. Give with \
@@ -200,7 +203,7 @@ fn announce(campaign: &Campaign) {
         );
     }
     for refused in refused.iter().take(MOST_REASONS) {
-        let labels = refused.labels.iter().map(|(label, count)| format!("{count} {label}"));
+        let labels = refused.labels.iter().map(|(label, count)| format!("{label}: {count}"));
         let mut numbers: Vec<String> =
             refused.runs.iter().take(MOST_NUMBERS).map(ToString::to_string).collect();
         if refused.runs.len() > MOST_NUMBERS {
@@ -218,7 +221,7 @@ fn announce(campaign: &Campaign) {
         alert!("  … and {} reasons more", refused.len() - MOST_REASONS);
     }
     for lost in campaign.lost_labels() {
-        caution!("the label leaks: {lost}");
+        caution!("{lost}");
     }
 }
 

@@ -66,8 +66,11 @@ impl Left {
     pub(crate) fn say(&self, (count, all): (usize, usize), noun: &str, next: &str) {
         let refused = self.refused.as_ref().map_or_else(String::new, |why| format!(": {why}"));
         alert!("{count} of {all} {noun}s are not at their end{refused}");
-        if self.elsewhere > 0 {
-            alert!("{} of {all} {noun}s are being run by another program", self.elsewhere);
+        // Others may have come to their end meanwhile.
+        match self.elsewhere.min(count) {
+            0 => {}
+            1 => alert!("1 of {all} {noun}s is being run by another program"),
+            several => alert!("{several} of {all} {noun}s are being run by another program"),
         }
         alert!("{next}");
     }

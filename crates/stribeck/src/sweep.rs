@@ -13,7 +13,7 @@ use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_scene::scene_file::readable;
 use stribeck_store::run_dir::{Keep, check_folder};
 
-use crate::campaign::{self, CAMPAIGN, MARKS, SCENES, carry_out};
+use crate::campaign::{self, CAMPAIGN, MARKS, SCENES, announce, carry_out};
 use crate::many_runs::Share;
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
@@ -140,7 +140,7 @@ fn vary(options: &Options, place: &Place) -> Result<ExitCode> {
     if options.print {
         // To be sent to a file in the working folder.
         let text = text(options, keep, &name, base.as_deref(), Path::new("."), (&swept, &fixed))?;
-        Campaign::parse(&text, CAMPAIGN, Path::new(""))?;
+        announce(&Campaign::parse(&text, CAMPAIGN, Path::new(""))?);
         say!("{}", text.trim_end());
         return Ok(ExitCode::SUCCESS);
     }

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeMap;
 
-use super::label::HEALTHY;
 use super::{Campaign, Label};
 
 /// Runs that are refused for one reason.
@@ -55,20 +54,17 @@ impl Campaign {
             let Some((first, _)) = gone.first() else { continue };
             let bearing = first.bearing_in_words();
             let count: usize = gone.iter().map(|(_, [_, refused])| refused).sum();
+            let refused = format!("{count} of {count} refused");
             lost.push(match left.as_slice() {
-                [] => format!("{bearing} has no run: all {count} are refused"),
-                [(only, _)] => {
-                    let kind = if only.fault == HEALTHY { "damaged" } else { "other" };
-                    format!(
-                        "{bearing} is always {}: all {count} {kind} runs of it are refused, so its name gives the \
-                         label away",
-                        only.fault.replace('_', " ")
-                    )
-                }
+                [] => format!("{bearing} has no run: {refused}"),
+                [(only, _)] => format!(
+                    "{bearing} is always {}, and its name gives the label away: of other runs {refused}",
+                    only.fault.replace('_', " ")
+                ),
                 _ => {
                     let faults: Vec<String> =
                         gone.iter().map(|(label, _)| label.fault.replace('_', " ")).collect();
-                    format!("{bearing} has no run labelled {}: all {count} are refused", faults.join(" or "))
+                    format!("{bearing} has no run labelled {}: {refused}", faults.join(" or "))
                 }
             });
         }

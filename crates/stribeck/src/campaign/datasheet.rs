@@ -56,7 +56,7 @@ pub(super) fn text(campaign: &Campaign, rows: &[OneOfMany], written: &Written) -
         },
     );
     for lost in campaign.lost_labels() {
-        page += &format!("- The label leaks: {lost}.\n");
+        page += &format!("- {lost}.\n");
     }
     for limit in limits(rows) {
         page += &format!("- {limit}\n");

@@ -298,7 +298,7 @@ fn behaves_variants_that_cannot_be_are_rows_with_their_reason() {
     let desk = desk("campaign-refused", &text);
     let before = "2 of 4 runs cannot be, and get a row with their reason in place of a run:";
     let done = desk.succeeds("--out=A -q");
-    says(&done, &[before, "1 inner race, 1 outer race", "2 of 4 runs are complete"]);
+    says(&done, &[before, "inner race: 1, outer race: 1", "2 of 4 runs are complete"]);
     // When none can be, the command fails.
     fs::write(desk.join("campaign.ron"), text.replace("[18.0, 19.0]", "[19.0]")).expect("a campaign");
     desk.refuses("--out=B", &["0 of 2 runs are complete"]);
