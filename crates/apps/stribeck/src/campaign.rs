@@ -15,17 +15,19 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
-use stribeck_report::{CampaignIndex, CampaignRun, write_campaign};
+use stribeck_analysis::runs::OneOfMany;
+use stribeck_report::{CampaignIndex, write_campaign};
 use stribeck_scene::scene::{ModelScene, Scene};
-use stribeck_store::campaign::{Campaign, Variant};
-use stribeck_store::run_dir::check_folder;
+use stribeck_store::campaign::{Campaign, OfBearing, Variant, in_a_line};
+use stribeck_store::run_dir::{Keep, check_folder};
 
-use crate::emit::{self, MOST_PARTS, Part};
+use crate::emit::{self, Part};
 use crate::interrupt::{self, Interrupt};
 use crate::many_runs::{ManyRuns, Share, Stage, Wanted};
-use crate::out::{alert, say, tell};
+use crate::out::{alert, caution, say, tell};
 use crate::place::{Place, shown};
-use tables::{Row, Written};
+use crate::side_by_side::Left;
+use tables::Written;
 
 /// Flags of `sweep` for the campaign of a file.
 #[derive(Debug, clap::Args)]
@@ -120,20 +122,21 @@ impl<'a> From<&'a Variant> for Wanted<'a> {
     }
 }
 
-/// Runs the campaign of a file in `out`, or the part of it that the flags say.
+/// Runs the campaign of a file in `out`, or the part of it that the flags say; `keep` in the place of what the file
+/// keeps.
 pub(crate) fn run(
     file: &Path,
+    keep: Option<Keep>,
     out: Option<PathBuf>,
     share: Share,
     options: &OfFile,
     place: &Place,
 ) -> Result<ExitCode> {
-    let campaign = Campaign::read(file)?;
+    let campaign = Campaign::read_keeping(file, keep)?;
     let out = out.unwrap_or_else(|| place.runs().join(&campaign.name));
     if let Some(engine) = options.emit {
-        // One part a run, up to some.
-        let parts = u32::try_from(campaign.runs.len()).unwrap_or(MOST_PARTS).min(MOST_PARTS);
-        let part = Part::new(options.shards.unwrap_or(parts), share);
+        announce(&campaign);
+        let part = Part::new(options.shards, campaign.runs.len(), engine, share);
         say!("{}", emit::script(engine, "sweep", file, &out, part)?.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
@@ -150,12 +153,13 @@ pub(crate) fn carry_out(
 ) -> Result<ExitCode> {
     let folder = Folder(ManyRuns(out));
     check_folder(folder.path(), &MARKS)?;
+    announce(campaign);
     enter(&folder, campaign)?;
     let interrupt = Interrupt::listen()?;
     let mine =
         |variant: &&Variant| shard.is_none_or(|Shard { part, of }| (variant.number - 1) % of == part - 1);
     let due = folder.0.due(campaign.keep, campaign.runs.iter().filter(mine).map(Wanted::from), &interrupt)?;
-    folder.0.make(campaign.keep, &due, share, &interrupt, &|jobs| {
+    let left = folder.0.make(campaign.keep, &due, share, &interrupt, &|jobs| {
         tell!(
             "{}: {} runs, {} of them to be run here, {} → {}",
             campaign.name,
@@ -165,7 +169,60 @@ pub(crate) fn carry_out(
             shown(folder.path())
         );
     });
-    conclude(&folder, campaign, &interrupt, mine)
+    conclude(&folder, campaign, &interrupt, &left, mine)
+}
+
+/// Reasons for refused runs that are listed.
+const MOST_REASONS: usize = 10;
+/// Numbers of runs that are listed of each.
+const MOST_NUMBERS: usize = 5;
+
+/// Says before the first run what is not as the file has it: fields that a bearing replaces, and runs that cannot
+/// be.
+pub(crate) fn announce(campaign: &Campaign) {
+    if !campaign.replaced.is_empty() {
+        let of_field = |OfBearing { field, written, now }: &OfBearing| {
+            let numbers: Vec<f64> = now.iter().filter_map(|value| value.parse().ok()).collect();
+            let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+            let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let now = if least < most { format!("{least} to {most}") } else { now.join(", ") };
+            format!("`{field}` {now} instead of {written}")
+        };
+        caution!(
+            "with each bearing its surroundings change, in the place of those of the scene file: {}. Give with \
+             --set (in a campaign file: `set`) what is to stay",
+            campaign.replaced.iter().map(of_field).collect::<Vec<_>>().join(", ")
+        );
+    }
+    let refused = campaign.refused();
+    let count: usize = refused.iter().map(|refused| refused.runs.len()).sum();
+    if count > 0 {
+        caution!(
+            "{count} of {} runs cannot be, and get a row with their reason in place of a run:",
+            campaign.runs.len()
+        );
+    }
+    for refused in refused.iter().take(MOST_REASONS) {
+        let labels = refused.labels.iter().map(|(label, count)| format!("{label}: {count}"));
+        let mut numbers: Vec<String> =
+            refused.runs.iter().take(MOST_NUMBERS).map(ToString::to_string).collect();
+        if refused.runs.len() > MOST_NUMBERS {
+            numbers.push("…".to_owned());
+        }
+        alert!(
+            "  {} of them ({}; runs {}): {}",
+            refused.runs.len(),
+            labels.collect::<Vec<_>>().join(", "),
+            numbers.join(", "),
+            refused.reason
+        );
+    }
+    if refused.len() > MOST_REASONS {
+        alert!("  … and {} reasons more", refused.len() - MOST_REASONS);
+    }
+    for lost in campaign.lost_labels() {
+        caution!("{lost}");
+    }
 }
 
 /// Writes a file that other parts may write at the same time.
@@ -180,8 +237,8 @@ fn enter(folder: &Folder, campaign: &Campaign) -> Result<()> {
     if let Some(there) = &there {
         ensure!(
             *there == campaign.text,
-            "`{}` holds another campaign, or an earlier text of this one: give a folder with `--out`, or \
-             compare `{}`",
+            "`{}` holds another campaign, or an earlier text of this one, or one with another `--keep`: give a \
+             folder with `--out`, or compare `{}`",
             shown(folder.path()),
             shown(&path)
         );
@@ -220,6 +277,7 @@ fn conclude(
     folder: &Folder,
     campaign: &Campaign,
     interrupt: &Interrupt,
+    why: &Left,
     mine: impl Fn(&&Variant) -> bool,
 ) -> Result<ExitCode> {
     names::link(folder, campaign);
@@ -241,26 +299,26 @@ fn conclude(
             );
             return Ok(ExitCode::SUCCESS);
         }
-        tell!(
-            "{left} of {all} runs are not at their end or without their numbers; the same command goes on. \
-             Tables are made when all are"
-        );
+        why.say((left, all), "run", "The same command goes on. Tables are made when all are");
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
     let rows = tables::rows(folder, campaign, &stages)?;
     let turn = folder.take_turn()?;
     let written = tables::write(folder, campaign, &rows)?;
     replace(&folder.path().join(DATASHEET), &datasheet::text(campaign, &rows, &written))?;
-    write_campaign(folder.path(), &index(folder, campaign, &rows, &written))?;
+    let index = index(campaign, rows, &written);
+    write_campaign(folder.path(), &index)?;
     drop(turn);
-    let complete = rows.iter().filter(|row| row.is_complete()).count();
-    for row in rows.iter().filter(|row| !row.is_complete()).take(3) {
-        let why = row.reason.as_deref().unwrap_or_default();
-        let allowed = why.lines().find_map(|line| line.trim_start().strip_prefix("= allowed: "));
-        let allowed = allowed.map_or_else(String::new, |allowed| format!("; allowed: {allowed}"));
-        alert!("run {}: {}: {}{allowed}", row.number, row.status, why.lines().next().unwrap_or_default());
+    let rows = index.runs;
+    let complete = rows.iter().filter(|one| one.is_complete()).count();
+    let all = rows.len();
+    // Refused ones are announced.
+    for OneOfMany { row, .. } in
+        rows.iter().filter(|one| !one.is_complete() && one.row.status != "refused").take(3)
+    {
+        alert!("run {}: {}: {}", row.run, row.status, in_a_line(row.reason.as_deref().unwrap_or_default()));
     }
-    say!("{complete} of {} runs are complete: {}", rows.len(), shown(&folder.path().join(tables::RUNS)));
+    say!("{complete} of {all} runs are complete: {}", shown(&folder.path().join(tables::RUNS)));
     say!("page: {}", shown(&folder.path().join(INDEX)));
     Ok(if complete == 0 { ExitCode::FAILURE } else { ExitCode::SUCCESS })
 }
@@ -282,20 +340,7 @@ fn in_words(scene: &Scene) -> String {
 }
 
 /// Content of the campaign's page.
-fn index(folder: &Folder, campaign: &Campaign, rows: &[Row], written: &Written) -> CampaignIndex {
-    let run = |row: &Row| {
-        let run = row.folder.as_ref().and_then(|path| path.strip_prefix(folder.path()).ok());
-        CampaignRun {
-            number: row.number,
-            start: row.start,
-            status: row.status.to_owned(),
-            reason: row.reason.clone(),
-            values: row.values.iter().map(|value| value.trim_matches('"').to_owned()).collect(),
-            claimed: row.claimed.clone(),
-            numbers: row.numbers.clone(),
-            folder: run.map(|path| path.display().to_string()),
-        }
-    };
+fn index(campaign: &Campaign, runs: Vec<OneOfMany>, written: &Written) -> CampaignIndex {
     let mut files = vec![
         (DATASHEET, "what the data set holds, its limits, and every column with its unit"),
         (tables::RUNS, "a row a run, with the truth and every number of its summary"),
@@ -311,7 +356,8 @@ fn index(folder: &Folder, campaign: &Campaign, rows: &[Row], written: &Written) 
         name: campaign.name.clone(),
         bearing: scene.map(in_words),
         fields: campaign.fields.clone(),
-        runs: rows.iter().map(run).collect(),
+        runs,
+        lost: campaign.lost_labels(),
         files: files.into_iter().map(|(file, what)| (file.to_owned(), what.to_owned())).collect(),
     }
 }

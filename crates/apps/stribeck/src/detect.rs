@@ -15,8 +15,8 @@ use stribeck_scene::{catalogue, ensemble, machine::MachineScene};
 use stribeck_store::run_dir::{Keep, RunDir, check_folder, write_atomic};
 use stribeck_store::run_info::Status;
 
-use crate::interrupt::{Interrupt, Interrupted};
-use crate::many_runs::{ManyRuns, Share, Wanted};
+use crate::interrupt::Interrupt;
+use crate::many_runs::{ManyRuns, Share};
 use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
 
@@ -81,12 +81,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
     }
     let runs = ManyRuns(out.clone());
     let interrupt = Interrupt::listen()?;
-    let wanted = all.iter().enumerate().map(|(number, made)| Wanted { number, scene: Ok(&made.scene) });
-    let due = runs.due(Keep::Signals, wanted, &interrupt)?;
-    runs.make(Keep::Signals, &due, options.share, &interrupt, &|jobs| {
-        tell!("{} records, {} of them to be made, {}: {}", all.len(), due.len(), jobs.shown(), shown(&out));
-    });
-    ensure!(!interrupt.is_pressed(), Interrupted);
+    let scenes = all.iter().map(|made| &made.scene);
+    runs.make_all(Keep::Signals, scenes, (options.share, &interrupt), &|count, jobs| {
+        tell!("{} records, {count} of them to be made, {}: {}", all.len(), jobs.shown(), shown(&out));
+    })?;
     let known = known(&base);
     let mut found = Vec::new();
     let mut record_s = 0.0;

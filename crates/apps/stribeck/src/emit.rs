@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 
 use crate::many_runs::Share;
+use crate::out::caution;
 
 /// Engines that a script can be written for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -25,15 +26,25 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// One of the parts, with its threads, or one thread a job.
-    pub(crate) fn new(of: u32, share: Share) -> Self {
+    /// One of as many parts as are asked for, or 16, and no more than there are runs or an engine takes; with its
+    /// threads, or one thread a job.
+    pub(crate) fn new(asked: Option<u32>, runs: usize, engine: Engine, share: Share) -> Self {
         let Share { jobs, threads, memory_gb } = share;
+        let most = if engine == Engine::Slurm { MOST_OF_SLURM } else { u32::MAX };
+        let of = asked.unwrap_or(USUAL_PARTS).min(u32::try_from(runs).unwrap_or(u32::MAX)).min(most);
+        if let Some(asked) = asked.filter(|asked| *asked > of) {
+            let why =
+                if of == most { "an array of Slurm takes no index above it" } else { "as many as runs" };
+            caution!("{of} parts in place of {asked}: {why}");
+        }
         Self { of, jobs, threads: threads.or(jobs).unwrap_or(1), memory_gb }
     }
 }
 
 /// Default number of parts.
-pub(crate) const MOST_PARTS: u32 = 16;
+const USUAL_PARTS: u32 = 16;
+/// `MaxArraySize` of Slurm is 1001 where a site has not changed it, and the first index is 1.
+const MOST_OF_SLURM: u32 = 1000;
 
 /// The script that runs `command`. It may be submitted again after any loss: completed runs are not repeated.
 /// A part that ends before others leaves the tables to them and succeeds; so an engine reports real failures
@@ -61,6 +72,7 @@ pub(crate) fn script(engine: Engine, command: &str, file: &Path, out: &Path, par
         Engine::Slurm => format!(
             "#!/bin/sh\n#SBATCH --job-name=stribeck\n#SBATCH --array=1-{of}\n#SBATCH \
              --cpus-per-task={threads}\n{memory}#SBATCH --requeue\n\
+             # Where the site demands a limit of time, take one # from the next line.\n##SBATCH --time=24:00:00\n\
              # Submit with `sbatch`; once more after a loss. The last part that ends makes the tables.\n{}\n",
             line("$SLURM_ARRAY_TASK_ID")?
         ),

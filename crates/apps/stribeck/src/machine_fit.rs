@@ -16,8 +16,8 @@ use stribeck_store::run_dir::{Keep, Run, write_atomic};
 use stribeck_store::run_info::Status;
 
 use crate::analyse::{Accelerations, Reading, accelerations};
-use crate::interrupt::{Interrupt, Interrupted};
-use crate::many_runs::{ManyRuns, Share, Wanted};
+use crate::interrupt::Interrupt;
+use crate::many_runs::{ManyRuns, Share};
 use crate::new;
 use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
@@ -209,12 +209,9 @@ fn one(
 fn forces(scenes: &[&Scene], folder: PathBuf, share: Share) -> Result<Vec<Force>> {
     let interrupt = Interrupt::listen()?;
     let runs = ManyRuns(folder);
-    let wanted = scenes.iter().enumerate().map(|(number, scene)| Wanted { number, scene: Ok(scene) });
-    let due = runs.due(Keep::All, wanted, &interrupt)?;
-    runs.make(Keep::All, &due, share, &interrupt, &|jobs| {
-        tell!("{} bearings are simulated, {}: {}", due.len(), jobs.shown(), shown(&runs.0));
-    });
-    ensure!(!interrupt.is_pressed(), Interrupted);
+    runs.make_all(Keep::All, scenes.iter().copied(), (share, &interrupt), &|count, jobs| {
+        tell!("{count} bearings are simulated, {}: {}", jobs.shown(), shown(&runs.0));
+    })?;
     let force = |scene: &&Scene| {
         let folder = runs.run(scene);
         let run = Run::read(&folder).with_context(|| format!("no run in `{}`", shown(&folder)))?;

@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use stribeck_analysis::findings::Findings;
 use stribeck_analysis::record::Record;
 use stribeck_scene::scene::Scene;
@@ -12,11 +12,11 @@ use stribeck_store::Error;
 use stribeck_store::run_dir::{Keep, Run, RunDir, State, write_atomic};
 use stribeck_store::run_info::Status;
 
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Interrupted};
 use crate::memory;
 use crate::out::caution;
 use crate::place::shown;
-use crate::side_by_side::{Due, Jobs, Shop};
+use crate::side_by_side::{Due, Jobs, Left, Shop};
 use crate::simulate::{jobs, threads};
 
 /// The folder that holds the runs.
@@ -113,15 +113,17 @@ impl ManyRuns {
         for wanted in wanted {
             let Ok(scene) = wanted.scene else { continue };
             match self.stage(keep, wanted)? {
-                Stage::Due => {
-                    let (number, scene, folder) = (wanted.number, scene.clone(), self.run(scene));
-                    if seen.insert(folder.clone()) {
-                        due.push(Due { number, scene, folder });
-                    }
+                Stage::Due if seen.insert(self.run(scene)) => {
+                    due.push(Due::new(wanted.number, scene.clone(), self.run(scene)));
                 }
                 // Remains of a kill; removing them may free the space that others need.
                 Stage::Ended if !interrupt.is_pressed() => {
-                    if let Err(why) = settle(&self.run(scene), keep) {
+                    let Err(why) = settle(&self.run(scene), keep) else { continue };
+                    let is_damaged = is_damaged(&why);
+                    if is_damaged && seen.insert(self.run(scene)) {
+                        let folder = self.run(scene);
+                        due.push(Due { anew: true, ..Due::new(wanted.number, scene.clone(), folder) });
+                    } else if !is_damaged {
                         caution!("{why:#}");
                     }
                 }
@@ -129,6 +131,21 @@ impl ManyRuns {
             }
         }
         Ok(due)
+    }
+
+    /// Runs those of `scenes` that are not at their end; `say` is called first with their number.
+    pub(crate) fn make_all<'a>(
+        &self,
+        keep: Keep,
+        scenes: impl Iterator<Item = &'a Scene>,
+        (share, interrupt): (Share, &Interrupt),
+        say: &dyn Fn(usize, Jobs),
+    ) -> Result<()> {
+        let wanted = scenes.enumerate().map(|(at, scene)| Wanted { number: at + 1, scene: Ok(scene) });
+        let due = self.due(keep, wanted, interrupt)?;
+        self.make(keep, &due, share, interrupt, &|jobs| say(due.len(), jobs));
+        ensure!(!interrupt.is_pressed(), Interrupted);
+        Ok(())
     }
 
     /// Runs the outstanding runs. `say` is called first with the number of simultaneous ones.
@@ -139,7 +156,7 @@ impl ManyRuns {
         share: Share,
         interrupt: &Interrupt,
         say: &dyn Fn(Jobs),
-    ) {
+    ) -> Left {
         let limit_gb = share.memory_gb.or_else(memory::free_gb).unwrap_or(f64::INFINITY);
         let need_gb = due.iter().map(|due| memory::need_gb(&due.scene)).fold(0.0, f64::max);
         if need_gb > limit_gb {
@@ -148,8 +165,7 @@ impl ManyRuns {
         let fitting = ((limit_gb / need_gb) as usize).max(1);
         let jobs = Jobs::of(share.jobs, share.threads, due.len().min(fitting));
         say(jobs);
-        let shop = Shop::new("run", due, jobs, interrupt);
-        shop.run(&|due, error| {
+        Shop::new("run", due, jobs, interrupt).run(&|shop, due, error| {
             let kept = match error {
                 Some(error) => self.keep_failure(&due.scene, &error.to_string()),
                 // Each job makes the summary of its own run; the tables only collect them.
@@ -161,8 +177,18 @@ impl ManyRuns {
             if let Err(why) = kept {
                 shop.warn(&why.to_string());
             }
-        });
+        })
     }
+}
+
+/// Whether the files of a run that has ended are damaged, so that it has no numbers.
+fn is_damaged(error: &anyhow::Error) -> bool {
+    use Error::{Mesh, RunInfo, Trace};
+    let of_store = match error.downcast_ref::<stribeck_analysis::Error>() {
+        Some(stribeck_analysis::Error::Run(error)) => Some(error),
+        _ => error.downcast_ref::<Error>(),
+    };
+    matches!(of_store, Some(Trace { .. } | Mesh { .. } | RunInfo { .. }))
 }
 
 /// Whether a finished run has its numbers and only the files that are to be kept. Where all is kept,

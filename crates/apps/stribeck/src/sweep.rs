@@ -6,15 +6,16 @@ use std::path::{Component, Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail, ensure};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use stribeck_scene::catalogue;
 use stribeck_scene::scene::{ModelScene, Scene};
-use stribeck_scene::scene_file::{readable, replaced_by_bearing};
+use stribeck_scene::scene_file::readable;
 use stribeck_store::campaign::Campaign;
-use stribeck_store::run_dir::check_folder;
+use stribeck_store::run_dir::{Keep, check_folder};
 
-use crate::campaign::{self, CAMPAIGN, MARKS, SCENES, carry_out};
+use crate::campaign::{self, CAMPAIGN, MARKS, SCENES, announce, carry_out};
 use crate::many_runs::Share;
-use crate::out::{caution, say, tell};
+use crate::out::{say, tell};
 use crate::place::{Place, shown};
 
 /// Flags of `sweep`.
@@ -34,9 +35,10 @@ pub struct Options {
     #[arg(long, value_name = "SEED", requires = "set")]
     seed: Option<u64>,
     /// Files kept of each run once its summary exists [default: signals of the reduced model, whose runs are made
-    /// again in seconds, and all of the full one; in a folder of a sweep what that kept]
-    #[arg(long, value_enum, requires = "set")]
-    keep: Option<Kept>,
+    /// again in seconds, and all of the full one; in a folder of a sweep what that kept; of a campaign file what it
+    /// says]
+    #[arg(long, value_parser = keep())]
+    keep: Option<Keep>,
     /// Folder [default: runs/NAME-by-FIELD, or runs/NAME of a campaign file]; the same command continues; with other
     /// values its tables are theirs, and runs that are there are used where they occur again
     #[arg(long, value_name = "DIR")]
@@ -50,31 +52,17 @@ pub struct Options {
     of_file: campaign::OfFile,
 }
 
-/// Files kept of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, clap::ValueEnum)]
-enum Kept {
-    /// Everything
-    All,
-    /// Of the samples those of the sensors
-    Signals,
-    /// No samples
-    Numbers,
+/// The values of `--keep`.
+fn keep() -> impl TypedValueParser<Value = Keep> {
+    let about = ["Everything", "Of the samples those of the sensors", "No samples"];
+    let words = Keep::ALL.iter().zip(about).map(|(keep, about)| PossibleValue::new(keep.word()).help(about));
+    let of = |word: String| Keep::ALL.into_iter().find(|keep| keep.word() == word);
+    PossibleValuesParser::new(words).map(move |word| of(word).unwrap_or(Keep::All))
 }
 
-impl Kept {
-    /// What is kept where nobody says.
-    fn usual(scene: &Scene) -> Self {
-        if scene.model == ModelScene::Full { Self::All } else { Self::Signals }
-    }
-
-    /// As a campaign's file has it, and the flag.
-    fn word(self) -> &'static str {
-        match self {
-            Self::All => "all",
-            Self::Signals => "signals",
-            Self::Numbers => "numbers",
-        }
-    }
+/// What is kept where nobody says.
+fn usual(scene: &Scene) -> Keep {
+    if scene.model == ModelScene::Full { Keep::All } else { Keep::Signals }
 }
 
 /// The first words of a file that this command wrote, which it may replace.
@@ -101,7 +89,7 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
                 shown(&file),
                 place.program
             );
-            campaign::run(&file, options.out.clone(), options.share, &options.of_file, place)
+            campaign::run(&file, options.keep, options.out.clone(), options.share, &options.of_file, place)
         }
         None if options.set.is_empty() => bail!(
             "nothing varies: `{0} sweep SCENE.ron --set operation.load_n=1000,2000,4000` runs a scene with some \
@@ -147,12 +135,12 @@ fn vary(options: &Options, place: &Place) -> Result<ExitCode> {
     let of_bearing = swept.iter().any(|a| a.field == "bearing");
     let name = name(stem.filter(|_| of_bearing).as_deref().unwrap_or(&scene.name), &swept);
     let out = options.out.clone().unwrap_or_else(|| place.runs().join(&name));
-    let keep = options.keep.or_else(|| kept_in(&out)).unwrap_or(Kept::usual(&scene));
+    let keep = options.keep.or_else(|| kept_in(&out)).unwrap_or(usual(&scene));
     let base = options.file.as_deref().map(|scene| place.locate(scene));
     if options.print {
         // To be sent to a file in the working folder.
         let text = text(options, keep, &name, base.as_deref(), Path::new("."), (&swept, &fixed))?;
-        Campaign::parse(&text, CAMPAIGN, Path::new(""))?;
+        announce(&Campaign::parse(&text, CAMPAIGN, Path::new(""))?);
         say!("{}", text.trim_end());
         return Ok(ExitCode::SUCCESS);
     }
@@ -181,8 +169,7 @@ fn parse(text: &str, out: &Path) -> Result<Campaign> {
 }
 
 /// Reads the scene under each value of each field separately, so that mistakes are reported in the words of
-/// the command line; returns the first. Replaced fields and assumed dimensions are reported once
-/// for all values.
+/// the command line; returns the first. Assumed dimensions are reported once for all values.
 fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&Assigned]) -> Result<Scene> {
     let file = options.file.as_deref();
     let argument = |a: &Assigned, value: &str| format!("{}={value}", a.field);
@@ -196,23 +183,13 @@ fn read_each(options: &Options, place: &Place, swept: &[&Assigned], fixed: &[&As
             sets.push([common.as_slice(), &set].concat());
         }
     }
-    let (mut fields, mut notes, mut first) = (BTreeSet::new(), BTreeSet::new(), None);
+    let (mut notes, mut first) = (BTreeSet::new(), None);
     for set in &sets {
         let scene = place.scene_quietly(file, set)?;
-        let replaced = file.map_or(Vec::new(), |file| replaced_by_bearing(&place.locate(file), set));
-        fields.extend(replaced.into_iter().map(|replaced| format!("`{}`", replaced.field)));
         if !scene.bearing.assumed.is_empty() {
             notes.extend(catalogue::assumptions(&scene.bearing));
         }
         first.get_or_insert(scene);
-    }
-    if let (Some(file), false) = (file, fields.is_empty()) {
-        let fields = fields.into_iter().collect::<Vec<_>>().join(", ");
-        caution!(
-            "with each bearing its surroundings change, in the place of those of `{}`: {fields}. Give with \
-             --set what is to stay",
-            file.display()
-        );
     }
     for note in notes {
         tell!("note: {note}");
@@ -230,7 +207,7 @@ fn name(scene: &str, swept: &[&Assigned]) -> String {
 
 fn text(
     options: &Options,
-    keep: Kept,
+    keep: Keep,
     name: &str,
     base: Option<&Path>,
     out: &Path,
@@ -292,16 +269,15 @@ pub(crate) fn relative(file: &Path, folder: &Path) -> Result<PathBuf> {
 }
 
 /// What the sweep in this folder keeps, if there is one.
-fn kept_in(out: &Path) -> Option<Kept> {
+fn kept_in(out: &Path) -> Option<Keep> {
     let text =
         std::fs::read_to_string(out.join(CAMPAIGN)).ok().filter(|text| text.starts_with(WRITTEN_BY))?;
-    let kept = [Kept::All, Kept::Signals, Kept::Numbers];
-    kept.into_iter().find(|kept| text.contains(&format!("keep: {},", kept.word())))
+    Keep::ALL.into_iter().find(|kept| text.contains(&format!("keep: {},", kept.word())))
 }
 
 /// Removes the tables of an earlier sweep in this folder; its runs stay and are used where their scenes occur
 /// again.
-fn make_way(out: &Path, keep: Kept) -> Result<()> {
+fn make_way(out: &Path, keep: Keep) -> Result<()> {
     let text = std::fs::read_to_string(out.join(CAMPAIGN)).unwrap_or_default();
     if text.starts_with(WRITTEN_BY) {
         if let Some(before) = kept_in(out).filter(|before| *before > keep) {

@@ -8,13 +8,13 @@ use stribeck_analysis::agreement::{Agreement, FINE_S, FROM_S, LEAST_S, Row};
 use stribeck_report as report;
 use stribeck_scene::ensemble::{folder_name, start};
 use stribeck_scene::scene::{ModelScene, RollerProfile, Scene};
-use stribeck_store::run_dir::{Run, State, check_folder};
+use stribeck_store::run_dir::{Run, check_folder};
 use stribeck_store::run_info::Status;
 
 use crate::interrupt::{self, Interrupt};
 use crate::out::{say, tell};
 use crate::place::{Place, shown};
-use crate::side_by_side::{Due, Jobs, Shop};
+use crate::side_by_side::{Due, Jobs, Shop, outstanding};
 use crate::simulate::{jobs, threads};
 
 /// Flags of `validate`.
@@ -77,7 +77,8 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
     }
     std::fs::create_dir_all(&out).with_context(|| format!("cannot make `{}`", shown(&out)))?;
-    let due = due(&folders, &models, options)?;
+    let planned = || plan(&folders, &models, options);
+    let due = outstanding(planned())?;
     let jobs = Jobs::of(options.jobs, options.threads, due.len());
     tell!(
         "{}: {} starts of {} ms by both models, {} runs to make, {} → {}",
@@ -89,11 +90,10 @@ pub(crate) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         shown(&out)
     );
     let interrupt = Interrupt::listen()?;
-    let shop = Shop::new("run", &due, jobs, &interrupt);
-    shop.run(&|_, _| {});
-    let left = self::due(&folders, &models, options)?.len();
+    let why = Shop::new("run", &due, jobs, &interrupt).run(&|_, _, _| {});
+    let left = outstanding(planned())?.len();
     if left > 0 {
-        tell!("{left} runs are not at their end; the same command goes on with them");
+        why.say((left, 2 * usize::from(options.starts)), "run", "The same command goes on with them");
         return Ok(ExitCode::from(if interrupt.is_pressed() { interrupt::EXIT_CODE } else { 1 }));
     }
     let mut pairs = Vec::new();
@@ -141,27 +141,21 @@ fn models(scene: &Scene) -> Result<[Scene; 2]> {
     Ok([full, by(reduced)?])
 }
 
-/// Runs that are not at their end, a pair after the other.
-fn due(folders: &[PathBuf; 2], models: &[Scene; 2], options: &Options) -> Result<Vec<Due>> {
+/// All runs, a pair after the other, each with the flag that gives another folder.
+fn plan<'a>(
+    folders: &'a [PathBuf; 2],
+    models: &'a [Scene; 2],
+    options: &'a Options,
+) -> impl Iterator<Item = (Due, &'static str)> + 'a {
     let flags = [if options.full.is_some() { "--full" } else { "--out" }, "--out"];
-    let mut due: Vec<Due> = Vec::new();
-    for number in 1..=usize::from(options.starts) {
-        for ((folder, scene), flag) in folders.iter().zip(models).zip(flags) {
-            let scene = start(scene, options.seed, number);
-            let folder = folder.join(folder_name(number));
-            match State::of(&folder, &scene) {
-                State::Done => {}
-                State::Other => bail!(
-                    "`{}` holds a run of another scene, seed or duration: give another folder with `{}`, or \
-                     move it away",
-                    shown(&folder),
-                    flag
-                ),
-                State::New | State::Begun => due.push(Due { number: due.len() + 1, scene, folder }),
-            }
-        }
-    }
-    Ok(due)
+    let pair = move |number: usize| {
+        [0, 1].map(|model| {
+            let folder = folders[model].join(folder_name(number));
+            let scene = start(&models[model], options.seed, number);
+            (Due::new(2 * number - 1 + model, scene, folder), flags[model])
+        })
+    };
+    (1..=usize::from(options.starts)).flat_map(pair)
 }
 
 fn print(agreement: &Agreement) {

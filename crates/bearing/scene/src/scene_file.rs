@@ -272,15 +272,20 @@ pub fn read_as<T: Value>(text: &str, file: &str, kind: &'static Kind) -> Result<
     }
 }
 
-/// Whether the scene file at `path`, or the paper's scene, can be read with `overrides`. Errors that further
+/// The scene file at `path`, or the paper's scene, with `overrides`, as it is written. Errors that further
 /// overrides may repair are not checked: numbers outside their range, bodies that cannot exist, tables that
 /// are not there.
-pub fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<(), SceneError> {
+pub fn readable<S: AsRef<str>>(path: Option<&Path>, overrides: &[S]) -> Result<Scene, SceneError> {
     match path {
         Some(path) => {
-            understand(without_mark(&load(path)?), &path.display().to_string(), overrides).map(drop)
+            let text = load(path)?;
+            Ok(understand(without_mark(&text), &path.display().to_string(), overrides)?.scene)
         }
-        None => Sources::of_scene(&Scene::singh2014()).set_all(overrides),
+        None => {
+            let mut sources = Sources::of_scene(&Scene::singh2014());
+            sources.set_all(overrides)?;
+            scene_of(&sources)
+        }
     }
 }
 

@@ -19,7 +19,9 @@
 
 mod design;
 mod document;
+mod label;
 mod refusal;
+mod refused;
 mod split;
 
 use std::path::Path;
@@ -27,11 +29,13 @@ use std::path::Path;
 use crate::run_dir::Keep;
 use design::{Rows, Variants};
 use document::unreadable;
+pub use label::Label;
 use refusal::{CAMPAIGN, File, varies};
+pub use refused::{Refused, in_a_line};
 use stribeck_scene::ensemble::start;
 use stribeck_scene::fields::group;
 use stribeck_scene::scene::Scene;
-use stribeck_scene::scene_file::{self, Place, Problem, SceneError, without_mark};
+use stribeck_scene::scene_file::{self, Place, Problem, SceneError, replaced_by_bearing, without_mark};
 
 /// Most runs of a campaign.
 pub const MOST_RUNS: usize = 1_000_000;
@@ -96,6 +100,19 @@ pub struct Campaign {
     pub seed: u64,
     /// Files that are kept of each run.
     pub keep: Keep,
+    /// Fields of the scene's file in whose place each bearing brings its own.
+    pub replaced: Vec<OfBearing>,
+}
+
+/// A field of the scene's file that the bearings of a campaign replace.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OfBearing {
+    /// Dotted path.
+    pub field: String,
+    /// Its value in the file.
+    pub written: String,
+    /// Its values with the bearings, each once, in their order.
+    pub now: Vec<String>,
 }
 
 /// One run of a campaign.
@@ -112,6 +129,8 @@ pub struct Variant {
     /// `train`, `validation` or `test`; the same for all starts of a variant, and for variants of equal
     /// scenes.
     pub split: &'static str,
+    /// What a model would learn of it; `None` of a scene that cannot be read.
+    pub label: Option<Label>,
     /// The scene, or why there is none.
     pub scene: Result<Scene, String>,
 }
@@ -124,10 +143,26 @@ impl Campaign {
     /// the scene that it starts from, and values of the wrong type. An impossible scene is no error here: its
     /// variant carries the reason.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
+        Self::read_keeping(path, None)
+    }
+
+    /// As [`Campaign::read`], of the file as if it had this `keep`.
+    pub fn read_keeping(path: &Path, keep: Option<Keep>) -> Result<Self, SceneError> {
         let shown = path.display().to_string();
         let text =
             std::fs::read_to_string(path).map_err(|e| unreadable(&shown, &CAMPAIGN, refusal::FILE, &e))?;
-        Self::parse(without_mark(&text), &shown, path.parent().unwrap_or(Path::new("")))
+        let mut text = without_mark(&text).to_owned();
+        if let Some(keep) = keep {
+            let (file, File { tree, .. }) = File::read::<Text>(&shown, &text, &CAMPAIGN)?;
+            let end_of = |field: &str| tree.get(field).map(|node| node.span.clone());
+            match (end_of("keep"), end_of("name")) {
+                _ if file.keep == keep => {}
+                (Some(written), _) => text.replace_range(written, keep.word()),
+                (None, Some(name)) => text.insert_str(name.end, &format!(", keep: {}", keep.word())),
+                (None, None) => {}
+            }
+        }
+        Self::parse(&text, &shown, path.parent().unwrap_or(Path::new("")))
     }
 
     /// The campaign of a `text` that is to lie in `folder` as a file called `name`.
@@ -161,8 +196,10 @@ impl Campaign {
             return refuse("variants", format!("make {count} runs; 1 to {MOST_RUNS} are possible"));
         }
         let runs = variants(&file, base.as_deref(), &rows, &place)?;
+        let replaced = base.as_deref().map_or_else(Vec::new, |base| of_bearings(base, &file, &rows));
         let fields = rows.fields.into_iter().map(|(field, _)| field).collect();
-        Ok(Self { name: file.name, text: text.to_owned(), fields, runs, seed: file.seed, keep: file.keep })
+        let text = text.to_owned();
+        Ok(Self { name: file.name, text, fields, runs, seed: file.seed, keep: file.keep, replaced })
     }
 }
 
@@ -186,6 +223,39 @@ fn check_fields(rows: &Rows, place: &File<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
+/// Fields of the scene at `base` that its variants replace by naming another bearing.
+fn of_bearings(base: &Path, file: &Text, rows: &Rows) -> Vec<OfBearing> {
+    let column = rows.fields.iter().position(|(field, _)| field == "bearing");
+    let mut seen: Vec<Option<&String>> = Vec::new();
+    let mut all: Vec<OfBearing> = Vec::new();
+    for (row, values) in rows.values.iter().enumerate() {
+        let bearing = column.map(|column| &values[column]);
+        if seen.contains(&bearing) {
+            continue;
+        }
+        seen.push(bearing);
+        let replaced = replaced_by_bearing(base, &file.overrides(rows, row));
+        for found in replaced.into_iter().filter(|found| found.field != "name") {
+            match all.iter_mut().find(|known| known.field == found.field) {
+                Some(known) if known.now.contains(&found.now) => {}
+                Some(known) => known.now.push(found.now),
+                None => {
+                    all.push(OfBearing { field: found.field, written: found.written, now: vec![found.now] });
+                }
+            }
+        }
+    }
+    all
+}
+
+impl Text {
+    /// All overrides of a variant.
+    fn overrides(&self, rows: &Rows, row: usize) -> Vec<String> {
+        let assigned = (0..rows.fields.len()).map(|column| rows.argument(row, column));
+        self.set.iter().cloned().chain(assigned).collect()
+    }
+}
+
 /// The runs of all variants. An impossible scene is no error: its run carries the reason.
 fn variants(
     file: &Text,
@@ -200,8 +270,7 @@ fn variants(
     // Findings that every variant so far has, in fields that do not vary.
     let mut common: Option<Vec<Problem>> = None;
     for (row, values) in rows.values.iter().enumerate() {
-        let assigned = (0..values.len()).map(|column| rows.argument(row, column));
-        let set: Vec<String> = file.set.iter().cloned().chain(assigned).collect();
+        let set = file.overrides(rows, row);
         let scene = match base {
             Some(path) => Scene::read_with(path, &set),
             None => Scene::singh2014().with_overrides(&set),
@@ -229,6 +298,10 @@ fn variants(
         // By the scene, however its values are written: equal scenes are in one part and have the same
         // starts, others have not.
         let drawn = scene.as_ref().map_or_else(|_| fold(values), nameless);
+        let label = match &scene {
+            Ok(scene) => Some(Label::of(scene)),
+            Err(_) => scene_file::readable(base, &set).ok().map(|scene| Label::of(&scene)),
+        };
         let scene = scene.map_err(|why| place.of_variant(&why, rows, row).to_string());
         for number in 1..=file.starts {
             let started = |scene: &Scene| {
@@ -241,6 +314,7 @@ fn variants(
                 start: number,
                 values: values.clone(),
                 split: "",
+                label: label.clone(),
                 scene: scene.as_ref().map(started).map_err(Clone::clone),
             });
         }

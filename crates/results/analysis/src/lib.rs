@@ -33,6 +33,7 @@
 //! | What does the verdict on a record say of a run? | [`diagnosis`] |
 //! | What does the sensor of a machine about the bearing record, and which machine made a record? | [`machine`] |
 //! | What are the results of a run? | [`findings`], [`summary`], [`paper`] |
+//! | What is a row of the table of many runs? | [`runs`] |
 //! | How is a number of a summary declared? | [`quantity`] |
 //!
 //! # A measured gearbox
@@ -101,6 +102,7 @@ pub mod comparison;
 pub mod ensemble;
 pub mod findings;
 pub mod paper;
+pub mod runs;
 pub mod statistic;
 
 mod error;

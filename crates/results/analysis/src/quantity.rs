@@ -35,6 +35,24 @@ pub(crate) fn of<T: Part>() -> Vec<Quantity> {
     all
 }
 
+/// The columns of a table whose rows are of this type: its entries outside of lists, those of groups that are written
+/// without a name of their own among them.
+pub fn columns<T: Part>() -> Vec<&'static Entry> {
+    fn add(kind: Kind, all: &mut Vec<&'static Entry>) {
+        let Kind::Group(entries) = kind.single() else { return };
+        for entry in entries {
+            match (entry.written, entry.kind.single()) {
+                ("flatten", inside) => add(inside, all),
+                (_, Kind::Group(_) | Kind::List(_)) => {}
+                _ => all.push(entry),
+            }
+        }
+    }
+    let mut all = Vec::new();
+    add(T::KIND, &mut all);
+    all
+}
+
 fn list(entries: &'static [Entry], path: &str, is_listed: bool, all: &mut Vec<Quantity>) {
     for entry in entries {
         let path = match (path, entry.written) {
@@ -73,7 +91,12 @@ impl Quantity {
 
     /// Its comment as the page of all quantities has it, without links to code.
     pub fn about_in_markdown(&self) -> String {
-        without_links(self.about).replace('|', "\\|")
+        in_markdown(self.about)
+    }
+
+    /// Whether it is a column of the table of many runs: one that stands once, and is none of a clock's.
+    pub fn is_of_table(&self) -> bool {
+        !self.is_listed && !self.path.starts_with("run.")
     }
 
     /// Its value in a `summary.json`, in lists the mean of the items that have it.
@@ -93,6 +116,11 @@ impl Quantity {
     pub fn scatters(&self) -> bool {
         self.unit() == "g"
     }
+}
+
+/// A comment in a table of a page.
+pub fn in_markdown(about: &str) -> String {
+    without_links(about.trim_start()).replace('|', "\\|")
 }
 
 /// A comment without links to code, and with the words of a file.

@@ -7,13 +7,14 @@ use std::path::Path;
 
 use maud::{Markup, PreEscaped, html};
 use stribeck_analysis::comparison::OF_SIGNAL;
+use stribeck_analysis::runs::OneOfMany;
 use stribeck_analysis::summary::Summary;
 use stribeck_diagnosis::words::numbers::significant;
 use stribeck_store::run_dir::write_atomic;
 
 use crate::Error;
 use crate::field_words::FieldWords;
-use crate::page::{HALF_PAGE_PX, capital, document};
+use crate::page::{HALF_PAGE_PX, banner, capital, document, sentence};
 use crate::plot::{Axis, Colour, Figure, Series};
 use change::Change;
 
@@ -27,30 +28,11 @@ pub struct CampaignIndex {
     /// Fields that vary.
     pub fields: Vec<String>,
     /// Its runs, in order.
-    pub runs: Vec<CampaignRun>,
+    pub runs: Vec<OneOfMany>,
+    /// Labels that were planned and have no run.
+    pub lost: Vec<String>,
     /// Files beside the page: name and content.
     pub files: Vec<(String, String)>,
-}
-
-/// One run of it.
-#[derive(Debug)]
-pub struct CampaignRun {
-    /// Number, from 1.
-    pub number: usize,
-    /// Number of its start, from 1.
-    pub start: usize,
-    /// How it ended: `complete`, `diverged`, `failed` or `refused`.
-    pub status: String,
-    /// Why it did not complete.
-    pub reason: Option<String>,
-    /// Values of the fields that vary.
-    pub values: Vec<String>,
-    /// Defect family claimed for its record, as `BPFO` or `none`; `None` where there is no verdict.
-    pub claimed: Option<String>,
-    /// Numbers of its summary by their path.
-    pub numbers: BTreeMap<String, f64>,
-    /// Its folder, from that of the campaign.
-    pub folder: Option<String>,
 }
 
 /// A number that is drawn over the fields.
@@ -150,7 +132,7 @@ impl<'a> Over<'a> {
 fn page(index: &CampaignIndex) -> Result<Markup, Error> {
     let over: Vec<Over<'_>> =
         (0..index.fields.len().min(MOST_FIELDS)).map(|at| Over::of(index, at)).collect();
-    let complete = index.runs.iter().filter(|run| run.status == "complete").count();
+    let complete = index.runs.iter().filter(|run| run.is_complete()).count();
     let sections = over.iter().enumerate().map(|(place, over)| over.markup(place == 0));
     let sections = sections.collect::<Result<Vec<_>, _>>()?;
     Ok(document(
@@ -158,7 +140,7 @@ fn page(index: &CampaignIndex) -> Result<Markup, Error> {
         html! {
             h1 { (index.name) }
             p class="lead" { (lead(index)) }
-            @if complete < index.runs.len() { (banner(index, complete)) }
+            @if complete < index.runs.len() { (incomplete(index, complete)) }
             (first_screen(index, &over)?)
             @for section in sections { (section) }
             h2 #runs { "Runs" }
@@ -184,7 +166,7 @@ fn first_screen(index: &CampaignIndex, over: &[Over<'_>]) -> Result<Markup, Erro
         let words = over.changes.iter().map(|(words, _)| words).filter(|words| *words != first);
         words.take(FIRST).map(|words| format!("{words}.")).collect::<Vec<String>>()
     };
-    let several = index.runs.iter().any(|run| run.start > 1);
+    let several = index.runs.iter().any(|run| run.row.start > 1);
     Ok(html! {
         div class="top" {
             p class="headline" { (first) "." }
@@ -206,7 +188,7 @@ fn first_screen(index: &CampaignIndex, over: &[Over<'_>]) -> Result<Markup, Erro
 }
 
 fn lead(index: &CampaignIndex) -> String {
-    let starts = index.runs.iter().map(|run| run.start).max().unwrap_or(1);
+    let starts = index.runs.iter().map(|run| run.row.start).max().unwrap_or(1);
     let over = |field: &String| {
         format!("the {} ({} values)", FieldWords::of(field).inside(), values(index, field).len())
     };
@@ -224,25 +206,22 @@ fn values<'a>(index: &'a CampaignIndex, field: &str) -> Vec<&'a str> {
     let at = index.fields.iter().position(|name| name == field);
     let mut found: Vec<&str> = Vec::new();
     for value in index.runs.iter().filter_map(|run| run.values.get(at?)) {
-        if !found.contains(&value.as_str()) {
+        let value = value.trim_matches('"');
+        if !found.contains(&value) {
             found.push(value);
         }
     }
     found
 }
 
-fn banner(index: &CampaignIndex, complete: usize) -> Markup {
+fn incomplete(index: &CampaignIndex, complete: usize) -> Markup {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
-    for run in index.runs.iter().filter(|run| run.status != "complete") {
-        *counts.entry(run.status.as_str()).or_default() += 1;
+    for run in index.runs.iter().filter(|run| !run.is_complete()) {
+        *counts.entry(run.row.status.as_str()).or_default() += 1;
     }
-    let others: Vec<String> = counts.into_iter().map(|(status, count)| format!("{count} {status}")).collect();
-    html! {
-        div class="banner" role="alert" {
-            strong { (complete) " of " (index.runs.len()) " runs are complete" } ": " (others.join(", "))
-            ". What the others left is drawn where there is a number, and their reasons are in the table."
-        }
-    }
+    let lost = index.lost.iter().map(|lost| format!(" {}", sentence(lost))).collect::<String>();
+    let rest = "What the others left is drawn where there is a number, and their reasons are in the table.";
+    banner((complete, index.runs.len()), "runs", counts, &format!("{rest}{lost}"))
 }
 
 /// Where the values of a field stand on an axis.
@@ -252,18 +231,19 @@ struct Abscissa {
     places: Vec<f64>,
     /// Names of the words' places on the axis.
     words: String,
+    /// Whether more of it is more of something: names and seeds have no order.
+    is_ordered: bool,
 }
 
 impl Abscissa {
     fn of(index: &CampaignIndex, at: usize) -> Self {
         let field = &index.fields[at];
         let title = FieldWords::of(field);
-        let numbers: Option<Vec<f64>> =
-            index.runs.iter().map(|run| run.values.get(at)?.parse::<f64>().ok()).collect();
+        let numbers: Option<Vec<f64>> = index.runs.iter().map(|run| run.value(&index.fields, at)).collect();
         let Some(numbers) = numbers else {
             let all = values(index, field);
-            let place = |run: &CampaignRun| {
-                let value = run.values.get(at).map(String::as_str);
+            let place = |run: &OneOfMany| {
+                let value = run.values.get(at).map(|value| value.trim_matches('"'));
                 value
                     .and_then(|value| all.iter().position(|v| *v == value))
                     .map_or(f64::NAN, |n| n as f64 + 1.0)
@@ -274,18 +254,22 @@ impl Abscissa {
                 axis: Axis::counted(&title.words, all.len()),
                 places: index.runs.iter().map(place).collect(),
                 words: format!(" {}.", words.join(", ")),
+                is_ordered: false,
             };
         };
+        let name = field.rsplit('.').next().unwrap_or(field);
+        let is_ordered = name != "seed" && !name.ends_with("_seed");
         let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
         let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if least > 0.0 && most / least > DECADES_FROM {
             let places = numbers.iter().map(|x| x.log10()).collect();
-            return Self { axis: Axis::decades(&title.words, title.unit), places, words: String::new() };
+            let axis = Axis::decades(&title.words, title.unit);
+            return Self { axis, places, words: String::new(), is_ordered };
         }
         // Room beside the outer ones.
         let margin = if most > least { 0.04 * (most - least) } else { 0.5 * most.abs().max(1.0) };
         let axis = Axis::plain(&title.words, title.unit).over(least - margin, most + margin);
-        Self { axis, places: numbers, words: String::new() }
+        Self { axis, places: numbers, words: String::new(), is_ordered }
     }
 
     /// From the least to the largest place.
@@ -306,20 +290,20 @@ fn figure(
     let known = index.runs.iter().zip(&abscissa.places).filter_map(|(run, place)| {
         Some((run, *place, *run.numbers.get(path)?)).filter(|(_, place, _)| place.is_finite())
     });
-    let mut known: Vec<(&CampaignRun, f64, f64)> = known.collect();
+    let mut known: Vec<(&OneOfMany, f64, f64)> = known.collect();
     if known.is_empty() {
         return None;
     }
     known.sort_by(|a, b| a.1.total_cmp(&b.1));
     let other = (0..index.fields.len()).find(|n| *n != at).filter(|_| index.fields.len() == 2);
     let other = other.filter(|n| values(index, &index.fields[*n]).len() <= Colour::FOREGROUNDS.len());
-    let group = |run: &CampaignRun| match other {
+    let group = |run: &OneOfMany| match other {
         Some(n) => {
             let title = FieldWords::of(&index.fields[n]);
-            let value = run.values.get(n).map_or("–", String::as_str);
+            let value = run.values.get(n).map_or("–", |value| value.trim_matches('"'));
             format!("{} {value} {}", title.inside(), title.unit).trim_end().to_owned()
         }
-        None => run.claimed.as_ref().map_or("not judged".to_owned(), |claimed| match claimed.as_str() {
+        None => run.row.claimed.as_ref().map_or("not judged".to_owned(), |claimed| match claimed.as_str() {
             "none" => "nothing claimed".to_owned(),
             "undecided" => "undecided".to_owned(),
             claimed => format!("{claimed} claimed"),
@@ -334,7 +318,8 @@ fn figure(
     let id = format!("{}-{at}", path.replace(['.', '_'], "-"));
     let title = format!("{words} over the {}", FieldWords::of(&index.fields[at]).inside());
     let mut figure = Figure::new(&id, &title, abscissa.axis.clone(), Axis::plain(words, unit));
-    let joined = other.is_some() || index.fields.len() == 1;
+    // A line through names would be a trend.
+    let joined = abscissa.is_ordered && (other.is_some() || index.fields.len() == 1);
     let (mut lines, mut dots) = (Vec::new(), Vec::new());
     for (name, colour) in groups.iter().zip(Colour::FOREGROUNDS.into_iter().cycle()) {
         let (x, y): (Vec<f64>, Vec<f64>) =
@@ -345,7 +330,7 @@ fn figure(
     }
     // Lines lie behind the dots.
     figure.series = lines.into_iter().chain(dots).collect();
-    let starts = index.runs.iter().any(|run| run.start > 1);
+    let starts = index.runs.iter().any(|run| run.row.start > 1);
     let (least, most) = known
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), (_, _, y)| (least.min(*y), most.max(*y)));
@@ -402,13 +387,13 @@ fn table(index: &CampaignIndex) -> Markup {
                     tr {
                         td {
                             @match &run.folder {
-                                Some(folder) => a href=(format!("{folder}/")) { (run.number) },
-                                None => (run.number),
+                                Some(folder) => a href=(format!("{folder}/")) { (run.row.run) },
+                                None => (run.row.run),
                             }
                         }
-                        @for value in &run.values { td { (value) } }
-                        td { (run.status) @if let Some(why) = &run.reason { ": " (why.lines().next().unwrap_or_default()) } }
-                        td { (run.claimed.as_deref().unwrap_or("–")) }
+                        @for value in &run.values { td { (value.trim_matches('"')) } }
+                        td { (run.row.status) @if let Some(why) = &run.row.reason { ": " (why.lines().next().unwrap_or_default()) } }
+                        td { (run.row.claimed.as_deref().unwrap_or("–")) }
                         @for Drawn { path, .. } in &listed {
                             td class="n" { (run.numbers.get(path).map_or("–".to_owned(), |x| significant(*x, 4))) }
                         }
@@ -428,24 +413,36 @@ fn table(index: &CampaignIndex) -> Markup {
 
 #[cfg(test)]
 mod tests {
+    use stribeck_analysis::runs::RunRow;
+
     use super::*;
 
-    pub(super) fn run(number: usize, value: &str, rms_g: f64) -> CampaignRun {
-        CampaignRun {
-            number,
-            start: 1,
-            status: "complete".to_owned(),
-            reason: None,
+    pub(super) fn run(number: usize, value: &str, rms_g: f64) -> OneOfMany {
+        OneOfMany {
+            row: RunRow {
+                run: number,
+                variant: number,
+                start: 1,
+                split: "train".to_owned(),
+                status: "complete".to_owned(),
+                reason: None,
+                warnings: None,
+                claimed: Some("none".to_owned()),
+                n_samples: None,
+                truth: None,
+            },
             values: vec![value.to_owned()],
-            claimed: Some("none".to_owned()),
             numbers: BTreeMap::from([("levels.record.rms_g".to_owned(), rms_g)]),
+            scene: None,
+            program: None,
             folder: None,
         }
     }
 
-    pub(super) fn index(runs: Vec<CampaignRun>) -> CampaignIndex {
+    pub(super) fn index(runs: Vec<OneOfMany>) -> CampaignIndex {
         let (name, fields) = ("x".into(), vec!["operation.load_n".into()]);
-        CampaignIndex { name, bearing: Some("a 6205".into()), fields, runs, files: Vec::new() }
+        let bearing = Some("a 6205".into());
+        CampaignIndex { name, bearing, fields, runs, lost: Vec::new(), files: Vec::new() }
     }
 
     #[test]

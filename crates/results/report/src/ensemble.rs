@@ -11,7 +11,7 @@ use maud::{Markup, html};
 use stribeck_store::run_dir::{RunDir, write_atomic};
 
 use crate::element_words::ElementWords;
-use crate::page::{Item, Section, charts, contents, document, drawn, json, sentence, write_figures};
+use crate::page::{Item, Section, banner, charts, contents, document, drawn, json, sentence, write_figures};
 use crate::run::lead::lead;
 use crate::{Error, agreement};
 use stribeck_analysis::ensemble::{Ended, EnsembleFindings, EnsembleSummary};
@@ -44,7 +44,7 @@ fn page(findings: &EnsembleFindings, sections: &[Section]) -> Result<Markup, Err
         html! {
             h1 { (summary.scene) ", " (asked) " starts" }
             p class="lead" { (lead(&findings.scene, duty, simulated_ms)) }
-            @if complete < asked { (banner(summary, complete)) }
+            @if complete < asked { (incomplete(summary, complete)) }
             (answer::paragraphs(findings))
             (contents(sections))
             @for section in drawn { (section) }
@@ -99,24 +99,13 @@ fn sections(findings: &EnsembleFindings, dir: &RunDir) -> Vec<Section> {
     sections.into_iter().flatten().collect()
 }
 
-fn banner(summary: &EnsembleSummary, complete: usize) -> Markup {
-    let words = |(ended, words): &(Ended, &str)| match summary.count(*ended) {
-        0 => None,
-        count => Some(format!("{count} {words}")),
-    };
-    let others: Vec<String> = [
+fn incomplete(summary: &EnsembleSummary, complete: usize) -> Markup {
+    let ends = [
         (Ended::Diverged, "diverged"),
         (Ended::Failed, "failed"),
         (Ended::Early, "ended early"),
         (Ended::Missing, "not begun"),
-    ]
-    .iter()
-    .filter_map(words)
-    .collect();
-    html! {
-        div class="banner" role="alert" {
-            strong { (complete) " of " (summary.starts.len()) " starts are complete" } ": " (others.join(", "))
-            ". The numbers are those of complete starts."
-        }
-    }
+    ];
+    let others = ends.map(|(ended, words)| (words, summary.count(ended)));
+    banner((complete, summary.starts.len()), "starts", others, "The numbers are those of complete starts.")
 }

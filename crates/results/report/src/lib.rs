@@ -55,7 +55,7 @@ mod sources;
 mod error;
 
 pub use agreement::write_agreement;
-pub use campaign::{CampaignIndex, CampaignRun, write_campaign};
+pub use campaign::{CampaignIndex, write_campaign};
 pub use comparison::{
     MOST_COMPARED, answer as comparison_in_words, by_chance, difference, mean, write_comparison,
 };

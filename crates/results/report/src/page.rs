@@ -50,6 +50,22 @@ pub(crate) fn json(summary: &impl Serialize) -> Result<String, Error> {
     Ok(text + "\n")
 }
 
+/// How many of many are complete, how many others ended how, and what the page makes of them.
+pub(crate) fn banner<'a>(
+    (complete, all): (usize, usize),
+    noun: &str,
+    others: impl IntoIterator<Item = (&'a str, usize)>,
+    rest: &str,
+) -> Markup {
+    let others = others.into_iter().filter(|(_, count)| *count > 0);
+    let others: Vec<String> = others.map(|(how, count)| format!("{count} {how}")).collect();
+    html! {
+        div class="banner" role="alert" {
+            strong { (complete) " of " (all) " " (noun) " are complete" } ": " (others.join(", ")) ". " (rest)
+        }
+    }
+}
+
 /// The defect frequencies, where a page names one.
 const FREQUENCIES: &str = "BPFO and BPFI: ball pass frequencies of the outer and of the inner raceway, at which rolling \
     elements pass a spot of it. BSF: ball spin frequency, at which an element turns; a spot on it strikes twice a turn. \

@@ -14,8 +14,8 @@ use stribeck_store::run_dir::{Keep, Run};
 use stribeck_theory::catalogue::CatalogueBearing;
 
 use super::reading::{Reading, examine};
-use crate::interrupt::{Interrupt, Interrupted};
-use crate::many_runs::{ManyRuns, Share, Wanted};
+use crate::interrupt::Interrupt;
+use crate::many_runs::{ManyRuns, Share};
 use crate::out::tell;
 use crate::place::{Place, shown};
 
@@ -116,13 +116,10 @@ fn fits(scene: &Scene, known: &CatalogueBearing, named: &str, file: &Path) -> Re
 /// Runs the scenes, and takes from their forces how far the element is pressed together.
 fn simulate(scenes: &[Scene], out: &Path, interrupt: &Interrupt) -> Result<Pressed> {
     let runs = ManyRuns(out.join("simulated"));
-    let wanted = scenes.iter().enumerate().map(|(number, scene)| Wanted { number, scene: Ok(scene) });
-    let due = runs.due(Keep::All, wanted, interrupt)?;
     let share = Share { jobs: None, threads: None, memory_gb: None };
-    runs.make(Keep::All, &due, share, interrupt, &|jobs| {
+    runs.make_all(Keep::All, scenes.iter(), (share, interrupt), &|_, jobs| {
         tell!("{} spalls are simulated, {}: {}", scenes.len(), jobs.shown(), shown(&runs.0));
-    });
-    ensure!(!interrupt.is_pressed(), Interrupted);
+    })?;
     let mut passages = Vec::new();
     for scene in scenes {
         let folder = runs.run(scene);

@@ -2,17 +2,20 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use stribeck_analysis::quantity::{Quantity, stem_and_unit};
+use stribeck_analysis::quantity::{columns, in_markdown, stem_and_unit};
+use stribeck_analysis::runs::{EventRow, OneOfMany, RunRow, SignalRow, Truth};
 use stribeck_analysis::summary::Summary;
+use stribeck_diagnosis::Defect;
+use stribeck_diagnosis::quantity::Entry;
 use stribeck_scene::scene::{ModelScene, Scene};
 use stribeck_store::campaign::Campaign;
 use stribeck_store::run_dir::Keep;
 
-use super::tables::{EVENTS, RUNS, Row, SIGNALS, Truth, Written, model, sampling_rate_hz};
+use super::tables::{EVENTS, RUNS, SIGNALS, Written};
 
 /// The page in Markdown.
-pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> String {
-    let scenes: Vec<&Scene> = rows.iter().filter_map(|row| row.scene.as_ref()).collect();
+pub(super) fn text(campaign: &Campaign, rows: &[OneOfMany], written: &Written) -> String {
+    let scenes: Vec<&Scene> = rows.iter().filter_map(|one| one.scene.as_ref()).collect();
     let mut page = format!(
         "# Data set `{}`\n\n\
          Simulated by Stribeck {}; nothing in it was measured. Each run is a folder below `runs/`, named by \
@@ -52,99 +55,79 @@ pub(super) fn text(campaign: &Campaign, rows: &[Row], written: &Written) -> Stri
             )
         },
     );
-    for limit in limits(&scenes) {
+    for lost in campaign.lost_labels() {
+        page += &format!("- {lost}.\n");
+    }
+    for limit in limits(rows) {
         page += &format!("- {limit}\n");
     }
-    let quantities = Summary::quantities();
+    let known = meanings();
     for (table, columns) in [(RUNS, &written.runs), (EVENTS, &written.events), (SIGNALS, &written.signals)] {
         if !columns.is_empty() {
             page += &format!("\n## Columns of `{table}`\n\n| column | unit | what it is |\n|---|---|---|\n");
         }
         for column in columns {
             let unit = stem_and_unit(column).1;
-            page += &format!("| `{column}` | {unit} | {} |\n", meaning(column, &quantities));
+            page += &format!("| `{column}` | {unit} | {} |\n", meaning(column, &known));
         }
     }
     page += &format!("\n## The campaign\n\n```ron\n{}\n```\n", campaign.text.trim_end());
     page
 }
 
-/// Columns that are neither numbers of a summary nor fields that vary.
-const OWN_COLUMNS: [(&str, &str); 29] = [
-    ("run", "Number of the run in the campaign"),
-    ("variant", "Number of its scene"),
-    ("start", "Number of its random start"),
-    ("split", "Part of the data: `train`, `validation` or `test`"),
-    ("status", "How the run ended"),
-    ("reason", "Why it did not complete"),
-    ("warnings", "What its guards have warned of, a line each"),
-    ("scene_hash", "Name of its folder below `runs/`"),
-    ("bearing", "Designation"),
-    ("model", "`full` or `reduced`"),
-    ("fault_location", "Damaged part, `healthy` without one"),
-    ("fault_type", "Form of the damage"),
-    ("fault_count", "Faults of the scene"),
-    ("fault_size_mm", "Length along the raceway"),
-    ("fault_depth_mm", "Depth"),
-    ("fault_angle_deg", "Place at the start"),
-    ("deviation_type", "Waves, roughness and other diameters"),
-    ("claimed", "Family that the verdict claims on the record; `none`, or `undecided`"),
-    ("shaft_speed_rpm", "Speed of the shaft at the start"),
-    ("load_n", "Load at the start"),
-    ("sampling_rate_hz", "Samples a second"),
-    ("n_samples", "Samples of the record"),
-    ("bpfo_hz", "Frequency of the outer raceway without slip"),
-    ("bpfi_hz", "Frequency of the inner raceway without slip"),
-    ("bsf_hz", "Spin of an element without slip; a spot strikes twice as often"),
-    ("ftf_hz", "Turns of the cage without slip"),
-    ("time_s", "Time since the start of the run"),
-    ("ring", "Part that has the spall"),
-    ("floor_by", "What stopped the roller at the floor of the spall: `film` or `metal`"),
-];
-
-fn meaning(column: &str, quantities: &[Quantity]) -> String {
-    let of_event = format!("events.{column}");
-    let path = column.strip_prefix("summary.").unwrap_or(&of_event);
-    if let Some(quantity) = quantities.iter().find(|quantity| quantity.path == path) {
-        return quantity.about_in_markdown();
+/// What each column is, by its name.
+fn meanings() -> BTreeMap<String, String> {
+    let declared = [columns::<RunRow>(), columns::<EventRow>(), columns::<SignalRow>()];
+    let entry = |entry: &Entry| (entry.name.to_owned(), in_markdown(entry.about));
+    let mut all: BTreeMap<String, String> = declared.iter().flatten().map(|e| entry(e)).collect();
+    for quantity in Summary::quantities() {
+        let about = quantity.about_in_markdown();
+        if quantity.path == "diagnosis.families.level_db" {
+            all.extend(Defect::ALL.map(|of| {
+                (format!("summary.diagnosis.{}_level_db", of.name().to_lowercase()), about.clone())
+            }));
+        }
+        all.insert(format!("summary.{}", quantity.path), about);
     }
-    let own = OWN_COLUMNS.iter().find(|(name, _)| *name == column).map(|(_, what)| *what);
-    let what = own.unwrap_or(match column.split_once('.') {
+    all
+}
+
+fn meaning(column: &str, known: &BTreeMap<String, String>) -> String {
+    let other = match column.split_once('.') {
         Some(("scene", _)) => "Value of this field of the scene",
         Some(("sensor", _)) => "Acceleration at a sensor",
         _ => "",
-    });
-    what.to_owned()
+    };
+    known.get(column).cloned().unwrap_or_else(|| other.to_owned())
 }
 
-fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'static str, String)> {
+fn contents(campaign: &Campaign, rows: &[OneOfMany], scenes: &[&Scene]) -> Vec<(&'static str, String)> {
+    let truths = || rows.iter().filter_map(|one| one.row.truth.as_ref());
+    let of_truths = |of: &dyn Fn(&Truth) -> String| counted(truths().map(of));
     let of_scenes = |of: &dyn Fn(&Scene) -> String| counted(scenes.iter().map(|scene| of(scene)));
-    let range = |of: &dyn Fn(&Scene) -> f64, unit: &str| span(scenes.iter().map(|scene| of(scene)), unit);
-    let complete = rows.iter().filter(|row| row.is_complete()).filter_map(|row| row.scene.as_ref());
-    let fault = |scene: &Scene| {
-        let truth = Truth::of(scene);
-        truth.form.map_or(truth.location.clone(), |form| format!("{} ({form})", truth.location))
-    };
+    let range = |of: &dyn Fn(&Truth) -> f64, unit: &str| span(truths().map(of), unit);
+    let complete = rows.iter().filter(|one| one.is_complete()).filter_map(|one| one.scene.as_ref());
+    let or = |text: &str, other: &str| if text.is_empty() { other } else { text }.to_owned();
     let sensors = scenes.iter().flat_map(|scene| {
         scene.output.sensors.iter().map(|sensor| format!("{} at {}°", sensor.name, sensor.angle_deg))
     });
     let sensors: BTreeSet<String> = sensors.collect();
     vec![
         ("runs", rows.len().to_string()),
-        ("ended as", counted(rows.iter().map(|row| row.status.to_owned()))),
-        ("runs with warnings", rows.iter().filter(|row| row.warnings.is_some()).count().to_string()),
-        ("split", counted(rows.iter().map(|row| row.split.to_owned()))),
+        ("ended as", counted(rows.iter().map(|one| one.row.status.clone()))),
+        ("runs with warnings", rows.iter().filter(|one| one.row.warnings.is_some()).count().to_string()),
+        ("split", counted(rows.iter().map(|one| one.row.split.clone()))),
         ("seed", campaign.seed.to_string()),
-        ("model", of_scenes(&|scene| model(scene).to_owned())),
+        ("model", of_truths(&|truth| truth.model.clone())),
+        ("bearing", of_truths(&|truth| or(&truth.bearing, "without a designation"))),
         (
-            "bearing",
-            of_scenes(&|scene| match scene.bearing.designation.as_str() {
-                "" => "without a designation".to_owned(),
-                name => name.to_owned(),
+            "faults",
+            of_truths(&|truth| {
+                let form = truth.fault_type.as_ref().map_or_else(String::new, |form| format!(" ({form})"));
+                format!("{}{form}", truth.fault_location)
             }),
         ),
-        ("faults", of_scenes(&fault)),
-        ("other deviations", of_scenes(&|scene| Truth::of(scene).deviations.unwrap_or("none".to_owned()))),
+        ("other deviations", of_truths(&|truth| or(truth.deviation_type.as_deref().unwrap_or(""), "none"))),
         ("raceways", of_scenes(&|scene| if scene.film.is_some() { "oiled" } else { "dry" }.to_owned())),
         (
             "material",
@@ -153,15 +136,16 @@ fn contents(campaign: &Campaign, rows: &[Row], scenes: &[&Scene]) -> Vec<(&'stat
                 format!("{} GPa, {}, {} kg/m³", m.youngs_modulus_gpa, m.poissons_ratio, m.density_kg_m3)
             }),
         ),
-        ("speed of the shaft", range(&|scene| scene.operation.speed_rpm, "rpm")),
-        ("load", range(&|scene| scene.operation.load_n, "N")),
+        ("speed of the shaft", range(&|truth| truth.shaft_speed_rpm, "rpm")),
+        ("load", range(&|truth| truth.load_n, "N")),
         ("length of a record", span(complete.map(|scene| scene.solver.duration_ms), "ms")),
-        ("sampling rate", range(&sampling_rate_hz, "Hz")),
+        ("sampling rate", range(&|truth| truth.sampling_rate_hz, "Hz")),
         ("sensors on the outer ring", sensors.into_iter().collect::<Vec<_>>().join(", ")),
     ]
 }
 
-fn limits(scenes: &[&Scene]) -> Vec<String> {
+fn limits(rows: &[OneOfMany]) -> Vec<String> {
+    let scenes: Vec<&Scene> = rows.iter().filter_map(|one| one.scene.as_ref()).collect();
     let mut limits = vec![
         "A plane model of the thickness that each scene gives: nothing tilts, and nothing moves along the \
          axis."
@@ -186,9 +170,9 @@ fn limits(scenes: &[&Scene]) -> Vec<String> {
             span(reduced.into_iter(), "kHz")
         ));
     }
-    let truths: Vec<Truth> = scenes.iter().map(|scene| Truth::of(scene)).collect();
     let has = |form: &str| {
-        let mut forms = truths.iter().flat_map(|truth| [&truth.form, &truth.deviations]).flatten();
+        let truths = rows.iter().filter_map(|one| one.row.truth.as_ref());
+        let mut forms = truths.flat_map(|truth| [&truth.fault_type, &truth.deviation_type]).flatten();
         forms.any(|forms| forms.split('+').any(|one| one == form))
     };
     for (form, limit) in [
@@ -214,8 +198,8 @@ fn limits(scenes: &[&Scene]) -> Vec<String> {
 }
 
 /// Versions and commits of the program that ran the runs.
-fn programs(rows: &[Row]) -> String {
-    let programs: BTreeSet<&str> = rows.iter().filter_map(|row| row.program.as_deref()).collect();
+fn programs(rows: &[OneOfMany]) -> String {
+    let programs: BTreeSet<&str> = rows.iter().filter_map(|one| one.program.as_deref()).collect();
     if programs.is_empty() {
         return env!("CARGO_PKG_VERSION").to_owned();
     }
@@ -238,26 +222,5 @@ fn span(numbers: impl Iterator<Item = f64>, unit: &str) -> String {
         Some([least, most]) if least < most => format!("{least} to {most} {unit}"),
         Some([same, _]) => format!("{same} {unit}"),
         None => String::new(),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn behaves_limits_are_those_of_what_is_there() {
-        let scene = |set: &[&str]| Scene::default().with_overrides(set).expect("a scene");
-        let full = scene(&["film=None"]);
-        let dented = scene(&[
-            "film=None",
-            "defect=None",
-            "model=reduced(modes_khz: 20.0)",
-            "defects=[(on: outer, form: dent())]",
-        ]);
-        let [of_full, of_dented] = [limits(&[&full]).join("\n"), limits(&[&dented]).join("\n")];
-        assert!(of_full.contains("Full model") && of_full.contains("Spalls") && !of_full.contains("Dents"));
-        assert!(of_dented.contains("up to 20 kHz") && of_dented.contains("Dents"), "{of_dented}");
-        assert!(!of_dented.contains("Full model") && !of_dented.contains("Spalls"), "{of_dented}");
     }
 }

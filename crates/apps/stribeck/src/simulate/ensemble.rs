@@ -4,19 +4,19 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, ensure};
 use stribeck_report as report;
 use stribeck_scene::ensemble::{is_start_of, start};
 use stribeck_scene::scene::Scene;
 use stribeck_store::run_dir::Ensemble;
-use stribeck_store::run_dir::{RunDir, State};
+use stribeck_store::run_dir::RunDir;
 
 use super::{Options, check_overrides, reserve, take_place};
 use crate::host;
 use crate::interrupt::{self, Interrupt};
 use crate::out::{caution, say, tell};
 use crate::place::{Place, shown};
-use crate::side_by_side::{Due, Jobs, Shop};
+use crate::side_by_side::{Due, Jobs, Shop, outstanding};
 
 /// Default seed: the same command draws the same starts.
 const SEED: u64 = 1;
@@ -40,7 +40,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
             (dir, scene, ensemble)
         }
     };
-    let due = due_starts(&dir, &scene, &ensemble)?;
+    let due = outstanding(plan(&dir, &scene, &ensemble))?;
     let jobs = Jobs::of(options.jobs, options.threads, due.len());
     let wanted = ensemble.starts;
     tell!(
@@ -55,9 +55,8 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         None => dir.start_ensemble(&scene, &ensemble)?,
         Some(_) => dir.write_ensemble(&scene, &ensemble)?,
     }
-    let shop = Shop::new("start", &due, jobs, &interrupt);
     let ensemble = Mutex::new(ensemble);
-    shop.run(&|due, error| {
+    let why = Shop::new("start", &due, jobs, &interrupt).run(&|shop, due, error| {
         let mut ensemble = ensemble.lock().unwrap_or_else(PoisonError::into_inner);
         let before = ensemble.failed.remove(&due.number);
         ensemble.failed.extend(error.map(|error| (due.number, error.to_string())));
@@ -68,7 +67,7 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         }
     });
     let ensemble = ensemble.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let left = due_starts(&dir, &scene, &ensemble)?;
+    let left = outstanding(plan(&dir, &scene, &ensemble))?;
     let ended = wanted - left.iter().filter(|due| !ensemble.failed.contains_key(&due.number)).count();
     let dir = if ended == wanted { take_place(dir)? } else { dir };
     let path = shown(dir.path());
@@ -76,11 +75,8 @@ pub(super) fn run(options: &Options, place: &Place) -> Result<ExitCode> {
         if let Some(old) = dir.replaces() {
             tell!("`{}` still holds the earlier run; the new one lies in `{path}`", shown(old));
         }
-        tell!(
-            "{} of {wanted} starts are not at their end; continue them: {} simulate --resume {path}",
-            wanted - ended,
-            place.program
-        );
+        let next = format!("continue them: {} simulate --resume {path}", place.program);
+        why.say((wanted - ended, wanted), "start", &next);
     }
     let mut complete = 0;
     if options.no_report {
@@ -147,20 +143,14 @@ fn scene_of(dir: &RunDir, scene: &Scene, ensemble: &Ensemble, number: usize) -> 
     }
 }
 
-/// Starts that are not at their end.
-fn due_starts(dir: &RunDir, scene: &Scene, ensemble: &Ensemble) -> Result<Vec<Due>> {
-    let mut due = Vec::new();
-    for number in 1..=ensemble.starts {
-        let scene = scene_of(dir, scene, ensemble, number);
-        let folder = dir.start_folder(number);
-        match State::of(&folder, &scene) {
-            State::Done => {}
-            State::Other => bail!(
-                "`{}` holds a run of another scene: move it away, and its start can be run anew",
-                shown(&folder)
-            ),
-            State::New | State::Begun => due.push(Due { number, scene, folder }),
-        }
-    }
-    Ok(due)
+/// All starts, each with the flag that gives another folder.
+fn plan<'a>(
+    dir: &'a RunDir,
+    scene: &'a Scene,
+    ensemble: &'a Ensemble,
+) -> impl Iterator<Item = (Due, &'static str)> + 'a {
+    let start = |number| {
+        (Due::new(number, scene_of(dir, scene, ensemble, number), dir.start_folder(number)), "--out")
+    };
+    (1..=ensemble.starts).map(start)
 }

@@ -118,6 +118,43 @@ fn issue_what_a_disk_refused_is_not_in_the_tables() {
     assert_eq!(&tables(&desk.join("A")), unbroken());
 }
 
+/// A run that was half written when its program was ended could neither go on nor begin anew, for ever.
+#[test]
+fn issue_a_run_that_cannot_go_on_is_made_again() {
+    let desk = desk("campaign-half", CAMPAIGN);
+    desk.succeeds("--out=A");
+    let run = &runs(&desk.join("A"))[3];
+    let info = fs::read_to_string(run.join("run.json")).expect("a run");
+    fs::write(run.join("run.json"), info.replace("\"complete\"", "\"running\"")).expect("writable");
+    fs::write(run.join("checkpoint"), "half").expect("writable");
+    fs::remove_file(desk.join("A/runs.parquet")).expect("a table");
+    desk.says("--out=A", &["1 of them to be run here", "8 of 8 runs are complete"]);
+    assert_eq!(&tables(&desk.join("A")), unbroken());
+}
+
+/// `-q` failed on a full disk without a byte on either stream.
+#[test]
+fn issue_a_quiet_campaign_says_why_it_fails() {
+    let desk = desk("campaign-quiet", CAMPAIGN);
+    fs::create_dir(desk.join("A")).expect("a folder");
+    // The mark of a campaign, and what no folder can be made in.
+    for name in [".turn", "runs"] {
+        fs::write(desk.join("A").join(name), "").expect("writable");
+    }
+    desk.refuses("--out=A -q", &["8 of 8 runs are not at their end: cannot", "The same command goes on"]);
+}
+
+#[test]
+fn behaves_a_flag_keeps_less_than_the_file_says() {
+    let desk = desk("campaign-flag", CAMPAIGN);
+    desk.succeeds("--out=A --keep=numbers");
+    assert!(
+        desk.text("A/campaign.ron").contains("keep: numbers") && !desk.join("A/signals.parquet").exists()
+    );
+    desk.says("--out=A --keep=numbers", &["0 of them to be run", "8 of 8"]);
+    desk.refuses("--out=A", &["another `--keep`"]);
+}
+
 /// The campaign with `keep: what`.
 fn keeping(what: &str) -> String {
     CAMPAIGN.replace("    variants:", &format!("    keep: {what},\n    variants:"))
@@ -259,7 +296,9 @@ fn behaves_variants_that_cannot_be_are_rows_with_their_reason() {
         "(field: \"bearing.roller_diameter_mm\", values: [18.0, 19.0]),",
     );
     let desk = desk("campaign-refused", &text);
-    desk.says("--out=A", &["refused", "2 of 4 runs are complete"]);
+    let before = "2 of 4 runs cannot be, and get a row with their reason in place of a run:";
+    let done = desk.succeeds("--out=A -q");
+    says(&done, &[before, "inner race: 1, outer race: 1", "2 of 4 runs are complete"]);
     // When none can be, the command fails.
     fs::write(desk.join("campaign.ron"), text.replace("[18.0, 19.0]", "[19.0]")).expect("a campaign");
     desk.refuses("--out=B", &["0 of 2 runs are complete"]);
@@ -359,16 +398,18 @@ fn behaves_a_run_that_diverges_has_a_row_and_no_signals() {
 fn behaves_scripts_for_engines_name_every_part() {
     let desk = desk("campaign-emit", CAMPAIGN);
     for (engine, words) in [
-        ("slurm", ["--array=1-16", "$SLURM_ARRAY_TASK_ID/16", "--cpus-per-task=1\n", "--threads 1\n"]),
-        ("hq", ["--array=1-16", "$HQ_TASK_ID/16", "--cpus=1 ", "--threads 1'"]),
+        ("slurm", ["--array=1-8", "$SLURM_ARRAY_TASK_ID/8", "--cpus-per-task=1\n", "--threads 1\n"]),
+        ("hq", ["--array=1-8", "$HQ_TASK_ID/8", "--cpus=1 ", "--threads 1'"]),
     ] {
         let output = desk.run(&["--emit", engine, "--shards=16"]);
         assert!(output.status.success(), "{}", said(&output));
         says(&output, &words);
+        says(&output, &["8 parts in place of 16: as many as runs"]);
         // A part that fails is one that the engine says has failed.
         assert!(!said(&output).contains("|| true"), "{}", said(&output));
         assert!(!desk.join("runs").exists());
     }
+    says(&desk.run("--emit=slurm"), &["##SBATCH --time="]);
     // Eight runs are eight parts by default, and parts get the flags of the command.
     let limits = ["--threads=4", "--jobs=2", "--memory-gb=1.5"];
     let told = |engine| desk.run(&[&["--emit", engine][..], &limits].concat());

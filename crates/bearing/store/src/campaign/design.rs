@@ -6,7 +6,7 @@ use std::path::Path;
 use super::MOST_RUNS;
 use super::document::{File, Written};
 use stribeck_scene::dice::Dice;
-use stribeck_scene::fields::{group, words};
+use stribeck_scene::fields::{self, group, words};
 use stribeck_scene::scene_file::without_mark;
 
 /// Most runs of a Sobol sequence.
@@ -43,7 +43,7 @@ group! {
         field: String = String::new(), required();
         /// Its values.
         values: Vec<Written> = Vec::new();
-        /// Least value.
+        /// Least value; of a field that counts, the whole numbers from here on.
         from: Option<f64> = None;
         /// Greatest value.
         to: Option<f64> = None;
@@ -190,8 +190,17 @@ impl Axis {
                          true`"
                     ));
                 }
+                let counts = fields::counts(field);
+                // Whole numbers are equally often, each over a range of its own.
+                let (from, to) = if counts { (from.ceil(), to.floor() + 1.0) } else { (from, to) };
                 let value =
                     if self.log { from * (to / from).powf(share) } else { from + share * (to - from) };
+                if counts {
+                    return match value.floor().min(to - 1.0) {
+                        whole if from < to => Ok(format!("{whole}")),
+                        _ => Err(format!("`{field}` is a whole number, and none lies in its range")),
+                    };
+                }
                 // Seven digits: short to read in a scene, and finer than anything that is measured.
                 Ok(format!("{}", format!("{value:.6e}").parse::<f64>().unwrap_or(value)))
             }

@@ -2,7 +2,6 @@
 
 use super::design::Rows;
 pub(super) use super::document::File;
-use stribeck_scene::fields;
 use stribeck_scene::scene_file::{Kind, Place, Problem, SceneError, place_in_file};
 
 /// The file of a campaign.
@@ -55,24 +54,11 @@ impl File<'_> {
                 let item = (0..).map_while(listed).find(|node| self.text[node.span.clone()] == **written);
                 match item {
                     Some(node) => Some(place_in_file(self.name, self.text, node.span.clone())),
-                    None => return self.range(problem, axis),
+                    None => return problem.of_value_at(self.place(axis)),
                 }
             }
         };
         problem.of_value_at(place.unwrap_or_else(|| self.place("variants")))
-    }
-
-    /// A value of a range that its field cannot have: one that it can have is no range.
-    fn range(&self, problem: Problem, axis: &str) -> Problem {
-        let counts = fields::counts(&problem.field);
-        let from = self.tree.get(&format!("{axis}.from")).filter(|_| counts);
-        let first = from.and_then(|from| self.text[from.span.clone()].parse::<f64>().ok()).map(f64::ceil);
-        let mut problem = problem.of_value_at(self.place(axis));
-        if let Some(first) = first {
-            problem.suggestion =
-                format!("`values: [{first}, {}, …]` in place of `from` and `to`", first + 1.0);
-        }
-        problem
     }
 }
 

@@ -3,33 +3,20 @@
 
 use std::collections::BTreeMap;
 
-use stribeck_scene::deviation::RollingSurface;
 use stribeck_scene::dice::Dice;
-use stribeck_scene::scene::Scene;
 
-use super::{Split, Variant};
+use super::{Label, Split, Variant};
 
 /// Number of a scene that decides its place in the draw.
 pub(super) type Drawn = u64;
 
-/// Bearing and damaged surfaces; empty where there is no scene.
-fn class_of(scene: Option<&Scene>) -> String {
-    let Some(scene) = scene else { return String::new() };
-    let on = |on: &RollingSurface| match on {
-        RollingSurface::Outer => "outer",
-        RollingSurface::Inner => "inner",
-        RollingSurface::Roller(_) => "roller",
-    };
-    let mut faults: Vec<&str> = scene.faults().iter().map(on).collect();
-    faults.sort_unstable();
-    format!("{} {}", scene.bearing.designation, faults.join("+"))
-}
-
 /// Sets the part of every run; equal numbers in `drawn` are equal scenes and stay together.
 pub(super) fn assign(runs: &mut [Variant], drawn: &[Drawn], split: &Split, seed: u64) {
-    let mut classes: BTreeMap<String, Vec<Drawn>> = BTreeMap::new();
+    // Those that cannot be take no place of those that can.
+    let mut classes: BTreeMap<Option<Label>, Vec<Drawn>> = BTreeMap::new();
     for (run, number) in runs.iter().zip(drawn) {
-        classes.entry(class_of(run.scene.as_ref().ok())).or_default().push(*number);
+        let label = run.label.clone().filter(|_| run.scene.is_ok());
+        classes.entry(label).or_default().push(*number);
     }
     let mut parts: BTreeMap<Drawn, &'static str> = BTreeMap::new();
     for mut numbers in classes.into_values() {

@@ -13,13 +13,27 @@ pub const SENSOR: &str = "sensor.";
 
 words! {
     /// Files that are kept of a run once its summary exists. Scene, provenance and summary always are.
-    pub enum Keep: Copy, Eq {
+    pub enum Keep: Copy, Eq, PartialOrd, Ord {
         /// Everything.
         All = "all",
         /// Of its samples the channels of sensors.
         Signals = "signals",
         /// No sample.
         Numbers = "numbers",
+    }
+}
+
+impl Keep {
+    /// All of them, what keeps more first.
+    pub const ALL: [Self; 3] = [Self::All, Self::Signals, Self::Numbers];
+
+    /// As files and flags have it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Signals => "signals",
+            Self::Numbers => "numbers",
+        }
     }
 }
 

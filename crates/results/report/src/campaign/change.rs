@@ -21,7 +21,12 @@ pub(super) struct Change {
     means: Vec<(f64, f64)>,
     /// Standard deviation of the runs at one value about their mean; `None` where no value has several.
     scatter: Option<f64>,
+    /// Whether it has enough places, in an order, for a trend.
+    is_trend: bool,
 }
+
+/// Fewest places of a field over which a number may grow or fall: of three, chance orders one set in three.
+const LEAST_PLACES: usize = 4;
 
 impl Change {
     /// `None` where fewer than two values of the field have the number.
@@ -36,7 +41,8 @@ impl Change {
         let squares = groups.iter().flat_map(|all| all.iter().map(|(_, y)| (y - mean(all)).powi(2)));
         let degrees = known.len() - groups.len();
         let scatter = (degrees > 0).then(|| (squares.sum::<f64>() / degrees as f64).sqrt());
-        (means.len() > 1).then_some(Self { means, scatter })
+        let is_trend = abscissa.is_ordered && means.len() >= LEAST_PLACES;
+        (means.len() > 1).then_some(Self { means, scatter, is_trend })
     }
 
     fn range(&self) -> [f64; 2] {
@@ -60,12 +66,13 @@ impl Change {
         (most - least) / counts.max(worth).max(f64::MIN_POSITIVE)
     }
 
-    /// In words: what happens from the first value of the field to the last.
+    /// In words: what happens from the first value of the field to the last. Over names, seeds and a few values there
+    /// is no trend.
     pub(super) fn words(&self, Drawn { words, unit, .. }: &Drawn, field: &str) -> String {
         let (field, [least, most]) = (FieldWords::of(field).inside(), self.range());
         let number = |y: f64| significant(y, 3).replace('-', "−");
         let (from, to) = (self.means[0].1, self.means[self.means.len() - 1].1);
-        if !self.is_monotone() {
+        if !(self.is_trend && self.is_monotone()) {
             let text =
                 format!("{words} varies over the {field}: {} to {} {unit}", number(least), number(most));
             return text.trim_end().to_owned();
@@ -94,14 +101,27 @@ mod tests {
         let seen =
             one(vec![run(1, "100", 1.0), run(2, "100", 3.0), run(3, "200", 11.0), run(4, "200", 13.0)]);
         assert!((seen.size("g") - 10.0 / (3.0 * 2.0_f64.sqrt())).abs() < 1e-12, "{seen:?}");
-        assert!(
-            seen.words(&drawn()[0], "operation.load_n").ends_with("grows with the load: on average 2 → 12 g")
-        );
+        let words = |change: &Change| change.words(&drawn()[0], "operation.load_n");
+        assert!(words(&seen).ends_with("varies over the load: 2 to 12 g"), "{}", words(&seen));
+        let four = (1..=4).map(|n| run(n, &format!("{n}00"), n as f64)).collect();
+        assert!(words(&one(four)).ends_with("grows with the load: 1 → 4 g"));
         let lost = one(vec![run(1, "100", 1.0), run(2, "100", 9.0), run(3, "200", 2.0), run(4, "200", 10.0)]);
         assert!(lost.size("g") < 1.0, "{lost:?}");
         // One run a value: a tenth counts.
         assert!(one(vec![run(1, "100", 1.0), run(2, "200", 1.05)]).size("g") < 1.0);
         let back = one(vec![run(1, "100", 1.0), run(2, "200", 3.0), run(3, "300", 2.0)]);
-        assert!(back.words(&drawn()[0], "operation.load_n").contains("varies over the load: 1 to 3 g"));
+        assert!(words(&back).contains("varies over the load: 1 to 3 g"));
+    }
+
+    /// "Root mean square falls with the bearing", whose names are numbers, and with the seed.
+    #[test]
+    fn issue_names_and_seeds_have_no_trend() {
+        for field in ["bearing", "defects[0].form.roughness.seed"] {
+            let runs = (1..=5).map(|n| run(n, &format!("620{n}"), n as f64)).collect();
+            let index = CampaignIndex { fields: vec![field.into()], ..index(runs) };
+            let change = Change::of(&index, &Abscissa::of(&index, 0), "levels.record.rms_g");
+            let words = change.expect("a change").words(&drawn()[0], field);
+            assert!(words.contains("varies over") && words.ends_with("1 to 5 g"), "{words}");
+        }
     }
 }

@@ -4,25 +4,27 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::Result;
+use stribeck_analysis::runs::OneOfMany;
 use stribeck_formats::parquet::{Column, Values, Writer};
 use stribeck_store::run_dir::{RunDir, SENSOR};
 use stribeck_store::trace::{Trace, TraceFile};
 
-use super::Row;
-
-/// Runs that have signals to their end, and the file of each, that of the machine's sensor where there is one: the record of a diverged run is not a signal of
-/// a bearing.
-fn recorded(rows: &[Row]) -> impl Iterator<Item = (&Row, PathBuf)> {
-    rows.iter().filter(|row| row.is_complete()).filter_map(|row| {
-        let dir = RunDir::open(row.folder.as_ref()?).ok()?;
+/// Runs that have signals to their end, and the file of each, that of the machine's sensor where there is one: the
+/// record of a diverged run is not a signal of a bearing.
+fn recorded<'a>(
+    folder: &'a Path,
+    rows: &'a [OneOfMany],
+) -> impl Iterator<Item = (&'a OneOfMany, PathBuf)> + 'a {
+    rows.iter().filter(|one| one.is_complete()).filter_map(move |one| {
+        let dir = RunDir::open(folder.join(one.folder.as_ref()?)).ok()?;
         let files = [dir.machine(), dir.signals()];
-        Some((row, files.into_iter().find(|file| file.exists()).unwrap_or_else(|| dir.trace())))
+        Some((one, files.into_iter().find(|file| file.exists()).unwrap_or_else(|| dir.trace())))
     })
 }
 
-pub(super) fn names(rows: &[Row]) -> Result<BTreeSet<String>> {
+pub(super) fn names(folder: &Path, rows: &[OneOfMany]) -> Result<BTreeSet<String>> {
     let mut names = BTreeSet::new();
-    for (_, file) in recorded(rows) {
+    for (_, file) in recorded(folder, rows) {
         names.extend(TraceFile::open(file)?.names().iter().filter(|name| name.starts_with(SENSOR)).cloned());
     }
     Ok(names)
@@ -30,17 +32,17 @@ pub(super) fn names(rows: &[Row]) -> Result<BTreeSet<String>> {
 
 /// One group of rows for each run that has signals. The signals of one run are in memory at a time.
 pub(super) fn write(
-    path: &Path,
-    rows: &[Row],
+    (folder, path): (&Path, &Path),
+    rows: &[OneOfMany],
     names: &BTreeSet<String>,
     notes: &[(String, String)],
 ) -> Result<()> {
     let schema: Vec<Column> = group(None, names, Trace::default()).collect();
     let mut writer = Writer::create(path, &schema, notes)?;
-    for (row, file) in recorded(rows) {
+    for (one, file) in recorded(folder, rows) {
         let file = TraceFile::open(file)?;
         let trace = file.read(0..file.len(), |name| name == "time_s" || name.starts_with(SENSOR))?;
-        writer.add(group(Some(row), names, trace))?;
+        writer.add(group(Some(one), names, trace))?;
     }
     writer.finish()?;
     Ok(())
@@ -52,14 +54,14 @@ pub(super) fn columns(names: &BTreeSet<String>) -> Vec<String> {
 
 /// The columns of a run's signals; one that it has not recorded is empty.
 fn group<'a>(
-    row: Option<&'a Row>,
+    one: Option<&'a OneOfMany>,
     names: &'a BTreeSet<String>,
     mut trace: Trace,
 ) -> impl Iterator<Item = Column> + use<'a> {
     let all = trace.len();
     let column = |name: &str, values| Column { name: name.to_owned(), values };
-    let run = move || row.and_then(|row| i64::try_from(row.number).ok());
-    let split = move || row.map(|row| row.split.to_owned());
+    let run = move || one.and_then(|one| i64::try_from(one.row.run).ok());
+    let split = move || one.map(|one| one.row.split.clone());
     let run = std::iter::once_with(move || column("run", Values::Count(vec![run(); all])));
     let split = std::iter::once_with(move || column("split", Values::Text(vec![split(); all])));
     let time = trace.take("time_s").unwrap_or_default();
