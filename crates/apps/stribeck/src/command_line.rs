@@ -1,13 +1,14 @@
-//! The command line: a mistake in it is answered with the line that was probably meant, or else with an example
+//! The command line: a mistake in it is answered with what other programs' words are called here, or with an example
 //! of its command.
 
-mod meant;
-
 use std::borrow::Cow;
+use std::ffi::OsStr;
 use std::io::Write;
+use std::path::Path;
 
-use clap::error::{ContextKind, Error, ErrorKind};
+use clap::error::{ContextKind, ContextValue, Error, ErrorKind};
 use clap::{Command, Parser};
+use stribeck_scene::catalogue;
 
 use crate::out::harmless;
 use crate::place::REPOSITORY;
@@ -22,37 +23,63 @@ pub fn parse<C: Parser>() -> C {
     let parsed = command.try_get_matches().and_then(|matches| C::from_arg_matches(&matches));
     parsed.unwrap_or_else(|error| {
         let words: Vec<String> = std::env::args().skip(1).collect();
-        let program = C::command();
-        let meant = meant::meant(&program, &words).map(|line| format!("try: {}", shown(&line)));
-        let meant_one = meant.is_some();
-        let example = meant.or_else(|| example(&program, &words));
         let mistake = error.use_stderr();
-        let mut error = without_trailing(error);
-        if meant_one {
-            error.remove(ContextKind::SuggestedSubcommand);
-        }
-        let plain = error.render().to_string();
-        match harmless(&plain) {
-            Cow::Borrowed(_) => drop(error.print()),
+        let tip = ours(&error).or_else(|| example(&C::command(), &words));
+        let plain = without_trailing(error);
+        match harmless(&plain.render().to_string()) {
+            Cow::Borrowed(_) => drop(plain.print()),
             // What was typed is repeated, and may be the name of a file of others.
             Cow::Owned(words) => drop(write!(std::io::stderr(), "{words}")),
         }
-        if let (true, Some(example)) = (mistake, example) {
-            eprintln!("{example}");
+        if let (true, Some(tip)) = (mistake, tip) {
+            eprintln!("{tip}");
         }
         std::process::exit(if mistake { 2 } else { 0 })
     })
 }
 
-/// A command line as a shell takes it.
-fn shown(words: &[String]) -> String {
-    let program = if std::env::var_os(REPOSITORY).is_some() { "cargo xtask" } else { "stribeck" };
-    let plain = |c: char| c.is_alphanumeric() || "-_.,:/=+%@~".contains(c);
-    let quoted = |word: &String| match word.chars().all(plain) && !word.is_empty() {
-        true => harmless(word).into_owned(),
-        false => format!("'{}'", harmless(word).replace('\'', "'\\''")),
+/// Words of other programs, and ours: what clap's aliases and nearest names do not reach.
+const OURS: [(&[&str], &str); 12] = [
+    (&["resume", "continue"], "stribeck simulate --resume RUN"),
+    (&["version"], "stribeck --version"),
+    (&["--dry-run", "check"], "stribeck plan SCENE.ron"),
+    (&["--seconds", "--duration", "--duration-s", "--duration-ms"], "--set solver.duration_ms=…, in ms"),
+    (
+        &["--rpm", "--speed", "--speed-rpm", "--speed-hz"],
+        "--set operation.speed_rpm=…, or --speed-rpm, in rpm",
+    ),
+    (&["--load", "--load-kn", "--load-n"], "--set operation.load_n=…, or --load-n, in N"),
+    (&["--length", "--length-mm"], "--set defect.length_mm=…, or --length-mm, in mm"),
+    (&["--bearing"], "--set bearing=NAME"),
+    (&["--fs", "--rate", "--sample-rate"], "--rate-hz HZ"),
+    (&["--force", "-f"], "--overwrite of simulate, --yes of rm"),
+    (&["csv", "--csv", "wav", "--wav", "mat", "--mat", "npz", "--npz"], "stribeck export RUN --to FORMAT"),
+    (&["inner-race", "inner-ring", "outer-race", "outer-ring", "ball"], "outer, inner, roller or none"),
+];
+
+/// What the word that was not understood is called here; for a file in the place of a command the one that reads it.
+fn ours(error: &Error) -> Option<String> {
+    let said = |kind| match error.get(kind) {
+        Some(ContextValue::String(one)) => Some(one.clone()),
+        _ => None,
     };
-    std::iter::once(program.to_owned()).chain(words.iter().map(quoted)).collect::<Vec<_>>().join(" ")
+    let wrong = match error.kind() {
+        ErrorKind::InvalidSubcommand => said(ContextKind::InvalidSubcommand)?,
+        ErrorKind::UnknownArgument => said(ContextKind::InvalidArg)?,
+        ErrorKind::InvalidValue => said(ContextKind::InvalidValue)?,
+        _ => return None,
+    };
+    let found = OURS.iter().find(|(typed, _)| typed.contains(&wrong.replace('_', "-").as_str()));
+    let command = || match Path::new(&wrong).extension().and_then(OsStr::to_str) {
+        _ if error.kind() != ErrorKind::InvalidSubcommand => None,
+        Some("ron") => Some("stribeck simulate SCENE.ron"),
+        Some(_) if Path::new(&wrong).is_file() => Some("stribeck analyse FILE"),
+        _ if wrong.contains(|c: char| c.is_ascii_digit()) && catalogue::parse(&wrong).is_ok() => {
+            Some("stribeck bearings NAME")
+        }
+        _ => None,
+    };
+    found.map(|(_, ours)| *ours).or_else(command).map(|ours| format!("try: {ours}"))
 }
 
 /// The example in the help of the command that `words` begin with.

@@ -117,7 +117,7 @@ pub enum Command {
     )]
     New(new::Options),
     /// Runs a scene and writes its report
-    #[command(after_help = "Example: stribeck simulate mine.ron --set operation.load_n=2000")]
+    #[command(alias = "run", after_help = "Example: stribeck simulate mine.ron --set operation.load_n=2000")]
     Simulate(simulate::Options),
     /// Writes the report of a run again
     #[command(after_help = "Example: stribeck report mine --pdf")]
@@ -152,7 +152,7 @@ pub enum Command {
     #[command(after_help = "Example: stribeck fmu mine.ron --set 'model=reduced()'")]
     Fmu(fmu::Options),
     /// Lists bearings by name: dimensions, defect frequencies, sources
-    #[command(after_help = "Example: stribeck bearings \"NU 205\"")]
+    #[command(alias = "bearing", after_help = "Example: stribeck bearings \"NU 205\"")]
     Bearings(bearings::Options),
     /// Analyses measured records: which defects, how certain, and what is open
     #[command(
@@ -161,19 +161,19 @@ pub enum Command {
     )]
     Analyse(analyse::Options),
     /// Compares runs, ensembles and records: changed fields, changed results
-    #[command(after_help = "Example: stribeck compare mine other record.mat")]
+    #[command(alias = "diff", after_help = "Example: stribeck compare mine other record.mat")]
     Compare(compare::Options),
     /// Writes the signals or the stress frames of a run in a format of other programs
     #[command(after_help = "Example: stribeck export mine --to wav --slow 10")]
     Export(export::Options),
     /// Lists the runs and other results
-    #[command(after_help = "Example: stribeck list")]
+    #[command(alias = "ls", after_help = "Example: stribeck list")]
     List(list::Options),
     /// Opens the page of a run in a browser
-    #[command(after_help = "Example: stribeck open mine")]
+    #[command(aliases = ["plot", "show", "view"], after_help = "Example: stribeck open mine")]
     Open(open::Options),
     /// Removes runs, after asking
-    #[command(after_help = "Example: stribeck rm mine other")]
+    #[command(aliases = ["delete", "remove"], after_help = "Example: stribeck rm mine other")]
     Rm(remove::Options),
     /// Writes the completions of commands and flags for a shell
     #[command(after_help = "Example: stribeck completions bash > stribeck.bash")]

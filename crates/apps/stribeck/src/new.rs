@@ -25,7 +25,7 @@ use crate::place::{Place, shown};
 pub struct Options {
     /// File to write, for example mine.ron [default: the bearing and its defect]
     file: Option<PathBuf>,
-    /// Bearing of the catalogue, for example "NU 205" or 6205 [default: 6205]
+    /// Bearing of the catalogue, for example "NU 205", or "elements=9, diameter_mm=7.94, pitch_mm=39.04" [default: 6205]
     #[arg(long)]
     bearing: Option<String>,
     /// Radial load [N] [default: 1000, or a tenth of the static rating where that is less]
@@ -97,15 +97,11 @@ fn positive(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| format!("`{text}` is no number above 0"))
 }
 
-/// A bearing that a scene can name.
+/// A bearing by its name or its numbers.
 fn bearing(text: &str) -> Result<CatalogueBearing, String> {
-    let advice = "`stribeck bearings` lists those that are known; for another one write a scene with its \
-                  dimensions (`bearing: (rollers: …)`, as the guide's page on your own bearing has it)";
-    let text = text.trim().trim_matches('"');
-    if text.starts_with(|c: char| c.is_ascii_lowercase()) && text.contains('=') {
-        return Err(format!("`{text}` are numbers without a name; {advice}"));
-    }
-    catalogue::parse_or_advise(text, advice)
+    let advice = "`stribeck bearings` lists those that are known; another one is given by its numbers, \
+                  `elements=9, diameter_mm=7.94, pitch_mm=39.04`";
+    catalogue::parse_or_advise(text.trim().trim_matches('"'), advice)
 }
 
 /// The six answers.
@@ -320,6 +316,8 @@ fn answers(options: &Options, asks: bool) -> Result<Answers> {
 fn with_numbers(text: &str, bearing: &CatalogueBearing) -> String {
     let text = text.trim().trim_matches('"');
     match text.split_once(',') {
+        // Its numbers are its name.
+        _ if bearing.name.contains('=') => bearing.name.clone(),
         Some((_, numbers)) => format!("{}, {}", bearing.name, numbers.trim()),
         None => bearing.name.clone(),
     }
@@ -387,7 +385,10 @@ pub(crate) fn scene(bearing: &str, load_n: f64, speed_rpm: f64, ring: Option<Def
 /// Name of the scene: the bearing with its defect.
 fn name(answers: &Answers) -> String {
     let bearing = answers.bearing.split(',').next().unwrap_or_default();
-    let bearing = bearing.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), "");
+    let bearing = match bearing.contains('=') {
+        true => "own".to_owned(),
+        false => bearing.to_lowercase().replace(|c: char| !c.is_ascii_alphanumeric(), ""),
+    };
     match answers.defect {
         Where::None => format!("{bearing}-sound"),
         defect => format!("{bearing}-{}", defect.word()),
@@ -520,7 +521,15 @@ mod tests {
 
     #[test]
     fn behaves_every_answer_makes_a_scene_that_can_be() {
-        for bearing in ["6205", "NU 205", "NU 205, elements=12", "6305", "6322", "NU 2320"] {
+        for bearing in [
+            "6205",
+            "NU 205",
+            "NU 205, elements=12",
+            "6305",
+            "6322",
+            "NU 2320",
+            "elements=9, diameter_mm=7.94, pitch_mm=39.04",
+        ] {
             for defect in [Where::Outer, Where::Inner, Where::Roller, Where::None] {
                 let of = answers(bearing, defect);
                 let scene = Scene::parse(&text(&name(&of), &of), "new.ron").expect(bearing);
@@ -563,5 +572,9 @@ mod tests {
         assert_eq!(name(&answers("6205", Where::Inner)), "6205-inner");
         let bearing = bearing("SKF 6205-2RS1, elements=8").expect("of the catalogue");
         assert_eq!(with_numbers("SKF 6205-2RS1, elements=8", &bearing), "6205, elements=8");
+        let numbers = "elements=9, element_diameter_mm=7.94, pitch_diameter_mm=39.04";
+        let bearing = super::bearing(numbers).expect("numbers");
+        assert_eq!(with_numbers(numbers, &bearing), numbers);
+        assert_eq!(name(&answers(numbers, Where::Inner)), "own-inner");
     }
 }

@@ -27,7 +27,7 @@ pub use difference::differences;
 pub use page::page;
 use range::{Limits, Range};
 pub use schema::{json_schema, to_json};
-use tree::{Content, Node, Step, join, steps};
+use tree::{Node, Step, join, steps};
 use value::Value;
 
 use crate::scene::Scene;
@@ -300,11 +300,6 @@ impl Spot {
         Self { shape, is_item: true, ..self }
     }
 
-    /// Whether it has a value of its own at its path, not a part of one.
-    pub(crate) fn is_whole(self) -> bool {
-        !self.is_item
-    }
-
     /// The same with another shape, that inside of an optional one.
     pub(crate) fn with(self, shape: Shape) -> Self {
         Self { shape, ..self }
@@ -314,14 +309,6 @@ impl Spot {
     pub(crate) fn default(self) -> Option<Node> {
         let (group, field) = self.field.filter(|(_, field)| !self.is_item && !field.is_required)?;
         (group.default)().get(field.name).cloned()
-    }
-
-    /// The same where it is one word, number or text.
-    pub(crate) fn plain_default(self) -> Option<String> {
-        match self.default()?.content {
-            Content::Atom(text) => Some(text),
-            _ => None,
-        }
     }
 
     /// Accepted values in words: the kind with its range, or the words.
@@ -517,7 +504,7 @@ mod tests {
                 // Courses over time have their own rules for times.
                 Shape::Number | Shape::Count => {
                     let (range, _) = spot.range.unwrap_or_else(|| panic!("{path} has no range"));
-                    let default = spot.plain_default().and_then(|text| text.parse::<f64>().ok());
+                    let default = spot.default().and_then(|node| f64::read(&node));
                     assert!(default.is_none_or(|value| range.contains(value, &Scene::default())), "{path}");
                 }
                 Shape::List(item) => check(Spot { is_item: true, ..spot.with(*item) }, path),

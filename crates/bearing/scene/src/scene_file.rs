@@ -31,7 +31,7 @@ use crate::fields::tree::Node;
 use crate::fields::value::Value;
 use crate::fields::{Spot, spot};
 use crate::scene::Scene;
-use check::{check, numbers_are_in_range};
+use check::check;
 pub(crate) use load::load;
 use problem::MOST_TOLD;
 pub use problem::{Place, Problem, SceneError, offset, place_in_file};
@@ -94,7 +94,7 @@ impl Scene {
     ///
     /// [`SceneError`] with every number outside its range, or every geometric impossibility.
     pub fn validate(&self) -> Result<(), SceneError> {
-        check(self, &Sources::of_scene(self), None)
+        check(self, &Sources::of_scene(self))
     }
 }
 
@@ -172,31 +172,17 @@ struct Understood {
     scene: Scene,
     sources: Sources,
     /// Why the fields of its bearing do not define one.
-    refusal: Option<Box<own::Refusal>>,
-    /// Where its fields were to be completed and define a bearing.
-    written: Option<own::Written>,
+    refusal: Option<Box<Problem>>,
 }
 
 impl Understood {
     /// The scene with its tables in `folder`, if it can be.
     fn check(self, folder: &Path) -> Result<Scene, SceneError> {
-        let Self { mut scene, sources, refusal, written } = self;
+        let Self { mut scene, sources, refusal } = self;
         table::read(&mut scene, folder, &sources)?;
-        if let Some(refusal) = refusal.as_ref().filter(|refusal| refusal.is_of_another) {
-            return Err(refusal.problem(&sources).into());
-        }
-        match (check(&scene, &sources, written.as_ref()), refusal) {
-            (checked, None) => checked.map(|()| scene),
-            (Ok(()), Some(refusal)) => Err(refusal.problem(&sources).into()),
-            (Err(error), Some(refusal)) => {
-                let problem = refusal.problem(&sources);
-                if numbers_are_in_range(&scene) {
-                    Err(error.about_bearing(&refusal.hint(), problem))
-                } else {
-                    // Main dimensions are in range, or there would be no refusal.
-                    Err(error.and(problem))
-                }
-            }
+        match refusal {
+            Some(problem) => Err(problem.into()),
+            None => check(&scene, &sources).map(|()| scene),
         }
     }
 }
@@ -205,10 +191,8 @@ impl Understood {
 /// `None` where its bearing is another one already.
 fn complete(sources: Sources, given: Option<Vec<String>>) -> Result<Understood, SceneError> {
     let mut scene = scene_of(&sources)?;
-    let written = given.map(|given| own::Written { scene: scene.clone(), given });
-    let refusal = written.as_ref().and_then(|written| own::complete(&mut scene, &written.given).err());
-    let written = written.filter(|_| refusal.is_none());
-    Ok(Understood { scene, sources, refusal, written })
+    let refusal = given.and_then(|given| own::complete(&mut scene, &given, &sources).err());
+    Ok(Understood { scene, sources, refusal })
 }
 
 /// The values of a tree that the table allows.

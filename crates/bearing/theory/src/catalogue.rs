@@ -259,8 +259,8 @@ impl CatalogueBearing {
                          `NU 205, elements=13`"
                     ));
                 }
-                "diameter_mm" => bearing.diameter_mm = number,
-                "pitch_mm" => bearing.pitch_mm = number,
+                "diameter_mm" | "element_diameter_mm" => bearing.diameter_mm = number,
+                "pitch_mm" | "pitch_diameter_mm" => bearing.pitch_mm = number,
                 "angle_deg" => bearing.angle_deg = number,
                 other => return Err(format!("`{other}` is no number of a bearing; known are {known}")),
             }

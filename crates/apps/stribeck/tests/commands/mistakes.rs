@@ -23,13 +23,10 @@ const SWEEP: [Mistake; 5] = [
     (&["sweep", "--set=operation.load_n=1000"], &["no field has several values", "stribeck simulate"]),
     (
         &["sweep", "--set=operation.lod_n=1,2"],
-        &["no field `operation.lod_n`", "did you mean `operation.load_n`"],
+        &["no field `operation.lod_n`", "did you mean `operation.load_n` [N]"],
     ),
-    (
-        &["sweep", "--set=operation.load_n=1000,-5"],
-        &["is -5", "more than 0, at most 1e9 N", "without the minus"],
-    ),
-    (&["sweep", "--set=operation.load_n=1000,much"], &["is `much`, which is not a number", "try: --set"]),
+    (&["sweep", "--set=operation.load_n=1000,-5"], &["is -5", "more than 0, at most 1e9 N"]),
+    (&["sweep", "--set=operation.load_n=1000,much"], &["is `much`, which is not a number", "1e9 N"]),
     (&["sweep", "mine.ron", "--set=operation.load_n=1,2"], &["`mine.ron`", "no such file", "check the path"]),
 ];
 
@@ -38,14 +35,14 @@ const NEW: [Mistake; 5] = [
     (&["new", "--bearing=62O5"], &["no bearing `62O5`", "did you mean `6205`", "stribeck bearings"]),
     (&["new", "--load-n=-5"], &["'-5'", "--load-n", "no number above 0"]),
     (&["new", "mine.txt"], &["`mine.txt`", "ends in `.ron`, such as `mine.ron`"]),
-    (&["new", "--load_n=3000"], &["'--load_n'", "try: stribeck new --load-n=3000"]),
+    (&["new", "--load_n=3000"], &["'--load_n'", "'--load-n'"]),
     (&["new", "--defect=ouder"], &["'ouder'", "outer, inner, roller, none"]),
 ];
 
 /// A folder that is not there, a misspelt flag, two folders, two loudnesses, a file.
 const LIST: [Mistake; 5] = [
     (&["list", "results"], &["no folder `results`", "without one lists `runs`"]),
-    (&["list", "--jsn"], &["'--jsn'", "try: stribeck list --json"]),
+    (&["list", "--jsn"], &["'--jsn'", "'--json'"]),
     (&["list", "runs", "more"], &["'more'", "stribeck list [OPTIONS] [FOLDER]"]),
     (&["list", "-q", "-v"], &["'--quiet' cannot be used with '--verbose'"]),
     (&["list", "mine.ron"], &["no folder `mine.ron`"]),
@@ -56,7 +53,7 @@ const OPEN: [Mistake; 5] = [
     (&["open"], &["nothing in `runs` has a page", "stribeck simulate"]),
     (&["open", "mine"], &["there is no `mine`", "no runs in `runs`", "stribeck simulate"]),
     (&["open", "report.html"], &["there is no `report.html`", "no runs in `runs`"]),
-    (&["open", "--prnt"], &["'--prnt'", "try: stribeck open --print"]),
+    (&["open", "--prnt"], &["'--prnt'", "'--print'"]),
     (&["open", ".."], &["`..` holds no run", "stribeck list"]),
 ];
 
@@ -73,7 +70,7 @@ const RM: [Mistake; 5] = [
 const PLAN: [Mistake; 5] = [
     (&["plan", "mine.ron"], &["`mine.ron`", "no such file", "check the path"]),
     (&["plan", "--set=mesh.sice_mm=1"], &["no field `mesh.sice_mm`", "did you mean `mesh.size_mm`"]),
-    (&["plan", "--set=mesh.size_mm=0"], &["is 0", "more than 0, at most 1000 mm", "try: --set"]),
+    (&["plan", "--set=mesh.size_mm=0"], &["is 0", "more than 0, at most 1000 mm"]),
     (&["plan", "--set=mesh.size_mm"], &["`mesh.size_mm` has no `=`", "--set mesh.size_mm=1.0"]),
     (&["plan", "--threads=4"], &["'--threads'", "Example: stribeck plan"]),
 ];

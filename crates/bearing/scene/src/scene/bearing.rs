@@ -46,8 +46,8 @@ group! {
         /// Angle of the centre of roller 1 [°], counter-clockwise from the x axis; the others follow
         /// counter-clockwise.
         pub first_roller_deg: f64 = 94.0, within(-360.0, 360.0);
-        /// Pitch diameter [mm], instead of a raceway: a bearing that is not of the catalogue may give this
-        /// and the next three, from which the fields above follow.
+        /// Pitch diameter [mm], instead of the raceways: a bearing that is not of the catalogue gives this beside its
+        /// rolling elements, and the next three where they are known; the fields above follow.
         pub pitch_mm: Option<f64> = None, positive(20_000.0), omitted();
         /// Bore [mm], instead of the inner ring's thickness.
         pub bore_mm: Option<f64> = None, positive(20_000.0), omitted();

@@ -82,10 +82,9 @@ impl<'a> Checked<'a> {
     fn finer(&self, facet: f64) -> Remedy {
         if self.on_roller() {
             let count = 4.0 * (self.around / facet / 4.0).ceil();
-            Remedy::new("mesh.roller_facets", format!("at least {}", number(count))).number(count, "")
+            Remedy::new("mesh.roller_facets", format!("at least {}", number(count)))
         } else {
             Remedy::new("mesh.size_mm", format!("at most {} mm", number(facet)))
-                .number(round_down(facet, 2), "")
         }
     }
 
@@ -157,8 +156,7 @@ impl<'a> Checked<'a> {
             self.facet,
             number(HOLLOW_FACETS)
         );
-        let long = Remedy::new(path, format!("at least {} mm", number(round_up(least, 3))))
-            .number(round_up(least, 3), "");
+        let long = Remedy::new(path, format!("at least {} mm", number(round_up(least, 3))));
         Some(Finding::new(message, vec![long, self.finer(length / HOLLOW_FACETS)]))
     }
 
@@ -175,10 +173,7 @@ impl<'a> Checked<'a> {
             self.around
         );
         let most = round_down(most, 3);
-        Some(Finding::new(
-            message,
-            vec![Remedy::new(path, format!("at most {} mm", number(most))).number(most, "")],
-        ))
+        Some(Finding::new(message, vec![Remedy::new(path, format!("at most {} mm", number(most)))]))
     }
 
     fn edge(&self, edge: f64, length: f64) -> Option<Finding> {
@@ -202,9 +197,7 @@ impl<'a> Checked<'a> {
             remedies.push(self.finer(edge));
         } else {
             let path = self.path("form.length_mm");
-            remedies.push(
-                Remedy::new(path, format!("at least {} mm", number(2.0 * edge))).number(2.0 * edge, ""),
-            );
+            remedies.push(Remedy::new(path, format!("at least {} mm", number(2.0 * edge))));
         }
         Some(Finding::new(message, remedies))
     }
@@ -237,15 +230,11 @@ impl<'a> Checked<'a> {
         );
         message += ". Steep walls have spalls with `edge: rectangular`";
         let most = round_down(value * STEEPEST / slope, 3);
-        let mut remedies =
-            vec![Remedy::new(path, format!("at most {} {unit}", number(most))).number(most, "")];
+        let mut remedies = vec![Remedy::new(path, format!("at most {} {unit}", number(most)))];
         if let FormScene::Spall(spall) = &self.deviation.form {
             let edge = if spall.edge_mm > 0.0 { spall.edge_mm } else { self.facet };
             let longer = round_up(edge * slope / STEEPEST, 3);
-            remedies.push(
-                Remedy::new(self.path("form.edge_mm"), format!("at least {} mm", number(longer)))
-                    .number(longer, ""),
-            );
+            remedies.push(Remedy::new(self.path("form.edge_mm"), format!("at least {} mm", number(longer))));
             let upright = Remedy::new(self.path("form.edge"), "`rectangular`, with `edge_mm: 0`");
             remedies.push(upright.value("rectangular", "walls that stand upright"));
         }
@@ -339,7 +328,7 @@ impl<'a> Checked<'a> {
             self.surface(),
             number(WAVE_FACETS)
         );
-        let remedy = Remedy::new(path, format!("at most {}", number(most))).number(most, "");
+        let remedy = Remedy::new(path, format!("at most {}", number(most)));
         Some(Finding::new(message, vec![remedy, self.finer(self.around / (WAVE_FACETS * order))]))
     }
 
@@ -354,7 +343,7 @@ impl<'a> Checked<'a> {
                 self.surface()
             );
             let up = round_up(least, 3);
-            let remedy = Remedy::new(short, format!("at least {} mm", number(up))).number(up, "");
+            let remedy = Remedy::new(short, format!("at least {} mm", number(up)));
             return Some(Finding::new(message, vec![remedy, self.finer(shortest / HOLLOW_FACETS)]));
         }
         // One order of waves must lie within.
@@ -368,13 +357,11 @@ impl<'a> Checked<'a> {
             number(longest),
             self.surface()
         );
-        let wide = round_up(2.0 * shortest, 3);
         Some(Finding::new(
             message,
             vec![
-                Remedy::new(long, format!("more than {} mm", number(shortest))).number(wide, ""),
-                Remedy::new(short, format!("less than {} mm", number(longest)))
-                    .number(round_down(0.5 * longest, 3), ""),
+                Remedy::new(long, format!("more than {} mm", number(shortest))),
+                Remedy::new(short, format!("less than {} mm", number(longest))),
             ],
         ))
     }
@@ -446,8 +433,7 @@ impl<'a> Checked<'a> {
                 self.index,
                 number(facets)
             );
-            let away = round_up(deviation.angle_deg + 1.01 * 360.0 * needed / self.around, 4);
-            let remedy = Remedy::new(path, format!("{needed:.2} mm or more away")).number(away % 360.0, "");
+            let remedy = Remedy::new(path, format!("{needed:.2} mm or more away"));
             return Some(Finding::new(message, vec![remedy]));
         }
         None
@@ -483,7 +469,7 @@ impl<'a> Checked<'a> {
         );
         let form = Remedy::new(self.path("form"), "a gentle dent, a rounded spall, or waves, on a raceway");
         let dry = Remedy::new("film", "`None`").value("None", "dry");
-        Some(Finding::new(message, vec![dry, form.value("dent(length_mm: 6.0, depth_mm: 0.05)", "")]))
+        Some(Finding::new(message, vec![dry, form]))
     }
 
     /// Whether the same spall is allowed once its walls are at right angles.
@@ -520,11 +506,10 @@ impl<'a> Checked<'a> {
             needed,
             number(facets)
         );
-        let away = round_up(defect.angle_deg + 1.01 * 360.0 * needed / self.around, 4);
         Some(Finding::new(
             message,
             vec![
-                Remedy::new(path, format!("{:.2} mm or more away", needed)).number(away % 360.0, ""),
+                Remedy::new(path, format!("{:.2} mm or more away", needed)),
                 Remedy::new("defect", "`None`").value("None", ""),
             ],
         ))

@@ -43,8 +43,8 @@ fn damped_band(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(TO, format!("at least {} kHz", number(least))).number(20.0 * from, "a usual band"),
-            Remedy::new(FROM, format!("at most {} kHz", number(most))).number(to / 20.0, "a usual band"),
+            Remedy::new(TO, format!("at least {} kHz", number(least))),
+            Remedy::new(FROM, format!("at most {} kHz", number(most))),
         ],
     ))
 }
@@ -108,7 +108,7 @@ fn oiled_edges(scene: &Scene) -> Option<Finding> {
     );
     let slope = Remedy::new("defect.edge_slope_deg", format!("{least}° or more"));
     let dry = Remedy::new("film", "`None`").value("None", "dry");
-    Some(Finding::new(message, vec![slope.number(30.0, ""), dry]))
+    Some(Finding::new(message, vec![slope, dry]))
 }
 
 /// Only the reduced model has the resistance of oil.

@@ -4,7 +4,7 @@
 use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
-use super::wording::{number, round_down, round_up};
+use super::wording::number;
 use crate::housing::HousingScene;
 use crate::scene::{ModelScene, Scene};
 
@@ -48,10 +48,8 @@ fn layers(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(SIZE, format!("at most {} mm, one layer", number(thickness)))
-                .number(round_down(thickness / 4.0, 2), "four layers of elements"),
-            Remedy::new(body, format!("at least {} mm, one layer", number(size)))
-                .number(4.0 * size, "four layers of elements"),
+            Remedy::new(SIZE, format!("at most {} mm, one layer", number(thickness))),
+            Remedy::new(body, format!("at least {} mm, one layer", number(size))),
         ],
     ))
 }
@@ -67,10 +65,8 @@ fn grading(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(COARSE, format!("at least {} mm", number(size)))
-                .number(3.0 * size, "three facets become one"),
-            Remedy::new(SIZE, format!("at most {} mm", number(coarse)))
-                .number(round_down(coarse / 3.0, 2), "three facets become one"),
+            Remedy::new(COARSE, format!("at least {} mm", number(size))),
+            Remedy::new(SIZE, format!("at most {} mm", number(coarse))),
         ],
     ))
 }
@@ -79,38 +75,21 @@ fn grading(scene: &Scene) -> Option<Finding> {
 fn too_many_elements(scene: &Scene) -> Option<Finding> {
     let parts = elements(scene);
     let total: f64 = parts.iter().map(|part| part.1).sum();
-    let (field, most) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let (field, _) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     if total <= MAX_ELEMENTS {
         return None;
     }
-    // Four parts share the elements. Those of a disc grow with the square of its facets, those of a ring with
-    // the facets.
-    let excess = most / (MAX_ELEMENTS / 4.0);
-    let b = &scene.bearing;
     let allowed = format!("at most {} elements in all bodies", number(MAX_ELEMENTS));
     let remedy = |field: &str| Remedy::new(field, allowed.clone());
-    let fewer = |field: &str, value: f64| remedy(field).number((value / excess).floor(), "");
-    let smaller = |field: &str, value: f64| remedy(field).number(round_down(value / excess, 2), "");
-    let larger = |field: &str, value: f64| remedy(field).number(round_up(value * excess.sqrt(), 1), "");
-    let sizes = [(OUTER_RACE, b.outer_race_diameter_mm), (OUTER_RING, b.outer_ring_thickness_mm)]
-        .into_iter()
-        .chain([(INNER_RACE, b.inner_race_diameter_mm), (INNER_RING, b.inner_ring_thickness_mm)])
-        .chain([("adapter.width_mm", scene.adapter.width_mm), ("adapter.height_mm", scene.adapter.height_mm)])
-        .map(|(field, value)| smaller(field, value));
-    let size = larger(SIZE, scene.mesh.size_mm);
+    let sizes = [OUTER_RACE, OUTER_RING, INNER_RACE, INNER_RING, "adapter.width_mm", "adapter.height_mm"];
+    let with_sizes = |field: &str| std::iter::once(field).chain(sizes).map(remedy).collect();
     let remedies = match field {
         "mesh.outer_facets" | "mesh.inner_facets" => {
-            vec![remedy(field).value("None", "as many as `size_mm` makes"), size]
+            vec![remedy(field).value("None", "as many as `size_mm` makes"), remedy(SIZE)]
         }
-        "mesh.roller_facets" => {
-            let facets = (scene.mesh.roller_facets as f64 / excess.sqrt()).floor();
-            vec![remedy(field).number(facets, ""), fewer("bearing.rollers", b.rollers as f64)]
-        }
-        COARSE => {
-            let coarse = scene.mesh.grading.as_ref().map_or(0.0, |g| g.coarse_mm);
-            std::iter::once(larger(COARSE, coarse)).chain(sizes).collect()
-        }
-        _ => std::iter::once(size).chain(sizes).collect(),
+        "mesh.roller_facets" => vec![remedy(field), remedy("bearing.rollers")],
+        COARSE => with_sizes(COARSE),
+        _ => with_sizes(SIZE),
     };
     let message = format!("the mesh would have about {total:.1e} elements, most of them by `{field}`");
     Some(Finding::new(message, remedies))
@@ -164,7 +143,6 @@ fn too_few_samples(scene: &Scene) -> Option<Finding> {
     if duration * 1e3 / interval >= 2.0 {
         return None;
     }
-    let note = "a hundred samples";
     let message =
         format!("{} ms sampled every {} µs are fewer than two samples", number(duration), number(interval));
     Some(Finding::new(
@@ -173,15 +151,11 @@ fn too_few_samples(scene: &Scene) -> Option<Finding> {
             Remedy::new(
                 "output.interval_us",
                 format!("at most {} µs, two samples", number(duration * 500.0)),
-            )
-            .number(duration * 10.0, note)
-            .number(duration * 500.0, "two samples"),
+            ),
             Remedy::new(
                 "solver.duration_ms",
                 format!("at least {} ms, two samples", number(interval / 500.0)),
-            )
-            .number(interval / 10.0, note)
-            .number(interval / 500.0, "two samples"),
+            ),
         ],
     ))
 }
@@ -201,8 +175,7 @@ fn frames(scene: &Scene) -> Option<Finding> {
     );
     let later = Remedy::new(to, format!("{} ms or more", number(frames.from_ms)));
     let earlier = Remedy::new(from, format!("at most {} ms", number(frames.to_ms)));
-    let remedies =
-        vec![later.number(frames.from_ms + 10.0, "pictures of 10 ms"), earlier.number(0.0, "from the start")];
+    let remedies = vec![later, earlier.value("0", "from the start")];
     Some(Finding::new(message, remedies))
 }
 
@@ -221,10 +194,8 @@ fn too_many_samples(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new("output.interval_us", format!("at least {} µs, {most} samples", number(shortest)))
-                .number(round_up(10.0 * shortest, 1), ""),
-            Remedy::new("solver.duration_ms", format!("at most {} ms, {most} samples", number(longest)))
-                .number(round_down(longest / 10.0, 1), ""),
+            Remedy::new("output.interval_us", format!("at least {} µs, {most} samples", number(shortest))),
+            Remedy::new("solver.duration_ms", format!("at most {} ms, {most} samples", number(longest))),
         ],
     ))
 }

@@ -1,7 +1,5 @@
 //! An inconsistency of a scene, before its fields are traced to file or command line.
 
-use super::wording::number;
-
 /// Values that do not go together, or one that is outside its range.
 #[derive(Debug, Clone)]
 pub(crate) struct Finding {
@@ -18,50 +16,23 @@ pub(crate) struct Remedy {
     pub field: String,
     /// Allowed values.
     pub allowed: String,
-    /// Values to propose, the best first. They are tried before they are shown, so they may be guesses.
-    pub values: Vec<Proposal>,
-}
-
-/// A value that a field may take.
-#[derive(Debug, Clone)]
-pub(crate) struct Proposal {
-    /// The value as RON.
-    pub value: String,
-    /// Why this one; may be empty.
-    pub note: String,
-}
-
-impl Proposal {
-    pub(crate) fn new(value: impl Into<String>, note: &str) -> Self {
-        Self { value: value.into(), note: note.to_owned() }
-    }
+    /// The one value that always helps, where the rule has one, and why; the reason may be empty.
+    pub fixed: Option<[&'static str; 2]>,
 }
 
 impl Finding {
     pub(crate) fn new(message: String, remedies: Vec<Remedy>) -> Self {
         Self { message, remedies }
     }
-
-    /// Whether two findings are about the same fields.
-    pub(crate) fn is_about_the_same_as(&self, other: &Self) -> bool {
-        let fields = |finding: &Self| finding.remedies.iter().map(|r| r.field.clone()).collect::<Vec<_>>();
-        fields(self) == fields(other)
-    }
 }
 
 impl Remedy {
     pub(crate) fn new(field: impl Into<String>, allowed: impl Into<String>) -> Self {
-        Self { field: field.into(), allowed: allowed.into(), values: Vec::new() }
+        Self { field: field.into(), allowed: allowed.into(), fixed: None }
     }
 
-    /// Adds a number to propose, unless there is none.
-    pub(crate) fn number(self, value: f64, note: &str) -> Self {
-        if value.is_finite() { self.value(number(value), note) } else { self }
-    }
-
-    /// Adds a value to propose.
-    pub(crate) fn value(mut self, value: impl Into<String>, note: &str) -> Self {
-        self.values.push(Proposal::new(value, note));
-        self
+    /// With the value that always helps.
+    pub(crate) fn value(self, value: &'static str, note: &'static str) -> Self {
+        Self { fixed: Some([value, note]), ..self }
     }
 }

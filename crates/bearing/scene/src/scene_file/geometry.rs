@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use super::finding::{Finding, Remedy};
 use super::named::length_in;
-use super::wording::{number, round_down, round_up};
+use super::wording::{number, round_down};
 use crate::scene::Scene;
 use bounds::{at_most, between, less_than, lower, more_than};
 use cage::{cage, places, pockets};
@@ -30,12 +30,6 @@ const MAX_CLEARANCE_RATIO: f64 = 0.1;
 
 /// Rollers that are pressed in by more than this part of their diameter are a mistake, too: they would yield.
 const MAX_PRELOAD_RATIO: f64 = 0.005;
-
-/// The clearance that is proposed, as a part of a roller: about that of the paper's bearing.
-const USUAL_CLEARANCE_RATIO: f64 = 0.002;
-
-/// How many roller counts below the limit are tried: a cage allows fewer than the pitch circle alone.
-const FEWER_ROLLERS: usize = 8;
 
 /// Every impossibility of a scene whose numbers are in range.
 pub(crate) fn findings(scene: &Scene) -> Vec<Finding> {
@@ -80,21 +74,14 @@ fn rings(scene: &Scene) -> Option<Finding> {
     } else {
         return None;
     };
-    let (usual, most) = (2.0 + USUAL_CLEARANCE_RATIO, 2.0 + MAX_CLEARANCE_RATIO);
+    let most = 2.0 + MAX_CLEARANCE_RATIO;
     let gap = outer - inner;
-    let note = "a small clearance";
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(ROLLER, between(gap / most, gap / 2.0))
-                .number(round_down(gap / usual, 4), note)
-                .number(gap / 2.0, "no clearance"),
-            Remedy::new(INNER_RACE, between(outer - most * roller, outer - 2.0 * roller))
-                .number(round_down(outer - usual * roller, 5), note)
-                .number(outer - 2.0 * roller, "no clearance"),
-            Remedy::new(OUTER_RACE, between(inner + 2.0 * roller, inner + most * roller))
-                .number(round_up(inner + usual * roller, 5), note)
-                .number(inner + 2.0 * roller, "no clearance"),
+            Remedy::new(ROLLER, between(gap / most, gap / 2.0)),
+            Remedy::new(INNER_RACE, between(outer - most * roller, outer - 2.0 * roller)),
+            Remedy::new(OUTER_RACE, between(inner + 2.0 * roller, inner + most * roller)),
         ],
     ))
 }
@@ -119,7 +106,7 @@ fn described_twice(scene: &Scene) -> Option<Finding> {
         number(given.unwrap_or(is)),
         number(round_down(is, 5))
     );
-    let remedy = Remedy::new(field, "nothing beside a complete bearing").number(round_down(is, 5), "");
+    let remedy = Remedy::new(field, "nothing beside a complete bearing");
     Some(Finding::new(message, vec![remedy]))
 }
 
@@ -148,7 +135,7 @@ fn clearance_change(scene: &Scene) -> Option<Finding> {
     let [low, high] = [least, most].map(|limit| number((1e3 * (limit - by_diameters)).trunc()));
     Some(Finding::new(
         message,
-        vec![Remedy::new(CHANGE, format!("{low} to {high} µm")).number(0.0, "as the diameters say")],
+        vec![Remedy::new(CHANGE, format!("{low} to {high} µm")).value("0", "as the diameters say")],
     ))
 }
 
@@ -166,7 +153,7 @@ fn bore(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(INNER_RING, less_than(diameter / 2.0, "mm")).number(round_up(diameter / 17.0, 2), ""),
+            Remedy::new(INNER_RING, less_than(diameter / 2.0, "mm")),
             Remedy::new(INNER_RACE, more_than(2.0 * thickness, "mm")),
         ],
     ))
@@ -193,7 +180,7 @@ fn pitch_circle(scene: &Scene) -> Option<Finding> {
         message,
         vec![
             fewer_rollers(most),
-            Remedy::new(ROLLER, at_most(pitch * chord, "mm")).number(round_down(pitch * chord, 3), ""),
+            Remedy::new(ROLLER, at_most(pitch * chord, "mm")),
             Remedy::new(OUTER_RACE, format!("at least {} mm", lower(needed - b.inner_race_diameter_mm))),
             Remedy::new(INNER_RACE, format!("at least {} mm", lower(needed - b.outer_race_diameter_mm))),
         ],
@@ -201,6 +188,5 @@ fn pitch_circle(scene: &Scene) -> Option<Finding> {
 }
 
 fn fewer_rollers(most: f64) -> Remedy {
-    let remedy = Remedy::new(ROLLERS, at_most(most, "rollers"));
-    (0..FEWER_ROLLERS).map(|less| most - less as f64).fold(remedy, |remedy, count| remedy.number(count, ""))
+    Remedy::new(ROLLERS, at_most(most, "rollers"))
 }

@@ -8,11 +8,12 @@ use stribeck_theory::catalogue::{
     Boundary, CatalogueBearing, Element, PAPER, beyond_a_plane, normal_clearance_mm, plain,
 };
 
+use super::own::Own;
 use crate::catalogue;
 use crate::housing::{HousingScene, PedestalScene};
 use crate::scene::{
-    BearingScene, CageScene, ContactFormula, ContactSurface, DefectScene, FramesScene, GradingScene,
-    ModelScene, PocketWalls, ReducedScene, Scene,
+    BearingScene, CageScene, ContactFormula, ContactSurface, DefectScene, ElementKind, FramesScene,
+    GradingScene, ModelScene, PocketWalls, ReducedScene, Scene,
 };
 
 /// Length of a roller over the width of its ring, between flanges.
@@ -282,10 +283,17 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
             known.angle_deg
         ));
     }
-    let Some(Boundary { bore_mm, outside_mm, width_mm }) = known.boundary else {
-        return Err(format!("the rings of `{name}` are not known: give the bearing by its fields"));
-    };
     let (ball, pitch) = (known.diameter_mm, known.pitch_mm);
+    let count = known.elements.map_or(known.usual_elements(), |n| n as usize);
+    let Some(Boundary { bore_mm, outside_mm, width_mm }) = known.boundary else {
+        if known.elements.is_none() {
+            return Err(format!("`{name}` lacks the number of its rolling elements: give `elements=…`"));
+        }
+        let element = if known.element == Element::Ball { ElementKind::Ball } else { ElementKind::Roller };
+        let (raceways, bore, outside, width) = (None, None, None, None);
+        let own = Own { element, rollers: count, roller: ball, pitch, raceways, bore, outside, width };
+        return Ok(BearingScene { designation: name.clone(), ..own.bearing() });
+    };
     let clearance = normal_clearance_mm(known.element, bore_mm);
     // The distance of the rings is that of the catalogue; the clearance is taken from the rollers, or from
     // the groove of the outer ring.
@@ -294,7 +302,6 @@ fn of(known: &CatalogueBearing) -> Result<BearingScene, String> {
         Element::Ball => (ball, pitch + ball + clearance),
     };
     let inner = pitch - ball;
-    let count = known.elements.map_or(known.usual_elements(), |n| n as usize);
     Ok(BearingScene {
         designation: name.clone(),
         outer_race_diameter_mm: tidy(outer),

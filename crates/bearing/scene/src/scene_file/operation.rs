@@ -37,7 +37,7 @@ fn load(scene: &Scene) -> Option<Finding> {
         number(round_down(rating_n, 3))
     );
     let less = Remedy::new(LOAD, format!("at most {} N", number(round_down(MOST_RATINGS * rating_n, 2))));
-    Some(Finding::new(message, vec![less.number(round_down(0.1 * rating_n, 2), "a tenth of the rating")]))
+    Some(Finding::new(message, vec![less]))
 }
 
 /// A load that the guide of its housing lets through.
@@ -58,7 +58,7 @@ fn load_direction(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(LOAD_ANGLE, allowed.to_owned()).number(270.0, "downwards"),
+            Remedy::new(LOAD_ANGLE, allowed.to_owned()).value("270", "downwards"),
             Remedy::new(HOUSING, "`rigid(…)` or `springs(…)`, which take it from any side".to_owned())
                 .value("rigid()", ""),
         ],
@@ -76,7 +76,7 @@ fn outer_speed(scene: &Scene) -> Option<Finding> {
         let still = Remedy::new(OUTER_SPEED_PROFILE, "left out".to_owned());
         (format!("`{OUTER_SPEED_PROFILE}` is there, and the housing cannot turn"), still)
     } else {
-        let still = Remedy::new(OUTER_SPEED, "0".to_owned()).number(0.0, "a ring that stands still");
+        let still = Remedy::new(OUTER_SPEED, "0".to_owned()).value("0", "a ring that stands still");
         (format!("`{OUTER_SPEED}` is {}, and the housing cannot turn", number(o.outer_speed_rpm)), still)
     };
     Some(Finding::new(message, vec![still, rigid]))
@@ -113,8 +113,7 @@ fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Op
             );
             let later = Remedy::new(to, format!("more than {} ms", number(ramp.from_ms)));
             let earlier = Remedy::new(from, format!("less than {} ms", number(ramp.to_ms)));
-            let remedies =
-                vec![later.number(ramp.from_ms + 100.0, "0.1 s"), earlier.number(0.0, "from the start")];
+            let remedies = vec![later, earlier.value("0", "from the start")];
             Some(Finding::new(message, remedies))
         }
         ProfileScene::Harmonic(sine) => {
@@ -127,10 +126,8 @@ fn profile(path: &str, profile: &ProfileScene, (field, mean): (&str, f64)) -> Op
                 number(sine.amplitude),
                 number(end)
             );
-            let less = Remedy::new(amplitude, format!("`{field}` may be {allowed}"))
-                .number(round_down(0.5 * mean.abs(), 2), "half of the mean")
-                .number(0.0, "none");
-            let more = Remedy::new(field, allowed).number(2.0 * sine.amplitude, "twice the amplitude");
+            let less = Remedy::new(amplitude, format!("`{field}` may be {allowed}")).value("0", "none");
+            let more = Remedy::new(field, allowed);
             Some(Finding::new(message, vec![less, more]))
         }
         ProfileScene::Points(points) => {
@@ -176,11 +173,7 @@ fn rotating_load(scene: &Scene) -> Option<Finding> {
         let more = Remedy::new("operation.load_n", format!("more than {} N", number(rotating.force_n)));
         let housing =
             Remedy::new("housing", "`rigid()`, `springs()` or `pedestal()`, which surround the ring");
-        let remedies = vec![
-            less.number(round_down(0.2 * load, 2), "a fifth"),
-            more.number(5.0 * rotating.force_n, ""),
-            housing,
-        ];
+        let remedies = vec![less, more, housing];
         return Some(Finding::new(message, remedies));
     }
     let start = duty.load_n(0.0);
@@ -193,8 +186,7 @@ fn rotating_load(scene: &Scene) -> Option<Finding> {
             number(rotating.force_n),
             number(start)
         );
-        let along = Remedy::new(ANGLE, "an angle at which it acts with `load_n` at the start")
-            .number(scene.operation.load_angle_deg.rem_euclid(360.0), "with the load");
+        let along = Remedy::new(ANGLE, "an angle at which it acts with `load_n` at the start");
         Finding::new(message, vec![along])
     })
 }

@@ -27,9 +27,6 @@ pub struct Problem {
     pub allowed: String,
     /// Remedy; may be empty.
     pub suggestion: String,
-    /// Override that removes this problem, as for `--set`: `bearing.rollers=24`; `None` where no one value
-    /// does.
-    pub repair: Option<String>,
     /// Where the value was written.
     pub place: Place,
     /// Whether the value is none of its field, whatever the others are: a misspelt word, a wrong type.
@@ -74,24 +71,6 @@ impl SceneError {
         Self { problems }
     }
 
-    /// The same with `hint` after messages on fields of the bearing; where there are none, with `refusal`.
-    pub(crate) fn about_bearing(mut self, hint: &str, refusal: Problem) -> Self {
-        let of_bearing = |problem: &Problem| problem.field.starts_with("bearing.");
-        if self.problems.iter().any(of_bearing) {
-            let problems = self.problems.iter_mut().filter(|problem| of_bearing(problem));
-            problems.for_each(|problem| problem.message.push_str(hint));
-        } else {
-            self.problems.push(refusal);
-        }
-        self
-    }
-
-    /// The same with one more.
-    pub(crate) fn and(mut self, problem: Problem) -> Self {
-        self.problems.push(problem);
-        self
-    }
-
     /// The problems, in the order in which they were found. Never empty.
     pub fn problems(&self) -> &[Problem] {
         &self.problems
@@ -115,22 +94,22 @@ impl Problem {
     pub fn new(message: impl Into<String>, place: Place) -> Self {
         let message = message.into();
         let (field, allowed, suggestion) = (String::new(), String::new(), String::new());
-        Self { field, message, allowed, suggestion, repair: None, place, is_unreadable: false }
+        Self { field, message, allowed, suggestion, place, is_unreadable: false }
     }
 
-    /// Proposes `value` for `field`, written as it would be where the problem stands.
-    pub(crate) fn propose(&mut self, field: &str, value: &str, note: &str) {
-        let written = match &self.place {
-            Place::CommandLine { .. } => format!("--set {}", for_a_shell(field, value)),
-            // The excerpt shows the section.
-            Place::File { .. } if field == self.field => {
-                let name = field.rsplit('.').next().unwrap_or(field);
-                if name.ends_with(']') { format!("`{value}`") } else { format!("`{name}: {value}`") }
-            }
-            _ => format!("`{field}: {value}`"),
-        };
-        self.suggestion = if note.is_empty() { written } else { format!("{written} ({note})") };
-        self.repair = Some(format!("{field}={value}"));
+    /// The same, of a field.
+    pub(crate) fn of(self, field: &str) -> Self {
+        Self { field: field.to_owned(), ..self }
+    }
+
+    /// The same problem at another place.
+    pub fn of_value_at(self, place: Place) -> Self {
+        Self { place, ..self }
+    }
+
+    /// Proposes `value` for its field.
+    pub(crate) fn propose(&mut self, value: &str, note: &str) {
+        self.suggestion = if note.is_empty() { format!("`{value}`") } else { format!("`{value}` ({note})") };
     }
 
     /// Where it stands in its file, from 1; zeros where it is not in one.
@@ -140,25 +119,6 @@ impl Problem {
             _ => (0, 0),
         }
     }
-
-    /// The same problem with a value that is at `place` without the name of its field. No `--set` removes it
-    /// there.
-    pub fn of_value_at(mut self, place: Place) -> Self {
-        if let Some((field, value)) = self.repair.take().as_deref().and_then(|repair| repair.split_once('='))
-            && let Some(note) = self.suggestion.strip_prefix(&format!("--set {}", for_a_shell(field, value)))
-        {
-            self.suggestion = format!("`{value}`{note}");
-        }
-        self.place = place;
-        self
-    }
-}
-
-/// `field=value` as a word of a shell.
-fn for_a_shell(field: &str, value: &str) -> String {
-    let bare = value.trim_matches('"');
-    let plain = |text: &str| text.chars().all(|c| c.is_ascii_alphanumeric() || "._+-".contains(c));
-    if plain(bare) && plain(field) { format!("{field}={bare}") } else { format!("'{field}={value}'") }
 }
 
 impl std::error::Error for SceneError {}

@@ -77,13 +77,7 @@ fn outside(scene: &Scene, node: &Node, spot: Spot, path: &str) -> Option<Finding
     } else {
         format!("`{path}` is {value}, which is not a finite number")
     };
-    let mut remedy = Remedy::new(path, range.in_words(unit, scene));
-    if unit == "°" {
-        remedy = remedy.number(value % 360.0, "the same angle");
-    } else if value < 0.0 && range.contains(-value, scene) {
-        remedy = remedy.number(-value, "without the minus sign");
-    }
-    Some(Finding::new(message, vec![remedy]))
+    Some(Finding::new(message, vec![Remedy::new(path, range.in_words(unit, scene))]))
 }
 
 /// Names that cannot be folders or channels, and sensors that share one.
@@ -110,29 +104,14 @@ fn names(scene: &Scene) -> Vec<Finding> {
         } else if let Some(first) = sensors[..i].iter().position(|other| other.name == sensor.name) {
             let message = format!("sensors {first} and {i} are both called `{}`", sensor.name);
             let remedies = [path, format!("output.sensors[{first}].name")];
-            found.push(Finding::new(message, remedies.map(|field| another_name(field, &sensor.name)).into()));
+            let another = |field| Remedy::new(field, "a name of its own for each sensor");
+            found.push(Finding::new(message, remedies.map(another).into()));
         }
     }
     found
 }
 
-/// Most names that are tried in search of a free one.
-const NAMES_TRIED: usize = 9;
-
-/// A name beside `name`; whether it is free is tried later.
-fn another_name(field: String, name: &str) -> Remedy {
-    let stem: String = name.chars().take(MAX_NAME - 2).collect();
-    let remedy = Remedy::new(field, "a name of its own for each sensor");
-    (2..=NAMES_TRIED).fold(remedy, |remedy, n| remedy.value(format!("\"{stem}_{n}\""), ""))
-}
-
 fn bad_name(path: String, name: &str, allowed: &str) -> Finding {
-    let mut kept: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '_').take(20).collect();
-    if !kept.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        kept.insert(0, 's');
-    }
     let message = format!("`{path}` is \"{}\", which cannot name a folder or a channel", shown(name));
-    let remedy = Remedy::new(path, allowed).value(format!("\"{kept}\""), "");
-    let remedy = (2..=NAMES_TRIED).fold(remedy, |remedy, n| remedy.value(format!("\"{kept}_{n}\""), ""));
-    Finding::new(message, vec![remedy])
+    Finding::new(message, vec![Remedy::new(path, allowed)])
 }

@@ -7,11 +7,11 @@ use super::foreign;
 use super::problem::{MOST_TOLD, Problem};
 use super::sources::{Kind, Sources};
 use super::suggest;
-use super::wording::{list, number, shown};
+use super::wording::{list, shown};
 use crate::catalogue;
 use crate::fields::tree::{Broken, Content, Node, Source, Stop, join};
 use crate::fields::value::Value;
-use crate::fields::{Group, Shape, Spot, Words, paths, spot};
+use crate::fields::{Group, Shape, Spot, Words, spot};
 
 /// What in `node` its entry of the table does not allow, [`MOST_TOLD`] at most.
 pub(crate) fn faults(node: &Node, spot: Spot, path: &str, sources: &Sources) -> Vec<Problem> {
@@ -101,7 +101,7 @@ impl Found<'_> {
                     let kind = self.sources.kind;
                     let problem = self.add(&at, message, node, key.span.clone());
                     problem.allowed = list(&names);
-                    problem.suggestion = advice(&key.name, &names, kind);
+                    problem.suggestion = advice(path, &key.name, &names, kind);
                 }
             }
         }
@@ -124,7 +124,7 @@ impl Found<'_> {
                 let problem = self.add(path, message, node, node.span.clone());
                 problem.allowed = spot.allowed();
                 match meant(written, spot.shape, path) {
-                    Some((value, note)) => problem.propose(path, &value, note),
+                    Some((value, note)) => problem.propose(&value, note),
                     None => problem.suggestion = format!("`{written}( … )`, with {} in it", shape.words()),
                 }
             }
@@ -132,7 +132,7 @@ impl Found<'_> {
                 let message =
                     format!("`{path}` is `{written}( … )`, and `{written}` has nothing in brackets");
                 let problem = self.add(path, message, node, node.span.clone());
-                problem.propose(path, written, "without brackets");
+                problem.propose(written, "without brackets");
             }
             (_, None) if written.starts_with(|c: char| c.is_alphabetic()) && !spot_is_none(spot, written) => {
                 let message = format!("`{path}` is `{}`, which is not one of its words", shown(written));
@@ -142,10 +142,8 @@ impl Found<'_> {
                 let problem = self.add(path, message, node, node.span.start..end);
                 let names = words.names();
                 problem.allowed = list(&names);
-                match (suggest::nearest(written, &names), spot.plain_default()) {
-                    (Some(near), _) => problem.suggestion = format!("did you mean `{near}`?"),
-                    (None, Some(word)) => problem.propose(path, &word, "the default"),
-                    (None, None) => {}
+                if let Some(near) = suggest::nearest(written, &names) {
+                    problem.suggestion = format!("did you mean `{near}`?");
                 }
             }
             _ => self.mismatch(node, spot, path),
@@ -162,34 +160,26 @@ impl Found<'_> {
         } else {
             format!("`{path}` is `{}`, which is {not}", shown(&value))
         };
-        let is_plain = matches!(node.content, Content::Atom(_));
         let is_group = matches!(spot.shape.there(), Shape::Group(_));
-        let proposal = meant(&value, spot.shape, path)
-            .or_else(|| spot.plain_default().map(|default| (default, "the default")))
-            .filter(|_| is_plain || !is_group);
         let unnamed = is_group && (path.is_empty() || matches!(node.content, Content::Tuple(_)));
         let problem = self.add(path, message, node, node.span.clone());
         problem.allowed = spot.allowed();
         if unnamed {
             "fields stand with their names in round brackets: `(name: value, …)`"
                 .clone_into(&mut problem.suggestion);
-        } else if let Some((value, note)) = proposal {
-            if spot.is_whole() || path.ends_with(']') {
-                problem.propose(path, &value, note);
-            } else {
-                problem.suggestion = format!("`{value}` ({note})");
-            }
+        } else if let Some((value, note)) = meant(&value, spot.shape, path) {
+            problem.propose(&value, note);
         }
     }
 }
 
 /// Remedy for a field that is not one of `names`.
-fn advice(found: &str, names: &[&str], kind: &Kind) -> String {
+fn advice(section: &str, found: &str, names: &[&str], kind: &Kind) -> String {
     let Some(elsewhere) = kind.for_fields_of_scenes else {
-        return suggest::field(found, names, paths()).unwrap_or_default();
+        return suggest::field(section, found, names, true).unwrap_or_default();
     };
     let of_scene = || spot(found, None).map(|_| elsewhere.replace("{}", found));
-    suggest::field(found, names, &[]).or_else(of_scene).unwrap_or_default()
+    suggest::field("", found, names, false).or_else(of_scene).unwrap_or_default()
 }
 
 /// Whether a word is meant for `None`.
@@ -208,10 +198,6 @@ fn meant(value: &str, shape: Shape, path: &str) -> Option<(String, &'static str)
             Some((bare.to_owned(), "without quotes"))
         }
         Shape::Count if bare.parse::<u32>().is_ok() => Some((bare.to_owned(), "without quotes")),
-        Shape::Count => {
-            let count = bare.parse::<f64>().ok().filter(|count| (1.0..1e6).contains(count))?;
-            Some((number(count.round()), "rounded"))
-        }
         Shape::Text
             if bare.chars().all(|c| c.is_ascii_alphanumeric() || "_.-/".contains(c)) && !bare.is_empty() =>
         {
@@ -260,7 +246,7 @@ pub(crate) fn broken(broken: Broken, sources: &Sources) -> Problem {
             problem.message = format!("`{field}` is `{written}`, with a decimal comma");
             problem.field.clone_from(&field);
             problem.allowed = spot(&field, None).map(Spot::allowed).unwrap_or_default();
-            problem.propose(&field, &foreign::with_point(written), foreign::comma_note(written));
+            problem.propose(&foreign::with_point(written), foreign::comma_note(written));
             return problem;
         }
     };

@@ -67,6 +67,6 @@ fn clearance(scene: &Scene, ring: DefectRing, field: &str) -> Option<Finding> {
          have it",
         number(change)
     );
-    let remedy = Remedy::new("bearing.clearance_change_um", "0").number(0.0, "as in the file");
+    let remedy = Remedy::new("bearing.clearance_change_um", "0").value("0", "as in the file");
     Some(Finding::new(message, vec![remedy, generated(field)]))
 }

@@ -3,14 +3,14 @@
 
 use std::ops::Range;
 
-use super::finding::{Finding, Proposal};
+use super::finding::{Finding, Remedy};
 use super::problem::{Place, Problem, SceneError, place_in_file};
 use super::wording::{list, shown};
-use super::{foreign, named, reading, suggest};
+use super::{foreign, named, reading, suggest, wording};
 use crate::catalogue;
 use crate::fields::tree::{self, Content, Key, Node, Source, Step, steps};
 use crate::fields::value::Value;
-use crate::fields::{Shape, Spot, names_in, paths, spot};
+use crate::fields::{Shape, Spot, names_in, spot};
 use crate::scene::Scene;
 
 /// A kind of file that is written in fields and values.
@@ -150,7 +150,15 @@ impl Sources {
         };
         let path = written.trim();
         let at = written.len() + 1;
-        let spot = self.known(path, argument).map_err(|problem| vec![*problem])?;
+        let spot = self.known(path, argument).map_err(|mut problem| {
+            if let Some(hz) =
+                value.trim().parse::<f64>().ok().filter(|hz| *hz > 0.0 && path.ends_with("rate_hz"))
+            {
+                let us = wording::number(1e6 / hz);
+                problem.suggestion = format!("`output.interval_us={us}` (1e6 over the rate in Hz)");
+            }
+            vec![*problem]
+        })?;
         let place = command_line(argument, at, argument.len());
         if path == "bearing"
             && let Some(name) = named::designation(value).or_else(|| bare_designation(value))
@@ -261,68 +269,28 @@ impl Sources {
         Ok(found)
     }
 
-    /// Blames one field of a finding, and proposes the first value of its remedy.
-    ///
-    /// The command line was written last, a default not at all: the field written last is blamed first, and
-    /// among equals the likeliest one that a single value can repair.
+    /// Blames one field of a finding: of those involved the one that was written last, a default not at all, and
+    /// among equals the likeliest.
     pub(crate) fn problem(&self, finding: Finding) -> Problem {
-        let candidates: Vec<Candidate> = finding
-            .remedies
-            .into_iter()
-            .map(|remedy| Candidate {
-                place: self.written(&remedy.field),
-                proposal: remedy.values.into_iter().next(),
-                field: remedy.field,
-                allowed: remedy.allowed,
-            })
-            .collect();
-        let last = candidates.iter().map(Candidate::rank).max().unwrap_or(0);
-        let among = |candidate: &&Candidate| candidate.rank() == last;
-        let best = candidates.iter().filter(among).find(|candidate| candidate.proposal.is_some());
-        let nowhere = self.place_at(Source::Default, 0..0);
-        let Some(blamed) = best.or_else(|| candidates.iter().find(among)) else {
-            return Problem::new(finding.message, nowhere);
-        };
-        let mut problem = Problem::new(finding.message, blamed.place.clone().unwrap_or(nowhere));
-        problem.field.clone_from(&blamed.field);
-        problem.allowed.clone_from(&blamed.allowed);
-        let another = candidates.iter().find(|candidate| candidate.proposal.is_some());
-        match best.or(another) {
-            Some(Candidate { field, proposal: Some(Proposal { value, note }), .. }) => {
-                problem.propose(field, value, note);
-            }
-            // Items of a list cannot be tried beforehand.
-            _ if blamed.field.contains('[') => {
-                problem.suggestion = "take a value that is allowed there".to_owned();
-            }
-            _ if candidates.len() == 1 => {
-                problem.suggestion = format!("give `{}` an allowed value", blamed.field);
-            }
-            _ => {
-                problem.suggestion =
-                    "no single value repairs this; change several of the fields together".to_owned()
-            }
-        }
-        problem
-    }
-}
-
-/// A field that may be to blame.
-struct Candidate {
-    field: String,
-    allowed: String,
-    /// A value that repairs the finding.
-    proposal: Option<Proposal>,
-    place: Option<Place>,
-}
-
-impl Candidate {
-    fn rank(&self) -> u8 {
-        match self.place {
+        let rank = |remedy: &Remedy| match self.written(&remedy.field) {
             Some(Place::CommandLine { .. }) => 2,
             Some(_) => 1,
             None => 0,
+        };
+        let Finding { message, remedies } = finding;
+        // The first of several that are largest.
+        let Some(blamed) = remedies.iter().rev().max_by_key(|remedy| rank(remedy)) else {
+            return Problem::new(message, self.place(""));
+        };
+        let mut problem = Problem::new(message, self.place(&blamed.field)).of(&blamed.field);
+        problem.allowed.clone_from(&blamed.allowed);
+        let mut fixed = std::iter::once(blamed).chain(&remedies).filter(|remedy| remedy.fixed.is_some());
+        if let Some(Remedy { field, fixed: Some([value, note]), .. }) = fixed.next() {
+            let value =
+                if *field == blamed.field { (*value).to_owned() } else { format!("{field}: {value}") };
+            problem.propose(&value, note);
         }
+        problem
     }
 }
 
@@ -338,13 +306,6 @@ pub(crate) fn written_by<S: AsRef<str>>(arguments: &[S]) -> Vec<String> {
         Some(paths)
     };
     arguments.iter().filter_map(fields).flatten().collect()
-}
-
-/// A scene with one argument applied; `None` where it cannot be.
-pub(crate) fn with(scene: &Scene, argument: &str) -> Option<Scene> {
-    let mut sources = Sources::of_scene(scene);
-    sources.set_all(&[argument]).ok()?;
-    sources.scene()
 }
 
 /// A place in an argument, by byte range.
@@ -364,47 +325,33 @@ fn bare_designation(value: &str) -> Option<String> {
 fn incomplete(path: &str, value: &str, spot: Spot, place: Place) -> Problem {
     let mut problem = Problem { is_unreadable: true, ..Problem::new("", place) };
     path.clone_into(&mut problem.field);
+    problem.allowed = spot.allowed();
     if foreign::comma_number(value) == Some(value.len()) {
         problem.message = format!("`{path}` is given `{}`, with a decimal comma", shown(value));
-        problem.propose(path, &foreign::with_point(value), foreign::comma_note(value));
+        problem.propose(&foreign::with_point(value), foreign::comma_note(value));
         return problem;
     }
     problem.message = match value {
         "" => format!("`{path}` is given no value"),
         _ => format!("`{path}` is given `{}`, which is not one complete value", shown(value)),
     };
-    match spot.plain_default().filter(|_| !path.contains('[')) {
-        Some(default) => problem.propose(path, &default, "the default"),
-        None => problem.suggestion = format!("`{path}` takes {}", spot.shape.words()),
-    }
     problem
 }
 
+/// Refuses a path that no scene has.
 pub(crate) fn unknown(path: &str, mark: Place) -> Problem {
     // The longest prefix that exists is the section; the rest is the unknown name.
     let sections = path.match_indices('.').rev().map(|(at, _)| &path[..at]);
     let section = sections.into_iter().find(|section| !names_in(section).is_empty()).unwrap_or("");
     let name = path.strip_prefix(section).unwrap_or(path).trim_start_matches('.');
     let siblings = names_in(section);
-    let leaf = path.rsplit_once('.').map_or(path, |(_, leaf)| leaf);
-    let named = |p: &&String| p.rsplit_once('.').is_some_and(|(_, name)| suggest::same_quantity(name, leaf));
-    let suggestion = match paths().iter().find(named) {
-        // Right name, wrong section or none: the most common slip. A slip of the unit deserves the factor.
-        Some(home) if !home.starts_with(&format!("{section}.")) => Some(format!("did you mean `{home}`?")),
-        _ => match suggest::nearest(path, paths()).filter(|near| near.contains('.')) {
-            Some(near) if section.is_empty() => Some(format!("did you mean `{near}`?")),
-            _ => {
-                suggest::field(name, &siblings, paths()).map(|words| with_section(words, section, &siblings))
-            }
-        },
-    };
     let message = match path {
         "" => "the name of a field is missing in front of `=`".to_owned(),
         _ => format!("no field `{}` in a scene", shown(path)),
     };
     let mut problem = Problem::new(message, mark);
     path.clone_into(&mut problem.field);
-    problem.suggestion = suggestion.unwrap_or_default();
+    problem.suggestion = suggest::field(section, name, &siblings, true).unwrap_or_default();
     problem.allowed = with_section(list(&siblings), section, &siblings);
     problem
 }

@@ -64,16 +64,16 @@ fn refuses_an_unknown_field_with_line_column_and_the_right_name() {
     let problem = only(parse("(\n  operation: (\n    load_kn: 50,\n  ),\n)"));
     assert_eq!(mark(&problem), (3, 5, "load_kn".to_owned()));
     assert_eq!(problem.field, "operation.load_kn");
-    assert!(problem.suggestion.contains("did you mean `load_n`? 1 in `load_kn` is 1000"), "{problem}");
+    assert!(problem.suggestion.contains("did you mean `operation.load_n` [N]?"), "{problem}");
 
     let problem = only(parse("(operation: (load: 50))"));
-    assert!(problem.suggestion.contains("`load_n`"), "{problem}");
+    assert!(problem.suggestion.contains("`operation.load_n`"), "{problem}");
     let problem = only(parse("(baering: (rollers: 24))"));
     assert_eq!(problem.suggestion, "did you mean `bearing`?");
     let problem = only(parse("(speed_rpm: 500)"));
-    assert_eq!(problem.suggestion, "`speed_rpm` belongs in `operation: ( … )`");
+    assert_eq!(problem.suggestion, "did you mean `operation.speed_rpm` [rpm]?");
     let problem = only(parse("(cage: (clearance_um: 500))"));
-    assert!(problem.suggestion.contains("`pocket_clearance_um`"), "{problem}");
+    assert!(problem.suggestion.contains("`cage.pocket_clearance_um`"), "{problem}");
 }
 
 #[test]
@@ -86,7 +86,6 @@ fn refuses_with_the_line_and_a_mark() {
  3 |   bearing: (roller_diameter_mm: -18.0),
    |                                 ^^^^^
    = allowed: more than 0, at most 5000 mm
-   = try: `roller_diameter_mm: 18` (without the minus sign)
 ";
     assert_eq!(error.to_string(), expected);
 }
@@ -138,11 +137,11 @@ fn refuses_a_wrong_word_and_corrects_it() {
     assert_eq!(problem.allowed, "`collocated`, `integrated`");
     // Sections need brackets, a roller its number, and a bearing's name quotes.
     for (text, tried) in [
-        ("(model: reduced)", "`model: reduced()`"),
-        ("(model: \"reduced\")", "`model: reduced()`"),
-        ("(model: \"full\")", "`model: full`"),
-        ("(bearing: NU205)", "`bearing: \"NU 205\"`"),
-        ("(defect: None, defects: [(on: roller, form: missing)])", "`on: roller(1)`"),
+        ("(model: reduced)", "`reduced()`"),
+        ("(model: \"reduced\")", "`reduced()`"),
+        ("(model: \"full\")", "`full`"),
+        ("(bearing: NU205)", "`\"NU 205\"`"),
+        ("(defect: None, defects: [(on: roller, form: missing)])", "`roller(1)`"),
     ] {
         let problem = only(parse(text));
         assert!(problem.to_string().contains(&format!("try: {tried}")), "{problem}");
@@ -168,13 +167,18 @@ fn refuses_broken_text_and_locates_it() {
 
 #[test]
 fn refuses_overlapping_bodies_with_numbers() {
-    let problem = only(parse("(bearing: (\n inner_race_diameter_mm: 165.0))"));
+    let bearing = |inner: &str, roller: &str| {
+        format!(
+            "(bearing: (rollers: 24, outer_race_diameter_mm: 200, roller_diameter_mm: {roller},\n \
+             inner_race_diameter_mm: {inner}))"
+        )
+    };
+    let problem = only(parse(&bearing("165.0", "18")));
     assert!(problem.message.contains("200 − inner raceway 165 − 2 × roller 18 = -1 mm"), "{problem}");
-    assert_eq!(mark(&problem), (2, 26, "165.0".to_owned()));
-    assert_eq!(problem.suggestion, "`inner_race_diameter_mm: 163.96` (a small clearance)");
+    assert_eq!(problem.allowed, "16.667 to 17.5 mm");
     assert!(parse("(bearing: (inner_race_diameter_mm: 164.0))").is_ok(), "zero clearance is allowed");
     let problem = only(parse("(bearing: (inner_race_diameter_mm: 160.0))"));
-    assert!(problem.message.contains("too wide"), "{problem}");
+    assert!(problem.message.contains("it lacks `rollers`, `roller_diameter_mm`, `pitch_mm`"), "{problem}");
 }
 
 #[test]
@@ -228,7 +232,7 @@ fn refuses_impossible_cage_adapter_defect_mesh_and_sampling() {
         let problem = only(parse(text));
         assert_eq!(problem.field, field, "{problem}");
         assert!(problem.message.contains(words), "{problem}");
-        assert!(!problem.allowed.is_empty() && !problem.suggestion.is_empty(), "{problem}");
+        assert!(!problem.allowed.is_empty(), "{problem}");
     }
 }
 
@@ -256,21 +260,23 @@ fn behaves_overrides_reach_every_kind_of_field() {
 fn refuses_overrides_and_points_at_the_command_line() {
     let refuse = |argument: &str| only(Scene::default().with_overrides(&[argument]));
     for (argument, words) in [
-        ("mesh.size=1", "did you mean `mesh.size_mm`?"),
-        ("mesh.siz_mm=1", "did you mean `mesh.size_mm`?"),
-        ("load_kn=50", "did you mean `operation.load_n`?"),
-        ("size_mm=1", "did you mean `mesh.size_mm`?"),
-        ("solver.size_mm=1", "did you mean `mesh.size_mm`?"),
-        ("operation.load_kn=50", "1 in `load_kn` is 1000 in `operation.load_n`"),
-        ("cage=none", "--set cage=None (with a capital letter)"),
-        ("mesh.size_mm=-1", "without the minus sign"),
+        ("mesh.size=1", "did you mean `mesh.size_mm` [mm]?"),
+        ("mesh.siz_mm=1", "did you mean `mesh.size_mm` [mm]?"),
+        ("load_kn=50", "did you mean `operation.load_n` [N]?"),
+        ("size_mm=1", "did you mean `mesh.size_mm` [mm]?"),
+        ("solver.size_mm=1", "did you mean `mesh.size_mm` [mm]?"),
+        ("operation.load_kn=50", "did you mean `operation.load_n` [N]?"),
+        ("load=2000", "did you mean `operation.load_n` [N]?"),
+        ("output.rate_hz=51200", "`output.interval_us=19.53125` (1e6 over the rate in Hz)"),
+        ("cage=none", "`None` (with a capital letter)"),
+        ("mesh.size_mm=-1", "more than 0, at most 1000 mm"),
         ("mesh.size_mm=big", "which is not a number"),
         ("mesh.size_mm=1, roller_facets: 3", "not one complete value"),
         ("mesh.size_mm=", "is given no value"),
         ("mesh.size_mm", "has no `=`"),
         ("contact.method=smooth", "not one of its words"),
         ("output.sensors[9].angle_deg=1", "has 4 items"),
-        ("cage=(thicknes_mm: 3)", "did you mean `thickness_mm`?"),
+        ("cage=(thicknes_mm: 3)", "did you mean `cage.thickness_mm` [mm]?"),
         ("=3", "name of a field is missing"),
         ("cage.roller_offsets_um[0]=1", "has 0 items"),
         ("cage.roller_offsets_um=[a]", "cage.roller_offsets_um"),

@@ -88,7 +88,6 @@ impl<'a> File<'a> {
                 Some(node) => place_in_file(self.name, self.text, node.span.clone()),
                 None => self.place("set"),
             };
-            problem.suggestion = problem.suggestion.replacen("--set ", "", 1);
         }
         problem
     }

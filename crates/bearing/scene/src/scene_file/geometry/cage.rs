@@ -7,8 +7,7 @@ use super::{INNER_RACE, OUTER_RACE, ROLLER, fewer_rollers, pitch_circle};
 use crate::resolved::CageGeometry;
 use crate::scene::{CageScene, PocketWalls, Scene};
 use crate::scene_file::finding::{Finding, Remedy};
-use crate::scene_file::named::OFF_RACE;
-use crate::scene_file::wording::{number, round_down, round_up};
+use crate::scene_file::wording::number;
 
 /// The cage inside the gap between the rings.
 pub(super) fn cage(scene: &Scene) -> Option<Finding> {
@@ -26,8 +25,6 @@ pub(super) fn cage(scene: &Scene) -> Option<Finding> {
         number(inner_race),
         number(outer_race)
     );
-    let centred = (outer_race + inner_race) / 2.0 + cage.thickness_mm;
-    let held = held_mm(scene, cage);
     let widest = inner_race + 2.0 * cage.thickness_mm;
     let (room_outside, room_inside) = (outer < outer_race, inner > inner_race);
     let if_only = |possible: bool, words: String| if possible { words } else { NOTHING.to_owned() };
@@ -39,29 +36,16 @@ pub(super) fn cage(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new("cage.outer_diameter_mm", diameter)
-                .number(held, "where its pockets hold it")
-                .number(round_down(centred, 4), ""),
+            Remedy::new("cage.outer_diameter_mm", diameter),
             Remedy::new(
                 "cage.thickness_mm",
                 if_only(room_outside, less_than((outer - inner_race) / 2.0, "mm")),
-            )
-            .number(round_down((outer - inner_race) / 8.0, 2), "")
-            .number(round_down((outer - inner_race) / 4.0, 2), ""),
+            ),
             Remedy::new(OUTER_RACE, if_only(room_inside, more_than(outer, "mm"))),
             Remedy::new(INNER_RACE, if_only(room_outside, less_than(inner, "mm"))),
             without_cage(),
         ],
     ))
-}
-
-/// Outer diameter of a cage of this thickness whose corners touch rollers above their middles [mm], as those
-/// of the catalogue; not a number where it would not lie between the raceways, or has straight pockets.
-fn held_mm(scene: &Scene, cage: &CageScene) -> f64 {
-    let b = &scene.bearing;
-    let outer = b.outer_race_diameter_mm - OFF_RACE * b.roller_diameter_mm;
-    let above = outer - 2.0 * cage.thickness_mm > 0.5 * (b.outer_race_diameter_mm + b.inner_race_diameter_mm);
-    if cage.pocket == PocketWalls::Corners && above { round_down(outer, 4) } else { f64::NAN }
 }
 
 /// Outer and inner diameter [mm].
@@ -114,16 +98,13 @@ pub(super) fn pockets(scene: &Scene) -> Option<Finding> {
         message,
         vec![
             fewer_rollers((PI / half).ceil() - 1.0),
-            Remedy::new("cage.pocket_clearance_um", less_than(closest, "µm"))
-                .number(round_down(closest / 2.0, 2), "")
-                .value("0", ""),
+            Remedy::new("cage.pocket_clearance_um", less_than(closest, "µm")).value("0", ""),
             Remedy::new(ROLLER, less_than(2.0 * (largest - clearance), "mm")),
             Remedy::new(
                 "cage.outer_diameter_mm",
                 format!("nearer to {} mm", number(pitch + cage.thickness_mm)),
-            )
-            .number(round_down(pitch + cage.thickness_mm, 4), "centred on the pockets"),
-            Remedy::new("cage.thickness_mm", "a thinner cage").number(cage.thickness_mm / 2.0, ""),
+            ),
+            Remedy::new("cage.thickness_mm", "a thinner cage"),
             Remedy::new(OUTER_RACE, "a larger pitch circle"),
             Remedy::new(INNER_RACE, "a larger pitch circle"),
             without_cage(),
@@ -157,15 +138,12 @@ fn pockets_miss(cage: &CageScene, roller: f64, pitch: f64) -> Finding {
     Finding::new(
         message,
         vec![
-            Remedy::new("cage.outer_diameter_mm", diameter)
-                .number(round_down(pitch + cage.thickness_mm, 4), "centred on the pockets"),
+            Remedy::new("cage.outer_diameter_mm", diameter),
             Remedy::new(
                 "cage.thickness_mm",
                 if reached { less_than(thickness, "mm") } else { NOTHING.to_owned() },
-            )
-            .number(round_down(thickness / 2.0, 2), ""),
-            Remedy::new("cage.pocket_clearance_um", more_than(clearance, "µm"))
-                .number(round_up(1.01 * clearance, 3), ""),
+            ),
+            Remedy::new("cage.pocket_clearance_um", more_than(clearance, "µm")),
             Remedy::new(ROLLER, more_than(needed - 2e-3 * cage.pocket_clearance_um, "mm")),
             Remedy::new(OUTER_RACE, "a pitch circle inside the cage"),
             Remedy::new(INNER_RACE, "a pitch circle inside the cage"),
@@ -202,10 +180,8 @@ pub(super) fn places(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(path, format!("{} to {} µm", number(-clearance), number(clearance)))
-                .number(clearance.copysign(offsets[worst]), "at the wall"),
-            Remedy::new("cage.pocket_clearance_um", format!("at least {} µm", lower(offsets[worst].abs())))
-                .number(offsets[worst].abs(), ""),
+            Remedy::new(path, format!("{} to {} µm", number(-clearance), number(clearance))),
+            Remedy::new("cage.pocket_clearance_um", format!("at least {} µm", lower(offsets[worst].abs()))),
             Remedy::new(OFFSETS, "smaller ones").value("[]", "every roller in the middle of its pocket"),
         ],
     ))

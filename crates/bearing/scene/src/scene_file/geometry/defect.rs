@@ -37,17 +37,12 @@ pub(super) fn defect_length(scene: &Scene) -> Option<Finding> {
         around,
         around / 2.0
     );
-    let spacing = around / b.rollers as f64;
     Some(Finding::new(
         message,
         vec![
             Remedy::new(
                 "defect.length_mm",
                 at_most(around / 2.0, &format!("mm, half of the {name} raceway")),
-            )
-            .number(
-                round_down(spacing / 2.0, 2),
-                "less than the distance of two rollers, to see single impacts",
             ),
             Remedy::new(field, format!("at least {} mm", lower(2.0 * length / PI))),
         ],
@@ -78,8 +73,8 @@ pub(super) fn defect_edges(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new(SLOPE, format!("at least {}°", lower(steep))).number(steep, ""),
-            Remedy::new("defect.depth_mm", at_most(shallow, "mm")).number(shallow, ""),
+            Remedy::new(SLOPE, format!("at least {}°", lower(steep))),
+            Remedy::new("defect.depth_mm", at_most(shallow, "mm")),
         ],
     ))
 }
@@ -105,9 +100,8 @@ pub(super) fn defect_depth(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new("defect.depth_mm", at_most(deepest, "mm, 60 % of the ring's thickness"))
-                .number(round_down(ring / 50.0, 2), ""),
-            Remedy::new(field, format!("at least {} mm", lower(thinnest))).number(round_up(thinnest, 2), ""),
+            Remedy::new("defect.depth_mm", at_most(deepest, "mm, 60 % of the ring's thickness")),
+            Remedy::new(field, format!("at least {} mm", lower(thinnest))),
         ],
     ))
 }

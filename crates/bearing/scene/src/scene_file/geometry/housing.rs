@@ -5,10 +5,7 @@ use super::{OUTER_RACE, OUTER_RING};
 use crate::housing::HousingScene;
 use crate::scene::Scene;
 use crate::scene_file::finding::{Finding, Remedy};
-use crate::scene_file::wording::{number, round_down, round_up};
-
-/// Width of the paper's adapter over the outside diameter of its outer ring.
-const ADAPTER_RATIO: f64 = 0.727;
+use crate::scene_file::wording::{number, round_up};
 
 /// Thinnest wall of a pedestal, as a part of the ring's outside radius.
 const LEAST_PEDESTAL: f64 = 0.02;
@@ -30,10 +27,9 @@ pub(super) fn adapter(scene: &Scene) -> Option<Finding> {
     Some(Finding::new(
         message,
         vec![
-            Remedy::new("adapter.width_mm", less_than(outside, "mm, the outside diameter of the outer ring"))
-                .number(round_down(ADAPTER_RATIO * outside, 3), "as in the paper's proportions"),
+            Remedy::new("adapter.width_mm", less_than(outside, "mm, the outside diameter of the outer ring")),
             Remedy::new(OUTER_RACE, more_than(width - 2.0 * b.outer_ring_thickness_mm, "mm")),
-            Remedy::new(OUTER_RING, more_than(ring, "mm")).number(round_up(1.01 * ring, 2), ""),
+            Remedy::new(OUTER_RING, more_than(ring, "mm")),
         ],
     ))
 }
@@ -55,12 +51,5 @@ pub(super) fn pedestal(scene: &Scene) -> Option<Finding> {
         number(value),
         number(outside)
     );
-    let wide = round_up(halves * 0.7 * outside, 2);
-    Some(Finding::new(
-        message,
-        vec![
-            Remedy::new(field, more_than(round_up(halves * least, 3), "mm"))
-                .number(wide, "a fifth of the ring around it"),
-        ],
-    ))
+    Some(Finding::new(message, vec![Remedy::new(field, more_than(round_up(halves * least, 3), "mm"))]))
 }

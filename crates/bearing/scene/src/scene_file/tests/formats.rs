@@ -28,48 +28,49 @@ fn issue_other_formats_are_recognised_and_ron_is_shown() {
 #[test]
 fn issue_a_decimal_comma_is_recognised() {
     for (text, field, written, point) in [
-        ("(operation: (load_n: 50,0))", "operation.load_n", "50,0", "load_n: 50.0"),
-        ("(operation: (load_n: 50,0, speed_rpm: 500))", "operation.load_n", "50,0", "load_n: 50.0"),
-        ("(\n mesh: (\n  size_mm: 0,5,\n  roller_facets: 88))", "mesh.size_mm", "0,5", "size_mm: 0.5"),
-        ("(defect: (angle_deg: -3,25))", "defect.angle_deg", "-3,25", "angle_deg: -3.25"),
-        ("(operation: (load_n: 50.000,0))", "operation.load_n", "50.000,0", "load_n: 50000.0"),
+        ("(operation: (load_n: 50,0))", "operation.load_n", "50,0", "50.0"),
+        ("(operation: (load_n: 50,0, speed_rpm: 500))", "operation.load_n", "50,0", "50.0"),
+        ("(\n mesh: (\n  size_mm: 0,5,\n  roller_facets: 88))", "mesh.size_mm", "0,5", "0.5"),
+        ("(defect: (angle_deg: -3,25))", "defect.angle_deg", "-3,25", "-3.25"),
+        ("(operation: (load_n: 50.000,0))", "operation.load_n", "50.000,0", "50000.0"),
     ] {
         let problem = only(parse(text));
         assert_eq!(problem.field, field, "{text}\n{problem}");
         assert!(problem.message.contains("decimal comma"), "{text}\n{problem}");
         assert_eq!(mark(&problem).2, written, "{problem}");
         assert!(problem.suggestion.contains(point), "{problem}");
-        assert!(parse(&text.replace(written, point.rsplit(' ').next().unwrap_or(""))).is_ok(), "{text}");
+        assert!(parse(&text.replace(written, point)).is_ok(), "{text}");
     }
     let problem = only(Scene::default().with_overrides(&["operation.load_n=50,5"]));
-    assert!(problem.to_string().contains("--set operation.load_n=50.5"), "{problem}");
+    assert!(problem.to_string().contains("try: `50.5`"), "{problem}");
     // Commas between values are none.
     assert!(!only(parse("(operation: (load_n: 50, 7))")).message.contains("decimal"));
 }
 
 #[test]
-fn behaves_a_value_of_the_wrong_type_shows_what_is_allowed_and_a_value_that_is() {
+fn behaves_a_value_of_the_wrong_type_shows_what_is_allowed() {
     for (text, allowed, proposed) in [
-        ("(bearing: (rollers: 24.5))", "a whole number, 3 to 400", "rollers: 25"),
-        ("(bearing: (rollers: -3))", "a whole number, 3 to 400", "rollers: 24"),
-        ("(bearing: (rollers: \"24\"))", "a whole number, 3 to 400", "rollers: 24"),
-        ("(bearing: (rollers: 99999999999999999999999))", "a whole number, 3 to 400", "rollers: 24"),
-        ("(operation: (load_n: \"x\"))", "a number, more than 0, at most 1e9 N", "load_n: 50000.0"),
-        ("(operation: (load_n: \"900\"))", "a number, more than 0, at most 1e9 N", "load_n: 900"),
-        ("(operation: (load_n: NaN))", "more than 0, at most 1e9 N", "load_n: 50000.0"),
-        ("(operation: (load_n: -inf))", "more than 0, at most 1e9 N", "load_n: 50000.0"),
-        ("(operation: (load_n: 1e400))", "more than 0, at most 1e9 N", "load_n: 50000.0"),
-        ("(bearing: (first_roller_deg: 454))", "-360 to 360 °", "first_roller_deg: 94"),
-        ("(mesh: (outer_facets: none))", "a whole number or `None`, 16 to 1000000", "outer_facets: None"),
-        ("(contact: (method: \"collocated\"))", "`collocated`, `integrated`", "method: collocated"),
-        ("(name: quick)", "a text in double quotes", "name: \"quick\""),
+        ("(bearing: (rollers: 24.5))", "a whole number, 3 to 400", ""),
+        ("(bearing: (rollers: -3))", "a whole number, 3 to 400", ""),
+        ("(bearing: (rollers: \"24\"))", "a whole number, 3 to 400", "24"),
+        ("(bearing: (rollers: 99999999999999999999999))", "a whole number, 3 to 400", ""),
+        ("(operation: (load_n: \"x\"))", "a number, more than 0, at most 1e9 N", ""),
+        ("(operation: (load_n: \"900\"))", "a number, more than 0, at most 1e9 N", "900"),
+        ("(operation: (load_n: NaN))", "more than 0, at most 1e9 N", ""),
+        ("(operation: (load_n: -inf))", "more than 0, at most 1e9 N", ""),
+        ("(bearing: (first_roller_deg: 454))", "-360 to 360 °", ""),
+        ("(mesh: (outer_facets: none))", "a whole number or `None`, 16 to 1000000", "None"),
+        ("(contact: (method: \"collocated\"))", "`collocated`, `integrated`", "collocated"),
+        ("(name: quick)", "a text in double quotes", "\"quick\""),
     ] {
         let problem = only(parse(text));
         assert_eq!(problem.allowed, allowed, "{text}\n{problem}");
-        assert!(problem.suggestion.contains(proposed), "{text}\n{problem}");
-        let (_, value) = proposed.split_once(": ").expect("a value");
-        let at = mark(&problem);
-        let repaired = text.replacen(&at.2, value, 1);
+        if proposed.is_empty() {
+            assert_eq!(problem.suggestion, "", "{text}");
+            continue;
+        }
+        assert!(problem.suggestion.starts_with(&format!("`{proposed}` ")), "{text}\n{problem}");
+        let repaired = text.replacen(&mark(&problem).2, proposed, 1);
         assert!(parse(&repaired).is_ok(), "{repaired}");
     }
 }
