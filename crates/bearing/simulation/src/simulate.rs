@@ -9,12 +9,13 @@ use crate::run::{
     time_loop::Run,
 };
 use stribeck_scene::{
+    advice,
     resolved::ResolvedScene,
     scene::{ModelScene, Scene},
 };
 use stribeck_store::{
     run_dir::{RunDir, write_atomic},
-    run_info::RunInfo,
+    run_info::{RunInfo, Topic},
 };
 
 use crate::{
@@ -109,6 +110,9 @@ impl Task for Begin<'_> {
         with.enter("mesh", watch);
         let (model, setup) = M::prepare(&mut with, watch)?;
         let mut info = setup.info(scene, host);
+        scene.overload().into_iter().for_each(|words| info.warn(Topic::Contact.warning(words)));
+        let undamped = advice::undamped_housing(&scene.written);
+        undamped.into_iter().for_each(|words| info.warn(Topic::TimeStep.warning(words)));
         model.warnings(scene, &info).into_iter().for_each(|warning| info.warn(warning));
         dir.start(&scene.written, &info)?;
         write_atomic(&dir.mesh(), &model.mesh_file(scene)?)?;

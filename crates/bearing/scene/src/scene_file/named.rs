@@ -8,7 +8,7 @@ use stribeck_theory::catalogue::{
     Boundary, CatalogueBearing, Element, PAPER, beyond_a_plane, normal_clearance_mm, plain,
 };
 
-use super::own::Own;
+use super::own::{self, Own};
 use crate::catalogue;
 use crate::housing::{HousingScene, PedestalScene};
 use crate::scene::{
@@ -124,7 +124,6 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, all: &[String]) {
     let Surrounded { bearing, pitch_mm, element } = of;
     let given = |path: &str| all.iter().any(|written| written == path);
     let paper = Scene::default();
-    let facets = paper.mesh.roller_facets as f64 / scene.mesh.roller_facets as f64;
     let size = bearing.roller_diameter_mm / paper.bearing.roller_diameter_mm;
     let outside = |b: &BearingScene| b.outer_race_diameter_mm + 2.0 * b.outer_ring_thickness_mm;
     let across = outside(&bearing) / outside(&paper.bearing);
@@ -156,10 +155,6 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, all: &[String]) {
         follow("defect.length_mm", &mut defect.length_mm, size * of_paper.length_mm);
         follow("defect.depth_mm", &mut defect.depth_mm, size * of_paper.depth_mm);
     }
-    follow("mesh.size_mm", &mut scene.mesh.size_mm, size * facets * paper.mesh.size_mm);
-    if let Some(grading) = &mut scene.mesh.grading {
-        follow("mesh.grading.coarse_mm", &mut grading.coarse_mm, size * GradingScene::default().coarse_mm);
-    }
     follow("contact.friction", &mut scene.contact.friction, FRICTION);
     // The same pressure where rollers carry the same share; balls as if their rings had rollers.
     let area = |b: &BearingScene| b.rollers as f64 * b.roller_diameter_mm * b.thickness_mm;
@@ -190,6 +185,7 @@ pub(super) fn surround(scene: &mut Scene, of: Surrounded, all: &[String]) {
         follow("output.frames.every_us", &mut frames.every_us, every);
     }
     scene.bearing = bearing;
+    elements(scene, &given);
     house(scene, &given);
     modes(scene, &given);
     contact(scene, all);
@@ -203,8 +199,10 @@ fn across(scene: &Scene) -> f64 {
 
 /// What follows from the bearing in a field that an argument has replaced as a whole:
 /// `--set housing=pedestal()` is a pedestal of that bearing's size.
-pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, all: &[String]) {
+/// `holds_size` where the file or the scene so far has another element size than follows from its bearing.
+pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, holds_size: bool, all: &[String]) {
     let given = |path: &str| all.iter().any(|written| written == path);
+    let papers = own::is_papers(&scene.bearing);
     let is_hertz = scene.contact.formula == ContactFormula::Hertz;
     match replaced {
         "housing" => {
@@ -213,11 +211,43 @@ pub(super) fn follow_bearing(scene: &mut Scene, replaced: &str, all: &[String]) 
         }
         "output.interval_us" => scene.record_no_faster(all),
         "model" => modes(scene, &given),
+        "mesh" if !papers => elements(scene, &given),
+        "mesh.grading" if !papers => {
+            elements(scene, &|path| path == SIZE || given(path));
+        }
+        "mesh.roller_facets" if !papers && !holds_size => {
+            elements(scene, &|path| path != SIZE || given(path));
+        }
         "contact.formula" => as_stiff_as_hertz(scene, all),
         "contact.penalty_scale" if !given("contact.formula") && is_hertz => {
             scene.contact.formula = ContactFormula::ElementLayer;
         }
         _ => {}
+    }
+}
+
+/// Field of the element size.
+pub(super) const SIZE: &str = "mesh.size_mm";
+
+/// Whether the elements of a scene have the size that follows from its bearing.
+pub(super) fn size_follows(scene: &Scene) -> bool {
+    let mut same = scene.clone();
+    elements(&mut same, &|path| path != SIZE);
+    same.mesh.size_mm == scene.mesh.size_mm
+}
+
+/// Element sizes, in proportion to rolling elements with that number of facets, where the user gave none.
+fn elements(scene: &mut Scene, given: &dyn Fn(&str) -> bool) {
+    let paper = Scene::default();
+    let size = scene.bearing.roller_diameter_mm / paper.bearing.roller_diameter_mm;
+    let facets = paper.mesh.roller_facets as f64 / scene.mesh.roller_facets as f64;
+    if !given(SIZE) {
+        scene.mesh.size_mm = to_digits(3, size * facets * paper.mesh.size_mm);
+    }
+    if let Some(grading) = &mut scene.mesh.grading
+        && !given("mesh.grading.coarse_mm")
+    {
+        grading.coarse_mm = to_digits(3, size * GradingScene::default().coarse_mm);
     }
 }
 

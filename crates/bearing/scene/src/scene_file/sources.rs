@@ -180,6 +180,11 @@ impl Sources {
         }
         let written = node.entries(path).into_iter().map(|(path, ..)| path);
         let written: Vec<String> = given.iter().cloned().chain(written).collect();
+        let holds_size = || {
+            self.written(named::SIZE).is_some()
+                || self.scene().is_some_and(|scene| !named::size_follows(&scene))
+        };
+        let holds_size = path == "mesh.roller_facets" && holds_size();
         put(&mut self.tree, path, node);
         if let Some(mut scene) = self.scene() {
             if path == "bearing"
@@ -188,7 +193,7 @@ impl Sources {
                 return self.name(scene, &name, &written, Source::Argument(number), at..argument.len());
             }
             // Sizes that follow from the bearing, as for `housing=pedestal()`.
-            named::follow_bearing(&mut scene, path, given);
+            named::follow_bearing(&mut scene, path, holds_size, given);
             self.take(&scene);
         }
         Ok(())

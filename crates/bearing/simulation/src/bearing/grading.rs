@@ -39,10 +39,10 @@ pub(crate) fn roller_layers(grading: &GradingScene) -> usize {
 }
 
 /// Nodes [m] of the adapter's seat from left to right: those of the ring that sits in it, so that the two
-/// surfaces fit facet to facet, however long their facets are. At its two ends the seat continues the facets
-/// of the ring. No column becomes narrower than `narrowest` [m]; a node of the ring that would need it gets
-/// none.
-pub(crate) fn seat(back: &[[f64; 2]], half_width: f64, narrowest: f64) -> Vec<[f64; 2]> {
+/// surfaces fit facet to facet, however long their facets are. Where both are `round`, facets standing for arcs, so are
+/// its two ends; else they continue the facets of the ring. No column becomes narrower than `narrowest` [m]; a node of
+/// the ring that would need it gets none.
+pub(crate) fn seat(back: &[[f64; 2]], half_width: f64, narrowest: f64, round: bool) -> Vec<[f64; 2]> {
     let mut above: Vec<[f64; 2]> = back.iter().copied().filter(|p| p[1] > 0.0).collect();
     above.sort_by(|a, b| a[0].total_cmp(&b[0]));
     let crown = above.partition_point(|p| p[0] < 0.0);
@@ -50,26 +50,26 @@ pub(crate) fn seat(back: &[[f64; 2]], half_width: f64, narrowest: f64) -> Vec<[f
     // Both halves from the crown to their sides; the left one is mirrored for that.
     let left: Vec<[f64; 2]> = left.iter().rev().map(|[x, y]| [-x, *y]).collect();
     let mut seat: Vec<[f64; 2]> =
-        half_seat(&left, half_width, narrowest).into_iter().rev().map(|[x, y]| [-x, y]).collect();
+        half_seat(&left, half_width, narrowest, round).into_iter().rev().map(|[x, y]| [-x, y]).collect();
     let room = seat.last().map_or(0.0, |last| last[0] + narrowest);
     let right: Vec<[f64; 2]> = right.iter().copied().skip_while(|p| p[0] < room).collect();
-    seat.extend(half_seat(&right, half_width, narrowest));
+    seat.extend(half_seat(&right, half_width, narrowest, round));
     seat
 }
 
 /// The part of the seat on the right of its crown, ending at the side of the adapter.
-fn half_seat(ring: &[[f64; 2]], half_width: f64, narrowest: f64) -> Vec<[f64; 2]> {
+fn half_seat(ring: &[[f64; 2]], half_width: f64, narrowest: f64, round: bool) -> Vec<[f64; 2]> {
     let mut seat: Vec<[f64; 2]> = Vec::with_capacity(ring.len() + 1);
     for node in ring.iter().filter(|node| node[0] <= half_width - narrowest) {
         if seat.last().is_none_or(|last| node[0] - last[0] >= narrowest) {
             seat.push(*node);
         }
     }
-    // A vertex of the ring inside the last facet would press on it: the facet runs through that vertex
+    // A vertex of the ring inside the last chord would press on it: the chord runs through that vertex
     // instead, a few micrometres above the circle at its end.
     let next = seat.last().and_then(|last| ring.iter().find(|node| node[0] > last[0]));
     let end = match (seat.last(), next) {
-        (Some(last), Some(next)) => {
+        (Some(last), Some(next)) if !round => {
             last[1] + (next[1] - last[1]) * (half_width - last[0]) / (next[0] - last[0])
         }
         _ => ring

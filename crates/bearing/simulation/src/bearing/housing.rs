@@ -7,6 +7,7 @@ use stribeck_mesh::{Annulus, BoredBlock, Mesh, Part, SeatedBlock, Surface};
 use stribeck_scene::{
     housing::{HousingScene, PedestalScene, SpringHousingScene},
     resolved::ResolvedScene,
+    scene::ContactSurface,
 };
 
 use crate::bearing::{grading, own_mesh};
@@ -15,6 +16,10 @@ use crate::error::Error;
 /// Height of the flattest cells over the wanted size: rings and rollers have cells as narrow, and one that is
 /// narrower would set the time step.
 const FLATTEST: f64 = 0.91;
+
+/// Rows of elements in which the wall of a housing bends as steel does: with four the largest force on a roller is off
+/// by 3 %.
+const TO_BEND: usize = 8;
 
 /// Distance of a frame on springs from the ring, and its thickness, in radii of its bore: both are for
 /// pictures and its mass alone.
@@ -32,6 +37,12 @@ pub(crate) struct Housing {
     pub(crate) loaded: &'static str,
     /// Density as a multiple of the bearing's.
     pub(crate) density: f64,
+}
+
+/// Whether facets of the seat, and of the ring in it, stand for arcs. Chords of different lengths on one circle do not
+/// fit: a long one presses on the vertices between its ends.
+pub(crate) fn seat_is_round(scene: &ResolvedScene) -> bool {
+    scene.written.contact.surface != ContactSurface::Facet
 }
 
 /// The housing of a scene; none where the outer ring does not deform, because it moves as one with it. `back`
@@ -67,13 +78,14 @@ pub(crate) fn housing(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Res
 }
 
 /// The bore that holds the outer ring: its own polygon, so that both fit facet to facet; around a ring from a
-/// file, which may have notches there, as many facets about its circle.
+/// file, which may have notches there, as many facets on its circle, or about it where they are chords.
 fn polygon(scene: &ResolvedScene, mesh: &Mesh, back: &Surface) -> Vec<[f64; 2]> {
     if scene.written.outer_ring_mesh.is_none() {
         return back.nodes.iter().map(|&n| [mesh.x[n as usize], mesh.y[n as usize]]).collect();
     }
     let facet = TAU / back.nodes.len() as f64;
-    let radius = (scene.outer_race_radius + scene.outer_ring_thickness) / libm::cos(0.5 * facet);
+    let around = if seat_is_round(scene) { 1.0 } else { libm::cos(0.5 * facet) };
+    let radius = (scene.outer_race_radius + scene.outer_ring_thickness) / around;
     (0..back.nodes.len())
         .map(|i| libm::sincos(i as f64 * facet))
         .map(|(s, c)| [radius * c, radius * s])
@@ -88,19 +100,20 @@ fn adapter(scene: &ResolvedScene, back: &[[f64; 2]]) -> Result<Part, Error> {
         height: scene.adapter_height,
         seat_radius: scene.outer_race_radius + scene.outer_ring_thickness,
         columns: ((scene.adapter_width / size).round() as usize).max(2),
-        rows: adapter_rows(scene, size),
+        rows: rows(scene, scene.adapter_height, size),
     };
     let Some(coarse) = scene.coarse_size else { return Ok(adapter.part()?) };
-    let seat = grading::seat(back, 0.5 * adapter.width, size);
+    let seat = grading::seat(back, 0.5 * adapter.width, size, seat_is_round(scene));
     adapter.columns = seat.len() - 1;
-    adapter.rows = adapter_rows(scene, coarse);
+    adapter.rows = rows(scene, adapter.height, coarse);
     Ok(adapter.part_on(&seat)?)
 }
 
-/// Rows of the adapter: as many as leave no cell much flatter than the wanted size. Columns are shortest at
-/// the crown.
-fn adapter_rows(scene: &ResolvedScene, size: f64) -> usize {
-    ((scene.adapter_height / (FLATTEST * size)) as usize).max(2)
+/// Rows of elements over a height [m]: as many as leave no cell much flatter than the wanted size, and more where that
+/// would leave too few to bend. Columns of an adapter are shortest at the crown.
+fn rows(scene: &ResolvedScene, height: f64, size: f64) -> usize {
+    let fit = |size: f64| (height / (FLATTEST * size)) as usize;
+    fit(size).max(fit(scene.element_size).min(TO_BEND)).max(2)
 }
 
 /// A pedestal whose bore is the polygon of the outer ring.
@@ -108,8 +121,7 @@ fn pedestal_part(pedestal: &PedestalScene, scene: &ResolvedScene, back: &[[f64; 
     let [width, base, top] = [pedestal.width_mm, pedestal.base_mm, pedestal.top_mm].map(|mm| 1e-3 * mm);
     let wall = (0.5 * width).min(base).min(top) - (scene.outer_race_radius + scene.outer_ring_thickness);
     let size = scene.coarse_size.unwrap_or(scene.element_size);
-    let rows = ((wall / (FLATTEST * size)) as usize).max(2);
-    Ok(BoredBlock { bore: back, width, base, top, rows }.part()?)
+    Ok(BoredBlock { bore: back, width, base, top, rows: rows(scene, wall, size) }.part()?)
 }
 
 /// A frame that stands off the ring, of one row of cells.

@@ -7,6 +7,7 @@ mod channels;
 mod defects;
 mod duty;
 mod film;
+mod forces_across_meshes;
 mod frame;
 mod housings;
 mod lean;

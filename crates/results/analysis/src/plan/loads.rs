@@ -51,27 +51,12 @@ impl Loads {
     }
 }
 
-/// Below this static safety rolling elements leave dents (ISO 76 asks for 1.5 and more where it runs
-/// quietly).
-const SAFE: f64 = 1.0;
 /// A cage without guidance has fallen through its clearance after this many times a free fall over it.
 const FALLS: f64 = 3.0;
 
 /// Problems to expect, each with its reason and remedy.
 pub(super) fn dangers(scene: &ResolvedScene, loads: &Loads) -> Vec<String> {
-    [overload(loads), cage(scene), penetration(scene, loads)].into_iter().flatten().collect()
-}
-
-fn overload(loads: &Loads) -> Option<String> {
-    let safety = loads.static_safety();
-    (safety < SAFE).then(|| {
-        format!(
-            "the load of {:.0} N exceeds the static rating of this bearing, {:.0} N by ISO 76 (s₀ = \
-             {safety:.2}): steel would yield, which the model does not. Take less `operation.load_n`, or \
-             check `bearing.thickness_mm`, the length of the rollers",
-            loads.load_n, loads.static_rating_n
-        )
-    })
+    [scene.overload(), cage(scene), penetration(scene, loads)].into_iter().flatten().collect()
 }
 
 /// How far the cage moves across before corners of its pockets stop it [m]; infinite where none does.

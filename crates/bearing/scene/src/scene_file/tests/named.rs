@@ -66,6 +66,31 @@ fn issue_what_arguments_replace_has_the_size_of_the_bearing() {
     assert_eq!(papers.housing, HousingScene::Pedestal(PedestalScene::default()));
 }
 
+/// Grading and facets that an argument gave had elements of another size than in the file: forces differed by a
+/// tenth, since no row of the ring became coarse.
+#[test]
+fn issue_one_bearing_has_one_mesh_however_it_is_named() {
+    let mesh = "mesh: (roller_facets: 80, grading: ())";
+    let scene = |text: &str, set: &[&str]| {
+        Scene::parse(text, "mine").and_then(|scene| scene.with_overrides(set)).expect(text).mesh
+    };
+    let named = scene(&format!("(bearing: \"6203\", {mesh})"), &[]);
+    assert_eq!((named.size_mm, named.grading.as_ref().map(|g| g.coarse_mm)), (0.263, Some(0.75)));
+    for (text, set) in [
+        (&*format!("({mesh})"), &["bearing=6203"][..]),
+        ("()", &["bearing=6203", "mesh.grading=()", "mesh.roller_facets=80"]),
+        ("()", &["mesh.roller_facets=80", "mesh.grading=()", "bearing=6203"]),
+        ("(bearing: \"6203\")", &["mesh.roller_facets=80", "mesh.grading=()"]),
+        ("(bearing: \"6203\")", &["mesh=(roller_facets: 80, grading: ())"]),
+    ] {
+        assert_eq!(scene(text, set), named, "{text} {set:?}");
+    }
+    let own = scene("(bearing: \"6203\", mesh: (size_mm: 0.4))", &["mesh.roller_facets=80"]);
+    assert_eq!((own.size_mm, own.roller_facets), (0.4, 80));
+    let papers = scene("()", &["mesh.roller_facets=88", "mesh.grading=()"]);
+    assert_eq!((papers.size_mm, papers.grading.map(|g| g.coarse_mm)), (0.5, Some(2.0)));
+}
+
 #[test]
 fn behaves_every_bearing_of_the_catalogue_makes_a_scene_or_says_why_not() {
     let mut refused = Vec::new();

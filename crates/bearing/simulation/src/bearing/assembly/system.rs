@@ -13,7 +13,7 @@ use stribeck_system::{Film, Pair, Plan, System};
 use stribeck_theory::duty::Duty;
 
 use super::{Assembly, surface};
-use crate::bearing::suspension::suspend;
+use crate::bearing::{housing::seat_is_round, suspension::suspend};
 use crate::error::Error;
 
 /// Integration points on a facet of the outer ring's seat: two conforming surfaces need fewer than a line
@@ -172,8 +172,8 @@ impl Assembly {
     }
 
     /// Names the surfaces that touch and the curves that they stand for: raceways and rollers are circles
-    /// where they are round. Seat and cage keep their polygons: nothing travels over the seat, and the cage
-    /// touches with its corners.
+    /// where they are round. So are the seat and what sits in it, or a facet of one that spans two of the other
+    /// would press on the vertex between them. The cage touches with its corners, and keeps its polygons.
     fn name_surfaces(&self, plan: &mut Plan, scene: &ResolvedScene, rollers: &[Roller]) -> Result<(), Error> {
         let contact = &scene.written.contact;
         let spline = contact.interpolation == ContactInterpolation::Spline;
@@ -186,6 +186,12 @@ impl Assembly {
         if let Some(seat) = self.seat() {
             plan.surface(BACK, surface(&self.outer, "outer").clone())?;
             plan.surface(SEAT, seat.clone())?;
+            if seat_is_round(scene) {
+                // Nothing travels over it, so that splines would be of no use; notches of a ring from a file, which
+                // are no arcs about the centre, stay chords.
+                let circle = Smoothing::Arc { centre: [0.0; 2] };
+                [BACK, SEAT].into_iter().try_for_each(|surface| plan.smooth(surface, circle, false))?;
+            }
         }
         let mesh = &self.model.mesh;
         for ((i, placed), roller) in self.rollers.iter().zip(rollers) {
