@@ -73,7 +73,7 @@ fn roundtrip_findings_follow_their_schema() {
 
     let limits = [Limit { quantity: Quantity::Rms, warning: 0.1, alarm: 1.0 }];
     let found = [analysed(f64::MAX), analysed(0.8)].map(|analysis| Some(analysis.findings));
-    let series = Series::of(&[found[0].as_ref(), found[1].as_ref(), None], 0);
+    let series = Series::of(&[found[0].as_ref(), found[1].as_ref(), None], 0, &[]);
     let records = found.into_iter().chain([None]).map(|findings| SeriesRecord {
         file: "a.mat".to_owned(),
         folder: None,
