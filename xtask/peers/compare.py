@@ -16,6 +16,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -222,7 +223,18 @@ E 200 GPa, ν 0.3, ρ 7850 kg/m³. Written by `python xtask/peers/compare.py`; a
     return text
 
 
+def made_by(minutes):
+    """Notes that this program made the page, as studies do."""
+    commit = subprocess.run(["git", "log", "-1", "--format=%h,%cs"], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+    digest = (ROOT / "fixtures/golden/digest").read_text().strip()
+    file = RESULTS / "made_by.csv"
+    own = f"compare,{digest},{commit or ','},{minutes:.0f},python xtask/peers/compare.py"
+    lines = [own if line.startswith("compare,") else line for line in file.read_text().splitlines()]
+    file.write_text("\n".join(lines) + "\n")
+
+
 def main():
+    began = time.monotonic()
     known = sorted({peer[0] for peer in ON_BLOCKS})
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--peers", metavar="NAMES", help=f"of {', '.join(known)} [default: all]")
@@ -265,6 +277,7 @@ def main():
         with open(RESULTS / "compare.csv", "w") as file:
             file.write(COLUMNS + "\n")
             csv.writer(file, quoting=csv.QUOTE_MINIMAL, lineterminator="\n").writerows(row for m in measured for row in m.rows())
+        made_by(max(1, (time.monotonic() - began) / 60))
     apart = [e.about["program"] for m in own for e in m.entries if any(not off <= limit for _, off, limit, _ in e.differences)]
     if apart:
         sys.exit(f"answers differ by more than their limits: {', '.join(apart)}")

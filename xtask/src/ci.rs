@@ -4,6 +4,7 @@ mod documents;
 mod features;
 mod layers;
 mod markdown;
+mod pages;
 mod sources;
 mod test_names;
 mod validation;
@@ -21,6 +22,9 @@ pub(crate) struct Options {
     /// Only the checks of text, which compile nothing
     #[arg(long)]
     quick: bool,
+    /// Checks nothing: writes the first lines of pages of results that an older program made
+    #[arg(long, conflicts_with = "quick")]
+    mark: bool,
 }
 
 /// One check: its name, and the function that returns its complaints.
@@ -37,10 +41,15 @@ const CHECKS: &[Check] = &[
     ("the guide lists the numbers that summaries have", crate::quantities::check),
     ("tests have a prefix, and a source where they need one", test_names::check),
     ("VALIDATION says what the tests say", validation::check),
+    ("pages of an older program say so", pages::check),
 ];
 
 pub(crate) fn run(options: &Options) -> Result<ExitCode> {
     let root = workspace::root();
+    if options.mark {
+        pages::mark(&root)?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut failed = Vec::new();
     for (name, check) in CHECKS {
         // A document that is missing is one more complaint, not the end of the checks.

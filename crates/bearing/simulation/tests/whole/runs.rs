@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::common::{coarse, column, fine_where_it_rolls, run_watched};
+use crate::common::{coarse, column, fine_where_it_rolls, run_watched, small};
 use stribeck_scene::scene::{
     CageScene, DampedBody, DampingFrame, PocketWalls, RollerCopies, Scene, Start, StructuralDampingScene,
 };
@@ -263,52 +263,75 @@ fn survives_an_interruption_with_its_samples() {
     assert_eq!(Run::read(folder.path()).expect("readable").trace.len(), 10);
 }
 
-/// A coarse bearing's first 0.3 ms against our own blessed history (`fixtures/golden/coarse.csv`): a change
-/// of the physics shows here, a change of rounding does not. `STRIBECK_BLESS=1 cargo test …` writes the file
-/// anew.
+/// First parts of a millisecond of three bearings against our own blessed history (`fixtures/golden/*.csv`): a
+/// change of the physics shows here, a change of rounding does not. `fixtures/golden/digest` is the checksum of
+/// these files, by which a page of results knows whether an older program made it. `STRIBECK_BLESS=1 cargo
+/// test …` writes them anew.
 #[test]
-fn golden_coarse_bearing() {
+fn golden_traces() {
     // Sums over wide and narrow vectors round differently on another machine, far below this; the preload,
-    // whose factorisation does too, is left out. A change of the physics shows in the first digits.
+    // whose factorisation does too, is left out of the full model. A change of the physics shows in the first
+    // digits.
     const TOLERANCE: f64 = 1e-6;
     const CHANNELS: [&str; 6] = [
         "sensor.side.ay_m_s2",
         "sensor.bottom.ax_m_s2",
         "roller.1.outer_fy_n",
-        "roller.13.inner_fx_n",
+        "roller.1.inner_fy_n",
         "cage.angle_rad",
-        "seat.fy_n",
+        "roller.1.y_m",
     ];
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../fixtures/golden/coarse.csv");
-    let mut scene = coarse(0.3);
-    scene.solver.start = Start::Sudden;
-    // As it was blessed: dry, with mass damping, and pockets with corners.
-    scene.film = None;
-    (scene.solver.mass_damping_per_s, scene.solver.structural_damping) = (5000.0, None);
-    scene.cage = Some(CageScene { pocket: PocketWalls::Corners, ..CageScene::default() });
-    let (_, run) = run(&scene, 1);
-    if std::env::var_os("STRIBECK_BLESS").is_some() {
-        let mut text = CHANNELS.join(",") + "\n";
-        for sample in 0..run.trace.len() {
-            let row = CHANNELS.map(|c| format!("{:.12e}", column(&run, c)[sample]));
-            text += &(row.join(",") + "\n");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../fixtures/golden/");
+    let bless = std::env::var_os("STRIBECK_BLESS").is_some();
+    let mut full = coarse(0.3);
+    full.solver.start = Start::Sudden;
+    // Dry, with mass damping, and pockets with corners.
+    full.film = None;
+    (full.solver.mass_damping_per_s, full.solver.structural_damping) = (5000.0, None);
+    full.cage = Some(CageScene { pocket: PocketWalls::Corners, ..CageScene::default() });
+    let mut reduced = small("");
+    reduced.solver.duration_ms = 0.5;
+    let balls = "(bearing: \"6203\", model: reduced(), housing: pedestal(), output: (frames: None), \
+                 solver: (duration_ms: 0.5))";
+    let balls = Scene::parse(balls, "here").expect("a sound scene");
+    let mut digest = crc32fast::Hasher::new();
+    for (name, scene) in [("full", full), ("reduced", reduced), ("balls", balls)] {
+        let path = format!("{folder}{name}.csv");
+        let (_, run) = run(&scene, 1);
+        if bless {
+            let mut text = CHANNELS.join(",") + "\n";
+            for sample in 0..run.trace.len() {
+                let row = CHANNELS.map(|c| format!("{:.12e}", column(&run, c)[sample]));
+                text += &(row.join(",") + "\n");
+            }
+            std::fs::write(&path, text).expect("the golden file can be written");
         }
-        std::fs::write(path, text).expect("the golden file can be written");
-    }
-    let text = std::fs::read_to_string(path).expect("the golden file is in the repository");
-    let mut lines = text.lines();
-    assert_eq!(lines.next(), Some(CHANNELS.join(",").as_str()));
-    let rows: Vec<Vec<f64>> =
-        lines.map(|l| l.split(',').map(|v| v.parse().expect("a number")).collect()).collect();
-    assert_eq!(rows.len(), run.trace.len());
-    for (c, channel) in CHANNELS.into_iter().enumerate() {
-        let largest = rows.iter().map(|r| r[c].abs()).fold(0.0, f64::max);
-        assert!(largest > 0.0, "{channel} is silent");
-        for (sample, (row, now)) in rows.iter().zip(column(&run, channel)).enumerate() {
-            let off = (row[c] - now).abs() / largest;
-            assert!(off < TOLERANCE, "{channel}, sample {sample}: {now}, blessed {} ({off:.1e} off)", row[c]);
+        let text = std::fs::read_to_string(&path).expect("the golden file is in the repository");
+        digest.update(text.as_bytes());
+        let mut lines = text.lines();
+        assert_eq!(lines.next(), Some(CHANNELS.join(",").as_str()));
+        let rows: Vec<Vec<f64>> =
+            lines.map(|l| l.split(',').map(|v| v.parse().expect("a number")).collect()).collect();
+        assert_eq!(rows.len(), run.trace.len());
+        for (c, channel) in CHANNELS.into_iter().enumerate() {
+            let largest = rows.iter().map(|r| r[c].abs()).fold(0.0, f64::max);
+            assert!(largest > 0.0, "{name}: {channel} is silent");
+            for (sample, (row, now)) in rows.iter().zip(column(&run, channel)).enumerate() {
+                let off = (row[c] - now).abs() / largest;
+                assert!(
+                    off < TOLERANCE,
+                    "{name}, {channel}, sample {sample}: {now}, blessed {} ({off:.1e} off)",
+                    row[c]
+                );
+            }
         }
     }
+    let digest = format!("{:08x}\n", digest.finalize());
+    if bless {
+        std::fs::write(format!("{folder}digest"), &digest).expect("the digest can be written");
+    }
+    let kept = std::fs::read_to_string(format!("{folder}digest")).expect("the digest is in the repository");
+    assert_eq!(kept, digest, "STRIBECK_BLESS=1 writes it");
 }
 
 /// Centres stand where angle and place in the pocket say, and meshes are turned by their phase; the cage
