@@ -79,7 +79,9 @@ impl Histogram {
             let at_end = value == first || value == last;
             let at_rail = at_end || rails.iter().any(|rail| (value - rail).abs() < self.range() / 256.0);
             let is_often = runs >= OFTEN * usual.max(2) && runs as f64 > SHARE * self.sorted.len() as f64;
-            runs > 1 && apart > FAR || is_often && (apart > 0.1 || !at_rail)
+            // What fills gaps stands in a few long runs.
+            let is_scattered = runs > 1 && 2 * runs > samples(value);
+            is_scattered && apart > FAR || is_often && (apart > 0.1 || !at_rail)
         };
         self.frequent.iter().take(MARKS).filter(|of| is_mark(of)).map(|of| (of.0, samples(of.0))).collect()
     }
@@ -110,11 +112,24 @@ impl Histogram {
                 || above < 0.5 && below > 0.9 && near_zero(most, least))
     }
 
+    /// The range of nearly all values of noise as wide as the middle half is, about this.
+    pub(super) fn usual(&self) -> (f64, f64) {
+        let [low, high] = [self.quantile(0.25), self.quantile(0.75)];
+        let reach = if high > low { 4.0 * (high - low) } else { self.range() };
+        (low - reach, high + reach)
+    }
+
     /// The step of the converter, where all values are whole numbers of it.
     pub(super) fn quantum(&self) -> Option<f64> {
         let steps = self.sorted.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 1e-9 * self.range());
-        let step = steps.fold(f64::INFINITY, f64::min);
-        let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.01;
+        let mut step = steps.fold(f64::INFINITY, f64::min);
+        let (first, last) = (self.sorted[0], self.sorted.len() - 1);
+        // Longer spans say it to more digits than one step of rounded numbers does.
+        for at in (0..).map(|n| 1 << n).take_while(|at| *at < 2 * last) {
+            let span = self.sorted[last.min(at)] - first;
+            step = if span > 0.0 { span / (span / step).round() } else { step };
+        }
+        let is_whole = |x: &f64| (x / step - (x / step).round()).abs() < 0.05;
         (self.range() / step < 4.4e9 && self.sorted.iter().all(is_whole)).then_some(step)
     }
 }

@@ -132,7 +132,10 @@ impl Inspection {
         let Stays { at_rail, ends, gaps } = self.stays(few.is_some());
         let rails = self.rails(few.is_some(), &[&ends[..], &gaps].concat());
         let mut found = self.no_signal(kept, &rails);
-        found.extend(self.clipped(&rails, &at_rail));
+        // Values at both ends of numbers without their sign stand at no rail.
+        if found.iter().all(|of| of.kind != Kind::SignLost) {
+            found.extend(self.clipped(&rails, &at_rail));
+        }
         found.extend(ends.iter().map(|run| self.dead(run)));
         if few.is_none() {
             found.extend(self.held(&gaps));
@@ -158,12 +161,18 @@ impl Inspection {
     fn no_signal(&self, kept: &[f64], rails: &[Rail]) -> Vec<Quality> {
         let Some(histogram) = Histogram::of(kept) else { return Vec::new() };
         let whole = |kind, words: String| self.quality(kind, 1.0, 0, words);
-        let mut found: Vec<Quality> = self.pattern(kept).into_iter().chain(self.repeated(kept)).collect();
+        let repeats = similarity::repeats(kept);
+        // A gap, or a glitch, says nothing of places.
+        let (low, high) = histogram.usual();
+        let usual: Vec<f64> = kept.iter().map(|x| x.clamp(low, high)).collect();
+        let pattern = self.pattern(&usual, repeats.is_some_and(|repeats| repeats.is_waveform));
+        let mut found: Vec<Quality> = pattern.into_iter().collect();
+        found.extend(repeats.filter(|repeats| !repeats.is_waveform).map(|repeats| self.repeated(kept, repeats)));
         if found.is_empty() {
             let values: Vec<f64> = rails.iter().map(|rail| rail.value).collect();
             found.extend(self.marks(&histogram, &values));
         }
-        let piled = similarity::piled(kept, histogram.range()).filter(|_| rails.is_empty());
+        let piled = similarity::piled(kept, 0.5 * (high - low)).filter(|_| rails.is_empty());
         let across = jumps::crossings(kept, histogram.range());
         if let Some(share) = piled {
             found.push(self.quality(Kind::DriftingRails, share, 0, format!(
@@ -172,7 +181,7 @@ impl Inspection {
                  range",
                 percent(share)
             )));
-        } else if found.is_empty() && rails.is_empty() {
+        } else if found.is_empty() && (rails.is_empty() || histogram.is_hollow()) {
             found.extend(self.wrapped(kept, &histogram, across));
         }
         if histogram.is_of_another_format() {
@@ -187,8 +196,8 @@ impl Inspection {
     }
 
     /// Samples that stand many times, zeros between samples, channels one after the other.
-    fn pattern(&self, kept: &[f64]) -> Option<Quality> {
-        let (places, kind) = similarity::pattern(kept)?;
+    fn pattern(&self, kept: &[f64], of_waveform: bool) -> Option<Quality> {
+        let (places, kind) = similarity::pattern(kept).filter(|(_, kind)| *kind != Pattern::Unlike || !of_waveform)?;
         let lower = self.rate_hz / places as f64;
         let words = match kind {
             Pattern::Held => format!(
@@ -210,8 +219,8 @@ impl Inspection {
     }
 
     /// Stretches that stand twice.
-    fn repeated(&self, kept: &[f64]) -> Option<Quality> {
-        let Repeats { samples, first, lag } = similarity::repeats(kept)?;
+    fn repeated(&self, kept: &[f64], repeats: Repeats) -> Quality {
+        let Repeats { samples, first, lag, .. } = repeats;
         let share = samples as f64 / kept.len() as f64;
         let words = format!(
             "repeated: {} of the samples stand a second time, to the last bit, the first of them {lag} samples behind \
@@ -219,7 +228,7 @@ impl Inspection {
             percent(share),
             first as f64 / self.rate_hz
         );
-        Some(self.quality(Kind::Repeated, share, first as u64, words))
+        self.quality(Kind::Repeated, share, first as u64, words)
     }
 
     /// Values that are too frequent to be measured.
@@ -243,7 +252,7 @@ impl Inspection {
         let full = quantum.and_then(|quantum| jumps::full_range(low, high, quantum));
         let share = across as f64 / kept.len() as f64;
         let hollow = histogram.is_hollow() && share > 0.01;
-        let breaks_off = histogram.breaks_off() && share > 1e-3;
+        let breaks_off = histogram.breaks_off() && quantum.is_some() && share > 1e-3;
         if !hollow && !breaks_off && (full.is_none() || across < 2) {
             return None;
         }

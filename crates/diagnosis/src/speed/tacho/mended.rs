@@ -5,7 +5,7 @@ const NEIGHBOURS: usize = 4;
 /// Part of the pulses that may be put in or left out.
 const FEW: f64 = 0.05;
 /// Fewest samples from pulse to pulse.
-const LEAST: f64 = 2.5;
+const LEAST: f64 = 3.0;
 /// Largest variation of the speed between two pulses and the next two that a shaft follows.
 const SUDDEN: f64 = 0.5;
 /// Shortest gap whose variation counts [samples]: shorter ones vary by the grid of the samples.
