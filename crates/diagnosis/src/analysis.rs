@@ -81,10 +81,11 @@ impl Analysis {
         };
         let judged = Judged::of(channel, &record, machine)?;
         let no_signal = quality::no_signal(&quality);
-        let Judged { machine: taken, speed, is_corrected, decided, families, over, verdict } = match &no_signal {
-            Some(headline) => judged.without_claims(headline),
-            None => judged,
-        };
+        let Judged { machine: taken, speed, is_corrected, decided, families, over, verdict } =
+            match &no_signal {
+                Some(headline) => judged.without_claims(headline),
+                None => judged,
+            };
         let spall = estimate::estimate(&record.kept, rate_hz, &taken, &families);
         let enhanced = enhanced::of(&record.kept, rate_hz, enhanced_up_to_hz(&families).min(0.5 * rate_hz))?;
         let duration_s = record.duration_s();

@@ -232,7 +232,9 @@ fn onset(heights_db: &[Option<f64>], sound: usize) -> Option<Onset> {
     // parameters are levels, slopes, scatters and the place (R. E. Kass and A. E. Raftery, J. Am. Stat. Assoc. 90 (1995)
     // 773–795, section 3.2).
     let criterion = |parts: &[(&[(f64, f64)], usize)], parameters: f64| {
-        let misfit = |(part, of): &(&[(f64, f64)], usize)| part.len() as f64 * (misfit(part, *of) / part.len() as f64).ln();
+        let misfit = |(part, of): &(&[(f64, f64)], usize)| {
+            part.len() as f64 * (misfit(part, *of) / part.len() as f64).ln()
+        };
         parts.iter().map(misfit).sum::<f64>() + parameters * (points.len() as f64).ln()
     };
     let (before, behind) = points.split_at(best.0);

@@ -167,7 +167,9 @@ impl Inspection {
         let usual: Vec<f64> = kept.iter().map(|x| x.clamp(low, high)).collect();
         let pattern = self.pattern(&usual, repeats.is_some_and(|repeats| repeats.is_waveform));
         let mut found: Vec<Quality> = pattern.into_iter().collect();
-        found.extend(repeats.filter(|repeats| !repeats.is_waveform).map(|repeats| self.repeated(kept, repeats)));
+        found.extend(
+            repeats.filter(|repeats| !repeats.is_waveform).map(|repeats| self.repeated(kept, repeats)),
+        );
         if found.is_empty() {
             let values: Vec<f64> = rails.iter().map(|rail| rail.value).collect();
             found.extend(self.marks(&histogram, &values));
@@ -188,8 +190,12 @@ impl Inspection {
             found.push(whole(Kind::Swapped, "values over more decades than a sensor has: the bytes of the numbers stand in the other \
                 order, or they are numbers of another format. Read them with the order of bytes of their recorder".to_owned()));
         } else if found.is_empty() && rails.is_empty() && histogram.is_one_sided() {
-            found.push(whole(Kind::SignLost, "sign lost: all values lie on one side of zero, and most of them near it, as those of a \
-                rectified signal do. Record the signal itself, with its sign".to_owned()));
+            found.push(whole(
+                Kind::SignLost,
+                "sign lost: all values lie on one side of zero, and most of them near it, as those of a \
+                rectified signal do. Record the signal itself, with its sign"
+                    .to_owned(),
+            ));
         }
         found.extend(self.jump());
         found
@@ -197,7 +203,8 @@ impl Inspection {
 
     /// Samples that stand many times, zeros between samples, channels one after the other.
     fn pattern(&self, kept: &[f64], of_waveform: bool) -> Option<Quality> {
-        let (places, kind) = similarity::pattern(kept).filter(|(_, kind)| *kind != Pattern::Unlike || !of_waveform)?;
+        let (places, kind) =
+            similarity::pattern(kept).filter(|(_, kind)| *kind != Pattern::Unlike || !of_waveform)?;
         let lower = self.rate_hz / places as f64;
         let words = match kind {
             Pattern::Held => format!(
@@ -235,8 +242,10 @@ impl Inspection {
     fn marks(&self, histogram: &Histogram, rails: &[f64]) -> Option<Quality> {
         let marks = histogram.marks(rails);
         let share = marks.iter().map(|(_, samples)| self.part(*samples as u64)).sum::<f64>();
-        let each: Vec<String> =
-            marks.iter().map(|(value, samples)| format!("{samples} samples are exactly {}", spelt(*value))).collect();
+        let each: Vec<String> = marks
+            .iter()
+            .map(|(value, samples)| format!("{samples} samples are exactly {}", spelt(*value)))
+            .collect();
         let words = format!(
             "one value too often: {}, as no other value is; a mark of missing samples, or what a dead zone leaves, \
              which looks like knocks. Leave the field empty in their place",
@@ -265,24 +274,37 @@ impl Inspection {
                 || format!("subtract the range of its numbers above {}", spelt(0.5 * (low + high))),
                 |(bits, _)| unsigned(bits),
             );
-            (Kind::SignLost, format!(
-                "sign lost: values stand at both ends of the range, {} to {}, and none between, as those of signed \
+            (
+                Kind::SignLost,
+                format!(
+                    "sign lost: values stand at both ends of the range, {} to {}, and none between, as those of signed \
                  numbers that were read as unsigned: {cure}",
-                spelt(low), spelt(high)
-            ))
-        } else if let Some(bytes) = quantum.filter(|_| breaks_off).and_then(|q| jumps::swapped_bytes(kept, q)) {
-            (Kind::Swapped, format!(
-                "bytes swapped: all values from {} to {} are as frequent, and with the {bytes} bytes of each number in \
+                    spelt(low),
+                    spelt(high)
+                ),
+            )
+        } else if let Some(bytes) = quantum.filter(|_| breaks_off).and_then(|q| jumps::swapped_bytes(kept, q))
+        {
+            (
+                Kind::Swapped,
+                format!(
+                    "bytes swapped: all values from {} to {} are as frequent, and with the {bytes} bytes of each number in \
                  the other order they lie near each other. Read the file with the other order of bytes",
-                spelt(low), spelt(high)
-            ))
+                    spelt(low),
+                    spelt(high)
+                ),
+            )
         } else {
-            (Kind::Wrapped, format!(
-                "wrapped: {across} steps lead from one end of the range, {} to {}, to the other, and no value piles up \
+            (
+                Kind::Wrapped,
+                format!(
+                    "wrapped: {across} steps lead from one end of the range, {} to {}, to the other, and no value piles up \
                  there: what lies beyond one end was written at the other. Measure with a smaller gain, or convert \
                  with more bits",
-                spelt(low), spelt(high)
-            ))
+                    spelt(low),
+                    spelt(high)
+                ),
+            )
         };
         Some(self.quality(kind, share, 0, words))
     }
@@ -293,7 +315,9 @@ impl Inspection {
             self.stretches.iter().filter(|s| s.count >= 0.5 * self.length as f64).copied().collect();
         let usual = median(&full.iter().map(Stretch::deviation).collect::<Vec<_>>())?;
         let (at, what) = jumps::gain(&full)
-            .map(|(at, ratio)| (at, format!("gain changed: all frequencies are {} times as strong", spelt(ratio))))
+            .map(|(at, ratio)| {
+                (at, format!("gain changed: all frequencies are {} times as strong", spelt(ratio)))
+            })
             .or_else(|| {
                 let (at, by) = jumps::offset(&full, usual)?;
                 Some((at, format!("offset changed: the mean moves by {}", spelt(by))))

@@ -85,14 +85,17 @@ pub(super) fn repeats(samples: &[f64]) -> Option<Repeats> {
         if at < past {
             continue;
         }
-        let hash = window.iter().fold(0_u64, |hash, x| (hash ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23));
+        let hash = window
+            .iter()
+            .fold(0_u64, |hash, x| (hash ^ x.to_bits()).wrapping_mul(0x9E37_79B9_7F4A_7C15).rotate_left(23));
         if hash % ONE_IN != 0 || window.windows(2).filter(|pair| pair[0] == pair[1]).count() > WINDOW / 4 {
             continue;
         }
         let Some(before) = seen.insert(hash, at) else { continue };
         let equal = |(a, b): &(&f64, &f64)| a == b;
         let behind = samples[at..].iter().zip(&samples[before..]).take_while(equal).count();
-        let ahead = samples[past..at].iter().rev().zip(samples[..before].iter().rev()).take_while(equal).count();
+        let ahead =
+            samples[past..at].iter().rev().zip(samples[..before].iter().rev()).take_while(equal).count();
         if ahead + behind >= STRETCH {
             if found.samples == 0 {
                 (found.first, found.lag) = (at - ahead, at - before);
